@@ -384,6 +384,46 @@ static void test_no_torque_or_force_ends_the_process_and_the_body_can_be_placed_
     }
 }
 
+// places, seats and steps a body in such a state
+static void use_bad(himc_character *c, int what, himc_engine engine)
+{
+    static const himc_quat bad_quat[] = {
+        {NAN, 0, 0, 0}, {0, 0, 0, 0}, {INFINITY, 0, 0, 0}, {1e-200, 0, 0, 0}, {1e200, 0, 0, 0}};
+    static const double bad_spin[] = {NAN, INFINITY, 1e200, 4000};
+    himc_body_state s;
+    himc_pose zero = himc_pose_zero();
+    himc_pose_to_state(&skeleton, &zero, NULL, &s);
+    if (what < 5)
+        s.orientation[HIMC_TRUNK] = bad_quat[what];
+    else
+        s.spin[HIMC_TRUNK].y = bad_spin[what - 5];
+    himc_character_use(c, engine);
+    if (himc_character_place(c, &s) || himc_character_step(c, no_torque, no_force, 1e-4))
+        _exit(1);
+    if (!himc_character_seat(c, skeleton.root.z + 0.1) || himc_character_seat(c, NAN))
+        _exit(2);
+    if (!himc_character_step(c, no_torque, no_force, 1e-4))
+        _exit(3);
+    himc_character_observe(c, &s);
+    if (!himc_body_state_finite(&s))
+        _exit(4);
+}
+
+static void test_no_state_that_is_placed_or_seated_ends_the_process(void)
+{
+    for (int i = 0; i < 18; i++) {
+        int status;
+        pid_t child = fork();
+        if (child == 0) {
+            use_bad(character, i / 2, (himc_engine)(i % 2));
+            _exit(0);
+        }
+        waitpid(child, &status, 0);
+        TEST_ASSERT_TRUE(WIFEXITED(status));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, WEXITSTATUS(status), "1 placed, 2 seat, 3 step, 4 state");
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -397,5 +437,6 @@ int main(void)
     RUN_TEST(test_two_runs_are_equal_bit_by_bit);
     RUN_TEST(test_force_on_a_tip_accelerates_the_effective_mass);
     RUN_TEST(test_no_torque_or_force_ends_the_process_and_the_body_can_be_placed_again);
+    RUN_TEST(test_no_state_that_is_placed_or_seated_ends_the_process);
     return UNITY_END();
 }

@@ -2,6 +2,7 @@
 /// once and to the sample, tip errors outside contact, recoveries.
 #include "session.h"
 #include "performance/performance_state.h"
+#include "plan/planner_motion.h"
 
 #define RATE 48000
 #define GAP 71 // samples: 1.5 ms, which part two contacts of one hand
@@ -210,6 +211,47 @@ static void test_each_recovery_is_counted_and_a_note_tells_the_first(void)
     himc_performance_free(p);
 }
 
+// whatever the targets have become, the hands rest and the next stroke is played: no `reset`
+static void expect_recovery_of(himc_performance *p, double *number)
+{
+    heard h = {0};
+    session_play(p, 0.3, NULL);
+    *number = NAN;
+    himc_motion_replan(p->motion);
+    session_play(p, 1, NULL);
+    session_do(p, "clear");
+    session_do(p, "hit right legato f");
+    session_play(p, 1, &h);
+    TEST_ASSERT_TRUE(h.strikes > 0);
+    const himc_strike *last = &h.strike[h.strikes - 1];
+    TEST_ASSERT_EQUAL_STRING("legato", last->nuance);
+    TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, last->hand);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        TEST_ASSERT_TRUE(himc_target_finite(&p->motion->reference.tip[hand]) &&
+                         himc_vec3_finite(p->body->state.tip[hand]));
+    heard_free(&h);
+}
+
+static void test_targets_that_are_no_numbers_are_replaced_and_the_performer_plays_on(void)
+{
+    for (int i = 0; i < 6; i++) {
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        session_do(p, "roll 0 8 single 0.7");
+        session_do(p, "play");
+        planner_hand *h = p->motion->planner->hand;
+        himc_spline *path = &h[HIMC_LEFT].plan.tangential_path;
+        double *const number[] = {&path->segment[0].q.c[0].x,
+                                  &h[HIMC_RIGHT].plan.height_profile.segment[0].q.c[5].z,
+                                  &h[HIMC_RIGHT].plan.end,
+                                  &p->motion->course.from.value[0],
+                                  &p->motion->reference.posture.joint[3].w,
+                                  &p->body->state.tip[HIMC_LEFT].z};
+        expect_recovery_of(p, number[i]);
+        himc_performance_free(p);
+    }
+}
+
 // a body that moves faster than the engine can step is put back at once, and plays on
 static void test_body_that_the_engine_refuses_is_put_back_once(void)
 {
@@ -239,6 +281,7 @@ int main(void)
     RUN_TEST(test_stick_pressed_onto_the_head_stays_in_contact_and_comes_free);
     RUN_TEST(test_tips_are_measured_outside_contact_only);
     RUN_TEST(test_each_recovery_is_counted_and_a_note_tells_the_first);
+    RUN_TEST(test_targets_that_are_no_numbers_are_replaced_and_the_performer_plays_on);
     RUN_TEST(test_body_that_the_engine_refuses_is_put_back_once);
     return UNITY_END();
 }

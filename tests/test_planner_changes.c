@@ -2,7 +2,7 @@
 /// and each stroke is still played once, at its time, or given up and counted.
 #include "planners.h"
 
-#include "plan/gesture.h"
+#include "plan/hand.h"
 
 #include <string.h>
 
@@ -223,6 +223,27 @@ static void test_strokes_that_make_a_waiting_hand_rest_elsewhere_are_not_exchang
     }
 }
 
+// a plan that no body could follow is dropped in one line, with its strokes; the next one is played
+static void test_a_plan_faster_than_a_body_is_dropped_and_the_hand_rests(void)
+{
+    himc_target state;
+    add(planner, 1, HIMC_LEFT, HIMC_LEGATO, 0.7);
+    add(planner, 4, HIMC_LEFT, HIMC_LEGATO, 0.7);
+    himc_planner_play(planner, 0);
+    advance_to(0.3);
+    state = himc_planner_target(planner, HIMC_LEFT, 0.3);
+    state.v.x = 1e3;
+    himc_planner_resume(planner, 0.3, HIMC_LEFT, &state);
+    for (double t = 0.3; t < 1; t += 0.002) {
+        himc_target s = at(planner, HIMC_LEFT, t);
+        TEST_ASSERT_TRUE(himc_target_finite(&s) && himc_vec3_length(s.v) <= HIMC_FASTEST_TIP);
+    }
+    expect_note("left hand: a motion that no body could make was dropped at 0.300 s");
+    double second = touch_at(HIMC_LEFT, 1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2, second);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, PLANE, at(planner, HIMC_LEFT, second).x.z);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -237,5 +258,6 @@ int main(void)
     RUN_TEST(test_stroke_beyond_the_rim_is_struck_just_inside_it_and_a_note_says_so);
     RUN_TEST(test_play_past_the_end_begins_at_beat_0);
     RUN_TEST(test_seek_to_the_beat_of_a_stroke_plays_it);
+    RUN_TEST(test_a_plan_faster_than_a_body_is_dropped_and_the_hand_rests);
     return UNITY_END();
 }

@@ -2,13 +2,13 @@
 /// ODE's dWorldStep with 19 bodies and 19 ball joints, one loop over the table.
 ///
 /// The state here is the body's only one. ODE's bodies receive it when ODE is to step and have not
-/// made it themselves. The frame of an ODE body is its segment's, moved to the centre of mass, as
-/// ODE requires. The pelvis is ODE's world (body 0), so the trunk and each leg are separate islands
-/// and ODE solves three small systems. dWorldStep is deterministic to the bit (QuickStep draws
-/// random numbers). Legs at rest keep their state to the bit until a force on them changes: the
-/// pelvis is fixed, so nothing else moves them. ODE aborts the process on an invalid mass, so the
-/// skeleton is checked before; it accepts NaN silently, so himc_performance checks the state after
-/// each step.
+/// made it themselves. ODE aborts the process for a quaternion without direction and accepts NaN
+/// silently, so the state is checked where it is set and after each step; it aborts for an invalid
+/// mass, so the skeleton is checked before. The frame of an ODE body is its segment's, moved to the
+/// centre of mass, as ODE requires. The pelvis is ODE's world (body 0), so the trunk and each leg
+/// are separate islands and ODE solves three small systems. dWorldStep is deterministic to the bit
+/// (QuickStep draws random numbers). Legs at rest keep their state to the bit until a force on them
+/// changes: the pelvis is fixed, so nothing else moves them.
 #include "body/character.h"
 
 #include <ode/ode.h>
@@ -20,7 +20,8 @@
 // chosen: beyond any motion of a limb and below the speeds at which ODE aborts
 #define FASTEST_SPIN 3000 // (rad/s)
 // chosen: far above any real value, and its square is still finite
-#define LARGEST_SUM 1e30 // of the squares of all torques, forces, positions and velocities
+#define LARGEST_SUM 1e30 // of squares: of all torques and forces, of all positions and velocities
+#define UNIT_ERROR 0.01  // of a quaternion's square; chosen: engines keep 1e-12
 // legs at rest. Chosen: above the noise of rounding, 1e-11 rad/s, and long enough that the turning
 // point of a swing is none
 #define STILL_SPIN 1e-9   // a leg that spins slower is still (rad/s)
@@ -40,6 +41,7 @@ struct himc_character {
     himc_articulation articulation;
     bool articulated;       // the articulation belongs to this state
     bool given;             // ODE's bodies have this state
+    bool sound;             // the engines take this state
     int still;              // steps in which no leg moved
     segment_forces resting; // on the legs, in the last of these steps
     dWorldID world;
@@ -63,6 +65,21 @@ static void make_joint(himc_character *c, int i, const himc_body_state *state)
     dJointID joint = dJointCreateBall(c->world, 0);
     dJointAttach(joint, c->body[i], c->body[c->skeleton.segment[i].parent]);
     dJointSetBallAnchor(joint, state->origin[i].x, state->origin[i].y, state->origin[i].z);
+}
+
+// false for any state on which ODE's own checks would abort the process
+static bool is_sound(const segment_states *s)
+{
+    double sum = 0;
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 w = s->joints.spin[i], x = s->position[i], v = s->velocity[i];
+        himc_quat q = s->joints.orientation[i];
+        sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v);
+        if (!(himc_vec3_dot(w, w) < FASTEST_SPIN * FASTEST_SPIN) ||
+            !(fabs(himc_quat_dot(q, q) - 1) < UNIT_ERROR))
+            return false;
+    }
+    return sum < LARGEST_SUM;
 }
 
 static void give_to_ode(himc_character *c)
@@ -183,11 +200,10 @@ void himc_character_account(himc_character *c, himc_body_work *work)
     c->work = work;
 }
 
-void himc_character_place(himc_character *c, const himc_body_state *state)
+static void set_state(himc_character *c, const himc_body_state *state)
 {
     himc_body_state *s = &c->state.joints;
     himc_vec3 v[HIMC_SEGMENTS];
-    double before = c->work ? energy(c) : 0;
     *s = *state;
     s->orientation[0] = himc_quat_identity();
     s->spin[0] = himc_vec3_make(0, 0, 0);
@@ -200,12 +216,20 @@ void himc_character_place(himc_character *c, const himc_body_state *state)
         c->state.position[i] = himc_vec3_add(s->origin[i], center);
         c->state.velocity[i] = himc_vec3_add(v[i], himc_vec3_cross(s->spin[i], center));
     }
-    if (c->work)
+}
+
+bool himc_character_place(himc_character *c, const himc_body_state *state)
+{
+    double before = c->work ? energy(c) : 0;
+    set_state(c, state);
+    c->sound = is_sound(&c->state);
+    if (c->work && isfinite(before))
         c->work->placed += energy(c) - before;
     memset(c->push, 0, sizeof c->push);
     memset(c->turn, 0, sizeof c->turn);
     c->still = 0;
     changed(c);
+    return c->sound;
 }
 
 // the joints of the pelvis are anchored in ODE's world
@@ -219,12 +243,19 @@ static void anchor_pelvis(himc_character *c)
     }
 }
 
-void himc_character_seat(himc_character *c, double height)
+bool himc_character_seat(himc_character *c, double height)
 {
+    himc_pose zero = himc_pose_zero();
+    if (!isfinite(height))
+        return false;
+    himc_body_state state = c->state.joints;
     c->skeleton.root.z = height;
-    himc_character_place(c, &c->state.joints);
+    if (!c->sound)
+        himc_pose_to_state(&c->skeleton, &zero, NULL, &state);
+    himc_character_place(c, &state);
     give_to_ode(c);
     anchor_pelvis(c);
+    return true;
 }
 
 // the tips from the stick's centre; along the joints their drift would add up
@@ -272,19 +303,12 @@ static void fill_forces(const himc_character *c, const himc_vec3 torque[HIMC_JOI
     }
 }
 
-// false for any input on which ODE's own checks would abort the process
-static bool can_step(const segment_states *s, const segment_forces *f)
+static bool can_step(const himc_character *c, const segment_forces *f)
 {
     double sum = 0;
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        himc_vec3 w = s->joints.spin[i], x = s->position[i], v = s->velocity[i];
-        himc_vec3 force = f->force[i], torque = f->torque[i];
-        sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v) + himc_vec3_dot(force, force) +
-               himc_vec3_dot(torque, torque);
-        if (!(himc_vec3_dot(w, w) < FASTEST_SPIN * FASTEST_SPIN))
-            return false;
-    }
-    return sum < LARGEST_SUM;
+    for (int i = 1; i < HIMC_SEGMENTS; i++)
+        sum += himc_vec3_dot(f->force[i], f->force[i]) + himc_vec3_dot(f->torque[i], f->torque[i]);
+    return c->sound && sum < LARGEST_SUM;
 }
 
 void himc_character_push(himc_character *c, int segment, himc_vec3 force, himc_vec3 from_center)
@@ -370,15 +394,21 @@ bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
 {
     segment_forces forces;
     fill_forces(c, torque, tip_force, &forces);
-    if (!can_step(&c->state, &forces))
+    if (!can_step(c, &forces))
         return false;
-    if (c->work)
+    himc_body_work before;
+    if (c->work) {
+        before = *c->work;
         step_accounted(c, &(himc_step_forces){torque, tip_force, c->push, c->turn}, &forces, h);
-    else
+    } else {
         step_engine(c, &forces, h);
+    }
     memset(c->push, 0, sizeof c->push);
     memset(c->turn, 0, sizeof c->turn);
     changed(c);
     c->given = c->engine == HIMC_ENGINE_ODE;
-    return true;
+    c->sound = is_sound(&c->state);
+    if (c->work && !c->sound)
+        *c->work = before;
+    return c->sound;
 }

@@ -23,11 +23,13 @@ typedef enum himc_engine {
 HIMC_RT void himc_character_use(himc_character *character, himc_engine engine);
 HIMC_RT himc_engine himc_character_engine(const himc_character *character);
 
-/// Sets the height of the pelvis (m); himc_character_place then puts the body there.
-HIMC_RT void himc_character_seat(himc_character *character, double height);
+/// Sets the height of the pelvis (m), which takes the body along; a body that himc_character_place
+/// has refused is then in the zero pose. False, and nothing changed, if the height is not finite.
+HIMC_RT bool himc_character_seat(himc_character *character, double height);
 
 /// Sets the body to a state. Only orientations and spins are used, the rest follows from them.
-HIMC_RT void himc_character_place(himc_character *character, const himc_body_state *state);
+/// False if the engine would end the process for it; then there are no steps.
+HIMC_RT bool himc_character_place(himc_character *character, const himc_body_state *state);
 
 /// Reads the body's state: the kinematic layer from the dynamic layer.
 HIMC_RT void himc_character_observe(const himc_character *character, himc_body_state *state);
@@ -50,8 +52,9 @@ HIMC_RT void himc_character_push(himc_character *character, int segment, himc_ve
 
 /// One step of `h` seconds (1e-5 .. 0.01) under gravity, the `torque` of each joint on its child
 /// and its opposite on the parent (world frame, N m), and a `tip_force` on each drumstick tip (N).
-/// False, without a step, if a torque, a force or the body's state is not finite or a segment
-/// rotates faster than 3000 rad/s: the engine would end the process.
+/// False, without a step, if a torque or a force is not finite; false also if the body's state is
+/// not finite afterwards, or a segment rotates faster than 3000 rad/s: the engine would end the
+/// process. Then there are no steps until himc_character_place.
 HIMC_RT bool himc_character_step(himc_character *character, const himc_vec3 torque[HIMC_JOINTS],
                                  const himc_vec3 tip_force[HIMC_HANDS], double h);
 

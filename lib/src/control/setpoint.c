@@ -13,6 +13,16 @@ void himc_setpoint_complete(himc_setpoint *tick, const himc_posture *posture)
     himc_posture_moving(posture, tick->tip, &tick->posture);
 }
 
+bool himc_setpoint_finite(const himc_setpoint *tick)
+{
+    // doubles only; x - x is NaN if x is not finite, and so is the sum
+    const double *number = (const double *)tick;
+    double sum = 0;
+    for (size_t i = 0; i < sizeof *tick / sizeof *number; i++)
+        sum += number[i] - number[i];
+    return sum == 0;
+}
+
 void himc_setpoint_course_make(himc_setpoint_course *course, const himc_setpoint *from,
                                const himc_setpoint *to)
 {

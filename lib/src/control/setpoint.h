@@ -17,6 +17,9 @@ typedef struct himc_setpoint {
 /// Fills the posture of a tick from its tips.
 HIMC_RT void himc_setpoint_complete(himc_setpoint *tick, const himc_posture *posture);
 
+/// True if all of it is finite.
+HIMC_RT bool himc_setpoint_finite(const himc_setpoint *tick);
+
 #define HIMC_MOVING_JOINTS (HIMC_LEFT_UPPER_LEG - 1) ///< the joints before the hips
 
 /// The motion between two ticks.

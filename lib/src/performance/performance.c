@@ -19,13 +19,15 @@ static contact_scene scene_of(himc_performance *p)
                            .events = &p->events};
 }
 
-// replaces an invalid state of the physics by that of the targets, and counts it
-static void recover(himc_performance *p)
+// Replaces an invalid state of the physics by that of the targets, and counts it; targets that are
+// not finite are replaced as well.
+static void recover(himc_performance *p, double t)
 {
     if (himc_statistics_recovery(&p->statistics) == 0)
         himc_events_note(&p->events,
                          "the body flew apart at a physics rate of %g Hz and was put back",
                          p->clock.physics_rate);
+    himc_motion_recover(p->motion, &p->settings, t);
     himc_body_place(p->body, &p->motion->from);
     himc_contacts_clear(&p->contacts);
 }
@@ -69,7 +71,7 @@ static void step_dynamics(himc_performance *p, int n, double t, double h, bool t
 {
     contact_scene scene = scene_of(p);
     if (!himc_body_observe(p->body, tick))
-        recover(p);
+        recover(p, t);
     if (tick)
         himc_performance_take_energy(p);
     himc_contacts_finish(&p->contacts, &scene, t);
@@ -79,7 +81,7 @@ static void step_dynamics(himc_performance *p, int n, double t, double h, bool t
     measure(p, t, tick);
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, p->body->torque);
     if (!himc_body_simulate(p->body, t, h))
-        recover(p);
+        recover(p, t);
 }
 
 // the body moved by inverse kinematics; only the ends of the sticks are in contact with the head
@@ -87,7 +89,7 @@ static void step_kinematics(himc_performance *p, int n, double t, double h, bool
 {
     contact_scene scene = scene_of(p);
     if (!himc_body_follow(p->body, &p->motion->reference, h))
-        recover(p);
+        recover(p, t);
     if (tick)
         himc_performance_take_energy(p);
     himc_contacts_finish(&p->contacts, &scene, t);
@@ -141,6 +143,8 @@ static void performance_step(himc_performance *p)
         double next = himc_clock_next_tick(&p->clock);
         himc_contacts_look_down(&p->contacts, &scene, t, next);
         himc_motion_read_task(p->motion, &p->settings, &p->drums, t, next);
+        if (!himc_motion_is_finite(p->motion))
+            recover(p, t);
     }
     if (tick)
         keep_to_score(p, t);

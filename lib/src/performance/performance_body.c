@@ -97,15 +97,17 @@ void himc_body_place(performance_body *b, const himc_setpoint *at)
     himc_pose pose;
     memcpy(pose.joint, at->posture.joint, sizeof pose.joint);
     himc_pose_to_state(&b->skeleton, &pose, at->posture.rate, &b->state);
+    if (himc_character_place(b->character, &b->state))
+        return;
+    pose = himc_pose_zero();
+    himc_pose_to_state(&b->skeleton, &pose, NULL, &b->state);
     himc_character_place(b->character, &b->state);
 }
 
 void himc_body_seat(performance_body *b, double height)
 {
-    if (b->skeleton.root.z == height)
-        return;
-    b->skeleton.root.z = b->plant.root.z = height;
-    himc_character_seat(b->character, height);
+    if (b->skeleton.root.z != height && himc_character_seat(b->character, height))
+        b->skeleton.root.z = b->plant.root.z = height;
 }
 
 void himc_body_take_up(performance_body *b)

@@ -584,6 +584,35 @@ static void begin_clear(performance_motion *m, const performance_settings *s, do
     m->course.from = m->course.goal;
 }
 
+bool himc_motion_is_finite(const performance_motion *m)
+{
+    return himc_setpoint_finite(&m->from) && himc_setpoint_finite(&m->to);
+}
+
+void himc_motion_recover(performance_motion *m, const performance_settings *s, double t)
+{
+    if (himc_motion_is_finite(m))
+        return;
+    himc_planner_recover(m->planner, t);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_target planned = himc_motion_planned(m, (himc_hand)hand, t);
+        if (!himc_target_finite(&planned))
+            m->track_start = INFINITY;
+        m->live[hand] = (live_target){.time = 0};
+    }
+    m->crossfade_due = false;
+    himc_posture_crossfade_cancel(&m->crossfade);
+    begin_clear(m, s, t);
+    m->course.time = t;
+    fill_tick(m, s, &m->from, t);
+    m->to = m->from;
+    m->to.time += REHEARSED_STEP; // until the setpoints are read again
+    memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
+    m->reference.posture = m->from.posture;
+    himc_setpoint_course_make(&m->between, &m->from, &m->to);
+    m->replan = true;
+}
+
 void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
                        const performance_settings *s, double t)
 {

@@ -104,6 +104,12 @@ HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
 /// Read task: the targets at the tick after `t`, and at this one if the plan has changed.
 HIMC_RT void himc_motion_read_task(performance_motion *motion, const performance_settings *settings,
                                    const performance_drums *drums, double t, double next);
+/// False if a setpoint is not finite.
+HIMC_RT bool himc_motion_is_finite(const performance_motion *motion);
+/// Makes the setpoints finite again at `t`, if they are not: a hand whose plan is not sound rests,
+/// a take that is not finite ends, and trunk and cross-fade begin again.
+HIMC_RT void himc_motion_recover(performance_motion *motion, const performance_settings *settings,
+                                 double t);
 /// Lets the planner rehearse its plan, for a step of `h` (s), less if a stick is `busy` with a
 /// head.
 HIMC_RT void himc_motion_think(performance_motion *motion, double h, bool busy);

@@ -92,7 +92,7 @@ himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance, double
 himc_gesture himc_gesture_scale(himc_gesture g, double factor)
 {
     double shape = g.speed * g.down / g.height;
-    g.speed *= factor;
+    g.speed = fmax(g.speed * factor, HIMC_SLOWEST_GESTURE);
     g.height = fmax(fmin(g.height * factor, HIGHEST_GESTURE), LOWEST_GESTURE);
     g.down = shape * g.height / g.speed;
     return g;

@@ -8,6 +8,10 @@
 /// while v T/h <= 2.5. Chosen: 4 % less.
 #define HIMC_STEEPEST_QUINTIC 2.4
 
+/// A gesture that would have to be slower has this speed (m/s), and no hand plays it. Chosen: a
+/// tenth of ppp.
+#define HIMC_SLOWEST_GESTURE 0.04
+
 typedef struct himc_gesture {
     double height;  ///< of the tip above the point of contact when it begins to fall (m)
     double speed;   ///< of impact (m/s)
@@ -31,7 +35,7 @@ HIMC_RT himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic);
 HIMC_RT himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance, double dynamic);
 
 /// The same stroke with `factor` times its impact speed and height, in the same time, within the
-/// limits of all strokes.
+/// limits of all strokes, HIMC_SLOWEST_GESTURE among them.
 HIMC_RT himc_gesture himc_gesture_scale(himc_gesture gesture, double factor);
 
 /// The dynamic (0 .. 1) of a stroke with `factor` times the speed of one of that dynamic.

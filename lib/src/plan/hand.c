@@ -20,6 +20,9 @@
 #define FASTEST_FALL 9.0       // mean speed of a fall (m/s)
 #define HARDEST_MOVE 250.0     // peak acceleration along the head (m/s^2)
 
+#define SOUND_SAMPLES \
+    4 // intervals of a quintic where its speed is looked at; chosen: it turns 4 times
+
 // over the other hand; chosen: as a wrist lifts a stick in a hurry, and sooner than any new touch
 #define LIFT_FADE 0.1 // of a lift that is broken off (s)
 
@@ -212,7 +215,8 @@ bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, 
     double up = himc_move_time(himc_vec3_length(way), HIMC_HARDEST_LIFT);
     himc_target nothing = {0}, raised = himc_target_at_rest(way);
     bool busy = lift->count > 0 && lift->segment[lift->count - 1].t1 > begin;
-    if (busy || lift->count + 3 > HIMC_SPLINE_SEGMENTS || from - begin < up || end - to < up)
+    bool in_time = from - begin >= up && end - to >= up;
+    if (busy || lift->count + 3 > HIMC_SPLINE_SEGMENTS || !in_time)
         return false;
     himc_spline_add(lift, begin, &nothing, from, &raised);
     himc_spline_add(lift, from, &raised, to, &raised);
@@ -275,6 +279,24 @@ static void leave(himc_hand_plan *plan, double next)
     plan->end += T;
 }
 
+/// The same of one of its splines, at SOUND_SAMPLES places of each segment.
+static bool is_sound(const himc_spline *spline, double from)
+{
+    for (const himc_spline_segment *s = spline->segment; s < spline->segment + spline->count; s++)
+        for (int i = 0; s->t1 > from && i <= SOUND_SAMPLES; i++) {
+            himc_target at = himc_spline_segment_at(s, s->t0 + (s->t1 - s->t0) * i / SOUND_SAMPLES);
+            if (!himc_target_finite(&at) || himc_vec3_length(at.v) > HIMC_FASTEST_TIP)
+                return false;
+        }
+    return true;
+}
+
+bool himc_hand_is_sound(const himc_hand_plan *plan, double from)
+{
+    return isfinite(plan->end) && is_sound(&plan->tangential_path, from) &&
+           is_sound(&plan->height_profile, from) && is_sound(&plan->lift, from);
+}
+
 bool himc_hand_room(const himc_hand_plan *plan)
 {
     int path = plan->tangential_path.count, height = plan->height_profile.count;
@@ -309,7 +331,8 @@ double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
 static bool is_possible(const stroke_plan *s, const himc_goal *goal)
 {
     double T = goal->time - s->height_end;
-    if (!(T >= LEAST_STROKE_TIME) || s->height.h / T > FASTEST_FALL)
+    if (!(T >= LEAST_STROKE_TIME && goal->gesture.speed > HIMC_SLOWEST_GESTURE) ||
+        s->height.h / T > FASTEST_FALL)
         return false;
     return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HARDEST_MOVE) <= T;
 }

@@ -66,7 +66,16 @@ HIMC_RT double himc_hand_time(const himc_hand_plan *plan, const himc_goal *goal)
 /// ... and in the greatest hurry (s).
 HIMC_RT double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal);
 
-/// True if a tip can reach the goal in time without superhuman speed or acceleration.
+/// No stick is faster (m/s). Chosen: the head of a golf club, swung with both arms; captured
+/// strokes have up to 10 m/s.
+#define HIMC_FASTEST_TIP 50.0
+
+/// True if a body can follow the plan from `from` (s) on: all of it is finite, and no part is
+/// faster than HIMC_FASTEST_TIP.
+HIMC_RT bool himc_hand_is_sound(const himc_hand_plan *plan, double from);
+
+/// True if a tip can reach the goal in time without superhuman speed or acceleration, and its
+/// gesture is not too slow.
 HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal);
 
 /// True if the tip could do so if its plan were cut at t.

@@ -181,6 +181,10 @@ HIMC_RT bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand);
 /// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
 /// backwards). Call at least every task period.
 HIMC_RT void himc_planner_advance(himc_planner *planner, double t);
+
+/// Checks all that is planned after `t` again (himc_hand_is_sound), and drops what a body could not
+/// follow: its hand then rests.
+HIMC_RT void himc_planner_recover(himc_planner *planner, double t);
 /// Rehearses what is planned with the whole body, and lets the hands pass each other where they
 /// would meet, for so much `work`, counted in postures of the body, and one moment more. What is
 /// left is done at the next calls. Changes begin at least 12 ms after the last advance.

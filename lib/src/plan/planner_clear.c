@@ -73,6 +73,8 @@ static void walk_anew(himc_planner *planner)
 
 void himc_planner_changed(himc_planner *planner, double t)
 {
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        planner->hand[hand].checked = fmin(planner->hand[hand].checked, t);
     if (t < planner->clear.walk.t - fmax(planner->clear.walk.after, 0) && !planner->clear.planning)
         walk_anew(planner);
 }

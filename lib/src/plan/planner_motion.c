@@ -53,7 +53,7 @@
 #define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
 /// What has become of a stroke that was to be planned.
-typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS, LEFT_OUT } plan_result;
+typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS, LEFT_OUT, UNSOUND } plan_result;
 
 void himc_planner_motion_init(himc_planner *planner)
 {
@@ -105,9 +105,10 @@ static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *s
     double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
     if (g.speed <= most)
         return g;
-    himc_planner_say(&planner->notes, PLANNER_SOFTER,
-                     "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
-                     stroke->bounce_time, most);
+    if (most > HIMC_SLOWEST_GESTURE) // else it is given up
+        himc_planner_say(&planner->notes, PLANNER_SOFTER,
+                         "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
+                         stroke->bounce_time, most);
     return himc_gesture_scale(g, most / g.speed);
 }
 
@@ -154,7 +155,8 @@ static void vary(const himc_planner *planner, timed_stroke *s)
     keep_inside(head, &at.x, &at.y);
     s->varied = true;
     s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
-    s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
+    if (s->goal.gesture.speed > HIMC_SLOWEST_GESTURE)
+        s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
     himc_vec3 aside = himc_vec3_cross(s->goal.normal, s->goal.back);
     s->goal.back = himc_vec3_madd(himc_vec3_scale(s->goal.back, cos(v->turn)), sin(v->turn), aside);
     if (!hit) // a hit's time has been varied when it came
@@ -179,7 +181,7 @@ static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t)
         !himc_planner_score_next(&planner->score, stroke->hand, 1, &after))
         return;
     double share = stroke->bounces == HIMC_BUZZ ? BUZZ_SHARE : DOUBLE_SHARE;
-    stroke->bounce_time = fmin(stroke->bounce_time, share * (after.time - t));
+    stroke->bounce_time = fmin(stroke->bounce_time, share * fmax(after.time - t, 0));
 }
 
 /// The next stroke of a hand, of the score or waiting, as written; false if there is none.
@@ -303,7 +305,10 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
         himc_format(text, 48, "out of reach by %.2f m",
                     himc_planner_beyond(planner, s->stroke.hand, &s->written));
     else
-        himc_format(text, 48, result == NO_TIME ? "no time to prepare it" : "the hands would meet");
+        himc_format(text, 48, "%s",
+                    result == NO_TIME   ? "no time to prepare it"
+                    : result == UNSOUND ? "no body could make its motion"
+                                        : "the hands would meet");
     return text;
 }
 
@@ -435,16 +440,49 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
                      reason_of(planner, s, result, reason));
 }
 
+/// Drops the plan from where it has been checked on, with its strokes: no body could follow it. The
+/// hand goes to its rest, at once where even the state there is not sound.
+static void drop_plan(himc_planner *planner, himc_hand hand)
+{
+    planner_hand *h = &planner->hand[hand];
+    double t = fmax(h->checked, planner->now);
+    while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time > t)
+        give_up(planner, &h->planned[--h->planned_count], UNSOUND);
+    himc_planner_say(&planner->notes, PLANNER_DROPPED,
+                     "%s hand: a motion that no body could make was dropped at %.3f s",
+                     himc_hand_name(hand), t);
+    h->targeted = false;
+    h->plan.home = himc_planner_rest_place(planner, hand);
+    h->plan.at_home = false;
+    himc_hand_cut(&h->plan, t);
+    himc_hand_wait(&h->plan, t, false);
+    if (!himc_hand_is_sound(&h->plan, t))
+        himc_hand_place(&h->plan, t, h->plan.home);
+}
+
+/// Each plan is checked once before it is played or continued, from where it was changed on.
+static void check_plan(himc_planner *planner, himc_hand hand)
+{
+    planner_hand *h = &planner->hand[hand];
+    if (h->checked == h->plan.end)
+        return;
+    if (!himc_hand_is_sound(&h->plan, fmax(h->checked, planner->now)))
+        drop_plan(planner, hand);
+    h->checked = h->plan.end;
+}
+
 /// Plans a hand to `until` while the other one wants to reassign a stroke to it: strokes that it
 /// cannot play are given up.
 static void extend_alone(himc_planner *planner, himc_hand hand, double until)
 {
     timed_stroke refused;
+    check_plan(planner, hand);
     for (int i = 0; has_to_plan(&planner->hand[hand], until, i); i++) {
         plan_result result = plan_next(planner, hand, until, &refused);
         if (result != PLANNED)
             give_up(planner, &refused, result);
     }
+    check_plan(planner, hand);
 }
 
 void himc_planner_unplan(himc_planner *planner, himc_hand hand, double t, double margin)
@@ -562,11 +600,13 @@ static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, pl
 void himc_planner_extend(himc_planner *planner, himc_hand hand, double until)
 {
     timed_stroke refused;
+    check_plan(planner, hand);
     for (int i = 0; has_to_plan(&planner->hand[hand], until, i); i++) {
         plan_result result = plan_next(planner, hand, until, &refused);
         if (result != PLANNED)
             reassign_or_give_up(planner, &refused, result);
     }
+    check_plan(planner, hand);
 }
 
 void himc_planner_cut(himc_planner *planner, himc_hand hand, double t)
@@ -679,7 +719,8 @@ double himc_planner_lateness(himc_planner *planner)
             continue;
         himc_goal goal =
             himc_planner_goal(planner, &due.stroke->stroke, due.stroke->drum, due.time);
-        late = fmax(late, plan->end + himc_hand_time(plan, &goal) - due.time);
+        if (goal.gesture.speed > HIMC_SLOWEST_GESTURE)
+            late = fmax(late, plan->end + himc_hand_time(plan, &goal) - due.time);
     }
     return late;
 }
@@ -730,6 +771,12 @@ void himc_planner_advance(himc_planner *planner, double t)
         himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
     }
     himc_planner_notes_tell_hits(&planner->notes, planner->now);
+}
+
+void himc_planner_recover(himc_planner *planner, double t)
+{
+    himc_planner_changed(planner, -HUGE_VAL);
+    himc_planner_advance(planner, t);
 }
 
 himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, double t)

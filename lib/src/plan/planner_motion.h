@@ -69,6 +69,7 @@ typedef struct planner_hand {
     bool targeted; ///< it rests at its last live target, not over a drum
     himc_stream stream;
     himc_hand_plan plan;
+    double checked;    ///< the plan is sound to here (s)
     planner_way way;   ///< found for one of its strokes
     planner_lift lift; ///< found for one of its strokes
 } planner_hand;
@@ -166,7 +167,7 @@ HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *st
 /// planner_rest.c: where a hand rests (m): over its drum or, out of its reach, over the first one
 /// in reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
-/// planner_clear.c: the plan of a hand is another one from t (s) on.
+/// planner_clear.c: the plan of a hand is another one from t (s) on, to be checked and rehearsed.
 HIMC_RT void himc_planner_changed(himc_planner *planner, double t);
 /// What the search needs from planner_motion.c.
 typedef enum planner_wish {

@@ -1,0 +1,203 @@
+/// test_tempo_walk.c: a tempo that changes at random from 5 to 600, in steps and in jumps, under
+/// rolls, ornaments, bounces and takes. All targets, tips, joints, rows and packets stay finite, no
+/// plan is dropped, and the performer plays on afterwards as a new one does.
+///
+/// 600 changes; 100,000 with HIMC_LONG, as many as HIMC_CHANGES says. HIMC_SEED is another walk.
+#include "take_players.h"
+
+#include "finite_watch.h"
+#include "session.h"
+
+#define TAKE "build/tempo-walk.bvh"
+#define RATE 16000 // (Hz) of samples, physics at 1000 Hz: to save time
+#define PIECE 20   // changes of tempo; then another piece
+#define SLOWEST 5.0
+#define FASTEST 600.0
+
+static long from_environment(const char *name, long usual)
+{
+    const char *text = getenv(name);
+    return text ? atol(text) : usual;
+}
+
+static himc_performance *performer(double physics)
+{
+    himc_performance_config config = {RATE, physics, 250};
+    himc_performance *p = himc_performance_new(&config, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(p, error.text);
+    himc_performance_make_drums(p, true);
+    session_do(p, "drum kettle 23");
+    return p;
+}
+
+static void make_take(void)
+{
+    himc_skeleton body;
+    himc_skeleton_config config = himc_skeleton_default();
+    TEST_ASSERT_TRUE(himc_skeleton_init(&body, &config, &error));
+    himc_take *take = beaten_take(&body, 100, 4, &error);
+    TEST_ASSERT_TRUE_MESSAGE(take && himc_take_save(take, TAKE, &error), error.text);
+    himc_take_free(take);
+}
+
+// rolls of each kind, ornaments on both sides of them, and plain strokes; or a take
+static void begin_piece(himc_performance *p, unsigned *seed)
+{
+    static const char *const roll[] = {"single", "double", "press"},
+                             *const ornament[] = {"flam", "drag", "ruff", "stroke"},
+                             *const nuance[] = {"legato", "tenuto", "accent", "vertical-accent",
+                                                "staccato"},
+                             *const hand[] = {"left", "right"};
+    if (choose(seed, 6) == 0) {
+        session_do(p, "take " TAKE);
+        session_do(p, "play");
+        return;
+    }
+    session_do(p, "reset");
+    session_do(p, "human %g %d", choose(seed, 2) ? 0.0 : chance(seed), choose(seed, 100));
+    session_do(p, "loop %d", choose(seed, 2));
+    session_do(p, "grip %s", choose(seed, 2) ? "german" : "french");
+    session_do(p, "tempo %g", SLOWEST * pow(FASTEST / SLOWEST, chance(seed)));
+    for (double beat = 0; beat < 8; beat += 0.5 + 3 * chance(seed))
+        if (choose(seed, 2))
+            session_try(p, "roll %g %g %s %g %g", beat, 0.1 + 4 * chance(seed),
+                        roll[choose(seed, 3)], chance(seed), chance(seed));
+        else
+            session_try(p, "%s %g %s %s %g", ornament[choose(seed, 4)], beat, hand[choose(seed, 2)],
+                        nuance[choose(seed, 5)], chance(seed));
+    session_do(p, "play");
+}
+
+// half of the time a step, else a jump
+static double walk(double bpm, unsigned *seed)
+{
+    double to = choose(seed, 2) ? bpm * exp(chance(seed) - 0.5)
+                                : SLOWEST * pow(FASTEST / SLOWEST, chance(seed));
+    return fmin(fmax(to, SLOWEST), FASTEST);
+}
+
+static void play_on(finite_watch *w, double seconds, int *dropped, heard *h)
+{
+    himc_event event;
+    for (int i = 0; i < seconds * 250; i++) {
+        himc_performance_process(w->p, RATE / 250, NULL);
+        while (himc_performance_event(w->p, &event)) {
+            finite_watch_event(w, &event);
+            *dropped += event.kind == HIMC_EVENT_NOTE && strstr(event.text, "no body");
+            if (h)
+                heard_event(h, &event);
+        }
+        finite_watch_played(w, 0.004);
+    }
+}
+
+// the same stroke by a performer that has done nothing before; session_play counts 48 kHz
+static void expect_hit_as_new(himc_performance *p)
+{
+    himc_performance *fresh = performer(1000), *both[] = {p, fresh};
+    heard h[2] = {{0}, {0}};
+    session_do(p, "stop");
+    session_do(p, "human 0");
+    session_play(p, 1, NULL);
+    for (int i = 0; i < 2; i++) {
+        session_do(both[i], "clear");
+        session_do(both[i], "latency auto");
+        session_do(both[i], "hit right legato f");
+        session_play(both[i], 0.5, &h[i]);
+        TEST_ASSERT_TRUE(heard_asked(&h[i]) >= 1);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.06 * h[1].strike[0].velocity, h[1].strike[0].velocity,
+                              h[0].strike[0].velocity);
+    heard_free(&h[0]);
+    heard_free(&h[1]);
+    himc_performance_free(fresh);
+}
+
+static void test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays_on(void)
+{
+    long changes = from_environment("HIMC_CHANGES", getenv("HIMC_LONG") ? 100000 : 600);
+    unsigned seed = (unsigned)from_environment("HIMC_SEED", 1);
+    int dropped = 0;
+    double bpm = 120;
+    char text[128];
+    finite_watch w;
+    heard h = {0};
+    himc_performance *p = performer(1000);
+    make_take();
+    TEST_ASSERT_TRUE(finite_watch_begin(&w, p));
+    for (long i = 0; i < changes && !w.bad; i++) {
+        if (i % PIECE == 0)
+            begin_piece(p, &seed);
+        bpm = walk(bpm, &seed);
+        session_do(p, "tempo %g", bpm);
+        play_on(&w, 0.004 + 0.2 * chance(&seed) * chance(&seed), &dropped, &h);
+        h.strikes = h.strikes < 100000 ? h.strikes : 0;
+        snprintf(text, sizeof text, "%s is not finite after change %ld, at %g bpm",
+                 w.bad ? w.bad : "", i, bpm);
+    }
+    printf("%ld changes: %ld rows, %ld packets, %d strikes, %d plans dropped, %ld recoveries\n",
+           changes, w.rows, w.packets, h.strikes, dropped, himc_performance_measure(p).recoveries);
+    TEST_ASSERT_NULL_MESSAGE(w.bad, text);
+    TEST_ASSERT_EQUAL_INT(0, dropped);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+    finite_watch_end(&w);
+    session_do(p, "reset");
+    expect_hit_as_new(p);
+    heard_free(&h);
+    himc_performance_free(p);
+    unlink(TAKE);
+}
+
+// what a user does with a slider, at the usual rates
+static void slide(const char *piece, double from, double to, double wait)
+{
+    int dropped = 0;
+    finite_watch w;
+    heard h = {0};
+    himc_performance *p = performer(10000);
+    TEST_ASSERT_TRUE(finite_watch_begin(&w, p));
+    session_do(p, "tempo %g", from);
+    session_do(p, "%s", piece);
+    session_do(p, "play");
+    play_on(&w, wait, &dropped, &h);
+    session_do(p, "tempo %g", to);
+    play_on(&w, 4, &dropped, &h);
+    TEST_ASSERT_NULL_MESSAGE(w.bad, w.bad);
+    TEST_ASSERT_EQUAL_INT(0, dropped);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+    finite_watch_end(&w);
+    expect_hit_as_new(p);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_a_faster_tempo_under_a_bouncing_roll_leaves_the_performer_alive(void)
+{
+    slide("roll 0 8 press 0.7", 60, 500, 0.9);
+    slide("roll 0 8 press 0.7", 60, 220, 0.9);
+    slide("roll 0 8 press 0.7", 120, 400, 0.9);
+    slide("roll 0 8 double 0.7", 60, 320, 0.9);
+}
+
+// before the first block the body is built at the first target: ODE ended the process
+static void test_a_bouncing_roll_without_time_before_the_first_block_ends_no_process(void)
+{
+    himc_performance *p = performer(10000);
+    session_do(p, "roll 0 4 press 1 0 kettle");
+    session_do(p, "play");
+    session_do(p, "tempo 1000");
+    session_do(p, "roll 0.5 1 press 0.5 0 kettle");
+    session_drum(p, 0, "place 0.5 0 1.1");
+    session_do(p, "play");
+    expect_hit_as_new(p);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_faster_tempo_under_a_bouncing_roll_leaves_the_performer_alive);
+    RUN_TEST(test_a_bouncing_roll_without_time_before_the_first_block_ends_no_process);
+    RUN_TEST(test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays_on);
+    return UNITY_END();
+}
