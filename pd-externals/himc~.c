@@ -6,6 +6,7 @@ inlets   with -signals: target of the left stick's tip, x y z, and of the right 
          while its three inlets are 0 a stick has no target
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
+         missed BEAT HAND DRUM   a stroke is not played; BEAT -1: a hit
          beat N   done   info ...
 
 Glue only: commands go to a himc_performance with the sample on which they arrived; those that take
@@ -104,6 +105,12 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
     case HIMC_EVENT_BEAT:
         SETFLOAT(atom, (t_float)event->beat);
         outlet_anything(x->x_messages, gensym("beat"), 1, atom);
+        break;
+    case HIMC_EVENT_MISSED:
+        SETFLOAT(atom, isfinite(strike->beat) ? (t_float)strike->beat : -1);
+        SETSYMBOL(atom + 1, gensym(himc_hand_name(strike->hand)));
+        SETSYMBOL(atom + 2, gensym(strike->drum));
+        outlet_anything(x->x_messages, gensym("missed"), 3, atom);
         break;
     case HIMC_EVENT_DONE: outlet_anything(x->x_messages, gensym("done"), 0, NULL); break;
     case HIMC_EVENT_NOTE:

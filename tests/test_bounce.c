@@ -245,7 +245,7 @@ static void test_grace_notes_come_before_the_beat_by_their_hands_and_softer(void
     ABOUT(0.025, time_of(&h, 0, HIMC_LEFT), time_of(&h, 1, HIMC_RIGHT));
     ABOUT(0.040, time_of(&h, 2, HIMC_LEFT), time_of(&h, 3, HIMC_LEFT));
     ABOUT(0.080, time_of(&h, 2, HIMC_LEFT), time_of(&h, 4, HIMC_RIGHT));
-    ABOUT(0.090, time_of(&h, 5, HIMC_RIGHT), time_of(&h, 7, HIMC_RIGHT));
+    ABOUT(0.090, time_of(&h, 5, HIMC_LEFT), time_of(&h, 7, HIMC_RIGHT));
     ABOUT(0.045, time_of(&h, 6, HIMC_LEFT), time_of(&h, 7, HIMC_RIGHT));
     ABOUT(1.5, time_of(&h, 1, HIMC_RIGHT), time_of(&h, 4, HIMC_RIGHT));
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 0.4, h.strike[0].velocity / h.strike[1].velocity);

@@ -261,7 +261,8 @@ static void take_events(rendering *r)
     while (himc_performance_event(r->performance, &event)) {
         if (r->record)
             scene_record_event(r->record, &event);
-        if (event.kind == HIMC_EVENT_STRIKE && r->strokes.stream)
+        bool row = event.kind == HIMC_EVENT_STRIKE || event.kind == HIMC_EVENT_MISSED;
+        if (row && r->strokes.stream)
             render_stroke_row(r->strokes.stream, &event.strike);
         else if (event.kind == HIMC_EVENT_NOTE) {
             clear_progress();

@@ -50,7 +50,7 @@ HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
 HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes by the other hand, which bounces")
 HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
-                 "adds a stroke with two grace notes, by its own hand and the other")
+                 "adds a stroke with two grace notes as `drag`, a little slower")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, from that beat or from now on")
 HIMC_COMMAND_ROW(

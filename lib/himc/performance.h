@@ -96,7 +96,8 @@ typedef enum himc_event_kind {
     HIMC_EVENT_STRIKE, ///< a contact ended
     HIMC_EVENT_BEAT,   ///< a whole beat began
     HIMC_EVENT_DONE,   ///< the score's last contact has ended, or the take; no beat follows
-    HIMC_EVENT_NOTE    ///< a line for the user: a stroke given up, a target out of reach
+    HIMC_EVENT_NOTE,   ///< a line for the user: a stroke given up, a target out of reach
+    HIMC_EVENT_MISSED  ///< a stroke is not played: told as soon as it is known
 } himc_event_kind;
 
 /// A contact of a stick with a drum.
@@ -119,8 +120,10 @@ typedef struct himc_strike {
 
 /// Something that has happened; the fields of its kind are valid.
 typedef struct himc_event {
-    himc_event_kind kind;                     ///< which fields are valid
-    himc_strike strike;                       ///< of HIMC_EVENT_STRIKE
+    himc_event_kind kind; ///< which fields are valid
+    /// Of HIMC_EVENT_STRIKE, and of HIMC_EVENT_MISSED: as planned, velocity, force, impulse and
+    /// duration 0, the beat NaN of a hit.
+    himc_strike strike;
     double beat;                              ///< of HIMC_EVENT_BEAT ...
     double time;                              ///< ... and when it began (s, as of a strike)
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE

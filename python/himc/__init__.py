@@ -165,6 +165,11 @@ class Performance:
         return _array(self._session, self._session.strikes, self._session.strike_count, _STRIKE).copy()
 
     @property
+    def missed(self) -> NDArray:
+        """Strokes that were not played so far, as ``strikes``: ``time`` and place as planned, ``beat`` NaN of a hit."""
+        return _array(self._session, self._session.missed, self._session.missed_count, _STRIKE).copy()
+
+    @property
     def notes(self) -> list[str]:
         """Lines for the user so far."""
         return ffi.string(self._session.notes).decode().splitlines() if self._session.notes_size else []

@@ -19,7 +19,7 @@ typedef struct {
 
 typedef struct {
     double time; int hand; char drum[...]; char nuance[...];
-    double x, y, velocity, force, impulse, duration, planned_time, planned_x, planned_y;
+    double x, y, velocity, force, impulse, duration, planned_time, planned_x, planned_y, beat;
 } himc_strike;
 
 typedef struct {
@@ -42,7 +42,7 @@ typedef struct {
 } himc_take_strike;
 
 typedef struct {
-    himc_performance *performance; himc_motion_row *rows; size_t row_count, row_room; himc_strike *strikes; size_t strike_count;
+    himc_performance *performance; himc_motion_row *rows; size_t row_count, row_room; himc_strike *strikes; size_t strike_count; himc_strike *missed; size_t missed_count;
     char *notes; size_t notes_size; bool done, keeps_rows, failed; uint64_t samples; double peak; ...;
 } session;
 session *session_new(double rate, double physics, double task, himc_error *error);

@@ -17,6 +17,8 @@ typedef struct session {
     size_t row_count, row_room;
     himc_strike *strikes;
     size_t strike_count, strike_room;
+    himc_strike *missed;
+    size_t missed_count, missed_room;
     char *notes; // lines
     size_t notes_size;
     bool done, keeps_rows, failed; // `failed`: no memory for a row, strike or note
@@ -76,6 +78,7 @@ static void session_free(session *s)
     himc_performance_free(s->performance);
     free(s->rows);
     free(s->strikes);
+    free(s->missed);
     free(s->notes);
     free(s);
 }
@@ -170,6 +173,11 @@ static void take_events(session *s)
         s->done = s->done || event.kind == HIMC_EVENT_DONE;
         if (event.kind == HIMC_EVENT_NOTE)
             keep_note(s, event.text);
+        if (event.kind == HIMC_EVENT_MISSED) {
+            s->missed = grown(s, s->missed, s->missed_count, &s->missed_room, sizeof *s->missed);
+            if (s->missed_count < s->missed_room)
+                s->missed[s->missed_count++] = event.strike;
+        }
         if (event.kind != HIMC_EVENT_STRIKE)
             continue;
         s->strikes = grown(s, s->strikes, s->strike_count, &s->strike_room, sizeof *s->strikes);

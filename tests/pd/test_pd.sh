@@ -131,6 +131,12 @@ taps >"$work/taps"
 play_pd hits.pd -send "himc-test 100 1024"
 report taps_are_the_same_in_blocks_of_1024 "$(taps | cmp - "$work/taps" 2>&1)"
 
+play_pd missed.pd
+report strokes_and_hits_that_are_not_played_are_missed "$(lines "himc: missed 1 right far
+himc: missed -1 left far
+himc~: stroke at beat 1 right: given up
+himc: strike")"
+
 play_pd signals.pd
 level() { awk -v name="$1:" '$1 == name { print $2 }' "$work/log"; }
 report force_signal_sounds \

@@ -119,6 +119,12 @@ void himc_osc_encode_strike(osc_packets *p, const osc_strike *strike)
         (int)fmod(whole, 2147483648.0), s->time - whole);
 }
 
+void himc_osc_encode_missed(osc_packets *p, const himc_strike *missed)
+{
+    add(p, "/himc/missed", "fssf", isfinite(missed->beat) ? missed->beat : -1.0,
+        himc_hand_name(missed->hand), missed->drum, missed->time);
+}
+
 void himc_osc_encode_beat(osc_packets *p, double beat)
 {
     add(p, "/himc/beat", "f", beat);

@@ -67,6 +67,8 @@ void himc_osc_encode_begin(osc_packets *p, size_t limit, bool bundle, double wal
 void himc_osc_encode_pose(osc_packets *p, const osc_pose *pose);
 void himc_osc_encode_targets(osc_packets *p, const osc_pose *pose);
 void himc_osc_encode_strike(osc_packets *p, const osc_strike *strike);
+/// Beat (-1: a hit), hand, drum, and when it was due (s).
+void himc_osc_encode_missed(osc_packets *p, const himc_strike *missed);
 void himc_osc_encode_beat(osc_packets *p, double beat);
 void himc_osc_encode_head(osc_packets *p, const osc_head *head);
 /// The sound as 16-bit numbers, highest byte first; what is beyond 1.0 is cut off.

@@ -216,16 +216,18 @@ void himc_osc_tick(void *object, const himc_tick *tick)
 void himc_osc_event(himc_osc *osc, const himc_event *event)
 {
     osc_host *h = &osc->host;
-    bool strike = event->kind == HIMC_EVENT_STRIKE;
-    if (!strike && event->kind != HIMC_EVENT_BEAT)
+    bool strike = event->kind == HIMC_EVENT_STRIKE, missed = event->kind == HIMC_EVENT_MISSED;
+    if (!strike && !missed && event->kind != HIMC_EVENT_BEAT)
         return;
     h->strikes += strike; // also one that finds the ring full
     double time = strike ? event->strike.time : h->published - h->offset;
-    osc_state *state = begin(osc, strike ? STATE_STRIKE : STATE_BEAT, time);
+    osc_state *state = begin(osc, strike ? STATE_STRIKE : missed ? STATE_MISSED : STATE_BEAT, time);
     if (!state)
         return;
     if (strike)
         state->strike = (osc_strike){event->strike, h->strikes};
+    else if (missed)
+        state->missed = event->strike;
     else
         state->beat = event->beat;
     end(osc);

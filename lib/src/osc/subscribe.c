@@ -399,6 +399,10 @@ void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_o
         himc_osc_encode_beat(&p, state->beat);
         send_once(s, &p, now);
         break;
+    case STATE_MISSED:
+        himc_osc_encode_missed(&p, &state->missed);
+        send_once(s, &p, now);
+        break;
     case STATE_STATUS:
         himc_osc_encode_status(&p, &state->status, counts);
         send_once(s, &p, now);

@@ -42,6 +42,7 @@ typedef struct osc_state {
         STATE_POSE,
         STATE_STRIKE,
         STATE_BEAT,
+        STATE_MISSED,
         STATE_HEAD,
         STATE_DRUM,
         STATE_STATUS,
@@ -53,6 +54,7 @@ typedef struct osc_state {
         osc_pose pose;
         osc_strike strike;
         double beat;
+        himc_strike missed;
         osc_head head;
         osc_drum drum;
         osc_status status;

@@ -4,6 +4,7 @@
 /// A step is simulated when the host takes its first sample; its forces wait here. So the result
 /// does not depend on the block size.
 #include "performance/performance_state.h"
+#include "base/format.h"
 #include "base/head_frame.h"
 
 #include <string.h>
@@ -105,11 +106,27 @@ static void tell_planner_notes(himc_performance *p)
         himc_events_note_as(&p->events, note.minor, "%s", note.text);
 }
 
+void himc_performance_tell_misses(himc_performance *p)
+{
+    himc_planner_miss miss;
+    while (himc_planner_miss_next(p->motion->planner, &miss)) {
+        const himc_stroke *s = &miss.stroke;
+        himc_strike missed = {.time = miss.time,
+                              .hand = s->hand,
+                              .planned_time = miss.time,
+                              .beat = miss.hit ? NAN : s->beat};
+        himc_format(missed.nuance, sizeof missed.nuance, "%s", himc_nuance_name(s->nuance));
+        himc_stroke_spot(s, himc_drums_frame(&p->drums, miss.drum)->radius, &missed.x, &missed.y);
+        himc_events_missed(&p->events, &missed, himc_drum_name(p->drums.slot[miss.drum].drum));
+    }
+}
+
 // strokes given up, beats, the end
 static void watch(himc_performance *p, double t)
 {
     himc_statistics_strokes(&p->statistics, himc_planner_given_up(p->motion->planner), 0);
     tell_planner_notes(p);
+    himc_performance_tell_misses(p);
     if (himc_motion_is_calm(p->motion, t))
         return;
     long beat = himc_motion_beat(p->motion, t);

@@ -180,10 +180,20 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
                     const planned_contact *next, bool beside)
 {
     bool known = next->drum < s->drums->count;
+    const char *drum = known ? himc_drum_name(s->drums->slot[next->drum].drum) : "drum";
+    planned_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
+    himc_strike missed = {.time = next->time,
+                          .hand = hand,
+                          .x = stroke.x,
+                          .y = stroke.y,
+                          .planned_time = next->time,
+                          .beat = stroke.beat};
+    memcpy(missed.nuance, stroke.nuance, sizeof missed.nuance);
     himc_motion_answer(s->motion, hand, next->time);
     himc_statistics_strokes(s->statistics, 1, 0);
-    himc_events_note(s->events, "%s stick missed the %s at %.3f s", himc_hand_name(hand),
-                     known ? himc_drum_name(s->drums->slot[next->drum].drum) : "drum", next->time);
+    himc_events_note(s->events, "%s stick missed the %s at %.3f s", himc_hand_name(hand), drum,
+                     next->time);
+    himc_events_missed(s->events, &missed, drum);
     if (!beside)
         go_on_from_here(c, s, hand, t);
 }

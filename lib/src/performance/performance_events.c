@@ -1,6 +1,7 @@
 /// performance_events.c: events in a ring. It is the host's mailbox: `reset` leaves it as it is.
 #include "performance/performance_events.h"
 
+#include "base/format.h"
 #include "base/line.h"
 
 #include <stdarg.h>
@@ -39,6 +40,15 @@ void himc_events_note_as(performance_events *e, bool minor, const char *format, 
     va_start(args, format);
     add_note(e, minor, format, args);
     va_end(args);
+}
+
+void himc_events_missed(performance_events *e, const himc_strike *missed, const char *drum)
+{
+    himc_event event = {.kind = HIMC_EVENT_MISSED, .strike = *missed};
+    himc_format(event.strike.drum, sizeof event.strike.drum, "%s", drum);
+    event.strike.planned_x = missed->x;
+    event.strike.planned_y = missed->y;
+    himc_events_add(e, &event);
 }
 
 bool himc_events_take(performance_events *e, himc_event *event)

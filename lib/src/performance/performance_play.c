@@ -167,6 +167,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return false;
     tell_places(p);
     double latency = hit(p, &asked);
+    himc_performance_tell_misses(p);
     if (isfinite(latency))
         himc_statistics_hit(&p->statistics, latency);
     himc_motion_replan(p->motion);

@@ -193,6 +193,10 @@ himc_job *himc_performance_score_job(himc_performance *p, const himc_command *co
 /// The text of a score, borrowed, as a job. NULL without memory.
 himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
 
+// performance.c
+/// Adds an event for each stroke that the planner has given up.
+HIMC_RT void himc_performance_tell_misses(himc_performance *p);
+
 // performance_command.c
 /// How a performance takes commands.
 extern const himc_runner himc_performance_runner;

@@ -5,7 +5,10 @@
 /// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. A double roll
 /// has fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce
 /// comes half a stroke later. In a press roll each stroke bounces on a little longer than to the
-/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo.
+/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo. The
+/// other hand plays them all, the second of a drag or a ruff as a bounce, so that the hand of the
+/// main stroke has all its time since its stroke before: after a grace note of its own, 90 ms
+/// earlier, an arm has no forte. A ruff is as a drag, more open.
 #include "plan/ornament.h"
 
 #include "plan/planner_motion.h"
@@ -50,14 +53,15 @@ static void add(addition *to, const himc_stroke *stroke)
                     !himc_planner_add(to->planner, stroke, to->drum, &unused);
 }
 
-static void add_grace(addition *to, const himc_stroke *stroke, bool other, double early,
-                      double bounce_time)
+/// A grace note, or two: the second is a bounce.
+static void add_grace(addition *to, const himc_stroke *stroke, double early, double bounce_time)
 {
     himc_stroke grace = *stroke;
     grace.ornament = HIMC_PLAIN;
-    if (other)
-        grace.hand = stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
-    grace.nuance = HIMC_LEGATO;
+    grace.hand = stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
+    // a staccato ppp is softer than any legato
+    if (stroke->nuance != HIMC_STACCATO)
+        grace.nuance = HIMC_LEGATO;
     grace.dynamic = himc_gesture_softer(stroke->dynamic, GRACE_SPEED);
     grace.early = early;
     grace.bounces = bounce_time > 0;
@@ -76,13 +80,11 @@ static void add_graces(addition *to, const himc_stroke *stroke)
     double drag = fmin(wide * DRAG_TIME, GRACE_SHARE * since / 2);
     double ruff = fmin(wide * RUFF_TIME, GRACE_SHARE * since / 2);
     if (stroke->ornament == HIMC_FLAM)
-        add_grace(to, stroke, true, fmin(wide * FLAM_TIME, FLAM_SHARE * since), 0);
+        add_grace(to, stroke, fmin(wide * FLAM_TIME, FLAM_SHARE * since), 0);
     if (stroke->ornament == HIMC_DRAG)
-        add_grace(to, stroke, true, 2 * drag, drag);
-    if (stroke->ornament == HIMC_RUFF) {
-        add_grace(to, stroke, false, 2 * ruff, 0);
-        add_grace(to, stroke, true, ruff, 0);
-    }
+        add_grace(to, stroke, 2 * drag, drag);
+    if (stroke->ornament == HIMC_RUFF)
+        add_grace(to, stroke, 2 * ruff, ruff);
 }
 
 static double clip(double x, double low, double high)

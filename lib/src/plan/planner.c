@@ -139,6 +139,9 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
         himc_planner_score_go(score, hand, at, part->round);
     } else if (at < part->next && !score->loop) {
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
+        himc_planner_notes_miss(
+            &planner->notes,
+            &(himc_planner_miss){part->list[at].stroke, part->list[at].drum, false, time});
         himc_planner_say(&planner->notes, PLANNER_GIVEN_UP,
                          "stroke at beat %g %s: given up, that beat is past", beat,
                          himc_hand_name(hand));
@@ -415,6 +418,11 @@ double himc_planner_end(const himc_planner *planner)
 int himc_planner_given_up(himc_planner *planner)
 {
     return himc_planner_notes_given_up(&planner->notes);
+}
+
+bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss)
+{
+    return himc_planner_notes_miss_next(&planner->notes, miss);
 }
 
 void himc_planner_finish(himc_planner *planner, double t)

@@ -64,6 +64,14 @@ typedef struct himc_planner_note {
     bool minor; ///< all strokes are played
 } himc_planner_note;
 
+/// A stroke that is given up.
+typedef struct himc_planner_miss {
+    himc_stroke stroke;
+    int drum;
+    bool hit;    ///< of no score: it has no beat
+    double time; ///< at which it should have touched (s)
+} himc_planner_miss;
+
 himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *error);
 void himc_planner_free(himc_planner *planner);
 
@@ -219,6 +227,9 @@ HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
 HIMC_RT double himc_planner_end(const himc_planner *planner);
 /// Strokes of the score given up since the last call.
 HIMC_RT int himc_planner_given_up(himc_planner *planner);
+/// Takes the oldest stroke of score or hit that is given up; false if there is none. It is told as
+/// soon as it is known, before its time. The latest 256 are kept.
+HIMC_RT bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss);
 /// The score is over: its beats end, the tips come to rest as planned. Adds a note with the count
 /// of strokes since the last `play` that were not played as written, if there is more than one.
 HIMC_RT void himc_planner_finish(himc_planner *planner, double t);

@@ -193,6 +193,8 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     if (h->waiting_count >= QUEUED_HITS || !himc_planner_find_gap(planner, hand, &touch)) {
         himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
                          himc_hand_name(hand));
+        himc_planner_notes_miss(&planner->notes,
+                                &(himc_planner_miss){hit.stroke, drum, true, touch});
         touch = HUGE_VAL;
     } else {
         hit.goal.time = touch;
@@ -209,12 +211,15 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
         return HUGE_VAL;
     himc_hand hand = choose_hand(planner, t, hit, &chosen);
     timed_stroke s = stroke_of(planner, hit, hand);
+    s.goal = chosen.goal;
     // planning says how far a drum is that is out of reach
+    if (chosen.reaches && isinf(chosen.late)) {
+        s.goal.time = hit->at;
+        himc_planner_give_up_hit(planner, &s, t);
+        return HUGE_VAL;
+    }
     if (chosen.reaches && chosen.late > 0)
         himc_planner_notes_hit(&planner->notes, t, chosen.late);
-    if (chosen.reaches && isinf(chosen.late))
-        return HUGE_VAL;
-    s.goal = chosen.goal;
     s.exact = true;
     s.goal.time += s.variation.late;
     himc_planner_cut(planner, hand, t);

@@ -231,6 +231,13 @@ static void take(himc_planner *planner, const timed_stroke *s)
         h->waiting[i] = h->waiting[i + 1];
 }
 
+void himc_planner_give_up_hit(himc_planner *planner, const timed_stroke *s, double t)
+{
+    himc_planner_notes_hit(&planner->notes, t, HUGE_VAL);
+    himc_planner_notes_miss(&planner->notes,
+                            &(himc_planner_miss){s->stroke, s->drum, true, s->goal.time});
+}
+
 /// Puts a planned stroke back where it was taken from; a hit is dropped if no room is left.
 static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *s)
 {
@@ -239,8 +246,10 @@ static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *
         himc_planner_score_go(&planner->score, hand, s->index, s->round);
         return;
     }
-    if (h->waiting_count == PLANNER_WAITING)
+    if (h->waiting_count == PLANNER_WAITING) {
+        himc_planner_give_up_hit(planner, s, planner->now);
         return;
+    }
     for (int i = h->waiting_count++; i > 0; i--)
         h->waiting[i] = h->waiting[i - 1];
     h->waiting[0] = *s;
@@ -435,6 +444,9 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
         return;
     if (s->index >= 0 || s->reassigned)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
+    himc_planner_notes_miss(
+        &planner->notes,
+        &(himc_planner_miss){s->stroke, s->drum, s->index < 0 && !s->reassigned, s->written.time});
     settle(planner, s);
     himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s", name_of(s, name),
                      reason_of(planner, s, result, reason));
@@ -770,7 +782,7 @@ void himc_planner_advance(himc_planner *planner, double t)
         drop_past(&planner->hand[hand], planner->now);
         himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
     }
-    himc_planner_notes_tell_hits(&planner->notes, planner->now);
+    himc_planner_notes_tell(&planner->notes, planner->now);
 }
 
 void himc_planner_recover(himc_planner *planner, double t)

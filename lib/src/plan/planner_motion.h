@@ -184,6 +184,8 @@ HIMC_RT void himc_planner_lift_again(himc_planner *planner, himc_hand hand, doub
 HIMC_RT double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *stroke);
 /// Lets a stroke wait for its hand, in the order of time; there must be room.
 HIMC_RT void himc_planner_queue(himc_planner *planner, const timed_stroke *stroke);
+/// A hit is not played: told, and counted at t (s).
+HIMC_RT void himc_planner_give_up_hit(himc_planner *planner, const timed_stroke *hit, double t);
 /// Moves a time behind any stroke of the hand that is too near; false if there is no gap.
 HIMC_RT bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *t);
 /// Takes back all strokes more than `margin` after t, without their motion.

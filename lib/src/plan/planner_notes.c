@@ -1,7 +1,9 @@
 /// planner_notes.c: lines for the user, in a ring that does not grow.
 ///
 /// Each kind is said once per play, so that a fast passage does not say the same thing a hundred
-/// times; the counts tell the rest at the end. What finds no room is counted in the last line.
+/// times; the counts tell the rest at the end. Only a stroke that is given up has a line of its
+/// own, unless there are many: LINES at once and one more each second. What finds no room is
+/// counted in the last line.
 #include "plan/planner_notes.h"
 #include "base/format.h"
 
@@ -11,7 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define QUIET_TIME 1.0 // chosen: longer than the pauses in a passage, short for a player (s)
+#define QUIET_TIME 1.0    // chosen: longer than the pauses in a passage, short for a player (s)
+#define LONGEST_QUIET 8.0 // chosen: a passage without pauses is told of before it is over (s)
+#define LINES 8           // chosen: they can be read at a glance
 
 static void put(planner_notes *notes, bool minor, const char *format, va_list args)
 {
@@ -25,11 +29,28 @@ static void put(planner_notes *notes, bool minor, const char *format, va_list ar
     himc_line_print(note->text, sizeof note->text, format, args);
 }
 
+/// Whether a line of that kind is not one too many.
+static bool may_say(planner_notes *notes, planner_kind kind)
+{
+    bool first = !notes->said[kind];
+    if (notes->silent)
+        return false;
+    notes->said[kind] = true;
+    if (kind != PLANNER_GIVEN_UP)
+        return first;
+    if (notes->lines >= 1) {
+        notes->lines--;
+        return true;
+    }
+    notes->untold++;
+    notes->last_untold = notes->told;
+    return false;
+}
+
 void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)
 {
-    if (notes->said[kind] || notes->silent)
+    if (!may_say(notes, kind))
         return;
-    notes->said[kind] = true;
     va_list args;
     va_start(args, format);
     put(notes,
@@ -45,8 +66,30 @@ void himc_planner_notes_count(planner_notes *notes, planner_kind kind)
     notes->given_up += kind == PLANNER_GIVEN_UP && !notes->silent;
 }
 
+void himc_planner_notes_miss(planner_notes *notes, const himc_planner_miss *miss)
+{
+    if (notes->silent)
+        return;
+    if (notes->misses == PLANNER_MISSES) {
+        notes->first_miss = (notes->first_miss + 1) % PLANNER_MISSES;
+        notes->misses--;
+    }
+    notes->miss[(notes->first_miss + notes->misses++) % PLANNER_MISSES] = *miss;
+}
+
+bool himc_planner_notes_miss_next(planner_notes *notes, himc_planner_miss *miss)
+{
+    if (notes->misses == 0)
+        return false;
+    *miss = notes->miss[notes->first_miss];
+    notes->first_miss = (notes->first_miss + 1) % PLANNER_MISSES;
+    notes->misses--;
+    return true;
+}
+
 void himc_planner_notes_begin(planner_notes *notes)
 {
+    notes->lines = LINES;
     memset(notes->said, 0, sizeof notes->said);
     memset(notes->strokes, 0, sizeof notes->strokes);
 }
@@ -64,6 +107,10 @@ static void say_always(planner_notes *notes, bool minor, const char *format, ...
 
 void himc_planner_notes_hit(planner_notes *notes, double t, double late)
 {
+    if (notes->silent)
+        return;
+    if (notes->hits_lost + notes->hits_late == 0)
+        notes->first_hit = t;
     notes->last_hit = t;
     if (isinf(late)) {
         notes->hits_lost++;
@@ -73,19 +120,31 @@ void himc_planner_notes_hit(planner_notes *notes, double t, double late)
     notes->latest = fmax(notes->latest, late);
 }
 
-void himc_planner_notes_tell_hits(planner_notes *notes, double t)
+static void tell_hits(planner_notes *notes, double t)
 {
     char lost[32] = "", late[48] = "";
-    if (notes->hits_lost + notes->hits_late == 0 || t < notes->last_hit + QUIET_TIME)
+    if (notes->hits_lost + notes->hits_late == 0 ||
+        t < fmin(notes->last_hit + QUIET_TIME, notes->first_hit + LONGEST_QUIET))
         return;
     if (notes->hits_lost > 0)
         himc_format(lost, sizeof lost, " %d given up,", notes->hits_lost);
     if (notes->hits_late > 0)
         himc_format(late, sizeof late, " %d late by up to %.0f ms,", notes->hits_late,
                     1e3 * notes->latest);
-    say_always(notes, notes->hits_lost == 0, "hit:%s%s no hand had the time", lost, late);
+    say_always(notes, false, "hit:%s%s no hand had the time", lost, late);
     notes->hits_lost = notes->hits_late = 0;
     notes->latest = 0;
+}
+
+void himc_planner_notes_tell(planner_notes *notes, double t)
+{
+    tell_hits(notes, t);
+    notes->lines = fmin(notes->lines + t - notes->told, LINES);
+    notes->told = t;
+    if (notes->untold == 0 || t < notes->last_untold + QUIET_TIME)
+        return;
+    say_always(notes, false, "%d more given up", notes->untold);
+    notes->untold = 0;
 }
 
 void himc_planner_notes_sum_up(planner_notes *notes)

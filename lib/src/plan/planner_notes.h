@@ -4,7 +4,8 @@
 
 #include "plan/planner.h"
 
-#define PLANNER_NOTES 32 ///< kept until they are taken
+#define PLANNER_NOTES 32   ///< kept until they are taken
+#define PLANNER_MISSES 256 ///< the same; chosen: more than are given up between two steps
 
 typedef enum planner_kind {
     PLANNER_SMALLER,
@@ -22,16 +23,23 @@ typedef enum planner_kind {
 typedef struct planner_notes {
     himc_planner_note line[PLANNER_NOTES]; ///< a ring
     int first, count, lost;
-    bool silent;                ///< nothing is said or counted
-    bool said[PLANNER_KINDS];   ///< since play
-    int strokes[PLANNER_KINDS]; ///< counted since play
-    int given_up;               ///< strokes given up since himc_planner_notes_given_up
+    bool silent;                            ///< nothing is said or counted
+    bool said[PLANNER_KINDS];               ///< since play
+    int strokes[PLANNER_KINDS];             ///< counted since play
+    int given_up;                           ///< strokes given up since himc_planner_notes_given_up
+    himc_planner_miss miss[PLANNER_MISSES]; ///< a ring
+    int first_miss, misses;
+    double lines;               ///< so many strokes may still be given up in a line each ...
+    double told;                ///< ... as of this time (s)
+    int untold;                 ///< strokes given up without a line
+    double last_untold;         ///< the last of them (s)
     int hits_lost, hits_late;   ///< hits given up and late since the last line about them ...
     double latest;              ///< ... by so much at most (s) ...
-    double last_hit;            ///< ... the last of them at this time (s)
+    double first_hit, last_hit; ///< ... the first and the last of them at these times (s)
 } planner_notes;
 
-/// Adds a line, unless one of its kind has been added since play.
+/// Adds a line, unless one of its kind has been added since play. Strokes given up have a line each,
+/// as long as they are few; the others are counted in one line.
 HIMC_RT void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
@@ -47,8 +55,14 @@ HIMC_RT void himc_planner_notes_sum_up(planner_notes *notes);
 /// Counts a hit at t for which no hand has time until it is so `late` (s); infinite: given up.
 HIMC_RT void himc_planner_notes_hit(planner_notes *notes, double t, double late);
 
-/// One line of the counts of these hits, when there have been no more for a second.
-HIMC_RT void himc_planner_notes_tell_hits(planner_notes *notes, double t);
+/// A stroke is given up.
+HIMC_RT void himc_planner_notes_miss(planner_notes *notes, const himc_planner_miss *miss);
+/// Takes the oldest one; false if there is none.
+HIMC_RT bool himc_planner_notes_miss_next(planner_notes *notes, himc_planner_miss *miss);
+
+/// One line of the counts of these hits, and of strokes given up without a line, when there have
+/// been no more for a second, or for long enough.
+HIMC_RT void himc_planner_notes_tell(planner_notes *notes, double t);
 
 /// Takes the oldest line; false if there is none.
 HIMC_RT bool himc_planner_notes_next(planner_notes *notes, himc_planner_note *note);

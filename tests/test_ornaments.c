@@ -1,0 +1,68 @@
+/// test_ornaments.c: what a listener expects of grace notes: the stroke that they decorate is as
+/// strong as without them, and they are heard, softer than it and even.
+#include "session.h"
+
+static const char *const nuance[] = {"legato", "tenuto", "accent", "vertical-accent", "staccato"};
+static const char *const dynamic[] = {"ppp", "mp", "f", "fff"};
+#define DYNAMICS 4
+
+// a stroke of each dynamic, every two beats
+static heard play_strokes(double tempo, const char *kind, const char *how)
+{
+    heard h = {0};
+    himc_performance *p = session_new();
+    session_do(p, "tempo %g", tempo);
+    for (int i = 0; i < DYNAMICS; i++)
+        session_do(p, "%s %d %s %s %s", kind, 2 + 2 * i, i % 2 ? "left" : "right", how, dynamic[i]);
+    session_do(p, "play");
+    session_play(p, 2.2 * DYNAMICS * 60 / tempo + 1, &h);
+    himc_performance_free(p);
+    return h;
+}
+
+static void check_graces(const heard *plain, const heard *graced, int graces, const char *what)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE((graces + 1) * plain->strikes, graced->strikes, what);
+    for (int i = 0; i < plain->strikes; i++) {
+        const himc_strike *note = &graced->strike[(graces + 1) * i], *own = &note[graces];
+        double louder = 20 * log10(own->velocity / plain->strike[i].velocity);
+        double gap = (own->time - note->time) / graces;
+        TEST_ASSERT_EQUAL_INT(plain->strike[i].hand, own->hand);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1, 0, louder, what);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.002, plain->strike[i].time, own->time, what);
+        for (int k = 0; k < graces; k++) {
+            TEST_ASSERT_TRUE_MESSAGE(note[k].velocity > 0.2, what);
+            // nothing is softer than ppp: its first grace note is as loud
+            TEST_ASSERT_TRUE_MESSAGE(note[k].velocity < 1.05 * own->velocity, what);
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.1 * gap, gap, note[k + 1].time - note[k].time,
+                                              what);
+        }
+    }
+}
+
+static void test_main_stroke_is_as_strong_as_without_its_grace_notes(void)
+{
+    static const struct {
+        const char *name;
+        int graces;
+    } kind[] = {{"flam", 1}, {"drag", 2}, {"ruff", 2}};
+    static const double tempo[] = {140, 62, 97.3, 140, 133.333};
+    char what[128];
+    for (int i = 0; i < 5; i++) {
+        heard plain = play_strokes(tempo[i], "stroke", nuance[i]);
+        for (int k = 0; k < 3; k++) {
+            heard graced = play_strokes(tempo[i], kind[k].name, nuance[i]);
+            snprintf(what, sizeof what, "%s %s at %g", kind[k].name, nuance[i], tempo[i]);
+            check_graces(&plain, &graced, kind[k].graces, what);
+            heard_free(&graced);
+        }
+        heard_free(&plain);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_main_stroke_is_as_strong_as_without_its_grace_notes);
+    return UNITY_END();
+}
