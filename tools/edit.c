@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "capture/take.h"
 #include "cli.h"
+#include "edit_journal.h"
 #include "edit_play.h"
 #include "edit_text.h"
 #include "midi/import.h"
@@ -22,23 +23,29 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { CONFINED, TAKE };
+enum { CONFINED, NAME, TAKE };
 #define LINE 4096                       // a line of standard input (bytes); chosen
+#define FILE_NAME 64                    // of a file for the page, with its final 0
 #define LARGEST_TEXT ((size_t)64 << 20) // as himc_score_load
 
 static const cli_option options[] = {
     {"confined", 0, NULL, "refuses a score that names other files"},
+    {"name", 0, "NAME", "the name under which a page has sent the source"},
     CLI_TAKE_OPTIONS,
     {0},
 };
 
 typedef struct session {
     const char *source;
+    const char *name; ///< for people: that of the source, or under which it was sent
+    bool confined;    ///< the score may name no file
     himc_take_options take;
     edit_text *text;
-    edit_play *play, *saver; ///< `saver` while a take is saved
-    char saved[64];          ///< the take's temporary file
-    char name[64];           ///< and the name under which it is wanted
+    edit_journal journal;
+    himc_error restored, unkept; ///< a line about the journal for the page, or ""
+    edit_play *play, *saver;     ///< `saver` while a take is saved
+    char saved[256];             ///< the take's temporary file
+    char wanted[FILE_NAME];      ///< and the name under which it is wanted
     char line[LINE];
     size_t used;
     bool changed; ///< the last line has changed the text, and it has not been played yet
@@ -71,16 +78,18 @@ static void tell(const char *event, const char *key, const char *text)
     free(json);
 }
 
-static void tell_text(const session *s)
+// `begun`: all that was told before is of no value
+static void tell_text(const session *s, bool begun)
 {
     char *json = NULL;
     size_t size;
     FILE *to = open_memstream(&json, &size);
     if (!to)
         return;
-    fprintf(to, "{\"event\":\"text\",\"take\":%s,\"source\":",
-            cli_is_take(s->source) ? "true" : "false");
-    cli_put_json_text(to, s->source);
+    fprintf(to, "{\"event\":\"text\",\"begun\":%s,\"take\":%s,\"kept\":%s,\"source\":",
+            begun ? "true" : "false", cli_is_take(s->source) ? "true" : "false",
+            s->unkept.text[0] ? "false" : "true");
+    cli_put_json_text(to, s->name);
     fputc(',', to);
     edit_text_print(s->text, to);
     fputc('}', to);
@@ -116,18 +125,23 @@ static char *text_of(const char *source, himc_error *error)
     return text;
 }
 
-// the score of the text as it is now
-static himc_score *parse(const session *s, himc_error *error)
+// the score of a text; NULL with the reason, also if it may not name the files that it names
+static himc_score *parse(const session *s, const edit_text *t, himc_error *error)
 {
-    char *text = edit_text_join(s->text);
-    himc_score *score = text ? himc_score_parse(text, s->source, error) : NULL;
+    int line;
+    char *text = edit_text_join(t);
+    himc_score *score = text ? himc_score_parse(text, s->name, error) : NULL;
     free(text);
-    return score;
+    if (!score || !s->confined || !edit_text_names_file(score, &line))
+        return score;
+    himc_error_set(error, "%s:%d: names other files", s->name, line);
+    himc_score_free(score);
+    return NULL;
 }
 
-static bool check(const session *s, himc_error *error)
+static bool check(const session *s, const edit_text *t, himc_error *error)
 {
-    himc_score *score = parse(s, error);
+    himc_score *score = parse(s, t, error);
     himc_score_free(score);
     return score;
 }
@@ -145,7 +159,7 @@ static bool has_take(const himc_score *score)
 static bool replay(session *s, bool all, himc_error *error)
 {
     char *text = edit_text_join(s->text);
-    himc_score *score = parse(s, error);
+    himc_score *score = parse(s, s->text, error);
     double from = all ? -1 : edit_text_changed_from(s->text);
     if (from > 0 && score && !has_take(score))
         from = himc_score_seconds(score->tempi, score->tempo_count, from);
@@ -157,19 +171,107 @@ static bool replay(session *s, bool all, himc_error *error)
 
 // --- lines in
 
-static bool set(session *s, const char *words, himc_error *error)
+// `known`: the change has been good before
+static bool set(const session *s, edit_text *t, const char *words, bool known, himc_error *error)
 {
     char *end;
     long index = strtol(words, &end, 10);
     if (end == words || (*end && *end != ' '))
         return himc_error_set(error, "set: no number of a statement");
-    if (!edit_text_set(s->text, (int)fmax(-1, fmin(index, 1e9)), end + (*end == ' '), error))
+    if (!edit_text_set(t, (int)fmax(-1, fmin(index, 1e9)), end + (*end == ' '), error))
         return false;
-    if (check(s, error))
+    bool good = known || check(s, t, error);
+    edit_text_settle(t, good);
+    return good;
+}
+
+// obeys a line that changes the text
+static bool change(const session *s, edit_text *t, const char *line, bool known, himc_error *error)
+{
+    if (!strcmp(line, "undo"))
+        return edit_text_undo(t) || himc_error_set(error, "nothing to undo");
+    if (!strcmp(line, "redo"))
+        return edit_text_redo(t) || himc_error_set(error, "nothing to redo");
+    if (!strcmp(line, "revert"))
+        return edit_text_revert(t) || himc_error_set(error, "nothing to undo");
+    if (!strncmp(line, "set ", 4))
+        return set(s, t, line + 4, known, error);
+    return himc_error_set(error, "\"%.40s\": allowed hello, set, undo, redo, revert, save, take",
+                          line);
+}
+
+// --- what was changed before
+
+static void unkept(session *s, const himc_error *why)
+{
+    himc_error_set(&s->unkept, "Changes are lost when this page ends, save them: %s", why->text);
+}
+
+// the changes of the journal; false if they do not fit, and then there are none
+static bool change_again(const session *s, edit_text *t, himc_error *error)
+{
+    bool good = true;
+    for (char *line = s->journal.lines, *end; good && (end = strchr(line, '\n')); line = end + 1) {
+        *end = 0;
+        good = change(s, t, line, true, error);
+        *end = '\n';
+    }
+    if (good && check(s, t, error))
         return true;
-    edit_text_undo(s->text);
+    edit_text_revert(t);
     return false;
 }
+
+// the journal is of another text than the source's: what it has led to is kept beside it
+static void keep_old(session *s, himc_error *error)
+{
+    char kept[4096], *text = NULL, *now = edit_text_join(s->text);
+    edit_text *t = edit_text_new(s->journal.old, error);
+    bool known = t && change_again(s, t, error) && (text = edit_text_join(t)) && now;
+    if (known && !strcmp(text, now)) // it has been saved over the source
+        edit_journal_forget(&s->journal);
+    else if (edit_journal_keep(&s->journal, known ? text : s->journal.old, kept, error)) {
+        edit_journal_forget(&s->journal);
+        himc_error_set(&s->restored,
+                       "%.80s has changed since it was edited here: the edited score is kept in %s",
+                       s->name, kept);
+    } else {
+        unkept(s, error);
+        edit_journal_close(&s->journal);
+    }
+    edit_text_free(t);
+    free(text);
+    free(now);
+}
+
+// finds the journal of `text`, and makes its changes
+static void restore(session *s, const char *text, bool sent)
+{
+    himc_error error = {""};
+    // a take that was sent stands under another path each time
+    bool nameless = sent && cli_is_take(s->source);
+    if (!edit_journal_open(&s->journal, s->source, s->name, sent, nameless ? "" : text, &error)) {
+        unkept(s, &error);
+        return;
+    }
+    if (!s->journal.lines)
+        return;
+    if (s->journal.old || !change_again(s, s->text, &error)) {
+        if (!s->journal.old)
+            s->journal.old = strdup(text);
+        keep_old(s, &error);
+        return;
+    }
+    int count = edit_text_changes(s->text);
+    himc_error_set(&s->restored,
+                   "%d change%s from before %s here again. \"file's text\" goes back to "
+                   "the file, redo brings them again",
+                   count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
+    if (count == 0)
+        himc_error_set(&s->restored, "The file's text; redo brings the changes from before again");
+}
+
+// --- for the page
 
 static bool save_take(session *s, const char *name, himc_error *error)
 {
@@ -182,9 +284,9 @@ static bool save_take(session *s, const char *name, himc_error *error)
     if (file < 0)
         return himc_error_set(error, "%s", strerror(errno));
     close(file);
-    snprintf(s->name, sizeof s->name, "%s", name);
+    snprintf(s->wanted, sizeof s->wanted, "%s", name);
     char *text = edit_text_join(s->text);
-    s->saver = text ? edit_play_new(s->source, &s->take, error) : NULL;
+    s->saver = text ? edit_play_new(s->name, &s->take, error) : NULL;
     bool good = s->saver && edit_play_start(s->saver, text, -1, s->saved, error);
     free(text);
     return good;
@@ -192,7 +294,7 @@ static bool save_take(session *s, const char *name, himc_error *error)
 
 static void put_file(const char *name, const char *bytes, size_t size)
 {
-    char head[64];
+    char head[FILE_NAME];
     memset(head, 0, sizeof head);
     snprintf(head, sizeof head, "%s", name);
     char *all = malloc(sizeof head + size);
@@ -206,34 +308,56 @@ static void put_file(const char *name, const char *bytes, size_t size)
 
 static bool save_score(const session *s)
 {
-    char *text = edit_text_join(s->text);
+    const char *slash = strrchr(s->name, '/'), *name = slash ? slash + 1 : s->name,
+               *dot = strrchr(name, '.');
+    char *text = edit_text_join(s->text), file[FILE_NAME];
+    int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+    for (; length > FILE_NAME - 5 || (length && (name[length] & 0xc0) == 0x80); length--)
+        ; // whole characters
+    snprintf(file, sizeof file, "%.*s.txt", length, name);
     if (text)
-        put_file("score.txt", text, strlen(text));
+        put_file(file, text, strlen(text));
     bool good = text != NULL;
     free(text);
     return good;
 }
 
+// tells the page how the piece stands when it comes
+static void greet(session *s)
+{
+    tell_text(s, true);
+    if (s->unkept.text[0])
+        tell("unkept", "text", s->unkept.text);
+    if (s->restored.text[0])
+        tell("restored", "text", s->restored.text);
+}
+
+static void keep(session *s, const char *line)
+{
+    himc_error error = {""};
+    if (s->unkept.text[0] || edit_journal_add(&s->journal, line, &error))
+        return;
+    unkept(s, &error);
+    tell("unkept", "text", s->unkept.text);
+}
+
 // one line; false with the reason, and *fatal if nothing can be played any more
 static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
 {
-    bool hello = !strcmp(line, "hello"), changed = false;
+    bool hello = !strcmp(line, "hello");
     if (!strcmp(line, "save"))
         return save_score(s);
     if (!strncmp(line, "take ", 5))
         return save_take(s, line + 5, error);
-    if (!strcmp(line, "undo"))
-        changed = edit_text_undo(s->text) || himc_error_set(error, "nothing to undo");
-    else if (!strcmp(line, "redo"))
-        changed = edit_text_redo(s->text) || himc_error_set(error, "nothing to redo");
-    else if (!strncmp(line, "set ", 4))
-        changed = set(s, line + 4, error);
-    else if (!hello)
-        himc_error_set(error, "\"%.40s\": allowed hello, set, undo, redo, save, take", line);
-    if (!changed && !hello)
+    if (hello)
+        greet(s);
+    else if (!change(s, s->text, line, false, error))
         return false;
-    tell_text(s);
-    s->changed = changed;
+    else {
+        keep(s, line);
+        tell_text(s, false);
+    }
+    s->changed = !hello;
     *fatal = !replay(s, hello, error);
     return !*fatal;
 }
@@ -269,11 +393,14 @@ static bool take_back(session *s, const edit_frame *frame, himc_error *error)
     char text[sizeof error->text];
     bool undone = s->changed && edit_text_undo(s->text);
     snprintf(text, sizeof text, "%.*s", (int)frame->size, (const char *)frame->bytes);
-    tell(undone ? "undone" : "failed", "text", text);
     s->changed = false;
+    if (undone) {
+        keep(s, "undo");
+        tell_text(s, false);
+    }
+    tell(undone ? "undone" : "failed", "text", text);
     if (!undone)
         return true;
-    tell_text(s);
     return replay(s, false, error);
 }
 
@@ -302,7 +429,7 @@ static void take_saved(session *s)
         return;
     char *bytes = himc_file_load(s->saved, LARGEST_TEXT, &size, &error);
     if (bytes && size)
-        put_file(s->name, bytes, size);
+        put_file(s->wanted, bytes, size);
     else
         tell("refused", "text", "the take could not be saved");
     free(bytes);
@@ -336,17 +463,18 @@ static bool serve(session *s, himc_error *error)
 static int run(const cli_arguments *arguments)
 {
     himc_error error = {""};
-    session s = {.source = arguments->operand};
+    const char *sent = arguments->value[NAME];
+    session s = {.source = arguments->operand, .name = sent ? sent : arguments->operand};
     bool good = !cli_is_standard(s.source) ||
                 himc_error_set(&error, "-: allowed is a file, lines come from standard input");
     good = good && cli_take_options(s.source, arguments->value + TAKE, &s.take, &error);
     char *text = good ? text_of(s.source, &error) : NULL;
+    s.confined = arguments->value[CONFINED] && !cli_is_take(s.source);
     s.text = text ? edit_text_new(text, &error) : NULL;
-    good = s.text && check(&s, &error);
-    if (good && arguments->value[CONFINED] && !cli_is_take(s.source) &&
-        edit_text_names_file(s.text))
-        good = himc_error_set(&error, "%s: names other files", s.source);
-    s.play = good ? edit_play_new(s.source, &s.take, &error) : NULL;
+    good = s.text && check(&s, s.text, &error);
+    if (good)
+        restore(&s, text, sent);
+    s.play = good ? edit_play_new(s.name, &s.take, &error) : NULL;
     good = s.play && serve(&s, &error);
     if (!good) {
         tell("failed", "text", error.text);
@@ -354,6 +482,7 @@ static int run(const cli_arguments *arguments)
     }
     edit_play_free(s.play);
     edit_play_free(s.saver);
+    edit_journal_close(&s.journal);
     edit_text_free(s.text);
     free(text);
     return good ? 0 : cli_fail(&cli_edit, "%s", error.text);

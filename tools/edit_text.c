@@ -1,14 +1,18 @@
-/// edit_text.c: a change replaces the bytes of one statement, and undo puts the old bytes back, so
-/// that the text is as it was, comments and white space included. A statement that was removed
-/// leaves an empty place, and one that was added stands at the end: no number ever means another
-/// statement.
+/// edit_text.c: a change replaces the words of one statement that differ, and undo puts the old
+/// bytes back, so that the text is as it was, comments and white space included. A statement that
+/// was removed leaves an empty place, and one that was added stands at the end: no number ever
+/// means another statement. Statements are read as in a score: by text.c and command.c.
 #define _POSIX_C_SOURCE 200809L // strndup
 #include "edit_text.h"
+#include "base/text.h"
 #include "cli.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define SPACE " \t\r\n\v\f"            // as isspace()
+#define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 
 /// Changes, from the first to the last one that can be made again.
 typedef struct change {
@@ -17,10 +21,12 @@ typedef struct change {
 } change;
 
 struct edit_text {
-    char **at; ///< (count) owned; "" for none
+    bool marked; ///< a byte order mark stands before the first statement
+    char **at;   ///< (count) owned; "" for none
     int count, room;
     change *changes; ///< (made)
     int made, done, changes_room;
+    bool adds;   ///< the change that is not settled yet has added its statement
     double from; ///< of the last change
 };
 
@@ -44,20 +50,23 @@ static bool append(edit_text *t, char *bytes)
     return true;
 }
 
-// past the `;` of the statement at `text`
-static const char *end_of(const char *text)
+// the `;` of the statement at `text`, or the text's end
+static const char *words_end(const char *text)
 {
     for (; *text && *text != ';'; text++)
         text += text[0] == '\\' && text[1];
-    return text + (*text == ';');
+    return text;
 }
 
 edit_text *edit_text_new(const char *text, himc_error *error)
 {
     edit_text *t = calloc(1, sizeof *t);
     bool good = t;
+    if (good && (t->marked = !strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK))))
+        text += strlen(BYTE_ORDER_MARK);
     for (const char *end; good && *text; text = end) {
-        end = end_of(text);
+        end = words_end(text);
+        end += *end == ';';
         good = append(t, strndup(text, (size_t)(end - text)));
     }
     if (good)
@@ -80,40 +89,58 @@ void edit_text_free(edit_text *t)
     free(t);
 }
 
-char *edit_text_join(const edit_text *t)
+static bool is_empty(const char *bytes)
 {
-    size_t size = 1, used = 0;
-    for (int i = 0; i < t->count; i++)
-        size += strlen(t->at[i]);
-    char *all = malloc(size);
-    for (int i = 0; all && i < t->count; i++)
-        used += (size_t)sprintf(all + used, "%s", t->at[i]);
-    if (all)
-        all[used] = 0;
-    return all;
+    return !bytes[strspn(bytes, SPACE)];
 }
 
-static size_t space(const char *bytes)
+static bool is_closed(const char *bytes)
 {
-    return strspn(bytes, " \t\r\n");
+    return *words_end(bytes) == ';';
+}
+
+char *edit_text_join(const edit_text *t)
+{
+    const char *mark = t->marked ? BYTE_ORDER_MARK : "";
+    size_t size = strlen(mark) + 1;
+    for (int i = 0; i < t->count; i++)
+        size += strlen(t->at[i]) + 1;
+    char *all = malloc(size), *end = all;
+    bool open = false; // the last statement has no `;`, as the last of a file may
+    if (all)
+        end += sprintf(end, "%s", mark);
+    for (int i = 0; all && i < t->count; i++) {
+        const char *bytes = t->at[i];
+        bool empty = is_empty(bytes);
+        end += sprintf(end, "%s%s", open && !empty ? ";" : "", bytes);
+        open = empty ? open : !is_closed(bytes);
+    }
+    return all;
 }
 
 // the command of a statement, `;` or not, and the beat of its `at`, else -1; false if it is none
 // for the performer
 static bool command_of(const char *bytes, himc_command *out, double *beat, himc_error *error)
 {
-    const char *begin = bytes + space(bytes), *end = end_of(begin);
-    int used = 0;
+    himc_atom atoms[HIMC_COMMAND_ATOMS + 4], *first = atoms;
+    char storage[HIMC_PATH_SIZE + 256];
+    himc_text_statement s = {.atom = atoms,
+                             .capacity = HIMC_COMMAND_ATOMS + 4,
+                             .storage = storage,
+                             .size = sizeof storage};
+    int line = 1;
     *beat = -1;
-    if (sscanf(begin, "at %lf %n", beat, &used) == 1)
-        begin += used;
-    size_t length = end > begin ? (size_t)(end - begin) : 0;
-    if (length && end[-1] == ';')
-        length--;
-    char *words = strndup(begin, length);
-    bool good = words && himc_command_parse_text(out, HIMC_PERFORMER, words, error);
-    free(words);
-    return good;
+    if (!himc_text_next(&bytes, &line, &s) || s.count == 0)
+        return himc_error_set(error, "an empty statement");
+    if (s.overflow)
+        return himc_error_set(error, "a statement of more than %zu characters", s.size);
+    int count = s.count < s.capacity ? s.count : s.capacity;
+    if (count > 2 && !strcmp(atoms[0].symbol, "at") && atoms[1].kind == HIMC_ATOM_NUMBER) {
+        *beat = atoms[1].number;
+        first += 2;
+        count -= 2;
+    }
+    return himc_command_parse(out, HIMC_PERFORMER, first->symbol, first + 1, count - 1, error);
 }
 
 static bool is_stroke(const himc_command *c)
@@ -128,16 +155,16 @@ static bool can_change(const himc_command *c, double beat)
     return is_stroke(c) || c->id == HIMC_COMMAND_NUDGE || (c->id == HIMC_COMMAND_PUSH && beat >= 0);
 }
 
-bool edit_text_names_file(const edit_text *t)
+bool edit_text_names_file(const himc_score *score, int *line)
 {
-    himc_command c;
-    himc_error unused;
-    double beat;
     int atom;
-    for (int i = 0; i < t->count; i++)
-        if (command_of(t->at[i], &c, &beat, &unused) &&
-            himc_command_file(&c, &atom) != HIMC_FILE_NONE)
+    for (int i = 0; i < score->line_count + score->change_count; i++) {
+        const himc_score_line *l =
+            i < score->line_count ? &score->lines[i] : &score->changes[i - score->line_count];
+        *line = l->line;
+        if (himc_command_file(&l->command, &atom) != HIMC_FILE_NONE)
             return true;
+    }
     return false;
 }
 
@@ -146,7 +173,7 @@ static bool may_change(const char *bytes, himc_error *error)
 {
     himc_command c;
     double beat;
-    return !bytes[space(bytes)] ||
+    return is_empty(bytes) ||
            (command_of(bytes, &c, &beat, error) &&
             (can_change(&c, beat) ||
              himc_error_set(error, "allowed in an edit: strokes, ornaments, nudge, at BEAT push")));
@@ -175,12 +202,68 @@ static void exchange(edit_text *t, int i)
     c->bytes = now;
 }
 
-static char *with_space(const char *old, const char *words)
+// past the word at `at`
+static const char *word_end(const char *at)
 {
-    size_t before = space(old), size = before + strlen(words) + 2;
+    return at + strcspn(at, SPACE ";");
+}
+
+// past the last word before `end`
+static const char *trim(const char *begin, const char *end)
+{
+    while (end > begin && (end[-1] == ';' || strchr(SPACE, end[-1])))
+        end--;
+    return end;
+}
+
+static const char *word_begin(const char *begin, const char *end)
+{
+    while (end > begin && end[-1] != ';' && !strchr(SPACE, end[-1]))
+        end--;
+    return end;
+}
+
+static bool same_word(const char *a, const char *a_end, const char *b, const char *b_end)
+{
+    return a_end > a && a_end - a == b_end - b && !memcmp(a, b, (size_t)(a_end - a));
+}
+
+// The statement with other words; those that are the same at its beginning and at its end keep
+// their white space.
+static char *with_words(const char *old, const char *words)
+{
+    const char *a = old + strspn(old, SPACE), *b = words + strspn(words, SPACE);
+    const char *from = a, *a_end = trim(a, a + strlen(a)), *b_end = trim(b, b + strlen(b));
+    const char *rest = a_end, *tail = *a_end ? "" : ";";
+    if (b == b_end) // removed
+        return strndup(old, (size_t)(a - old));
+    for (const char *p = a, *q = b; same_word(p, word_end(p), q, word_end(q));) {
+        from = word_end(p);
+        b = word_end(q);
+        p = from + strspn(from, SPACE);
+        q = b + strspn(b, SPACE);
+    }
+    for (const char *p = a_end, *q = b_end; (p = word_begin(from, p)) >= from &&
+                                            (q = word_begin(b, q)) >= b &&
+                                            same_word(p, word_end(p), q, word_end(q));) {
+        rest = p;
+        b_end = q;
+        p = trim(from, p);
+        q = trim(b, q);
+    }
+    // where words take the place of others, the white space around them stays as well
+    const char *first = from + strspn(from, SPACE), *next = b + strspn(b, SPACE);
+    if (trim(first, rest) > first && trim(next, b_end) > next) {
+        rest = trim(first, rest);
+        b_end = trim(next, b_end);
+        from = first;
+        b = next;
+    }
+    size_t size = (size_t)(from - old) + (size_t)(b_end - b) + strlen(rest) + 2;
     char *bytes = malloc(size);
     if (bytes)
-        snprintf(bytes, size, "%.*s%s%s", (int)before, old, words, *words ? ";" : "");
+        snprintf(bytes, size, "%.*s%.*s%s%s", (int)(from - old), old, (int)(b_end - b), b, rest,
+                 tail);
     return bytes;
 }
 
@@ -193,17 +276,32 @@ bool edit_text_set(edit_text *t, int index, const char *words, himc_error *error
         return himc_error_set(error, "one statement at a time");
     if (!may_change(adds ? "" : t->at[index], error) || !may_change(words, error))
         return false;
-    char *bytes = with_space(adds ? "\n" : t->at[index], words);
-    if (!bytes || !grow(&t->changes, t->done, &t->changes_room, sizeof *t->changes) ||
+    char *bytes = with_words(adds ? "\n" : t->at[index], words);
+    if (!bytes || !grow(&t->changes, t->made, &t->changes_room, sizeof *t->changes) ||
         (adds && !append(t, strdup("")))) {
         free(bytes);
         return himc_error_set(error, "out of memory");
     }
-    while (t->made > t->done)
-        free(t->changes[--t->made].bytes);
-    t->changes[t->made++] = (change){index, bytes};
+    t->adds = adds;
+    memmove(t->changes + t->done + 1, t->changes + t->done,
+            (size_t)(t->made++ - t->done) * sizeof *t->changes);
+    t->changes[t->done] = (change){index, bytes};
     exchange(t, t->done++);
     return true;
+}
+
+void edit_text_settle(edit_text *t, bool keep)
+{
+    while (keep && t->made > t->done)
+        free(t->changes[--t->made].bytes);
+    if (keep)
+        return;
+    exchange(t, --t->done);
+    free(t->changes[t->done].bytes);
+    memmove(t->changes + t->done, t->changes + t->done + 1,
+            (size_t)(--t->made - t->done) * sizeof *t->changes);
+    if (t->adds)
+        free(t->at[--t->count]);
 }
 
 bool edit_text_undo(edit_text *t)
@@ -224,16 +322,43 @@ bool edit_text_redo(edit_text *t)
     return true;
 }
 
+bool edit_text_revert(edit_text *t)
+{
+    double from = HUGE_VAL;
+    bool any = false;
+    for (; edit_text_undo(t); any = true)
+        from = fmin(from, t->from);
+    t->from = any ? from : t->from;
+    return any;
+}
+
+int edit_text_changes(const edit_text *t)
+{
+    return t->done;
+}
+
 double edit_text_changed_from(const edit_text *t)
 {
     return t->from;
 }
 
+// where the stroke lands (m), or, of a spot with a name, on heads of the radii 0 and 1 m
+static void print_spot(FILE *to, const himc_stroke *s)
+{
+    double x[2], y[2];
+    for (int radius = 0; radius < 2; radius++)
+        himc_stroke_spot(s, radius, &x[radius], &y[radius]);
+    if (s->spot == HIMC_SPOT_XY)
+        fprintf(to, ",\"x\":%.9g,\"y\":%.9g", x[0], y[0]);
+    else
+        fprintf(to, ",\"spot\":[[%.9g,%.9g],[%.9g,%.9g]]", x[0], y[0], x[1], y[1]);
+}
+
 static void print_statement(FILE *to, int index, const char *bytes, const himc_command *c)
 {
     const himc_stroke *s = &c->stroke;
-    const char *words = bytes + space(bytes);
-    char *copy = strndup(words, strcspn(words, ";"));
+    const char *words = bytes + strspn(bytes, SPACE);
+    char *copy = strndup(words, (size_t)(trim(words, words + strlen(words)) - words));
     fprintf(to, "{\"index\":%d,\"words\":", index);
     cli_put_json_text(to, copy ? copy : "");
     free(copy);
@@ -241,8 +366,7 @@ static void print_statement(FILE *to, int index, const char *bytes, const himc_c
         fprintf(to, ",\"beat\":%.17g,\"hand\":\"%s\",\"nuance\":\"%s\",\"dynamic\":%.17g,\"drum\":",
                 s->beat, himc_hand_name(s->hand), himc_nuance_name(s->nuance), s->dynamic);
         cli_put_json_text(to, s->drum);
-        if (s->spot == HIMC_SPOT_XY)
-            fprintf(to, ",\"x\":%.17g,\"y\":%.17g", s->x, s->y);
+        print_spot(to, s);
     }
 }
 

@@ -15,17 +15,25 @@ edit_text *edit_text_new(const char *text, himc_error *error);
 void edit_text_free(edit_text *text);
 /// All bytes, owned by the caller; NULL without memory.
 char *edit_text_join(const edit_text *text);
-/// True if a statement names a file.
-bool edit_text_names_file(const edit_text *text);
+/// True if a command of the score, of the performer or of a drum, at once or at a beat, names a
+/// file; `*line` is where.
+bool edit_text_names_file(const himc_score *score, int *line);
 
-/// Replaces statement `index` by `words` (without `;`; "" removes it); one past the last adds it.
-/// Old and new must be a stroke, an ornament, a `nudge` or a `push` at a beat. False, and nothing
-/// changed, with the reason.
+/// Gives statement `index` these words (without `;`; none removes it); one past the last adds it.
+/// Words that stay keep their white space. Old and new must be a stroke, an ornament, a `nudge` or
+/// a `push` at a beat. False, and nothing changed, with the reason. Else settle it before any other
+/// change.
 bool edit_text_set(edit_text *text, int index, const char *words, himc_error *error);
+/// Keeps what edit_text_set has changed, or takes it back as if it had never been.
+void edit_text_settle(edit_text *text, bool keep);
 /// Takes the last change back, or makes it again; false if there is none.
 bool edit_text_undo(edit_text *text);
 bool edit_text_redo(edit_text *text);
-/// What the last of these three calls has changed begins here: a beat, or a time of the take (s).
+/// Takes all changes back; false if there are none.
+bool edit_text_revert(edit_text *text);
+/// Changes that undo can take back.
+int edit_text_changes(const edit_text *text);
+/// What the last of these calls has changed begins here: a beat, or a time of the take (s).
 double edit_text_changed_from(const edit_text *text);
 
 /// Prints, as JSON fields: can_undo, can_redo, count, and the list `statements` of those that can

@@ -1,9 +1,9 @@
 /// editor.c: a child process with two pipes. It is the `himc` in this program's folder, else that
-/// of the path. What a page sends becomes a file in a folder of our own, under a name of our own
-/// with one of a few endings.
+/// of the path, and ends with this one. What a page sends becomes a file in our private folder,
+/// under a name of our own with one of a few endings; its own name is only shown.
 #define _GNU_SOURCE // getrandom, strndup
 #include "editor.h"
-#include "base/file.h"
+#include "base/line.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/prctl.h>
 #include <sys/random.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -46,8 +47,10 @@ static void become(const editor *e)
     char path[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", path, sizeof path - 8);
     char *slash = length > 0 ? memrchr(path, '/', (size_t)length) : NULL;
-    char *const arguments[] = {"himc", "edit", (char *)e->source,
-                               e->confined ? "--confined" : "--quiet", NULL};
+    char *const own[] = {"himc", "edit", (char *)e->source, NULL},
+                *const sent[] = {"himc",          "edit", (char *)e->source, "--confined", "--name",
+                                 (char *)e->name, NULL},
+                *const *arguments = e->name[0] ? sent : own;
     static const char missing[] =
         "{\"event\":\"failed\",\"text\":\"the program himc is not beside himc-viewer\"}";
     uint32_t size = sizeof missing - 1;
@@ -55,6 +58,9 @@ static void become(const editor *e)
         close(i);
     signal(SIGPIPE, SIG_DFL);
     signal(SIGCHLD, SIG_DFL);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (e->folder->path[0])
+        setenv("TMPDIR", e->folder->path, 1);
     if (slash) {
         strcpy(slash + 1, "himc");
         execv(path, arguments);
@@ -79,6 +85,8 @@ bool editor_start(editor *e, himc_error *error)
 {
     int in[2], out[2];
     editor_stop(e);
+    if (!folder_make(e->folder, error))
+        return false;
     if (pipe2(in, O_CLOEXEC) != 0)
         return himc_error_set(error, "%s", strerror(errno));
     if (pipe2(out, O_CLOEXEC) != 0 || (e->process = fork()) < 0) {
@@ -117,13 +125,19 @@ static const char *ending_of(const char *name)
     return NULL;
 }
 
-static bool write_file(const char *path, const char *bytes, size_t size, himc_error *error)
+// the last part of a path, as a line of text
+static void keep_name(editor *e, const char *name)
 {
-    FILE *file = himc_file_write(path, HIMC_FILE_REPLACE, error);
-    if (!file)
-        return false;
-    bool written = fwrite(bytes, 1, size, file) == size, closed = fclose(file) == 0;
-    return (written && closed) || himc_error_set(error, "%s: %s", path, strerror(errno));
+    const char *slash = strrchr(name, '/');
+    name = slash ? slash + 1 : name;
+    size_t length = strlen(name), most = sizeof e->name - 1;
+    // a long one keeps its end; whole characters
+    for (name += length > most ? length - most : 0; (*name & 0xc0) == 0x80; name++)
+        ;
+    snprintf(e->name, sizeof e->name, "%s", name);
+    himc_line_clean(e->name);
+    if (e->name[0] == '-')
+        e->name[0] = '_'; // it would be an option
 }
 
 bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error)
@@ -131,28 +145,18 @@ bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error)
     const char *zero = memchr(bytes, 0, size), *ending = zero ? ending_of(bytes) : NULL;
     if (!ending)
         return himc_error_set(error, "allowed are scores (.txt), .mid, .bvh, .c3d, .trc, .himc");
-    if (!e->folder[0]) {
-        const char *temporary = getenv("TMPDIR");
-        snprintf(e->folder, sizeof e->folder, "%s/himc-viewer-XXXXXX",
-                 temporary ? temporary : "/tmp");
-        if (!mkdtemp(e->folder)) {
-            e->folder[0] = 0;
-            return himc_error_set(error, "%s", strerror(errno));
-        }
-    } else if (e->confined)
-        unlink(e->source);
-    snprintf(e->source, sizeof e->source, "%s/piece%s", e->folder, ending);
-    e->confined = true;
-    zero++;
-    return write_file(e->source, zero, size - (size_t)(zero - bytes), error);
-}
-
-void editor_close(editor *e)
-{
-    editor_stop(e);
-    if (e->folder[0]) {
-        if (e->confined)
-            unlink(e->source);
-        rmdir(e->folder);
+    if (!folder_make(e->folder, error))
+        return false;
+    char file[16];
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        snprintf(file, sizeof file, "piece%s", endings[i]);
+        folder_unlink(e->folder, file);
     }
+    snprintf(file, sizeof file, "piece%s", ending);
+    zero++;
+    if (!folder_write(e->folder, file, zero, size - (size_t)(zero - bytes), error))
+        return false;
+    snprintf(e->source, sizeof e->source, "%s/%s", e->folder->path, file);
+    keep_name(e, bytes);
+    return true;
 }

@@ -2,7 +2,7 @@
 #ifndef VIEWER_EDITOR_H
 #define VIEWER_EDITOR_H
 
-#include "himc/base.h"
+#include "folder.h"
 
 #include <sys/types.h>
 
@@ -13,8 +13,8 @@
 /// A piece that is being edited. All zero: none.
 typedef struct editor {
     char source[512]; ///< its file; "" for none
-    bool confined;    ///< it came from a page
-    char folder[256]; ///< of what came from pages, removed at the end; "" for none
+    char name[128];   ///< under which a page has sent it; "": none has
+    folder *folder;   ///< borrowed; of what came from pages, and of files that are being made
     pid_t process;    ///< 0: none runs
     int to, from;     ///< its standard input and output
 } editor;
@@ -30,9 +30,7 @@ bool editor_start(editor *e, himc_error *error);
 bool editor_say(const editor *e, const char *line, size_t size);
 /// Keeps a file that came from a page (name, 0, bytes) as the source; false with the reason.
 bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error);
-/// Lets the program end.
+/// Ends the program, and with it all processes that play.
 void editor_stop(editor *e);
-/// Ends all and removes the files.
-void editor_close(editor *e);
 
 #endif

@@ -98,13 +98,27 @@ static void print_url(char url[192], const char *address, int port, const char *
              key);
 }
 
-static void open_browser(const char *url)
+// The address holds the key, and arguments can be read by all users: the browser gets a file that
+// leads there. It is removed when the page has come, or at the end.
+static void open_browser(folder *f, const char *url)
 {
+    char page[1024], path[300];
+    himc_error error;
+    int size =
+        snprintf(page, sizeof page,
+                 "<!doctype html><meta charset=utf-8><meta name=referrer content=no-referrer>"
+                 "<meta http-equiv=refresh content=\"0;url=%s\"><a href=\"%s\">himc</a>\n",
+                 url, url);
+    if (!folder_make(f, &error) || !folder_write(f, WEB_DOOR, page, (size_t)size, &error)) {
+        fprintf(stderr, "himc-viewer: no browser is opened: %s\n", error.text);
+        return;
+    }
+    snprintf(path, sizeof path, "%s/" WEB_DOOR, f->path);
     signal(SIGCHLD, SIG_IGN);
     if (fork() == 0) {
         if (!freopen("/dev/null", "w", stderr) || !freopen("/dev/null", "w", stdout))
             _exit(1);
-        execlp("xdg-open", "xdg-open", url, (char *)NULL);
+        execlp("xdg-open", "xdg-open", path, (char *)NULL);
         _exit(1);
     }
 }
@@ -129,6 +143,7 @@ static bool check_edit(const options *o, himc_error *error)
 static int serve(const options *o, himc_error *error)
 {
     static scene s;
+    folder f = {.path = ""};
     web_config config = {.address = o->address, .port = o->http};
     char *recording = o->play ? recording_load(o->play, &config.play_size, error) : NULL, url[192],
          key[EDITOR_KEY + 1];
@@ -136,7 +151,9 @@ static int serve(const options *o, himc_error *error)
         free(recording);
         return fail(error);
     }
+    folder_remove_stale();
     config.edit = o->edit;
+    config.folder = &f;
     config.key = key;
     config.play = recording;
     config.play_name = o->play;
@@ -153,9 +170,10 @@ static int serve(const options *o, himc_error *error)
            receive_port(config.osc));
     fflush(stdout);
     if (o->browser)
-        open_browser(url);
+        open_browser(&f, url);
     web_run(w, &stop);
     web_free(w);
+    folder_remove(&f);
     free(recording);
     return 0;
 }

@@ -5,9 +5,10 @@
 /// protocol. The page never sends data; clients that send anything but control frames are
 /// disconnected. Another stream is for editing: it is for a page that knows the key in its address.
 /// Its messages go to `himc edit` (editor.c), one line each, or are a file to be edited; and what
-/// that program tells goes back, as fast as the page takes it. A slow browser gets the newest pose
-/// when it is ready for it, so no queue grows here. Invariant: connections are bounded in number,
-/// and each that makes no progress in time.
+/// that program tells goes back, as fast as the page takes it. It ends with its page; the piece's
+/// journal (tools/edit_journal.c) brings the changes back to the next one. A slow browser gets the
+/// newest pose when it is ready for it, so no queue grows here. Invariant: connections are bounded
+/// in number, and each that makes no progress in time.
 #define _POSIX_C_SOURCE 200809L
 #include "web.h"
 #include "access.h"
@@ -37,6 +38,7 @@ enum {
     CLOSE_TIMEOUT = 500, // from the decision to close a stream to its end (ms)
     PAUSE = 3,           // (ms), a tenth of the time between poses: waking up costs most
     PASSED = 65536,      // of what `himc edit` tells in one message (bytes)
+    TAKEN = 4001,        // status of a close, for the page (edit.js)
     HEADER_SIZE = 264    // of a host or an origin with its zero; longer ones are refused
 };
 
@@ -46,6 +48,7 @@ typedef struct session {
     scene_reader reader;
     bool counted; // among the clients
     bool closing; // gets nothing more but the close frame
+    bool taken;   // another page edits now: closed with TAKEN
 } session;
 
 struct web {
@@ -59,6 +62,7 @@ struct web {
     char session[1024]; // JSON: where OSC is received, what is played
     editor edit;
     struct lws *editing, *edited; // the page that edits, the program's output in the loop
+    session *editing_own;         // of `editing`
     char *heard;                  // owned: what has come of a message of that page
     size_t heard_size, heard_room;
     size_t waiting; // bytes of the program in `passed`
@@ -324,13 +328,20 @@ static void tell_page(web *w, const char *text)
     lws_callback_on_writable(w->editing);
 }
 
+// the program and all its processes end
+static void end_editing(web *w)
+{
+    if (w->edited)
+        lws_set_timeout(w->edited, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
+    w->waiting = 0;
+    editor_stop(&w->edit);
+}
+
 // the program for w->edit plays from the start
 static void begin_editing(web *w)
 {
     himc_error error;
-    if (w->edited)
-        lws_set_timeout(w->edited, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
-    w->waiting = 0;
+    end_editing(w);
     if (!editor_start(&w->edit, &error)) {
         tell_page(w, error.text);
         return;
@@ -339,6 +350,36 @@ static void begin_editing(web *w)
     w->edited = lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, from,
                                            protocols[3].name, NULL);
     editor_say(&w->edit, "hello", 5);
+}
+
+// the newest page edits; the one before is told so
+static void take_over(web *w, struct lws *wsi, session *own)
+{
+    if (w->editing) {
+        w->editing_own->taken = true;
+        lws_callback_on_writable(w->editing);
+    }
+    w->editing = wsi;
+    w->editing_own = own;
+    w->heard_size = 0;
+    folder_unlink(w->config.folder, WEB_DOOR);
+    if (w->edit.source[0])
+        begin_editing(w);
+}
+
+static int send_away(struct lws *wsi)
+{
+    static unsigned char why[] = "another page edits";
+    lws_close_reason(wsi, (enum lws_close_status)TAKEN, why, sizeof why - 1);
+    return -1;
+}
+
+static void leave_page(web *w, struct lws *wsi)
+{
+    if (w->editing != wsi)
+        return;
+    w->editing = NULL;
+    end_editing(w);
 }
 
 // a whole message of the page: a line, or a file
@@ -398,21 +439,17 @@ static int on_edit(struct lws *wsi, enum lws_callback_reasons reason, void *user
     session *own = user;
     switch (reason) {
     case LWS_CALLBACK_ESTABLISHED:
-        if (w->editing) // the newest page edits
-            lws_set_timeout(w->editing, PENDING_TIMEOUT_USER_OK, 1);
-        w->editing = wsi;
-        w->heard_size = 0;
         w->clients++;
         own->counted = true;
-        if (w->edit.source[0])
-            begin_editing(w);
+        take_over(w, wsi, own);
         return 0;
-    case LWS_CALLBACK_SERVER_WRITEABLE: return own->closing ? 0 : pass_on(w, wsi);
+    case LWS_CALLBACK_SERVER_WRITEABLE:
+        return own->closing ? 0 : own->taken ? send_away(wsi) : pass_on(w, wsi);
     case LWS_CALLBACK_RECEIVE:
-        if (!own->closing && hear_page(w, wsi, in, length))
+        if (own->taken || (!own->closing && hear_page(w, wsi, in, length)))
             return 0;
         return on_data(wsi, own);
-    case LWS_CALLBACK_CLOSED: w->editing = w->editing == wsi ? NULL : w->editing; // fall through
+    case LWS_CALLBACK_CLOSED: leave_page(w, wsi); // fall through
     default: return on_end(wsi, reason, own);
     }
 }
@@ -559,6 +596,7 @@ web *web_new(const web_config *config, scene *s, himc_error *error)
     w->s = s;
     w->config = *config;
     describe_session(w);
+    w->edit.folder = config->folder;
     if (config->edit)
         snprintf(w->edit.source, sizeof w->edit.source, "%s", config->edit);
     if (!listen_to_all(w)) {
@@ -588,7 +626,7 @@ void web_free(web *w)
     if (w && w->context)
         lws_context_destroy(w->context);
     if (w) {
-        editor_close(&w->edit);
+        editor_stop(&w->edit);
         free(w->heard);
     }
     free(w);

@@ -3,7 +3,10 @@
 #define VIEWER_WEB_H
 
 #include "himc/base.h"
+#include "folder.h"
 #include "scene.h"
+
+#define WEB_DOOR "open.html" ///< in the folder: leads a browser to the page that edits
 
 typedef struct web_config {
     const char *address;   ///< numeric
@@ -14,6 +17,7 @@ typedef struct web_config {
     const char *play_name; ///< its file
     const char *edit;      ///< file of a piece to be edited, or NULL
     const char *key;       ///< that a page must know to edit (editor.h)
+    folder *folder;        ///< private, for files; borrowed
 } web_config;
 
 typedef struct web web;

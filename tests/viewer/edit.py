@@ -21,6 +21,20 @@ SCORE = "tests/viewer/editable.txt"
 NUANCES = ["legato", "tenuto", "accent", "vertical-accent", "staccato"]
 PUSHED = ["trunk", "head", "left-upper-arm", "right-forearm", "left-hand", "right-stick"]
 folder = tempfile.TemporaryDirectory(prefix="himc-edit-")
+os.environ["XDG_STATE_HOME"] = os.path.join(folder.name, "state")
+
+
+def made(name, contents):
+    """A file in a folder of its own, so that no journal stands beside it."""
+    path = os.path.join(tempfile.mkdtemp(dir=folder.name), name)
+    with open(path, "wb") as file:
+        file.write(contents if isinstance(contents, bytes) else contents.encode())
+    return path
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
 
 
 def targets(piece):
@@ -72,10 +86,7 @@ def largest_jump(piece):
 
 def from_start(piece):
     """The same text, played from the start."""
-    path = os.path.join(folder.name, "again.txt")
-    with open(path, "wb") as file:
-        file.write(piece.score())
-    with Piece(HIMC, path) as fresh:
+    with Piece(HIMC, made("again.txt", piece.score())) as fresh:
         assert fresh.play("hello") is None
         return fresh
 
@@ -158,18 +169,16 @@ def edit_at_random(source, change, most=JUMP):
 
 
 def test_scores_changed_at_random_play_as_if_written_so():
-    return edit_at_random(SCORE, random_stroke)
+    return edit_at_random(made("piece.txt", read(SCORE)), random_stroke)
 
 
 def test_scores_pushed_at_random_play_as_if_written_so():
     # a pushed stick misses its head, and its target goes on from where the stick is
-    return edit_at_random(SCORE, random_push_or_stroke, most=math.inf)
+    return edit_at_random(made("piece.txt", read(SCORE)), random_push_or_stroke, most=math.inf)
 
 
 def test_the_last_stroke_is_changed_after_the_end():
-    path = os.path.join(folder.name, "two.txt")
-    with open(path, "w") as file:
-        file.write("stroke 0 right legato mf; stroke 1 left accent mf;")
+    path = made("two.txt", "stroke 0 right legato mf; stroke 1 left accent mf;")
     with Piece(HIMC, path) as piece:
         assert piece.play("hello") is None
         before = dict(piece.parts)
@@ -178,10 +187,7 @@ def test_the_last_stroke_is_changed_after_the_end():
 
 
 def test_saved_takes_leave_no_open_file():
-    path = os.path.join(folder.name, "short.txt")
-    with open(path, "w") as file:
-        file.write("stroke 0 right legato mf;")
-
+    path = made("short.txt", "stroke 0 right legato mf;")
     with Piece(HIMC, path) as piece:
         open_files = []
         assert piece.play("hello") is None
@@ -194,17 +200,12 @@ def test_saved_takes_leave_no_open_file():
 
 
 def made_take():
-    path, score = (os.path.join(folder.name, name) for name in ("take.bvh", "one.txt"))
-    with open(score, "w") as file:
-        for i in range(10):
-            file.write(f"stroke {i / 2} {['right', 'left'][i % 2]} legato mf;\n")
-    with Piece(HIMC, score) as piece:
+    strokes = (f"stroke {i / 2} {['right', 'left'][i % 2]} legato mf;\n" for i in range(10))
+    with Piece(HIMC, made("one.txt", "".join(strokes))) as piece:
         piece.play("hello")
         piece.say("take take.bvh")
         piece.until("file")
-    with open(path, "wb") as file:
-        file.write(piece.files["take.bvh"])
-    return path
+    return made("take.bvh", piece.files["take.bvh"])
 
 
 def test_takes_changed_at_random_play_as_if_written_so():
@@ -212,9 +213,10 @@ def test_takes_changed_at_random_play_as_if_written_so():
 
 
 def test_a_push_acts_at_its_beat_and_is_taken_back():
-    score = os.path.join(folder.name, "three.txt")
-    with open(score, "w") as file:
-        file.write("tempo 120; stroke 1 right legato mf; roll 2 1 single p mf; stroke 4 left legato mf;")
+    score = made(
+        "three.txt",
+        "tempo 120; stroke 1 right legato mf; roll 2 1 single p mf; stroke 4 left legato mf;",
+    )
     # beats; of a take seconds, and its first frame comes 1 s after `play`
     cases = [(score, 3.2, 1.6)]
     if os.environ.get("HIMC_LONG"):
@@ -239,7 +241,7 @@ def test_a_push_acts_at_its_beat_and_is_taken_back():
 
 
 def test_what_is_no_change_is_refused_in_a_line():
-    with Piece(HIMC, SCORE) as piece:
+    with Piece(HIMC, made("piece.txt", read(SCORE))) as piece:
         before = piece.score()
         for line in (
             "",
@@ -266,14 +268,186 @@ def test_what_is_no_change_is_refused_in_a_line():
 
 
 def test_a_score_that_names_files_is_refused_when_confined():
-    path = os.path.join(folder.name, "reads.txt")
-    with open(path, "w") as file:
-        file.write("take /etc/passwd;\n")
-    process = subprocess.run(
-        [HIMC, "edit", "--confined", path], capture_output=True, text=True, input=""
+    """However it is written: the score is asked as it will be played."""
+    victim = made("victim.bvh", "PRECIOUS")
+    mark, stroke = "\ufeff", "stroke 1 left accent f;"
+    for text in (
+        "take /etc/passwd;",
+        f"{mark}record {victim};\n{stroke}",
+        f"{mark}take /etc/passwd;{stroke}",
+        "drum kettle;\nkettle shape /etc/passwd;" + stroke,
+        f"{stroke} rec\\ord\t{victim}",
+        f"\v\f\r\n\trecord\n{victim}\n;{stroke}",
+        f"comment one\\; two;record {victim};{stroke}",
+        f"units {victim} legato rim;{stroke}",
+        f"kettle tune 110;kettle\fsh\\ape /etc/passwd;{stroke}",
+    ):
+        process = subprocess.run(
+            [HIMC, "edit", "--confined", made("piece.txt", text)],
+            capture_output=True,
+            text=True,
+            input="hello\n",
+        )
+        assert process.returncode == 1 and process.stderr.count("\n") == 1, (text, process)
+        assert "names other files" in process.stderr, (text, process.stderr)
+        assert read(victim) == b"PRECIOUS", text
+    for text in (f"comment record {victim};{stroke}", f"{mark}{stroke} kettle shape circle;"):
+        with Piece(HIMC, made("piece.txt", text), "--confined") as piece:
+            assert piece.play("hello") is None, text
+            assert [s["words"] for s in piece.text["statements"]] == [stroke[:-1]], text
+
+
+def test_a_change_changes_its_words_alone():
+    text = (
+        "\ufeffstroke 0  right\tlegato mf; comment a; b ;\n"
+        "  stroke 1\n    left   accent f   rim ; flam 3 right accent f;\tstroke 4 left legato pp"
     )
-    assert process.returncode == 1 and process.stderr.count("\n") == 1, process
-    assert "names other files" in process.stderr
+    text = text.replace("; b ;", "\\; b ;")
+    with Piece(HIMC, made("spaces.txt", text)) as piece:
+        piece.say("hello")
+        words = [s["words"] for s in piece.until("text")["statements"]]
+        assert words[1].split() == "stroke 1 left accent f rim".split(), words
+        for index, line, wanted in (
+            (0, "stroke 0 right legato ppp", ("mf;", "ppp;")),
+            (2, "stroke 1 left accent f 0.1 0.2", ("rim ;", "0.1 0.2 ;")),
+            (2, "stroke 1 left accent f", ("   rim ;", " ;")),
+            (2, "stroke 1 left accent mf rim", ("accent f   rim", "accent mf   rim")),
+            (2, "stroke 1 right accent f rim", ("    left   ", "    right   ")),
+            (3, "flam 3 right accent f rim", ("flam 3 right accent f;", "flam 3 right accent f rim;")),
+            (4, "stroke 4.5 left legato pp", ("stroke 4 ", "stroke 4.5 ")),
+            (0, "stroke 0 right legato mf", ("", "")),
+        ):
+            piece.say(f"set {index} {line}")
+            assert piece.until("text")["event"] == "text", line
+            assert piece.score().decode() == text.replace(*wanted).rstrip(";") or (
+                piece.score().decode() == text.replace(*wanted) + ";"
+            ), (line, piece.score())
+            piece.say("undo")
+            piece.until("text")
+            assert piece.score().decode() == text
+
+
+def test_what_is_refused_leaves_what_could_be_done_again():
+    with Piece(HIMC, made("two.txt", "stroke 0 right legato mf;stroke 1 right legato mf;")) as piece:
+        piece.say("hello")
+        piece.until("text")
+        piece.say("set 1 stroke 1 right legato ff")
+        piece.until("text")
+        piece.say("undo")
+        assert piece.until("text")["redo"] == 1
+        piece.say("set 1 stroke 0.01 right legato ff")  # too near to the first
+        assert piece.until("text")["event"] == "refused"
+        piece.say("redo")
+        event = piece.until("text")
+        assert event["redo"] == 0 and event["statements"][1]["dynamic"] == 6 / 7, event
+
+
+def test_changes_survive_kill_9():
+    text = read(SCORE)
+    path = made("piece.txt", text)
+    journal = os.path.join(os.path.dirname(path), ".piece.txt.himc-edit")
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None and not os.path.exists(journal)
+        for line in ("set 9 stroke 0.5 right legato ff", "set 9 stroke 0.5 right legato pp", "undo"):
+            assert piece.play(line) is None
+        edited = piece.score()
+        piece.process.kill()
+    assert edited != text and os.stat(journal).st_mode & 0o777 == 0o600
+    with open(journal, "ab") as file:
+        file.write(b"set 9 stro")  # the last line was cut short
+    for _ in range(2):
+        with Piece(HIMC, path) as piece:
+            piece.say("hello")
+            event = piece.until("restored")
+            assert (piece.text["undo"], piece.text["redo"]) == (1, 1) and "1 change" in event["text"]
+            assert piece.score() == edited
+            for line, wanted in (("undo", text), ("redo", edited), ("revert", text), ("redo", edited)):
+                piece.say(line)
+                assert piece.until("text")["kept"] and piece.score() == wanted, line
+            piece.process.kill()
+    assert read(path) == text
+
+
+def test_a_file_that_has_changed_keeps_what_was_edited():
+    path = made("piece.txt", "stroke 0 right legato mf;")
+    beside = os.path.dirname(path)
+
+    def change(line):
+        with Piece(HIMC, path) as piece:
+            piece.say("hello")
+            piece.until("text")
+            piece.say(line)
+            piece.until("text")
+            return piece.score()
+
+    edited = change("set 0 stroke 0 right legato ff")
+    with open(path, "w") as file:
+        file.write("stroke 2 left accent p;")
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        event = piece.until("restored")
+        assert "piece.txt has changed" in event["text"] and piece.text["undo"] == 0
+    kept = [name for name in os.listdir(beside) if name != "piece.txt"]
+    assert len(kept) == 1 and kept[0] in event["text"], (kept, event)
+    assert read(os.path.join(beside, kept[0])) == edited
+    os.unlink(os.path.join(beside, kept[0]))
+    # an edited score that was saved over its source is no change any more
+    edited = change("set 0 stroke 2 left accent ff")
+    with open(path, "wb") as file:
+        file.write(edited)
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None
+        assert piece.text["undo"] == 0 and "restored" not in piece.said
+    assert os.listdir(beside) == ["piece.txt"]
+
+
+def test_one_program_at_a_time_keeps_the_changes_of_a_piece():
+    path = made("piece.txt", "stroke 0 right legato mf;")
+    with Piece(HIMC, path) as first:
+        first.say("hello")
+        first.until("text")
+        first.say("set 0 stroke 0 right legato ff")
+        assert first.until("text")["kept"]
+        with Piece(HIMC, path) as second:
+            second.say("hello")
+            assert "another program" in second.until("unkept")["text"]
+            second.say("set 0 stroke 0 right legato ppp")
+            event = second.until("text")
+            assert not event["kept"] and event["undo"] == 1
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert piece.until("text")["statements"][0]["words"].endswith(" ff")
+    # what is no journal is left alone
+    path = made("piece.txt", "stroke 0 right legato mf;")
+    other = os.path.join(os.path.dirname(path), ".piece.txt.himc-edit")
+    with open(other, "w") as file:
+        file.write("mine")
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert "not a journal" in piece.until("unkept")["text"]
+        piece.say("set 0 stroke 0 right legato ff")
+        assert not piece.until("text")["kept"]
+    assert read(other) == b"mine"
+
+
+def test_what_a_page_has_sent_is_known_again_by_its_name_and_contents():
+    def sent(contents, name="my score.txt"):
+        return Piece(HIMC, made("piece.txt", contents), "--confined", "--name", name)
+
+    text = "stroke 0 right legato mf;"
+    with sent(text) as piece:
+        piece.say("hello")
+        assert piece.until("text")["source"] == "my score.txt"
+        piece.say("set 0 stroke 0 right legato ff")
+        piece.until("text")
+        piece.stem = "my score"
+        edited = piece.score()
+        piece.process.kill()
+    for contents, name, wanted in ((text, "other.txt", 0), (text + " ", "my score.txt", 0), (text, "my score.txt", 1)):
+        with sent(contents, name) as piece:
+            piece.say("hello")
+            assert piece.until("text")["undo"] == wanted, (contents, name)
+    assert edited != text.encode()
 
 
 TESTS = [f for name, f in list(globals().items()) if name.startswith("test_")]

@@ -1,6 +1,7 @@
 """Drives `himc edit` as himc-viewer does: lines in, frames out."""
 
 import json
+import os
 import struct
 import subprocess
 import zlib
@@ -14,6 +15,8 @@ class Piece:
             [himc, "edit", source, *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
         self.parts, self.chunks, self.text, self.files = {}, [], None, {}
+        self.said = {}  # the last text of each event
+        self.stem = os.path.splitext(os.path.basename(source))[0]
         self.came_from = None
 
     def __enter__(self):
@@ -51,6 +54,7 @@ class Piece:
             self.files[data[:64].rstrip(b"\0").decode()] = data[64:]
         elif kind == "edit":
             event = json.loads(data)
+            self.said[event["event"]] = event.get("text", "")
             if event["event"] == "text":
                 self.text = event
             return event
@@ -81,4 +85,4 @@ class Piece:
     def score(self):
         self.say("save")
         self.until("file")
-        return self.files["score.txt"]
+        return self.files[f"{self.stem}.txt"]

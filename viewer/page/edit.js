@@ -16,13 +16,21 @@ const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger 
     PATH = [0.7, 0.4], // of a stick's path, before and after (s)
     STEP = 0.008, // between its points (s)
     STROKES = 1.5, // dots of strokes so near in time (s)
-    BEFORE = 0.7, // a changed stroke is heard from so much before (s)
+    BEFORE = 0.7, // a stroke that is changed while it plays is heard from so much before (s)
     SOON = 0.25, // once so much after it has come (s)
     INSIDE = 0.95, // of a head's radius: nothing is struck further out
     RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
+    DYNAMICS = ["ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"], // of 0 .. 1, as the library
+    NEAR = 0.01, // of a dynamic, which then is that word
+    AGAIN = 1000, // before the channel is opened again (ms)
     PUSHED = "#9cf29c", // the path of a segment that is pushed
     FAMILY = ["legato", "tenuto", "accent", "vertical-accent", "staccato"];
 const round = (v, digits = 4) => +v.toFixed(digits);
+const ENDED = {
+    taken: "Another page edits this piece now. It has all that was changed here.",
+    lost: "himc-viewer has ended. This page goes on playing what it has; your changes are kept with the piece.",
+    refused: "himc-viewer has been started again: open the address that it prints. Your changes are kept with the piece.",
+};
 const reach = e => GRAB[e.pointerType === "touch" ? 1 : 0];
 
 // 0 .. 1 .. 0 over a span, as the library's nudge
@@ -54,15 +62,20 @@ const draw = (made, points) => {
 };
 
 export class Editor {
-    // `on`: opened(piece), playback(), performer(), note(line), drum(name), its tilted group, and radius(name)
+    // `on`: opened(piece), playback(), performer(), note(line, stays), cut(time), changed(piece), finished(piece),
+    // drum(name), its tilted group, and radius(name)
     constructor(key, sound, view, stage, on) {
         Object.assign(this, { view, on, chosen: null, drag: null, waiting: null, heard: [] });
         this.piece = new Piece(key, sound, {
-            begun: piece => on.opened(piece),
+            begun: piece => this.begun(piece),
+            cut: (piece, time) => on.playback()?.scene === piece.scene && on.cut(time),
             grown: piece => this.grown(piece),
             over: piece => this.over(piece),
             text: event => this.written(event),
-            trouble: text => on.note(text),
+            trouble: text => ((this.unsure = false), (this.waiting = null), on.note(text)),
+            restored: text => this.state(text),
+            unkept: text => this.state(text),
+            ended: why => this.ended(why),
             saved: (name, bytes) => save(name, bytes),
         });
         this.when = new When(this);
@@ -80,23 +93,82 @@ export class Editor {
         for (const name of ["pointerup", "pointercancel"])
             canvas.addEventListener(name, e => this.release(e), { capture: true });
         this.inspector();
+        // a browser may keep a page that was left for a long time, and its channel with it
+        addEventListener("pagehide", () => this.piece.socket.close());
+        addEventListener("beforeunload", e => this.risky && e.preventDefault());
+    }
+
+    // --- the page and the program
+
+    // true if changes would be lost with the page: not written anywhere, or on their way
+    get risky() {
+        const { text } = this.piece;
+        return this.unsure || (!!text?.undo && !text.kept);
+    }
+
+    // a line that stays until another takes its place; `ended` if nothing can be changed any more
+    state(text, ended = "") {
+        $("e-said").textContent = text;
+        ($("e-state").hidden = !text), ($("e-here").hidden = ended !== "taken");
+        for (const part of $("edit").children) part.inert = !!ended && part.id !== "e-state";
+        if (!this.on.playback() && ended) this.on.note(text, true);
+    }
+
+    ended(why) {
+        if (why === "refused" && !this.reachable) why = "lost";
+        ((this.waiting = null), (this.ends = why), this.state(ENDED[why], why));
+        if (why === "lost") setTimeout(() => this.reachable && this.again(), AGAIN);
+    }
+
+    // the program can be reached, or not
+    connected(yes) {
+        this.reachable = yes;
+        if (yes && this.ends === "lost") this.again();
+    }
+
+    // edits again, from where the page is
+    again() {
+        if (this.piece.socket.readyState !== WebSocket.CLOSED) return;
+        this.piece.open();
+    }
+
+    // another piece, or this one from its start: then the cursor comes back to where it was
+    begun(piece) {
+        const old = this.on.playback();
+        this.back = old && this.named === piece.text.source ? { at: old.at, playing: old.playing } : null;
+        this.named = piece.text.source;
+        this.choose(null);
+        this.on.opened(piece);
+        if (this.back) this.on.playback().play(false);
+    }
+
+    comeBack(p) {
+        const { back } = this;
+        if (!back || (p.known < back.at && !this.piece.over)) return;
+        this.back = null;
+        p.seek(back.at);
+        p.play(back.playing);
     }
 
     // --- what is written beside the stage
 
     inspector() {
         const say = line => this.piece.say(line),
-            change = () => this.commit(this.fields());
+            number = id => Number($(id).value);
         for (const nuance of FAMILY) $("e-nuance").add(new Option(nuance.replace("-", " "), nuance));
         for (const hand of HANDS) $("e-hand").add(new Option(hand, hand));
-        for (const id of ["e-hand", "e-nuance", "e-beat", "e-x", "e-y", "e-dynamic", "e-span"]) $(id).onchange = change;
-        $("e-dynamic").oninput = () => ($("e-loud").textContent = Number($("e-dynamic").value).toFixed(2));
+        for (const name of ["hand", "nuance"]) $(`e-${name}`).onchange = e => this.commit({ [name]: e.target.value });
+        for (const name of ["beat", "dynamic", "x", "y"]) $(`e-${name}`).onchange = () => this.commit({ [name]: number(`e-${name}`) });
+        $("e-span").onchange = e => this.word(3, e.target.value);
+        $("e-dynamic").oninput = () => ($("e-loud").textContent = number("e-dynamic").toFixed(2));
         $("e-words").onchange = e => this.send(this.chosen?.statement?.index, e.target.value);
         $("e-delete").onclick = () => this.send(this.chosen?.statement?.index, "");
         $("e-undo").onclick = () => this.step("undo");
         $("e-redo").onclick = () => this.step("redo");
+        $("e-revert").onclick = () => this.step("revert");
+        $("e-here").onclick = () => this.again();
         $("e-save").onclick = () => say("save");
-        for (const ending of ["bvh", "trc", "c3d"]) $(`e-${ending}`).onclick = () => (say(`take take.${ending}`), this.on.note("The take is being played and saved …"));
+        for (const ending of ["bvh", "trc", "c3d"]) $(`e-${ending}`).onclick = () => (say(`take ${this.piece.stem}.${ending}`), this.on.note("The take is being played and saved …"));
         addEventListener("keydown", e => {
             if (!(e.ctrlKey || e.metaKey) || e.target.tagName === "INPUT") return;
             const name = e.key === "z" && !e.shiftKey ? "undo" : e.key === "y" || (e.key === "Z" && e.shiftKey) ? "redo" : null;
@@ -105,15 +177,19 @@ export class Editor {
     }
 
     step(name) {
-        this.from = this.on.playback()?.at ?? 0;
+        this.unsure = this.piece.live;
         this.piece.say(name);
     }
 
     written(event) {
+        this.unsure = false;
+        this.on.note("");
+        if (event.begun) ((this.ends = ""), this.state(""));
         document.body.classList.add("editing");
         document.body.classList.toggle("take", event.take);
         $("e-undo").disabled = !event.undo;
         $("e-redo").disabled = !event.redo;
+        $("e-revert").disabled = !event.undo;
         const c = this.chosen,
             index = c?.index ?? c?.statement?.index;
         if (index !== undefined) c.statement = event.statements.find(s => s.index === index);
@@ -121,16 +197,32 @@ export class Editor {
         else this.show();
     }
 
-    fields() {
-        const number = id => Number($(id).value);
-        return {
-            hand: $("e-hand").value,
-            nuance: $("e-nuance").value,
-            beat: number("e-beat"),
-            dynamic: number("e-dynamic"),
-            x: number("e-x"),
-            y: number("e-y"),
-        };
+    // where a stroke is written to land (m)
+    aim(s) {
+        if (s.x !== undefined) return [s.x, s.y];
+        const radius = this.on.radius(s.drum || this.chosen.strike.drum),
+            [none, one] = s.spot;
+        return none.map((v, i) => v + radius * (one[i] - v));
+    }
+
+    // a dynamic as it was written: a word stays one if there is one for it
+    loud(value, was) {
+        const i = Math.round(value * (DYNAMICS.length - 1)),
+            near = Math.abs(value - i / (DYNAMICS.length - 1)) < NEAR;
+        return near && DYNAMICS.includes(was) ? DYNAMICS[i] : round(value);
+    }
+
+    // a stroke's words with these fields changed, and no others
+    rewritten(s, changes) {
+        const all = s.words.split(" "),
+            rest = s.drum ? all.length - 1 : all.length, // of the drum's name
+            [x, y] = this.aim(s);
+        if ("x" in changes || "y" in changes) all.splice(5, rest - 5, round(changes.x ?? x), round(changes.y ?? y));
+        if ("dynamic" in changes) all[4] = this.loud(changes.dynamic, all[4]);
+        if ("nuance" in changes) all[3] = changes.nuance;
+        if ("hand" in changes) all[2] = changes.hand;
+        if ("beat" in changes) all[1] = round(changes.beat);
+        return all.join(" ");
     }
 
     show() {
@@ -147,7 +239,7 @@ export class Editor {
         $("e-way").hidden = !c.take || c.push;
         if (c.take && s) $("e-span").value = s.words.split(" ")[3];
         if (s?.beat === undefined) return;
-        const [x, y] = [s.x ?? c.strike.x, s.y ?? c.strike.y];
+        const [x, y] = this.aim(s);
         ($("e-hand").value = s.hand), ($("e-nuance").value = s.nuance);
         ($("e-beat").value = round(s.beat)), ($("e-dynamic").value = s.dynamic);
         $("e-loud").textContent = s.dynamic.toFixed(2);
@@ -258,7 +350,7 @@ export class Editor {
     }
 
     press(e) {
-        if (e.button || !this.piece.text || !this.piece.scene) return;
+        if (e.button || !this.piece.text || !this.piece.scene || !this.piece.live) return;
         const c = this.chosen,
             pushes = this.pushes.press(e),
             handle = !pushes && this.grabbed([this.spot, this.top], e);
@@ -273,8 +365,16 @@ export class Editor {
             if (!hit) return;
             this.choose(hit.strike);
         }
-        this.on.playback()?.play(false);
+        this.pause();
         e.stopImmediatePropagation();
+    }
+
+    // while something is dragged; after the change it plays on if it did
+    pause() {
+        const p = this.on.playback();
+        if (!p?.playing) return;
+        this.played = true;
+        p.play(false);
     }
 
     // a point of a path of the take; false if none is near
@@ -318,6 +418,11 @@ export class Editor {
     }
 
     release(e) {
+        this.released(e);
+        this.played = false; // what was only chosen stays paused
+    }
+
+    released(e) {
         if (this.pushes.release(e)) return e.stopImmediatePropagation();
         if (!this.drag) return;
         e.stopImmediatePropagation();
@@ -326,47 +431,53 @@ export class Editor {
         this.drag = null;
         if (!way || way.length() < 1e-3) return void handle.position.copy(begun);
         if (c.take) return this.nudge(way);
-        const fields = this.fields();
-        if (handle === this.top) fields.dynamic = Math.min(1, Math.max(0, fields.dynamic + way.z / RANGE));
-        else {
-            const at = this.head(c.strike.drum).worldToLocal(this.spot.position.clone()),
-                out = Math.hypot(at.x, at.y) / (INSIDE * this.on.radius(c.strike.drum));
-            ((fields.x = at.x / Math.max(1, out)), (fields.y = at.y / Math.max(1, out)));
-        }
-        this.commit(fields);
+        const s = c.statement;
+        if (handle === this.top) return this.commit({ dynamic: Math.min(1, Math.max(0, s.dynamic + way.z / RANGE)) });
+        // what is played differs from what is written as a player's strokes do, and so it stays
+        const at = this.head(c.strike.drum).worldToLocal(this.spot.position.clone()),
+            [x, y] = this.aim(s).map((v, i) => v + (i ? at.y - c.strike.y : at.x - c.strike.x)),
+            out = Math.max(1, Math.hypot(x, y) / (INSIDE * this.on.radius(c.strike.drum)));
+        this.commit({ x: x / out, y: y / out });
     }
 
     // --- changes
 
-    commit(f) {
-        const c = this.chosen;
-        if (c?.take) return void (c.statement && this.nudge(new THREE.Vector3()));
-        const s = c?.statement;
-        if (s?.beat === undefined) return;
+    commit(changes) {
+        const c = this.chosen,
+            s = c?.statement;
+        if (s?.beat === undefined || c.take) return;
         if (!this.ghost.visible) draw(this.ghost, c.points);
-        this.send(
-            s.index,
-            `${s.words.split(" ")[0]} ${round(f.beat)} ${f.hand} ${f.nuance} ${round(f.dynamic)} ${round(f.x)} ${round(f.y)} ${s.drum}`.trim(),
-            { beat: f.beat, hand: f.hand },
-        );
+        this.send(s.index, this.rewritten(s, changes), { beat: changes.beat ?? s.beat, hand: changes.hand ?? s.hand });
+    }
+
+    // another word at that place of the chosen statement, "" for none
+    word(place, word) {
+        const s = this.chosen?.statement;
+        if (!s) return;
+        const all = s.words.split(" ");
+        all.splice(place, 1, ...(word === "" ? [] : [word]));
+        this.send(s.index, all.join(" "));
     }
 
     nudge(way) {
         const c = this.chosen,
-            time = round(Piece.takeTime(c.time), 3),
-            was = c.statement ? c.statement.words.split(" ").slice(4).map(Number) : [0, 0, 0],
+            [begin, was] = c.statement
+                ? [c.statement.words.split(" ").slice(0, 4).join(" "), c.statement.words.split(" ").slice(4).map(Number)]
+                : [`nudge ${c.hand} ${round(Piece.takeTime(c.time), 3)} ${$("e-span").value}`, [0, 0, 0]],
             whole = way.toArray().map((v, i) => round(Math.min(0.5, Math.max(-0.5, v + was[i]))));
         c.index = c.statement?.index ?? this.piece.text.count; // more drags change the same one
-        this.send(c.index, `nudge ${c.hand} ${time} ${$("e-span").value} ${whole.join(" ")}`);
+        this.send(c.index, `${begin} ${whole.join(" ")}`);
     }
 
     // `to` is its new time (s)
     send(index, words, moved = null, to = this.chosen.time) {
-        if (index === undefined) return;
+        if (index === undefined || !this.piece.live) return;
         const c = this.chosen,
+            plays = this.played || !!this.on.playback()?.playing,
             times = [c.time, to].sort((a, b) => a - b);
         if (c.push && !this.ghost.visible) draw(this.ghost, c.points);
-        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, times, to, moved };
+        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, times, to, moved, plays };
+        ((this.unsure = true), (this.played = false));
         this.piece.say(`set ${index} ${words}`);
     }
 
@@ -377,11 +488,11 @@ export class Editor {
         if (!p || p.scene !== piece.scene) return;
         p.length = Math.max(piece.over ? 0 : p.length, 1000 * piece.scene.end);
         this.on.changed(piece);
+        this.comeBack(p);
         const w = this.waiting;
         if (!w || piece.cuts === w.cuts || (piece.sound.arrived < w.times[1] + SOON && !piece.over)) return;
         this.waiting = null;
-        p.seek(1000 * Math.max(0, w.times[0] - BEFORE));
-        p.play(true);
+        if (w.plays) (p.seek(1000 * Math.max(0, w.times[0] - BEFORE)), p.play(true));
         this.heard.push(performance.now() - w.begun);
         this.follow(w);
     }

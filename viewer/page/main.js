@@ -211,7 +211,7 @@ const live = {
         } else if (event.event === "beat") panel.hearBeat(event.beat, now);
         else if (event.event === "status") panel.hearStatus(event.from, event.values);
     },
-    connected: yes => panel.connected(yes),
+    connected: yes => (panel.connected(yes), editor?.connected(yes)),
 };
 
 // what a playback shows: `now` keeps its performer and its drums present
@@ -372,7 +372,10 @@ function lifted() {
     return panel.timeline.all ? TALL : LIFT;
 }
 
-new ResizeObserver(() => phone.matches && Math.abs(lifted() - view.lift) > 0.01 && setLift(lifted())).observe(footer);
+new ResizeObserver(() => {
+    document.body.style.setProperty("--footer", `${footer.offsetHeight}px`);
+    if (phone.matches && Math.abs(lifted() - view.lift) > 0.01) setLift(lifted());
+}).observe(footer);
 
 function setLift(lift) {
     view.lift = lift;
@@ -547,7 +550,8 @@ function edit(key) {
         opened: open,
         playback: () => playback,
         performer: () => [...performers.values()].find(p => p.group.visible && !p.ghostly),
-        note: text => panel.note(text),
+        note: (text, stays) => panel.note(text, stays),
+        cut: time => panel.timeline.cut(time),
         changed: () => panel.timeline.grown(),
         finished: piece => panel.timeline.heard(piece.sound.whole()),
         radius: name => [...drums.values()].find(d => d.name === name).place[4],

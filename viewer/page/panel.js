@@ -135,11 +135,12 @@ export class Panel {
         if (!yes) this.bridge = {};
     }
 
-    note(text) {
+    // "" takes it away; it stays if it says why the page can do no more
+    note(text, stays = false) {
         $("note").textContent = text;
-        $("note").classList.add("on");
+        $("note").classList.toggle("on", !!text);
         clearTimeout(this.noteTimer);
-        this.noteTimer = setTimeout(() => $("note").classList.remove("on"), NOTE_TIME);
+        if (!stays) this.noteTimer = setTimeout(() => $("note").classList.remove("on"), NOTE_TIME);
     }
 
     loading(text) {

@@ -4,6 +4,8 @@
 import { Scene, inflate } from "./scene.js";
 
 const EARS = 2,
+    TAKEN = 4001, // status of the channel's end when another page edits, as in viewer/web.c
+    NAME = 59, // of a saved file, without its ending (bytes), as the channel takes
     AHEAD = 0.6, // of sound that is handed to the device at a time (s); chosen: some frames
     MOST = 64 << 20; // of a file that is sent (bytes), as himc-viewer takes
 export const APPROACH = 1; // (s) from play to the first frame of a take, as HIMC_APPROACH
@@ -117,20 +119,40 @@ class PieceSound {
     }
 }
 
-// `on` is told: begun(piece), grown(piece), over(piece), text(event), trouble(line), saved(name, bytes)
+// `on` is told: begun(piece), cut(piece, time), grown(piece), over(piece), text(event), trouble(line),
+// restored(line), unkept(line), saved(name, bytes), ended(why), which is "taken", "refused" or "lost"
 export class Piece {
     constructor(key, sound, on) {
         ((this.on = on), (this.device = sound), (this.rest = new Uint8Array()));
         ((this.scene = null), (this.sound = null), (this.text = null));
-        ((this.turn = Promise.resolve()), (this.cuts = 0));
-        this.socket = new WebSocket(`ws://${location.host}/edit/${key}`, "edit");
-        this.socket.binaryType = "arraybuffer";
-        this.socket.onmessage = e => this.hear(new Uint8Array(e.data));
-        this.socket.onclose = () => this.on.trouble("Editing has ended: reload the page to go on.");
+        ((this.turn = Promise.resolve()), (this.cuts = 0), (this.key = key));
+        this.open();
+    }
+
+    // asks to edit; whichever page does so last edits
+    open() {
+        const socket = (this.socket = new WebSocket(`ws://${location.host}/edit/${this.key}`, "edit"));
+        let opened = false;
+        this.rest = new Uint8Array();
+        socket.binaryType = "arraybuffer";
+        socket.onopen = () => (opened = true);
+        socket.onmessage = e => this.hear(new Uint8Array(e.data));
+        socket.onclose = e => this.on.ended(e.code === TAKEN ? "taken" : opened ? "lost" : "refused");
+    }
+
+    get live() {
+        return this.socket.readyState === WebSocket.OPEN;
     }
 
     say(line) {
-        this.socket.send(line);
+        if (this.live) this.socket.send(line);
+    }
+
+    // of the source without its ending, as long as a saved file's may be
+    get stem() {
+        let stem = this.text.source.split("/").pop().replace(/(.)\.[^.]*$/, "$1");
+        while (new TextEncoder().encode(stem).length > NAME) stem = stem.slice(0, -1);
+        return stem;
     }
 
     // a score, a MIDI file or a take, to be edited from now on
@@ -180,21 +202,25 @@ export class Piece {
 
     event(event) {
         if (event.event === "text") {
-            this.over &&= event.source === this.source; // else another piece is to come
+            for (const s of event.statements) s.words = s.words.trim().replace(/\s+/g, " ");
+            if (event.begun) ((this.fresh = true), (this.over = false)); // all is to come
             this.on.text((this.text = event));
-        } else this.on.trouble(event.text);
+        } else if (event.event === "restored") this.on.restored(event.text);
+        else if (event.event === "unkept") this.on.unkept(event.text);
+        else this.on.trouble(event.text);
     }
 
     cut(time) {
         ((this.over = false), this.cuts++);
-        const { source } = this.text;
-        if (this.source === source) this.scene.cut(time);
-        else {
+        if (this.fresh) {
             this.sound?.stop();
-            ((this.scene = new Scene(source.split("/").pop())), (this.source = source));
-            this.sound = null;
+            this.scene = new Scene(this.text.source.split("/").pop());
+            ((this.sound = null), (this.fresh = false));
+        } else {
+            this.scene.cut(time);
+            this.sound?.cut(time);
         }
-        this.sound?.cut(time);
+        this.on.cut(this, time);
     }
 
     add(event) {

@@ -25,8 +25,13 @@ export class Playback {
         return this.loop ?? [0, this.length];
     }
 
+    // up to where it has been computed, in an edit
+    get known() {
+        return Math.min(this.length, 1000 * this.scene.end);
+    }
+
     seek(ms) {
-        this.at = Math.min(this.length, Math.max(0, ms));
+        this.at = Math.min(this.known, Math.max(0, ms));
         this.jumped = true;
         this.resound();
     }
@@ -91,10 +96,11 @@ export class Playback {
 
     // `dt` ms have passed
     advance(dt) {
-        if (!this.playing) return;
-        const heard = this.sound.position();
+        const heard = this.playing ? this.sound.position() : null;
         if (heard !== null) this.at = 1000 * heard;
-        else if (dt < LONGEST_FRAME) this.at += dt * this.speed;
+        else if (this.playing && dt < LONGEST_FRAME) this.at += dt * this.speed;
+        this.at = Math.min(this.at, this.known); // there it waits for more
+        if (!this.playing) return;
         const silent = heard === null && this.sound.ready;
         if (!this.turn() && silent && this.at < 1000 * this.sound.buffer.duration) this.resound();
     }

@@ -36,7 +36,9 @@ export class Pushes {
         scene.add(...this.arrows.map(a => a.group));
         for (const s of segments.slice(1)) $("e-segment").add(new Option(s.name.replaceAll("-", " "), s.name));
         $("e-segment").value = "left-forearm";
-        for (const id of ["e-segment", "e-fx", "e-fy", "e-fz", "e-seconds", "e-along"]) $(id).onchange = () => this.changed();
+        ["e-segment", "e-fx", "e-fy", "e-fz", "e-seconds", "e-along"].forEach(
+            (id, i) => ($(id).onchange = e => this.editor.chosen?.push && this.editor.word(3 + i, e.target.value)),
+        );
         $("e-add").onclick = () => this.add($("e-segment").value, this.fields(), this.along());
         $("e-grab").onclick = () => $("e-grab").setAttribute("aria-pressed", document.body.classList.toggle("pushing"));
         $("e-pushes").onchange = e => this.choose(this.list().find(s => s.index === Number(e.target.value)));
@@ -90,11 +92,6 @@ export class Pushes {
             at = round(Math.max(0, this.beatAt(time)), 4);
         editor.choose({ push: true, time, segment: bone(name), along, index: editor.piece.text.count });
         editor.send(editor.piece.text.count, this.words(at, name, force, along));
-    }
-
-    changed() {
-        const s = this.editor.chosen?.statement;
-        if (s?.push) this.editor.send(s.index, this.words(s.at, $("e-segment").value, this.fields(), this.along()));
     }
 
     // a push as what can be chosen

@@ -6,9 +6,25 @@ import { segments } from "./skeleton.js";
 const MAGIC = "himcscn",
     VERSION = 1;
 
-export async function inflate(bytes) {
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
+const LARGEST = 64 << 20, // of an unpacked chunk (bytes); chosen: a second of a scene is 200 kB
+    MOST = 2 ** 32; // of all of a scene (bytes); chosen: some hours
+
+// A few bytes may stand for a thousand times as many, so no more than `most` are unpacked.
+export async function inflate(bytes, most = LARGEST) {
+    const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")).getReader(),
+        parts = [];
+    let size = 0;
+    for (let got; !(got = await reader.read()).done;) {
+        if ((size += got.value.length) > most) {
+            reader.cancel().catch(() => {});
+            throw new Error(`a chunk of more than ${most} bytes`);
+        }
+        parts.push(got.value);
+    }
+    const out = new Uint8Array(size);
+    size = 0;
+    for (const part of parts) (out.set(part, size), (size += part.length));
+    return out;
 }
 
 // last index of the sorted list whose time is not after `time`, -1 if there is none
@@ -125,7 +141,7 @@ export class Scene {
         for (const name of ["bodies", "strikes", "beats", "notes"]) this[name] = this[name].filter(past);
         for (const drum of this.drums.values())
             ((drum.changes = drum.changes.filter(past)), (drum.frames = drum.frames.filter(past)));
-        ((this.end = 0), (this.tipHeights = null));
+        ((this.end = this.times.length ? this.times[this.times.length - 1] : 0), (this.tipHeights = null));
     }
 
     // whether that contact, which a cut has halved, is there
@@ -248,6 +264,12 @@ export async function readScene(bytes, name, depth = 0) {
         throw new Error(`${name}: not a scene; himc render SOURCE -o SOUND.wav --scene FILE.himc makes one`);
     if (bytes[7] !== VERSION)
         throw new Error(`${name}: version ${bytes[7]} of scenes, this page reads ${VERSION}`);
+    let left = MOST;
+    const unpack = async body => {
+        const out = await inflate(body, Math.min(left, LARGEST));
+        left -= out.length;
+        return out;
+    };
     try {
         for (let at = 8; at < bytes.length;) {
             const kind = text.decode(bytes.subarray(at, at + 4)),
@@ -255,9 +277,9 @@ export async function readScene(bytes, name, depth = 0) {
                 body = bytes.subarray(at + 8, at + 8 + size);
             at += 8 + size;
             if (at > bytes.length) break; // a recording that was cut short is good up to here
-            if (kind === "json") JSON.parse(text.decode(await inflate(body))).forEach(e => scene.add(e));
-            else if (kind === "rows") scene.rows(await inflate(body));
-            else if (kind === "ring") scene.heads(await inflate(body));
+            if (kind === "json") JSON.parse(text.decode(await unpack(body))).forEach(e => scene.add(e));
+            else if (kind === "rows") scene.rows(await unpack(body));
+            else if (kind === "ring") scene.heads(await unpack(body));
             else if (kind === "snd ") scene.sounds.push(body);
             else if (kind === "more" && !depth)
                 scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, 1));

@@ -8,7 +8,7 @@ const KEY = 80,
     BODY = 4 * 7 * segments.length,
     TARGET = 4 * 2 * 3;
 const FIRST_WAIT = 250, // before connecting again (ms); chosen
-    LONGEST_WAIT = 2000;
+    LONGEST_WAIT = 30000; // or until the page is looked at again
 const text = new TextDecoder();
 const word = (bytes, at, size) => {
     const end = bytes.indexOf(0, at);
@@ -80,10 +80,13 @@ export class Stream {
         this.on = on;
         this.wait = FIRST_WAIT;
         this.connections = 0;
+        for (const name of ["focus", "online"]) addEventListener(name, () => this.timer && this.open());
         this.open();
     }
 
     open() {
+        clearTimeout(this.timer);
+        this.timer = 0;
         const socket = new WebSocket(`ws://${location.host}/`, "scene");
         socket.binaryType = "arraybuffer";
         socket.onopen = () => {
@@ -94,7 +97,7 @@ export class Stream {
         socket.onmessage = message => readFrame(message.data, this.on);
         socket.onclose = () => {
             this.on.connected(false);
-            setTimeout(() => this.open(), this.wait);
+            this.timer = setTimeout(() => this.open(), this.wait);
             this.wait = Math.min(this.wait * 1.5, LONGEST_WAIT);
         };
     }

@@ -93,6 +93,12 @@ export class Timeline {
         this.stale = true;
     }
 
+    // what follows that time (s) will be another sound
+    cut(time) {
+        this.waves = this.waves?.slice(0, 2 * Math.floor(time * BUCKETS)) ?? null;
+        this.stale = true;
+    }
+
     // more of the piece has come, or other
     grown() {
         const { playback } = this,

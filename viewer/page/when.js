@@ -46,7 +46,7 @@ export class When {
 
     // shows the mark there (s)
     move(time) {
-        this.editor.on.playback()?.play(false);
+        this.editor.pause();
         this.to = Math.min(this.editor.piece.scene.end, Math.max(0, time));
     }
 
@@ -63,7 +63,7 @@ export class When {
         const value = +this.value().toFixed(4),
             to = this.to;
         this.to = null;
-        if (Math.abs(to - chosen.time) < 1e-3) return;
+        if (Math.abs(to - chosen.time) < 1e-3) return void (this.editor.played = false);
         const moved = s.beat === undefined ? null : { beat: value, hand: s.hand };
         this.editor.send(s.index, retimed(s.words, value), moved, to);
     }

@@ -1,0 +1,172 @@
+/// fuzz_edit.c: a score under edit, and changes of it. The input is a text, a 0, and lines as
+/// `himc edit` takes them. The text comes back to the byte; what can be changed is what is played;
+/// what is refused changes nothing; undo and redo are each other's inverse. And the fence: if a
+/// score is said to name no file, playing it opens none.
+#include "../../tools/edit_text.h"
+#include "fuzz.h"
+#include "himc/performance.h"
+#include "performance/research.h"
+#include "plan/score.h"
+
+#include <errno.h>
+
+#define MOST_CHANGES 20
+#define LONGEST_PLAYED 4096 // (bytes) chosen: an input stays quick
+
+static int opened;
+
+// in place of those of the library (Makefile): no input reaches the disk
+int __wrap_himc_system_open(const char *path, int flags);
+int __wrap_himc_system_open_inside(const char *folder, const char *name);
+
+int __wrap_himc_system_open(const char *path, int flags)
+{
+    (void)path, (void)flags;
+    opened++;
+    errno = ENOENT;
+    return -1;
+}
+
+int __wrap_himc_system_open_inside(const char *folder, const char *name)
+{
+    (void)name;
+    return __wrap_himc_system_open(folder, 0);
+}
+
+// true if a word of the text could be that of a command with a file, however it is written
+static bool speaks_of_files(const char *text)
+{
+    static const char *const also[] = {"score", "preset", "dump"};
+    char *bare = fuzz_text((const uint8_t *)text, strlen(text)), *to = bare;
+    bool found = false;
+    for (const char *from = bare; *from; from++)
+        if (*from != '\\')
+            *to++ = *from;
+    *to = '\0';
+    for (int i = 0; i < HIMC_COMMANDS; i++) {
+        const himc_command_row *row = himc_command_table(i);
+        found = found || (strstr(row->atoms, "FILE") && strstr(bare, row->name));
+    }
+    for (size_t i = 0; i < sizeof also / sizeof *also; i++)
+        found = found || strstr(bare, also[i]);
+    free(bare);
+    return found;
+}
+
+// as edit_play.c loads it
+static void play(const char *text)
+{
+    himc_performance_config config = himc_performance_default();
+    himc_error error = {""};
+    himc_performance *p = himc_performance_new(&config, &error);
+    require(p != NULL, error.text);
+    himc_performance_make_drums(p, true);
+    opened = 0;
+    himc_performance_load_text(p, text, "fuzz.txt", &error);
+    require(opened == 0, "a score that names no file opens none");
+    himc_performance_free(p);
+}
+
+static int count(const char *text, const char *part)
+{
+    int n = 0;
+    for (; (text = strstr(text, part)); text++)
+        n++;
+    return n;
+}
+
+// what the page is told of the text: strokes and pushes are those that will be played
+static void check_told(const edit_text *t, const himc_score *score)
+{
+    char *told = NULL;
+    size_t size;
+    FILE *to = open_memstream(&told, &size);
+    int strokes = 0, pushes = 0;
+    require(to != NULL, "memory for what is told");
+    edit_text_print(t, to);
+    fclose(to);
+    for (int i = 0; i < score->stroke_count; i++)
+        strokes += score->strokes[i].ornament == HIMC_PLAIN;
+    for (int i = 0; i < score->change_count; i++)
+        pushes += score->changes[i].command.id == HIMC_COMMAND_PUSH;
+    require(count(told, ",\"nuance\":\"") == strokes, "the strokes told are those of the score");
+    require(count(told, ",\"push\":\"") == pushes, "the pushes told are those of the score");
+    free(told);
+}
+
+// true if the text is a score; `first` also plays it
+static bool check_text(const edit_text *t, bool first)
+{
+    himc_error error = {""};
+    int line;
+    char *text = edit_text_join(t);
+    himc_score *score = himc_score_parse(text, "fuzz.txt", &error);
+    if (score)
+        check_told(t, score);
+    if (score && first && !edit_text_names_file(score, &line) && strlen(text) < LONGEST_PLAYED &&
+        speaks_of_files(text))
+        play(text);
+    himc_score_free(score);
+    free(text);
+    return score;
+}
+
+static void require_text(const edit_text *t, const char *wanted, const char *what)
+{
+    char *text = edit_text_join(t);
+    require(text && strcmp(text, wanted) == 0, what);
+    free(text);
+}
+
+// a line of the input: number of a statement, its words; other lines are steps in the history
+static void change(edit_text *t, const char *line)
+{
+    himc_error error = {""};
+    char *end, *before = edit_text_join(t);
+    long index = strtol(line, &end, 10);
+    if (end == line)
+        (void)(line[0] == 'r' ? edit_text_redo(t) : edit_text_undo(t));
+    else if (!edit_text_set(t, (int)index, end + (*end == ' '), &error)) {
+        require_line(&error);
+        require_text(t, before, "what is refused changes nothing");
+    } else {
+        bool good = check_text(t, false);
+        edit_text_settle(t, good);
+        if (!good)
+            require_text(t, before, "what is taken back has changed nothing");
+    }
+    free(before);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    himc_error error = {""};
+    char *text = fuzz_text(data, size);
+    size_t length = strlen(text);
+    edit_text *t = edit_text_new(text, &error);
+    require(t != NULL, error.text);
+    require_text(t, text, "the text comes back");
+    bool good = check_text(t, true);
+    char *line = length < size ? text + length + 1 : text + length, *end;
+    for (int i = 0; good && i < MOST_CHANGES && *line; i++, line = end + (*end != '\0')) {
+        end = line + strcspn(line, "\n");
+        bool last = !*end;
+        *end = '\0';
+        change(t, line);
+        if (last)
+            break;
+        end[0] = '\n';
+    }
+    int done = edit_text_changes(t);
+    char *changed = edit_text_join(t);
+    while (edit_text_undo(t))
+        ;
+    require_text(t, text, "undo gives the text back");
+    for (int i = 0; i < done; i++)
+        require(edit_text_redo(t), "what was undone can be done again");
+    require_text(t, changed, "redo gives the changes back");
+    edit_text_free(t);
+    free(changed);
+    free(text);
+    return 0;
+}

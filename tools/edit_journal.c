@@ -1,0 +1,230 @@
+/// edit_journal.c: a journal is the text before all changes, then a line for each change, undo and
+/// redo, written when it is made. Whoever makes the same changes to the same text has what was
+/// there, with its history.
+///
+/// A score's journal is `.NAME.himc-edit` in its folder; that of a file without a folder of its own
+/// is `NAME-HASH.himc-edit` in $XDG_STATE_HOME/himc. Only the user may read it. It begins with
+/// the first change, and one process holds it: POSIX locks are not inherited by the processes that
+/// play. A line that was cut short has not been answered, so it is left out.
+#define _GNU_SOURCE // fcntl locks, fdatasync
+#include "edit_journal.h"
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <libgen.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define HEAD "himc edit 1 "
+#define LARGEST ((size_t)128 << 20) // of a journal (bytes); chosen: twice a score
+#define NAME_PART 100               // of a name in the folder for states (bytes); chosen
+#define SCORES 100                  // kept beside a journal; chosen
+enum { OURS_ONLY = 0700 };
+
+static uint64_t hash(uint64_t sum, const void *bytes, size_t size)
+{
+    const unsigned char *b = bytes;
+    for (size_t i = 0; i < size; i++)
+        sum = (sum ^ b[i]) * UINT64_C(0x100000001b3); // FNV-1a
+    return sum;
+}
+
+static bool hash_file(const char *path, uint64_t *sum, himc_error *error)
+{
+    char bytes[65536];
+    FILE *file = himc_file_read(path, error);
+    *sum = UINT64_C(0xcbf29ce484222325);
+    for (size_t got; file && (got = fread(bytes, 1, sizeof bytes, file)) > 0;)
+        *sum = hash(*sum, bytes, got);
+    return file && fclose(file) == 0;
+}
+
+// makes the folder and those it is in; true if it is there
+static bool make_folders(char *path)
+{
+    for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        mkdir(path, OURS_ONLY);
+        *slash = '/';
+    }
+    return mkdir(path, OURS_ONLY) == 0 || errno == EEXIST;
+}
+
+static bool path_in_states(edit_journal *j, const char *name, uint64_t key, himc_error *error)
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    char folder[2048];
+    if (state && state[0] == '/')
+        snprintf(folder, sizeof folder, "%.1900s/himc", state);
+    else if (home && home[0] == '/')
+        snprintf(folder, sizeof folder, "%.1900s/.local/state/himc", home);
+    else
+        return himc_error_set(error, "no HOME");
+    if (!make_folders(folder))
+        return himc_error_set(error, "%.200s: %s", folder, strerror(errno));
+    snprintf(j->path, sizeof j->path, "%s/%.*s-%016" PRIx64 ".himc-edit", folder, NAME_PART, name,
+             key);
+    return true;
+}
+
+static bool choose_path(edit_journal *j, const char *source, const char *name, bool sent,
+                        himc_error *error)
+{
+    char *real = realpath(source, NULL), *slash = real ? strrchr(real, '/') : NULL;
+    bool good = slash || himc_error_set(error, "%.200s: %s", source, strerror(errno));
+    if (good) {
+        *slash = 0;
+        bool beside = !sent && access(real[0] ? real : "/", W_OK) == 0;
+        if (beside)
+            snprintf(j->path, sizeof j->path, "%.3700s/.%.255s.himc-edit", real, slash + 1);
+        *slash = '/';
+        if (!beside)
+            good = path_in_states(
+                j, sent ? name : slash + 1,
+                sent ? j->hash : hash(UINT64_C(0xcbf29ce484222325), real, strlen(real)), error);
+    }
+    free(real);
+    return good;
+}
+
+// opens the file, which only this process may have open
+static bool hold(edit_journal *j, himc_error *error)
+{
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    struct stat status;
+    mode_t mask = umask(077);
+    j->stream = himc_file_write(j->path, HIMC_FILE_CONTINUE, error);
+    umask(mask);
+    if (!j->stream)
+        return false;
+    bool own = fstat(fileno(j->stream), &status) == 0 && status.st_uid == geteuid();
+    if (own && fcntl(fileno(j->stream), F_SETLK, &lock) == 0)
+        return true;
+    fclose(j->stream);
+    j->stream = NULL;
+    return himc_error_set(error, own ? "another program edits it" : "%.300s: of another user",
+                          j->path);
+}
+
+// reads the journal that was found; one that was cut short in its text never had a change
+static void understand(edit_journal *j, const char *bytes, size_t size)
+{
+    uint64_t of;
+    size_t base = 0;
+    int head = 0;
+    if (sscanf(bytes, HEAD "%" SCNx64 " %zu%n", &of, &base, &head) != 2 || bytes[head] != '\n' ||
+        base > size - (size_t)head - 1)
+        return;
+    const char *text = bytes + head + 1, *lines = text + base, *end = strrchr(lines, '\n');
+    if (!end)
+        return;
+    bool same = of == j->hash && base == strlen(j->base) && !memcmp(text, j->base, base);
+    j->lines = strndup(lines, (size_t)(end + 1 - lines));
+    if (ftruncate(fileno(j->stream), end + 1 - bytes) != 0 || fseek(j->stream, 0, SEEK_END) != 0)
+        return;
+    j->old = same ? NULL : strndup(text, base);
+}
+
+// false if what stands there is no journal
+static bool find(edit_journal *j, himc_error *error)
+{
+    size_t size = 0, head = strlen(HEAD);
+    if (access(j->path, F_OK) != 0)
+        return true;
+    if (!hold(j, error))
+        return false;
+    // closing any descriptor of the file would end the lock, so it is read through the stream
+    struct stat status;
+    char *bytes = NULL;
+    if (fstat(fileno(j->stream), &status) == 0 && (size_t)status.st_size <= LARGEST)
+        bytes = calloc(1, (size_t)status.st_size + 1);
+    if (bytes)
+        size = fread(bytes, 1, (size_t)status.st_size, j->stream);
+    bool good = bytes && !memcmp(bytes, HEAD, size < head ? size : head);
+    if (good)
+        understand(j, bytes, size);
+    free(bytes);
+    if (!good)
+        return himc_error_set(error, "%.300s: not a journal", j->path);
+    if (!j->lines)
+        edit_journal_forget(j);
+    return true;
+}
+
+bool edit_journal_open(edit_journal *j, const char *source, const char *name, bool sent,
+                       const char *text, himc_error *error)
+{
+    j->base = strdup(text);
+    bool good = j->base && hash_file(source, &j->hash, error) &&
+                choose_path(j, source, name, sent, error) && find(j, error);
+    if (!good)
+        edit_journal_close(j);
+    return good;
+}
+
+static bool begin(edit_journal *j, himc_error *error)
+{
+    if (!hold(j, error))
+        return false;
+    size_t size = strlen(j->base);
+    fseek(j->stream, 0, SEEK_END);
+    if (ftell(j->stream) > 0) {
+        fclose(j->stream);
+        j->stream = NULL;
+        return himc_error_set(error, "another program has edited it");
+    }
+    fprintf(j->stream, HEAD "%016" PRIx64 " %zu\n", j->hash, size);
+    fwrite(j->base, 1, size, j->stream);
+    return true;
+}
+
+bool edit_journal_add(edit_journal *j, const char *line, himc_error *error)
+{
+    if (!j->path[0] || (!j->stream && !begin(j, error)))
+        return false;
+    fprintf(j->stream, "%s\n", line);
+    if (fflush(j->stream) == 0 && fdatasync(fileno(j->stream)) == 0)
+        return true;
+    return himc_error_set(error, "%.300s: %s", j->path, strerror(errno));
+}
+
+bool edit_journal_keep(const edit_journal *j, const char *text, char kept[4096], himc_error *error)
+{
+    int number = 1;
+    for (; number <= SCORES; number++) {
+        snprintf(kept, 4096, "%.4070s-%d.txt", j->path, number);
+        if (access(kept, F_OK) != 0)
+            break;
+    }
+    if (number > SCORES)
+        return himc_error_set(error, "%.300s: there are %d others", kept, SCORES);
+    mode_t mask = umask(077);
+    FILE *file = himc_file_write(kept, HIMC_FILE_REPLACE, error);
+    umask(mask);
+    bool written = file && fputs(text, file) >= 0, closed = file && fclose(file) == 0;
+    return (written && closed) ||
+           (file && himc_error_set(error, "%.300s: %s", kept, strerror(errno)));
+}
+
+void edit_journal_forget(edit_journal *j)
+{
+    if (j->stream) {
+        unlink(j->path); // while it is held
+        fclose(j->stream);
+    }
+    j->stream = NULL;
+}
+
+void edit_journal_close(edit_journal *j)
+{
+    if (j->stream)
+        fclose(j->stream);
+    free(j->base);
+    free(j->lines);
+    free(j->old);
+    *j = (edit_journal){.path = ""};
+}
