@@ -212,13 +212,16 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 
 units: $(UNIT) $(FUZZ)
 
-check: all units $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
+# what docs/papers.md asks of the library
+MEASURE := $(BUILD)/tools/papers/measure
+
+check: all units $(MEASURE) $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
-check-long: all units $(WATCH) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
+check-long: all units $(MEASURE) $(WATCH) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
 test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
@@ -346,13 +349,15 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 	@tools/deps.sh tools/deps-figures.txt
 	@$(MAKE) check-figures
 
-trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
+trials: deps ## the trials behind the figures anew, 90 minutes of processor time: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
-papers: $(PROGRAM) ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md
+papers: $(PROGRAM) $(BUILD)/tools/papers/measure ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md; the trials' tables into evaluation.md
 	@HIMC_BUILD=$(BUILD) tools/papers/papers.sh >$(BUILD)/papers.md
 	@sed '/^| place |/,$$d' docs/papers.md | cat - $(BUILD)/papers.md >$(BUILD)/papers.new && mv $(BUILD)/papers.new docs/papers.md
-	@echo "wrote docs/papers.md"
+	@awk -f tools/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >$(BUILD)/papers.new
+	@mv $(BUILD)/papers.new docs/evaluation.md
+	@echo "wrote docs/papers.md and the tables of docs/evaluation.md"
 
 air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
@@ -482,7 +487,7 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 
 $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/regression/table: $(MOCAP_O)
 
-$(addprefix $(BUILD)/tools/figures/,strokes claim database): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+$(addprefix $(BUILD)/tools/,figures/strokes figures/claim figures/database papers/measure): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
 
 $(BUILD)/tools/air/table $(BUILD)/tests/test_air $(BUILD)/tests/test_air_galerkin: $(BUILD)/tools/air/galerkin.o
 
