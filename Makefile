@@ -279,11 +279,12 @@ soak: deps ## a session of HOURS=24 simulated hours (SEED=1 PHYSICS=10000): no d
 	@$(MAKE) $(BUILD)/tests/test_soak
 	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) HIMC_PHYSICS=$(PHYSICS) $(BUILD)/tests/test_soak
 
-mutants: deps ## put more than a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
-	@$(MAKE) check-mutants
-
-check-mutants: $(UNIT)
-	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS) -llo" tests/mutants/run.sh $(MUTANTS)
+# of how many mutants, from which room
+COUNT ?= 200
+ROOM  ?=
+mutants: deps ## faults drawn at random, put into the library one at a time; what no unit test notices is told (SEED=1 COUNT=200 ROOM=plan)
+	@mkdir -p $(BUILD)
+	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" SEED=$(SEED) COUNT=$(COUNT) ROOM=$(ROOM) tests/mutants/mutants.py
 
 # the externals for it, of 32 or 64 bits
 FLOATSIZE ?= 32
@@ -390,7 +391,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures papers air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
