@@ -212,13 +212,16 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 
 units: $(UNIT) $(FUZZ)
 
-check: all units $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
+# what docs/papers.md asks of the library
+MEASURE := $(BUILD)/tools/papers/measure
+
+check: all units $(MEASURE) $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
-check-long: all units $(WATCH) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
+check-long: all units $(MEASURE) $(WATCH) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
 test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
@@ -276,11 +279,12 @@ soak: deps ## a session of HOURS=24 simulated hours (SEED=1 PHYSICS=10000): no d
 	@$(MAKE) $(BUILD)/tests/test_soak
 	HIMC_HOURS=$(HOURS) HIMC_SEED=$(SEED) HIMC_PHYSICS=$(PHYSICS) $(BUILD)/tests/test_soak
 
-mutants: deps ## put more than a hundred faults into the library, one at a time, and count those that no test notices (MUTANTS="3 7")
-	@$(MAKE) check-mutants
-
-check-mutants: $(UNIT)
-	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" LINK="$(LINK)" LIBS="$(LIBS) -llo" tests/mutants/run.sh $(MUTANTS)
+# of how many mutants, from which room
+COUNT ?= 200
+ROOM  ?=
+mutants: deps ## faults drawn at random, put into the library one at a time; what no unit test notices is told (SEED=1 COUNT=200 ROOM=plan)
+	@mkdir -p $(BUILD)
+	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" SEED=$(SEED) COUNT=$(COUNT) ROOM=$(ROOM) tests/mutants/mutants.py
 
 # the externals for it, of 32 or 64 bits
 FLOATSIZE ?= 32
@@ -346,13 +350,15 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 	@tools/deps.sh tools/deps-figures.txt
 	@$(MAKE) check-figures
 
-trials: deps ## the trials behind the figures anew, two hours: writes docs/figures/*.csv
+trials: deps ## the trials behind the figures anew, 90 minutes of processor time: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
-papers: $(PROGRAM) ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md
+papers: $(PROGRAM) $(BUILD)/tools/papers/measure ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md; the trials' tables into evaluation.md
 	@HIMC_BUILD=$(BUILD) tools/papers/papers.sh >$(BUILD)/papers.md
 	@sed '/^| place |/,$$d' docs/papers.md | cat - $(BUILD)/papers.md >$(BUILD)/papers.new && mv $(BUILD)/papers.new docs/papers.md
-	@echo "wrote docs/papers.md"
+	@awk -f tools/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >$(BUILD)/papers.new
+	@mv $(BUILD)/papers.new docs/evaluation.md
+	@echo "wrote docs/papers.md and the tables of docs/evaluation.md"
 
 air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/air/table
@@ -385,7 +391,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants check-mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures papers air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -482,7 +488,7 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 
 $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/regression/table: $(MOCAP_O)
 
-$(addprefix $(BUILD)/tools/figures/,strokes claim database): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+$(addprefix $(BUILD)/tools/,figures/strokes figures/claim figures/database papers/measure): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
 
 $(BUILD)/tools/air/table $(BUILD)/tests/test_air $(BUILD)/tests/test_air_galerkin: $(BUILD)/tools/air/galerkin.o
 

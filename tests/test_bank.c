@@ -397,6 +397,35 @@ static void test_bank_film_gives_and_takes_no_energy(void)
     TEST_ASSERT_TRUE(most > 0.01);
 }
 
+// runs with a film for n samples, takes it off, once it is found anew if `found`; q and v of all
+static void film_taken_off(int n, bool found, double state[COUNT][2])
+{
+    double a[COUNT];
+    for (int i = 0; i < COUNT; i++)
+        a[i] = 30 * o[i].mass * o[i].omega * o[i].omega;
+    himc_bank_rest(bank);
+    himc_bank_set_film(bank, a, 0);
+    run(1, 0);
+    himc_bank_push(bank, shape, 200);
+    run(n, 0);
+    if (found)
+        himc_bank_find_film(bank);
+    himc_bank_set_film(bank, NULL, 0);
+    for (int i = 0; i < COUNT; i++)
+        himc_bank_state(bank, i, &state[i][0], &state[i][1]);
+}
+
+// whatever sample of its pass it falls on
+static void test_bank_keeps_what_a_film_has_pulled_until_it_is_taken_off(void)
+{
+    double state[COUNT][2], expected[COUNT][2];
+    for (int n = 1; n < 130; n++) {
+        film_taken_off(n, false, state);
+        film_taken_off(n, true, expected);
+        TEST_ASSERT_EQUAL_MEMORY(expected, state, sizeof state);
+    }
+}
+
 static void test_bank_silences_oscillators_that_would_alias(void)
 {
     o[5].omega = 2 * HIMC_PI * 0.4899 * RATE;
@@ -472,6 +501,7 @@ int main(void)
     RUN_TEST(test_bank_readouts_are_equal_alone_and_together);
     RUN_TEST(test_bank_readouts_that_are_alike_are_as_alone_in_any_blocks_on_every_unit);
     RUN_TEST(test_bank_film_gives_and_takes_no_energy);
+    RUN_TEST(test_bank_keeps_what_a_film_has_pulled_until_it_is_taken_off);
     RUN_TEST(test_bank_silences_oscillators_that_would_alias);
     RUN_TEST(test_bank_keeps_energy_and_phase_of_each_when_retuned);
     RUN_TEST(test_bank_comes_to_exact_rest);

@@ -170,6 +170,32 @@ static void test_drum_is_never_more_than_a_step_ahead_of_its_performance(void)
     himc_performance_free(p);
 }
 
+// time of a stroke (s) after a second at another sample rate
+static double struck_at(double other)
+{
+    himc_performance *p = session_new();
+    heard h = {.strikes = 0};
+    session_do(p, "drum kettle 26");
+    session_do(p, "tempo 60");
+    session_do(p, "stroke 3 right legato mf");
+    session_do(p, "play");
+    session_play(p, 1, &h);
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_set_rate(p, other, &error), error.text);
+    session_play(p, 1, &h);
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_set_rate(p, RATE, &error), error.text);
+    session_play(p, 3, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.strikes);
+    himc_performance_free(p);
+    return h.strike[0].time;
+}
+
+static void test_time_goes_on_when_the_sample_rate_changes(void)
+{
+    double usual = struck_at(RATE);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, usual, struck_at(2 * RATE));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, usual, struck_at(RATE / 3.0));
+}
+
 #ifdef HAVE_PD
 // Pd's clock, at a logical time in ms
 static double pd_time;
@@ -220,6 +246,7 @@ int main(void)
     RUN_TEST(test_a_performers_strokes_are_the_same_across_2_to_the_32_and_50);
     RUN_TEST(test_physics_is_never_faster_than_the_sound);
     RUN_TEST(test_drum_is_never_more_than_a_step_ahead_of_its_performance);
+    RUN_TEST(test_time_goes_on_when_the_sample_rate_changes);
 #ifdef HAVE_PD
     RUN_TEST(test_a_message_to_pd_finds_its_sample_across_2_to_the_32_and_50);
 #endif

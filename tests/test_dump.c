@@ -250,6 +250,20 @@ static void test_performance_with_four_drums_and_odd_settings_plays_the_same_fro
     himc_performance_free(other);
 }
 
+static void test_performer_takes_the_dump_of_another_body(void)
+{
+    himc_performance *p = session_new(), *other = session_new();
+    session_do(other, "player 1.62 54.3");
+    save(score, state_of(p));
+    session_do(other, "score %s", score);
+    char *state = copy_of(state_of(p));
+    TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+    free(state);
+    compare_playing(p, other, 2);
+    himc_performance_free(p);
+    himc_performance_free(other);
+}
+
 static void test_a_state_is_restored_from_text_all_or_nothing(void)
 {
     himc_performance *p = session_new(), *other = session_new();
@@ -325,6 +339,7 @@ int main(void)
     RUN_TEST(test_drum_takes_the_dump_of_another_whatever_it_was_before);
     RUN_TEST(test_performance_made_again_from_its_dump_plays_the_same_bit_by_bit);
     RUN_TEST(test_performance_with_four_drums_and_odd_settings_plays_the_same_from_its_dump);
+    RUN_TEST(test_performer_takes_the_dump_of_another_body);
     RUN_TEST(test_a_state_is_restored_from_text_all_or_nothing);
     RUN_TEST(test_presets_are_what_a_dump_has_written_all_or_nothing);
     free(lines.bytes);

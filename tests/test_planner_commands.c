@@ -429,9 +429,28 @@ static void test_a_score_has_room_behind_another_up_to_200000_strokes_of_a_hand(
     TEST_ASSERT_EQUAL_STRING("stroke: one too many, allowed 200000 for a hand", error.text);
 }
 
+static void test_a_hit_without_a_time_or_a_drum_is_refused_and_changes_nothing(void)
+{
+    himc_stroke s = {.hand = HIMC_RIGHT, .dynamic = 0.5};
+    const himc_hit bad[] = {{&s, 0, NAN, false},
+                            {&s, 0, INFINITY, false},
+                            {&s, -1, 2, false},
+                            {&s, HIMC_DRUMS, 2, false}};
+    himc_target before = at(planner, HIMC_RIGHT, 1), after;
+    for (int i = 0; i < 4; i++)
+        TEST_ASSERT_TRUE(himc_planner_hit_at(planner, 1, &bad[i]) == HUGE_VAL);
+    TEST_ASSERT_TRUE(himc_planner_hit_at(planner, NAN, &(himc_hit){&s, 0, 2, false}) == HUGE_VAL);
+    TEST_ASSERT_TRUE(himc_planner_hit(planner, NAN, &s, 0) == HUGE_VAL);
+    TEST_ASSERT_TRUE(himc_planner_hit(planner, 1, &s, -1) == HUGE_VAL);
+    TEST_ASSERT_TRUE(himc_planner_hit(planner, 1, &s, HIMC_DRUMS) == HUGE_VAL);
+    after = at(planner, HIMC_RIGHT, 3);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &after, sizeof before);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_hit_without_a_time_or_a_drum_is_refused_and_changes_nothing);
     RUN_TEST(test_current_names_the_stroke_until_its_touch_is_over);
     RUN_TEST(test_play_waits_for_the_first_stroke_and_seek_says_how_late_it_is);
     RUN_TEST(test_fast_strokes_are_smaller_and_one_note_says_so);

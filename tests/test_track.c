@@ -6,6 +6,8 @@
 #define RATE 250
 #define RADIUS 0.0175
 
+static int left_out; // frames at the beginning
+
 // the right tip alone, in millimetres with y up as in TRC; the third strike is `raised` (m)
 static void make_take_with(double speed, double noise, double raised)
 {
@@ -19,7 +21,7 @@ static void make_take_with(double speed, double noise, double raised)
         "%d\nFrame#\tTime\tRTIP\t\t\n\t\tX1\tY1\tZ1\n\n",
         RATE, RATE, frames, RATE, frames);
     for (int i = 0; i < frames; i++) {
-        double t = (double)i / RATE, z = beaten_height(t, speed).x.z;
+        double t = (double)(i + left_out) / RATE, z = beaten_height(t, speed).x.z;
         z += fabs(t - 1.4) < 0.25 ? raised * 0.5 * (1 + cos(4 * HIMC_PI * (t - 1.4))) : 0;
         z += noise * (2.0 * rand() / RAND_MAX - 1);
         used += snprintf(text + used, sizeof text - (size_t)used, "%d\t%.6f\t%.5f\t%.5f\t%.5f\n",
@@ -325,6 +327,19 @@ static void test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth(voi
     TEST_ASSERT_TRUE(jump[2] < 15);
 }
 
+// its frames are cut out 12.5 ms, four frames, to either side; two are the least for what leads there
+static void test_a_strike_needs_two_frames_before_what_is_cut_out(void)
+{
+    for (left_out = 92; left_out < 98; left_out++) {
+        make_take(4, 0);
+        TEST_ASSERT_EQUAL_INT(100 - left_out - 4 < 2 ? 7 : 8,
+                              himc_track_strikes(track, HIMC_RIGHT));
+        tearDown();
+        setUp();
+    }
+    left_out = 0;
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -341,6 +356,7 @@ int main(void)
     RUN_TEST(test_playing_allocates_nothing);
     RUN_TEST(test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth);
     RUN_TEST(test_a_hand_without_a_tip_rests);
+    RUN_TEST(test_a_strike_needs_two_frames_before_what_is_cut_out);
     RUN_TEST(test_a_nudge_is_smooth_and_leaves_strikes_their_height_and_speed);
     RUN_TEST(test_nudges_outside_the_take_are_refused);
     return UNITY_END();

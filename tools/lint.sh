@@ -46,7 +46,7 @@ check "symbols of the shared library" shared_symbols
 check "names the library shows its host" prefixed_symbols
 check "files are opened by base/file.c and system/files.c alone" one_opener
 check "sizes" sizes
-check "places of the mutants" tests/mutants/run.sh --check
+check "what is excused among mutants" tests/mutants/mutants.py --check
 if [ $# -gt 0 ]; then
     check "stray blanks and tabs" no_stray_whitespace
     check "layout (make format mends it)" clang-format --dry-run -Werror "$@"

@@ -1,11 +1,11 @@
 /// database.c: distance of the sticks from the captured ones without any disturbance: all 45
 /// sequences of the motion database, without tracker noise, with the masses known exactly.
 ///
-/// Prints a row for each nuance with `himc`, by computed torque at its own rate and by feedforward
-/// at 2 strokes a second with each hand, and one for all nuances: law, nuance, RMS error outside
-/// contact and with impacts (% of amplitude), smallest and largest range of the elbow's height over
-/// the captured one, RMS angle of shoulder, elbow and wrist to the captured joints (degrees),
-/// strokes landed of all strokes.
+/// Prints a CSV table, a row for each nuance with `himc`, by computed torque at its own rate and by
+/// feedforward at 2 strokes a second with each hand, and one for all nuances: law, nuance, RMS
+/// error outside contact and with impacts (% of amplitude), smallest and largest range of the
+/// elbow's height over the captured one, RMS angle of shoulder, elbow and wrist to the captured
+/// joints (degrees), strokes landed, all strokes.
 #include "../pool.h"
 #include "../trial.h"
 #include "control/controller.h"
@@ -69,9 +69,8 @@ static void print_row(const trial_result *result, int count, const char *law, co
         strokes += r->strokes;
         played += r->played;
     }
-    printf("| %s | %s | %.4f | %.3f | %.3f .. %.3f | %.2f, %.2f, %.2f | %.0f of %.0f |\n", law,
-           nuance, sqrt(outside), sqrt(rms), least, most, sqrt(angle[0]), sqrt(angle[1]),
-           sqrt(angle[2]), played, strokes);
+    printf("%s,%s,%.4f,%.3f,%.3f,%.3f,%.2f,%.2f,%.2f,%.0f,%.0f\n", law, nuance, sqrt(outside),
+           sqrt(rms), least, most, sqrt(angle[0]), sqrt(angle[1]), sqrt(angle[2]), played, strokes);
 }
 
 int main(void)
@@ -83,6 +82,8 @@ int main(void)
         fprintf(stderr, "database: %s\n", error.text);
         return 1;
     }
+    puts("law,nuance,outside_percent,percent,elbow_least,elbow_most,shoulder_deg,elbow_deg,"
+         "wrist_deg,landed,strokes");
     for (int l = 0; l < LAWS; l++) {
         trial_kind kind = {HIMC_LEGATO, HIMC_PIPELINE_HIMC, laws[l]};
         const trial_result *own = &result[l * HIMC_NUANCES * TRIAL_SEQUENCES];

@@ -2,7 +2,7 @@
 # the Makefile.
 #
 # `make figures` installs what they need and makes what is out of date, in build/figures and build/sounds, in less than a
-# minute. It reads the results of the trials, docs/figures/*.csv; only `make trials` writes these, in two hours on two cores.
+# minute. It reads the results of the trials, docs/figures/*.csv; only `make trials` writes these, in 90 minutes of processor time.
 # Five files are committed, because README.md and docs/ show them: docs/figures/evaluation.png and improvisation.png and
 # docs/sounds/improvisation.ogg are copies of what `make figures` makes, docs/figures/viewer-stage.png of what `make still`
 # makes, docs/figures/panel.png is a picture of Pd's window.
@@ -143,10 +143,25 @@ $(TRIED)/strokes-default.csv: $(STROKES)
 $(TRIED)/phases.csv: $(STROKES)
 	$(call play,$< phases printed 0.333333 2 4.6)
 
-# the table of the undisturbed database in docs/evaluation.md
-$(TRIED)/database.txt: $(BUILD)/tools/figures/database
+# all 45 sequences undisturbed
+$(TRIED)/database.csv: $(BUILD)/tools/figures/database
 	$(call play,$<)
 
-check-trials: $(patsubst %,$(TRIED)/%.csv,evaluation spread claim measures strokes strokes-default phases) $(TRIED)/database.txt
-	cp $(filter %.csv,$^) $(RESULTS)
+# of the trials above: strokes that land, by control; trial 1 of each row, which a test plays again
+$(TRIED)/landed.csv: $(TRIED)/evaluation.csv tools/figures/landed.awk
+	$(Q)awk -f tools/figures/landed.awk $(TRIED)/log.csv >$@
+
+$(TRIED)/first.csv: $(TRIED)/evaluation.csv
+	$(Q)awk -F , 'FNR == 1; $$4 == 1 && !seen[$$0]++' $(TRIED)/log.csv >$@
+
+# what a step and a trial cost on this machine
+$(TRIED)/costs.csv: $(BUILD)/tools/papers/measure $(PROGRAM)
+	$(call play,$< costs)
+	$(Q)$(PROGRAM) bench --json --quiet | tr -d '{}" ' | tr ',:' '\n,' >>$@
+
+# all tables at once, and the commit that they are of
+TABLES := evaluation spread claim measures strokes strokes-default phases database landed first costs
+check-trials: $(patsubst %,$(TRIED)/%.csv,$(TABLES))
+	cp $^ $(RESULTS)
+	echo "commit $$(git describe --always --dirty=' with changes' --abbrev=40 --exclude '*'), $$(date -u +%F), $(TRIALS) trials" >$(RESULTS)/trials.txt
 .PHONY: trials check-trials

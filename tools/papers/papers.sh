@@ -1,18 +1,24 @@
 #!/bin/sh
 # papers.sh: one row of Markdown for each figure, table and claim of the three papers: the value there, the value here, the
 # verdict, the command that remakes it. From the repository's root, after make:
-#   tools/papers/papers.sh [FOLDER]
-# FOLDER has the tables of the trials (docs/figures). Two pieces of five and 22 strokes are played; all else is read from these
-# tables, from docs/evaluation.md and from the library's rows of commands. Verdicts follow from the numbers (papers.awk).
+#   tools/papers/papers.sh [FOLDER [KEPT]]
+# FOLDER has the tables of `make trials` (docs/figures). All else is measured here: three scores are played, the library is asked
+# (measure.c, its rows of commands). A verdict follows from these numbers (papers.awk), or is "stated". In KEPT all tables are left.
 set -eu
 himc=${HIMC_BUILD:-build}/bin/himc
 tables=${1:-docs/figures}
 work=$(mktemp -d "${HIMC_BUILD:-build}/papers.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 
-"$himc" render tools/figures/blows.txt --channels 1 -o "$work/blows.wav" --strokes "$work/blows.csv" --quiet >/dev/null
+"$himc" render tools/figures/blows.txt --channels 1 -o "$work/blows.wav" --strokes "$work/blows.csv" --motion "$work/blows-motion.csv" \
+    --columns tips --quiet >/dev/null
+"$himc" render tools/figures/blows.txt -o /dev/null --motion "$work/blows-ode.csv" --columns tips --set 'engine ode' --quiet >/dev/null
+"$himc" render tools/figures/blows.txt -o /dev/null --strokes "$work/one-way.csv" --set 'coupling one-way' --quiet >/dev/null
 "$himc" render tools/figures/legato-accent.txt -o /dev/null --strokes "$work/beats.csv" --motion "$work/motion.csv" \
     --columns tips,joints --quiet >/dev/null
+"$himc" render patches/improvisation.txt -o /dev/null --motion "$work/improvisation.csv" --columns energy,work --quiet |
+    sed 's/.*"strokes": \([0-9]*\), "played": \([0-9]*\), "missed": \([0-9]*\).*/strokes,played,missed\n\1,\2,\3/' >"$work/played.csv"
+"${HIMC_BUILD:-build}/tools/papers/measure" facts >"$work/facts.csv"
 head -n 1 "$work/motion.csv" | tr ',' '\n' | awk '/_x_rad$/ { joints++ } /_rad$/ { freedoms++ }
     END { print "joints,freedoms"; print joints "," freedoms }' >"$work/body.csv"
 "$himc" modes tools/figures/blows.txt >"$work/modes.csv"
@@ -29,9 +35,8 @@ head -n 1 "$work/motion.csv" | tr ',' '\n' | awk '/_x_rad$/ { joints++ } /_rad$/
 # words of a command's grammar: WORDS,row
 sed -n 's/.*HIMC_COMMAND_ROW([A-Z_]*, *\([a-z]*\), [^"]*, "\([^"]*\)".*/\1,\2/p' lib/himc/command_rows.h |
     sed '1i name,grammar' >"$work/commands.csv"
-# the undisturbed database: law,nuance,...
-sed -n 's/^| \(\(computed-torque\|feedforward\) | .*\) |$/\1/p' docs/evaluation.md |
-    sed 's/ | /,/g; 1i law,nuance,outside,all,elbow,angles_a,angles_b,angles_c,landed' >"$work/database.csv"
-
-awk -f tools/papers/papers.awk "$tables"/strokes.csv "$tables"/strokes-default.csv "$tables"/phases.csv "$tables"/evaluation.csv \
-    "$tables"/spread.csv "$tables"/claim.csv "$tables"/measures.csv "$work"/*.csv
+# the first and the last row of the improvisation: what is between balances too if these do
+sed -i -n '1p; 2p; $p' "$work/improvisation.csv"
+cp "$tables"/*.csv "$work"
+[ -z "${2-}" ] || cp "$work"/*.csv "$2"
+awk -f tools/papers/papers.awk "$work"/*.csv
