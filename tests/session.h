@@ -101,6 +101,7 @@ typedef struct heard {
     himc_strike *strike; ///< owned
     int strikes, room;
     int beats, dones, notes;
+    int softer;     ///< notes of strokes for which there is too little time
     char note[192]; ///< the last one
 } heard;
 
@@ -110,6 +111,7 @@ static inline void heard_event(heard *h, const himc_event *event)
     h->dones += event->kind == HIMC_EVENT_DONE;
     if (event->kind == HIMC_EVENT_NOTE) {
         h->notes++;
+        h->softer += strstr(event->text, "too little time") != NULL;
         memcpy(h->note, event->text, sizeof h->note);
     }
     if (event->kind != HIMC_EVENT_STRIKE)

@@ -89,35 +89,62 @@ static void test_unit_gives_its_rise_its_rebound_and_its_arc(void)
     }
 }
 
-// 0.4 s from the head: in half of that the fall is at the limit of strength, 55 m/s^2 for 0.1 s
+// 0.4 s from the head
 static const himc_gesture strong = {
     .height = 0.5, .speed = 5.5, .down = 0.2, .rise = 0.2, .depth = 0.1};
 
-static void test_stroke_in_half_its_time_is_bent_towards_the_limit_of_strength(void)
+static double bent(double speed, double most)
+{
+    himc_gesture g = strong;
+    g.speed = speed;
+    return himc_gesture_bend(g, most).speed;
+}
+
+static void test_in_haste_louder_is_louder_and_slower_is_not_softer(void)
+{
+    for (double most = 1; most < 30; most *= 1.1)
+        for (double speed = 0.4; speed < 11; speed *= 1.1) {
+            double v = bent(speed, most);
+            TEST_ASSERT_TRUE(v <= speed && v < bent(1.1 * speed, most) &&
+                             v <= bent(speed, 1.1 * most));
+            // half a decibel for each step of dynamics, 1.3 times as fast, however short the time
+            TEST_ASSERT_TRUE(bent(1.3 * speed, most) > 1.06 * v);
+        }
+}
+
+static void test_haste_is_not_felt_by_strokes_far_below_its_limit(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(3, bent(3, 8));
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 3, bent(3, 4)); // 0.1 dB
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3 * pow(2, -0.75 / 8), bent(3, 3));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 2 * pow(10, 0.25), bent(20, 2)); // far above: the fourth root
+}
+
+static void test_haste_keeps_the_time_and_the_steepness(void)
+{
+    himc_gesture g = himc_gesture_bend(strong, 4);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, strong.down, g.down);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, strong.speed / strong.height, g.speed / g.height);
+}
+
+static void test_stroke_in_half_its_time_is_half_as_high_and_as_strong(void)
 {
     himc_gesture g = himc_gesture_squeeze(strong, 0.2, 0);
-    double speed = 5.5 / pow(2, 0.25), steepness = 5.5 * 0.2 / 0.5;
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, g.down);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, g.rise);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.025, g.depth);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, speed, g.speed);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, speed * 0.1 / steepness, g.height);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5.5, g.speed);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.25, g.height);
 }
 
 static void test_tip_that_is_high_already_stays_high_in_haste(void)
 {
+    himc_gesture tall = strong;
+    tall.speed = 4;                                           // a steepness of 1.6 and less
     himc_gesture g = himc_gesture_squeeze(strong, 0.13, 0.5); // of 0.2 + 0.3 * 0.2
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.25, g.height);
-    g = himc_gesture_squeeze(strong, 0.052, 0.5); // bounded by a steepness of 1.6
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, g.speed * 0.04 / 1.6, g.height);
-}
-
-static void test_haste_makes_no_stroke_softer_than_1_m_s(void)
-{
-    himc_gesture soft = strong;
-    soft.speed = 0.6;
-    TEST_ASSERT_EQUAL_DOUBLE(1, himc_gesture_squeeze(strong, 0.01, 0).speed);
-    TEST_ASSERT_EQUAL_DOUBLE(0.6, himc_gesture_squeeze(soft, 0.01, 0).speed);
+    g = himc_gesture_squeeze(tall, 0.13, 0.5);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4 * 0.1 / 1.6, g.height);
 }
 
 static void test_stroke_with_time_enough_is_not_changed(void)
@@ -138,9 +165,11 @@ int main(void)
     RUN_TEST(test_unit_at_twice_its_speed_falls_shorter_and_from_higher);
     RUN_TEST(test_unit_at_half_its_speed_falls_as_long_from_half_its_height);
     RUN_TEST(test_unit_gives_its_rise_its_rebound_and_its_arc);
-    RUN_TEST(test_stroke_in_half_its_time_is_bent_towards_the_limit_of_strength);
+    RUN_TEST(test_in_haste_louder_is_louder_and_slower_is_not_softer);
+    RUN_TEST(test_haste_is_not_felt_by_strokes_far_below_its_limit);
+    RUN_TEST(test_haste_keeps_the_time_and_the_steepness);
+    RUN_TEST(test_stroke_in_half_its_time_is_half_as_high_and_as_strong);
     RUN_TEST(test_tip_that_is_high_already_stays_high_in_haste);
-    RUN_TEST(test_haste_makes_no_stroke_softer_than_1_m_s);
     RUN_TEST(test_stroke_with_time_enough_is_not_changed);
     return UNITY_END();
 }

@@ -6,10 +6,17 @@
 /// & Wanderley 2012 (section 3): accent highest and shallow, vertical accent and staccato deep,
 /// tenuto rising weakly, staccato pulled off. Peak force grows as speed^1.1, so a speed ratio of
 /// 10 from ppp to fff gives 22 dB. The steepness s = v T/H of a fall from the height H to the speed
-/// v in the time T is 1.9 to 2.1 here; it is monotone up to 2.5 (gesture.h). A stroke given the
-/// share r < 1 of its time keeps its speed and s and so is r as high, until v/T, which grows with
-/// 1/r, nears STRONGEST: there the speed is bent towards the limit smoothly, so that louder stays
-/// louder.
+/// v in the time T is 1.9 to 2.1 here; it is monotone up to 2.5 (gesture.h).
+///
+/// Haste. In a short time an arm from rest reaches `most` = HIMC_HURRY T. A stroke of the speed a
+/// is bent below that to
+///     v = a (1 + (a/most)^k)^(-p/k),   k = 8, p = 3/4:
+/// v = a while a is far below `most`, and a^(1/4) most^(3/4) far above it. v rises strictly with a
+/// and with T, so louder is louder and slower is not softer; and it depends on nothing else, not on
+/// the tip's state nor on the stroke before, so equal strokes at equal intervals are equal from the
+/// first on: a run has no steady state to settle to, or to swing about. T is the time from the
+/// hand's last touch (planner_motion.c), or from the message of a hit. A stroke with the share r of
+/// its time keeps its speed and s and so is r as high.
 #include "plan/gesture.h"
 
 #include <math.h>
@@ -24,11 +31,13 @@
 #define HIGHEST_GESTURE 0.75 // (m)
 #define LOWEST_GESTURE 0.03  // (m)
 
-// hurried strokes; chosen: the vertical accent at f is as strong, a legato at pp as soft
-#define STRONGEST 55.0          // speed over time of a downstroke (m/s^2)
-#define LEAST_HURRIED_SPEED 1.0 // haste makes no stroke softer than this (m/s)
-#define HURRIED_STEEPNESS 1.6   // s of a tip that is high already, at least
-#define LEAST_CLIMB 0.3         // share of the rise's time for a tip that is high already
+// hurried strokes; chosen: within 0.1 dB of what is asked up to 0.75 of `most`, and steps between
+// dynamics that are heard (0.6 dB) far above it
+#define BEND_KNEE 8.0         // k
+#define BEND_SLOPE 0.75       // p
+#define UNBENT 1e-3           // (a/most)^k: the bend is below 0.001 dB
+#define HURRIED_STEEPNESS 1.6 // s of a tip that is high already, at least
+#define LEAST_CLIMB 0.3       // share of the rise's time for a tip that is high already
 
 // strokes from motion units; chosen: a unit is not stretched beyond recognition
 #define UNIT_DEPTH_GROWTH 1.2 // its depth grows with its height up to this factor
@@ -112,10 +121,12 @@ double himc_gesture_time(const himc_gesture *gesture, double height)
     return gesture->down + gesture->dwell + climb * gesture->rise;
 }
 
-/// `speed` bent so that it stays below `most`, hardly changed while it is far below.
-static double bend(double speed, double most)
+himc_gesture himc_gesture_bend(himc_gesture g, double most)
 {
-    return speed / pow(1 + pow(speed / most, 4), 0.25);
+    double over = pow(g.speed / most, BEND_KNEE);
+    if (over < UNBENT)
+        return g;
+    return himc_gesture_scale(g, pow(1 + over, -BEND_SLOPE / BEND_KNEE));
 }
 
 himc_gesture himc_gesture_squeeze(himc_gesture g, double time, double height)
@@ -128,7 +139,6 @@ himc_gesture himc_gesture_squeeze(himc_gesture g, double time, double height)
     g.dwell *= share;
     g.rise *= share;
     g.depth *= share * share;
-    g.speed = fmax(bend(g.speed, STRONGEST * g.down), fmin(g.speed, LEAST_HURRIED_SPEED));
     g.height = g.speed * g.down / shape;
     // a tip that is high already stays there
     double stay = fmin(fmax(height / full, 0), 1) * share * full;

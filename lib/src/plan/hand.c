@@ -37,6 +37,7 @@
 #define LEAVE_HOME_TIME 0.4     // a tip at home takes at least so long to its stroke (s)
 #define LEAST_APPROACH_TIME 0.5 // ... and begins so much before its rise, at least (s)
 #define LEAST_MOVE_TIME 0.06    // of a move in space (s)
+#define MOVE_OVER 0.05          // its height over both ends, at most (m)
 
 // the swing: times and distances along the head; chosen: the order of depths of the five nuances
 // (Bouënard, Gibet & Wanderley 2012, section 3) holds at every dynamic and tempo
@@ -67,9 +68,12 @@
 #define LEAST_ABSORB_TIME 0.001 // (s)
 
 // a strong rebound that is followed rather than fought; chosen: no reversal within a quarter second
-#define FOLLOW_TIME 0.25         // rises longer than this are shaped, not followed (s)
-#define FOLLOW_FALL_SHARE 0.65   // of the time: the fall after such a rise
-#define FOLLOW_LEAST_LANDING 0.8 // impact speed over mean speed of that fall, at least
+#define FOLLOW_TIME 0.25       // rises longer than this are shaped, not followed (s)
+#define FOLLOW_FALL_SHARE 0.65 // of the time: the fall after such a rise, at most
+
+/// Speed for which a tip from rest has time, over that time (m/s^2). Chosen: twice what is asked of
+/// it, so that only what comes late softens a stroke: a new tempo, a disturbance.
+#define FASTEST_HURRY (2 * HIMC_HURRY)
 
 // the wait over the last spot; chosen: a slow sway of one or two centimetres looks alive
 #define HOVER_LEAST_HEIGHT 0.05 // lower tips are raised first (m)
@@ -78,6 +82,7 @@
 #define HOVER_COAST 0.1         // meanwhile the path goes on for so long at its speed (s)
 #define FREE_REBOUND_TIME 2.0   // a rebound with nothing after it has so much time (s)
 #define BRAKE_LIMIT 1.0         // a halt with nothing after it has so much time (s)
+#define BREAK_OFF 5.0           // a stroke broken off with more acceleration is halted (m/s^2)
 #define HOME_WAIT 0.5           // a wait at home lasts this long at least (s)
 
 /// A unit's fall is so many quintics. Chosen: more than its shape has numbers (himc_unit.bend).
@@ -362,19 +367,31 @@ bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second)
 }
 
 /// A strong rebound with little time left is followed: the stroke goes as high as the rebound takes
-/// it.
+/// it. A rise at its steepest from (h, v) for T - d and a fall for d of the stroke's own s meet at
+///     H = h + v (T - d)/2.4 = speed d/s.
+/// The speed stays, so the next rebound is the same. One that would go beyond what an arm does is
+/// not followed.
 static void follow_rebound(const stroke_plan *s, double t, himc_gesture *g)
 {
     double T = t - s->height_end, rise_time = T - g->down - g->dwell;
-    double h = s->height.h, v = s->height.v;
-    if (v < HIMC_TURNING_SPEED || rise_time > FOLLOW_TIME ||
-        h + v * rise_time / HIMC_STEEPEST_QUINTIC < g->height)
+    double h = s->height.h, climb = s->height.v / HIMC_STEEPEST_QUINTIC;
+    if (s->height.v < HIMC_TURNING_SPEED || rise_time > FOLLOW_TIME ||
+        h + climb * rise_time < g->height)
+        return;
+    double shape = g->speed * g->down / g->height;
+    double down = fmin(shape * (h + climb * T) / (g->speed + shape * climb), FOLLOW_FALL_SHARE * T);
+    if (h + climb * (T - down) > HIMC_HIGHEST_REBOUND)
         return;
     g->dwell = 0;
-    g->down = FOLLOW_FALL_SHARE * T;
-    g->height = h + v * (T - g->down) / HIMC_STEEPEST_QUINTIC;
-    g->speed = fmin(fmax(g->speed, FOLLOW_LEAST_LANDING * g->height / g->down),
-                    HIMC_STEEPEST_QUINTIC * g->height / g->down);
+    g->down = down;
+    g->height = h + climb * (T - down);
+}
+
+/// The gesture, softer if the tip is too low for it with the time left.
+static himc_gesture in_time(const stroke_plan *s, const himc_goal *goal)
+{
+    double T = goal->time - s->height_end, drop = HIMC_STEEPEST_QUINTIC * fmax(s->height.h, 0) / T;
+    return himc_gesture_bend(goal->gesture, FASTEST_HURRY * T + drop);
 }
 
 /// The fall to the touch: one quintic, or from the apex through the knots of a unit's fall.
@@ -426,12 +443,12 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
         return false;
     leave(plan, goal->time);
     stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
-    himc_gesture g = goal->gesture;
+    himc_gesture g = in_time(&s, goal);
     double begin = s.height_end;
     s.approach = fmax(LEAST_APPROACH_TIME, himc_move_time(distance_to(&s, goal), GENTLE_MOVE));
     bool from_apex = !himc_height_profile_falls(&s, goal->time, &g);
     if (from_apex) {
-        g = himc_gesture_squeeze(goal->gesture, goal->time - plan->end, s.height.h);
+        g = himc_gesture_squeeze(g, goal->time - plan->end, s.height.h);
         follow_rebound(&s, goal->time, &g);
         double top = goal->time - g.down - g.dwell;
         begin = himc_height_profile_rise(&s, top, &g);
@@ -449,16 +466,15 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     return true;
 }
 
-/// Moves to a place in space, not before `at`; a fall that would touch the head on the way is
-/// halted first.
+/// Moves to a place in space, not before `at`. What would carry the tip down to the head or far
+/// up on the way, a fall or the acceleration of a stroke broken off, is halted first.
 static void move_to(stroke_plan *s, himc_vec3 x, double peak, double at)
 {
     height_state to = {himc_vec3_dot(s->n, himc_vec3_sub(x, s->plan->last.spot)), 0, 0};
     double distance = himc_vec3_length(himc_vec3_sub(x, himc_hand_at(s->plan, s->plan->end).x));
     double T = fmax(fmax(himc_move_time(distance, peak), LEAST_MOVE_TIME), at - s->height_end);
-    if (s->height.v < -HIMC_TURNING_SPEED &&
-        !himc_height_profile_stays(s, s->height_end + T, to, fmin(to.h, 0.5 * s->height.h),
-                                   HUGE_VAL))
+    double high = s->height.v > HIMC_TURNING_SPEED ? HUGE_VAL : fmax(to.h, s->height.h) + MOVE_OVER;
+    if (!himc_height_profile_stays(s, s->height_end + T, to, fmin(to.h, 0.5 * s->height.h), high))
         himc_height_profile_brake(s, s->height_end + BRAKE_LIMIT);
     himc_height_profile_to(s, s->height_end + T, to);
     path_to(s, s->height_end, himc_vec3_madd(x, -to.h, s->n));
@@ -494,7 +510,7 @@ void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
     stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
     if (s.height.v > HIMC_TURNING_SPEED)
         himc_height_profile_rebound(&s, s.height_end + FREE_REBOUND_TIME, HIMC_HIGHEST_REBOUND);
-    else if (s.height.v < -HIMC_TURNING_SPEED)
+    else if (s.height.v < -HIMC_TURNING_SPEED || fabs(s.height.a) > BREAK_OFF)
         himc_height_profile_brake(&s, s.height_end + BRAKE_LIMIT);
     plan->rebounding = false;
     if (plan->at_home) {

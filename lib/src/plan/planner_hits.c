@@ -2,9 +2,9 @@
 ///
 /// A hit without a time comes as soon as its gesture allows, later if it was asked for in a hurry:
 /// nothing is lost, and nothing is even. A hit with a time of touch, its message plus a constant
-/// latency, keeps that time to the end: the gesture law (gesture.c) makes it as strong as the time
-/// left allows. Because the latency is longer than most intervals, the next hit is known before the
-/// last one has landed.
+/// latency, keeps that time to the end: the law of haste (gesture.c) makes it as strong as that
+/// time allows, so hits at one latency are alike. Because the latency is longer than most
+/// intervals, the next hit is known before the last one has landed.
 ///
 /// The hand asked for plays it, if it has LEAST_PREPARATION after its stroke before, can get there,
 /// and leaves as much to its stroke after; else the other hand. Where the performer chooses, the
@@ -24,6 +24,12 @@
 #define SETTLING 0.03 // chosen: from the end of a contact until the tip is under way again (s)
 #define LATER 0.01    // chosen: a hit that is late is tried so much later again (s) ...
 #define LATEST 0.5    // ... up to this; chosen: the longest way at ease
+
+/// Until so long before its touch a hit still gives way to the one that follows it, so that the
+/// first hit of a fast run is as strong as the rest (s). Chosen: LEAST_STROKE_TIME (hand.c) and a
+/// task's period. The rest of its latency is the time a hit has: then there is no interval at which
+/// the first one has more.
+#define GIVES_WAY 0.024
 
 // a tip that has drifted from its plan; chosen: what a tenth of the time left can make good
 #define CORRECTION_TIME 0.01 // before the touch (s)
@@ -222,6 +228,8 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
         himc_planner_notes_hit(&planner->notes, t, chosen.late);
     s.exact = true;
     s.goal.time += s.variation.late;
+    s.latency = fmax(s.goal.time - t - GIVES_WAY, GIVES_WAY);
+    himc_planner_unplan(planner, hand, t, GIVES_WAY);
     himc_planner_cut(planner, hand, t);
     himc_planner_queue(planner, &s);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);

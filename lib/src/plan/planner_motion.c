@@ -32,9 +32,8 @@
 #define EARLY_TOUCH 0.03 // a touch may come so much before its time (s)
 #define BOUNCE_TIME 0.12 // a rise so soon after a touch is its rebound (s)
 
-// strokes that are reported as smaller; chosen: such a stroke looks and sounds another
-#define SMALL_SHARE 0.6  // of the written height
-#define SMALL_WITHIN 1.0 // of the stroke before (s)
+// strokes that are reported as softer; chosen: 1 dB is heard
+#define SOFTER_SHARE 0.89 // of the written speed
 
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
@@ -321,17 +320,47 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
     return text;
 }
 
-/// Whether the stroke, just planned, is much smaller than written; `since` the one before (s).
-static bool is_small(himc_planner *planner, const timed_stroke *s, double since)
+/// Time from the hand's touch before to a stroke, or from its message if that is shorter (s).
+static double time_for(const planner_hand *h, const timed_stroke *s)
 {
-    double high = planner->hand[s->stroke.hand].plan.last.gesture.height;
-    // a roll's strokes are small by nature
-    if (s->index < 0 || s->stroke.ornament >= HIMC_ROLL_SINGLE || since >= SMALL_WITHIN ||
-        high >= SMALL_SHARE * s->goal.gesture.height)
+    double time = s->latency > 0 ? s->latency : HUGE_VAL;
+    if (h->planned_count > 0) {
+        const himc_goal *last = &h->planned[h->planned_count - 1].goal;
+        time = fmin(time, s->goal.time - last->time - last->hold);
+    }
+    return time;
+}
+
+/// The goal's gesture as strong as the time before it allows, by the law of haste (gesture.c). The
+/// first stroke of a fast run is one of it: a stroke gives way to the next one by as much as that
+/// one, or this one if it is softer, loses by the time between them.
+static himc_gesture in_haste(himc_planner *planner, const timed_stroke *s)
+{
+    const planner_hand *h = &planner->hand[s->stroke.hand];
+    himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, HIMC_HURRY * time_for(h, s));
+    timed_stroke after;
+    if (!next_written(planner, s->stroke.hand, &after))
+        return g;
+    double time = after.written.time - s->goal.time - s->goal.hold;
+    if (!(time > 0))
+        return g;
+    himc_gesture other = after.written.gesture, softer = own.speed < other.speed ? own : other;
+    double share = himc_gesture_bend(softer, HIMC_HURRY * time).speed / softer.speed;
+    return share * own.speed < g.speed ? himc_gesture_scale(own, share) : g;
+}
+
+/// Whether the stroke, just planned, is softer than it was asked for.
+static bool is_softer(himc_planner *planner, const timed_stroke *s)
+{
+    char name[64];
+    double asked = s->goal.gesture.speed;
+    double speed = planner->hand[s->stroke.hand].plan.last.gesture.speed;
+    // a roll's strokes are as fast as its drum asks
+    if (s->stroke.ornament >= HIMC_ROLL_SINGLE || speed >= SOFTER_SHARE * asked)
         return false;
     himc_planner_say(&planner->notes, PLANNER_SMALLER,
-                     "stroke at beat %g %s: %.2g s after the last, played %.2g m high",
-                     s->stroke.beat, himc_hand_name(s->stroke.hand), since, high);
+                     "%s: too little time for %.2g m/s, struck with %.2g", name_of(s, name), asked,
+                     speed);
     return true;
 }
 
@@ -369,7 +398,6 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         s->varied = false;
     }
     const planner_way *way = h->way.touch == s->written.time ? &h->way : &as_written;
-    double since = s->goal.time - (n > 0 ? h->planned[n - 1].goal.time : -HUGE_VAL);
     if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
         return TOO_FAR;
     if (way->leaves)
@@ -382,12 +410,16 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     }
     if (way->waits)
         wait_first(&h->plan, &s->goal);
-    if (n == PLANNER_PLANNED || !himc_hand_strike(&h->plan, &s->goal))
+    if (n == PLANNER_PLANNED || !himc_hand_can_strike(&h->plan, &s->goal))
         return NO_TIME;
+    himc_goal goal = s->goal;
+    goal.gesture = in_haste(planner, s);
+    himc_hand_strike(&h->plan, &goal);
+    bool softer = is_softer(planner, s);
     timed_stroke *planned = &h->planned[h->planned_count++];
     *planned = *s;
     planned->goal = h->plan.last;
-    planned->small = is_small(planner, s, since);
+    planned->softer = softer;
     h->drum = s->drum;
     h->struck = true;
     h->targeted = false;
@@ -821,7 +853,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     himc_hand_restart(&h->plan, t, measured, more ? next.goal.time : HUGE_VAL);
     if (h->planned_count > 0) {
         timed_stroke *last = &h->planned[h->planned_count - 1];
-        if (last->small && !last->separated)
+        if (last->softer && !last->separated)
             himc_planner_notes_count(&planner->notes, PLANNER_SMALLER);
         last->separated = true;
         h->plan.last = last->goal;

@@ -40,9 +40,10 @@ typedef struct timed_stroke {
     int round;       ///< of the loop
     bool reassigned; ///< it is from the other hand's part of the score
     bool separated;  ///< the tip has left the head again
-    bool small;      ///< played much smaller than written
+    bool softer;     ///< played softer than written, for want of time
     bool varied;     ///< the goal is not as written
     bool exact;      ///< a hit with a time, still to be corrected before its touch
+    double latency;  ///< time that a hit with a time has, since its message (s), else 0
     himc_variation variation; ///< of a hit since it came, of another stroke since it was varied
     himc_goal written;
     himc_goal goal; ///< varied; once planned, with the gesture as it will be played
