@@ -158,6 +158,88 @@ static void test_tempo_in_a_later_round_of_a_loop_keeps_every_stroke(void)
     check_round(5.2); // ... and after
 }
 
+// times of the touches of a hand between two times, as they are planned
+static int touches(himc_hand hand, double from, double to, double time[], int most)
+{
+    int count = 0;
+    for (double t = from; t < to; t += 0.01) {
+        himc_planner_advance(planner, t);
+        double touch = touch_at(hand, t);
+        if (touch > 0 && touch - t < 0.02 && count < most &&
+            (count == 0 || touch > time[count - 1] + 0.05))
+            time[count++] = touch;
+    }
+    return count;
+}
+
+static void test_new_strokes_in_a_loop_that_was_cleared_while_it_turns_are_played_on_its_beats(void)
+{
+    double first[2], time[16];
+    for (int i = 0; i < 4; i++)
+        add(planner, i, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_loop(planner, 0, true);
+    himc_planner_play(planner, 0);
+    TEST_ASSERT_EQUAL_INT(1, touches(HIMC_LEFT, 0, 1.2, first, 1));
+    advance_to(3.1);
+    himc_planner_clear(planner);
+    double turning = himc_planner_beat(planner, 3.2), later = himc_planner_beat(planner, 3.7);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1, later - turning);
+    TEST_ASSERT_EQUAL_DOUBLE(HUGE_VAL, himc_planner_end(planner));
+    TEST_ASSERT_EQUAL_INT(0, touches(HIMC_LEFT, 3.3, 5, time, 16));
+    add(planner, 1, HIMC_LEFT, HIMC_TENUTO, 0.5);
+    add(planner, 0, HIMC_LEFT, HIMC_TENUTO, 0.5);
+    add(planner, 2.5, HIMC_RIGHT, HIMC_TENUTO, 0.5);
+    int count = touches(HIMC_LEFT, 5, 9.6, time, 16);
+    TEST_ASSERT_TRUE(count >= 4);
+    TEST_ASSERT_TRUE(time[0] < 6.6);
+    for (int i = 0; i < count; i++) { // beats 0 and 1 of three, on the old beats
+        double beats = (time[i] - first[0]) / 0.5;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, round(beats), beats);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, i % 2 ? 0.5 : 1, i ? time[i] - time[i - 1] : 1);
+    }
+    TEST_ASSERT_EQUAL_INT(0, himc_planner_given_up(planner));
+}
+
+static void test_a_stroke_added_to_a_loop_that_turns_sounds_in_its_next_round(void)
+{
+    double time[4];
+    add(planner, 0, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    add(planner, 3, HIMC_LEFT, HIMC_LEGATO, 0.5);
+    himc_planner_loop(planner, 0, true);
+    himc_planner_play(planner, 0);
+    touches(HIMC_LEFT, 0, 1.2, time, 1);
+    double begun = time[0];
+    advance_to(begun + 1);
+    add(planner, 1, HIMC_RIGHT, HIMC_LEGATO, 0.5); // past in this round
+    TEST_ASSERT_EQUAL_INT(2, touches(HIMC_RIGHT, begun + 1, begun + 6, time, 4));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, begun + 2.5, time[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, begun + 4.5, time[1]);
+}
+
+static void test_play_stop_and_loop_0_end_the_turning_of_an_empty_loop(void)
+{
+    for (int i = 0; i < 3; i++) {
+        use(120);
+        add(planner, 1, HIMC_LEFT, HIMC_LEGATO, 0.5);
+        himc_planner_loop(planner, 0, true);
+        himc_planner_play(planner, 0);
+        advance_to(2);
+        himc_planner_clear(planner);
+        advance_to(2.5);
+        if (i == 0) {
+            himc_planner_stop(planner, 2.5);
+            TEST_ASSERT_TRUE(himc_planner_beat(planner, 3) < 0);
+        } else if (i == 1) {
+            himc_planner_loop(planner, 2.5, false);
+            TEST_ASSERT_TRUE(himc_planner_end(planner) < 3);
+        } else {
+            add(planner, 4, HIMC_LEFT, HIMC_LEGATO, 0.5);
+            himc_planner_play(planner, 2.53);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.53, touch_at(HIMC_LEFT, 2.53));
+        }
+    }
+}
+
 static void test_tempi_of_a_score_that_follows_count_from_its_beginning(void)
 {
     static const himc_tempo_change next[] = {{0, 60}, {2, 240}};
@@ -254,6 +336,9 @@ int main(void)
     RUN_TEST(test_stroke_added_before_a_committed_one_does_not_repeat_it);
     RUN_TEST(test_new_score_is_played_after_a_stroke_of_the_old_one_came_early);
     RUN_TEST(test_tempo_in_a_later_round_of_a_loop_keeps_every_stroke);
+    RUN_TEST(test_new_strokes_in_a_loop_that_was_cleared_while_it_turns_are_played_on_its_beats);
+    RUN_TEST(test_a_stroke_added_to_a_loop_that_turns_sounds_in_its_next_round);
+    RUN_TEST(test_play_stop_and_loop_0_end_the_turning_of_an_empty_loop);
     RUN_TEST(test_tempi_of_a_score_that_follows_count_from_its_beginning);
     RUN_TEST(test_stroke_beyond_the_rim_is_struck_just_inside_it_and_a_note_says_so);
     RUN_TEST(test_play_past_the_end_begins_at_beat_0);

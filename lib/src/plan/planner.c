@@ -172,7 +172,7 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     himc_planner_score_insert(score, at, stroke, drum);
     himc_planner_inserted(planner, stroke->hand, at);
     himc_planner_rest_again(planner);
-    if (score->playing)
+    if (score->playing && !score->empties)
         fit_in(planner, stroke->hand, at);
     return true;
 }
@@ -274,7 +274,10 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
 
 void himc_planner_clear(himc_planner *planner)
 {
+    planner_score *score = &planner->score;
     double t = planner->now + PLANNER_AHEAD;
+    bool turns = score->playing && score->loop;
+    double beat = turns ? himc_planner_score_beat_at(score, t) : 0;
     himc_planner_stop(planner, t);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_planner_cut(planner, (himc_hand)hand, t);
@@ -284,9 +287,14 @@ void himc_planner_clear(himc_planner *planner)
         himc_planner_detach(planner, (himc_hand)hand);
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
-    himc_planner_score_seek(&planner->score, 0);
+    himc_planner_score_seek(score, 0);
     himc_planner_count_hits(planner);
     himc_planner_notes_begin(&planner->notes);
+    if (!turns)
+        return;
+    himc_planner_score_start(score, t);
+    himc_planner_score_hold(score, t, beat);
+    himc_planner_score_empty(score);
 }
 
 /// Begins at score->beat; the hands have been cut. If the music was `running`, listeners miss the
@@ -307,7 +315,8 @@ static void start(himc_planner *planner, double t, bool running)
 void himc_planner_play(himc_planner *planner, double t)
 {
     planner_score *score = &planner->score;
-    if (!isfinite(t) || (score->playing && t < himc_planner_end(planner)))
+    bool plays = score->playing && !score->empties;
+    if (!isfinite(t) || (plays && t < himc_planner_end(planner)))
         return;
     if (score->playing || score->beat > himc_planner_score_last_beat(score))
         himc_planner_score_seek(score, 0);
@@ -380,7 +389,7 @@ double himc_planner_next_start(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
     double length = himc_planner_score_free_from(score);
-    return score->playing
+    return score->playing && !score->empties
                ? fmax(length, ceil(himc_planner_score_beat_at(score, t + PREPARATION_TIME)))
                : length;
 }
@@ -398,7 +407,7 @@ double himc_planner_beat(const himc_planner *planner, double t)
 bool himc_planner_is_preparing(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
-    return score->playing && score->past == 0 &&
+    return score->playing && !score->empties && score->past == 0 &&
            t < score->origin + himc_planner_score_round_length(score) &&
            himc_planner_score_beat_at(score, t) < score->beat - BEAT_ROUNDING;
 }
@@ -407,7 +416,7 @@ double himc_planner_end(const himc_planner *planner)
 {
     const planner_score *score = &planner->score;
     double last = himc_planner_score_last_beat(score);
-    if (!score->playing || (score->loop && last >= 0))
+    if (!score->playing || (score->loop && (last >= 0 || score->empties)))
         return HUGE_VAL;
     double end = himc_planner_last_contact(planner);
     if (last >= 0)

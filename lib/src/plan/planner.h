@@ -125,7 +125,8 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
 /// or after the end.
 /// Before `play` the plan rests on none.
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other);
-/// Stops, drops all strokes and goes to beat 0; moving sticks come to rest.
+/// Drops all strokes; moving sticks come to rest. Stops and goes to beat 0, but a loop that plays
+/// turns on, and begins again on a whole beat when strokes are added.
 void himc_planner_clear(himc_planner *planner);
 
 /// Starts the transport at time `t` (s) from the current beat, or from beat 0 if all has been

@@ -806,10 +806,29 @@ static void drop_past(planner_hand *h, double now)
         himc_spline_drop(&h->plan.lift, now);
 }
 
+/// A loop that turns without strokes begins again with those that it has got, on the next of its
+/// beats for which they can be prepared.
+static void fill_loop(himc_planner *planner)
+{
+    planner_score *score = &planner->score;
+    double t = planner->now + PLANNER_AHEAD, beat = ceil(himc_planner_score_beat_at(score, t));
+    if (himc_planner_score_last_beat(score) < 0)
+        return;
+    himc_planner_cut_both(planner, t);
+    double next = himc_planner_score_time(score, 0, beat),
+           period = himc_planner_score_time(score, 0, beat + 1) - next;
+    himc_planner_score_start(score, next);
+    double late = ceil(himc_planner_lateness(planner) / period - BEAT_ROUNDING);
+    himc_planner_score_delay(score, fmax(late, 0) * period);
+    himc_planner_replan(planner, t);
+}
+
 void himc_planner_advance(himc_planner *planner, double t)
 {
     planner->now = fmax(planner->now, t);
     planner->begun = true;
+    if (planner->score.empties)
+        fill_loop(planner);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         drop_past(&planner->hand[hand], planner->now);
         himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);

@@ -38,8 +38,8 @@ static bool may_say(planner_notes *notes, planner_kind kind)
     notes->said[kind] = true;
     if (kind != PLANNER_GIVEN_UP)
         return first;
-    if (notes->lines >= 1) {
-        notes->lines--;
+    if (notes->spent <= LINES - 1) {
+        notes->spent++;
         return true;
     }
     notes->untold++;
@@ -89,7 +89,7 @@ bool himc_planner_notes_miss_next(planner_notes *notes, himc_planner_miss *miss)
 
 void himc_planner_notes_begin(planner_notes *notes)
 {
-    notes->lines = LINES;
+    notes->spent = 0;
     memset(notes->said, 0, sizeof notes->said);
     memset(notes->strokes, 0, sizeof notes->strokes);
 }
@@ -139,7 +139,7 @@ static void tell_hits(planner_notes *notes, double t)
 void himc_planner_notes_tell(planner_notes *notes, double t)
 {
     tell_hits(notes, t);
-    notes->lines = fmin(notes->lines + t - notes->told, LINES);
+    notes->spent = fmax(notes->spent - (t - notes->told), 0);
     notes->told = t;
     if (notes->untold == 0 || t < notes->last_untold + QUIET_TIME)
         return;

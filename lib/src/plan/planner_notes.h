@@ -29,7 +29,7 @@ typedef struct planner_notes {
     int given_up;                           ///< strokes given up since himc_planner_notes_given_up
     himc_planner_miss miss[PLANNER_MISSES]; ///< a ring
     int first_miss, misses;
-    double lines;               ///< so many strokes may still be given up in a line each ...
+    double spent;               ///< lines about strokes given up, of those that may be said ...
     double told;                ///< ... as of this time (s)
     int untold;                 ///< strokes given up without a line
     double last_untold;         ///< the last of them (s)
@@ -38,8 +38,8 @@ typedef struct planner_notes {
     double first_hit, last_hit; ///< ... the first and the last of them at these times (s)
 } planner_notes;
 
-/// Adds a line, unless one of its kind has been added since play. Strokes given up have a line each,
-/// as long as they are few; the others are counted in one line.
+/// Adds a line, unless one of its kind has been added since play. Strokes given up have a line
+/// each, as long as they are few; the others are counted in one line.
 HIMC_RT void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -261,6 +261,7 @@ void himc_planner_score_hold(planner_score *score, double t, double beat)
 void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
+    score->empties = false;
     score->starts++;
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
@@ -275,10 +276,15 @@ void himc_planner_score_delay(planner_score *score, double late)
     score->origin += late;
 }
 
+void himc_planner_score_empty(planner_score *score)
+{
+    score->empties = true;
+}
+
 void himc_planner_score_stop(planner_score *score, double beat)
 {
-    score->beat = beat;
-    score->playing = false;
+    score->beat = score->empties ? 0 : beat;
+    score->playing = score->empties = false;
 }
 
 void himc_planner_score_seek(planner_score *score, double beat)
@@ -314,7 +320,7 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
                              planner_due *due)
 {
     const planner_part *part = &score->part[hand];
-    if (!score->playing || part->count == 0)
+    if (!score->playing || score->empties || part->count == 0)
         return false;
     long at = (long)part->next + ahead;
     due->round = part->round + (int)(at / part->count);

@@ -29,9 +29,10 @@ typedef struct planner_score {
     double origin; ///< time of beat 0 while playing (s)
     double beat;   ///< where play begins or began
     bool loop;
-    int rounds; ///< without loop: the last round to be played
-    int starts; ///< of the transport, so far
-    int past;   ///< rounds of the loop played before round 0
+    bool empties; ///< the loop turns without strokes: with the first ones it begins again
+    int rounds;   ///< without loop: the last round to be played
+    int starts;   ///< of the transport, so far
+    int past;     ///< rounds of the loop played before round 0
 } planner_score;
 
 /// A stroke of the score with its place in it.
@@ -94,6 +95,8 @@ HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
 /// All beats are `late` seconds later.
 HIMC_RT void himc_planner_score_delay(planner_score *score, double late);
+/// Plays on without strokes: they have been dropped in a loop that turns.
+HIMC_RT void himc_planner_score_empty(planner_score *score);
 /// Stops at that beat.
 HIMC_RT void himc_planner_score_stop(planner_score *score, double beat);
 /// Play begins at that beat.
