@@ -25,6 +25,7 @@ take the same commands and are heard with it. */
 #include "saved-state.h"
 
 #include "m_imp.h" /* obj_starttraverseoutlet */
+#include <float.h>
 
 #define GUESTS 3 /* performers beside the first; chosen: more do not find room around a drum */
 
@@ -62,7 +63,7 @@ typedef struct t_membrane {
     bool x_touching;
     himc_contact_onset x_touch;
     himc_technique x_technique; /* that was told last */
-    long x_refused;             /* samples of force or place that were not numbers */
+    long x_refused;             /* samples of force or place that were not taken as they are */
     bool x_apart;               /* runs at another sample rate than its performer */
     bool x_told;                /* the user, of either, since the graph was built */
 } t_membrane;
@@ -98,13 +99,13 @@ static void membrane_fit(t_membrane *x, himc_membrane *head)
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
 }
 
-/* A sample that is not a finite number becomes 0 and is counted. */
-static double membrane_number(t_membrane *x, t_sample value)
+/* A sample that is not a finite number becomes 0, one beyond `most` that, and both are counted. */
+static double membrane_number(t_membrane *x, t_sample value, double most)
 {
-    if (isfinite(value))
+    if (fabs(value) <= most)
         return value;
     x->x_refused++;
-    return 0;
+    return isfinite(value) ? copysign(most, value) : 0;
 }
 
 /* Setting the layer may allocate and take long: never from perform. */
@@ -220,7 +221,7 @@ static t_int *membrane_perform(t_int *w)
         /* all inlets are read before an outlet is written: they may be the same memory */
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < n; i++)
-                in[k][i] = membrane_number(x, x->x_in[k][done + i]);
+                in[k][i] = membrane_number(x, x->x_in[k][done + i], k == 0 ? HIMC_FORCE_MAX : DBL_MAX);
         membrane_play(x, n, in, out);
         for (int k = 0; k <= x->x_channels; k++)
             for (int i = 0; i < n; i++)
@@ -326,8 +327,8 @@ static void membrane_tick(t_membrane *x)
         pd_error(x, "membrane~: %s: silent at %g Hz, for [himc~] plays it at %g Hz", name,
                  x->x_stream.s_rate, x->x_link.l_rate);
     else if (membrane_troubled(x))
-        pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0",
-                 name);
+        pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0, a force "
+                 "beyond %g N as that", name, HIMC_FORCE_MAX);
     x->x_told |= membrane_troubled(x);
     membrane_tell_technique(x);
     while (x->x_waiting) {

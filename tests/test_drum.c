@@ -84,6 +84,34 @@ static void test_drum_sound_stays_finite_with_absurd_outside_forces(void)
     TEST_ASSERT_TRUE(peak(seen, 8192) < 100);
 }
 
+// on another drum of the same name
+static void push_new_drum(double force_of_all, double *heard_of_it)
+{
+    static double force[512];
+    himc_drum *d = himc_drum_new("kettle", 23, 48000, &error);
+    for (int i = 0; i < 512; i++)
+        force[i] = force_of_all;
+    himc_drum_advance(d, 512, force, NULL, NULL);
+    himc_drum_read(d, 0, 512, heard_of_it, NULL);
+    himc_drum_release(d);
+}
+
+static void test_an_outside_force_beyond_the_largest_acts_as_that(void)
+{
+    static double most[512], beyond[512], within[512];
+    push_new_drum(-HIMC_FORCE_MAX, most);
+    push_new_drum(-1e300, beyond);
+    push_new_drum(-0.9 * HIMC_FORCE_MAX, within);
+    TEST_ASSERT_EQUAL_MEMORY(most, beyond, sizeof most);
+    TEST_ASSERT_TRUE(peak(within, 512) < peak(most, 512));
+}
+
+static void test_a_drum_without_a_name_is_refused(void)
+{
+    TEST_ASSERT_NULL(himc_drum_new(NULL, 23, 48000, &error));
+    TEST_ASSERT_EQUAL_STRING("drum: a name is missing", error.text);
+}
+
 static void test_drum_counts_time_from_0_when_realigned_and_goes_on_sounding(void)
 {
     static double reference[4096];
@@ -183,6 +211,8 @@ int main(void)
     RUN_TEST(test_drum_sounds_louder_the_harder_it_is_struck_and_a_fortissimo_does_not_clip);
     RUN_TEST(test_drum_gives_the_same_bits_in_blocks_of_any_size);
     RUN_TEST(test_drum_sound_stays_finite_with_absurd_outside_forces);
+    RUN_TEST(test_an_outside_force_beyond_the_largest_acts_as_that);
+    RUN_TEST(test_a_drum_without_a_name_is_refused);
     RUN_TEST(test_drum_counts_time_from_0_when_realigned_and_goes_on_sounding);
     RUN_TEST(test_drum_ring_keeps_the_latest_samples_only);
     RUN_TEST(test_drum_sounds_on_at_another_sample_rate);

@@ -562,6 +562,26 @@ static void test_commands_that_are_not_the_performers_or_too_far_ahead_are_refus
     TEST_ASSERT_TRUE(himc_performance_command(p, &c, 8192, &error));
     TEST_ASSERT_FALSE(himc_performance_command(p, &c, 8193, &error));
     TEST_ASSERT_EQUAL_STRING("delay: 8193 samples, allowed 0 .. 8192", error.text);
+    for (int i = 0; i < 2; i++) {
+        c.id = (himc_command_id)(i == 0 ? -3 : HIMC_COMMANDS);
+        TEST_ASSERT_FALSE(himc_performance_command(p, &c, 0, &error));
+        TEST_ASSERT_NOT_NULL(strstr(error.text, "not from the parser"));
+    }
+    himc_performance_free(p);
+}
+
+static void test_a_target_of_no_hand_moves_nothing(void)
+{
+    himc_performance *p = new_performance();
+    himc_performance_stats before, after;
+    himc_performance_process(p, 100, NULL);
+    before = himc_performance_measure(p);
+    himc_performance_target(p, (himc_hand)99, himc_vec3_make(0.6, 0, 1));
+    himc_performance_target(p, (himc_hand)-100000, himc_vec3_make(0.6, 0, 1));
+    himc_performance_target(p, (himc_hand)HIMC_HANDS, himc_vec3_make(0.6, 0, 1));
+    himc_performance_process(p, 4800, NULL);
+    after = himc_performance_measure(p);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, before.tip_rms, after.tip_rms);
     himc_performance_free(p);
 }
 
@@ -630,6 +650,7 @@ int main(void)
     RUN_TEST(test_calls_for_C_programs_refuse_what_is_out_of_range);
     RUN_TEST(test_real_stroke_strikes_the_drum_from_its_bead_alone);
     RUN_TEST(test_commands_that_are_not_the_performers_or_too_far_ahead_are_refused);
+    RUN_TEST(test_a_target_of_no_hand_moves_nothing);
     RUN_TEST(test_a_performer_has_16_drums_and_one_of_a_name);
     RUN_TEST(test_weights_out_of_range_name_their_segment);
     return UNITY_END();

@@ -204,9 +204,10 @@ static int run(const cli_arguments *arguments)
         "{\"blocks\": %ld, \"late\": %ld, \"slow\": %ld, \"latest_ms\": %.3f, \"given_up_s\": %.3f, "
         "\"packets\": %ld, \"commands\": %ld, \"malformed\": %ld, \"foreign\": %ld, "
         "\"refused\": %ld, \"frequent\": %ld, \"overrun\": %ld, \"sent\": %ld, \"unsent\": %ld, "
-        "\"lost\": %ld}\n",
+        "\"capped\": %ld, \"lost\": %ld}\n",
         p.blocks, p.late, p.slow, 1e3 * fmax(p.latest, 0), p.given_up, c.packets, c.commands,
-        c.malformed, c.foreign, c.refused, c.frequent, c.overrun, c.sent, c.unsent, c.lost);
+        c.malformed, c.foreign, c.refused, c.frequent, c.overrun, c.sent, c.unsent, c.capped,
+        c.lost);
     return cli_finish(&cli_serve);
 }
 

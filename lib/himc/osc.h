@@ -83,6 +83,7 @@ typedef struct himc_osc_counts {
     long overrun;      ///< packets dropped by the system, not read in time
     long sent;         ///< packets out
     long unsent;       ///< packets that the system refused to send
+    long capped;       ///< packets dropped because their host had its bytes of the second
     long lost;         ///< records dropped because a ring was full
     int subscriptions; ///< now in force
 } himc_osc_counts;

@@ -75,7 +75,7 @@ HIMC_RT void himc_performance_stop(himc_performance *performance);
 
 /// Sets a live target (m) for a tip, like the command `target`, for signals. Call it once a block,
 /// with the block's last sample of each coordinate: blocks of 64 samples give 750 Hz, more than the
-/// task rate. A target that is not finite is ignored.
+/// task rate. A target that is not finite, or of no hand, is ignored.
 HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand hand, himc_vec3 tip);
 
 /// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n); `force` and each of

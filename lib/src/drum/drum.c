@@ -16,9 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define OUTSIDE_LIMIT 1e5 // (N) larger outside forces are clamped; chosen: the sound stays finite
-#define RUN_BLOCK 64      // samples of a pass of the free head; chosen: bank.c's
-#define WATCHED HIMC_PICKUPS                    // index of the ring of displacements
+#define RUN_BLOCK 64         // samples of a pass of the free head; chosen: bank.c's
+#define WATCHED HIMC_PICKUPS // index of the ring of displacements
 #define NOISE_UNIT (100 / HIMC_PICKUP_PRESSURE) // the noise was fitted where 1.0 was 100 Pa
 #define LEVEL_RAMP 0.010 // (s) of the head's own sound from on to off; chosen: no click
 #define METRES_PER_INCH 0.0254
@@ -67,6 +66,10 @@ static int seed_of(const char *name)
 
 himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error)
 {
+    if (!name) {
+        himc_error_set(error, "drum: a name is missing");
+        return NULL;
+    }
     if (strlen(name) >= HIMC_NAME_SIZE) {
         himc_error_set(error, "drum: name %s, allowed up to %d characters", name,
                        HIMC_NAME_SIZE - 1);
@@ -237,7 +240,7 @@ static double outside_force(const outside *o, int at)
 {
     if (!o->of.force || !isfinite(o->of.force[at]))
         return 0;
-    return fmin(fmax(o->of.force[at], -OUTSIDE_LIMIT), OUTSIDE_LIMIT);
+    return fmin(fmax(o->of.force[at], -HIMC_FORCE_MAX), HIMC_FORCE_MAX);
 }
 
 // number of samples from now on without force and with the point unchanged

@@ -11,9 +11,9 @@
 #include "himc/loader.h"
 #include "drum/drum_performer.h"
 #include "base/job.h"
+#include "system/thread.h"
 
 #include <pthread.h>
-#include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,19 +92,10 @@ static void *help(void *object)
     return NULL;
 }
 
-// the helper has no deadline, whatever the host's priority
 static bool start(himc_loader *loader, himc_error *error)
 {
-    pthread_attr_t attributes;
-    if (loader->running)
-        return true;
-    pthread_attr_init(&attributes);
-    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
-    pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
-    // without it the host's own, which is not allowed for this policy
-    pthread_attr_setschedparam(&attributes, &(struct sched_param){.sched_priority = 0});
-    loader->running = pthread_create(&loader->thread, &attributes, help, loader) == 0;
-    pthread_attr_destroy(&attributes);
+    if (!loader->running)
+        loader->running = himc_system_start_thread(&loader->thread, help, loader);
     return loader->running || himc_error_set(error, "no thread to load in");
 }
 

@@ -193,6 +193,7 @@ void himc_osc_encode_status(osc_packets *p, const osc_status *status, const himc
                 {"overrun", (double)c->overrun},
                 {"sent", (double)c->sent},
                 {"unsent", (double)c->unsent},
+                {"capped", (double)c->capped},
                 {"lost", (double)c->lost}};
     osc_message message;
     himc_osc_message_begin(&message, "/himc/status");

@@ -7,6 +7,7 @@
 /// host is one host.
 #define _POSIX_C_SOURCE 200809L // names of hosts, threads
 #include "osc/network.h"
+#include "system/thread.h"
 #include "system/udp.h"
 
 #include <errno.h>
@@ -277,7 +278,7 @@ osc_lookup *himc_osc_lookup_start(const char *host, int port)
     l->users = 2;
     l->port = port;
     snprintf(l->host, sizeof l->host, "%s", host);
-    if (pthread_create(&thread, NULL, look_up, l) != 0) {
+    if (!himc_system_start_thread(&thread, look_up, l)) {
         free(l);
         return NULL;
     }

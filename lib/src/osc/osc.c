@@ -500,6 +500,7 @@ himc_osc_counts himc_osc_count(const himc_osc *osc)
                              .overrun = himc_osc_read(c, COUNT_OVERRUN),
                              .sent = himc_osc_read(c, COUNT_SENT),
                              .unsent = himc_osc_read(c, COUNT_UNSENT),
+                             .capped = himc_osc_read(c, COUNT_CAPPED),
                              .lost = osc->records.lost + osc->orders.lost + osc->lines.lost,
                              .subscriptions = osc->subscriptions.count};
 }
@@ -554,7 +555,7 @@ static void refuse(himc_osc *osc, const osc_address *to, const char *line)
 static void subscribe(himc_osc *osc, const osc_change *change)
 {
     himc_error error;
-    if (!himc_osc_subscribe(&osc->subscriptions, change, &error))
+    if (!himc_osc_subscribe(&osc->subscriptions, change, monotonic(osc), &error))
         refuse(osc, change->local ? NULL : &change->from, error.text);
 }
 
@@ -650,12 +651,12 @@ bool himc_osc_step(himc_osc *osc)
 {
     const osc_record *record;
     bool flood = take_packets(osc);
-    himc_osc_subscribe_found(&osc->subscriptions);
+    himc_osc_subscribe_found(&osc->subscriptions, monotonic(osc));
     for (int i = 0; i < RECORDS && (record = himc_osc_ring_peek(&osc->records)); i++) {
         send_record(osc, record);
         himc_osc_ring_pop(&osc->records);
     }
-    himc_osc_forget_unreachable(&osc->subscriptions, monotonic(osc));
+    himc_osc_forget(&osc->subscriptions, monotonic(osc));
     return flood;
 }
 
@@ -737,7 +738,7 @@ static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *er
         !himc_osc_network_open(&osc->network, config->bind, config->port, &osc->counts, error) ||
         !himc_osc_allow(s, config->allow, error))
         return false;
-    osc->running = !osc->stepped && pthread_create(&osc->thread, NULL, run, osc) == 0;
+    osc->running = !osc->stepped && himc_system_start_thread(&osc->thread, run, osc);
     return osc->running || osc->stepped || himc_error_set(error, "osc: the system gave no thread");
 }
 
@@ -795,9 +796,11 @@ static void hand_over(himc_osc *old, himc_osc *osc)
     const osc_subscription *one = old->subscriptions.subscription;
     for (int i = 0; i < SUBSCRIPTIONS; i++, one++)
         if (one->used)
-            put_change(osc,
-                       &(osc_change){
-                           .stream = one->stream, .hz = one->hz, .granted = true, .from = one->to});
+            put_change(osc, &(osc_change){.stream = one->stream,
+                                          .hz = one->hz,
+                                          .granted = true,
+                                          .from = one->to,
+                                          .expires = one->expires});
     for (; (r = himc_osc_ring_peek(&old->records)); himc_osc_ring_pop(&old->records))
         if (r->kind == RECORD_CHANGE)
             put_change(osc, &r->change);

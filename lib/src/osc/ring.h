@@ -35,6 +35,7 @@ typedef enum osc_counter {
     COUNT_OVERRUN,
     COUNT_SENT,
     COUNT_UNSENT,
+    COUNT_CAPPED,
     COUNTERS
 } osc_counter;
 

@@ -5,6 +5,11 @@
 /// host. An address where nobody listens is tried once a second and forgotten after a minute, with
 /// one line for the user.
 ///
+/// The sender of a UDP packet can be forged, and a firewall may hide that nobody listens. So what
+/// is asked for over the network, for a host that is neither this machine nor one of --allow, ends
+/// after a minute unless it is asked for again; and each host elsewhere gets so many bytes a second
+/// and no more.
+///
 /// A state is encoded once for all its subscribers: in one packet for this machine, and in packets
 /// below 1400 bytes for the others, so that none is fragmented on the way.
 #include "osc/subscribe.h"
@@ -22,6 +27,9 @@
 #define RETRY_PERIOD 1.0      // (s) chosen
 #define REACHED_AFTER 2.5     // (s) without a report; chosen: two tries and a half
 #define UNKNOWN_DRUM_HZ 110.0 // (Hz) chosen: A2, for a strike before its drum is known
+#define RENEWED_WITHIN 60.0   // (s) chosen: a receiver that subscribes twice a minute keeps it
+#define HOST_BYTES 500e3      // a second; chosen: the largest stream, vmc at 250 Hz, has 468,000
+#define HOST_BURST 0.25       // of a second's bytes at once; chosen: poses come in bursts of blocks
 #define REPORTS_AT_ONCE 192   // read at a time; chosen: 64 for each socket
 
 void himc_osc_tell(osc_ring *lines, const char *format, ...)
@@ -121,8 +129,20 @@ static bool unsubscribe(osc_subscriptions *s, const osc_change *change, const os
     return removed || refuse(change, error, "not subscribed");
 }
 
+// when the subscription ends unless renewed; 0: never
+static double expiry_of(const osc_subscriptions *s, const osc_change *change, const osc_address *to,
+                        double now)
+{
+    if (change->granted)
+        return change->expires;
+    bool trusted = change->local || himc_osc_address_loopback(to);
+    for (int i = 0; i < s->allowed_count && !trusted; i++)
+        trusted = himc_osc_address_same_host(to, &s->allowed[i]);
+    return trusted ? 0 : now + RENEWED_WITHIN;
+}
+
 static bool make_change(osc_subscriptions *s, const osc_change *change, const osc_address *to,
-                        himc_error *error)
+                        double now, himc_error *error)
 {
     osc_subscription *place = NULL;
     if (change->remove)
@@ -141,6 +161,7 @@ static bool make_change(osc_subscriptions *s, const osc_change *change, const os
                                 .to = *to,
                                 .stream = change->stream,
                                 .hz = change->hz,
+                                .expires = expiry_of(s, change, to, now),
                                 .local = himc_osc_address_loopback(to)};
     update(s);
     return true;
@@ -157,21 +178,22 @@ static bool look_up(osc_subscriptions *s, const osc_change *change)
     return false;
 }
 
-bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, himc_error *error)
+bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, double now,
+                        himc_error *error)
 {
     osc_address to;
     if (change->granted)
-        return make_change(s, change, &change->from, error);
+        return make_change(s, change, &change->from, now, error);
     if (himc_osc_address_parse(change->host, change->port, &to))
         return is_allowed(s, change, &to)
-                   ? make_change(s, change, &to, error)
+                   ? make_change(s, change, &to, now, error)
                    : refuse(change, error, "allowed is your own address, or one given by --allow");
     if (!change->local)
         return refuse(change, error, "allowed over the network is a numeric address");
     return look_up(s, change) || refuse(change, error, "too many names are being looked up");
 }
 
-void himc_osc_subscribe_found(osc_subscriptions *s)
+void himc_osc_subscribe_found(osc_subscriptions *s, double now)
 {
     osc_address to;
     himc_error error;
@@ -184,7 +206,7 @@ void himc_osc_subscribe_found(osc_subscriptions *s)
         if (!found) {
             himc_osc_tell(s->lines, "%s: %.200s: no host of that name", command_of(&p->change),
                           p->change.host);
-        } else if (!make_change(s, &p->change, &to, &error)) {
+        } else if (!make_change(s, &p->change, &to, now, &error)) {
             himc_osc_add(s->counts, COUNT_REFUSED, 1);
             himc_osc_tell(s->lines, "%s", error.text);
         }
@@ -240,10 +262,29 @@ static void mark_unreachable(osc_subscriptions *s, const osc_address *to, double
     }
 }
 
-void himc_osc_forget_unreachable(osc_subscriptions *s, double now)
+// one line for each address
+static bool forget_expired(osc_subscriptions *s, double now)
+{
+    char text[80];
+    bool forgotten = false;
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
+        if (!one->used || one->expires <= 0 || now < one->expires)
+            continue;
+        if (one->first || one->stream == STREAM_VMC) {
+            himc_osc_address_print(&one->to, text);
+            himc_osc_tell(s->lines, "%s: not subscribed again within %g s, forgotten", text,
+                          RENEWED_WITHIN);
+        }
+        one->used = false;
+        forgotten = true;
+    }
+    return forgotten;
+}
+
+void himc_osc_forget(osc_subscriptions *s, double now)
 {
     osc_address to;
-    bool forgotten = false;
+    bool forgotten = forget_expired(s, now);
     for (int i = 0; i < REPORTS_AT_ONCE && himc_osc_network_unreachable(s->network, &to); i++)
         mark_unreachable(s, &to, now);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
@@ -262,9 +303,41 @@ void himc_osc_forget_unreachable(osc_subscriptions *s, double now)
 
 // --- states out
 
+// true if the host may get so many bytes more
+static bool allows(osc_subscriptions *s, const osc_address *to, double bytes, double now)
+{
+    osc_allowance *a = NULL, *full = NULL;
+    for (int i = 0; i < SUBSCRIPTIONS && !a; i++) {
+        osc_allowance *one = &s->allowance[i];
+        if (himc_osc_address_same_host(&one->host, to))
+            a = one;
+        else if (!full && (one->last == 0 || now - one->last >= HOST_BURST)) // as a new one
+            full = one;
+    }
+    if (!a && !full)
+        return false;
+    if (!a) {
+        a = full;
+        *a = (osc_allowance){.host = *to, .left = HOST_BURST * HOST_BYTES, .last = now};
+    }
+    a->left = fmin(a->left + HOST_BYTES * (now - a->last), HOST_BURST * HOST_BYTES);
+    a->last = now;
+    if (a->left < bytes)
+        return false;
+    a->left -= bytes;
+    return true;
+}
+
 static void send_packets(osc_subscriptions *s, const osc_address *to, const osc_packets *p,
                          double now)
 {
+    double bytes = 0;
+    for (int i = 0; i < p->count; i++)
+        bytes += (double)p->size[i];
+    if (!himc_osc_address_loopback(to) && !allows(s, to, bytes, now)) {
+        himc_osc_add(s->counts, COUNT_CAPPED, p->count);
+        return;
+    }
     for (int i = 0; i < p->count; i++)
         if (!himc_osc_network_send(s->network, to, p->data[i], p->size[i]))
             mark_unreachable(s, to, now);

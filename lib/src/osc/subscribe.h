@@ -32,7 +32,8 @@ typedef struct osc_change {
     double hz;
     bool remove;
     bool local;       ///< by the user of this machine
-    bool granted;     ///< by the himc_osc before this one, for the address `from`
+    bool granted;     ///< by the himc_osc before this one, for the address `from` ...
+    double expires;   ///< ... until then, as below
     osc_address from; ///< the sender, unless local or granted
 } osc_change;
 
@@ -70,7 +71,14 @@ typedef struct osc_subscription {
     osc_stream stream;
     double hz, due;                             ///< (Hz; s, monotonic clock)
     double unreachable_since, unreachable_last; ///< (s); 0 while somebody listens
+    double expires;                             ///< unless renewed (s); 0: never
 } osc_subscription;
+
+/// The bytes that a host elsewhere may still be sent.
+typedef struct osc_allowance {
+    osc_address host;
+    double left, last; ///< at that time (bytes; s)
+} osc_allowance;
 
 typedef struct osc_subscriptions {
     _Atomic int pose_hz, head_hz; ///< highest rates asked for (Hz), 0 none
@@ -81,6 +89,7 @@ typedef struct osc_subscriptions {
     osc_counters *counts; ///< of the whole himc_osc
     osc_ring *lines;      ///< for the user of this machine
     osc_subscription subscription[SUBSCRIPTIONS];
+    osc_allowance allowance[SUBSCRIPTIONS];
     struct osc_pending {
         osc_lookup *lookup; ///< or NULL
         osc_change change;
@@ -99,9 +108,10 @@ bool himc_osc_change_from(osc_change *change, const himc_command *command);
 /// Hosts, separated by commas, that anyone may subscribe for; may wait for a name server.
 bool himc_osc_allow(osc_subscriptions *s, const char *hosts, himc_error *error);
 /// Makes a change, or begins to look up its host; false with one line if it is refused.
-bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, himc_error *error);
+bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, double now,
+                        himc_error *error);
 /// Makes the changes of which the look-up is over.
-void himc_osc_subscribe_found(osc_subscriptions *s);
+void himc_osc_subscribe_found(osc_subscriptions *s, double now);
 void himc_osc_subscriptions_free(osc_subscriptions *s);
 
 /// Sends a state to its subscribers, and the counters with a status; `now` on the monotonic clock
@@ -111,8 +121,9 @@ void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_o
 /// The next subscriber of refusals after `one` (NULL: the first), or NULL.
 const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
                                              const osc_subscription *one);
-/// Reads the reports of addresses where nobody listens; forgets those that stay so.
-void himc_osc_forget_unreachable(osc_subscriptions *s, double now);
+/// Reads the reports of addresses where nobody listens; forgets those that stay so, and
+/// subscriptions that were not renewed in time.
+void himc_osc_forget(osc_subscriptions *s, double now);
 
 /// A line for the user of this machine.
 void himc_osc_tell(osc_ring *lines, const char *format, ...) __attribute__((format(printf, 2, 3)));

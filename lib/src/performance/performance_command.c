@@ -551,10 +551,13 @@ static bool prepare(himc_performance *p, const himc_command *command, himc_error
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
                               himc_error *error)
 {
+    const himc_command_row *row = himc_command_table((int)command->id);
+    if (!row)
+        return himc_error_set(error, "command %d: not from the parser", (int)command->id);
     performance_action *act = actions[command->id];
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
-    if (delay <= 0 || himc_command_table((int)command->id)->when != HIMC_WHEN_AT_SAMPLE)
+    if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE)
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);

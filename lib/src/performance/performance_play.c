@@ -219,7 +219,7 @@ static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
 void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 asked)
 {
     bool reachable, first;
-    if (!himc_vec3_finite(asked))
+    if (!himc_vec3_finite(asked) || (unsigned)hand >= HIMC_HANDS)
         return;
     if (!himc_motion_free_hand(p->motion, hand, step_time(p))) {
         if (himc_motion_refuse_target(p->motion, hand))
