@@ -157,8 +157,8 @@ static inline void add_token(spoken *s, const char *token, size_t length, char c
     snprintf(context, 64, "%s", s->storage[s->count - 1]);
 }
 
-/// A command of that row that the parser accepts, in one of its forms.
-static inline void random_command(spoken *s, const himc_command_row *row, random_seed *seed)
+/// Adds the atoms of a command of that row, in one of its forms.
+static inline void add_form(spoken *s, const himc_command_row *row, random_seed *seed)
 {
     const char *grammar = row->atoms;
     char context[64];
@@ -168,14 +168,39 @@ static inline void random_command(spoken *s, const himc_command_row *row, random
     for (int skip = any_of(seed, forms); skip > 0; skip--)
         grammar = strstr(grammar, " | ") + 3;
     snprintf(context, sizeof context, "%s", row->name);
-    s->receiver = row->receiver;
-    s->name = row->name;
-    s->count = 0;
     while (*grammar && *grammar != '|') {
         size_t length = strcspn(grammar, " ");
         add_token(s, grammar, length, context, seed);
         grammar += length + strspn(grammar + length, " ");
     }
+}
+
+/// A command that may stand at a beat, for a drum or for the performer.
+static inline void add_timed(spoken *s, random_seed *seed)
+{
+    const himc_command_row *row;
+    char drum[64];
+    do
+        row = himc_command_table(any_of(seed, HIMC_COMMANDS));
+    while (!(row->marks & HIMC_AT_BEAT));
+    add_number(s, random_number(himc_argument_find("BEAT", "at"), seed));
+    random_text("DRUM", drum, seed);
+    if (row->receiver == HIMC_DRUM)
+        add_word(s, drum, strlen(drum));
+    add_word(s, row->name, strlen(row->name));
+    add_form(s, row, seed);
+}
+
+/// A command of that row that the parser accepts.
+static inline void random_command(spoken *s, const himc_command_row *row, random_seed *seed)
+{
+    s->receiver = row->receiver;
+    s->name = row->name;
+    s->count = 0;
+    if (row->id == HIMC_COMMAND_AT)
+        add_timed(s, seed);
+    else
+        add_form(s, row, seed);
 }
 
 /// The atom that a command is spoilt with.

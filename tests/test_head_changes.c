@@ -172,17 +172,136 @@ static void test_a_wrong_change_is_refused_with_its_line(void)
             SCORE ":2: at: mallet, allowed what changes a head: tune, tension, damp, decay, glide");
     refused("drum low;\n\nat 2 low tune;",
             SCORE ":3: low: tune: HZ missing, allowed tune HZ | NOTE");
-    refused("drum low;\nat -1 low tune A2;", SCORE ":2: at: BEAT: allowed 0 .. 1e+06");
-    refused("drum low;\nat low tune A2;", SCORE ":2: at: BEAT: allowed 0 .. 1e+06");
+    refused("drum low;\nat -1 low tune A2;", SCORE ":2: at: BEAT: -1, allowed 0 .. 1e+06");
+    refused("drum low;\nat low tune A2;", SCORE ":2: at: BEAT: low, allowed 0 .. 1e+06");
     refused("drum low;\nat 2 low;",
-            SCORE ":2: at: allowed at BEAT DRUM COMMAND ..., at BEAT push ...");
+            SCORE ":2: at: COMMAND missing, allowed at BEAT DRUM COMMAND [...] | BEAT push "
+                  "SEGMENT [...]");
     refused("drum low 60;\nat 7 low damp 1; at 8 low tune 2000;",
             SCORE ":2: low: tune: 2000 Hz, allowed 2.58125 .. 215.288 Hz");
+}
+
+// a final damping, a final glissando
+static void test_changes_after_the_last_stroke_act_and_end_the_piece(void)
+{
+    heard h = {.strikes = 0};
+    himc_performance *p = with_score(DRUM "stroke 1 right legato f; at 4.5 low damp 1; "
+                                          "at 6 low tune D3; play;");
+    session_play(p, 2.9, &h); // beat 6 is at 3 s
+    TEST_ASSERT_EQUAL_DOUBLE(1, damping(p));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, A2, pitch(p));
+    TEST_ASSERT_EQUAL_INT(0, h.dones);
+    session_play(p, 0.2, &h);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, D3, pitch(p));
+    TEST_ASSERT_EQUAL_INT(1, h.dones);
+    session_do(p, "play"); // from the beginning
+    session_play(p, 0.1, &h);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, A2, pitch(p));
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// in any order, while it plays or before, it is the same as in a file
+static void test_at_as_a_message_makes_the_score_that_a_file_makes(void)
+{
+    enum { LENGTH = 4 * 48000 };
+    static double written[LENGTH], said[LENGTH];
+    for (int playing = 0; playing < 2; playing++) {
+        himc_performance *p = with_score(DRUM STROKES "at 2 low tune D3; at 3 low damp 0.5; "
+                                                      "at 3.5 low tune C3; at 7 low damp 1; play;");
+        read_all(p, written, 0, LENGTH);
+        himc_performance_free(p);
+        p = with_score(DRUM STROKES);
+        if (playing)
+            session_do(p, "play");
+        session_do(p, "at 7 low damp 1");
+        session_do(p, "at 3 low damp 0.5");
+        session_do(p, "at 2 low tune D3");
+        if (!playing)
+            session_do(p, "play");
+        read_all(p, said, 0, 24000);
+        session_do(p, "at 3.5 low tune C3");
+        read_all(p, said, 24000, LENGTH);
+        TEST_ASSERT_EQUAL_MEMORY(written, said, sizeof said);
+        himc_performance_free(p);
+    }
+}
+
+static void test_at_is_given_up_when_its_beat_is_past(void)
+{
+    heard h = {.strikes = 0};
+    himc_performance *p = with_score(DRUM STROKES "play;");
+    session_play(p, 1.5, &h);
+    session_do(p, "at 2 low tune D3");
+    session_play(p, 0.1, &h);
+    TEST_ASSERT_EQUAL_STRING("at 2 low tune: given up, that beat is past", h.note);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, A2, pitch(p));
+    session_do(p, "stop");
+    session_do(p, "loop 1"); // where it comes again
+    session_do(p, "play");
+    session_play(p, 0.5, &h);
+    session_do(p, "seek 4");
+    session_play(p, 0.5, &h);
+    session_do(p, "at 2 low tune D3");
+    session_play(p, 0.1, &h);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, A2, pitch(p));
+    session_do(p, "seek 2.5");
+    session_play(p, 0.1, &h);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, D3, pitch(p));
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_at_as_a_message_is_refused_as_in_a_file(void)
+{
+    himc_performance *p = with_score(DRUM STROKES);
+    TEST_ASSERT_FALSE(session_try(p, "at 2 high tune D3"));
+    TEST_ASSERT_EQUAL_STRING("high: no drum of that name, expected one of: low", error.text);
+    TEST_ASSERT_FALSE(session_try(p, "at 2 low mallet hard"));
+    TEST_ASSERT_EQUAL_STRING(
+        "at: mallet, allowed what changes a head: tune, tension, damp, decay, glide", error.text);
+    TEST_ASSERT_FALSE(session_try(p, "at 2 low tune"));
+    TEST_ASSERT_EQUAL_STRING("low: tune: HZ missing, allowed tune HZ | NOTE", error.text);
+    TEST_ASSERT_FALSE(session_try(p, "at 2 low tune 1900"));
+    TEST_ASSERT_EQUAL_STRING("low: tune: 1900 Hz, allowed 7.75676 .. 581.205 Hz", error.text);
+    session_do(p, "at 2 low tune D3"); // the refused ones have left nothing
+    session_do(p, "play");
+    session_play(p, 1.2, NULL);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, D3, pitch(p));
+    himc_performance_free(p);
+}
+
+// also of a drum whose name is a command of drums
+static void test_a_drums_command_finds_it_by_its_name(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum low 26");
+    session_do(p, "drum kettle 23");
+    session_do(p, "low tune A2");
+    session_do(p, "kettle tune D3");
+    session_do(p, "low damp 0.5");
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, A2, pitch(p));
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, damping(p));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, D3,
+                              himc_membrane_principal(head(p, 1), himc_membrane_head(head(p, 1))));
+    TEST_ASSERT_FALSE(session_try(p, "high tune A2"));
+    TEST_ASSERT_EQUAL_STRING("high: no drum of that name, expected one of: low kettle", error.text);
+    TEST_ASSERT_FALSE(session_try(p, "low tune 1"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "low: tune: "));
+    TEST_ASSERT_FALSE(session_try(p, "drum stop"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "drum: NAME: stop"));
+    TEST_ASSERT_FALSE(session_try(p, "stop tune A2")); // the transport's
+    himc_performance_free(p);
 }
 
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_changes_after_the_last_stroke_act_and_end_the_piece);
+    RUN_TEST(test_at_as_a_message_makes_the_score_that_a_file_makes);
+    RUN_TEST(test_at_is_given_up_when_its_beat_is_past);
+    RUN_TEST(test_at_as_a_message_is_refused_as_in_a_file);
+    RUN_TEST(test_a_drums_command_finds_it_by_its_name);
     RUN_TEST(test_a_pedal_and_a_hand_act_on_their_beats);
     RUN_TEST(test_a_change_sounds_as_the_command_given_then);
     RUN_TEST(test_changes_need_no_memory_and_follow_the_transport);

@@ -319,9 +319,9 @@ static void test_pushes_of_a_score_begin_at_their_beats(void)
         const char *more;
         int count;
         double at[6]; ///< (beats after `play`); a tick before its end the loop has its last one
-    } cases[] = {{"", 3, {0.1, 2, 3.5}},
-                 {"seek 3;", 1, {0.5}},
-                 {"seek 2;", 2, {0, 1.5}},
+    } cases[] = {{"", 4, {0.1, 2, 3.5, 6.995}}, // the last one after the last stroke
+                 {"seek 3;", 2, {0.5, 3.995}},
+                 {"seek 2;", 3, {0, 1.5, 4.995}},
                  {"loop 1;", 6, {0.1, 2, 3.5, 6.995, 7.1, 9}},
                  {"clear;", 0, {0}}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -139,6 +139,7 @@ typedef struct himc_command {
     himc_atom atom[HIMC_COMMAND_ATOMS]; ///< symbols point into `storage`
     int choice[HIMC_COMMAND_ATOMS]; ///< index of the atom among its allowed words; -1 for a number
                                     ///< and a free word
+    char drum[HIMC_NAME_SIZE]; ///< of DRUM COMMAND ..., a drum's: which of the performer's; else ""
     const char *folder; ///< NULL, or of a command from the network the only folder that its FILE
                         ///< is read in; points into `storage`
     char storage[HIMC_PATH_SIZE + 256]; ///< the text of all symbols and of `folder`
@@ -164,7 +165,8 @@ HIMC_RT const himc_command_row *himc_command_find(himc_receiver receiver, const 
 
 /// Checks `name` and its atoms against the table; false, and `out` untouched, if they do not fit.
 /// Numbers are rounded to single precision, as Pure Data and OSC send them, so that the same
-/// command gives the same bits from everywhere; a note name becomes its frequency (Hz).
+/// command gives the same bits from everywhere; a note name becomes its frequency (Hz). For the
+/// performer also DRUM COMMAND ..., a command to one of its drums: then `out->drum` is its name.
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
                         const himc_atom *atoms, int count, himc_error *error);
 

@@ -18,8 +18,8 @@
 ///   marks     0, or several of himc_command_marks joined by |
 ///   atoms     the grammar. Capitals name an argument (lib/src/base/argument.c has its range),
 ///             small letters stand for themselves, `a|b` is one word of several, brackets are
-///             optional, ` | ` separates the forms. SPOT is a word or two numbers. Where words are
-///             the names of an enum's values, they stand in the order of that enum.
+///             optional, ` | ` separates the forms. SPOT is a word or two numbers, `...` any atoms.
+///             Where words are the names of an enum's values, they stand in the order of that enum.
 ///   does      one sentence for the manual
 
 #ifndef HIMC_COMMAND_ROW
@@ -51,6 +51,9 @@ HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes by the other hand, which bounces")
 HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes as `drag`, a little slower")
+HIMC_COMMAND_ROW(AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
+                 "moves a drum's pedal or lays a hand on it at a beat: tune, tension, damp, decay "
+                 "or glide; or pushes the performer")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, from that beat or from now on")
 HIMC_COMMAND_ROW(

@@ -34,6 +34,7 @@ static const himc_argument arguments[] = {
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"DRUM", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
+    {"COMMAND", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_NAME_SIZE - 1, "", NULL},
     {"MS", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_LATENCY_MAX, "ms", NULL},
     {"BPM", NULL, HIMC_ARGUMENT_NUMBER, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute", NULL},
     {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},

@@ -123,9 +123,26 @@ static bool take_word(walk *w, const char *token, char allowed[ALLOWED_SIZE])
     return true;
 }
 
+/// Takes all that is left: words and finite numbers.
+static bool take_rest(walk *w, char allowed[ALLOWED_SIZE])
+{
+    const himc_argument *word = himc_argument_find("COMMAND", NULL);
+    snprintf(allowed, ALLOWED_SIZE, "words and finite numbers");
+    for (; w->at < w->count && w->at < HIMC_COMMAND_ATOMS; w->at++) {
+        const himc_atom *atom = &w->atom[w->at];
+        bool number = atom->kind == HIMC_ATOM_NUMBER;
+        if (number ? !isfinite((float)atom->number) : !himc_argument_accepts(word, atom))
+            return false;
+        w->out->number[w->at] = number ? (float)atom->number : 0;
+    }
+    return true;
+}
+
 /// Takes the atoms that fit the token; false, and `allowed` filled, if the next one does not.
 static bool take(walk *w, const char *token, char allowed[ALLOWED_SIZE])
 {
+    if (strcmp(token, "...") == 0)
+        return take_rest(w, allowed);
     if (!is_argument(token))
         return take_word(w, token, allowed);
     const himc_argument *argument = himc_argument_find(token, w->context);
@@ -206,7 +223,8 @@ static void keep_closer(attempt *best, const attempt *other)
 {
     if (other->rank > best->rank || (other->rank == best->rank && best->end == TOO_MANY)) {
         *best = *other;
-    } else if (other->rank == best->rank && other->end == WRONG && best->end == WRONG) {
+    } else if (other->rank == best->rank && other->end == WRONG && best->end == WRONG &&
+               strcmp(other->allowed, best->allowed) != 0) {
         size_t used = strlen(best->allowed);
         int room = (int)(sizeof best->allowed - used);
         snprintf(best->allowed + used, (size_t)room, " or %.*s", room - 5 > 0 ? room - 5 : 0,
@@ -294,6 +312,7 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
     size_t used = 0;
     out->count = count;
     out->form = read->form;
+    out->drum[0] = '\0';
     out->folder = NULL;
     for (int i = 0; i < count; i++) {
         double hz;
@@ -382,11 +401,31 @@ static bool parse_preset(himc_command *out, const char *name, himc_error *error)
                               1, error);
 }
 
+// DRUM COMMAND ...: no drum has the name of a performer's command
+static bool is_for_drum(const char *name, const himc_atom *atoms, int count)
+{
+    const himc_atom drum = {HIMC_ATOM_SYMBOL, 0, name};
+    return count > 0 && atoms[0].kind == HIMC_ATOM_SYMBOL &&
+           himc_command_find(HIMC_DRUM, atoms[0].symbol) &&
+           himc_argument_accepts(himc_argument_find("NAME", NULL), &drum);
+}
+
+static bool parse_for_drum(himc_command *out, const char *name, const himc_atom *atoms, int count,
+                           himc_error *error)
+{
+    if (!himc_command_parse(out, HIMC_DRUM, atoms[0].symbol, atoms + 1, count - 1, error))
+        return himc_error_prefix(error, "%s", name);
+    snprintf(out->drum, sizeof out->drum, "%s", name);
+    return true;
+}
+
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
                         const himc_atom *atoms, int count, himc_error *error)
 {
     const himc_command_row *row = himc_command_find(receiver, name);
     reading read = {.form = 0};
+    if (!row && receiver == HIMC_PERFORMER && is_for_drum(name, atoms, count))
+        return parse_for_drum(out, name, atoms, count, error);
     if (!row)
         return refuse_name(receiver, name, error);
     if (!check(row, atoms, count, &read, error))
@@ -407,8 +446,11 @@ bool himc_command_check(himc_command *out, himc_receiver receiver, const himc_co
     if (!row || in->count < 0 || in->count > HIMC_COMMAND_ATOMS)
         return himc_error_set(error, "command %d with %d atoms: not from the parser", (int)in->id,
                               in->count);
+    if (in->drum[0] && receiver == HIMC_PERFORMER)
+        receiver = HIMC_DRUM; // one of its drums
     if (!himc_command_parse(out, receiver, row->name, in->atom, in->count, error))
         return false;
+    memmove(out->drum, in->drum, sizeof out->drum);
     for (int i = 0; i < in->count; i++)
         if (in->atom[i].kind == HIMC_ATOM_NUMBER)
             out->atom[i].number = in->atom[i].number;

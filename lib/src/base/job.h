@@ -9,6 +9,8 @@
 
 #include "himc/command.h"
 
+typedef struct himc_drum himc_drum; ///< himc/drum.h
+
 /// What `install` says.
 typedef enum himc_job_state {
     HIMC_JOB_DONE,
@@ -37,6 +39,8 @@ typedef struct himc_runner {
     himc_job *(*job)(void *receiver, const himc_command *command, himc_error *error);
     /// lines that `dump` has told, borrowed, as a job
     himc_job *(*state_job)(void *receiver, const char *state, himc_error *error);
+    /// the drum that a command with a drum's name is for, borrowed; NULL with the reason
+    himc_drum *(*drum)(void *receiver, const himc_command *command, himc_error *error);
 } himc_runner;
 
 /// Carries out a job at once and frees it. NULL: false; whoever made none has said why.

@@ -92,7 +92,7 @@ himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error);
 /// is quick if both have one sample rate.
 void himc_drum_exchange(himc_drum *drum, himc_drum *made);
 
-// Heads that a drum gets one after the other while a score plays (drum_job.c).
+// Heads that a drum gets one after the other while a score plays (drum_heads.c).
 
 typedef struct himc_drum_heads himc_drum_heads;
 
@@ -104,6 +104,8 @@ bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command
                          himc_error *error);
 /// Computes the heads, so that himc_drum_heads_turn need not. False without memory.
 bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error);
+/// Beat of the last change, -1 without one.
+HIMC_RT double himc_drum_heads_last(const himc_drum_heads *heads);
 /// True if the head at that beat is not the one that was last given.
 HIMC_RT bool himc_drum_heads_due(const himc_drum_heads *heads, double beat);
 /// The damping of the head at that beat (himc_head.damp).
@@ -118,6 +120,20 @@ himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads 
                                         double from, double now);
 /// Frees them, and those before. NULL is allowed.
 void himc_drum_heads_free(himc_drum_heads *heads);
+
+/// A change that is added to those of a drum while they are in use.
+typedef struct himc_head_insertion himc_head_insertion;
+/// Begins, between two blocks, with those that the drum has (NULL: none); see himc_drum_heads_add.
+himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *drum, double beat,
+                                             const himc_command *command, himc_error *error);
+/// Computes the heads; touches the insertion alone. False with the reason if the drum refuses one.
+bool himc_head_insertion_prepare(himc_head_insertion *insertion, himc_error *error);
+/// Puts it in its place at beat `now`, between two blocks; it acts from the next time on that its
+/// beat comes. False, and nothing changed, if the changes or the drum are others by now.
+HIMC_RT bool himc_head_insertion_install(himc_head_insertion *insertion, himc_drum_heads **heads,
+                                         double now);
+/// Frees it, and what it has replaced. NULL is allowed.
+void himc_head_insertion_free(himc_head_insertion *insertion);
 
 /// True if a command would take longer than an audio block can wait: a file, or many modes.
 HIMC_RT bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command);

@@ -163,8 +163,13 @@ void himc_loader_free(himc_loader *loader)
 // the first command is carried out, or refused; tells it, and what was dropped, after the last
 static void end_first(himc_loader *loader, const char *error)
 {
-    himc_load_target target = take_first(loader)->target;
-    himc_error lost = {""};
+    const waiting_load *first = take_first(loader);
+    himc_load_target target = first->target;
+    himc_error lost = {""}, named = {""};
+    if (error && first->command.drum[0] && !first->follower) {
+        himc_error_set(&named, "%s: %s", first->command.drum, error);
+        error = named.text;
+    }
     if (loader->count == 0 && loader->dropped > 1)
         himc_error_set(&lost, "%ld commands dropped: more than %d waited", loader->dropped,
                        WAITING_LOADS);
@@ -275,11 +280,17 @@ static waiting_load *add(himc_loader *loader, himc_error *error)
     return &loader->queue[(loader->first + loader->count++) % WAITING_LOADS];
 }
 
-bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
+bool himc_loader_command(himc_loader *loader, const himc_load_target *asked,
                          const himc_command *command, himc_error *error)
 {
+    himc_load_target named = *asked, *target = &named;
+    if (command->drum[0] && !named.drum) {
+        named.drum = runner_of(asked)->drum(asked->performance, command, error);
+        if (!named.drum)
+            return false;
+    }
     if (loader->count == 0 && !takes_long(target, command))
-        return carry_out(target, command, target->delay, error);
+        return carry_out(asked, command, asked->delay, error);
     waiting_load *load = add(loader, error);
     if (!load)
         return loader->dropped > 1;

@@ -637,7 +637,7 @@ static bool same_shape(const himc_shape *a, const himc_shape *b)
     return a->kind == b->kind && a->grid == b->grid && a->length * b->width == b->length * a->width;
 }
 
-static bool same_head(const himc_head *a, const himc_head *b)
+bool himc_head_equal(const himc_head *a, const himc_head *b)
 {
     return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
            a->decay_constant == b->decay_constant && a->decay_square == b->decay_square &&
@@ -672,7 +672,7 @@ void himc_membrane_form_free(himc_membrane_form *form)
 static bool is_alike(const himc_membrane *m, const himc_shape *shape, const himc_head *head,
                      const himc_pickup *pickups, int count, bool rays)
 {
-    bool alike = m->pickup_count == count && same_head(&m->head, head) &&
+    bool alike = m->pickup_count == count && himc_head_equal(&m->head, head) &&
                  same_shape(himc_membrane_shape(m), shape) &&
                  same_rays(himc_membrane_rays(m), rays ? pickups + HIMC_PICKUPS : NULL);
     for (int i = 0; alike && i < count; i++)
@@ -722,7 +722,7 @@ void himc_membrane_exchange(himc_membrane *m, himc_membrane *made)
     sounds before = read_sounds(m);
     double energy = himc_membrane_energy(m);
     bool outline = same_shape(himc_membrane_shape(m), himc_membrane_shape(made));
-    bool bends = outline && !same_head(&m->head, &made->head);
+    bool bends = outline && !himc_head_equal(&m->head, &made->head);
     if (bends)
         bend(m, -1);
     himc_membrane was = *m;

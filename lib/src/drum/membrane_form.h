@@ -11,6 +11,9 @@
 enum { HIMC_RAY_LEFT, HIMC_RAY_RIGHT, HIMC_RAY_FLOOR, HIMC_RAYS };
 #define HIMC_OUTPUTS (HIMC_PICKUPS + HIMC_RAYS) ///< pickups, then rays
 
+/// True if all of both heads is the same.
+HIMC_RT bool himc_head_equal(const himc_head *a, const himc_head *b);
+
 /// A membrane's outline, head, pickups and rays.
 typedef struct himc_membrane_form {
     himc_shape shape; ///< its grid is retained

@@ -63,8 +63,14 @@ static osc_verdict read_message(const char *data, size_t size, osc_request *requ
         return OSC_FOREIGN;
     if (!plain)
         return OSC_MALFORMED;
-    if (himc_command_parse(&request->command, request->receiver, name, atom, count, error))
+    if (himc_command_parse(&request->command, request->receiver, name, atom, count, error)) {
+        if (request->command.drum[0]) { // /himc/DRUM COMMAND ...
+            request->receiver = HIMC_DRUM;
+            snprintf(request->drum, sizeof request->drum, "%s", request->command.drum);
+            request->command.drum[0] = '\0';
+        }
         return OSC_REQUEST;
+    }
     if (sent_by_us(request->receiver, name))
         return OSC_FOREIGN;
     if (request->receiver == HIMC_DRUM)
@@ -123,6 +129,7 @@ double himc_osc_request_cost(const osc_request *request)
     case HIMC_COMMAND_TARGET: return 1;
     case HIMC_COMMAND_SCORE:
     case HIMC_COMMAND_TAKE: return 250;
+    case HIMC_COMMAND_AT:
     case HIMC_COMMAND_MODES:
     case HIMC_COMMAND_PLAYER:
     case HIMC_COMMAND_RESET:

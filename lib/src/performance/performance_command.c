@@ -15,6 +15,11 @@
 /// That any hit needs from rest (s): measured, an accent at ff.
 #define LONGEST_PREPARATION 0.33
 
+static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_job_carry_out(p->runner.job(p, c, error), error);
+}
+
 // playing
 
 static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
@@ -45,6 +50,11 @@ static bool do_ruff(himc_performance *p, const himc_command *c, himc_error *erro
 static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return himc_performance_hit(p, &c->stroke, error);
+}
+
+static bool do_at(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return carry_out(p, c, error);
 }
 
 static bool do_latency(himc_performance *p, const himc_command *c, himc_error *error)
@@ -103,11 +113,6 @@ static bool do_seek(himc_performance *p, const himc_command *c, himc_error *erro
     himc_planner_seek(p->motion->planner, step_time(p), c->atom[0].number);
     himc_motion_replan(p->motion);
     return true;
-}
-
-static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_job_carry_out(p->runner.job(p, c, error), error);
 }
 
 static bool do_score(himc_performance *p, const himc_command *c, himc_error *error)
@@ -497,7 +502,34 @@ static performance_action *const actions[HIMC_COMMANDS] = {
 #include "himc/command_rows.h"
 };
 
-// true if it reads or writes a file, or makes a drum
+// the drum that a command is for, or NULL with the reason
+static himc_drum *drum_of(void *receiver, const himc_command *c, himc_error *error)
+{
+    himc_performance *p = receiver;
+    int index = himc_drums_find(&p->drums, c->drum);
+    if (index >= 0)
+        return p->drums.slot[index].drum;
+    himc_drums_refuse(&p->drums, c->drum, error);
+    return NULL;
+}
+
+// DRUM COMMAND ...
+static bool command_drum(himc_performance *p, const himc_command *c, int delay, himc_error *error)
+{
+    himc_drum *drum = drum_of(p, c, error);
+    if (!drum)
+        return false;
+    himc_motion_stir(p->motion);
+    int ahead = himc_clock_ahead(&p->clock);
+    bool good =
+        c->id == HIMC_COMMAND_STRIKE
+            ? himc_drum_strike_at(drum, delay > ahead ? delay - ahead : 0, c->atom[0].number,
+                                  c->atom[1].number, c->atom[2].number, error)
+            : himc_drum_command(drum, c, error);
+    return good || himc_error_prefix(error, "%s", c->drum);
+}
+
+// true if it reads or writes a file, makes a drum or computes heads
 static bool takes_long(const void *receiver, const himc_command *c)
 {
     const himc_performance *p = receiver;
@@ -506,7 +538,8 @@ static bool takes_long(const void *receiver, const himc_command *c)
         return p->host.make_drums && himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
     if (c->id == HIMC_COMMAND_LISTENER)
         return himc_drums_listening_takes_long(&p->drums);
-    return c->id == HIMC_COMMAND_RECORD || himc_command_file(c, &file) != HIMC_FILE_NONE;
+    return c->id == HIMC_COMMAND_AT || c->id == HIMC_COMMAND_RECORD ||
+           himc_command_file(c, &file) != HIMC_FILE_NONE;
 }
 
 // a command that takes long; the performance must outlive it
@@ -516,6 +549,7 @@ static himc_job *job_of(void *receiver, const himc_command *c, himc_error *error
     enum { STOP };
     switch (c->id) {
     case HIMC_COMMAND_SCORE: return himc_performance_score_job(p, c, error);
+    case HIMC_COMMAND_AT: return himc_performance_change_job(p, c, error);
     case HIMC_COMMAND_DUMP: return himc_performance_dump_job(p, c, error);
     case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
     case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
@@ -537,7 +571,7 @@ static himc_job *state_job(void *receiver, const char *state, himc_error *error)
     return himc_performance_state_job(receiver, state, error);
 }
 
-const himc_runner himc_performance_runner = {takes_long, run, job_of, state_job};
+const himc_runner himc_performance_runner = {takes_long, run, job_of, state_job, drum_of};
 
 // makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
@@ -555,6 +589,8 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     if (!row)
         return himc_error_set(error, "command %d: not from the parser", (int)command->id);
     performance_action *act = actions[command->id];
+    if (command->drum[0])
+        return command_drum(p, command, delay, error);
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
     if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE)

@@ -4,6 +4,7 @@
 /// the one nearest to straight ahead at which its rim is clear of the others, first to the right,
 /// then to the left. So no two drums are at one place, where a stick could not tell them apart.
 #include "performance/performance_drums.h"
+#include "base/format.h"
 #include "base/head_frame.h"
 #include "drum/drum_state.h"
 
@@ -23,6 +24,17 @@ int himc_drums_find(const performance_drums *d, const char *name)
         if (strcmp(himc_drum_name(d->slot[i].drum), name) == 0)
             return i;
     return -1;
+}
+
+bool himc_drums_refuse(const performance_drums *d, const char *name, himc_error *error)
+{
+    char names[120] = "";
+    for (int i = 0; i < d->count; i++) {
+        size_t used = strlen(names);
+        himc_format(names + used, sizeof names - used, " %s", himc_drum_name(d->slot[i].drum));
+    }
+    return himc_error_set(error, "%s: no drum of that name, expected one of:%s", name,
+                          names[0] ? names : " none, `drum` makes one");
 }
 
 const himc_head_frame *himc_drums_frame(const performance_drums *d, int index)

@@ -515,7 +515,9 @@ static himc_job_state install_changes(score_job *j, himc_error *error)
             j->heads[k] = NULL;
         j->over[i] = j->queued ? himc_drum_heads_follow(heads, before, j->from, now) : before;
     }
-    return plan_pushes(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
+    bool good = plan_pushes(j, error);
+    himc_performance_find_end(j->performance);
+    return good ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
 }
 
 // the strokes as written, then what ornaments add, which leaves out what does not fit
@@ -772,6 +774,7 @@ bool himc_performance_exchange_strokes(himc_performance *p, const char *text, co
                                         himc_planner_exchange(p->motion->planner, aside));
     if (good)
         himc_body_plan_pushes(p->body, list, pushes, PUSHES_INSTEAD, error);
+    himc_performance_find_end(p);
     himc_planner_free(aside);
     himc_score_free(score);
     return good;

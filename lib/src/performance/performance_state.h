@@ -8,6 +8,7 @@
 ///     performance_contacts        sticks on heads: acts on motion, statistics and events
 ///     performance_report.c        reports: figures, rows of motion, `info`; the recording
 ///     performance_setup.c         new, rebuild, reset: puts the parts together; the settings
+///     performance_change.c        what a score has at beats: pedals, hands, pushes
 ///     performance_play.c, _take.c, _score.c     playing strokes, takes and scores
 ///     performance_command.c       the commands
 ///     performance.c               the step
@@ -150,6 +151,13 @@ himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *com
 /// Drops the take with its limits and posture regression; the planner moves the hands. Returns its
 /// track (or NULL), which the caller frees.
 himc_track *himc_performance_drop_track(himc_performance *p);
+
+// performance_change.c
+/// Tells the planner up to which beat the score has changes of heads and pushes.
+HIMC_RT void himc_performance_find_end(himc_performance *p);
+/// The command `at` as a job; NULL with the reason.
+himc_job *himc_performance_change_job(himc_performance *p, const himc_command *command,
+                                      himc_error *error);
 
 // performance_play.c
 /// himc_performance_add_stroke, but nothing is written, and the beat may be any.

@@ -288,6 +288,7 @@ void himc_planner_clear(himc_planner *planner)
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     himc_planner_score_seek(score, 0);
+    himc_planner_last_until(planner, -1);
     himc_planner_count_hits(planner);
     himc_planner_notes_begin(&planner->notes);
     if (!turns)
@@ -295,6 +296,18 @@ void himc_planner_clear(himc_planner *planner)
     himc_planner_score_start(score, t);
     himc_planner_score_hold(score, t, beat);
     himc_planner_score_empty(score);
+}
+
+void himc_planner_last_until(himc_planner *planner, double beat)
+{
+    planner_score *score = &planner->score;
+    if (score->until == beat)
+        return;
+    if (score->playing)
+        himc_planner_rebase(planner, planner->now);
+    score->until = beat;
+    if (score->playing && score->loop)
+        himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
 /// Begins at score->beat; the hands have been cut. If the music was `running`, listeners miss the

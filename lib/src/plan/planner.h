@@ -129,6 +129,8 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other);
 /// turns on, and begins again on a whole beat when strokes are added.
 void himc_planner_clear(himc_planner *planner);
 
+/// Beside its strokes the score has something up to that beat, -1: nothing. It ends after it.
+HIMC_RT void himc_planner_last_until(himc_planner *planner, double beat);
 /// Starts the transport at time `t` (s) from the current beat, or from beat 0 if all has been
 /// played; does nothing while strokes are still to come. The first beat waits until the first
 /// stroke can be prepared.
@@ -139,10 +141,11 @@ HIMC_RT void himc_planner_stop(himc_planner *planner, double t);
 /// Goes to a beat, playing or not. If it plays, and the first stroke there cannot be prepared in
 /// time, a note says by how much all beats are late.
 HIMC_RT void himc_planner_seek(himc_planner *planner, double t, double beat);
-/// If `on`, the score and its tempo map begin again at the whole beat after the last stroke. If
-/// not, the round under way is the last.
+/// If `on`, the score and its tempo map begin again at its length. If not, the round under way is
+/// the last.
 HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
-/// The whole beat after the last stroke, at which a loop begins again; 0 without strokes.
+/// The whole beat after the last stroke, or at or after himc_planner_last_until, at which a loop
+/// begins again; 0 if the score is empty.
 HIMC_RT double himc_planner_length(const himc_planner *planner);
 /// First beat for another score that shall follow this one: its length, or a later beat if that is
 /// past, too near to prepare for at `t`, or so near to the last stroke that it could not be one.
@@ -224,7 +227,8 @@ HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, d
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.
 HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
-/// End of the last stroke's contact, as predicted (s). Infinite while stopped or in a loop.
+/// End of the last stroke's contact, as predicted, or of all else (s). Infinite while stopped or in
+/// a loop.
 HIMC_RT double himc_planner_end(const himc_planner *planner);
 /// Strokes of the score given up since the last call.
 HIMC_RT int himc_planner_given_up(himc_planner *planner);

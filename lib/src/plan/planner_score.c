@@ -23,7 +23,7 @@
 
 bool himc_planner_score_init(planner_score *score)
 {
-    *score = (planner_score){.tempi = malloc(sizeof *score->tempi), .tempo_count = 1};
+    *score = (planner_score){.tempi = malloc(sizeof *score->tempi), .tempo_count = 1, .until = -1};
     if (score->tempi)
         score->tempi[0] = (himc_tempo_change){0, HIMC_TEMPO};
     return score->tempi != NULL;
@@ -349,7 +349,8 @@ bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand, i
     return score->part[hand].list[index].settled == round_name(score, round);
 }
 
-double himc_planner_score_last_beat(const planner_score *score)
+/// -1 without strokes.
+static double last_stroke(const planner_score *score)
 {
     double beat = -1;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -360,14 +361,19 @@ double himc_planner_score_last_beat(const planner_score *score)
     return beat;
 }
 
+double himc_planner_score_last_beat(const planner_score *score)
+{
+    return fmax(last_stroke(score), score->until);
+}
+
 double himc_planner_score_length(const planner_score *score)
 {
-    return floor(himc_planner_score_last_beat(score)) + 1;
+    return fmax(floor(last_stroke(score)) + 1, ceil(score->until));
 }
 
 double himc_planner_score_free_from(const planner_score *score)
 {
-    double last = himc_planner_score_last_beat(score), next = himc_planner_score_length(score);
+    double last = last_stroke(score), next = himc_planner_score_length(score);
     return next + (last >= 0 && gap(score, last, next) < CLOSEST_STROKES ? 1 : 0);
 }
 

@@ -33,6 +33,7 @@ typedef struct planner_score {
     int rounds;   ///< without loop: the last round to be played
     int starts;   ///< of the transport, so far
     int past;     ///< rounds of the loop played before round 0
+    double until; ///< last beat of what the score has beside strokes, -1: none
 } planner_score;
 
 /// A stroke of the score with its place in it.
@@ -117,9 +118,9 @@ HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand, int
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand, int index,
                                            int round);
 
-/// Last beat of the score, -1 without strokes.
+/// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
-/// The whole beat after the last stroke.
+/// The whole beat after the last stroke, or at or after all else that the score has.
 HIMC_RT double himc_planner_score_length(const planner_score *score);
 /// The first whole beat where any hand can have a stroke after all others.
 HIMC_RT double himc_planner_score_free_from(const planner_score *score);

@@ -170,36 +170,39 @@ static bool read_drum_line(reader *r, const himc_atom *atom, int count)
                             r->error) ||
         !may_stand(&r->command, r->error))
         return himc_error_prefix(r->error, "%s", atom[0].symbol);
-    const himc_command_row *row = himc_command_table((int)r->command.id);
-    if (r->timed && !(row->marks & HIMC_AT_BEAT))
-        return himc_error_set(r->error,
-                              "at: %s, allowed what changes a head: tune, tension, damp, "
-                              "decay, glide",
-                              row->name);
     return add_line(r, atom[0].symbol);
 }
 
-/// Of `at` for the performer.
-static bool read_timed_command(reader *r, const himc_atom *atom, int count)
+bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,
+                            himc_error *error)
 {
-    return himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
-                              r->error) &&
-           add_line(r, "");
+    const char *word = atom[1].symbol;
+    bool push = himc_command_find(HIMC_PERFORMER, word) != NULL; // no drum has such a name
+    snprintf(out->drum, sizeof out->drum, "%s", push ? "" : word);
+    out->beat = atom[0].number;
+    if (push)
+        return himc_command_parse(&out->command, HIMC_PERFORMER, word, atom + 2, count - 2, error);
+    if (!himc_command_parse(&out->command, HIMC_DRUM, atom[2].symbol, atom + 3, count - 3, error))
+        return himc_error_prefix(error, "%s", word);
+    const himc_command_row *row = himc_command_table((int)out->command.id);
+    return (row->marks & HIMC_AT_BEAT) ||
+           himc_error_set(error,
+                          "at: %s, allowed what changes a head: tune, tension, damp, decay, glide",
+                          row->name);
 }
 
 /// "at 12 kettle tune 110": a line for a drum, at a beat; "at 12 push ...": one for the performer.
 static bool read_timed_line(reader *r, const himc_atom *atom, int count)
 {
-    const himc_argument *beat = himc_argument_find("BEAT", NULL);
-    if (count < 4 || atom[2].kind != HIMC_ATOM_SYMBOL || atom[3].kind != HIMC_ATOM_SYMBOL)
-        return himc_error_set(r->error, "at: allowed at BEAT DRUM COMMAND ..., at BEAT push ...");
-    if (!himc_argument_accepts(beat, &atom[1]))
-        return himc_error_set(r->error, "at: BEAT: allowed %g .. %g", beat->low, beat->high);
+    himc_command at;
+    himc_score_line line;
+    if (!himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) ||
+        !himc_score_read_change(at.atom, at.count, &line, r->error))
+        return false;
+    himc_command_copy(&r->command, &line.command);
+    r->beat = line.beat;
     r->timed = true;
-    r->beat = atom[1].number;
-    const himc_command_row *own = himc_command_find(HIMC_PERFORMER, atom[2].symbol);
-    bool good = own && (own->marks & HIMC_AT_BEAT) ? read_timed_command(r, atom + 2, count - 2)
-                                                   : read_drum_line(r, atom + 2, count - 2);
+    bool good = add_line(r, line.drum);
     r->timed = false;
     return good;
 }

@@ -8,6 +8,10 @@
 /// errors. Free with himc_score_free.
 himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
 
+/// The change of a drum, or the push, that the checked atoms of `at` ask for.
+bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,
+                            himc_error *error);
+
 /// True if a roll is not longer than is allowed, with that tempo map; else the reason.
 bool himc_score_accepts_roll(const himc_tempo_change *tempi, int count, const himc_stroke *roll,
                              himc_error *error);

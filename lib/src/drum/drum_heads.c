@@ -1,0 +1,375 @@
+/// drum_heads.c: the heads of a drum whose pedal and damping are written in a score: each change
+/// acts on a copy of the drum, so that the score's commands give the heads they would give by hand.
+/// All that differ are computed ahead, and one is exchanged for another when its beat has come
+/// (himc_membrane_exchange): the head taken out is kept for its next time. The head at a beat does
+/// not depend on the way there, so a loop or `seek` finds it, too. Invariant: the drum's head is
+/// that of the last change at or before the last beat asked for.
+///
+/// A change may be added to those in use: it is prepared beside them, with all that comes after it,
+/// and put in their place between two blocks.
+#include "drum/drum_state.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_SPARES 48 // of a drum, under 1 MB each; chosen: two octaves, sounding and damped
+
+typedef struct head_change {
+    double beat;
+    himc_head head;
+    himc_command_id id; ///< of the command that made it, whose atoms are all numbers
+    int count;
+    double number[HIMC_COMMAND_ATOMS];
+} head_change;
+
+struct himc_drum_heads {
+    himc_drum *copy;     ///< owned; the commands act on it
+    himc_head first;     ///< before the first change
+    himc_drum_form form; ///< owned
+    head_change *change; ///< owned, in the order of beats
+    int count, room;
+    himc_membrane *spare[MOST_SPARES]; ///< owned
+    int spares;
+    int now;                 ///< the change whose head the drum has, -1: the first; -2: not known
+    int late;                ///< a change that came, at beat `since`, after its beat: ...
+    double since;            ///< ... up to an earlier beat it is not made up for; 0: none
+    himc_drum_heads *before; ///< owned; in force before `from`
+    double from;             ///< (beats)
+};
+
+himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *error)
+{
+    himc_drum_heads *heads = calloc(1, sizeof *heads);
+    if (heads)
+        heads->copy = himc_drum_new_of(form, error);
+    else
+        himc_error_set(error, "at: out of memory");
+    if (!heads || !heads->copy) {
+        free(heads);
+        return NULL;
+    }
+    heads->form = himc_drum_form_of(heads->copy);
+    heads->first = *himc_membrane_head(heads->copy->membrane);
+    heads->now = -2;
+    return heads;
+}
+
+static void keep_command(head_change *change, const himc_command *command)
+{
+    change->id = command->id;
+    change->count = command->count;
+    for (int i = 0; i < command->count; i++) {
+        assert(command->atom[i].kind == HIMC_ATOM_NUMBER);
+        change->number[i] = command->atom[i].number;
+    }
+}
+
+/// Carries out the command of a change on the copy, and keeps the head that it leaves.
+static bool find_head(himc_drum *copy, head_change *change, himc_error *error)
+{
+    himc_command command = {.id = change->id, .count = change->count};
+    for (int i = 0; i < change->count; i++)
+        command.atom[i] = (himc_atom){HIMC_ATOM_NUMBER, change->number[i], NULL};
+    if (!himc_drum_command(copy, &command, error))
+        return false;
+    change->head = *himc_membrane_head(copy->membrane);
+    return true;
+}
+
+bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command *command,
+                         himc_error *error)
+{
+    head_change change = {.beat = beat};
+    keep_command(&change, command);
+    if (!find_head(heads->copy, &change, error))
+        return false;
+    if (heads->count == heads->room) {
+        int room = heads->room ? 2 * heads->room : 16;
+        head_change *bigger = realloc(heads->change, (size_t)room * sizeof *bigger);
+        if (!bigger)
+            return himc_error_set(error, "at: out of memory for %d changes", room);
+        heads->change = bigger;
+        heads->room = room;
+    }
+    heads->change[heads->count++] = change;
+    return true;
+}
+
+/// The head after a change, -1: the first.
+static const himc_head *head_of(const himc_drum_heads *heads, int change)
+{
+    return change < 0 ? &heads->first : &heads->change[change].head;
+}
+
+static himc_membrane *find_spare(himc_drum_heads *heads, const himc_membrane_form *form)
+{
+    for (int i = 0; i < heads->spares; i++)
+        if (himc_membrane_has_form(heads->spare[i], form))
+            return heads->spare[i];
+    return NULL;
+}
+
+bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error)
+{
+    himc_membrane_form form = heads->form.head;
+    for (int i = 0; i < heads->count && heads->spares < MOST_SPARES; i++) {
+        form.head = *head_of(heads, i);
+        if (find_spare(heads, &form))
+            continue;
+        himc_membrane *made = himc_membrane_new_of(&form, error);
+        if (!made)
+            return false;
+        heads->spare[heads->spares++] = made;
+    }
+    return true;
+}
+
+// the last change at or before a beat; usually the present one or its neighbour
+static int change_at(const himc_drum_heads *heads, double beat)
+{
+    int i = heads->now < -1 ? -1 : heads->now;
+    while (i >= 0 && heads->change[i].beat > beat)
+        i--;
+    while (i + 1 < heads->count && heads->change[i + 1].beat <= beat)
+        i++;
+    return i;
+}
+
+// the change that the drum is to have at a beat
+static int wanted_at(const himc_drum_heads *heads, double beat)
+{
+    int change = change_at(heads, beat);
+    bool late = heads->since > 0 && change == heads->late && beat >= heads->since;
+    return late ? heads->now : change;
+}
+
+double himc_drum_heads_last(const himc_drum_heads *heads)
+{
+    double last = -1;
+    for (double before = HUGE_VAL; heads && last < 0; before = heads->from, heads = heads->before)
+        for (int i = heads->count - 1; i >= 0 && last < 0; i--)
+            if (heads->change[i].beat < before)
+                last = heads->change[i].beat;
+    return last;
+}
+
+bool himc_drum_heads_due(const himc_drum_heads *heads, double beat)
+{
+    bool earlier = heads->before && beat < heads->from;
+    return earlier ? heads->now != -2 || himc_drum_heads_due(heads->before, beat)
+                   : wanted_at(heads, beat) != heads->now;
+}
+
+double himc_drum_heads_damp(const himc_drum_heads *heads, double beat)
+{
+    while (heads->before && beat < heads->from)
+        heads = heads->before;
+    return head_of(heads, wanted_at(heads, beat))->damp;
+}
+
+void himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat)
+{
+    for (; heads->before && beat < heads->from; heads = heads->before)
+        heads->now = -2;
+    if (heads->before)
+        heads->before->now = -2;
+    int change = wanted_at(heads, beat);
+    if (change == heads->now)
+        return;
+    heads->since = 0;
+    himc_membrane *membrane = drum->membrane;
+    himc_membrane_form form = himc_membrane_form_of(membrane);
+    form.head = *head_of(heads, change);
+    heads->now = change;
+    himc_membrane *spare = find_spare(heads, &form);
+    if (spare && !himc_membrane_has_form(membrane, &form))
+        himc_membrane_exchange(membrane, spare);
+    else if (!spare)
+        himc_membrane_set_head(membrane, &form.head, NULL);
+    himc_membrane_form_free(&form);
+}
+
+himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads *before,
+                                        double from, double now)
+{
+    heads->before = before;
+    heads->from = from;
+    himc_drum_heads *present = before;
+    while (present && present->before && now < present->from)
+        present = present->before;
+    himc_drum_heads *over = present ? present->before : NULL;
+    if (present)
+        present->before = NULL;
+    return over;
+}
+
+void himc_drum_heads_free(himc_drum_heads *heads)
+{
+    while (heads) {
+        himc_drum_heads *before = heads->before;
+        while (heads->spares > 0)
+            himc_membrane_free(heads->spare[--heads->spares]);
+        himc_drum_form_free(&heads->form);
+        himc_drum_release(heads->copy);
+        free(heads->change);
+        free(heads);
+        heads = before;
+    }
+}
+
+// a change that is added while others are in use
+
+struct himc_head_insertion {
+    himc_drum *drum;     ///< borrowed
+    himc_drum_heads *to; ///< not touched by `prepare`; NULL: the drum has no changes yet
+    himc_drum_form form; ///< owned; of the drum
+    himc_head first;
+    himc_drum *copy;              ///< owned; the commands act on it
+    head_change *change;          ///< owned; those of `to` with the new one
+    int count, at;                ///< the new one's index
+    himc_head known[MOST_SPARES]; ///< heads that are made already ...
+    int known_count;
+    himc_membrane *spare[MOST_SPARES]; ///< ... and those that are not, owned
+    int spares;
+    himc_drum_heads *fresh; ///< owned; for a drum without changes
+};
+
+/// Those of the chain that hold at a beat.
+static himc_drum_heads *heads_at(himc_drum_heads *heads, double beat)
+{
+    while (heads && heads->before && beat < heads->from)
+        heads = heads->before;
+    return heads;
+}
+
+static void know_heads(himc_head_insertion *j)
+{
+    himc_membrane_form form = j->form.head;
+    for (int i = 0; i < j->to->spares; i++) {
+        form.head = *himc_membrane_head(j->to->spare[i]);
+        if (himc_membrane_has_form(j->to->spare[i], &form))
+            j->known[j->known_count++] = form.head;
+    }
+}
+
+himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *drum, double beat,
+                                             const himc_command *command, himc_error *error)
+{
+    himc_drum_heads *to = heads_at(heads, beat);
+    int old = to ? to->count : 0;
+    himc_head_insertion *j = calloc(1, sizeof *j);
+    head_change *change = malloc(((size_t)old + 1) * sizeof *change);
+    if (!j || !change) {
+        free(j);
+        free(change);
+        himc_error_set(error, "at: out of memory for %d changes", old + 1);
+        return NULL;
+    }
+    *j = (himc_head_insertion){.drum = drum, .to = to, .change = change, .count = old + 1};
+    j->form = himc_drum_form_of(drum);
+    j->first = to ? to->first : j->form.head.head;
+    while (j->at < old && to->change[j->at].beat <= beat)
+        j->at++;
+    for (int i = 0; i < old; i++)
+        change[i + (i >= j->at)] = to->change[i];
+    change[j->at] = (head_change){.beat = beat};
+    keep_command(&change[j->at], command);
+    if (to) {
+        know_heads(j);
+        j->copy = to->copy;
+        to->copy = NULL;
+    }
+    return j;
+}
+
+static bool is_known(const himc_head_insertion *j, const himc_head *head)
+{
+    bool known = himc_head_equal(head, &j->form.head.head);
+    for (int i = 0; i < j->known_count; i++)
+        known = known || himc_head_equal(head, &j->known[i]);
+    for (int i = 0; i < j->spares; i++)
+        known = known || himc_head_equal(head, himc_membrane_head(j->spare[i]));
+    return known;
+}
+
+bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
+{
+    const himc_head *before = j->at > 0 ? &j->change[j->at - 1].head : &j->first;
+    himc_membrane_form form = j->form.head;
+    if (!j->copy)
+        j->copy = himc_drum_new_of(&j->form, error);
+    if (!j->copy || (!himc_head_equal(himc_membrane_head(j->copy->membrane), before) &&
+                     !himc_membrane_set_head(j->copy->membrane, before, error)))
+        return false;
+    for (int i = j->at; i < j->count; i++) {
+        if (!find_head(j->copy, &j->change[i], error))
+            return false;
+        form.head = j->change[i].head;
+        if (j->known_count + j->spares == MOST_SPARES || is_known(j, &form.head))
+            continue;
+        himc_membrane *made = himc_membrane_new_of(&form, error);
+        if (!made)
+            return false;
+        j->spare[j->spares++] = made;
+    }
+    if (!j->to && !j->fresh)
+        j->fresh = calloc(1, sizeof *j->fresh);
+    return j->to || j->fresh || himc_error_set(error, "at: out of memory");
+}
+
+/// True if the changes are still those that it was prepared for.
+static bool still_fits(const himc_head_insertion *j, const himc_drum_heads *to)
+{
+    if (!to)
+        return !j->to && himc_membrane_has_form(j->drum->membrane, &j->form.head);
+    bool fits = to == j->to && to->count == j->count - 1 && himc_head_equal(&to->first, &j->first);
+    for (int i = 0; fits && i < to->count; i++) {
+        const head_change *was = &j->change[i + (i >= j->at)];
+        fits = was->beat == to->change[i].beat && was->id == to->change[i].id &&
+               memcmp(was->number, to->change[i].number, sizeof was->number) == 0;
+    }
+    return fits;
+}
+
+bool himc_head_insertion_install(himc_head_insertion *j, himc_drum_heads **heads, double now)
+{
+    himc_drum_heads *to = heads_at(*heads, j->change[j->at].beat);
+    if (!still_fits(j, to))
+        return false;
+    if (!to) {
+        to = *heads = j->fresh;
+        *to = (himc_drum_heads){.first = j->first, .form = j->form, .now = -1};
+        j->fresh = NULL;
+        j->form = (himc_drum_form){.name = ""};
+    }
+    head_change *old = to->change;
+    to->change = j->change;
+    to->count = to->room = j->count;
+    j->change = old;
+    to->copy = j->copy;
+    j->copy = NULL;
+    while (j->spares > 0 && to->spares < MOST_SPARES)
+        to->spare[to->spares++] = j->spare[--j->spares];
+    to->now += to->now >= j->at;
+    to->late += to->late >= j->at;
+    if (now > to->change[j->at].beat && change_at(to, now) == j->at) {
+        to->late = j->at;
+        to->since = now;
+    }
+    return true;
+}
+
+void himc_head_insertion_free(himc_head_insertion *j)
+{
+    if (!j)
+        return;
+    while (j->spares > 0)
+        himc_membrane_free(j->spare[--j->spares]);
+    himc_drum_form_free(&j->form);
+    himc_drum_release(j->copy);
+    free(j->fresh);
+    free(j->change);
+    free(j);
+}

@@ -1,0 +1,147 @@
+/// performance_change.c: what a score has at beats beside strokes: a pedal moves, a hand is laid on
+/// a head, the player is pushed. `at` adds one to the score that plays or will be played.
+///
+/// It is a job (base/job.h): the heads that follow from it are computed aside. Invariants: the
+/// piece lasts until the last of them; a beat that is past is told, and not made up for.
+#include "performance/performance_state.h"
+
+#include "plan/score.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct change_job {
+    himc_job job;
+    himc_performance *performance; ///< borrowed
+    himc_score_line line;
+    himc_head_insertion *insertion, *over; ///< owned; of a head: under way, and what did not fit
+    int tries;
+} change_job;
+
+void himc_performance_find_end(himc_performance *p)
+{
+    double end = -1;
+    for (int i = 0; i < p->drums.count; i++)
+        end = fmax(end, himc_drum_heads_last(p->drums.slot[i].heads));
+    for (int i = 0; i < p->body->planned_count; i++)
+        end = fmax(end, p->body->planned[i].beat);
+    himc_planner_last_until(p->motion->planner, end);
+}
+
+/// False, and told, if the beat is past and will not come again.
+static bool is_to_come(const change_job *j, double now)
+{
+    himc_performance *p = j->performance;
+    const himc_score_line *line = &j->line;
+    if (now <= line->beat || (!p->motion->track && himc_planner_is_looped(p->motion->planner)))
+        return true;
+    himc_events_note(&p->events, "at %g %s%s%s: given up, that beat is past", line->beat,
+                     line->drum, line->drum[0] ? " " : "",
+                     himc_command_table((int)line->command.id)->name);
+    return false;
+}
+
+/// The pushes of the score with one more, in the order of beats.
+static bool add_push(change_job *j, himc_error *error)
+{
+    performance_body *body = j->performance->body;
+    planned_push list[HIMC_PUSHES];
+    int count = body->planned_count, at = count;
+    if (count == HIMC_PUSHES)
+        return himc_error_set(error, "push: one too many, allowed %d", HIMC_PUSHES);
+    memcpy(list, body->planned, sizeof *list * (size_t)count);
+    for (; at > 0 && list[at - 1].beat > j->line.beat; at--)
+        list[at] = list[at - 1];
+    if (!himc_body_read_push(&j->line.command, &list[at], error))
+        return false;
+    list[at].beat = j->line.beat;
+    return himc_body_plan_pushes(body, list, count + 1, PUSHES_INSTEAD, error);
+}
+
+static bool find_drum(const himc_performance *p, const char *name, int *index, himc_error *error)
+{
+    *index = himc_drums_find(&p->drums, name);
+    return *index >= 0 || himc_drums_refuse(&p->drums, name, error);
+}
+
+/// Begins with the heads as they are now.
+static bool begin(change_job *j, himc_error *error)
+{
+    himc_performance *p = j->performance;
+    int index;
+    if (!j->line.drum[0])
+        return true;
+    if (!find_drum(p, j->line.drum, &index, error))
+        return false;
+    j->over = j->insertion;
+    j->insertion = himc_head_insertion_new(p->drums.slot[index].heads, p->drums.slot[index].drum,
+                                           j->line.beat, &j->line.command, error);
+    return j->insertion;
+}
+
+static bool prepare(himc_job *job, himc_error *error)
+{
+    change_job *j = (change_job *)job;
+    himc_head_insertion_free(j->over);
+    j->over = NULL;
+    return !j->insertion || himc_head_insertion_prepare(j->insertion, error) ||
+           himc_error_prefix(error, "%s", j->line.drum);
+}
+
+static himc_job_state add_head(change_job *j, double now, himc_error *error)
+{
+    himc_performance *p = j->performance;
+    int index;
+    if (!himc_written_room(&p->written.score, "at", error) ||
+        !find_drum(p, j->line.drum, &index, error))
+        return HIMC_JOB_FAILED;
+    if (!himc_head_insertion_install(j->insertion, &p->drums.slot[index].heads, now)) {
+        if (++j->tries < HIMC_JOB_TRIES)
+            return begin(j, error) ? HIMC_JOB_AGAIN : HIMC_JOB_FAILED;
+        himc_error_set(error, "at: drum %s changes all the time", j->line.drum);
+        return HIMC_JOB_FAILED;
+    }
+    himc_written_change(&p->written.score, &j->line, 0);
+    return HIMC_JOB_DONE;
+}
+
+static himc_job_state install(himc_job *job, himc_error *error)
+{
+    change_job *j = (change_job *)job;
+    himc_performance *p = j->performance;
+    himc_error why = {""};
+    double now = himc_motion_score_beat(p->motion, step_time(p));
+    himc_job_state state = HIMC_JOB_DONE;
+    error = error ? error : &why;
+    if (is_to_come(j, now))
+        state = j->insertion         ? add_head(j, now, error)
+                : add_push(j, error) ? HIMC_JOB_DONE
+                                     : HIMC_JOB_FAILED;
+    himc_performance_find_end(p);
+    himc_motion_stir(p->motion);
+    return state;
+}
+
+static void free_job(himc_job *job)
+{
+    change_job *j = (change_job *)job;
+    himc_head_insertion_free(j->insertion);
+    himc_head_insertion_free(j->over);
+    free(j);
+}
+
+himc_job *himc_performance_change_job(himc_performance *p, const himc_command *command,
+                                      himc_error *error)
+{
+    change_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "at: out of memory");
+        return NULL;
+    }
+    j->job = (himc_job){prepare, install, free_job};
+    j->performance = p;
+    if (himc_score_read_change(command->atom, command->count, &j->line, error) && begin(j, error))
+        return &j->job;
+    free_job(&j->job);
+    return NULL;
+}
