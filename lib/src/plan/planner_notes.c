@@ -32,8 +32,9 @@ void himc_planner_say(planner_notes *notes, planner_kind kind, const char *forma
     notes->said[kind] = true;
     va_list args;
     va_start(args, format);
-    put(notes, kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE,
-        format, args);
+    bool minor = kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE &&
+                 kind != PLANNER_OTHER_HAND;
+    put(notes, minor, format, args);
     va_end(args);
 }
 

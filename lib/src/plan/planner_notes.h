@@ -15,6 +15,7 @@ typedef enum planner_kind {
     PLANNER_OUTSIDE,
     PLANNER_MEET,
     PLANNER_SOFTER,
+    PLANNER_OTHER_HAND,
     PLANNER_KINDS
 } planner_kind;
 
