@@ -12,9 +12,10 @@ the patch. */
 #include <sys/stat.h>
 
 #define NETWORK_PERIOD \
-    2.0                    /* between two looks for commands from the network (ms); chosen: shorter
+    2.0 /* between two looks for commands from the network (ms); chosen: shorter
                                  than a block of 128 samples */
-#define NETWORK_COMMANDS 8 /* most of them at one look; chosen: none makes a block late */
+#define SILENCE_PATIENCE 20.0 /* from a message to the line that DSP is off (ms); chosen */
+#define NETWORK_COMMANDS 8    /* most of them at one look; chosen: none makes a block late */
 
 /* A search for a file. */
 typedef struct _search {
@@ -158,8 +159,7 @@ static void himc_tilde_save_line(void *saving, const char *line)
 {
     char word[HIMC_NAME_SIZE];
     snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " "), line);
-    const himc_command_row *row = himc_command_find(HIMC_PERFORMER, word);
-    if (strcmp(word, "at") == 0 || (row && row->id != HIMC_COMMAND_MAKE_DRUM))
+    if (strcmp(word, "at") == 0 || himc_command_find(HIMC_PERFORMER, word))
         saved_line(saving, line);
 }
 
@@ -200,12 +200,37 @@ void himc_tilde_restore(t_himc *x)
     free(state);
 }
 
+/* While DSP is off nothing plays: that is told once, unless the message that switches it on comes
+behind in the same moment. A score begins when it is on; a hit, which is for now, is left out. */
+static bool himc_tilde_waits(t_himc *x, const himc_command *command)
+{
+    bool hit = command->id == HIMC_COMMAND_HIT;
+    if ((!hit && command->id != HIMC_COMMAND_PLAY) || pd_getdspstate())
+        return false;
+    if (!x->x_dsp_told)
+        clock_delay(x->x_silence, SILENCE_PATIENCE);
+    x->x_dsp_told = true;
+    x->x_hits_lost += hit;
+    return hit;
+}
+
+void himc_tilde_silence(t_himc *x)
+{
+    if (!pd_getdspstate())
+        logpost(x, PD_NORMAL, "himc~: DSP is off: nothing plays");
+    else if (x->x_hits_lost > 0)
+        logpost(x, PD_NORMAL, "himc~: hit: left out, it came before DSP was on");
+    x->x_hits_lost = 0;
+}
+
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
     himc_tilde_restore(x);
     if (s == gensym("save"))
         return saved_switch(&x->x_saves, argc, argv, error);
+    if (s == &s_bang)
+        s = gensym("play");
     if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
         return false;
     himc_command_when when = himc_command_table((int)command.id)->when;
@@ -224,7 +249,7 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return himc_error_prefix(error, "%s", s->s_name);
     /* a command may come before DSP is on, and needs its drums */
     himc_tilde_resolve(x, false);
-    return himc_tilde_perform_command(x, &command, error);
+    return himc_tilde_waits(x, &command) || himc_tilde_perform_command(x, &command, error);
 }
 
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)

@@ -73,8 +73,56 @@ static himc_drum *himc_tilde_find(t_himc *x, const char *name, himc_error *error
     return link->l_drum;
 }
 
+/* One more drum; NULL if there are too many. */
+static t_himc_drum *himc_tilde_append(t_himc *x, const char *name)
+{
+    if (x->x_count == HIMC_DRUMS)
+        return NULL;
+    t_himc_drum *d = &x->x_drum[x->x_count++];
+    *d = (t_himc_drum){.d_name = gensym(name)->s_name};
+    return d;
+}
+
+static t_himc_drum *himc_tilde_listed(t_himc *x, const char *name)
+{
+    for (t_himc_drum *d = x->x_drum; d < x->x_drum + x->x_count; d++)
+        if (strcmp(d->d_name, name) == 0)
+            return d;
+    return NULL;
+}
+
+bool himc_tilde_find_drum(void *object, const char *name)
+{
+    t_himc *x = object;
+    himc_error ignored;
+    himc_drum *drum = himc_tilde_find(x, name, &ignored);
+    t_himc_drum *d = drum ? himc_tilde_listed(x, name) : NULL;
+    if (drum && !d)
+        d = himc_tilde_append(x, name);
+    if (!d || !himc_tilde_take(x, d, drum, &ignored))
+        return false;
+    d->d_silent = d->d_told = false;
+    return true;
+}
+
+/* Silent drums that a score or the command `drum` has made: a [membrane~] may come for them. The
+one of strokes without a drum's name has a command's name. */
+static void himc_tilde_list_made(t_himc *x)
+{
+    himc_drum *drum;
+    for (int i = 0; (drum = himc_performance_drum(x->x_performance, i)); i++) {
+        const char *name = himc_drum_name(drum);
+        t_himc_drum *d = NULL;
+        if (!himc_command_find(HIMC_PERFORMER, name) && !himc_tilde_listed(x, name))
+            d = himc_tilde_append(x, name);
+        if (d)
+            d->d_silent = d->d_told = true; /* by the performance */
+    }
+}
+
 void himc_tilde_resolve(t_himc *x, bool tell)
 {
+    himc_tilde_list_made(x);
     for (t_himc_drum *d = x->x_drum; d < x->x_drum + x->x_count; d++) {
         himc_error error = {""};
         himc_drum *drum = himc_tilde_find(x, d->d_name, &error);

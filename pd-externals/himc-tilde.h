@@ -41,6 +41,10 @@ typedef struct t_himc {
     himc_osc *x_osc;    /* NULL until `subscribe` or `listen` */
     t_clock *x_network; /* looks for commands from there */
 
+    t_clock *x_silence; /* tells that DSP is off */
+    bool x_dsp_told;    /* since it is off */
+    int x_hits_lost;    /* by that, and not told */
+
     bool x_saves;   /* its state in the patch */
     char *x_state;  /* from there, to be restored when all drums of the patch are made; or NULL */
     bool x_waiting; /* x_event is to be sent */
@@ -51,6 +55,9 @@ typedef struct t_himc {
 
 /* Finds each drum by name, as [delread~] does, and replaces those that have changed. */
 void himc_tilde_resolve(t_himc *x, bool tell);
+/* Takes the drum of [membrane~ NAME] that a command names and the arguments do not; false if there
+is none. */
+bool himc_tilde_find_drum(void *x, const char *name);
 /* From now on no drum calls x. */
 void himc_tilde_leave(t_himc *x);
 /* Advances the performance to sample `time`; called by the perform of x or of one of its drums. */
@@ -68,6 +75,8 @@ void himc_tilde_saved(t_himc *x, t_symbol *s, int argc, t_atom *argv);
 void himc_tilde_restore(t_himc *x);
 /* Installs what has been loaded. */
 void himc_tilde_load(t_himc *x);
+/* Says why nothing is heard. */
+void himc_tilde_silence(t_himc *x);
 /* Carries out commands from OSC, in Pd's own time, also while DSP is off. */
 void himc_tilde_network(t_himc *x);
 

@@ -74,7 +74,7 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         stream_restart(&x->x_stream, sp[0]);
         himc_tilde_restore(x);
         himc_tilde_resolve(x, true);
-        x->x_spoilt = x->x_told = false;
+        x->x_spoilt = x->x_told = x->x_dsp_told = false;
         himc_performance_realign(x->x_performance);
         x->x_player.p_time = 0;
         dsp_add(himc_tilde_perform, 1, x);
@@ -159,26 +159,27 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
 {
     (void)s;
     himc_error error;
-    himc_performance_config config = himc_performance_default();
-    config.sample_rate = sys_getsr();
-    himc_performance *performance = NULL;
     bool saves = take_flag(&argc, &argv, "-save"), signals = take_flag(&argc, &argv, "-signals");
     saves |= take_flag(&argc, &argv, "-save");
-    if (himc_tilde_arguments(argc, argv, &error))
-        performance = himc_performance_new(&config, &error);
-    himc_loader *loader = performance ? himc_loader_new(&error) : NULL;
-    if (!loader) {
-        himc_performance_free(performance);
-        pd_error(NULL, "himc~: %s", error.text);
-        return NULL;
-    }
     t_himc *x = (t_himc *)pd_new(himc_tilde_class);
     x->x_canvas = canvas_getcurrent();
     x->x_clock = clock_new(x, (t_method)himc_tilde_tick);
     x->x_network = clock_new(x, (t_method)himc_tilde_network);
     x->x_load = clock_new(x, (t_method)himc_tilde_load);
-    x->x_loader = loader;
-    x->x_performance = performance;
+    x->x_silence = clock_new(x, (t_method)himc_tilde_silence);
+    saved_bind(&x->x_obj.ob_pd);
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = sys_getsr();
+    config.find_drum = himc_tilde_find_drum;
+    config.find_user = x;
+    if (himc_tilde_arguments(argc, argv, &error))
+        x->x_performance = himc_performance_new(&config, &error);
+    x->x_loader = x->x_performance ? himc_loader_new(&error) : NULL;
+    if (!x->x_loader) {
+        pd_error(NULL, "himc~: %s", error.text);
+        pd_free(&x->x_obj.ob_pd);
+        return NULL;
+    }
     x->x_player.p_himc = x;
     x->x_rate = config.sample_rate;
     x->x_count = argc;
@@ -186,7 +187,6 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
         x->x_drum[i].d_name = argv[i].a_w.w_symbol->s_name;
     x->x_signals = signals;
     x->x_saves = saves;
-    saved_bind(&x->x_obj.ob_pd);
     for (int i = 0; signals && i < COORDINATES; i++)
         inlet_new(&x->x_obj, &x->x_obj.ob_pd, &s_signal, &s_signal);
     outlet_new(&x->x_obj, &s_signal);
@@ -205,6 +205,7 @@ static void himc_tilde_free(t_himc *x)
     himc_performance_free(x->x_performance);
     clock_free(x->x_network);
     clock_free(x->x_load);
+    clock_free(x->x_silence);
     clock_free(x->x_clock);
 }
 

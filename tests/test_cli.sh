@@ -81,6 +81,67 @@ done
 # how it refuses what it is given
 refuses test_no_call_is_refused "allowed: render, evaluate, edit, info, modes, import, share, film, play, serve, bench"
 refuses test_unknown_call_is_refused '"drum"' drum
+refuses test_misspelt_call_is_found 'unknown call "rnder", did you mean render?' rnder piece.txt
+refuses test_misspelt_option_is_found 'unknown option --strkes, did you mean --strokes?' render piece.txt --strkes x.csv
+for word in help --help -h; do
+    check "test_help_is_printed_by_$word" [ "$("$himc" $word)" = "$("$himc" --help)" ]
+done
+check test_help_of_a_call_is_printed [ "$("$himc" help film)" = "$("$himc" film --help)" ]
+check test_version_is_a_word [ "$("$himc" version)" = "himc $version" ]
+check test_all_commands_are_listed [ "$("$himc" help commands | grep -cE '^  (stroke|hit|tune|strike|listen) ')" = 5 ]
+# what a word that is wrong is told, from the standard input
+wrong() { # wrong NAME SCORE ERROR
+    tests=$((tests + 1))
+    printf '%b' "$2" | "$himc" render - -o x.wav >stdout 2>stderr
+    if [ "$(cat stdout stderr)" = "himc render: -:$3" ]; then
+        line "$1" PASS
+    else
+        failures=$((failures + 1))
+        line "$1" "FAIL: wanted \"$3\", got: $(cat stdout stderr)"
+    fi
+}
+wrong test_a_misspelt_spot_is_named 'tempo 90;\nstroke 1 right accent f rmi;' \
+    '2: rmi: no spot (center normal rim), no drum (kettle), did you mean rim?'
+wrong test_a_spot_in_capitals_is_named 'stroke 1 right accent f Rim;' \
+    '1: Rim: no spot (center normal rim), no drum (kettle), did you mean rim?'
+wrong test_a_spot_of_another_instrument_is_named 'roll 1 2 press f edge;' '1: edge: no spot (center normal rim), no drum (kettle)'
+wrong test_a_misspelt_drum_is_named 'drum low;\ndrum high;\nstroke 1 right accent f rim hihg;' \
+    '3: hihg: no drum (low high), did you mean high?'
+wrong test_a_line_for_no_drum_is_named 'drum low;\nlwo tune A2;' '2: lwo: no drum (low), did you mean low?'
+wrong test_a_change_for_no_drum_is_named 'at 3 lwo tune A2;' '1: lwo: no drum (kettle)'
+wrong test_a_command_in_capitals_is_named 'PLAY;' '1: PLAY: unknown command, did you mean play?'
+wrong test_a_comment_of_another_language_is_named 'tempo 90;\n# loud;' '2: #: a comment is written comment ...;'
+wrong test_a_line_without_its_end_is_named 'tempo 90\nstroke 1 right accent f;' '1: tempo 90: a ; is missing, before "stroke"'
+wrong test_a_shape_that_is_none_is_named 'kettle shape triangle;' \
+    '1: kettle: shape: triangle, allowed circle, rectangle LENGTH WIDTH, or a file'
+wrong test_the_range_of_this_head_is_told 'kettle tune 900;' '1: kettle: tune: 900 Hz, allowed 7.75676 .. 581.205 Hz'
+printf 'stroke 1 right accent f centre;\n' >british.txt
+printf 'stroke 1 right accent f center;\n' >american.txt
+"$himc" render british.txt -o british.wav >out 2>&1 && "$himc" render american.txt -o american.wav >out 2>&1
+check test_centre_is_center cmp british.wav american.wav
+check test_a_piece_without_strokes_is_noted_once \
+    [ "$(printf 'play;' | "$himc" render - -o y.wav 2>&1 | grep -c 'nothing to play')" = 1 ]
+
+# formats of sound
+for kind in wav:RIFF w64:riff aiff:FORM flac:fLaC ogg:OggS; do
+    "$himc" render american.txt -o "sound.${kind%:*}" >out 2>&1
+    check "test_${kind%:*}_is_written" [ "$(head -c 4 "sound.${kind%:*}")" = "${kind#*:}" ]
+done
+refuses test_another_format_is_refused "a.xyz: sound is written to a file that ends with .wav .w64 .aiff .flac .ogg" \
+    render american.txt -o a.xyz
+check test_a_refused_format_leaves_no_file [ "$(ls a.xyz* 2>/dev/null)" = "" ]
+"$himc" render american.txt -o loud.flac --set "gain 24" >out 2>err
+check test_cut_off_sound_is_told grep -q "the sound is cut off .*gain -[0-9]" err
+"$himc" render american.txt -o loud.wav --set "gain 24" >out 2>err
+check test_floats_are_not_cut_off [ "$(grep -c "cut off" err)" = 0 ]
+refuses test_a_score_named_as_a_take_is_refused "a score is a text" import a.mid -o b.bvh
+if command -v script >/dev/null; then
+    script -qec "\"$himc\" render american.txt -o y.wav" /dev/null >terminal </dev/null
+    check test_a_terminal_gets_no_json [ "$(grep -c '"seconds"' terminal)$(grep -c 'strokes ' terminal)" = 01 ]
+    check test_a_terminal_sees_the_length [ "$(grep -c ' of 1 s played' terminal)" -ge 1 ]
+    script -qec "\"$himc\" render american.txt -o y.wav --json" /dev/null >terminal </dev/null
+    check test_a_terminal_gets_json_when_asked [ "$(tail -n 1 terminal | head -c 11)" = '{"seconds":' ]
+fi
 refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
     render piece.txt -o x.wav --speed 2
 refuses test_film_of_another_kind_is_refused "allowed endings are .webm, .png, .glb" film a.himc -o a.mp4
@@ -157,7 +218,7 @@ refuses test_typo_is_refused_with_its_line "typo.txt:2: " render typo.txt -o x.w
 refuses test_nan_in_a_score_is_refused "nan.txt:1: " render nan.txt -o x.wav
 refuses test_typo_is_refused_by_info "typo.txt:2: " info typo.txt
 refuses test_typo_is_refused_by_modes "typo.txt:2: " modes typo.txt
-refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: kettle: /dev/zero: cannot be read: a device" \
+refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: kettle: shape: /dev/zero: cannot be read: a device" \
     render endless-shape.txt -o x.wav
 refuses test_unknown_tip_is_refused_by_info 'left tip: no point "nope", allowed: LTIP, RTIP' \
     info still.trc --left-tip nope

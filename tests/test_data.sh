@@ -62,9 +62,16 @@ check test_a_numpy_file_is_a_zip [ "$(head -c 2 d.npz)$(tail -c 22 d.npz | head 
 refuses test_a_wrong_player_is_refused "--player: player: MASS" render piece.txt -o x.wav --player 1.8,8000
 refuses test_a_wrong_setting_is_refused "--set: lims: unknown command" render piece.txt -o x.wav --set "lims off"
 
+# an error of a take names its file once
+printf 'PathFileType\t4\t(X/Y/Z)\tx.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n100\t100\t2\t1\tmm\t100\t1\t2\nFrame#\tTime\tabc\t\t\n\t\tX1\tY1\tZ1\n\n1\t0\t1\t2\t3\n2\t0.01\t1\t2\t3\n' >tipless.trc
+printf 'units tipless.trc legato;' >tipless.txt
+for call in "render tipless.trc -o x.wav" "render tipless.txt -o x.wav" "evaluate --take tipless.trc"; do
+    check "test_a_file_is_named_once_by_${call%% *}" [ "$("$himc" $call 2>&1 | grep -o 'tipless\.trc' | wc -l)" = 1 ]
+done
+
 # unknown files are named for what they are
 printf 'stroke 0 left accent f\nstroke 1 right accent f;\n' >lost.txt
-refuses test_a_missing_semicolon_is_suggested '(is a ; missing before "stroke"?)' info lost.txt
+refuses test_a_missing_semicolon_is_suggested 'lost.txt:1: stroke 0 left accent f: a ; is missing, before "stroke"' info lost.txt
 printf 'RIFF    WAVE' >sound.txt
 refuses test_a_sound_is_named "sound.txt: a sound or a film" info sound.txt
 cp a.csv takes.amc

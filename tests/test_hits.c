@@ -72,7 +72,8 @@ static void test_a_run_too_fast_for_its_hand_is_shared_and_a_roll_of_hits_is_cou
     TEST_ASSERT_EQUAL_INT(12, r.h.strikes);
     TEST_ASSERT_EQUAL_INT(6, r.left);
     TEST_ASSERT_TRUE(r.latest <= 0.0005);
-    TEST_ASSERT_EQUAL_INT(r.h.softer, r.h.notes);
+    // the other hand, once, and that mf is too much
+    TEST_ASSERT_EQUAL_INT(r.h.softer + 1, r.h.notes);
     heard_free(&r.h);
     session_play(p, 2, NULL);
     r = tap(p, 40, 0.01, LATENCY, right, "legato mf");

@@ -127,10 +127,12 @@ static void test_a_take_from_the_helper_plays_as_one_loaded_at_once(void)
 static void test_a_score_from_the_helper_plays_as_one_loaded_at_once(void)
 {
     write_take();
-    write_text(SCORE, "kettle modes 150; kettle tension 4000; kettle mallet hard; drum small 23;\n"
-                      "units " BVH " legato; small place 0.8 -0.6 0.85; player 1.9 90;\n"
-                      "stroke 1 left legato f; stroke 1.5 right accent mf; tempo 120;\n"
-                      "stroke 2 left legato mf normal other; small tension 3000; play;\n");
+    write_text(
+        SCORE,
+        "kettle modes 150; kettle tension 4000; kettle mallet hard; drum small 23; drum other;\n"
+        "units " BVH " legato; small place 0.8 -0.6 0.85; player 1.9 90;\n"
+        "stroke 1 left legato f; stroke 1.5 right accent mf; tempo 120;\n"
+        "stroke 2 left legato mf normal other; small tension 3000; play;\n");
     same_as_at_once((const char *const[]){"score " SCORE, NULL});
 }
 

@@ -188,6 +188,8 @@ static void test_a_file_cut_anywhere_is_read_up_to_there_or_refused_in_a_line(vo
             TEST_ASSERT_TRUE(file.note_count >= notes);
             notes = file.note_count;
             read += file.cut;
+            TEST_ASSERT_TRUE(file.cut + file.missing > 0); // and that is told
+            TEST_ASSERT_TRUE(file.cut_at >= 0 && file.cut_at < 60);
             himc_midi_file_free(&file);
         }
         free(part);

@@ -223,7 +223,7 @@ static void test_a_performers_command_without_memory_changes_nothing(void)
         const char *before, *text;
         int delay;
     } row[] = {{"", "stroke 0 left accent f", 0},
-               {"", "stroke 0 left accent f normal side", 0},
+               {"drum side", "stroke 0 left accent f normal side", 0},
                {"", "hit right accent f", 0},
                {"", "hit right accent f", 400},
                {"", "play", 0},
@@ -497,8 +497,10 @@ static bool make_files(void)
     mkdir(MESH, 0777);
     disc_mesh_write(&mesh, MESH, 3000, 0.3);
     disc_mesh_free(&mesh);
-    write_text(SCORE, "drum tom 29; kettle modes 30; tempo 120; tempo 90 2; at 1 tom tune A2;\n"
-                      "stroke 0.5 left accent f normal kettle; stroke 1 right tenuto mf; play;\n");
+    write_text(
+        SCORE,
+        "drum tom 29; drum kettle 26; kettle modes 30; tempo 120; tempo 90 2; at 1 tom tune A2;\n"
+        "stroke 0.5 left accent f normal kettle; stroke 1 right tenuto mf; play;\n");
     return true;
 }
 

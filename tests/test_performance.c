@@ -344,11 +344,67 @@ static void test_target_out_of_reach_is_clamped_with_one_line(void)
     himc_performance_free(p);
 }
 
-static void test_unknown_drum_is_silent_and_noted_once(void)
+// the host's drum, for the performance that `user` points to
+static bool lend_drum(void *user, const char *name)
+{
+    himc_performance *p = *(himc_performance **)user;
+    if (strcmp(name, "tabla") != 0)
+        return false;
+    himc_drum *drum = himc_drum_new(name, 14, 48000, &error);
+    bool good = himc_performance_add_drum(p, drum, &error);
+    himc_drum_release(drum);
+    return good;
+}
+
+static void test_a_word_that_is_neither_spot_nor_drum_is_refused_with_both_lists(void)
+{
+    static const char *const form[] = {"hit right legato f %s",     "stroke 1 right legato f %s",
+                                       "flam 1 right legato f %s",  "drag 1 right legato f %s",
+                                       "ruff 1 right legato f %s",  "roll 1 2 single f %s",
+                                       "hit right legato f rim %s", "hit right legato f 0 0.1 %s"};
+    himc_performance *p = new_performance();
+    char text[80];
+    command(p, "drum low 29");
+    command(p, "drum high 23");
+    for (size_t i = 0; i < sizeof form / sizeof *form; i++) {
+        snprintf(text, sizeof text, form[i], "rmi");
+        TEST_ASSERT_FALSE_MESSAGE(try_command(p, text), text);
+        TEST_ASSERT_EQUAL_STRING(i < 6
+                                     ? "rmi: no spot (center normal rim), no drum (low high), did "
+                                       "you mean rim?"
+                                     : "rmi: no drum (low high)",
+                                 error.text);
+        snprintf(text, sizeof text, form[i], "high");
+        TEST_ASSERT_TRUE_MESSAGE(try_command(p, text), error.text);
+        command(p, "clear");
+    }
+    TEST_ASSERT_NULL(himc_performance_drum(p, 2));
+    himc_performance_free(p);
+}
+
+static void test_a_drum_that_the_host_has_is_asked_for(void)
+{
+    himc_performance *p = NULL;
+    himc_performance_config config = himc_performance_default();
+    config.find_drum = lend_drum;
+    config.find_user = &p;
+    p = himc_performance_new(&config, &error);
+    TEST_ASSERT_FALSE(try_command(p, "stroke 1 right legato f bongo"));
+    command(p, "stroke 1 right legato f tabla");
+    TEST_ASSERT_EQUAL_STRING("tabla", himc_drum_name(himc_performance_drum(p, 0)));
+    command(p, "hit right legato f tabla");
+    TEST_ASSERT_NULL(himc_performance_drum(p, 1));
+    himc_performance_free(p);
+}
+
+static void test_drum_of_a_host_without_it_is_silent_and_noted_once(void)
 {
     himc_performance *p = new_performance();
     himc_event event;
     int lines = 0;
+    himc_performance_make_drums(p, false);
+    command(p, "drum tabla");
+    command(p, "drum tabla");
     command(p, "stroke 1 right legato mf normal tabla");
     command(p, "stroke 2 right legato mf normal tabla");
     command(p, "play");
@@ -639,7 +695,9 @@ int main(void)
     RUN_TEST(test_process_never_allocates_after_the_first_stroke);
     RUN_TEST(test_bad_commands_change_nothing_and_name_the_allowed_values);
     RUN_TEST(test_target_out_of_reach_is_clamped_with_one_line);
-    RUN_TEST(test_unknown_drum_is_silent_and_noted_once);
+    RUN_TEST(test_a_word_that_is_neither_spot_nor_drum_is_refused_with_both_lists);
+    RUN_TEST(test_a_drum_that_the_host_has_is_asked_for);
+    RUN_TEST(test_drum_of_a_host_without_it_is_silent_and_noted_once);
     RUN_TEST(test_commands_wait_for_their_sample);
     RUN_TEST(test_any_gain_stays_finite_and_recovers);
     RUN_TEST(test_sample_rate_changes_while_playing);

@@ -111,6 +111,13 @@ static void test_errors_name_file_and_line(void)
     refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, allowed tune HZ | NOTE");
     refused("drum kettle;\n\nkettle radius 0;",
             "s.txt:3: kettle: radius: RADIUS: 0, allowed 0.05 .. 1 m");
+    refused("play;\n# loud\nstroke 1 left legato f;",
+            "s.txt:2: #: a comment is written comment ...;");
+    refused("//loud: f;", "s.txt:1: //loud:: a comment is written comment ...;");
+    refused("play;\ntempo 90\nstroke 1 left legato f;",
+            "s.txt:2: tempo 90: a ; is missing, before \"stroke\"");
+    refused("drum low;\ntempo 90\nlow tune A2;",
+            "s.txt:2: tempo 90: a ; is missing, before \"low\"");
     refused("score other.txt;", "s.txt:1: score: not allowed in a score");
     refused(
         "stroke 1 left legato f;\nstroke 1.01 left legato f;",
@@ -128,8 +135,8 @@ static void test_errors_name_file_and_line(void)
     TEST_ASSERT_NULL(himc_score_load("tests", &error));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "tests: "));
     TEST_ASSERT_NULL(himc_score_load("/proc/self/environ", &error)); // zeros among its letters
-    TEST_ASSERT_EQUAL_STRING("/proc/self/environ: not a text file; allowed: a score or a MIDI file",
-                             error.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "/proc/self/environ: not a text file; allowed: a score, a MIDI file or a take", error.text);
 }
 
 // room for a path and 256 characters more; a word that long once ended the program

@@ -214,7 +214,13 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
         {"listen 9000;", ":5: listen: allowed as a message"},
         {"units /no/such/take.bvh legato;", ":5: /no/such/take.bvh"},
         {"take /no/such/take.c3d;", ":5: /no/such/take.c3d"},
-        {"kettle shape /no/such/grid.txt;", ":5: kettle: /no/such/grid.txt"},
+        {"kettle shape /no/such/grid.txt;", ":5: kettle: shape: /no/such/grid.txt"},
+        {"kettle shape triangle;",
+         ":5: kettle: shape: triangle, allowed circle, rectangle LENGTH WIDTH, or a file"},
+        {"stroke 1 left legato f centr;", ":5: centr: no spot (center normal rim), no drum"},
+        {"stroke 1 left legato f rim secnd;", ":5: secnd: no drum (kettle second), did you"},
+        {"at 1 secnd tune A2;", ":5: secnd: no drum (kettle second), did you mean second?"},
+        {"secnd tune A2;", ":5: secnd: no drum (kettle second), did you mean second?"},
         {"record /no/such/folder/x.bvh;", ":5: record: /no/such/folder/x.bvh"},
         {"stroke 1 left legato loud;", ":5: stroke: DYNAMIC: loud"},
         {"kettle modes 0;", ":5: kettle: modes: 0, allowed 1 .. 2000"}};
@@ -246,14 +252,13 @@ static void test_score_with_too_many_drums_changes_nothing(void)
     himc_performance *p = with_kettle();
     char text[1200] = "";
     for (int i = 0; i < HIMC_DRUMS; i++)
-        snprintf(text + strlen(text), sizeof text - strlen(text),
-                 "stroke %d left legato mf normal drum%d;\n", i, i);
+        snprintf(text + strlen(text), sizeof text - strlen(text), "drum drum%d;\n", i);
     TEST_ASSERT_FALSE(load_text(p, text));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "16 drums at most"), error.text);
     TEST_ASSERT_NULL(himc_performance_drum(p, 1));
     text[0] = 0;
     for (int i = 0; i <= HIMC_DRUMS; i++)
-        snprintf(text + strlen(text), sizeof text - strlen(text), "other%d mallet wood;\n", i);
+        snprintf(text + strlen(text), sizeof text - strlen(text), "drum other%d;\n", i);
     TEST_ASSERT_FALSE(load_text(p, text));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ":17: drum other16: "), error.text);
     TEST_ASSERT_NULL(himc_performance_drum(p, 1));

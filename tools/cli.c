@@ -8,6 +8,7 @@
 #include "cli.h"
 
 #include "base/line.h"
+#include "base/text.h"
 #include "capture/take.h"
 
 #include <errno.h>
@@ -29,11 +30,14 @@ static bool quiet; // of the whole program, as its streams are
 
 void cli_say(const char *format, ...)
 {
+    char line[2048];
     va_list args;
     va_start(args, format);
-    if (!quiet)
-        vfprintf(stderr, format, args);
+    vsnprintf(line, sizeof line, format, args);
     va_end(args);
+    cli_name_input(line);
+    if (!quiet)
+        fputs(line, stderr);
 }
 
 bool cli_shows_progress(void)
@@ -97,6 +101,19 @@ static int find_letter(const cli_option *options, int letter)
     return -1;
 }
 
+static bool refuse_option(const cli_option *options, const char *word, himc_error *error)
+{
+    char allowed[512], name[64];
+    himc_nearest nearest = {.word = name};
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    for (const cli_option *option = options; option->name; option++)
+        himc_nearest_try(&nearest, option->name);
+    list_options(options, allowed, sizeof allowed);
+    if (nearest.name)
+        return himc_error_set(error, "unknown option %s, did you mean --%s?", word, nearest.name);
+    return himc_error_set(error, "unknown option %s, allowed: %s", word, allowed);
+}
+
 static bool take_value(const cli_option *option, int index, const char *value, cli_arguments *out,
                        himc_error *error)
 {
@@ -134,8 +151,7 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
         if (found == '?' && optopt > 0 && optopt < OPTION_QUIET)
             return himc_error_set(error, "unknown option -%c, allowed: %s", optopt, allowed);
         if (found == '?' || index < 0)
-            return himc_error_set(error, "unknown option %s, allowed: %s", argv[optind - 1],
-                                  allowed);
+            return refuse_option(call->options, argv[optind - 1], error);
         if (!take_value(&call->options[index], index, optarg ? optarg : "", out, error))
             return false;
         if (out->list)
@@ -189,6 +205,7 @@ int cli_fail(const cli_call *call, const char *format, ...)
     va_start(args, format);
     himc_line_print(line, sizeof line, format, args);
     va_end(args);
+    cli_name_input(line);
     fprintf(stderr, "himc %s: %s\n", call->name, line);
     return 1;
 }

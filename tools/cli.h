@@ -93,6 +93,8 @@ bool cli_is_standard(const char *path);
 /// The operand, or the name of a file with what came from the standard input, with the suffix of
 /// its contents; it is removed when the program ends. NULL with the reason.
 const char *cli_input(const char *operand, himc_error *error);
+/// Replaces that file's name in a line by `-`, as the user has called it.
+void cli_name_input(char *line);
 /// True if both names are one file, existing or still to be made.
 bool cli_same_file(const char *a, const char *b);
 

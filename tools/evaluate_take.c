@@ -8,6 +8,7 @@
 /// has no null-space target, as published. A capture has its own noise and its own body, so none is
 /// added, and a take is played once.
 #include "evaluate_take.h"
+#include "capture/take.h"
 #include "control/posture_regression.h"
 #include "performance/research.h"
 #include "pool.h"
@@ -26,6 +27,7 @@ typedef struct own_result {
     double rms, most, height, percent; ///< to the capture (m, m, m, %)
     double elbow;                      ///< range of the elbows' height, simulated / captured
     int strokes, played;
+    bool arm;     ///< the take shows a whole one
     bool learned; ///< the regression comes from the other takes
 } own_result;
 
@@ -100,7 +102,7 @@ static bool open_take(const own_takes *own, int file, opened *o, himc_error *err
     if (o->player && find_strikes(o, error))
         return true;
     close_take(o);
-    return himc_error_prefix(error, "%s", own->path[file]);
+    return himc_take_name_error(own->path[file], error);
 }
 
 static bool shows_arm(const himc_player *player, int hand)
@@ -255,6 +257,7 @@ static bool play_take(himc_performance *p, const own_takes *own, int file, const
     result->most = s.captured_most;
     result->height = s.stroke_height;
     result->percent = s.captured_rms_percent;
+    result->arm = shows_any_arm(o->player);
     result->strokes = s.strokes;
     result->played = s.played;
     result->elbow = elbow_ratio(&seen, o->player);
@@ -366,6 +369,31 @@ static void draw(const own_takes *own, FILE *out)
     fputs("</svg>\n", out);
 }
 
+// what the table does not explain
+static void tell_why(const own_takes *own)
+{
+    for (int i = 0; i < own->count * KINDS; i++) {
+        const own_result *r = &own->result[i];
+        trial_kind kind = kind_of(i % KINDS);
+        const char *path = own->path[i / KINDS];
+        bool printed = kind.controller != HIMC_PIPELINE_IK && kind.law == HIMC_LAW_PRINTED;
+        if (r->played < r->strokes)
+            cli_say("note: %s: %s %s plays %d of %d strokes within 5 ms and 2 cm: its sticks stray "
+                    "by up to %.0f mm%s\n",
+                    path, trial_controller_name(kind.controller).text, trial_law_name(&kind).text,
+                    r->played, r->strokes, 1e3 * r->most,
+                    printed ? " (the law as published feeds nothing forward, so they lag)" : "");
+        if (i % KINDS == KINDS - 1 && !r->learned)
+            cli_say(
+                "note: %s: himc moves the arms in its built-in posture, not in one learned from "
+                "takes: %s\n",
+                path,
+                !r->arm ? "this take does not show a whole arm"
+                        : "that needs one more take that shows a whole arm, with strokes if "
+                          "this one has strokes, else without (--take A B)");
+    }
+}
+
 bool evaluate_takes(const char *const *path, int count, const himc_take_options *options, int jobs,
                     bool json, FILE *stream, FILE *figure, himc_error *error)
 {
@@ -385,12 +413,8 @@ bool evaluate_takes(const char *const *path, int count, const himc_take_options 
         fputs("\n]\n", stream);
     if (good && figure)
         draw(&own, figure);
-    for (int i = 0; good && i < count; i++)
-        if (!own.result[i * KINDS + KINDS - 1].learned)
-            cli_say(
-                "%s: its arm or that of another take of the same kind, with strokes or without, is "
-                "not wholly shown; himc has its built-in posture, not one learned from them\n",
-                path[i]);
+    if (good)
+        tell_why(&own);
     free(own.result);
     return good;
 }

@@ -227,6 +227,15 @@ static const char *suffix_of(const char *bytes, size_t size)
     return size > 1 && bytes[1] == 0x50 && (unsigned char)bytes[0] < 8 ? ".c3d" : ".txt";
 }
 
+void cli_name_input(char *line)
+{
+    size_t length = strlen(input);
+    for (char *at = line; length > 0 && (at = strstr(at, input));) {
+        *at++ = '-';
+        memmove(at, at + length - 1, strlen(at + length - 1) + 1);
+    }
+}
+
 const char *cli_input(const char *operand, himc_error *error)
 {
     char bytes[65536];

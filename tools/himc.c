@@ -2,6 +2,7 @@
 ///
 /// Exit status 0, or 1 with one line on stderr that says what was wrong, where, and what is
 /// allowed.
+#include "base/text.h"
 #include "cli.h"
 #include "himc/himc.h"
 #include "system/files.h"
@@ -24,9 +25,22 @@ static void print_help(void)
     for (size_t i = 0; i < CALLS; i++)
         printf("  %-8s %s\n", calls[i]->name, calls[i]->does);
     printf(
-        "\nhimc CALL --help says more; himc --version prints the version. A file - is the standard\n"
-        "input or output. Exit status 0, or 1 with one line on standard error that says what was\n"
+        "\nhimc CALL --help says more, himc help commands lists the commands of scores and patches,\n"
+        "himc --version prints the version. A file - is the standard input or output. Exit status 0, or 1 with one line on standard error that says what was\n"
         "wrong and where.\n");
+}
+
+// what a score, a patch and a packet may say
+static void print_commands(void)
+{
+    static const char *const to[] = {"to the performer", "to a drum: NAME COMMAND ..."};
+    const himc_command_row *row;
+    for (int receiver = HIMC_PERFORMER; receiver <= HIMC_DRUM; receiver++) {
+        printf("%s%s\n\n", receiver ? "\n" : "", to[receiver]);
+        for (int i = 0; (row = himc_command_table(i)); i++)
+            if ((int)row->receiver == receiver)
+                printf("  %s %s\n      %s\n", row->name, row->atoms, row->does);
+    }
 }
 
 static const cli_call *find_call(const char *name)
@@ -37,21 +51,48 @@ static const cli_call *find_call(const char *name)
     return NULL;
 }
 
-/// "render, info, modes"
-static void print_names(FILE *stream)
-{
-    for (size_t i = 0; i < CALLS; i++)
-        fprintf(stream, "%s%s", i ? ", " : "", calls[i]->name);
-}
-
 static int refuse(const char *what, const char *name)
 {
     himc_error line;
+    himc_nearest nearest = {.word = name ? name : ""};
+    for (size_t i = 0; i < CALLS; i++)
+        himc_nearest_try(&nearest, calls[i]->name);
     himc_error_set(&line, "%s%s%s%s", what, name ? " \"" : "", name ? name : "", name ? "\"" : "");
-    fprintf(stderr, "himc: %s, allowed: ", line.text);
-    print_names(stderr);
-    fprintf(stderr, ", --help, --version\n");
+    fprintf(stderr, "himc: %s, ", line.text);
+    if (nearest.name)
+        fprintf(stderr, "did you mean %s?\n", nearest.name);
+    else {
+        fprintf(stderr, "allowed: ");
+        for (size_t i = 0; i < CALLS; i++)
+            fprintf(stderr, "%s, ", calls[i]->name);
+        fprintf(stderr, "--help, --version\n");
+    }
     return 1;
+}
+
+static int finish(void)
+{
+    return fflush(stdout) || ferror(stdout) ? refuse("standard output cannot be written", NULL) : 0;
+}
+
+/// `himc help`, `himc help CALL`, `himc help commands`.
+static int help(const char *what)
+{
+    const cli_call *call = what ? find_call(what) : NULL;
+    if (call)
+        cli_help(call);
+    else if (!what)
+        print_help();
+    else if (!strcmp(what, "commands"))
+        print_commands();
+    else
+        return refuse("no help for", what);
+    return finish();
+}
+
+static bool is_one_of(const char *word, const char *a, const char *b, const char *c)
+{
+    return !strcmp(word, a) || !strcmp(word, b) || !strcmp(word, c);
 }
 
 static int run_call(const cli_call *call, int argc, char **argv)
@@ -72,15 +113,14 @@ int main(int argc, char **argv)
     himc_system_binary();
     if (argc < 2)
         return refuse("no call given", NULL);
-    if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))
-        print_help();
-    else if (!strcmp(argv[1], "--version"))
+    if (is_one_of(argv[1], "help", "--help", "-h"))
+        return help(argc > 2 ? argv[2] : NULL);
+    if (is_one_of(argv[1], "version", "--version", "-V")) {
         printf("himc %s\n", himc_version());
-    else {
-        const cli_call *call = find_call(argv[1]);
-        if (!call)
-            return refuse(argv[1][0] == '-' ? "unknown option" : "unknown call", argv[1]);
-        return run_call(call, argc - 1, argv + 1);
+        return finish();
     }
-    return fflush(stdout) || ferror(stdout) ? refuse("standard output cannot be written", NULL) : 0;
+    const cli_call *call = find_call(argv[1]);
+    if (!call)
+        return refuse(argv[1][0] == '-' ? "unknown option" : "unknown call", argv[1]);
+    return run_call(call, argc - 1, argv + 1);
 }

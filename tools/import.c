@@ -77,6 +77,9 @@ static bool make(const cli_arguments *arguments, midi_score *made, himc_error *e
         return himc_error_set(error, "no -o SCORE given (himc import --help)");
     if (cli_same_file(path, out))
         return himc_error_set(error, "%s: named twice, allowed are different files", out);
+    const char *dot = strrchr(out, '.');
+    if (cli_is_take(out) || (dot && (!strcmp(dot, ".mid") || !strcmp(dot, ".wav"))))
+        return himc_error_set(error, "%s: a score is a text, allowed a name like score.txt", out);
     return read_part(arguments->value[PART], &wanted.choice, error) &&
            read_curve(arguments->value[CURVE], &wanted.range, error) &&
            import(path, &wanted, made, error) && write_text(out, made->text, error);

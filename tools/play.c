@@ -62,14 +62,17 @@ static PaError initialize(void)
 
 static void list_devices(void)
 {
+    int cards = 0;
     for (int i = 0; i < Pa_GetDeviceCount(); i++) {
         const PaDeviceInfo *d = Pa_GetDeviceInfo(i);
-        if (d->maxOutputChannels >= EARS)
+        if (d->maxOutputChannels >= EARS && ++cards)
             printf("%3d%s %s (%s, %g Hz, %.0f ms)\n", i,
                    i == Pa_GetDefaultOutputDevice() ? "*" : " ", d->name,
                    Pa_GetHostApiInfo(d->hostApi)->name, d->defaultSampleRate,
                    1e3 * d->defaultLowOutputLatency);
     }
+    if (cards == 0)
+        cli_say("this machine has no sound card\n");
 }
 
 static bool open_device(PaStream **stream, const char *wanted, int rate, int latency,

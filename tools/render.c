@@ -1,5 +1,5 @@
-/// render.c: `himc render`: plays a score or a take offline, as fast as the machine can, into a WAV
-/// file.
+/// render.c: `himc render`: plays a score or a take offline, as fast as the machine can, into a
+/// sound file.
 ///
 /// The commands `listener`, `score` or `take`, then `play` on sample 0, then block after block,
 /// just as `[himc~]` does it in Pd; each sample of a channel is the sum of the drums' samples,
@@ -12,18 +12,16 @@
 #include "motion_table.h"
 #include "render_tables.h"
 #include "scene_record.h"
+#include "sound_file.h"
 
 #include <errno.h>
 #include <math.h>
-#include <sndfile.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #define HEARD_BY_TWO 2 // channels, one for each ear
 #define BLOCK_MAX CLI_BLOCK
-/// What the 32-bit sizes in a WAV file can count, headers taken off (samples of all channels).
-#define WAV_SAMPLES ((UINT32_MAX - 4096.0) / sizeof(float))
 
 enum {
     OUT,
@@ -41,11 +39,13 @@ enum {
     LIMITS,
     PLAYER,
     SET,
+    JSON,
     TAKE
 };
 
 static const cli_option options[] = {
-    {"output", 'o', "OUT.wav", "the sound of all drums, 32-bit float; -: standard output"},
+    {"output", 'o', "OUT.wav",
+     "the sound of all drums, 32-bit float; also .w64 .aiff .flac .ogg .mp3; -: standard output"},
     {"rate", 0, "HZ", "sample rate, 8000 .. 192000 (48000)"},
     {"block", 0, "N", "samples computed at a time, 1 .. 8192 (64); the result is the same"},
     {"channels", 0, "N",
@@ -64,6 +64,7 @@ static const cli_option options[] = {
     {"limits", 0, "limits", "joint limits (off)"},
     {"player", 0, "H,M", "height and mass of the player (m, kg); a take keeps its lengths"},
     {"set", 0, "COMMAND...", "any command of the manual, before playing; may be repeated"},
+    {"json", 0, NULL, "the report as a JSON object also on a terminal"},
     CLI_TAKE_OPTIONS,
     {0},
 };
@@ -74,6 +75,7 @@ typedef struct job {
     const cli_arguments *arguments;
     int rate, block, channels;
     himc_take_options take;
+    double length; ///< from the first beat to the last, or of the take; 0: not known (s)
 } job;
 
 /// The state of the rendering.
@@ -85,15 +87,9 @@ typedef struct rendering {
     SNDFILE *sound;
     int channels;
     int failed;    ///< errno of the first write that did not arrive
-    bool too_long; ///< for a WAV file
+    bool too_long; ///< for the format of the sound file
     cli_ending ending;
 } rendering;
-
-/// Samples of a channel that a WAV file can hold.
-static double room(int channels)
-{
-    return WAV_SAMPLES / channels;
-}
 
 // what is compared, in this order, and whether a list "ik,id" has it
 static const char *const others[] = {"ik", "id", "himc", "captured"};
@@ -155,9 +151,26 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
            cli_take_options(out->source, value + TAKE, &out->take, error);
 }
 
-/// Finds out if the score makes drums itself and if it loops; false if it is too long for a WAV
-/// file.
-static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, himc_error *error)
+static double score_seconds(const himc_score *score)
+{
+    double seconds = 0;
+    for (int i = 0; i < score->stroke_count; i++) {
+        const himc_stroke *stroke = &score->strokes[i];
+        double end = stroke->beat + (stroke->ornament >= HIMC_ROLL_SINGLE ? stroke->length : 0);
+        seconds = fmax(seconds, himc_score_seconds(score->tempi, score->tempo_count, end));
+    }
+    return seconds;
+}
+
+// samples of a channel that the sound file can hold
+static double room(const job *wanted)
+{
+    return sound_file_room(wanted->arguments->value[OUT], wanted->channels);
+}
+
+/// Finds out if the score makes drums itself, if it loops and how long it is; false if it is too
+/// long for the sound file.
+static bool inspect_score(job *wanted, bool *makes_drums, bool *loops, himc_error *error)
 {
     himc_score *score = himc_score_load(wanted->source, error);
     if (!score)
@@ -166,14 +179,25 @@ static bool inspect_score(const job *wanted, bool *makes_drums, bool *loops, him
     for (int i = 0; i < score->line_count; i++)
         if (score->lines[i].command.id == HIMC_COMMAND_LOOP)
             *loops = score->lines[i].command.atom[0].number != 0;
-    double beat = score->stroke_count ? score->strokes[score->stroke_count - 1].beat : 0;
-    double seconds = himc_score_seconds(score->tempi, score->tempo_count, beat);
+    wanted->length = score_seconds(score);
     himc_score_free(score);
-    if (seconds + CLI_TAIL > room(wanted->channels) / wanted->rate)
-        return himc_error_set(error, "%s: lasts %.0f s, allowed in a WAV file at %d Hz: %.0f s",
-                              wanted->source, seconds, wanted->rate,
-                              room(wanted->channels) / wanted->rate - CLI_TAIL);
+    if (wanted->length + CLI_TAIL > room(wanted) / wanted->rate)
+        return himc_error_set(error,
+                              "%s: lasts %.0f s, allowed in this file at %d Hz: %.0f s (.w64 and "
+                              ".flac have no end)",
+                              wanted->source, wanted->length, wanted->rate,
+                              room(wanted) / wanted->rate - CLI_TAIL);
     return true;
+}
+
+// read once more, for the progress alone
+static void inspect_take(job *wanted)
+{
+    himc_take *take =
+        cli_shows_progress() ? himc_take_load(wanted->source, &wanted->take, NULL) : NULL;
+    if (take)
+        wanted->length = HIMC_APPROACH + take->frames / take->rate;
+    himc_take_free(take);
 }
 
 // the settings of the command line; before a take, which keeps the player's height and mass, and
@@ -199,12 +223,14 @@ static bool apply_settings(himc_performance *p, const cli_arguments *arguments, 
     return true;
 }
 
-static bool prepare(himc_performance *performance, const job *wanted, himc_error *error)
+static bool prepare(himc_performance *performance, job *wanted, himc_error *error)
 {
     bool take = cli_is_take(wanted->source), makes_drums = false, loops = false;
     himc_performance_make_drums(performance, true);
     himc_performance_take_options(performance, &wanted->take);
-    if (!take && !inspect_score(wanted, &makes_drums, &loops, error))
+    if (take)
+        inspect_take(wanted);
+    else if (!inspect_score(wanted, &makes_drums, &loops, error))
         return false;
     if (!makes_drums && !cli_add_drum(performance, wanted->rate, error))
         return false;
@@ -231,21 +257,18 @@ static bool open_sound(rendering *r, const char *path, const job *wanted, himc_e
 {
     if (!cli_file_open(&r->wav, path, error))
         return false;
-    SF_INFO info = {.samplerate = wanted->rate,
-                    .channels = wanted->channels,
-                    .format = SF_FORMAT_WAV | SF_FORMAT_FLOAT};
-    r->sound = sf_open_fd(fileno(r->wav.stream), SFM_WRITE, &info, SF_FALSE);
-    if (!r->sound)
-        return himc_error_set(error, "%s: cannot be written: %s", path, sf_strerror(NULL));
-    // libsndfile's PEAK chunk holds the date, and two renders would differ
-    sf_command(r->sound, SFC_SET_ADD_PEAK_CHUNK, NULL, SF_FALSE);
-    return true;
+    r->sound = sound_file_begin(r->wav.stream, path, wanted->rate, wanted->channels, error);
+    return r->sound != NULL;
 }
 
-static void show_progress(double seconds, double elapsed)
+static void show_progress(double seconds, double length, double elapsed)
 {
+    char whole[32] = "";
+    if (seconds < length)
+        snprintf(whole, sizeof whole, " of %.0f", length);
     if (cli_shows_progress())
-        fprintf(stderr, "\r%7.1f s played, %.1f x real time ", seconds, seconds / elapsed);
+        fprintf(stderr, "\r%7.1f%s s played, %.1f x real time \033[K", seconds, whole,
+                seconds / elapsed);
 }
 
 static void clear_progress(void)
@@ -308,8 +331,8 @@ static double play(rendering *r, const job *wanted)
             play_block(r, n);
             left -= n;
         }
-        r->too_long = (double)(r->ending.samples + (uint64_t)cell) > room(r->channels);
-        show_progress((double)r->ending.samples / wanted->rate, cli_now() - start);
+        r->too_long = (double)(r->ending.samples + (uint64_t)cell) > room(wanted);
+        show_progress((double)r->ending.samples / wanted->rate, wanted->length, cli_now() - start);
     } while (!cli_is_over(&r->ending, wanted->rate) && !r->failed && !r->too_long);
     double elapsed = cli_now() - start;
     clear_progress();
@@ -317,14 +340,14 @@ static double play(rendering *r, const job *wanted)
 }
 
 /// All files complete, or none of them.
-static bool keep_files(rendering *r, himc_error *error)
+static bool keep_files(rendering *r, const job *wanted, himc_error *error)
 {
     const char *path = r->wav.path;
     if (r->failed)
         return himc_error_set(error, "%s: cannot be written: %s", path, strerror(r->failed));
     if (r->too_long)
         return himc_error_set(error, "%s: not over when the file is full, allowed %.0f samples",
-                              path, room(r->channels));
+                              path, room(wanted));
     bool closed = !sf_close(r->sound);
     r->sound = NULL;
     if (!closed)
@@ -352,7 +375,7 @@ static void close_all(rendering *r)
     himc_performance_free(r->performance);
 }
 
-static bool open_performance(rendering *r, const job *wanted, himc_error *error)
+static bool open_performance(rendering *r, job *wanted, himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
     config.sample_rate = wanted->rate;
@@ -381,7 +404,7 @@ static bool open_record(rendering *r, const job *wanted, FILE *stream, const cha
 }
 
 // plays the same once more by another pipeline, as long, into the scene of `r`
-static bool play_other(rendering *r, const job *wanted, const char *mode, himc_error *error)
+static bool play_other(rendering *r, job *wanted, const char *mode, himc_error *error)
 {
     rendering other = {0};
     FILE *file = tmpfile();
@@ -406,7 +429,7 @@ static bool play_other(rendering *r, const job *wanted, const char *mode, himc_e
     return good;
 }
 
-static bool compare(rendering *r, const job *wanted, himc_error *error)
+static bool compare(rendering *r, job *wanted, himc_error *error)
 {
     const char *const *value = wanted->arguments->value, *own = value[MODE] ? value[MODE] : "himc";
     for (int i = 0; value[COMPARE] && i < CAPTURED; i++)
@@ -416,7 +439,7 @@ static bool compare(rendering *r, const job *wanted, himc_error *error)
     return true;
 }
 
-static bool open_all(rendering *r, const job *wanted, const char *const *value, himc_error *error)
+static bool open_all(rendering *r, job *wanted, const char *const *value, himc_error *error)
 {
     r->channels = wanted->channels;
     if (!open_performance(r, wanted, error) || !open_sound(r, value[OUT], wanted, error) ||
@@ -458,12 +481,18 @@ static int run(const cli_arguments *arguments)
     }
     double elapsed = play(&r, &wanted), seconds = (double)r.ending.samples / wanted.rate;
     himc_performance_stats stats = himc_performance_measure(r.performance);
-    bool good = compare(&r, &wanted, &error) && keep_files(&r, &error),
-         piped = r.wav.standard || r.strokes.standard || r.motion.standard;
+    bool good = compare(&r, &wanted, &error) && keep_files(&r, &wanted, &error),
+         piped = r.wav.standard || r.strokes.standard || r.motion.standard,
+         json = arguments->value[JSON] || !isatty(STDOUT_FILENO);
+    double peak = r.ending.peak;
     close_all(&r);
     if (!good)
         return cli_fail(&cli_render, "%s", error.text);
-    render_report(&stats, seconds, seconds / elapsed, piped ? stderr : stdout);
+    if (peak > 1 && sound_file_clips(arguments->value[OUT]))
+        cli_say("note: the sound is cut off where it is too loud for this format, by up to %.1f dB "
+                "(--set \"gain %.0f\")\n",
+                20 * log10(peak), floor(-20 * log10(peak)));
+    render_report(&stats, seconds, seconds / elapsed, !json ? NULL : piped ? stderr : stdout);
     return cli_finish(&cli_render);
 }
 
@@ -471,9 +500,9 @@ const cli_call cli_render = {
     "render",
     "SOURCE",
     " -o OUT.wav",
-    "plays a score, a MIDI file or a take (" HIMC_TAKE_SUFFIXES ") into a WAV file",
-    "SOURCE - is the standard input. Standard output gets one JSON object (standard error, if a\n"
-    "file is -): seconds strokes played missed tip_rms_mm tip_rms_percent\n"
+    "plays a score, a MIDI file or a take (" HIMC_TAKE_SUFFIXES ") into a sound file",
+    "SOURCE - is the standard input. The last line on standard output (standard error, if a file is\n"
+    "-) is one JSON object, unless it is a terminal: seconds strokes played missed tip_rms_mm tip_rms_percent\n"
     " peak_force_n realtime_factor unplanned_contacts longest_contact_s\n"
     "captured_rms_mm captured_rms_percent captured_max_mm captured_max_percent\n"
     "peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint. A score that makes no drum is played on\n"

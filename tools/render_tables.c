@@ -76,6 +76,8 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
     if (stats->recoveries)
         cli_say("trouble   %ld times a non-finite state was met and the last good one restored\n",
                 stats->recoveries);
+    if (!out)
+        return;
     fprintf(out, "{");
     put_json(out, "seconds", seconds, ", ");
     fprintf(out, "\"strokes\": %d, \"played\": %d, \"missed\": %d, ", stats->strokes, stats->played,

@@ -10,7 +10,7 @@
 void render_stroke_header(FILE *stream);
 void render_stroke_row(FILE *stream, const himc_strike *strike);
 
-/// A few lines for a person on stderr, then one JSON object in one line in `out`.
+/// A few lines for a person on stderr, then one JSON object in one line in `out`, unless NULL.
 void render_report(const himc_performance_stats *stats, double seconds, double realtime_factor,
                    FILE *out);
 

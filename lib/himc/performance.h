@@ -13,14 +13,18 @@
 
 HIMC_BEGIN
 
-/// The rates of a performance.
+/// The rates of a performance, and what its host has.
 typedef struct himc_performance_config {
     double sample_rate;  ///< (Hz) 8000 .. 192000, default 48000
     double physics_rate; ///< (Hz) 500 .. 48000, default 10000; never above sample_rate
     double task_rate;    ///< (Hz) 50 .. 2000, default 250; never above physics_rate
+    /// Called where a command names a drum that the performance does not have, in the command's
+    /// thread: it may add the drum and return true. NULL, the default: the host has no others.
+    bool (*find_drum)(void *user, const char *name);
+    void *find_user; ///< passed to it
 } himc_performance_config;
 
-/// The default rates.
+/// The default rates; no further drums.
 himc_performance_config himc_performance_default(void);
 
 /// A performer with its drums. Made by himc_performance_new, freed by himc_performance_free.
@@ -44,7 +48,8 @@ HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int inde
 /// the drums of those names. False, and nothing changed, with the reason.
 bool himc_performance_command(himc_performance *performance, const himc_command *command, int delay,
                               himc_error *error);
-/// Whether the command `drum` makes drums (at first false: the host adds them).
+/// Whether drums made by the command `drum` sound (at first false: the host adds drums, and those
+/// that it does not have are silent).
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
 
 /// Time (s) from the sticks' place at `play` to the first frame of a take.

@@ -35,6 +35,7 @@ typedef struct himc_score_line {
 typedef struct himc_score {
     himc_stroke *strokes;     ///< of both hands (stroke_count), owned; NULL if there are none
     int stroke_count;         ///< 0 .. 200000
+    int *stroke_lines;        ///< in the file (stroke_count), owned; NULL if there are none
     himc_tempo_change *tempi; ///< sorted by beat (tempo_count), owned; the first at beat 0
     int tempo_count;          ///< 1 or more
     himc_score_line *lines;   ///< as in the file (line_count), owned; NULL if there are none
@@ -43,7 +44,7 @@ typedef struct himc_score {
     int change_count;         ///< 0 .. 10000, with the lines
     char *report; ///< of a MIDI file: what is played and what not, lines that end with \n, owned;
                   ///< else NULL
-    int left_out; ///< of a MIDI file: notes of its part that are not played
+    int left_out; ///< of a MIDI file: notes of its part that are not played, tracks cut short
 } himc_score;
 
 /// Reads the file, a score or a Standard MIDI File (told by its first bytes), whose parts of

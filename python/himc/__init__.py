@@ -210,7 +210,10 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
         with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
             file.write(str(score))
             file.flush()
-            return render(file.name, rate, channels, motion, settings)
+            try:
+                return render(file.name, rate, channels, motion, settings, left_tip, right_tip, up)
+            except Error as error:  # the name of the file says nothing
+                raise Error(str(error).replace(file.name, "score")) from None
     path, take, error = str(score), _is_take(str(score)), ffi.new("himc_error *")
     makes = 0 if take else lib.session_makes_drums(path.encode(), error)
     _check(makes >= 0, error)

@@ -106,6 +106,24 @@ class Package(unittest.TestCase):
         with self.assertRaisesRegex(himc.Error, "BPM"):
             himc.Performance().command("tempo 0")
 
+    def test_a_misspelt_spot_is_an_error_that_names_spots_and_drums(self):
+        with self.assertRaises(himc.Error) as caught:
+            himc.render("tempo 90;\nstroke 1 right accent f rmi;")
+        self.assertEqual(str(caught.exception), "score:2: rmi: no spot (center normal rim), no drum (kettle), did you mean rim?")
+        p = himc.Performance()
+        p.add_drum("tom")
+        with self.assertRaisesRegex(himc.Error, r"no drum \(tom\)"):
+            p.command("hit right accent f edge")
+        p.command("hit right accent f centre tom")
+
+    def test_a_score_in_text_takes_the_options_of_a_file(self):
+        (self.at / "still.trc").write_text(
+            "PathFileType\t4\t(X/Y/Z)\tstill.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\t"
+            "OrigDataStartFrame\tOrigNumFrames\n100\t100\t2\t1\tmm\t100\t1\t2\nFrame#\tTime\tRTIP\t\t\n\t\tX1\tY1\tZ1\n\n"
+            "1\t0\t1\t2\t3\n2\t0.01\t1\t2\t3\n")
+        with self.assertRaisesRegex(himc.Error, 'left tip: no point "nope"'):
+            himc.render(f"take {self.at / 'still.trc'};", left_tip="nope")
+
     @unittest.skipUnless(CAPTURE.exists(), "needs ../shared/mocap")
     def test_a_take_is_arrays_and_plays(self):
         take = himc.Take(CAPTURE)

@@ -250,6 +250,7 @@ said=$(grep -c '^error: ' "$work/log")
 report messages_that_mean_nothing_answer_with_one_line_each \
     "$([ "$said" = 30 ] || echo "$said lines for 30 messages: ")$(lines "himc~: nonsense: unknown command
 himc~: stroke: HAND: middle, allowed left right
+himc~: rmi: no spot (center normal rim), no drum (kettle), did you mean rim?
 himc~: stroke: NUANCE missing
 himc~: tempo: BPM: 0, allowed
 himc~: score: missing.txt: no such file
@@ -262,6 +263,20 @@ not_numbers=$(grep -c 'nan is not a finite number, allowed' "$work/log")
 report numbers_that_are_none_are_refused \
     "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: tune: inf is not a finite number")"
 report refused_messages_change_nothing "$(lines "principal mode 150 Hz")"
+
+play_pd said.pd
+strikes() { # strikes HAND DRUM
+    grep -c "^himc: strike [^ ]* $1 $2 " "$work/log"
+}
+report sound_that_is_off_is_told_once_each_time \
+    "$([ "$(grep -c 'himc~: DSP is off: nothing plays' "$work/log")" = 2 ] || grep -n DSP "$work/log" || echo 'not told')"
+report hits_while_dsp_is_off_do_not_pile_up "$([ "$(strikes left kettle)" = 0 ] || echo "$(strikes left kettle) strikes")"
+report bang_plays_and_a_drum_beside_the_arguments_is_found \
+    "$([ "$(strikes right kettle)" = 1 ] && [ "$(strikes right other)" = 2 ] || cat "$work/log")"
+report a_drum_that_comes_later_takes_the_place_of_a_silent_one \
+    "$(lines "no drum later: playing on a silent one")$([ "$(strikes left later)" = 1 ] || echo "$(strikes left later) strikes")"
+report a_drum_that_is_nowhere_is_an_error \
+    "$(lines "himc~: othr: no spot (center normal rim), no drum (kettle other), did you mean other?")"
 
 mkfifo "$work/fifo.bvh"
 for word in take record; do

@@ -13,8 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TUNE_LOW 20          // principal mode (Hz); chosen: below the deepest drum ...
-#define TUNE_HIGH 2000       // ... and above the highest (Hz): notes E0 to B6
+// principal mode (Hz); chosen: wider than any head's range, which do_tune tells
+#define TUNE_LOW 1
+#define TUNE_HIGH 20000
 #define LISTENER_FARTHEST 15 // on each axis (m); chosen: the far end of a recital's room
 
 // in the order of himc_hand, himc_nuance, himc_spot
@@ -122,6 +123,8 @@ const himc_argument *himc_argument_find(const char *name, const char *context)
 
 static int find_word(const char *const *words, const char *word)
 {
+    if (strcmp(word, "centre") == 0) // as British writers do
+        word = "center";
     for (int i = 0; words && words[i]; i++)
         if (strcmp(words[i], word) == 0)
             return i;
@@ -230,7 +233,7 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     case HIMC_ARGUMENT_TEXT:
         snprintf(text, size, "a word of up to %g characters", argument->high);
         break;
-    case HIMC_ARGUMENT_NOTE: snprintf(text, size, "a note from E0 to B6 such as A2 or f#3"); break;
+    case HIMC_ARGUMENT_NOTE: snprintf(text, size, "a note such as A2 or f#3"); break;
     default:
         snprintf(text, size, "%s%s%g .. %g%s%s%s", words, words[0] ? " or " : "", argument->low,
                  argument->high, space, argument->unit,

@@ -17,8 +17,7 @@
 
 #define WORD_SIZE 64
 #define ALLOWED_SIZE 256
-#define NAMES_SIZE 420 // of all commands, in an error line of 512
-#define LOUDEST 7.0    // dynamic word k of ppp .. fff is k / 7
+#define LOUDEST 7.0 // dynamic word k of ppp .. fff is k / 7
 
 /// A command's atoms as the grammar understands them.
 typedef struct reading {
@@ -251,59 +250,22 @@ static bool check(const himc_command_row *row, const himc_atom *atoms, int count
     return refuse(row, atoms, &best, error);
 }
 
-/// Distance of two words in insertions, deletions and replacements.
-static int edit_distance(const char *a, const char *b)
-{
-    int row[WORD_SIZE];
-    int n = (int)strlen(b);
-    for (int j = 0; j <= n; j++)
-        row[j] = j;
-    for (int i = 1; *a; a++, i++) {
-        int diagonal = row[0];
-        row[0] = i;
-        for (int j = 1; j <= n; j++) {
-            int change = diagonal + (*a != b[j - 1]);
-            diagonal = row[j];
-            int shift = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
-            row[j] = change < shift ? change : shift;
-        }
-    }
-    return row[n];
-}
-
-static const char *nearest_name(himc_receiver receiver, const char *name)
-{
-    const himc_command_row *row;
-    const char *nearest = NULL;
-    int least = strlen(name) > 3 ? 3 : 2;
-    for (int i = 0; (row = himc_command_table(i)); i++) {
-        int distance = row->receiver == receiver ? edit_distance(name, row->name) : WORD_SIZE;
-        if (distance < least) {
-            least = distance;
-            nearest = row->name;
-        }
-    }
-    return nearest;
-}
-
 static bool refuse_name(himc_receiver receiver, const char *name, himc_error *error)
 {
     const himc_command_row *row;
-    char word[WORD_SIZE], names[NAMES_SIZE] = "";
+    char word[WORD_SIZE];
+    himc_nearest nearest = {.word = word};
     himc_text_shorten(word, sizeof word, name);
-    for (int i = 0; (row = himc_command_table(i)); i++) {
-        size_t used = strlen(names);
+    for (int i = 0; (row = himc_command_table(i)); i++)
         if (row->receiver == receiver)
-            snprintf(names + used, sizeof names - used, " %s", row->name);
+            himc_nearest_try(&nearest, row->name);
         else if (strcmp(row->name, name) == 0)
             return himc_error_set(error, "%s: a command for %s", word,
                                   receiver == HIMC_DRUM ? "the performer, not for a drum"
                                                         : "a drum, not for the performer");
-    }
-    const char *nearest = nearest_name(receiver, word);
-    return himc_error_set(error, "%s: unknown command, %s%s%sallowed%s", word,
-                          nearest ? "did you mean " : "", nearest ? nearest : "",
-                          nearest ? "? " : "", names);
+    if (nearest.name)
+        return himc_error_set(error, "%s: unknown command, did you mean %s?", word, nearest.name);
+    return himc_error_set(error, "%s: unknown command, `himc help commands` lists them", word);
 }
 
 /// Copies atoms and their symbols; they have been checked, so they fit.

@@ -133,6 +133,53 @@ void himc_text_shorten(char *out, size_t size, const char *word)
         snprintf(out + size - 4, 4, "...");
 }
 
+#define LONGEST_NAME 40 // that is compared; chosen: longer than a drum's name
+#define SHORT_NAME 4    // chosen: of so few letters two would make another word
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+// Insertions, deletions, replacements and exchanges of neighbours that turn one word into the other
+// (optimal string alignment); words of up to LONGEST_NAME letters.
+static int edit_distance(const char *a, const char *b)
+{
+    int rows[3][LONGEST_NAME + 1], *before = rows[0], *above = rows[1], *row = rows[2];
+    int n = (int)strlen(b);
+    for (int j = 0; j <= n; j++)
+        row[j] = j;
+    for (int i = 1; a[i - 1]; i++) {
+        int *oldest = before;
+        before = above;
+        above = row;
+        row = oldest;
+        row[0] = i;
+        for (int j = 1; j <= n; j++) {
+            int x = tolower((unsigned char)a[i - 1]), y = tolower((unsigned char)b[j - 1]);
+            row[j] = smaller(above[j - 1] + (x != y), 1 + smaller(above[j], row[j - 1]));
+            if (i > 1 && j > 1 && x == tolower((unsigned char)b[j - 2]) &&
+                y == tolower((unsigned char)a[i - 2]))
+                row[j] = smaller(row[j], before[j - 2] + 1);
+        }
+    }
+    return row[n];
+}
+
+void himc_nearest_try(himc_nearest *nearest, const char *name)
+{
+    size_t length = strlen(nearest->word), other = strlen(name);
+    if (length > LONGEST_NAME || other > LONGEST_NAME)
+        return;
+    int allowed = length <= SHORT_NAME && other <= SHORT_NAME ? 1 : 2;
+    int distance = edit_distance(nearest->word, name);
+    bool other_word = distance >= smaller((int)length, (int)other);
+    if (distance > allowed || other_word || (nearest->name && distance >= nearest->distance))
+        return;
+    nearest->name = name;
+    nearest->distance = distance;
+}
+
 himc_state_line himc_state_begin(const char *name)
 {
     himc_state_line line;

@@ -54,6 +54,17 @@ void himc_text_clear(himc_text_lines *lines);
 /// Adds a line and ";\n"; `lines` is a himc_text_lines.
 void himc_text_add(void *lines, const char *line);
 
+/// Of many names the one that a misspelt word means. Zero but for `word` at first.
+typedef struct himc_nearest {
+    const char *word; ///< as written, borrowed
+    const char *name; ///< borrowed; NULL while none is near
+    int distance;     ///< of that name from the word
+} himc_nearest;
+
+/// Compares the word with one more name: an error in a short word, two in a longer one; upper and
+/// lower case are the same. Of two equally near names the first counts.
+void himc_nearest_try(himc_nearest *nearest, const char *name);
+
 /// Copies a word for an error message into `out`; of a long word only the beginning.
 void himc_text_shorten(char *out, size_t size, const char *word);
 

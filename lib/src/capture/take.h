@@ -166,6 +166,9 @@ bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error);
 
 // Files: take_file.c.
 
+/// Begins an error about the take of that path with it, unless it does already; returns false.
+bool himc_take_name_error(const char *path, himc_error *error);
+
 /// himc_take_load from memory; `name` gives the suffix and begins the error line. The bytes are not
 /// kept.
 himc_take *himc_take_read(const void *bytes, size_t size, const char *name,

@@ -105,12 +105,21 @@ bool himc_take_can_save(const char *path, himc_error *error)
     return himc_error_set(error, "%s: a format that is not written, allowed " WRITTEN, path);
 }
 
+#define FILE_ROOM (sizeof((himc_take *)0)->file)
+
 // of a long path the end is kept, which distinguishes files
-static void set_file(himc_take *take, const char *name)
+static void shorten_file(char file[FILE_ROOM], const char *name)
 {
-    size_t n = strlen(name), room = sizeof take->file - 4;
-    snprintf(take->file, sizeof take->file, "%s%s", n > room ? "..." : "",
-             n > room ? name + n - room : name);
+    size_t n = strlen(name), room = FILE_ROOM - 4;
+    snprintf(file, FILE_ROOM, "%s%s", n > room ? "..." : "", n > room ? name + n - room : name);
+}
+
+bool himc_take_name_error(const char *name, himc_error *error)
+{
+    char file[FILE_ROOM];
+    shorten_file(file, name);
+    bool named = error && strncmp(error->text, file, strlen(file)) == 0;
+    return named ? false : himc_error_prefix(error, "%s", name);
 }
 
 himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
@@ -126,7 +135,7 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
         himc_error_set(error, "%s: no memory", name);
         return NULL;
     }
-    set_file(take, name);
+    shorten_file(take->file, name);
     if (size == 0)
         himc_error_set(error, "%s: the file is empty", take->file);
     else if (f->read(take, bytes, size, error) &&

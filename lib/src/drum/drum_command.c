@@ -321,13 +321,22 @@ static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
 }
 
 // only a round head may be in air; one that becomes round again is in air again
+// the word of a misspelt outline looks like no file's name
+static bool refuse_shape(const char *word, himc_error *error)
+{
+    if (strpbrk(word, "./\\"))
+        return himc_error_prefix(error, "shape");
+    return himc_error_set(error, "shape: %.80s, allowed circle, rectangle LENGTH WIDTH, or a file",
+                          word);
+}
+
 static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     enum { CIRCLE, RECTANGLE, FROM_FILE };
     himc_head head = *himc_membrane_head(drum->membrane);
     himc_shape shape = {.kind = HIMC_CIRCLE};
     if (c->form == FROM_FILE)
-        return load_shape(drum, c->atom[0].symbol, error);
+        return load_shape(drum, c->atom[0].symbol, error) || refuse_shape(c->atom[0].symbol, error);
     // those of a file or of a rectangle were not said
     head.radius = himc_argument_usual(as_said("RADIUS", head.radius), drum->usual.radius);
     head.tension = himc_argument_usual(as_said("TENSION", head.tension), drum->usual.tension);

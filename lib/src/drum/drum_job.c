@@ -140,7 +140,7 @@ static bool run_preset(himc_drum *drum, const char *name, himc_error *error)
     char *text = himc_file_load(path, LONGEST_PRESET, &size, error);
     bool good = text && run_lines(drum, text, path, error);
     free(text);
-    return good;
+    return good || himc_error_prefix(error, "preset");
 }
 
 static bool prepare(himc_job *job, himc_error *error)

@@ -174,6 +174,11 @@ static void report(text *t, const midi_file *file, const midi_part *part)
     };
     put(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->count,
         part->timpani ? "timpani" : "drums");
+    if (file->cut > 0)
+        put(t, "the file is cut short: %d of its tracks can be read up to %.3g s only\n", file->cut,
+            file->cut_at);
+    report_kind(t, file->missing, "track is missing: the file is cut short or its header is wrong",
+                "tracks are missing: the file is cut short or its header is wrong");
     for (int i = 0; i < MIDI_FATES; i++)
         if (why[i][0])
             report_kind(t, part->fate[i], why[i][0], why[i][1]);
@@ -188,8 +193,6 @@ static void report(text *t, const midi_file *file, const midi_part *part)
         put(t, "%d notes are played as %d roll%s\n", part->rolled, part->rolls,
             part->rolls == 1 ? "" : "s");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
-    report_kind(t, file->cut, "track ends in the middle of an event",
-                "tracks end in the middle of an event");
     if (file->converted)
         put(t, "the tempo map is not kept: beats are half seconds\n");
 }
@@ -360,7 +363,8 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
     put_strokes(&score, part, lead);
     score.lost |= !put_changes(&score, file, part, lead);
     *made = (midi_score){score.bytes, said.bytes,
-                         part->count - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER]};
+                         part->count - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER] +
+                             file->cut + file->missing};
     if (!score.lost && !said.lost)
         return true;
     himc_midi_score_free(made);

@@ -24,7 +24,7 @@ double himc_midi_dynamic(int velocity, double range);
 typedef struct midi_score {
     char *text;   ///< the score; its comments say what the report says
     char *report; ///< what is played, and for each reason what is not; lines that end with \n
-    int left_out; ///< notes of the part that are not played
+    int left_out; ///< notes of the part that are not played, tracks cut short
 } midi_score;
 
 /// Makes a score of a MIDI file's bytes. `name` of the file is for its first comment; NULL options

@@ -47,9 +47,9 @@ static const char *other_kind(const char *bytes, size_t size)
                  {"fLaC", "a sound"},
                  {"OggS", "a sound"},
                  {"ID3", "a sound"},
-                 {"PK\3\4", "an archive or a spreadsheet"},
+                 {"PK\3\4", "an archive: export a .mxl as MIDI"},
                  {"%PDF", "a PDF"},
-                 {"<", "XML or a web page"},
+                 {"<", "XML or a web page: export MusicXML as MIDI"},
                  {"{", "JSON"},
                  {"version https://git-lfs", "a pointer to Git's large files: run git lfs pull"}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
@@ -67,7 +67,7 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
     if (bytes && himc_midi_is_file(bytes, size))
         score = import(bytes, size, path, error);
     else if (bytes && other_kind(bytes, size))
-        himc_error_set(error, "%s: %s; allowed: a score or a MIDI file", path,
+        himc_error_set(error, "%s: %s; allowed: a score, a MIDI file or a take", path,
                        other_kind(bytes, size));
     else if (bytes)
         score = himc_score_parse(bytes, path, error);

@@ -34,6 +34,7 @@ typedef struct reader {
     bool cut;                ///< a byte was wanted after the end
     int track, format;
     int64_t tick, from; ///< now; where the track begins
+    int64_t cut_at;     ///< where the shortest cut track ends
     uint8_t status;     ///< of the last channel message, 0 for none
     bool over;          ///< the end-of-track event has come
     event *events;
@@ -201,7 +202,8 @@ static bool read_tracks(reader *r, midi_file *file, const uint8_t *at, const uin
 {
     while (end - at >= 8 && file->tracks < UINT16_MAX) {
         size_t left = (size_t)(end - at) - 8, length = number_of(at + 4, 4);
-        length = length < left ? length : left;
+        bool longer = length > left;
+        length = longer ? left : length;
         r->at = at + 8;
         r->end = r->at + length;
         bool track = memcmp(at, "MTrk", 4) == 0;
@@ -211,7 +213,9 @@ static bool read_tracks(reader *r, midi_file *file, const uint8_t *at, const uin
         r->track = file->tracks++;
         if (!read_track(r))
             return false;
-        file->cut += r->cut;
+        bool cut = r->cut || (longer && !r->over);
+        if (cut && (file->cut++ == 0 || r->tick < r->cut_at))
+            r->cut_at = r->tick;
     }
     return file->tracks > 0 || himc_error_set(r->error, "a MIDI file without a track");
 }
@@ -332,6 +336,9 @@ static bool collect(midi_file *file, reader *r, tempo_clock *clock)
     for (int i = 0; i < file->note_count; i++)
         if (file->notes[i].off < 0)
             file->notes[i].off = end;
+    double beat = (double)r->cut_at / clock->quarter;
+    file->cut_at = clock->per_second > 0 ? (double)r->cut_at / clock->per_second
+                                         : himc_score_seconds(file->tempi, file->tempo_count, beat);
     file->converted |= clock->per_second > 0;
     if (file->converted)
         convert(file);
@@ -358,6 +365,8 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
     bool good = r.timpani || himc_error_set(error, "out of memory");
     good = good && read_division(&clock, at + 12, error) &&
            read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r, &clock);
+    int promised = (int)number_of(at + 10, 2);
+    file->missing = promised > file->tracks ? promised - file->tracks : 0;
     free(r.timpani);
     free(r.events);
     if (!good)

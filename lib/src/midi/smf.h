@@ -27,7 +27,9 @@ typedef struct midi_file {
     himc_tempo_change *tempi; ///< as in a score, the first at beat 0 (tempo_count), owned
     int tempo_count;
     int tracks;     ///< read
-    int cut;        ///< tracks that end in the middle of an event
+    int cut;        ///< tracks that end in the middle of an event or go on behind the file's end
+    int missing;    ///< tracks that the header promises and the file does not have
+    double cut_at;  ///< how far the shortest of the cut tracks was read (s)
     bool converted; ///< beats are half seconds: the file has no beats (SMPTE), or a tempo that
                     ///< scores do not have
 } midi_file;

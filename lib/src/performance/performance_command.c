@@ -153,8 +153,8 @@ static bool do_target(himc_performance *p, const himc_command *c, himc_error *er
 
 static bool do_drum(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    if (!p->host.make_drums || himc_drums_find(&p->drums, c->atom[0].symbol) >= 0)
-        return true; // in Pd each [membrane~ NAME] is a drum
+    if (himc_performance_find_drum(p, c->atom[0].symbol))
+        return true;
     return carry_out(p, c, error);
 }
 
@@ -535,7 +535,7 @@ static bool takes_long(const void *receiver, const himc_command *c)
     const himc_performance *p = receiver;
     int file;
     if (c->id == HIMC_COMMAND_MAKE_DRUM)
-        return p->host.make_drums && himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
+        return himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
     if (c->id == HIMC_COMMAND_LISTENER)
         return himc_drums_listening_takes_long(&p->drums);
     return c->id == HIMC_COMMAND_AT || c->id == HIMC_COMMAND_RECORD ||
@@ -578,8 +578,10 @@ static bool prepare(himc_performance *p, const himc_command *command, himc_error
 {
     int index;
     if (command->id == HIMC_COMMAND_HIT)
-        return himc_performance_ensure_drum(p, command->stroke.drum, &index, error);
-    return command->id != HIMC_COMMAND_PLAY || himc_performance_ensure_drum(p, "", &index, error);
+        return himc_performance_ensure_drum(p, command->stroke.drum, command->stroke.spot, &index,
+                                            error);
+    return command->id != HIMC_COMMAND_PLAY ||
+           himc_performance_ensure_drum(p, "", HIMC_SPOT_NORMAL, &index, error);
 }
 
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,

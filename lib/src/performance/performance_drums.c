@@ -6,6 +6,7 @@
 #include "performance/performance_drums.h"
 #include "base/format.h"
 #include "base/head_frame.h"
+#include "base/text.h"
 #include "drum/drum_state.h"
 
 #include <stdlib.h>
@@ -158,18 +159,58 @@ static void release(performance_drums *d, himc_drum *drum)
     himc_drum_release(drum);
 }
 
-bool himc_drums_have_room(const performance_drums *d, const char *name, himc_error *error)
+// `name` is of one drum more
+static bool have_room(const performance_drums *d, const char *name, himc_error *error)
 {
     return d->count < HIMC_DRUMS ||
            himc_error_set(error, "drum %s: a performer plays on %d drums at most", name,
                           HIMC_DRUMS);
 }
 
+// adds a word to a list of several; nothing more once it is full
+static void list_name(char *list, size_t size, const char *name)
+{
+    size_t used = strlen(list);
+    bool fits = used + strlen(name) + sizeof " ..." < size;
+    if (fits || (size > used + sizeof " ..." && !strstr(list, "...")))
+        himc_format(list + used, size - used, "%s%s", used ? " " : "", fits ? name : "...");
+}
+
+bool himc_drums_refuse_of(const char *const *names, int count, const char *word, himc_spot spot,
+                          himc_error *error)
+{
+    char drums[160] = "", spots[64] = "";
+    himc_nearest nearest = {.word = word};
+    bool may_be_spot = spot == HIMC_SPOT_NORMAL;
+    for (int i = 0; may_be_spot && i < HIMC_SPOT_XY; i++) {
+        himc_nearest_try(&nearest, himc_spot_name((himc_spot)i));
+        list_name(spots, sizeof spots, himc_spot_name((himc_spot)i));
+    }
+    for (int i = 0; i < count; i++) {
+        himc_nearest_try(&nearest, names[i]);
+        list_name(drums, sizeof drums, names[i]);
+    }
+    return himc_error_set(error, "%.40s: no %s%s%sdrum (%s)%s%s%s", word,
+                          may_be_spot ? "spot (" : "", spots, may_be_spot ? "), no " : "",
+                          count > 0 ? drums : "there is none: `drum NAME` makes one",
+                          nearest.name ? ", did you mean " : "", nearest.name ? nearest.name : "",
+                          nearest.name ? "?" : "");
+}
+
+bool himc_drums_refuse(const performance_drums *d, const char *word, himc_spot spot,
+                       himc_error *error)
+{
+    const char *names[HIMC_DRUMS];
+    for (int i = 0; i < d->count; i++)
+        names[i] = himc_drum_name(d->slot[i].drum);
+    return himc_drums_refuse_of(names, d->count, word, spot, error);
+}
+
 bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, int *index,
                     himc_error *error)
 {
     int i = himc_drums_find(d, himc_drum_name(drum));
-    if (i < 0 && !himc_drums_have_room(d, himc_drum_name(drum), error))
+    if (i < 0 && !have_room(d, himc_drum_name(drum), error))
         return false;
     if (i < 0)
         i = d->count++;

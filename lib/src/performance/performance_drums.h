@@ -54,8 +54,13 @@ HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, 
 HIMC_RT const himc_head_axes *himc_drums_axes(performance_drums *drums, int index);
 /// Place of a world point on that head, z the height above it (m).
 HIMC_RT himc_vec3 himc_drums_local(performance_drums *drums, int index, himc_vec3 point);
-/// False with the reason if there are HIMC_DRUMS drums; `name` is of one more.
-bool himc_drums_have_room(const performance_drums *d, const char *name, himc_error *error);
+/// The reason why a word of a stroke on `spot` is wrong: no spot, if none was given, and none of
+/// the drums; returns false.
+HIMC_RT bool himc_drums_refuse(const performance_drums *drums, const char *word, himc_spot spot,
+                               himc_error *error);
+/// The same with the names of all drums that there are, `count`.
+HIMC_RT bool himc_drums_refuse_of(const char *const *names, int count, const char *word,
+                                  himc_spot spot, himc_error *error);
 /// Takes a drum and its reference, in the slot of the same name or a new one. A drum without a
 /// place is placed automatically. False, and nothing changed, if there is no slot left.
 bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source source, int *index,

@@ -5,6 +5,7 @@
 #include "base/line.h"
 
 #include <stdarg.h>
+#include <string.h>
 
 void himc_events_add(performance_events *e, const himc_event *event)
 {
@@ -22,8 +23,11 @@ static void add_note(performance_events *e, bool minor, const char *format, va_l
 static void add_note(performance_events *e, bool minor, const char *format, va_list args)
 {
     himc_event event = {.kind = HIMC_EVENT_NOTE, .minor = minor};
+    const himc_event *last = &e->event[(e->first + e->count + EVENTS_WAITING - 1) % EVENTS_WAITING];
     himc_line_print(event.text, sizeof event.text, format, args);
-    himc_events_add(e, &event);
+    // a score that plays, and then its host: one cause, one line
+    if (e->count == 0 || last->kind != HIMC_EVENT_NOTE || strcmp(last->text, event.text) != 0)
+        himc_events_add(e, &event);
 }
 
 void himc_events_note(performance_events *e, const char *format, ...)

@@ -19,7 +19,7 @@ typedef struct performance_events {
 
 /// Adds an event; when the queue is full the oldest one is dropped.
 HIMC_RT void himc_events_add(performance_events *events, const himc_event *event);
-/// Adds a line for the user.
+/// Adds a line for the user, unless it is the same as the one before that still waits.
 HIMC_RT void himc_events_note(performance_events *events, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /// The same, minor or not.

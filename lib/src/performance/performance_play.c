@@ -53,7 +53,7 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke,
 {
     wanted_drum drum;
     if (!check_stroke(stroke, false, error) ||
-        !himc_performance_want_drum(p, stroke->drum, &drum, error))
+        !himc_performance_want_drum(p, stroke->drum, stroke->spot, &drum, error))
         return false;
     bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
     int tempo_count;
@@ -163,7 +163,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return false;
     if (!give_to_free_hands(p, &own, &asked.alone))
         return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
-    if (!himc_performance_ensure_drum(p, stroke->drum, &asked.drum, error))
+    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
         return false;
     tell_places(p);
     double latency = hit(p, &asked);
@@ -186,7 +186,7 @@ bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *err
 bool himc_performance_play(himc_performance *p, himc_error *error)
 {
     int first;
-    if (!himc_performance_ensure_drum(p, "", &first, error))
+    if (!himc_performance_ensure_drum(p, "", HIMC_SPOT_NORMAL, &first, error))
         return false;
     tell_places(p);
     if (!p->motion->track && himc_planner_length(p->motion->planner) <= 0)
@@ -256,7 +256,7 @@ static bool cut_units(himc_job *job, himc_error *error)
     himc_take *take = himc_take_load_in(c->folder, c->atom[0].symbol, &j->options, error);
     j->count = take ? himc_units_cut(take, &j->options, j->unit, HIMC_UNITS, error) : -1;
     if (take && j->count < 0)
-        himc_error_prefix(error, "%s", c->atom[0].symbol);
+        himc_take_name_error(c->atom[0].symbol, error);
     himc_take_free(take);
     for (int i = 0; i < j->count && i < HIMC_UNITS; i++) {
         j->unit[i].nuance = (himc_nuance)c->choice[1];

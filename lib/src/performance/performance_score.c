@@ -35,6 +35,13 @@ typedef struct score_drum {
     bool changed;       ///< since the trial: lines are carried out in place
 } score_drum;
 
+/// A drum that a line names and that is not there; names are those of the score.
+typedef struct unknown_drum {
+    const char *name;
+    himc_spot spot; ///< of the stroke
+    int line;
+} unknown_drum;
+
 /// What a line for the performer leaves and a later one meets.
 typedef struct score_state {
     bool recording;
@@ -54,7 +61,7 @@ typedef struct score_job {
     himc_take_options options;
     himc_skeleton skeleton;
     double sample_rate, task_rate; ///< (Hz)
-    bool make_drums;
+    bool make_drums, host_finds;
     score_state state;
     himc_job *take; ///< owned; to try takes
     himc_drum_form form[HIMC_DRUMS];
@@ -63,6 +70,10 @@ typedef struct score_job {
     himc_score *score;
     score_drum drum[HIMC_DRUMS];
     int drums;
+    const char *known[HIMC_DRUMS]; ///< the performance's drums and those that the score makes
+    int known_count;
+    unknown_drum unknown[HIMC_DRUMS]; ///< the host may have them
+    int unknown_count;
     // how far it is installed
     int tries;
     score_part part;
@@ -179,9 +190,8 @@ static bool rehearse_command(score_job *j, const himc_command *c, score_state *s
     int index;
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
-        return !j->make_drums ||
-               trial_drum(j, word, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL, DRUM_MADE,
-                          error);
+        return trial_drum(j, word, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
+                          j->make_drums ? DRUM_MADE : DRUM_SILENT, error);
     case HIMC_COMMAND_GAIN:
         return c->count < 3 || himc_body_find_joint(word, "gain", &index, error);
     case HIMC_COMMAND_STRENGTH:
@@ -327,6 +337,71 @@ static bool rehearse(score_job *j, himc_error *error)
            (count_drums(j, error) || himc_error_prefix(error, "%s", j->path));
 }
 
+/// The drums that there are with this score; returns their number, HIMC_DRUMS at most.
+static int list_drums(const score_job *j, const char *name[HIMC_DRUMS])
+{
+    int count = 0;
+    for (; count < j->forms; count++)
+        name[count] = j->form[count].name;
+    for (int i = 0; i < j->score->line_count && count < HIMC_DRUMS; i++) {
+        const himc_command *c = &j->score->lines[i].command;
+        int k = 0;
+        if (c->id != HIMC_COMMAND_MAKE_DRUM)
+            continue;
+        while (k < count && strcmp(name[k], c->atom[0].symbol) != 0)
+            k++;
+        name[k] = c->atom[0].symbol;
+        count += k == count;
+    }
+    return count;
+}
+
+// notes a drum that a line names if it is not among the known ones
+static void look_for(score_job *j, const char *name, himc_spot spot, int line)
+{
+    for (int k = 0; k < j->known_count; k++)
+        if (strcmp(j->known[k], name) == 0)
+            return;
+    for (int k = 0; k < j->unknown_count; k++)
+        if (strcmp(j->unknown[k].name, name) == 0)
+            return;
+    if (name[0] && j->unknown_count < HIMC_DRUMS)
+        j->unknown[j->unknown_count++] = (unknown_drum){name, spot, line};
+}
+
+static bool refuse_drum(const score_job *j, const unknown_drum *drum, himc_error *error)
+{
+    himc_drums_refuse_of(j->known, j->known_count, drum->name, drum->spot, error);
+    return himc_error_prefix(error, "%s:%d", j->path, drum->line);
+}
+
+/// Finds the drums that the score names and nobody has made; false if no host can have them.
+static bool check_drums(score_job *j, himc_error *error)
+{
+    const himc_score *score = j->score;
+    j->known_count = list_drums(j, j->known);
+    j->unknown_count = 0;
+    for (int i = 0; i < score->line_count; i++)
+        look_for(j, score->lines[i].drum, HIMC_SPOT_XY, score->lines[i].line);
+    for (int i = 0; i < score->change_count; i++)
+        look_for(j, score->changes[i].drum, HIMC_SPOT_XY, score->changes[i].line);
+    for (int i = 0; i < score->stroke_count; i++)
+        look_for(j, score->strokes[i].drum, score->strokes[i].spot, score->stroke_lines[i]);
+    return j->host_finds || j->unknown_count == 0 || refuse_drum(j, &j->unknown[0], error);
+}
+
+/// Asks the host for the drums that the performance does not have: for one that the score makes,
+/// it may have one that sounds.
+static bool ask_host(score_job *j, himc_error *error)
+{
+    for (int k = 0; k < j->known_count; k++)
+        himc_performance_find_drum(j->performance, j->known[k]);
+    for (int k = 0; k < j->unknown_count; k++)
+        if (!himc_performance_find_drum(j->performance, j->unknown[k].name))
+            return refuse_drum(j, &j->unknown[k], error);
+    return true;
+}
+
 /// Computes the heads to come, of the drums as they are with the score's other lines.
 static bool prepare_changes(score_job *j, himc_error *error)
 {
@@ -359,7 +434,8 @@ static bool prepare(himc_job *job, himc_error *error)
     himc_score_free(j->score);
     j->score = j->text ? himc_score_parse(j->text, j->path, error)
                        : himc_score_load_in(j->command.folder, j->path, error);
-    return j->score && rehearse(j, error);
+    // where the host may have other drums it is asked later, in its own thread
+    return j->score && check_drums(j, error) && rehearse(j, error);
 }
 
 // the drum of that name; a missing one is added
@@ -368,7 +444,7 @@ static bool installed_drum(score_job *j, const char *name, int *index, himc_erro
     himc_performance *p = j->performance;
     score_drum *made = find_drum(j, name[0] || p->drums.count > 0 ? name : FIRST_DRUM);
     if (!made || !made->missing || himc_drums_find(&p->drums, himc_drum_name(made->missing)) >= 0)
-        return himc_performance_ensure_drum(p, name, index, error);
+        return himc_performance_ensure_drum(p, name, HIMC_SPOT_NORMAL, index, error);
     himc_drum *missing = made->missing;
     made->missing = NULL;
     if (himc_drum_rate(missing) != p->clock.sample_rate)
@@ -411,7 +487,7 @@ static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_e
     himc_performance *p = j->performance;
     if (line->drum[0])
         return run_on_drum(j, line, error) ? HIMC_JOB_DONE : failed(j, error);
-    if (line->command.id == HIMC_COMMAND_MAKE_DRUM && p->host.make_drums) {
+    if (line->command.id == HIMC_COMMAND_MAKE_DRUM) {
         int index;
         return installed_drum(j, line->command.atom[0].symbol, &index, error) ? HIMC_JOB_DONE
                                                                               : failed(j, error);
@@ -489,6 +565,7 @@ static void copy_performance(score_job *j)
     j->sample_rate = p->clock.sample_rate;
     j->task_rate = p->clock.task_rate;
     j->make_drums = p->host.make_drums;
+    j->host_finds = p->host.config.find_drum != NULL;
     j->state.recording = p->recording.file != NULL;
     j->state.units = himc_planner_units(p->motion->planner);
 }
@@ -590,6 +667,8 @@ static bool follows(const score_job *j, himc_error *error)
 static himc_job_state begin(score_job *j, himc_error *error)
 {
     himc_performance *p = j->performance;
+    if (!ask_host(j, error))
+        return HIMC_JOB_FAILED;
     if (!drums_as_tried(j) && ++j->tries < HIMC_JOB_TRIES) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;

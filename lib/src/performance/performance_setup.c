@@ -315,18 +315,24 @@ bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error 
     return himc_performance_adopt_drum(p, himc_drum_retain(drum), DRUM_GIVEN, &index, error);
 }
 
-bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_drum *drum,
-                                himc_error *error)
+bool himc_performance_find_drum(himc_performance *p, const char *name)
 {
-    *drum = (wanted_drum){.index = name[0] ? himc_drums_find(&p->drums, name) : 0};
-    if (drum->index >= 0 && drum->index < p->drums.count)
-        return true;
-    name = name[0] ? name : FIRST_DRUM;
-    if (!himc_drums_have_room(&p->drums, name, error))
-        return false;
-    drum->index = p->drums.count;
-    drum->fresh = himc_drum_new(name, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
-    return drum->fresh != NULL;
+    const himc_performance_config *host = &p->host.config;
+    return himc_drums_find(&p->drums, name) >= 0 ||
+           (host->find_drum && host->find_drum(host->find_user, name));
+}
+
+bool himc_performance_want_drum(himc_performance *p, const char *name, himc_spot spot,
+                                wanted_drum *drum, himc_error *error)
+{
+    *drum = (wanted_drum){.index = 0};
+    if (name[0] && !himc_performance_find_drum(p, name))
+        return himc_drums_refuse(&p->drums, name, spot, error);
+    if (name[0])
+        drum->index = himc_drums_find(&p->drums, name);
+    else if (p->drums.count == 0)
+        drum->fresh = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
+    return drum->fresh || p->drums.count > 0;
 }
 
 void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum)
@@ -336,11 +342,11 @@ void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum)
         himc_performance_adopt_drum(p, drum->fresh, DRUM_SILENT, &index, NULL);
 }
 
-bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
+bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error)
 {
     wanted_drum drum;
-    if (!himc_performance_want_drum(p, name, &drum, error))
+    if (!himc_performance_want_drum(p, name, spot, &drum, error))
         return false;
     himc_performance_keep_drum(p, &drum);
     *index = drum.index;
@@ -372,13 +378,16 @@ static himc_job_state add_drum(himc_job *job, himc_error *error)
     himc_performance *p = j->performance;
     himc_drum *drum = j->drum;
     int index;
+    if (himc_performance_find_drum(p, himc_drum_name(drum)))
+        return HIMC_JOB_DONE;
     if (j->sample_rate != p->clock.sample_rate) {
         j->sample_rate = p->clock.sample_rate;
         return HIMC_JOB_AGAIN;
     }
     j->drum = NULL;
-    return himc_performance_adopt_drum(p, drum, DRUM_MADE, &index, error) ? HIMC_JOB_DONE
-                                                                          : HIMC_JOB_FAILED;
+    drum_source source = p->host.make_drums ? DRUM_MADE : DRUM_SILENT;
+    return himc_performance_adopt_drum(p, drum, source, &index, error) ? HIMC_JOB_DONE
+                                                                       : HIMC_JOB_FAILED;
 }
 
 static void free_drum(himc_job *job)

@@ -34,7 +34,7 @@
 typedef struct performance_host {
     himc_performance_config config; ///< given to himc_performance_new
     himc_take_options take_options;
-    bool make_drums; ///< `drum` makes one
+    bool make_drums;                                 ///< `drum` makes one that sounds
 } performance_host;
 
 typedef struct performance_recording {
@@ -134,13 +134,17 @@ typedef struct wanted_drum {
     int index;        ///< among the performance's, also of the new one
     himc_drum *fresh; ///< owned until it is kept; NULL if there is one already
 } wanted_drum;
-/// Finds the drum of that name ("": the first), or makes a silent one.
-bool himc_performance_want_drum(himc_performance *p, const char *name, wanted_drum *drum,
-                                himc_error *error);
+/// True if the performance has the drum, or the host has one for it.
+bool himc_performance_find_drum(himc_performance *p, const char *name);
+/// Finds the drum of that name ("": the first, which may be a silent one, made for it). The name is
+/// the last word of a stroke on `spot`; if there is no such drum, and no spot was given, the word
+/// may be a misspelt spot.
+bool himc_performance_want_drum(himc_performance *p, const char *name, himc_spot spot,
+                                wanted_drum *drum, himc_error *error);
 /// Adds the new one. To refuse the command instead, release `fresh`.
 void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum);
 /// Both steps.
-bool himc_performance_ensure_drum(himc_performance *p, const char *name, int *index,
+bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error);
 /// Adds a drum and its reference, which is given back if there is no place for it.
 bool himc_performance_adopt_drum(himc_performance *p, himc_drum *drum, drum_source source,

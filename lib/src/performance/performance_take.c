@@ -296,13 +296,6 @@ static bool make_track(take_job *j, himc_error *error)
     return fit_regression(j, &skeleton, error);
 }
 
-static bool prefix_with(const char *name, himc_error *error)
-{
-    if (error && strncmp(error->text, name, strlen(name)) != 0)
-        himc_error_prefix(error, "%s", name);
-    return false;
-}
-
 static bool prepare(himc_job *job, himc_error *error)
 {
     take_job *j = (take_job *)job;
@@ -319,7 +312,7 @@ static bool prepare(himc_job *job, himc_error *error)
             j->player->config.mass = j->asked_mass;
         }
     }
-    return (j->player && make_track(j, error)) || prefix_with(j->name, error);
+    return (j->player && make_track(j, error)) || himc_take_name_error(j->name, error);
 }
 
 // moves the drum under the take's strikes, or lowers a drum that is in the way
@@ -449,7 +442,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     }
     // in this thread: the engine keeps data for each
     if (j->player->lengths > 0 && !himc_body_make_parts(&parts, &s, error)) {
-        prefix_with(j->name, error);
+        himc_take_name_error(j->name, error);
         return HIMC_JOB_FAILED;
     }
     himc_performance_keep_drum(p, &j->drum);

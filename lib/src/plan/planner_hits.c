@@ -169,6 +169,15 @@ static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hi
     return best;
 }
 
+// once: who asked for a hand should know that it is not bound
+static void tell_hand(himc_planner *planner, himc_hand asked, himc_hand hand)
+{
+    if (asked != HIMC_HAND_ANY && asked != hand)
+        himc_planner_say(&planner->notes, PLANNER_OTHER_HAND,
+                         "hit %s: the %s hand plays it, which can be there in time",
+                         himc_hand_name(asked), himc_hand_name(hand));
+}
+
 static timed_stroke stroke_of(himc_planner *planner, const himc_hit *hit, himc_hand hand)
 {
     timed_stroke s = {.stroke = *hit->stroke, .drum = hit->drum, .index = -1};
@@ -226,6 +235,7 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
     }
     if (chosen.reaches && chosen.late > 0)
         himc_planner_notes_hit(&planner->notes, t, chosen.late);
+    tell_hand(planner, hit->stroke->hand, hand);
     s.exact = true;
     s.goal.time += s.variation.late;
     s.latency = fmax(s.goal.time - t - GIVES_WAY, GIVES_WAY);

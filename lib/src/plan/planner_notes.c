@@ -53,10 +53,9 @@ void himc_planner_say(planner_notes *notes, planner_kind kind, const char *forma
         return;
     va_list args;
     va_start(args, format);
-    put(notes,
-        kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE &&
-            kind != PLANNER_DROPPED,
-        format, args);
+    bool minor = kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE &&
+                 kind != PLANNER_DROPPED && kind != PLANNER_OTHER_HAND;
+    put(notes, minor, format, args);
     va_end(args);
 }
 

@@ -17,6 +17,7 @@ typedef enum planner_kind {
     PLANNER_MEET,
     PLANNER_SOFTER,
     PLANNER_DROPPED,
+    PLANNER_OTHER_HAND,
     PLANNER_KINDS
 } planner_kind;
 

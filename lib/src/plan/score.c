@@ -24,10 +24,9 @@
 #define STROKE_INTERVAL_MIN \
     0.04 // of one hand (s); chosen: 25 strokes a second, faster than players
 
-/// A score being read, with the line of each stroke for error messages.
+/// A score being read.
 typedef struct reader {
     himc_score *score;
-    int *stroke_line;
     int stroke_room, tempo_room, line_room, change_room;
     himc_command command; ///< of the current statement
     int line;
@@ -58,11 +57,12 @@ static bool add_stroke(reader *r)
         return himc_error_set(r->error, "stroke: one too many, allowed %d strokes",
                               SCORE_STROKES_MAX);
     int room = r->stroke_room;
-    if (!grow(&r->stroke_line, score->stroke_count, &room, sizeof *r->stroke_line, r->error) ||
+    if (!grow(&score->stroke_lines, score->stroke_count, &room, sizeof *score->stroke_lines,
+              r->error) ||
         !grow(&score->strokes, score->stroke_count, &r->stroke_room, sizeof *score->strokes,
               r->error))
         return false;
-    r->stroke_line[score->stroke_count] = r->line;
+    score->stroke_lines[score->stroke_count] = r->line;
     score->strokes[score->stroke_count++] = r->command.stroke;
     return true;
 }
@@ -244,11 +244,21 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     return read_performer_line(r, atom, count);
 }
 
-// If a line inside the refused statement begins with a command's name, says so. Returns false.
+// comments of other languages
+static bool is_foreign_comment(const char *word)
+{
+    return word[0] == '#' || strncmp(word, "//", 2) == 0;
+}
+
+// What is wrong with a refused statement is that it has no end, if a line inside it begins with a
+// command's or a drum's name. Returns false.
 static bool suggest_end(reader *r, const char *begin, const char *end)
 {
     char word[HIMC_NAME_SIZE];
-    for (const char *at = begin + strspn(begin, " \t\r\n"); at < end;) {
+    char line[HIMC_PATH_SIZE];
+    begin += strspn(begin, " \t\r\n");
+    himc_format(line, sizeof line, "%.*s", (int)strcspn(begin, "\r\n"), begin);
+    for (const char *at = begin; at < end;) {
         at += strcspn(at, "\n");
         at += strspn(at, " \t\r\n");
         size_t length = strcspn(at, " \t\r\n;");
@@ -256,12 +266,8 @@ static bool suggest_end(reader *r, const char *begin, const char *end)
             continue;
         memcpy(word, at, length);
         word[length] = '\0';
-        size_t used = r->error ? strlen(r->error->text) : 0;
-        if (!r->error || !himc_command_find(HIMC_PERFORMER, word))
-            continue;
-        himc_format(r->error->text + used, sizeof r->error->text - used,
-                    " (is a ; missing before \"%s\"?)", word);
-        return false;
+        if (himc_command_find(HIMC_PERFORMER, word) || is_known_drum(r->score, word))
+            return himc_error_set(r->error, "%.60s: a ; is missing, before \"%s\"", line, word);
     }
     return false;
 }
@@ -279,6 +285,9 @@ static bool read_all(reader *r, const char *text)
         text += strlen(BYTE_ORDER_MARK);
     for (const char *begin = text; himc_text_next(&text, &line, &s); begin = text) {
         r->line = s.line;
+        if (is_foreign_comment(s.count > 0 ? s.atom[0].symbol : ""))
+            return himc_error_set(r->error, "%.20s: a comment is written comment ...;",
+                                  s.atom[0].symbol);
         if (!read_statement(r, &s))
             return suggest_end(r, begin, text);
     }
@@ -325,11 +334,11 @@ static bool sort_strokes(reader *r)
     qsort(key, count, sizeof *key, by_beat);
     for (size_t i = 0; i < count; i++) {
         sorted[i] = score->strokes[key[i].index];
-        line[i] = r->stroke_line[key[i].index];
+        line[i] = score->stroke_lines[key[i].index];
     }
-    free(key), free(score->strokes), free(r->stroke_line);
+    free(key), free(score->strokes), free(score->stroke_lines);
     score->strokes = sorted;
-    r->stroke_line = line;
+    score->stroke_lines = line;
     return true;
 }
 
@@ -384,7 +393,7 @@ static bool check_playable(reader *r)
                     score->tempi[tempo].bpm;
         double seconds =
             base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
-        r->line = r->stroke_line[i];
+        r->line = score->stroke_lines[i];
         if (stroke->ornament >= HIMC_ROLL_SINGLE) {
             // it leaves out what does not fit (ornament.h)
             if (!himc_score_accepts_roll(score->tempi, score->tempo_count, stroke, r->error))
@@ -415,7 +424,6 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
     }
     r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
     good = read_all(&r, text) && sort_strokes(&r) && sort_changes(&r) && check_playable(&r);
-    free(r.stroke_line);
     if (good)
         return r.score;
     himc_error_prefix(error, "%s:%d", name, r.line);
@@ -428,6 +436,7 @@ void himc_score_free(himc_score *score)
     if (!score)
         return;
     free(score->strokes);
+    free(score->stroke_lines);
     free(score->tempi);
     free(score->lines);
     free(score->changes);
