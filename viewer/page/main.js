@@ -554,7 +554,6 @@ function edit(key) {
         cut: time => panel.timeline.cut(time),
         changed: () => panel.timeline.grown(),
         finished: piece => panel.timeline.heard(piece.sound.whole()),
-        radius: name => [...drums.values()].find(d => d.name === name).place[4],
         drum: name => [...drums.values()].find(d => d.name === name && d.group.visible)?.tilted,
     });
 }
