@@ -635,6 +635,14 @@ def test_a_dropped_file_is_played():
             assert "names other files" in page.until("failed")["text"]
         page.say(b"bad.c3d\0not a capture")
         assert "not a capture" not in page.until("failed")["text"]
+        # after what cannot be played the piece before goes on, also for the next page
+        text = page.until("text")
+        assert text["begun"] and text["source"] == "my score.txt", text
+        page.until("pcm ")
+        page.say(b"set 0 stroke 0 right legato ff", 1)
+        assert page.until("text")["undo"] == 1
+        text = Editing(v).until("text")
+        assert text["source"] == "my score.txt" and text["undo"] == 1, text
         assert len(os.listdir(home)) == 1
         v.process.terminate()
         v.process.wait(WAIT)

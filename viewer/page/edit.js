@@ -199,7 +199,7 @@ export class Editor {
 
     written(event) {
         this.unsure = false;
-        this.on.note("");
+        if (!event.begun || event.source !== this.named) this.on.note(""); // of what was refused before
         if (event.begun) ((this.ends = ""), this.state(""));
         document.body.classList.add("editing");
         document.body.classList.toggle("take", event.take);
