@@ -48,6 +48,7 @@ typedef struct session {
     char wanted[FILE_NAME];      ///< and the name under which it is wanted
     char line[LINE];
     size_t used;
+    bool played;  ///< once, at least a part
     bool changed; ///< the last line has changed the text, and it has not been played yet
     bool over;    ///< no more lines
 } session;
@@ -393,6 +394,8 @@ static bool take_back(session *s, const edit_frame *frame, himc_error *error)
     char text[sizeof error->text];
     bool undone = s->changed && edit_text_undo(s->text);
     snprintf(text, sizeof text, "%.*s", (int)frame->size, (const char *)frame->bytes);
+    if (!undone && !s->played)
+        return himc_error_set(error, "%s", text);
     s->changed = false;
     if (undone) {
         keep(s, "undo");
@@ -411,6 +414,7 @@ static bool pass_frame(session *s, himc_error *error)
         return false;
     if (!strcmp(frame.kind, "from"))
         s->changed = false;
+    s->played |= !strcmp(frame.kind, "pcm ");
     if (!strcmp(frame.kind, "fail"))
         return take_back(s, &frame, error);
     if (strcmp(frame.kind, "late") && strcmp(frame.kind, "bye!"))

@@ -47,10 +47,11 @@ static void become(const editor *e)
     char path[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", path, sizeof path - 8);
     char *slash = length > 0 ? memrchr(path, '/', (size_t)length) : NULL;
-    char *const own[] = {"himc", "edit", (char *)e->source, NULL},
-                *const sent[] = {"himc",          "edit", (char *)e->source, "--confined", "--name",
-                                 (char *)e->name, NULL},
-                *const *arguments = e->name[0] ? sent : own;
+    char *const own[] = {"himc", "edit", (char *)e->now.source, NULL},
+                *const sent[] = {"himc",       "edit",   (char *)e->now.source,
+                                 "--confined", "--name", (char *)e->now.name,
+                                 NULL},
+                *const *arguments = e->now.name[0] ? sent : own;
     static const char missing[] =
         "{\"event\":\"failed\",\"text\":\"the program himc is not beside himc-viewer\"}";
     uint32_t size = sizeof missing - 1;
@@ -126,7 +127,7 @@ static const char *ending_of(const char *name)
 }
 
 // the last part of a path, as a line of text
-static void keep_name(editor *e, const char *name)
+static void keep_name(editor_piece *e, const char *name)
 {
     const char *slash = strrchr(name, '/');
     name = slash ? slash + 1 : name;
@@ -147,16 +148,30 @@ bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error)
         return himc_error_set(error, "allowed are scores (.txt), .mid, .bvh, .c3d, .trc, .himc");
     if (!folder_make(e->folder, error))
         return false;
-    char file[16];
+    char file[32];
+    editor_piece piece = {.place = !e->good.place};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        snprintf(file, sizeof file, "piece%s", endings[i]);
+        snprintf(file, sizeof file, "piece.%d%s", piece.place, endings[i]);
         folder_unlink(e->folder, file);
     }
-    snprintf(file, sizeof file, "piece%s", ending);
+    snprintf(file, sizeof file, "piece.%d%s", piece.place, ending);
     zero++;
     if (!folder_write(e->folder, file, zero, size - (size_t)(zero - bytes), error))
         return false;
-    snprintf(e->source, sizeof e->source, "%s/%s", e->folder->path, file);
-    keep_name(e, bytes);
+    snprintf(piece.source, sizeof piece.source, "%s/%s", e->folder->path, file);
+    keep_name(&piece, bytes);
+    e->now = piece;
     return true;
+}
+
+void editor_accept(editor *e)
+{
+    e->good = e->now;
+}
+
+bool editor_back(editor *e)
+{
+    bool same = !strcmp(e->now.source, e->good.source);
+    e->now = e->good;
+    return !same && e->now.source[0];
 }

@@ -10,13 +10,20 @@
 #define EDITOR_LINE 4000                 ///< of a line to it (bytes); as `himc edit` takes
 #define EDITOR_UPLOAD ((size_t)64 << 20) ///< of a file with its name (bytes); chosen: an hour
 
+/// A file to be edited.
+typedef struct editor_piece {
+    char source[512]; ///< "" for none
+    char name[128];   ///< under which a page has sent it; "": none has
+    int place;        ///< of what pages have sent, 0 or 1
+} editor_piece;
+
 /// A piece that is being edited. All zero: none.
 typedef struct editor {
-    char source[512]; ///< its file; "" for none
-    char name[128];   ///< under which a page has sent it; "": none has
-    folder *folder;   ///< borrowed; of what came from pages, and of files that are being made
-    pid_t process;    ///< 0: none runs
-    int to, from;     ///< its standard input and output
+    editor_piece now;
+    editor_piece good; ///< the last one that could be played
+    folder *folder;    ///< borrowed; of what came from pages, and of files that are being made
+    pid_t process;     ///< 0: none runs
+    int to, from;      ///< its standard input and output
 } editor;
 
 /// A random key, hexadecimal; false with the reason.
@@ -30,6 +37,10 @@ bool editor_start(editor *e, himc_error *error);
 bool editor_say(const editor *e, const char *line, size_t size);
 /// Keeps a file that came from a page (name, 0, bytes) as the source; false with the reason.
 bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error);
+/// The present piece could be played.
+void editor_accept(editor *e);
+/// After a piece that could not: back to the one before; false if this is it, or there is none.
+bool editor_back(editor *e);
 /// Ends the program, and with it all processes that play.
 void editor_stop(editor *e);
 

@@ -4,6 +4,7 @@
 #define _DEFAULT_SOURCE // flock, mkdtemp
 #include "folder.h"
 #include "base/file.h"
+#include "system/files.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -28,7 +29,7 @@ static const char *temporary(void)
 static int take(const char *path)
 {
     struct stat status, now;
-    int lock = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    int lock = himc_system_open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (lock < 0)
         return -1;
     if (fstat(lock, &status) == 0 && status.st_uid == geteuid() && !(status.st_mode & 077) &&
@@ -39,11 +40,18 @@ static int take(const char *path)
     return -1;
 }
 
+// another file stays, and with it the folder: it is somebody's of the same name
+static bool is_ours(const char *name)
+{
+    return !strcmp(name, "open.html") || !strncmp(name, "piece.", 6) || !strncmp(name, "himc-", 5);
+}
+
 static void remove_all(const char *path, int lock)
 {
     DIR *list = fdopendir(lock);
     for (struct dirent *entry; list && (entry = readdir(list));)
-        unlinkat(lock, entry->d_name, 0); // a folder in it stays, and with it the whole
+        if (is_ours(entry->d_name))
+            unlinkat(lock, entry->d_name, 0);
     rmdir(path);
     if (list)
         closedir(list);

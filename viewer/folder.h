@@ -18,7 +18,7 @@ bool folder_make(folder *f, himc_error *error);
 bool folder_write(const folder *f, const char *name, const char *bytes, size_t size,
                   himc_error *error);
 void folder_unlink(const folder *f, const char *name);
-/// Removes the folder and all files in it.
+/// Removes the folder and the files in it: open.html, piece.*, himc-*.
 void folder_remove(folder *f);
 
 #endif

@@ -9,7 +9,7 @@
 /// journal (tools/edit_journal.c) brings the changes back to the next one. A slow browser gets the
 /// newest pose when it is ready for it, so no queue grows here. Invariant: connections are bounded
 /// in number, and each that makes no progress in time.
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE // memmem
 #include "web.h"
 #include "access.h"
 #include "editor.h"
@@ -67,7 +67,7 @@ struct web {
     size_t heard_size, heard_room;
     size_t waiting; // bytes of the program in `passed`
     unsigned char passed[LWS_PRE + PASSED];
-    lws_sorted_usec_list_t pause, second;
+    lws_sorted_usec_list_t pause, second, back;
     double cpu, clock; // at the last report (s)
     unsigned char out[LWS_PRE + SCENE_FRAME_MAX];
 };
@@ -363,7 +363,15 @@ static void take_over(web *w, struct lws *wsi, session *own)
     w->editing_own = own;
     w->heard_size = 0;
     folder_unlink(w->config.folder, WEB_DOOR);
-    if (w->edit.source[0])
+    if (w->edit.now.source[0])
+        begin_editing(w);
+}
+
+// a piece that could not be played has ended its program: the one before is edited again
+static void on_back(lws_sorted_usec_list_t *list)
+{
+    web *w = lws_container_of(list, web, back);
+    if (!w->edited && w->editing && editor_back(&w->edit))
         begin_editing(w);
 }
 
@@ -460,8 +468,10 @@ static int on_edited(struct lws *wsi, enum lws_callback_reasons reason, void *us
 {
     web *w = web_of(wsi);
     (void)user, (void)in, (void)length;
-    if (reason == LWS_CALLBACK_RAW_CLOSE_FILE && w->edited == wsi)
+    if (reason == LWS_CALLBACK_RAW_CLOSE_FILE && w->edited == wsi) {
         w->edited = NULL;
+        lws_sul_schedule(w->context, 0, &w->back, on_back, 1);
+    }
     if (reason != LWS_CALLBACK_RAW_RX_FILE || w->edited != wsi)
         return 0;
     if (w->waiting || !w->editing) {
@@ -472,6 +482,8 @@ static int on_edited(struct lws *wsi, enum lws_callback_reasons reason, void *us
     if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR))
         return -1;
     if (got > 0) {
+        if (memmem(w->passed + LWS_PRE, (size_t)got, "pcm ", 4)) // something is heard of it
+            editor_accept(&w->edit);
         w->waiting = (size_t)got;
         lws_rx_flow_control(wsi, 0);
         lws_callback_on_writable(w->editing);
@@ -598,7 +610,7 @@ web *web_new(const web_config *config, scene *s, himc_error *error)
     describe_session(w);
     w->edit.folder = config->folder;
     if (config->edit)
-        snprintf(w->edit.source, sizeof w->edit.source, "%s", config->edit);
+        snprintf(w->edit.now.source, sizeof w->edit.now.source, "%s", config->edit);
     if (!listen_to_all(w)) {
         himc_error_set(error, "cannot serve the page on %s port %d", config->address, config->port);
         web_free(w);

@@ -6,7 +6,7 @@
 #include "folder.h"
 #include "scene.h"
 
-#define WEB_DOOR "open.html" ///< in the folder: leads a browser to the page that edits
+#define WEB_DOOR "open.html" ///< in the folder (folder.c): leads a browser to the page that edits
 
 typedef struct web_config {
     const char *address;   ///< numeric

@@ -23,19 +23,26 @@ import report
 
 BUILD = os.environ["HIMC_BUILD"]
 VIEWER = os.path.join(BUILD, "bin/himc-viewer")
+STATES = tempfile.TemporaryDirectory(prefix="himc-states-")  # of pieces that were dropped
 WAIT = 300  # longest wait for an event (s): only a test that fails waits so long
 
 
 class Viewer:
     """A running bridge on free ports."""
 
-    def __init__(self, *options, home="/tmp"):
+    def __init__(self, *options, home="/tmp", browser=("--no-browser",), **environment):
         self.process = subprocess.Popen(
-            [VIEWER, "--no-browser", "--osc", "0", "--http", "0", *options],
+            [VIEWER, *browser, "--osc", "0", "--http", "0", *options],
             stdout=subprocess.PIPE,
             text=True,
             # memory is measured: the address sanitizer, if there, keeps less of what was freed
-            env=dict(os.environ, ASAN_OPTIONS="quarantine_size_mb=1", TMPDIR=home),
+            env=dict(
+                os.environ,
+                ASAN_OPTIONS="quarantine_size_mb=1",
+                TMPDIR=home,
+                XDG_STATE_HOME=STATES.name,
+                **environment,
+            ),
         )
         line = self.process.stdout.readline()
         self.http = int(line.split("/")[2].split(":")[1])
@@ -481,6 +488,13 @@ class Editing(Stream):
         self.told = self.told[8 + size :]
         return kind, data
 
+    def closed_with(self):
+        """The status of the close frame."""
+        while got := self.frame():
+            if got[0] == 8:
+                return struct.unpack(">H", got[1][:2])[0]
+        return None
+
     def until(self, wanted):
         """Takes messages up to one of that kind, or an event of that name."""
         while got := self.next():
@@ -522,24 +536,113 @@ def test_a_piece_is_edited_over_the_stream():
             assert "boing" in page.until("refused")["text"]
             page.say(b"undo", 1)
             assert page.until("text")["statements"][1]["nuance"] == "legato"
-            # another page takes over, and is told all
+            # another page takes over, with all that was changed, and this one is told so
+            page.say(b"set 0 stroke 0 right legato ff", 1)
+            page.until("text")
             newer = Editing(v)
-            assert newer.until("text")["redo"] == 0
+            text = newer.until("text")
+            assert text["begun"] and (text["undo"], text["redo"]) == (1, 0), text
+            assert "1 change" in newer.until("restored")["text"]
             newer.until("over")
+            assert page.closed_with() == 4001
+
+
+def processes(viewer):
+    """Of `himc edit` and those that play, by the process groups' beginning (with their parents)."""
+    parents = {}
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        with contextlib.suppress(OSError, IndexError):
+            with open(f"/proc/{pid}/stat") as file:
+                state, parent = file.read().rsplit(")", 1)[1].split()[:2]
+            if state != "Z":
+                parents[int(pid)] = int(parent)
+    found = {viewer.process.pid}
+    while more := {p for p, parent in parents.items() if parent in found} - found:
+        found |= more
+    return found - {viewer.process.pid}
+
+
+def wait_until_gone(pids):
+    end = time.time() + WAIT
+    while left := [p for p in pids if os.path.exists(f"/proc/{p}/cwd")]:
+        assert time.time() < end, left
+        time.sleep(0.01)
+
+
+def test_the_processes_of_an_edit_end_with_its_page_and_with_the_server():
+    with tempfile.TemporaryDirectory() as home:
+        path = os.path.join(home, "piece.txt")
+        with open(path, "wb") as file:
+            file.write(score_of(*(f"{i} right legato mf" for i in range(8))))
+        os.mkdir(temporary := os.path.join(home, "tmp"))
+        with Viewer("--edit", path, home=temporary) as v:
+            page = Editing(v)
+            page.until("over")
+            running = processes(v)
+            assert len(running) > 4, running  # copies to play from
+            page.s.close()
+            wait_until_gone(running)
+            page = Editing(v)
+            page.until("pcm ")  # it plays on
+            running = processes(v)
+            v.process.kill()
+            v.process.wait(WAIT)
+            wait_until_gone(running)
+            assert len(os.listdir(temporary)) == 1
+            # what is not ours stays, a folder of a running program too
+            os.mkdir(other := os.path.join(temporary, "himc-viewer-mine"), 0o700)
+            with open(os.path.join(other, "notes"), "w") as file:
+                file.write("mine")
+            with Viewer("--edit", path, home=temporary) as next_one:
+                Editing(next_one).until("text")
+                with Viewer(home=temporary):
+                    assert len(os.listdir(temporary)) == 2, os.listdir(temporary)
+            assert os.listdir(temporary) == ["himc-viewer-mine"] and os.listdir(other) == ["notes"]
+            v.process.returncode = 0  # it was killed on purpose
+
+
+def test_the_key_is_in_no_argument():
+    """xdg-open gets a file that only the user may read, which is gone when the page has come."""
+    with tempfile.TemporaryDirectory() as home:
+        said = os.path.join(home, "said")
+        with open(os.path.join(home, "xdg-open"), "w") as file:
+            file.write(f'#!/bin/sh\nstat -c %a "$1" >{said}\ncat "$1" >>{said}\necho "$*" >>{said}\n')
+        os.chmod(os.path.join(home, "xdg-open"), 0o755)
+        path = os.environ["PATH"]
+        with Viewer(home=home, browser=(), PATH=f"{home}:{path}") as v:
+            while not os.path.exists(said) or open(said).read().count("\n") < 3:
+                time.sleep(0.01)
+            mode, *page, arguments = open(said).read().splitlines()
+            assert mode == "600" and v.key not in arguments and " " not in arguments, arguments
+            assert f"url=http://127.0.0.1:{v.http}/#{v.key}" in "".join(page)
+            assert os.path.exists(arguments) and os.stat(os.path.dirname(arguments)).st_mode & 0o77 == 0
+            Editing(v)
+            while os.path.exists(arguments):
+                time.sleep(0.01)
 
 
 def test_a_dropped_file_is_played():
     with tempfile.TemporaryDirectory() as home, Viewer(home=home) as v:
         page = Editing(v)
         page.say(b"my score.txt\0" + score_of("0 right legato mf"))
-        assert len(page.until("text")["statements"]) == 1
+        text = page.until("text")
+        assert len(text["statements"]) == 1 and text["source"] == "my score.txt", text
         page.until("pcm ")
         page.say(b"none.exe\0MZ")
         assert ".bvh" in page.until("failed")["text"]
-        page.say(b"reads.txt\0take /etc/passwd;")
-        assert "names other files" in page.until("failed")["text"]
+        for reads in (b"take /etc/passwd;", b"\xef\xbb\xbftake /etc/passwd;", b"drum k;\nk shape /etc/passwd;"):
+            page.say(b"reads.txt\0" + reads)
+            assert "names other files" in page.until("failed")["text"]
         page.say(b"bad.c3d\0not a capture")
-        assert "bad" not in page.until("failed")["text"]
+        assert "not a capture" not in page.until("failed")["text"]
+        # after what cannot be played the piece before goes on, also for the next page
+        text = page.until("text")
+        assert text["begun"] and text["source"] == "my score.txt", text
+        page.until("pcm ")
+        page.say(b"set 0 stroke 0 right legato ff", 1)
+        assert page.until("text")["undo"] == 1
+        text = Editing(v).until("text")
+        assert text["source"] == "my score.txt" and text["undo"] == 1, text
         assert len(os.listdir(home)) == 1
         v.process.terminate()
         v.process.wait(WAIT)
@@ -896,7 +999,7 @@ def test_it_ends_cleanly_when_told():
 def test_it_runs_as_an_ordinary_user():
     if os.geteuid() != 0:
         return "as this test does"
-    home = tempfile.mkdtemp(prefix="himc-viewer-")
+    home = tempfile.mkdtemp(prefix="himc-user-")
     try:
         os.chmod(home, 0o755)
         program = shutil.copy(VIEWER, home)

@@ -39,6 +39,8 @@ OSC, SERVE = HTTP + 1, HTTP + 2
 RECOVERED = 10  # of a body that was pushed, a second later (mm); tests/pushes.h
 MARKS = 7  # layer of the marks of strikes
 browser = bridge = None
+STATES = tempfile.TemporaryDirectory(prefix="himc-states-")  # of pieces that were dropped
+os.environ["XDG_STATE_HOME"] = STATES.name
 
 
 def say(port, *packets):
@@ -961,15 +963,32 @@ DRAG = """
 """
 
 
+def edits(url=None):
+    """Opens the page, or waits for the one that is open; all of the piece has been played then."""
+    if url:
+        browser.open(url)
+    assert browser.wait("return !!(window.viewer && viewer.playback)"), browser.log()
+    draw(False)
+    assert browser.wait("return viewer.editor.piece.over")
+
+
+def copied(source, home):
+    """Without a journal from another test beside it."""
+    return shutil.copy(source, home)
+
+
 @contextlib.contextmanager
 def editing(source):
     """A page that edits; strokes are written, all of it is played, and nothing moves."""
-    # a free port each time: the page of another piece may still try to connect again
-    with Started(VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", source) as started:
-        browser.open(started.process.stdout.readline().split()[0])
-        assert browser.wait("return !!(window.viewer && viewer.playback)"), browser.log()
-        draw(False)
-        assert browser.wait("return viewer.editor.piece.over")
+    with (
+        tempfile.TemporaryDirectory() as home,
+        Started(
+            VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", copied(source, home)
+        ) as started,
+    ):
+        browser.open("about:blank")
+        browser.log()  # the page of another piece has perhaps tried to connect again
+        edits(started.process.stdout.readline().split()[0])
         browser.run("viewer.sound.wake(); viewer.playback.play(false)")
         yield
         trouble = [line for line in browser.log() if "/icon.svg" not in line]
@@ -1012,7 +1031,7 @@ def test_a_stroke_is_dragged_heard_and_put_back():
         assert browser.run(words) == "stroke 11 right tenuto mf normal high"
         browser.run(DRAG, "spot", 5, 0)
         assert browser.wait("return viewer.editor.heard.length === 1")
-        assert browser.run("return viewer.playback.playing && viewer.editor.ghost.visible")
+        assert browser.run("return !viewer.playback.playing && viewer.editor.ghost.visible")
         assert browser.wait("return viewer.editor.piece.over")
         after, from_time = browser.run(strikes), 4.0
         assert [s for s in after if s[0] < from_time] == [s for s in before if s[0] < from_time]
@@ -1167,6 +1186,170 @@ def test_a_drag_on_the_forearm_pushes_it_and_undo_takes_the_push_back():
         )
 
 
+def change(script):
+    """One change by the inspector; the text after it, when all of it is played."""
+    browser.run("viewer.changes = viewer.editor.heard.length;" + script)
+    assert browser.wait(
+        "return viewer.editor.heard.length > viewer.changes && viewer.editor.piece.over"
+    ), browser.log()
+    return browser.run(WORDS)
+
+
+SET = "const field = document.getElementById('e-%s'); field.value = '%s'; field.onchange();"
+SAID = "return document.getElementById('e-state').hidden ? '' : document.getElementById('e-said').textContent"
+
+
+def choose(beat):
+    browser.run(
+        "viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => Math.abs(s.beat - arguments[0]) < 1e-6))",
+        beat,
+    )
+
+
+def test_a_field_changes_its_own_word_and_a_paused_piece_stays_paused():
+    with editing("tests/viewer/editable.txt"):
+        written = saved_score()
+        choose(8)
+        browser.run("viewer.playback.seek(1500)")
+        was = browser.run("return viewer.playback.at")
+        assert browser.run(WORDS) == "stroke 8 left legato pp normal low"
+        for field, value, words in (
+            ("dynamic", 0.43, "stroke 8 left legato mp normal low"),
+            ("dynamic", 0.5, "stroke 8 left legato 0.5 normal low"),
+            ("nuance", "accent", "stroke 8 left accent 0.5 normal low"),
+            ("hand", "right", "stroke 8 right accent 0.5 normal low"),
+        ):
+            assert change(SET % (field, value)) == words
+        line = "stroke 8 left legato pp normal low"
+        assert saved_score() == written.replace(line, words)  # and nothing else
+        assert browser.run("return [viewer.playback.at, viewer.playback.playing]") == [was, False]
+        # one number of the place: the other one is that of the word, not that of what was played
+        x, y = browser.run("return viewer.editor.aim(viewer.editor.chosen.statement)")
+        words = change(SET % ("x", -0.1)).split()
+        assert words[5] == "-0.1" and abs(float(words[6]) - y) < 1e-4 and words[7] == "low", words
+        assert abs(x + 0.75 * 0.0254 * 29 / 2) < 1e-3 and abs(y + 0.015) < 1e-9, (x, y)
+        # what plays is heard again from shortly before
+        browser.run("viewer.playback.seek(500); viewer.playback.play(true)")
+        change(SET % ("dynamic", 0.9))
+        assert browser.run("return viewer.playback.playing")
+        browser.run("viewer.playback.play(false); document.getElementById('e-revert').click()")
+        assert browser.wait("return !viewer.editor.piece.text.undo && viewer.editor.piece.over")
+        assert saved_score() == written
+
+
+def test_the_cursor_stays_where_something_is_computed():
+    with editing("tests/viewer/editable.txt"):
+        choose(2)
+        browser.run("viewer.playback.play(true); viewer.playback.seek(6000); viewer.beyond = [];")
+        browser.run(
+            "const grown = viewer.editor.piece.on.grown; viewer.editor.piece.on.grown = piece => {"
+            "grown(piece); viewer.playback.advance(1); viewer.beyond.push(viewer.playback.at - 1000 * piece.scene.end) }"
+        )
+        browser.run("viewer.actions.pause(); viewer.playback.seek(6000)")
+        change(SET % ("dynamic", 0.9))
+        beyond = browser.run("return viewer.beyond")
+        assert len(beyond) > 3 and max(beyond) <= 1e-6, beyond
+        # seeking while it is computed
+        browser.run("viewer.editor.piece.on.cut = () => (viewer.playback.seek(1e9), viewer.beyond.push(viewer.playback.at))")
+        browser.run("viewer.beyond = []")
+        change(SET % ("dynamic", 0.2))
+        assert max(browser.run("return viewer.beyond")) < 3000
+
+
+def test_a_reload_a_second_tab_and_a_killed_server_lose_nothing():
+    with tempfile.TemporaryDirectory() as home:
+        path = copied("tests/viewer/editable.txt", home)
+        command = [VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", path]
+        with Started(*command) as started:
+            url = started.process.stdout.readline().split()[0]
+            edits(url)
+            choose(8)
+            change(SET % ("dynamic", 0.9))
+            score = saved_score()
+            assert "stroke 8 left legato 0.9" in score
+            # a reload, with the history
+            browser.run("location.reload()")
+            assert browser.wait("return !!(window.viewer && !viewer.changes)")
+            edits()
+            assert "1 change" in browser.run(SAID) and saved_score() == score
+            assert browser.run("return viewer.editor.piece.text.undo") == 1
+            # another tab
+            tabs = [browser.call("GET", browser.session + "/window")]
+            tabs.append(browser.call("POST", browser.session + "/window/new", {"type": "tab"})["handle"])
+            turn = lambda i: browser.call("POST", browser.session + "/window", {"handle": tabs[i]})
+            turn(1)
+            edits(url)
+            assert saved_score() == score
+            choose(9)
+            change(SET % ("nuance", "legato"))
+            score = saved_score()
+            turn(0)
+            assert browser.wait("return viewer.editor.ends === 'taken'")
+            assert "Another page" in browser.run(SAID)
+            browser.run("document.getElementById('e-here').click()")
+            assert browser.wait("return !viewer.editor.ends && viewer.editor.piece.over")
+            assert "2 changes" in browser.run(SAID) and saved_score() == score
+            turn(1)
+            assert browser.wait("return viewer.editor.ends === 'taken'")
+            browser.call("DELETE", browser.session + "/window")
+            turn(0)
+            # the server is killed: the page says so, plays what it has, and asks for no leave
+            started.process.kill()
+            assert browser.wait("return viewer.editor.ends === 'lost'")
+            assert "has ended" in browser.run(SAID) and not browser.run("return viewer.editor.risky")
+            browser.run("viewer.playback.seek(500); viewer.playback.play(true)")
+            assert browser.wait("return viewer.playback.at > 700")
+            browser.run("viewer.playback.play(false)")
+            assert len(browser.log()) < 30  # refusals, fewer and fewer
+            port = url.split(":")[2].split("/")[0]
+        command[command.index("--http") + 1] = port
+        with Started(*command) as started:
+            url = started.process.stdout.readline().split()[0]
+            browser.run("dispatchEvent(new Event('focus'))")  # the page is looked at again
+            assert browser.wait("return viewer.editor.ends === 'refused'")
+            assert "open the address" in browser.run(SAID)
+            browser.open("about:blank")
+            edits(url)
+            assert "2 changes" in browser.run(SAID) and saved_score() == score
+            browser.run("document.getElementById('e-revert').click()")
+            assert browser.wait("return !viewer.editor.piece.text.undo && viewer.editor.piece.over")
+            with open(path) as file:
+                assert saved_score() == file.read()
+        browser.log()
+
+
+def test_a_page_that_would_lose_changes_asks_before_it_goes():
+    """Where no journal can be written."""
+    with tempfile.TemporaryDirectory() as home:
+        path = copied("tests/viewer/editable.txt", home)
+        with open(os.path.join(home, ".editable.txt.himc-edit"), "w") as file:
+            file.write("something else")
+        command = [VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", path]
+        with Started(*command) as started:
+            edits(started.process.stdout.readline().split()[0])
+            assert "not a journal" in browser.run(SAID)
+            assert not browser.run("return viewer.editor.risky")
+            choose(8)
+            change(SET % ("dynamic", 0.9))
+            asks = "const e = new Event('beforeunload', { cancelable: true }); dispatchEvent(e); return e.defaultPrevented"
+            assert browser.run(asks)
+            undo_all()
+            assert not browser.run(asks)
+            browser.open("about:blank")
+
+
+def test_a_scene_that_unpacks_without_end_is_refused():
+    bomb = zlib.compress(b" " * (65 << 20), 9)
+    with viewer():
+        open_page()
+        told = browser.run(
+            "return viewer.readScene(Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0)), 'bomb.himc')"
+            ".then(() => 'read', error => error.message)",
+            base64.b64encode(b"himcscn\1json" + struct.pack("<I", len(bomb)) + bomb).decode(),
+        )
+        assert told.startswith("bomb.himc") and "more than" in told, told
+
+
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
     with tempfile.TemporaryDirectory() as home, editing("tests/viewer/editable.txt"):
         browser.run(
@@ -1224,7 +1407,7 @@ def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
         browser.run(
             "viewer.saved = null; document.getElementById('e-c3d').click()"
         )
-        assert browser.wait("return viewer.saved && viewer.saved.name === 'take.c3d'")
+        assert browser.wait("return viewer.saved && viewer.saved.name === 'dropped.c3d'")
         assert browser.run("return viewer.saved.arrayBuffer().then(b => new Uint8Array(b)[1])") == 0x50
 
 

@@ -63,12 +63,12 @@ const draw = (made, points) => {
 
 export class Editor {
     // `on`: opened(piece), playback(), performer(), note(line, stays), cut(time), changed(piece), finished(piece),
-    // drum(name), its tilted group, and radius(name)
+    // drum(name), its tilted group
     constructor(key, sound, view, stage, on) {
         Object.assign(this, { view, on, chosen: null, drag: null, waiting: null, heard: [] });
         this.piece = new Piece(key, sound, {
             begun: piece => this.begun(piece),
-            cut: (piece, time) => on.playback()?.scene === piece.scene && on.cut(time),
+            cut: (piece, time) => this.cut(piece, time),
             grown: piece => this.grown(piece),
             over: piece => this.over(piece),
             text: event => this.written(event),
@@ -134,17 +134,33 @@ export class Editor {
 
     // another piece, or this one from its start: then the cursor comes back to where it was
     begun(piece) {
-        const old = this.on.playback();
-        this.back = old && this.named === piece.text.source ? { at: old.at, playing: old.playing } : null;
+        const old = this.on.playback(),
+            same = old && this.named === piece.text.source;
         this.named = piece.text.source;
         this.choose(null);
         this.on.opened(piece);
-        if (this.back) this.on.playback().play(false);
+        if (same) this.hold(this.on.playback(), old.at, old.playing);
+    }
+
+    // what follows that time (s) is computed again
+    cut(piece, time) {
+        const p = this.on.playback();
+        if (p?.scene !== piece.scene) return;
+        this.on.cut(time);
+        if (!p.playing && p.at > p.known) this.hold(p, this.back?.at ?? p.at, !!this.back?.playing);
+    }
+
+    // the cursor comes back there when it can, unless it is moved before
+    hold(p, at, playing) {
+        p.play(false);
+        p.seek(at);
+        this.back = { at, playing, held: p.at };
     }
 
     comeBack(p) {
         const { back } = this;
-        if (!back || (p.known < back.at && !this.piece.over)) return;
+        if (back && (p.playing || p.at !== back.held)) this.back = null;
+        if (!this.back || (p.known < back.at && !this.piece.over)) return;
         this.back = null;
         p.seek(back.at);
         p.play(back.playing);
@@ -157,9 +173,9 @@ export class Editor {
             number = id => Number($(id).value);
         for (const nuance of FAMILY) $("e-nuance").add(new Option(nuance.replace("-", " "), nuance));
         for (const hand of HANDS) $("e-hand").add(new Option(hand, hand));
-        for (const name of ["hand", "nuance"]) $(`e-${name}`).onchange = e => this.commit({ [name]: e.target.value });
+        for (const name of ["hand", "nuance"]) $(`e-${name}`).onchange = () => this.commit({ [name]: $(`e-${name}`).value });
         for (const name of ["beat", "dynamic", "x", "y"]) $(`e-${name}`).onchange = () => this.commit({ [name]: number(`e-${name}`) });
-        $("e-span").onchange = e => this.word(3, e.target.value);
+        $("e-span").onchange = () => this.chosen?.take && this.word(3, $("e-span").value);
         $("e-dynamic").oninput = () => ($("e-loud").textContent = number("e-dynamic").toFixed(2));
         $("e-words").onchange = e => this.send(this.chosen?.statement?.index, e.target.value);
         $("e-delete").onclick = () => this.send(this.chosen?.statement?.index, "");
@@ -183,7 +199,7 @@ export class Editor {
 
     written(event) {
         this.unsure = false;
-        this.on.note("");
+        if (!event.begun || event.source !== this.named) this.on.note(""); // of what was refused before
         if (event.begun) ((this.ends = ""), this.state(""));
         document.body.classList.add("editing");
         document.body.classList.toggle("take", event.take);
@@ -197,10 +213,16 @@ export class Editor {
         else this.show();
     }
 
+    // of a drum (m); NaN before it has come
+    radius(name) {
+        const drum = [...this.piece.scene.drums.values()].find(d => d.name === name);
+        return drum?.changes[drum.changes.length - 1]?.place[4] ?? NaN;
+    }
+
     // where a stroke is written to land (m)
     aim(s) {
         if (s.x !== undefined) return [s.x, s.y];
-        const radius = this.on.radius(s.drum || this.chosen.strike.drum),
+        const radius = this.radius(s.drum || this.chosen.strike.drum),
             [none, one] = s.spot;
         return none.map((v, i) => v + radius * (one[i] - v));
     }
@@ -436,7 +458,7 @@ export class Editor {
         // what is played differs from what is written as a player's strokes do, and so it stays
         const at = this.head(c.strike.drum).worldToLocal(this.spot.position.clone()),
             [x, y] = this.aim(s).map((v, i) => v + (i ? at.y - c.strike.y : at.x - c.strike.x)),
-            out = Math.max(1, Math.hypot(x, y) / (INSIDE * this.on.radius(c.strike.drum)));
+            out = Math.max(1, Math.hypot(x, y) / (INSIDE * this.radius(c.strike.drum)));
         this.commit({ x: x / out, y: y / out });
     }
 

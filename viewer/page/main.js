@@ -362,7 +362,7 @@ function step(ms, draw = true) {
 
 // --- a scene
 
-const phone = matchMedia("(max-width: 760px)"),
+const phone = matchMedia("(max-width: 760px), (max-height: 480px)"),
     footer = document.querySelector("footer");
 
 // on a phone the picture is in the middle of what the writing leaves
@@ -376,6 +376,8 @@ new ResizeObserver(() => {
     document.body.style.setProperty("--footer", `${footer.offsetHeight}px`);
     if (phone.matches && Math.abs(lifted() - view.lift) > 0.01) setLift(lifted());
 }).observe(footer);
+
+phone.onchange = () => setLift(lifted());
 
 function setLift(lift) {
     view.lift = lift;
@@ -554,7 +556,6 @@ function edit(key) {
         cut: time => panel.timeline.cut(time),
         changed: () => panel.timeline.grown(),
         finished: piece => panel.timeline.heard(piece.sound.whole()),
-        radius: name => [...drums.values()].find(d => d.name === name).place[4],
         drum: name => [...drums.values()].find(d => d.name === name && d.group.visible)?.tilted,
     });
 }

@@ -151,7 +151,7 @@ export class Panel {
     open(playback) {
         this.playback = playback;
         document.body.classList.toggle("playing", !!playback);
-        if (playback) this.timeline.open(playback);
+        if (playback) (this.timeline.open(playback), this.transport(playback));
     }
 
     tall(yes) {

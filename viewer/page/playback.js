@@ -109,6 +109,7 @@ export class Playback {
     // last call, or since `memory` ms ago after a jump
     show(on, memory) {
         const time = this.at / 1000;
+        if (!this.scene.times.length) return; // an edit has just begun anew
         if (this.jumped || this.at < this.shownTo) on.jump();
         const since = this.jumped || this.at < this.shownTo ? this.at - memory : this.shownTo,
             of = s => 1000 * s.time;

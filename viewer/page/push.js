@@ -37,7 +37,7 @@ export class Pushes {
         for (const s of segments.slice(1)) $("e-segment").add(new Option(s.name.replaceAll("-", " "), s.name));
         $("e-segment").value = "left-forearm";
         ["e-segment", "e-fx", "e-fy", "e-fz", "e-seconds", "e-along"].forEach(
-            (id, i) => ($(id).onchange = e => this.editor.chosen?.push && this.editor.word(3 + i, e.target.value)),
+            (id, i) => ($(id).onchange = () => this.editor.chosen?.push && this.editor.word(3 + i, $(id).value)),
         );
         $("e-add").onclick = () => this.add($("e-segment").value, this.fields(), this.along());
         $("e-grab").onclick = () => $("e-grab").setAttribute("aria-pressed", document.body.classList.toggle("pushing"));
