@@ -18,15 +18,26 @@ static const cli_call *const calls[] = {
 };
 #define CALLS (sizeof calls / sizeof *calls)
 
+// LICENSE and LIBRARIES.txt, as make has written them
+static const char *const licences[] = {
+#include "licences.h"
+};
+
+static void print_licences(void)
+{
+    for (size_t i = 0; i < sizeof licences / sizeof *licences; i++)
+        puts(licences[i]);
+}
+
 static void print_help(void)
 {
     printf("himc %s: a virtual timpanist\n\nusage: himc CALL ...\n\n", himc_version());
     for (size_t i = 0; i < CALLS; i++)
         printf("  %-8s %s\n", calls[i]->name, calls[i]->does);
     printf(
-        "\nhimc CALL --help says more; himc --version prints the version. A file - is the standard\n"
-        "input or output. Exit status 0, or 1 with one line on standard error that says what was\n"
-        "wrong and where.\n");
+        "\nhimc CALL --help says more; himc --version prints the version, --licences the terms of himc\n"
+        "and of what it contains. A file - is the standard input or output. Exit status 0, or 1 with\n"
+        "one line on standard error that says what was wrong and where.\n");
 }
 
 static const cli_call *find_call(const char *name)
@@ -50,7 +61,7 @@ static int refuse(const char *what, const char *name)
     himc_error_set(&line, "%s%s%s%s", what, name ? " \"" : "", name ? name : "", name ? "\"" : "");
     fprintf(stderr, "himc: %s, allowed: ", line.text);
     print_names(stderr);
-    fprintf(stderr, ", --help, --version\n");
+    fprintf(stderr, ", --help, --version, --licences\n");
     return 1;
 }
 
@@ -76,6 +87,8 @@ int main(int argc, char **argv)
         print_help();
     else if (!strcmp(argv[1], "--version"))
         printf("himc %s\n", himc_version());
+    else if (!strcmp(argv[1], "--licences") || !strcmp(argv[1], "--licenses"))
+        print_licences();
     else {
         const cli_call *call = find_call(argv[1]);
         if (!call)
