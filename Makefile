@@ -9,6 +9,7 @@ UNITY_DIR ?= build/unity/src
 EIGEN     ?= /usr/include/eigen3
 ARCH      ?=
 SANITIZE  ?=
+STRIP     ?= strip
 V         ?=
 JOBS      ?= $(shell nproc 2>/dev/null || echo 1)
 ifeq ($(origin CC),default)
@@ -109,16 +110,24 @@ externals-64: $(EXTERNALS_64) ## the externals for Pd with samples of 64 bits, i
 
 externals-multi: $(EXTERNALS_MULTI) ## the externals for libpd with several instances in one process, in build/externals-multi
 
-ARM64 = $(BUILD)/arm64/debian/root/usr/lib/aarch64-linux-gnu
-arm64: deps ## program and externals for Linux on arm64, crossed, in build/arm64
+# a compiler whose programs load on systems of 2020, too (tools/root.sh)
+OLDER = CC=$(abspath $(1)/bin)/$(2)-linux-gnu-gcc CXX=$(abspath $(1)/bin)/$(2)-linux-gnu-g++
+# a Pure Data of those years, which tries what is built on their C library
+OLDER_PD = puredata-core libasound2 libjack-jackd2-0 libportaudio2 libsamplerate0 libdb5.3 libopus0 libgcc-s1 libstdc++6
+linux: deps ## the externals, of 32 and of 64 bits, for Linux with glibc 2.31 and newer, in build/linux
+	@tools/root.sh $(BUILD)/linux/debian amd64 $(OLDER_PD)
+	@$(MAKE) linux-here BUILD=$(BUILD)/linux $(call OLDER,$(BUILD)/linux/debian,x86_64)
+linux-here: $(EXTERNALS) $(EXTERNALS_64)
+
+arm64: deps ## program and externals for Linux on arm64 with glibc 2.31 and newer, crossed, in build/arm64
 	@tools/deps.sh tools/deps-arm64.txt
-	@tools/arm64.sh $(BUILD)/arm64/debian
+	@tools/root.sh $(BUILD)/arm64/debian arm64 libode8 libccd2 libsndfile1-dev libsndfile1 libflac8 libvorbis0a libvorbisenc2 libogg0 zlib1g-dev \
+	    zlib1g $(OLDER_PD)
 	@$(MAKE) $(TABLE)
-	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 CC=aarch64-linux-gnu-gcc LDFLAGS="-L$(abspath $(ARM64)) -Wl,-rpath-link,$(abspath $(ARM64))" \
-	    ARM64=$(abspath $(ARM64)) TABLE=$(TABLE)
+	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 $(call OLDER,$(BUILD)/arm64/debian,aarch64) TABLE=$(TABLE)
 arm64-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
-	$(call make_externals,$(BUILD)/externals extension=linux-arm64-32.so ARCHIVES=$(ARM64) OBJCOPY=aarch64-linux-gnu-objcopy LDFLAGS=-L$(ARM64))
+	$(call make_externals,$(BUILD)/externals extension=linux-arm64-32.so OBJCOPY=aarch64-linux-gnu-objcopy)
 # the vectorizer of GCC 12 for arm64 ends with an internal error here
 $(BUILD)/tools/live.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-tree-loop-vectorize)
 
@@ -161,13 +170,15 @@ deb: deps ## Debian packages (libhimc0, libhimc-dev, himc, himc-viewer, pd-himc)
 
 deken: deps ## the package for Pd's package manager, in build/package, tried as a new user would
 	@tools/deps.sh tools/deps-package.txt
-	@$(MAKE) all externals-64
+	@$(MAKE) all
+	@$(MAKE) linux
+	@$(MAKE) arm64
 	@$(MAKE) windows
 	@tools/package.sh $(BUILD) $(VERSION)
 	@HIMC_BUILD=$(BUILD) tests/pd/test_package.sh $(BUILD)/package/*.dek
 
-INSTALL = BUILD=$(BUILD) DESTDIR=$(DESTDIR) PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) PDEXTRA=$(PDEXTRA) VERSION=$(VERSION) tools/install.sh
-install: all ## install program, library, headers, externals, patches, manual pages and completions under PREFIX (DESTDIR for packagers)
+INSTALL = BUILD=$(BUILD) DESTDIR=$(DESTDIR) PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) PDEXTRA=$(PDEXTRA) VERSION=$(VERSION) STRIP="$(STRIP)" tools/install.sh
+install: all ## install program, library, headers, externals, patches, manual pages and completions under PREFIX (DESTDIR for packagers; STRIP= keeps what debuggers need)
 	@$(INSTALL) install
 
 uninstall: all ## remove what `make install` put there, nothing else
@@ -391,7 +402,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here linux linux-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures papers air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -423,6 +434,13 @@ $(BUILD)/lib/%.o: lib/src/%.cpp
 $(BUILD)/tools/%.o: tools/%.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) -c $< -o $@
+
+# for himc --licences
+$(BUILD)/tools/licences.h: LICENSE LIBRARIES.txt
+	$(call say,make)
+	$(Q)(cat LICENSE; echo; cat LIBRARIES.txt) | sed 's/[\\"]/\\&/g; s/.*/"&",/' >$@
+$(BUILD)/tools/himc.o: private override CPPFLAGS += -I$(BUILD)/tools
+$(BUILD)/tools/himc.o: $(BUILD)/tools/licences.h
 
 # small programs that make tables, figures and clips
 $(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)

@@ -70,6 +70,10 @@ awk 'BEGIN {
 # what it says of itself
 version=$(sed -n 's/^#define HIMC_VERSION_[A-Z]* \([0-9]*\)$/\1/p' "$root/lib/himc/base.h" | paste -sd .)
 check test_version_is_printed [ "$("$himc" --version)" = "himc $version" ]
+"$himc" --licences >licences.txt
+for owner in "himc contributors" "three.js authors" "Russell L. Smith" "Benoit Jacob" "GCC Runtime Library Exception" "mingw-w64 project"; do
+    check "test_licences_name_$(echo "$owner" | tr ' .-' '___')" grep -q "$owner" licences.txt
+done
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \
     "render evaluate edit info modes import share film play serve bench " ]

@@ -95,7 +95,15 @@ offers() { # offers WORD...: what bash offers for the last of them
 }
 check test_bash_completes_a_call [ "$(offers himc eva)" = evaluate ]
 check test_bash_completes_an_option [ "$(offers himc render --str)" = --strokes ]
+unstripped() { # binaries with what only a debugger needs
+    for file in $(find "$prefix" -name '*.pd_*' -o -name 'libhimc.*' ! -type l -o -path '*/bin/*' -type f); do
+        readelf -S "$file" 2>&1 | grep -q '\.debug_info' && echo "$file"
+    done
+}
+check test_installed_files_are_stripped [ -z "$(unstripped)" ]
+check test_licences_are_installed [ -s "$prefix/share/doc/himc/LIBRARIES.txt" ]
 check test_patches_are_installed [ -s "$prefix/pd/himc/patches/pieces/tide.pd" ]
+check test_installed_panel_names_the_technique_beside_the_objects [ "$(grep -c ' technique~ kettle' "$prefix/pd/himc/patches/performance.pd")" = 1 ]
 touch "$prefix/pd/himc/of-the-user"
 check test_uninstall_succeeds quiet make -s uninstall BUILD="$HIMC_BUILD" PREFIX="$prefix" PDEXTRA="$prefix/pd"
 check test_uninstall_leaves_what_is_not_ours [ "$(find "$prefix" ! -type d)" = "$prefix/pd/himc/of-the-user" ]

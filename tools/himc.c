@@ -19,6 +19,17 @@ static const cli_call *const calls[] = {
 };
 #define CALLS (sizeof calls / sizeof *calls)
 
+// LICENSE and LIBRARIES.txt, as make has written them
+static const char *const licences[] = {
+#include "licences.h"
+};
+
+static void print_licences(void)
+{
+    for (size_t i = 0; i < sizeof licences / sizeof *licences; i++)
+        puts(licences[i]);
+}
+
 static void print_help(void)
 {
     printf("himc %s: a virtual timpanist\n\nusage: himc CALL ...\n\n", himc_version());
@@ -26,8 +37,9 @@ static void print_help(void)
         printf("  %-8s %s\n", calls[i]->name, calls[i]->does);
     printf(
         "\nhimc CALL --help says more, himc help commands lists the commands of scores and patches,\n"
-        "himc --version prints the version. A file - is the standard input or output. Exit status 0, or 1 with one line on standard error that says what was\n"
-        "wrong and where.\n");
+        "himc --version prints the version, --licences the terms of himc and of what it contains.\n"
+        "A file - is the standard input or output. Exit status 0, or 1 with one line on standard\n"
+        "error that says what was wrong and where.\n");
 }
 
 // what a score, a patch and a packet may say
@@ -65,7 +77,7 @@ static int refuse(const char *what, const char *name)
         fprintf(stderr, "allowed: ");
         for (size_t i = 0; i < CALLS; i++)
             fprintf(stderr, "%s, ", calls[i]->name);
-        fprintf(stderr, "--help, --version\n");
+        fprintf(stderr, "--help, --version, --licences\n");
     }
     return 1;
 }
@@ -117,6 +129,10 @@ int main(int argc, char **argv)
         return help(argc > 2 ? argv[2] : NULL);
     if (is_one_of(argv[1], "version", "--version", "-V")) {
         printf("himc %s\n", himc_version());
+        return finish();
+    }
+    if (is_one_of(argv[1], "licences", "--licences", "--licenses")) {
+        print_licences();
         return finish();
     }
     const cli_call *call = find_call(argv[1]);

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what is built, or removes exactly that. Called by `make install` and `make uninstall`, which set the names below.
-#   BUILD=... DESTDIR=... PREFIX=... LIBDIR=... PDEXTRA=... VERSION=... tools/install.sh install|uninstall
+#   BUILD=... DESTDIR=... PREFIX=... LIBDIR=... PDEXTRA=... VERSION=... STRIP=... tools/install.sh install|uninstall
 set -eu
 major=${VERSION%%.*}
 share=$PREFIX/share
@@ -12,12 +12,12 @@ lists() {
     echo "644 $LIBDIR $BUILD/libhimc.a $BUILD/libhimc.so.$VERSION"
     echo "644 $LIBDIR/pkgconfig $BUILD/himc.pc"
     echo "644 $PREFIX/include/himc" lib/himc/*.h
-    echo "644 $PDEXTRA/himc LICENSE" "$BUILD"/externals/himc/* patches/techniques/*
+    echo "644 $PDEXTRA/himc LICENSE LIBRARIES.txt" "$BUILD"/externals/himc/* patches/techniques/*
     echo "644 $PDEXTRA/himc/clips" "$BUILD"/clips/*
     echo "644 $PDEXTRA/himc/patches" patches/*.pd patches/*.txt
     echo "644 $PDEXTRA/himc/patches/lib" patches/lib/*
     echo "644 $PDEXTRA/himc/patches/pieces" patches/pieces/*
-    echo "644 $share/doc/himc LICENSE README.md CHANGELOG.md" docs/*.md
+    echo "644 $share/doc/himc LICENSE LIBRARIES.txt README.md CHANGELOG.md" docs/*.md
     echo "644 $share/man/man1" "$BUILD"/share/*.1
     echo "644 $share/bash-completion/completions $BUILD/share/himc"
     echo "644 $share/zsh/site-functions $BUILD/share/_himc"
@@ -48,7 +48,12 @@ install_all() {
     lists | while read -r mode folder files; do
         install -d "$DESTDIR$folder"
         install -m "$mode" $files "$DESTDIR$folder"
+        for file in $files; do
+            case $file in */bin/himc* | */libhimc.* | *.pd_*) ${STRIP:-:} -S -x "$DESTDIR$folder/${file##*/}" ;; esac
+        done
     done
+    # technique~ is beside the objects there
+    sed 's|techniques/technique~|technique~|' patches/performance.pd >"$DESTDIR$PDEXTRA/himc/patches/performance.pd"
     ln -sf "libhimc.so.$VERSION" "$DESTDIR$LIBDIR/libhimc.so.$major"
     ln -sf "libhimc.so.$major" "$DESTDIR$LIBDIR/libhimc.so"
 }

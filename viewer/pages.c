@@ -2,7 +2,7 @@
 ///
 /// The assembler's .incbin takes the files in: paths are relative to the repository's root, where
 /// make runs; THREE_JS is the folder of three.module.js, MADE the folder of the files that make
-/// generates. The three.js licence (MIT) is at the top of its file.
+/// generates. The licence of three.js (MIT) is in index.html, hence in each page of `himc share`.
 #include "pages.h"
 
 #include <string.h>

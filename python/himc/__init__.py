@@ -10,6 +10,7 @@ Arrays of sound, motion and takes are the library's own memory, not copies. They
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ __all__ = ["Error", "Performance", "Rendering", "Take", "evaluate", "joint_names
 __version__ = ffi.string(lib.himc_version()).decode()
 
 _HANDS = ("left", "right")
+_CHANNELS = 8  # HIMC_PICKUPS
 _LISTENER = "listener 2.3 0.5 1.3"  # where `himc render` listens unless the score says
 _CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
 _REST = 2.5  # s after the last contact, until the sticks are at rest
@@ -33,6 +35,10 @@ _SILENCE = 1e-4  # of the peak
 
 joint_names: list[str] = [ffi.string(lib.himc_joint_name(j)).decode() for j in range(19)]
 segment_names: list[str] = [ffi.string(lib.himc_segment_name(i)).decode() for i in range(20)]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
 
 
 class Error(ValueError):
@@ -45,7 +51,60 @@ def _check(good: bool, error) -> None:
 
 
 def _text(value: Union[None, str, Path]) -> bytes:
-    return b"" if value is None else str(value).encode()
+    text = b"" if value is None else str(value).encode()
+    if b"\0" in text:
+        raise Error(f"{value!r}: has a zero byte, which no command or name may have")
+    return text
+
+
+def _finite(name: str, value: float, least: float = -math.inf) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number) or number < least:
+        raise Error(f"{name}: {value!r}, allowed a finite number{'' if least < 0 else f', {least:g} or more'}")
+    return number
+
+
+def _hand(hand: Union[str, int]) -> int:
+    if isinstance(hand, str) and hand in _HANDS:
+        return _HANDS.index(hand)
+    if isinstance(hand, (int, np.integer)) and 0 <= hand <= 1:
+        return int(hand)
+    raise Error(f"hand: {hand!r}, allowed \"left\", \"right\", 0 or 1")
+
+
+def _channels(channels: int, least: int) -> int:
+    if not isinstance(channels, (int, np.integer)) or not least <= channels <= _CHANNELS:
+        raise Error(f"channels: {channels!r}, allowed {least} .. {_CHANNELS}")
+    return int(channels)
+
+
+def _up(up: Optional[str]) -> bytes:
+    if up not in (None, "", "y", "z"):
+        raise Error(f"up: {up!r}, allowed \"y\" or \"z\"")
+    return _text(up)
+
+
+def _tip(side: str, name: Optional[str]) -> bytes:
+    text = _text(name)
+    if len(text) > 63:
+        raise Error(f"{side}_tip: a name of {len(text)} bytes, allowed are 63")
+    return text
+
+
+def _filled(out: NDArray, channels: int) -> NDArray[np.float32]:
+    """`out` if sound can be written into it."""
+    wanted = f"allowed a writeable float32 array, C order, shape (samples, {channels})"
+    if not isinstance(out, np.ndarray):
+        raise Error(f"out: {type(out).__name__}, {wanted}")
+    if out.dtype != np.float32 or out.ndim != 2 or out.shape[1] != channels:
+        raise Error(f"out: {out.dtype} of shape {out.shape}, {wanted}")
+    if not out.flags.carray:
+        kind = "read-only" if not out.flags.writeable else "unaligned" if not out.flags.aligned else "not in C order"
+        raise Error(f"out: {kind}, {wanted}")
+    return out
 
 
 def _dtype(ctype: str) -> np.dtype:
@@ -98,47 +157,50 @@ class Performance:
     def __init__(self, rate: float = 48000, physics: float = 0, task: float = 0, channels: int = 2, motion: bool = True):
         """`rate` of the sound, `physics` and `task` rates (Hz, 0: 10000 and 250); `motion`: keep rows."""
         error = ffi.new("himc_error *")
-        made = lib.session_new(rate, physics, task, error)
+        self._channels = _channels(channels, 0)
+        made = lib.session_new(_finite("rate", rate), _finite("physics", physics, 0), _finite("task", task, 0), error)
         _check(made != ffi.NULL, error)
         self._session = ffi.gc(made, lib.session_free)
         ## Sample rate of the sound (Hz).
         self.rate = rate
-        self._channels = channels
         lib.session_keep_rows(self._session, motion)
         if channels == 2:
             self.command(_LISTENER)
 
     def command(self, text: str, word: Union[None, str, Path] = None) -> None:
-        """Carries out a command of the manual: ``"tempo 90"``, or a name and one word that may have spaces: ``("take", path)``."""
+        """Carries out a command of the manual: ``"tempo 90"``, or a name and one word that may have spaces: ``("take", path)``.
+
+        After ``"reset"``, time is 0, and rows and strikes are those since.
+        """
         error = ffi.new("himc_error *")
         name = ffi.NULL if word is None else ffi.new("char[]", _text(word))
-        _check(lib.session_command(self._session, text.encode(), name, error), error)
+        _check(lib.session_command(self._session, _text(text), name, error), error)
 
     def add_drum(self, name: str = "kettle", inches: float = 0) -> None:
         """Adds a drum of that diameter (0: 26 inches)."""
         error = ffi.new("himc_error *")
-        _check(lib.session_add_drum(self._session, name.encode(), inches, error), error)
+        _check(lib.session_add_drum(self._session, _text(name), _finite("inches", inches), error), error)
 
     def drum_command(self, drum: str, text: str) -> None:
         """Carries out a command to a drum: ``drum_command("kettle", "tune A2")``."""
         error = ffi.new("himc_error *")
-        _check(lib.session_drum_command(self._session, drum.encode(), text.encode(), error), error)
+        _check(lib.session_drum_command(self._session, _text(drum), _text(text), error), error)
 
     def take_options(self, left_tip: Optional[str] = None, right_tip: Optional[str] = None, up: Optional[str] = None) -> None:
         """Names of the tips and the upward axis ("y", "z") of takes to come."""
-        lib.session_take_options(self._session, _text(left_tip), _text(right_tip), _text(up))
+        lib.session_take_options(self._session, _tip("left", left_tip), _tip("right", right_tip), _up(up))
 
     def target(self, hand: Union[str, int], xyz: Sequence[float]) -> None:
         """A live target of a drumstick's tip (m, world frame), for now."""
-        x, y, z = map(float, xyz)
-        lib.himc_performance_target(self._session.performance, _HANDS.index(hand) if isinstance(hand, str) else hand, [x, y, z])
+        if np.shape(xyz) != (3,):
+            raise Error(f"target: {xyz!r}, allowed three numbers x, y, z (m)")
+        lib.himc_performance_target(self._session.performance, _hand(hand), [_finite("target", c) for c in xyz])
 
     def process(self, seconds: float, out: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:
         """Plays on; the sound, (samples, channels) float32. `out` is filled instead, as long as it is (no copy)."""
         if out is None:
-            out = np.empty((round(seconds * self.rate), self._channels), np.float32)
-        elif out.dtype != np.float32 or out.ndim != 2 or out.shape[1] != self._channels or not out.flags.c_contiguous:
-            raise Error(f"out: allowed float32, C order, shape (samples, {self._channels})")
+            out = np.empty((round(_finite("seconds", seconds, 0) * self.rate), self._channels), np.float32)
+        _filled(out, self._channels)
         lib.session_process(self._session, len(out), self._channels, ffi.cast("float *", out.ctypes.data))
         if self._session.failed:
             raise MemoryError("no memory for rows or strikes")
@@ -146,8 +208,8 @@ class Performance:
 
     @property
     def time(self) -> float:
-        """Seconds played."""
-        return self._session.samples / self.rate
+        """Seconds played since the start or a reset."""
+        return (self._session.samples - self._session.zero) / self.rate
 
     @property
     def done(self) -> bool:
@@ -218,7 +280,7 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
     makes = 0 if take else lib.session_makes_drums(path.encode(), error)
     _check(makes >= 0, error)
     p = Performance(rate, channels=0, motion=motion)
-    p._channels = channels
+    p._channels = _channels(channels, 1)
     p.take_options(left_tip, right_tip, up)
     if not makes:
         p.add_drum()
@@ -263,7 +325,7 @@ class Take:
                  up: Optional[str] = None, subject: Optional[str] = None):
         """Reads the file. `subject` chooses one of several players by name; the others as in `take_options`."""
         error = ffi.new("himc_error *")
-        made = lib.take_load(_text(path), _text(left_tip), _text(right_tip), _text(up), _text(subject), error)
+        made = lib.take_load(_text(path), _text(left_tip), _text(right_tip), _up(up), _text(subject), error)
         _check(made != ffi.NULL, error)
         self._take = ffi.gc(made, lib.himc_take_free)
         self._tips = _text(left_tip), _text(right_tip)

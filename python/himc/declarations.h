@@ -43,7 +43,7 @@ typedef struct {
 
 typedef struct {
     himc_performance *performance; himc_motion_row *rows; size_t row_count, row_room; himc_strike *strikes; size_t strike_count; himc_strike *missed; size_t missed_count;
-    char *notes; size_t notes_size; bool done, keeps_rows, failed; uint64_t samples; double peak; ...;
+    char *notes; size_t notes_size; bool done, keeps_rows, failed; uint64_t samples, zero; double peak; ...;
 } session;
 session *session_new(double rate, double physics, double task, himc_error *error);
 void session_free(session *s);

@@ -22,7 +22,7 @@ typedef struct session {
     char *notes; // lines
     size_t notes_size;
     bool done, keeps_rows, failed; // `failed`: no memory for a row, strike or note
-    uint64_t samples;
+    uint64_t samples, zero; // played in all, and at the last reset
     double peak; // of the last session_process
     char left[64], right[64];
 } session;
@@ -62,8 +62,8 @@ static session *session_new(double rate, double physics, double task, himc_error
         return NULL;
     }
     config.sample_rate = rate;
-    config.physics_rate = physics > 0 ? physics : fmin(config.physics_rate, rate);
-    config.task_rate = task > 0 ? task : config.task_rate;
+    config.physics_rate = physics != 0 ? physics : fmin(config.physics_rate, rate);
+    config.task_rate = task != 0 ? task : config.task_rate;
     s->performance = himc_performance_new(&config, error);
     if (!s->performance) {
         free(s);
@@ -83,6 +83,14 @@ static void session_free(session *s)
     free(s);
 }
 
+// after a reset, by the command or by a file's
+static void begin_again(session *s)
+{
+    s->zero = s->samples;
+    s->row_count = s->strike_count = 0;
+    s->done = false;
+}
+
 // a command with its atoms in `text`, or with one that may have spaces, `word`
 static bool session_command(session *s, const char *text, const char *word, himc_error *error)
 {
@@ -90,8 +98,11 @@ static bool session_command(session *s, const char *text, const char *word, himc
     himc_atom atom = {HIMC_ATOM_SYMBOL, 0, word};
     bool good = word ? himc_command_parse(&command, HIMC_PERFORMER, text, &atom, 1, error)
                      : himc_command_parse_text(&command, HIMC_PERFORMER, text, error);
+    double before = himc_performance_measure(s->performance).seconds;
     good = good && himc_performance_command(s->performance, &command, 0, error);
     s->done = s->done && !good;
+    if (himc_performance_measure(s->performance).seconds < before)
+        begin_again(s);
     return good;
 }
 
@@ -109,7 +120,7 @@ static bool session_drum_command(session *s, const char *name, const char *text,
 static bool session_add_drum(session *s, const char *name, double inches, himc_error *error)
 {
     double rate = himc_performance_measure(s->performance).sample_rate;
-    himc_drum *drum = himc_drum_new(name, inches > 0 ? inches : HIMC_INCHES_USUAL, rate, error);
+    himc_drum *drum = himc_drum_new(name, inches != 0 ? inches : HIMC_INCHES_USUAL, rate, error);
     bool good = drum && himc_performance_add_drum(s->performance, drum, error);
     himc_drum_release(drum);
     return good;

@@ -78,6 +78,85 @@ class Package(unittest.TestCase):
         np.testing.assert_allclose(tip, (0.45, 0.0, 1.1), atol=1e-3)
         self.assertAlmostEqual(p.time, 1.5)
 
+    def test_a_target_is_a_hand_and_three_finite_numbers(self):
+        p = himc.Performance()
+        p.add_drum()
+        p.process(0.1)
+        before = p.motion["target"][-1]
+        for hand in (2, -1, 99, 2**40, "both", None, 0.5):
+            with self.assertRaisesRegex(himc.Error, "hand: .*, allowed"):
+                p.target(hand, (0.45, 0, 1))
+        for xyz in ([float("nan"), 0, 1], [0, float("inf"), 1], [0, None, 1], [0, "a", 1]):
+            with self.assertRaisesRegex(himc.Error, "target: .*, allowed a finite number"):
+                p.target("right", xyz)
+        for xyz in ([], [1, 2], [1, 2, 3, 4], 1, "xyz", [[1, 2, 3]]):
+            with self.assertRaisesRegex(himc.Error, "target: .*, allowed three numbers"):
+                p.target("right", xyz)
+        p.process(0.02)
+        np.testing.assert_allclose(p.motion["target"][-1], before, atol=1e-3)
+
+    def test_sound_goes_only_where_it_fits(self):
+        p = himc.Performance()
+        p.add_drum()
+        frozen = np.zeros((64, 2), np.float32)
+        frozen.flags.writeable = False
+        (self.at / "map").write_bytes(bytes(512))
+        constant = bytes(512)
+        refused = {
+            "read-only": [frozen, np.frombuffer(constant, np.float32).reshape(-1, 2),
+                          np.memmap(self.at / "map", np.float32, "r", shape=(64, 2)), np.broadcast_to(np.float32(0), (64, 2))],
+            "unaligned": [np.frombuffer(bytearray(513), np.uint8)[1:].view(np.float32).reshape(-1, 2)],
+            "not in C order": [np.zeros((2, 64), np.float32).T, np.zeros((64, 4), np.float32)[:, ::2]],
+            "of shape": [np.zeros((64, 1), np.float32), np.zeros(128, np.float32), np.zeros((64, 2)), np.zeros((64, 2), ">f4"),
+                         np.zeros((0, 3), np.float32)],
+            "list, |bytes, ": [[[0.0, 0.0]], constant],
+        }
+        for why, arrays in refused.items():
+            for out in arrays:
+                with self.assertRaisesRegex(himc.Error, f"out: .*({why}).*allowed a writeable float32 array"):
+                    p.process(0, out)
+        self.assertEqual(p.time, 0)
+        self.assertEqual(constant, bytes(512))
+        # a part of an array: what is beside it stays
+        whole = np.full((300, 2), 7, np.float32)
+        p.drum_command("kettle", "strike 0.25 0 1")
+        self.assertTrue(p.process(0, whole[100:200]).any())
+        self.assertTrue((whole[:100] == 7).all() and (whole[200:] == 7).all() and (whole[100:200] != 7).all())
+
+    def test_settings_that_are_no_numbers_are_refused(self):
+        nan, p = float("nan"), himc.Performance()
+        for call in (lambda: p.process(nan), lambda: p.process(-1), lambda: p.add_drum("a", nan), lambda: p.add_drum("a", -1),
+                     lambda: himc.Performance(rate=nan), lambda: himc.Performance(physics=nan), lambda: himc.Performance(task=-1),
+                     lambda: himc.Performance(channels=9), lambda: himc.Performance(channels=-1),
+                     lambda: himc.render(PIECE, channels=0), lambda: p.take_options(up="x"),
+                     lambda: p.take_options(left_tip="a" * 64), lambda: p.command("tempo 90\0"), lambda: p.add_drum("a\0b")):
+            with self.assertRaises(himc.Error):
+                call()
+        self.assertEqual(p.process(0.01).shape, (480, 2))
+
+    def test_a_reset_plays_again_from_0(self):
+        p = himc.Performance()
+        p.add_drum()
+        played = []
+        for turn in range(2):
+            for text in ("stroke 1 right accent f", "play"):
+                p.command(text)
+            sound = p.process(2.0)
+            self.assertAlmostEqual(p.time, 2.0)
+            played.append((len(p.motion), [s["time"] for s in p.strikes], np.abs(sound).max()))
+            self.assertEqual(len(p.strikes), 1)
+            p.command("reset")
+            self.assertEqual((p.time, len(p.motion), len(p.strikes), p.done), (0, 0, 0, False))
+        self.assertLessEqual(abs(played[0][0] - played[1][0]), 1)
+        np.testing.assert_allclose(played[0][1], played[1][1], atol=1e-3)
+        p.command("tempo 90")  # another command leaves time alone
+        p.process(0.5)
+        p.command("tempo 120")
+        self.assertAlmostEqual(p.time, 0.5)
+
+    def test_the_module_shows_its_own_names(self):
+        self.assertEqual({name for name in dir(himc) if not name.startswith("_")}, set(himc.__all__))
+
     def test_displacements_that_nobody_reads_are_not_computed(self):
         player = himc.Performance()
         player.add_drum("kettle")

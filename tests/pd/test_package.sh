@@ -34,10 +34,52 @@ report package_is_smaller_than_10_MB "$([ "$(wc -c <"$package")" -lt 10000000 ] 
 report checksum_agrees "$(cd "$(dirname "$package")" && sha256sum --quiet -c "$(basename "$package").sha256" 2>&1)"
 report package_unpacks "$(unzip -q "$package" -d "$home/.local/lib/pd/extra" 2>&1)"
 himc=$home/.local/lib/pd/extra/himc
-for file in LICENSE README.md LIBRARIES.txt himc-meta.pd himc~-help.pd membrane~-help.pd technique~.pd clips/clips.txt \
+for file in LICENSE README.md himc-meta.pd himc~-help.pd membrane~-help.pd technique~.pd clips/clips.txt \
     patches/01-improvisation.pd patches/lib/recorder.pd docs/manual.md; do
     report "package_has_$file" "$([ -s "$himc/$file" ] || echo "no $file")"
 done
+
+# what is in it belongs to players, is there once, and says whose it is
+report no_file_is_there_twice "$(find "$himc" -type f -exec md5sum {} + | sort | awk '$1 == last { print $2 } { last = $1 }')"
+for owner in "three.js authors" "Russell L. Smith" "Benoit Jacob" "GCC Runtime Library Exception" "mingw-w64 project" "Lockless"; do
+    report "licences_name_$owner" "$(grep -q "$owner" "$himc/LIBRARIES.txt" || echo "not in LIBRARIES.txt")"
+done
+dead_links() {
+    for page in "$himc"/*.md "$himc"/docs/*.md; do
+        grep -oE '\]\([^)# ]+' "$page" | sed 's/^](//' | grep -v '^https\?:' | while read -r target; do
+            [ -e "${page%/*}/$target" ] || echo "${page##*/}: $target"
+        done
+    done
+}
+report links_lead_somewhere "$(dead_links)"
+report each_help_is_in_the_list_of_objects "$(for help in "$himc"/*-help.pd; do
+    grep -q "^$(basename "$help" -help.pd)	[^ ].* " "$package.txt" || echo "$help"
+done)"
+report each_line_of_the_list_is_an_object "$(cut -f 1 "$package.txt" | while read -r object; do
+    ls "$himc/$object".[pm]* "$himc/$object.l"* >/dev/null 2>&1 || echo "$object"
+done)"
+
+# the binaries: of the machines in the package's name, for C libraries since 2020 (glibc 2.31), and neighbours of others
+newest=2.31
+export LC_ALL=C
+pd_names=$work/pd_names
+nm -D --defined-only "$(command -v pd)" | awk '{ print $3 }' | sort >"$pd_names"
+linux_fault() { # linux_fault FILE: what keeps it from being loaded
+    needs=$(objdump -T "$1" 2>/dev/null | grep -o 'GLIBC_[0-9.]*' | sed 's/GLIBC_//' | sort -V | tail -n 1)
+    [ "$(printf '%s\n' "$needs" $newest | sort -V | tail -n 1)" = $newest ] || echo "needs glibc $needs"
+    readelf -d "$1" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/needs \1/p' | grep -vE ' (libc|libm|libpthread|ld-linux.*)\.so\.[0-9]+$'
+    shown=$(nm -D --defined-only "$1" | awk '{ print $3 }')
+    [ "$shown" = "$(basename "$1" | sed 's/~.*/_tilde_setup/')" ] || echo "shows" $shown
+    nm -D --undefined-only "$1" | awk '$1 == "U" && $2 !~ /@/ { print "lacks", $2 }' | sort -k 2 | join -1 2 -v 1 - "$pd_names"
+}
+for file in himc~.pd_linux himc~.linux-amd64-64.so himc~.linux-arm64-32.so himc~.m_amd64; do
+    for object in himc membrane; do
+        file=$object~.${file#*.}
+        case $file in *.m_amd64) why=$([ -s "$himc/$file" ] || echo "no $file") ;; *) why=$(linux_fault "$himc/$file") ;; esac
+        report "${file}_loads_on_systems_of_2020" "$(echo $why)"
+    done
+done
+report arm64_is_arm64 "$(readelf -h "$himc/himc~.linux-arm64-32.so" | grep -q AArch64 || echo "another machine")"
 
 # a patch that makes both, declared or by prefix, and says what it hears of a blow
 sounds() { # sounds PREFIX DECLARE
@@ -70,6 +112,17 @@ EOF
 }
 report objects_are_found_where_the_patch_declares_the_library "$(sounds "" "-path himc")"
 report objects_are_found_by_prefix "$(sounds himc/ "")"
+# the Pd and the C library of Debian 11, of 2020: started by their own loader, on arm64 by qemu
+older() { # older FOLDER MACHINE LOADER
+    root=$(realpath "$HIMC_BUILD")/$1/debian/root
+    libraries=$root/lib/$2-linux-gnu:$root/usr/lib/$2-linux-gnu
+    case $2 in aarch64) run="qemu-aarch64 -L $root" ;; *) run= ;; esac
+    PD="$run $root/lib/$2-linux-gnu/$3 --library-path $libraries $root/usr/bin/puredata -nrt"
+    report "$2_objects_are_found_with_glibc_2.31" "$(sounds himc/ "")"
+    unset PD
+}
+older linux x86_64 ld-linux-x86-64.so.2
+older arm64 aarch64 ld-linux-aarch64.so.1
 if [ -e "$windows/parts/pd/bin/pd.com" ]; then
     # Windows has the folder elsewhere, so its path is given
     export WINEPREFIX=$windows/wine WINEDEBUG=-all

@@ -245,6 +245,20 @@ def test_what_is_no_scene_is_not_shared():
         assert not os.path.exists(path("page.html"))
 
 
+def test_a_shared_page_has_the_licence_of_what_it_contains():
+    scene()
+    command = [HIMC, "share", path("one.himc"), "-o", path("shared.html")]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if "without three.js" in done.stderr:
+        raise report.Ignored(done.stderr.strip())
+    with open(path("shared.html"), encoding="utf-8") as file:
+        page = " ".join(file.read().split())
+    for notice in ("© 2010-2019 three.js authors", "shall be included in all copies", "WITHOUT WARRANTY OF ANY KIND"):
+        assert notice in page, notice
+    with open(path("shared.html"), "rb") as file:
+        assert b'charset="utf-8"' in file.read(1024)  # where browsers look for it
+
+
 def test_what_is_played_is_what_is_rendered():
     """A sound card that is a file: the samples are those of the WAV file, bit by bit."""
     with open(path("asound.conf"), "w") as file:
