@@ -61,7 +61,7 @@ static bool add_push(change_job *j, himc_error *error)
 static bool find_drum(const himc_performance *p, const char *name, int *index, himc_error *error)
 {
     *index = himc_drums_find(&p->drums, name);
-    return *index >= 0 || himc_drums_refuse(&p->drums, name, error);
+    return *index >= 0 || himc_drums_refuse(&p->drums, name, HIMC_SPOT_XY, error);
 }
 
 /// Begins with the heads as they are now.

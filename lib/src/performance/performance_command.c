@@ -509,7 +509,7 @@ static himc_drum *drum_of(void *receiver, const himc_command *c, himc_error *err
     int index = himc_drums_find(&p->drums, c->drum);
     if (index >= 0)
         return p->drums.slot[index].drum;
-    himc_drums_refuse(&p->drums, c->drum, error);
+    himc_drums_refuse(&p->drums, c->drum, HIMC_SPOT_XY, error);
     return NULL;
 }
 

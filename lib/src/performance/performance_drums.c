@@ -27,17 +27,6 @@ int himc_drums_find(const performance_drums *d, const char *name)
     return -1;
 }
 
-bool himc_drums_refuse(const performance_drums *d, const char *name, himc_error *error)
-{
-    char names[120] = "";
-    for (int i = 0; i < d->count; i++) {
-        size_t used = strlen(names);
-        himc_format(names + used, sizeof names - used, " %s", himc_drum_name(d->slot[i].drum));
-    }
-    return himc_error_set(error, "%s: no drum of that name, expected one of:%s", name,
-                          names[0] ? names : " none, `drum` makes one");
-}
-
 const himc_head_frame *himc_drums_frame(const performance_drums *d, int index)
 {
     return himc_drum_head_frame(d->slot[index].drum);

@@ -47,8 +47,6 @@ typedef struct performance_drums {
 HIMC_RT void himc_drums_begin(performance_drums *drums);
 /// Slot of the drum with that name, -1 if there is none.
 HIMC_RT int himc_drums_find(const performance_drums *drums, const char *name);
-/// False with the reason: there is none of that name, and these there are.
-bool himc_drums_refuse(const performance_drums *drums, const char *name, himc_error *error);
 HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, int index);
 /// The axes of that frame, found when it has changed.
 HIMC_RT const himc_head_axes *himc_drums_axes(performance_drums *drums, int index);
