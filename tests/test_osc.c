@@ -3,6 +3,7 @@
 #include "himc/body.h"
 #include "himc/membrane.h"
 #include "osc/encode.h"
+#include "system/udp.h"
 #include "drum/drum_state.h"
 #include "performance/performance_state.h"
 
@@ -193,6 +194,18 @@ static void test_a_taken_port_gives_one_clear_line(void)
     TEST_ASSERT_NOT_NULL(strstr(error.text, "192.0.2.7"));
 }
 
+// a program that was started without a standard input has the descriptor 0 to give
+static void test_a_socket_may_be_descriptor_0(void)
+{
+    int input = dup(0);
+    close(0);
+    int socket = himc_udp_open(AF_INET, 65536);
+    TEST_ASSERT_EQUAL_INT(0, socket);
+    himc_udp_close(socket);
+    dup2(input, 0);
+    close(input);
+}
+
 // the only test with the network thread and the clock of the system
 static void test_the_network_thread_serves_a_subscription(void)
 {
@@ -225,6 +238,7 @@ int main(void)
     RUN_TEST(test_time_tag_is_ntp_time);
     RUN_TEST(test_vmc_bones_lead_to_the_wrist_mirrored);
     RUN_TEST(test_a_taken_port_gives_one_clear_line);
+    RUN_TEST(test_a_socket_may_be_descriptor_0);
     RUN_TEST(test_the_network_thread_serves_a_subscription);
     return UNITY_END();
 }
