@@ -245,12 +245,12 @@ def link(commands, test, library, to, more=()):
 
 
 def folder_to_run(name):
-    """A folder in which a test finds the repository's folders, and a build folder of its own."""
+    """A folder in which a test finds the repository, with a build folder of its own."""
     at = "%s/run/%s" % (OUT, name)
     shutil.rmtree(at, ignore_errors=True)
     os.makedirs(at + "/build/tests")
     for entry in os.listdir(TREE):
-        if entry != "build" and os.path.isdir(TREE + "/" + entry):
+        if entry != "build":
             os.symlink(TREE + "/" + entry, at + "/" + entry)
     os.symlink(TREE + "/build/tests/watch.so", at + "/build/tests/watch.so")
     return at
