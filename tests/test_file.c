@@ -222,6 +222,24 @@ static void test_file_is_loaded_whole_or_refused(void)
     free(loaded);
 }
 
+// a program that was started without a standard input has the descriptor 0 to give
+static void test_a_file_may_be_descriptor_0(void)
+{
+    int input = dup(0);
+    for (int write = 0; write < 2; write++) {
+        close(0);
+        FILE *stream = write ? himc_file_write(at("written"), HIMC_FILE_REPLACE, &error)
+                             : himc_file_read("README.md", &error);
+        bool good = stream && fileno(stream) == 0;
+        if (stream)
+            fclose(stream);
+        dup2(input, 0);
+        TEST_ASSERT_TRUE_MESSAGE(good, error.text);
+    }
+    TEST_ASSERT_NULL(himc_file_read(folder, &error)); // refused, and closed again
+    close(input);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -230,6 +248,7 @@ int main(void)
                     "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n100\t100\t2\t1\tmm\n"
                     "Frame#\tTime\tTIP\t\t\n\t\tX1\tY1\tZ1\n\n"
                     "1\t0.00\t500\t900\t100\n2\t0.01\t500\t850\t100\n");
+    RUN_TEST(test_a_file_may_be_descriptor_0);
     RUN_TEST(test_whatever_is_no_file_is_refused_at_once_by_every_reader_and_writer);
     RUN_TEST(test_fifo_with_a_reader_gets_nothing);
     RUN_TEST(test_file_is_cut_or_continued_as_asked);

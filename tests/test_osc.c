@@ -3,6 +3,7 @@
 #include "himc/body.h"
 #include "himc/membrane.h"
 #include "osc/encode.h"
+#include "system/udp.h"
 #include "drum/drum_state.h"
 #include "performance/performance_state.h"
 
@@ -193,6 +194,41 @@ static void test_a_taken_port_gives_one_clear_line(void)
     TEST_ASSERT_NOT_NULL(strstr(error.text, "192.0.2.7"));
 }
 
+// a program that was started without a standard input has the descriptor 0 to give
+static void test_a_socket_may_be_descriptor_0(void)
+{
+    int input = dup(0);
+    close(0);
+    int socket = himc_udp_open(AF_INET, 65536);
+    TEST_ASSERT_EQUAL_INT(0, socket);
+    himc_udp_close(socket);
+    dup2(input, 0);
+    close(input);
+}
+
+static void test_waiting_ends_with_a_packet_and_not_before_its_time_without(void)
+{
+    himc_udp_address to = {
+        .v4 = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)}};
+    socklen_t size = sizeof to.v4;
+    int sockets[] = {himc_udp_open(AF_INET, 65536), himc_udp_open(AF_INET, 65536)};
+    TEST_ASSERT_TRUE(himc_udp_bind(sockets[0], &to, size) && himc_udp_bind(sockets[1], &to, size));
+    double begun = system_seconds();
+    himc_udp_wait(sockets, 2, 30);
+    TEST_ASSERT_TRUE(system_seconds() - begun > 0.029);
+    for (int i = 0; i < 2; i++) {
+        TEST_ASSERT_EQUAL_INT(0, getsockname(sockets[i], &to.any, &size));
+        TEST_ASSERT_EQUAL_INT(1, himc_udp_send(sockets[1 - i], &to, size, "x", 1));
+        begun = system_seconds();
+        himc_udp_wait(sockets, 2, 100000);
+        TEST_ASSERT_TRUE(system_seconds() - begun < PATIENCE);
+        char byte;
+        TEST_ASSERT_EQUAL_INT(1, himc_udp_receive(sockets[i], &to, &byte, 1, &(uint32_t){0}));
+    }
+    himc_udp_close(sockets[0]);
+    himc_udp_close(sockets[1]);
+}
+
 // the only test with the network thread and the clock of the system
 static void test_the_network_thread_serves_a_subscription(void)
 {
@@ -225,6 +261,8 @@ int main(void)
     RUN_TEST(test_time_tag_is_ntp_time);
     RUN_TEST(test_vmc_bones_lead_to_the_wrist_mirrored);
     RUN_TEST(test_a_taken_port_gives_one_clear_line);
+    RUN_TEST(test_a_socket_may_be_descriptor_0);
+    RUN_TEST(test_waiting_ends_with_a_packet_and_not_before_its_time_without);
     RUN_TEST(test_the_network_thread_serves_a_subscription);
     return UNITY_END();
 }

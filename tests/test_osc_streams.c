@@ -1,6 +1,7 @@
 /// test_osc_streams.c: which states a subscriber gets when, and what a packet that is not quite
 /// right does: nothing.
 #include "osc_ear.h"
+#include "osc/subscribe.h"
 
 static void test_the_highest_rate_of_several_subscriptions_is_kept(void)
 {
@@ -143,9 +144,23 @@ static void test_the_sound_is_that_of_the_drums_without_a_gap(void)
     TEST_ASSERT_EQUAL_INT(0, count("/himc/body"));
 }
 
+static void test_more_drums_than_there_is_room_for_leave_the_others_as_they_are(void)
+{
+    static osc_subscriptions s;
+    himc_osc_counts counts = {0};
+    for (int i = 0; i < HIMC_DRUMS + 8; i++) {
+        osc_state state = {.kind = STATE_DRUM};
+        snprintf(state.drum.name, sizeof state.drum.name, "drum%d", i);
+        himc_osc_deliver(&s, &state, &counts, 1);
+        TEST_ASSERT_EQUAL_INT(i < HIMC_DRUMS ? i + 1 : HIMC_DRUMS, s.drums);
+    }
+    TEST_ASSERT_EQUAL_STRING("drum0", s.drum[0].name);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_more_drums_than_there_is_room_for_leave_the_others_as_they_are);
     RUN_TEST(test_the_highest_rate_of_several_subscriptions_is_kept);
     RUN_TEST(test_poses_continue_after_a_reset);
     RUN_TEST(test_after_a_reset_all_poses_have_the_time_of_the_wall_clock);

@@ -75,6 +75,11 @@ static void test_unit_of_the_grip_then_of_the_spot_then_of_the_speed_is_played(v
     himc_unit speeds[] = {unit_of(0.2, 0, HIMC_SPOT_XY, 0.5 * f),
                           unit_of(0.4, 0, HIMC_SPOT_XY, 1.1 * f)};
     TEST_ASSERT_TRUE(height_with(speeds, 2, 0) > 0.3);
+    himc_unit strange[] = {unit_of(0.2, 0, HIMC_SPOT_XY, 0.8 * f), unit_of(0.4, 0, HIMC_SPOT_XY, f),
+                           unit_of(0.4, 0, HIMC_SPOT_XY, f)};
+    strange[1].hand = HIMC_RIGHT; // whatever else fits
+    strange[2].nuance = HIMC_STACCATO;
+    TEST_ASSERT_TRUE(height_with(strange, 3, 0) < 0.35);
     himc_unit other[] = {unit_of(0.2, 0, HIMC_SPOT_RIM, f), unit_of(0.4, 1, HIMC_SPOT_XY, f)};
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.2, height_with(other, 2, 0)); // the grip goes first
 }

@@ -327,7 +327,7 @@ static void test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth(voi
     TEST_ASSERT_TRUE(jump[2] < 15);
 }
 
-// its frames are cut out 12.5 ms, four frames, to either side; two are the least for what leads there
+// its frames are cut out 12.5 ms, four frames, to either side; two are the least before them
 static void test_a_strike_needs_two_frames_before_what_is_cut_out(void)
 {
     for (left_out = 92; left_out < 98; left_out++) {

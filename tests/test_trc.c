@@ -1,5 +1,7 @@
 /// test_trc.c: TRC tables with every separator and unit, and tables with one wrong cell.
 #include "take_files.h"
+
+#include "capture/take.h"
 #include "unity.h"
 
 static himc_error error;
@@ -111,6 +113,27 @@ static void test_zeros_after_a_jump_are_gaps_but_a_marker_at_zero_is_not(void)
     TEST_ASSERT_EQUAL_INT(0, himc_take_missing(take, 0));
     TEST_ASSERT_EQUAL_INT(1, himc_take_missing(take, 1));
     himc_take_free(take);
+}
+
+static void test_the_note_of_zeros_names_the_first_marker_that_has_them(void)
+{
+    static const char *const rows[] = {"1\t0.00\t501\t2\t3\t501\t2\t3\n"
+                                       "2\t0.01\t0\t0\t0\t0\t0\t0\n"
+                                       "3\t0.02\t501\t2\t3\t501\t2\t3\n",
+                                       "1\t0.00\t501\t2\t3\t501\t2\t3\n"
+                                       "2\t0.01\t501\t2\t3\t0\t0\t0\n"
+                                       "3\t0.02\t501\t2\t3\t501\t2\t3\n"};
+    for (int first = 0; first < 2; first++) {
+        char expected[160];
+        himc_take *take = read_table(3, 2, "mm", rows[first]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+        snprintf(expected, sizeof expected,
+                 "gaps: %d positions of exactly 0 0 0 after a jump are read as gaps, the first of "
+                 "%s",
+                 2 - first, himc_take_point_name(take, first));
+        TEST_ASSERT_EQUAL_STRING(expected, take->notes[0]);
+        himc_take_free(take);
+    }
 }
 
 static void test_numbers_are_read_like_strtod(void)
@@ -276,6 +299,7 @@ int main(void)
     RUN_TEST(test_centimetres_and_metres_are_scaled);
     RUN_TEST(test_empty_cells_nan_and_missing_cells_at_the_end_are_gaps);
     RUN_TEST(test_zeros_after_a_jump_are_gaps_but_a_marker_at_zero_is_not);
+    RUN_TEST(test_the_note_of_zeros_names_the_first_marker_that_has_them);
     RUN_TEST(test_numbers_are_read_like_strtod);
     RUN_TEST(test_headers_that_disagree_with_the_rows_are_refused);
     RUN_TEST(test_a_rate_of_1_hz_is_refused);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Faults drawn at random and put into the library one at a time, to see which of them the unit tests notice (make mutants).
 
-  tests/mutants/mutants.py [--check]      environment: SEED=1 COUNT=200 ROOM= JOBS= SECONDS=300 HIMC_BUILD=build, COMPILE of the Makefile
+  tests/mutants/mutants.py [--check]      environment: SEED=1 COUNT=200 ROOM= JOBS= MUTANT_SECONDS=300 HIMC_BUILD=build, COMPILE of the Makefile
 
 A draw goes through the rooms of lib/src in turn; in a room through the operators below, in an order that the seed gives; of an operator's
 places the seed chooses one. What does not compile, or compiles to the same machine code, is drawn again. Places are ordered by a
@@ -9,7 +9,7 @@ hash of the seed and the line's own text, so a change elsewhere leaves most draw
 
 All happens in a copy of the repository (build/mutants/tree), so that it can be worked on meanwhile. The mutated object is linked before the
 library with one test after the other: those that run the changed line (gcov), nearest by name and quickest first. A test that fails
-kills it, if it passes once more without the fault; one that runs five times as long as usual fails. SECONDS (of CPU) a mutant are spent at most.
+kills it, if it passes once more without the fault; one that runs five times as long as usual fails. MUTANT_SECONDS (of CPU) a mutant are spent at most.
 
 A mutant that no test can tell apart from the program is excused, one by one, in tests/mutants/excused.txt:
   FILE: OLD LINE ==> NEW LINE ## why
@@ -27,6 +27,7 @@ import re
 import resource
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -36,11 +37,12 @@ OUT = BUILD + "/mutants"
 TREE = OUT + "/tree"
 SHARED = os.path.abspath("../shared")  # where tests look for captures
 ROOMS = "system base body capture track plan midi control bank head drum performance osc".split()
+QUICK = ["-fuse-ld=gold"] if shutil.which("ld.gold") else []
 GENERATED = ("air_table.c", "posture_regression_table.c")  # numbers that a program has written
 EXCUSED = "tests/mutants/excused.txt"
 LEAST = 0.92  # share of the mutants that tests notice
 SLOW, GRACE = 5, 10  # a test has that many times its CPU time, and that many seconds more
-SECONDS = float(os.environ.get("SECONDS") or 300)
+SECONDS = float(os.environ.get("MUTANT_SECONDS") or 300)
 JOBS = int(os.environ.get("JOBS") or os.cpu_count())
 
 # name, what is looked for, what takes its place; \1 is the first group
@@ -67,6 +69,7 @@ NUMBERS = [
     ("doubled", NUMBER % r"(\d+\.\d*(?:e-?\d+)?|\d+e-?\d+)", lambda x: "(2 * %s)" % x),
     ("halved", NUMBER % r"(\d+\.\d*(?:e-?\d+)?|\d+e-?\d+)", lambda x: "(%s / 2)" % x),
 ]
+RUNNING = set()  # process groups, which end with this program
 WORDS = r"return|if|while|for|switch|sizeof|else|do|case"
 
 
@@ -177,20 +180,27 @@ def run(command, seconds=None, **more):
             resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
         os.setpgid(0, 0)
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=limits, **more) as p:
-        try:
-            end = time.monotonic() + 20 * (seconds or 1e6)
-            while True:
-                done, status, used = os.wait4(p.pid, os.WNOHANG)
-                if done:
-                    break
-                if time.monotonic() > end:
-                    os.killpg(p.pid, 9)
-                time.sleep(0.01)
-        except BaseException:
-            os.killpg(p.pid, 9)
-            raise
+        RUNNING.add(p.pid)
+        end = time.monotonic() + 20 * (seconds or 1e6)
+        while True:
+            done, status, used = os.wait4(p.pid, os.WNOHANG)
+            if done:
+                break
+            if time.monotonic() > end:
+                os.killpg(p.pid, signal.SIGKILL)
+            time.sleep(0.01)
+        RUNNING.discard(p.pid)
         p.returncode = status
     return status, used.ru_utime + used.ru_stime
+
+
+def stop(*_):
+    for group in list(RUNNING):
+        try:
+            os.killpg(group, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    os._exit(1)
 
 
 def make(*arguments):
@@ -231,16 +241,16 @@ def link_commands():
 def link(commands, test, library, to, more=()):
     line = list(itertools.chain(*(library if word == "build/libhimc.a" else [word] for word in commands[test])))
     line[-1] = to
-    subprocess.run(line + ["-Wl,-S", *more], check=True, cwd=TREE)
+    subprocess.run(line + ["-Wl,-S", *QUICK, *more], check=True, cwd=TREE)
 
 
 def folder_to_run(name):
-    """A folder in which a test finds the repository's folders, and a build folder of its own."""
+    """A folder in which a test finds the repository, with a build folder of its own."""
     at = "%s/run/%s" % (OUT, name)
     shutil.rmtree(at, ignore_errors=True)
     os.makedirs(at + "/build/tests")
     for entry in os.listdir(TREE):
-        if entry != "build" and os.path.isdir(TREE + "/" + entry):
+        if entry != "build":
             os.symlink(TREE + "/" + entry, at + "/" + entry)
     os.symlink(TREE + "/build/tests/watch.so", at + "/build/tests/watch.so")
     return at
@@ -418,6 +428,8 @@ def main():
     seed, count, only = os.environ.get("SEED") or "1", int(os.environ.get("COUNT") or 200), os.environ.get("ROOM")
     if only and only not in ROOMS:
         return "ROOM: %s, expected one of %s" % (only, " ".join(ROOMS))
+    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGINT, stop)
     copy_tree()
     excused, log, commands = read_excused(), Log("%s/%s.log" % (OUT, seed)), link_commands()
     with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
