@@ -193,8 +193,7 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     double t = planner->now + PLANNER_AHEAD;
     for (int i = 0; i < HIMC_HANDS && running; i++) {
         himc_planner_cut(planner, (himc_hand)i, t);
-        double end = planner->hand[i].plan.end;
-        himc_planner_roll_from(score, (himc_hand)i, himc_planner_score_round_at(score, end), end);
+        himc_planner_score_seat(score, (himc_hand)i, planner->hand[i].plan.end);
         himc_planner_extend(planner, (himc_hand)i, t + PLANNER_HORIZON);
     }
     double end = himc_planner_score_time(score, 0, himc_planner_roll_end(score, at));
@@ -207,14 +206,15 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     return himc_planner_roll_left_out(score, at);
 }
 
-/// The tempo is about to change at t: what of a roll is not planned yet is counted anew.
-static void before_tempo(himc_planner *planner, double t)
+/// The tempo is about to change at t: what of a roll is not planned yet is counted anew. Returns
+/// what himc_planner_score_keep needs.
+static double before_tempo(himc_planner *planner, double t)
 {
     himc_planner_rebase(planner, t);
     if (!planner->score.playing || planner->score.roll_count == 0)
-        return;
+        return 0;
     himc_planner_cut_both(planner, t);
-    himc_planner_roll_anchor(&planner->score);
+    return himc_planner_score_anchor(&planner->score);
 }
 
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
@@ -225,10 +225,11 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     if (!copy)
         return false;
     double t = planner->now + PLANNER_AHEAD, beat = himc_planner_score_beat_at(score, t);
-    before_tempo(planner, t);
+    double anchor = before_tempo(planner, t);
     himc_planner_score_take_tempi(score, copy, count);
     if (score->playing) {
         himc_planner_score_hold(score, t, beat);
+        himc_planner_score_keep(score, anchor);
         himc_planner_replan(planner, t);
     }
     return true;
@@ -412,11 +413,12 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
     double beat = score->playing ? himc_planner_score_beat_at(score, t) : score->beat;
-    before_tempo(planner, t);
+    double anchor = before_tempo(planner, t);
     himc_planner_score_set_tempo(score, beat, bpm);
     if (!score->playing)
         return;
     himc_planner_score_hold(score, t, beat);
+    himc_planner_score_keep(score, anchor);
     himc_planner_replan(planner, t);
 }
 

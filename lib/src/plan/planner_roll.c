@@ -50,7 +50,7 @@ static roll_grid grid_of(const planner_score *score, int i, int in_round)
     bool anchored = a->any && a->roll == i && a->round == in_round;
     if (anchored) {
         g.first = a->number;
-        g.begin = a->time - himc_planner_score_time(score, in_round, 0);
+        g.begin = a->time;
     }
     double span = end - g.begin, n = r->rate * span;
     if (!(span > 0))
@@ -179,7 +179,6 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_r
                 due->roll = at->roll + 1;
                 due->index = at->number;
                 due->round = at->round;
-                due->time = himc_planner_score_time(score, at->round, due->stroke.beat);
                 return true;
             }
         }
@@ -198,10 +197,9 @@ static int number_after(const roll_grid *g, double t)
 void himc_planner_roll_from(planner_score *score, himc_hand hand, int in_round, double t)
 {
     planner_roll_place *at = &score->part[hand].rolls;
-    double after = t - himc_planner_score_time(score, in_round, 0);
     for (int i = 0; i < score->roll_count; i++) {
         roll_grid g = grid_of(score, i, in_round);
-        int number = own_number(hand, number_after(&g, after));
+        int number = own_number(hand, number_after(&g, t));
         *at = (planner_roll_place){i, number, in_round};
         if (number < g.count)
             return;
@@ -228,12 +226,11 @@ void himc_planner_roll_anchor(planner_score *score)
     }
     if (planned < 0)
         return;
-    double begun = himc_planner_score_time(score, at.round, 0);
     score->anchor = (planner_anchor){.any = true,
                                      .roll = at.roll,
                                      .round = at.round,
                                      .number = planned,
-                                     .time = begun + g.begin + (planned - g.first) * g.step};
+                                     .time = g.begin + (planned - g.first) * g.step};
 }
 
 double himc_planner_roll_last_beat(const planner_score *score)

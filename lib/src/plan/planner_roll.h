@@ -13,10 +13,12 @@ int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, in
 int himc_planner_roll_left_out(const planner_score *score, int roll);
 /// True if both have the same rolls.
 bool himc_planner_roll_equal(const planner_score *a, const planner_score *b);
-/// The stroke of a hand at `place` or after it, with its place; false if there is none left.
+/// The stroke of a hand at `place` or after it, with its place, without its time; false if there is
+/// none left.
 HIMC_RT bool himc_planner_roll_due(const planner_score *score, himc_hand hand,
                                    planner_roll_place *place, planner_due *due);
-/// The hand's next stroke of a roll is the first one after `t` (s), in that round or later.
+/// The hand's next stroke of a roll is the first one that comes later than `t` (s) after the beginning
+/// of that round.
 HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int round, double t);
 /// The tempo is about to change: of a roll that has begun the strokes that are not planned yet are
 /// counted anew, from the last one that is.

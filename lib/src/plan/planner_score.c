@@ -6,6 +6,7 @@
 /// where it is. In a loop with rounds of length L, beat b of round k is at origin + k S(L) +
 /// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
 /// strictly, so every time has one beat.
+#include "plan/planner_part.h"
 #include "plan/planner_roll.h"
 
 #include <math.h>
@@ -42,52 +43,9 @@ static double seconds_to(const planner_score *score, double beat)
     return himc_score_seconds(score->tempi, score->tempo_count, beat);
 }
 
-/// Time of a stroke from beat 0 (s).
-static double seconds_of(const planner_score *score, const himc_stroke *stroke)
-{
-    return seconds_to(score, stroke->beat) - stroke->early;
-}
-
-/// The first stroke after `beat`, or with `from` the first at it or after it.
-static int first_after(const planner_part *part, double beat, bool from)
-{
-    int low = 0, high = part->count;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        double at = part->list[middle].stroke.beat;
-        if (from ? at < beat : at <= beat)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 static double gap(const planner_score *score, double a, double b)
 {
     return fabs(seconds_to(score, b) - seconds_to(score, a));
-}
-
-/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
-static int place_of(const planner_part *part, const himc_stroke *stroke)
-{
-    int at = first_after(part, stroke->beat, false);
-    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
-           part->list[at - 1].stroke.early < stroke->early)
-        at--;
-    return at;
-}
-
-double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke)
-{
-    const planner_part *part = &score->part[stroke->hand];
-    int at = place_of(part, stroke);
-    double least = HUGE_VAL, time = seconds_of(score, stroke);
-    if (at > 0)
-        least = time - seconds_of(score, &part->list[at - 1].stroke);
-    if (at < part->count)
-        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
-    return least;
 }
 
 static bool check_count(int count, himc_error *error)
@@ -141,7 +99,7 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
-    int at = place_of(part, stroke);
+    int at = himc_planner_part_place(part, stroke);
     return check_stroke(score, stroke, drum, error) && grow(part, error) ? at : -1;
 }
 
@@ -175,7 +133,7 @@ int himc_planner_score_common(const planner_part *a, const planner_part *b)
 
 static int first_from(const planner_part *part, double beat)
 {
-    return first_after(part, beat - BEAT_ROUNDING, true);
+    return himc_planner_part_after(part, beat - BEAT_ROUNDING, true);
 }
 
 int himc_planner_score_first_drum(const planner_score *score, himc_hand hand, double beat, int none)
@@ -268,6 +226,23 @@ void himc_planner_score_hold(planner_score *score, double t, double beat)
     score->origin = t - seconds_to(score, beat);
 }
 
+void himc_planner_score_seat(planner_score *score, himc_hand hand, double t)
+{
+    int round = himc_planner_score_round_at(score, t);
+    himc_planner_roll_from(score, hand, round, t - himc_planner_score_time(score, round, 0));
+}
+
+double himc_planner_score_anchor(planner_score *score)
+{
+    himc_planner_roll_anchor(score);
+    return score->anchor.time + himc_planner_score_time(score, score->anchor.round, 0);
+}
+
+void himc_planner_score_keep(planner_score *score, double anchor)
+{
+    score->anchor.time = anchor - himc_planner_score_time(score, score->anchor.round, 0);
+}
+
 void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
@@ -276,7 +251,7 @@ void himc_planner_score_start(planner_score *score, double t)
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
     score->anchor.any = false;
-    double begin = himc_planner_score_time(score, 0, score->beat - BEAT_ROUNDING);
+    double begin = seconds_to(score, score->beat - BEAT_ROUNDING);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int next = first_from(&score->part[hand], score->beat);
         himc_planner_score_go(score, (himc_hand)hand, next, 0);
@@ -287,7 +262,6 @@ void himc_planner_score_start(planner_score *score, double t)
 void himc_planner_score_delay(planner_score *score, double late)
 {
     score->origin += late;
-    score->anchor.time += late;
 }
 
 void himc_planner_score_empty(planner_score *score)
@@ -357,6 +331,16 @@ static bool list_next(const planner_score *score, himc_hand hand, int ahead, pla
     return true;
 }
 
+/// The stroke of a roll at `place` or after it.
+static bool roll_next(const planner_score *score, himc_hand hand, planner_roll_place *place,
+                      planner_due *due)
+{
+    if (!himc_planner_roll_due(score, hand, place, due))
+        return false;
+    due->time = himc_planner_score_time(score, due->round, due->stroke.beat);
+    return true;
+}
+
 bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
                              planner_due *due)
 {
@@ -367,7 +351,7 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
     if (score->roll_count == 0)
         return list_next(score, hand, ahead, due);
     bool lists = list_next(score, hand, 0, &listed),
-         rolls = himc_planner_roll_due(score, hand, &place, &rolled);
+         rolls = roll_next(score, hand, &place, &rolled);
     for (int past = 0, of_list = 0; lists || rolls; past++) {
         bool list = lists && (!rolls || listed.time <= rolled.time);
         *due = list ? listed : rolled;
@@ -377,7 +361,7 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
             lists = list_next(score, hand, ++of_list, &listed);
         } else {
             place.number += 2;
-            rolls = himc_planner_roll_due(score, hand, &place, &rolled);
+            rolls = roll_next(score, hand, &place, &rolled);
         }
     }
     return false;
@@ -471,7 +455,8 @@ double himc_planner_score_period(const planner_score *score, double beat)
 static double list_gap(const planner_score *score, himc_hand hand, double beat)
 {
     const planner_part *part = &score->part[hand];
-    int before = first_after(part, beat, true) - 1, after = first_after(part, beat, false);
+    int before = himc_planner_part_after(part, beat, true) - 1,
+        after = himc_planner_part_after(part, beat, false);
     if (part->count == 0)
         return HUGE_VAL;
     double length = himc_planner_score_length(score), first = part->list[0].stroke.beat,
@@ -500,7 +485,7 @@ double himc_planner_score_since(const planner_score *score, double beat)
         since = gap(score, rolled, beat);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_part *part = &score->part[hand];
-        int before = first_after(part, beat, true) - 1;
+        int before = himc_planner_part_after(part, beat, true) - 1;
         if (before >= 0)
             since = fmin(since, gap(score, part->list[before].stroke.beat, beat));
     }
@@ -511,7 +496,7 @@ planner_walk himc_planner_score_walk(const planner_score *score, int round, doub
 {
     planner_walk walk = {.round = round, .before = beats_before(score, round)};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        walk.at[hand] = first_after(&score->part[hand], beat, false);
+        walk.at[hand] = himc_planner_part_after(&score->part[hand], beat, false);
     walk.rolls = himc_planner_roll_walk(score, round, beat);
     return walk;
 }

@@ -29,7 +29,7 @@ typedef struct planner_roll_place {
 typedef struct planner_anchor {
     bool any;
     int roll, round, number; ///< the last stroke that stays ...
-    double time;             ///< ... where it is (s)
+    double time;             ///< ... so long after the beginning of its round (s)
 } planner_anchor;
 
 /// A stroke of a roll that was reassigned or given up.
@@ -129,6 +129,13 @@ HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, dou
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
 
+/// The hand's next stroke of a roll is the first one after `t` (s).
+HIMC_RT void himc_planner_score_seat(planner_score *score, himc_hand hand, double t);
+/// Before the tempo changes: of a roll that has begun the strokes that are not planned yet will be
+/// counted anew. Returns the time of the last one that is (s) ...
+HIMC_RT double himc_planner_score_anchor(planner_score *score);
+/// ... which it keeps after the change.
+HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
 /// All beats are `late` seconds later.
