@@ -5,10 +5,10 @@
 /// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. A double roll
 /// has fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce
 /// comes half a stroke later. In a press roll each stroke bounces on a little longer than to the
-/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo, a roll its rate (planner_roll.c). The
-/// other hand plays them all, the second of a drag or a ruff as a bounce, so that the hand of the
-/// main stroke has all its time since its stroke before: after a grace note of its own, 90 ms
-/// earlier, an arm has no forte. A ruff is as a drag, more open.
+/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo, a
+/// roll its rate (planner_roll.c). The other hand plays them all, the second of a drag or a ruff as
+/// a bounce, so that the hand of the main stroke has all its time since its stroke before: after a
+/// grace note of its own, 90 ms earlier, an arm has no forte. A ruff is as a drag, more open.
 #include "plan/ornament.h"
 
 #include "plan/planner_motion.h"

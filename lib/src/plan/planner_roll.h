@@ -17,8 +17,8 @@ bool himc_planner_roll_equal(const planner_score *a, const planner_score *b);
 /// none left.
 HIMC_RT bool himc_planner_roll_due(const planner_score *score, himc_hand hand,
                                    planner_roll_place *place, planner_due *due);
-/// The hand's next stroke of a roll is the first one that comes later than `t` (s) after the beginning
-/// of that round.
+/// The hand's next stroke of a roll is the first one that comes later than `t` (s) after the
+/// beginning of that round.
 HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int round, double t);
 /// The tempo is about to change: of a roll that has begun the strokes that are not planned yet are
 /// counted anew, from the last one that is.
