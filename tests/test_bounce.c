@@ -345,7 +345,8 @@ static void test_rolls_follow_tempo_seek_and_loop(void)
     TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
     int asked = heard_asked(&h);
     printf("%d strokes, %d contacts\n", asked, h.strikes);
-    TEST_ASSERT_TRUE(asked > 30 && abs(h.strikes - 2 * asked) <= 2);
+    // the rate of the roll stays: 8 a second and a little more
+    TEST_ASSERT_TRUE(asked >= 24 && asked <= 30 && abs(h.strikes - 2 * asked) <= 2);
     heard_free(&h);
     himc_performance_free(p);
 }

@@ -245,6 +245,42 @@ static void test_play_stop_and_loop_0_end_the_turning_of_an_empty_loop(void)
     }
 }
 
+static void test_a_roll_goes_from_its_first_dynamic_to_its_last_at_any_tempi(void)
+{
+    static const double bpm[] = {60, 200, 30, 90};
+    himc_stroke roll = {.beat = 1,
+                        .length = 6,
+                        .ornament = HIMC_ROLL_SINGLE,
+                        .dynamic = 0.2,
+                        .last_dynamic = 0.8,
+                        .spot = HIMC_SPOT_NORMAL};
+    double last[HIMC_HANDS] = {-1, -1}, louder[HIMC_HANDS] = {0.2, 0.2}, all = 0;
+    int strokes = 0;
+    TEST_ASSERT_EQUAL_INT(0, himc_planner_add_roll(planner, &roll, 0, 11, &error));
+    himc_planner_play(planner, 0);
+    for (double t = 0; t < fmin(himc_planner_end(planner), 60); t += 0.01) {
+        himc_planner_advance(planner, t);
+        if (fmod(t, 0.7) < 0.01 && t > 1)
+            himc_planner_tempo(planner, t + 0.03, bpm[(int)(t / 0.7) % 4]);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_stroke s;
+            int drum;
+            double touch;
+            if (!himc_planner_current(planner, (himc_hand)hand, t, &s, &drum, &touch) ||
+                touch > t || touch < last[hand] + 0.05)
+                continue;
+            // one that was committed may be a moment ahead of a slower beat
+            TEST_ASSERT_TRUE(s.dynamic >= louder[hand] - 0.01);
+            last[hand] = touch;
+            louder[hand] = all = s.dynamic;
+            strokes++;
+        }
+    }
+    TEST_ASSERT_TRUE(strokes > 20);
+    TEST_ASSERT_EQUAL_INT(0, himc_planner_given_up(planner));
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 0.8, fmax(all, louder[HIMC_LEFT]));
+}
+
 static void test_tempi_of_a_score_that_follows_count_from_its_beginning(void)
 {
     static const himc_tempo_change next[] = {{0, 60}, {2, 240}};
@@ -344,6 +380,7 @@ int main(void)
     RUN_TEST(test_new_strokes_in_a_loop_that_was_cleared_while_it_turns_are_played_on_its_beats);
     RUN_TEST(test_a_stroke_added_to_a_loop_that_turns_sounds_in_its_next_round);
     RUN_TEST(test_play_stop_and_loop_0_end_the_turning_of_an_empty_loop);
+    RUN_TEST(test_a_roll_goes_from_its_first_dynamic_to_its_last_at_any_tempi);
     RUN_TEST(test_tempi_of_a_score_that_follows_count_from_its_beginning);
     RUN_TEST(test_stroke_beyond_the_rim_is_struck_just_inside_it_and_a_note_says_so);
     RUN_TEST(test_play_past_the_end_begins_at_beat_0);

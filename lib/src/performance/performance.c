@@ -4,7 +4,6 @@
 /// A step is simulated when the host takes its first sample; its forces wait here. So the result
 /// does not depend on the block size.
 #include "performance/performance_state.h"
-#include "base/format.h"
 #include "base/head_frame.h"
 
 #include <string.h>
@@ -104,21 +103,6 @@ static void tell_planner_notes(himc_performance *p)
     himc_planner_note note;
     while (himc_planner_note_next(p->motion->planner, &note))
         himc_events_note_as(&p->events, note.minor, "%s", note.text);
-}
-
-void himc_performance_tell_misses(himc_performance *p)
-{
-    himc_planner_miss miss;
-    while (himc_planner_miss_next(p->motion->planner, &miss)) {
-        const himc_stroke *s = &miss.stroke;
-        himc_strike missed = {.time = miss.time,
-                              .hand = s->hand,
-                              .planned_time = miss.time,
-                              .beat = miss.hit ? NAN : s->beat};
-        himc_format(missed.nuance, sizeof missed.nuance, "%s", himc_nuance_name(s->nuance));
-        himc_stroke_spot(s, himc_drums_frame(&p->drums, miss.drum)->radius, &missed.x, &missed.y);
-        himc_events_missed(&p->events, &missed, himc_drum_name(p->drums.slot[miss.drum].drum));
-    }
 }
 
 // strokes given up, beats, the end

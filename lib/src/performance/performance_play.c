@@ -1,6 +1,7 @@
 /// performance_play.c: playing, for C programs and for the commands of the same names: strokes and
 /// hits, transport, live targets, units of motion. Scores and takes have files of their own.
 #include "performance/performance_state.h"
+#include "base/format.h"
 #include "base/head_frame.h"
 #include "capture/take.h"
 #include "plan/ornament.h"
@@ -152,6 +153,21 @@ static void tell_places(himc_performance *p)
         slot->reach_told = true;
         himc_events_note(&p->events, "drum %s is %s by %.2f m: strokes on it are given up",
                          himc_drum_name(slot->drum), direction_of(beyond, head->center), distance);
+    }
+}
+
+void himc_performance_tell_misses(himc_performance *p)
+{
+    himc_planner_miss miss;
+    while (himc_planner_miss_next(p->motion->planner, &miss)) {
+        const himc_stroke *s = &miss.stroke;
+        himc_strike missed = {.time = miss.time,
+                              .hand = s->hand,
+                              .planned_time = miss.time,
+                              .beat = miss.hit ? NAN : s->beat};
+        himc_format(missed.nuance, sizeof missed.nuance, "%s", himc_nuance_name(s->nuance));
+        himc_stroke_spot(s, himc_drums_frame(&p->drums, miss.drum)->radius, &missed.x, &missed.y);
+        himc_events_missed(&p->events, &missed, himc_drum_name(p->drums.slot[miss.drum].drum));
     }
 }
 

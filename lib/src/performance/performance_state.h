@@ -164,6 +164,8 @@ himc_job *himc_performance_change_job(himc_performance *p, const himc_command *c
                                       himc_error *error);
 
 // performance_play.c
+/// Adds an event for each stroke that the planner has given up.
+HIMC_RT void himc_performance_tell_misses(himc_performance *p);
 /// himc_performance_add_stroke, but nothing is written, and the beat may be any.
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
 /// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many
@@ -204,10 +206,6 @@ himc_job *himc_performance_score_job(himc_performance *p, const himc_command *co
 
 /// The text of a score, borrowed, as a job. NULL without memory.
 himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
-
-// performance.c
-/// Adds an event for each stroke that the planner has given up.
-HIMC_RT void himc_performance_tell_misses(himc_performance *p);
 
 // performance_command.c
 /// How a performance takes commands.

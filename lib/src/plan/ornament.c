@@ -5,10 +5,10 @@
 /// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. A double roll
 /// has fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce
 /// comes half a stroke later. In a press roll each stroke bounces on a little longer than to the
-/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo. The
-/// other hand plays them all, the second of a drag or a ruff as a bounce, so that the hand of the
-/// main stroke has all its time since its stroke before: after a grace note of its own, 90 ms
-/// earlier, an arm has no forte. A ruff is as a drag, more open.
+/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo, a
+/// roll its rate (planner_roll.c). The other hand plays them all, the second of a drag or a ruff as
+/// a bounce, so that the hand of the main stroke has all its time since its stroke before: after a
+/// grace note of its own, 90 ms earlier, an arm has no forte. A ruff is as a drag, more open.
 #include "plan/ornament.h"
 
 #include "plan/planner_motion.h"
@@ -28,7 +28,6 @@
 #define PRESS_SHARE 0.6 // march tempo with five bounces each
 #define SLOWEST_PRESS 5.0
 #define FASTEST_PRESS 8.0
-#define PRESS_OVERLAP 1.1 // a buzz lasts so many strokes
 
 // grace notes; chosen, see above
 #define FLAM_TIME 0.025  // before the beat (s) ...
@@ -106,25 +105,13 @@ static double rate_of(const himc_stroke *roll, double pitch)
 
 static void add_roll(addition *to, const himc_stroke *roll, double pitch)
 {
-    const planner_score *score = &to->planner->score;
-    double from = himc_score_seconds(score->tempi, score->tempo_count, roll->beat);
-    double end = himc_score_seconds(score->tempi, score->tempo_count, roll->beat + roll->length);
-    // an even number: what follows begins with the right hand again
-    double pairs = round(0.5 * rate_of(roll, pitch) * (end - from));
-    double strokes = fmax(2 * pairs, 1), step = (end - from) / strokes;
+    himc_error unused;
     himc_stroke s = *roll;
     s.bounces = roll->ornament == HIMC_ROLL_DOUBLE  ? 1
                 : roll->ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
                                                     : 0;
-    s.bounce_time = s.bounces == HIMC_BUZZ ? PRESS_OVERLAP * step : 0.5 * step;
-    for (int i = 0; i < (int)strokes; i++) {
-        double share = strokes > 1 ? i / (strokes - 1) : 0;
-        s.hand = i % 2 ? HIMC_LEFT : HIMC_RIGHT;
-        s.dynamic = roll->dynamic + share * (roll->last_dynamic - roll->dynamic);
-        s.beat =
-            i ? himc_score_beat(score->tempi, score->tempo_count, from + i * step) : roll->beat;
-        add(to, &s);
-    }
+    int left_out = himc_planner_add_roll(to->planner, &s, to->drum, rate_of(roll, pitch), &unused);
+    to->left_out += left_out < 0 ? 1 : left_out;
 }
 
 int himc_planner_add_ornament(himc_planner *planner, const himc_stroke *stroke, int drum,

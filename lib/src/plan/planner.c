@@ -6,6 +6,7 @@
 /// setup; the motion only moves within it.
 #include "plan/planner_motion.h"
 #include "base/head_frame.h"
+#include "plan/planner_roll.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -177,6 +178,45 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     return true;
 }
 
+int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int drum, double rate,
+                          himc_error *error)
+{
+    planner_score *score = &planner->score;
+    bool running = score->playing && !score->empties;
+    if (score->playing)
+        himc_planner_rebase(planner, planner->now);
+    int at = himc_planner_roll_insert(score, roll, drum, rate, error);
+    if (at < 0)
+        return -1;
+    himc_planner_roll_inserted(planner, at);
+    himc_planner_rest_again(planner);
+    double t = planner->now + PLANNER_AHEAD;
+    for (int i = 0; i < HIMC_HANDS && running; i++) {
+        himc_planner_cut(planner, (himc_hand)i, t);
+        himc_planner_score_seat(score, (himc_hand)i, planner->hand[i].plan.end);
+        himc_planner_extend(planner, (himc_hand)i, t + PLANNER_HORIZON);
+    }
+    double end = himc_planner_score_time(score, 0, himc_planner_roll_end(score, at));
+    if (running && !score->loop && end < t) {
+        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
+        himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){*roll, drum, false, end});
+        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP,
+                         "roll at beat %g: given up, that beat is past", roll->beat);
+    }
+    return himc_planner_roll_left_out(score, at);
+}
+
+/// The tempo is about to change at t: what of a roll is not planned yet is counted anew. Returns
+/// what himc_planner_score_keep needs.
+static double before_tempo(himc_planner *planner, double t)
+{
+    himc_planner_rebase(planner, t);
+    if (!planner->score.playing || planner->score.roll_count == 0)
+        return 0;
+    himc_planner_cut_both(planner, t);
+    return himc_planner_score_anchor(&planner->score);
+}
+
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                             himc_error *error)
 {
@@ -185,10 +225,11 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     if (!copy)
         return false;
     double t = planner->now + PLANNER_AHEAD, beat = himc_planner_score_beat_at(score, t);
-    himc_planner_rebase(planner, t);
+    double anchor = before_tempo(planner, t);
     himc_planner_score_take_tempi(score, copy, count);
     if (score->playing) {
         himc_planner_score_hold(score, t, beat);
+        himc_planner_score_keep(score, anchor);
         himc_planner_replan(planner, t);
     }
     return true;
@@ -220,12 +261,12 @@ static double last_look(const himc_planner *planner, himc_hand hand)
 }
 
 /// True if a hand that has struck nothing waits over the same drum with the strokes of `fresh`.
-static bool rests_the_same(const himc_planner *planner, himc_hand hand, const planner_part *fresh)
+static bool rests_the_same(const himc_planner *planner, himc_hand hand, const planner_score *fresh)
 {
     const planner_score *score = &planner->score;
     return !planner->begun || planner->hand[hand].struck ||
-           himc_planner_score_first_drum(&score->part[hand], score->beat, -1) ==
-               himc_planner_score_first_drum(fresh, score->beat, -1);
+           himc_planner_score_first_drum(score, hand, score->beat, -1) ==
+               himc_planner_score_first_drum(fresh, hand, score->beat, -1);
 }
 
 /// True if a hand's plan so far is the same with the strokes of `fresh`.
@@ -256,14 +297,14 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
     planner_score *score = &planner->score, *fresh = &other->score;
     bool over = score->starts > 0 && !score->playing;
     if (over || score->loop || score->past > 0 || fresh->playing ||
-        score->tempo_count != fresh->tempo_count)
+        !himc_planner_roll_equal(score, fresh) || score->tempo_count != fresh->tempo_count)
         return false;
     for (int i = 0; i < score->tempo_count; i++)
         if (score->tempi[i].beat != fresh->tempi[i].beat ||
             score->tempi[i].bpm != fresh->tempi[i].bpm)
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (!rests_the_same(planner, (himc_hand)hand, &fresh->part[hand]) ||
+        if (!rests_the_same(planner, (himc_hand)hand, fresh) ||
             (score->playing && !may_exchange(planner, (himc_hand)hand, &fresh->part[hand])))
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -385,11 +426,12 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
     double beat = score->playing ? himc_planner_score_beat_at(score, t) : score->beat;
-    himc_planner_rebase(planner, t);
+    double anchor = before_tempo(planner, t);
     himc_planner_score_set_tempo(score, beat, bpm);
     if (!score->playing)
         return;
     himc_planner_score_hold(score, t, beat);
+    himc_planner_score_keep(score, anchor);
     himc_planner_replan(planner, t);
 }
 

@@ -111,6 +111,10 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
 /// order; two strokes of one hand closer than 40 ms are refused.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
+/// Adds a roll of so many strokes a second; `roll` has its kind, first beat, length and dynamics.
+/// Returns how many of its strokes are left out, too near to others; -1 with the reason.
+int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int drum, double rate,
+                          himc_error *error);
 /// True if so many strokes can be added behind those of the score, as far as they are no rolls;
 /// else the reason.
 bool himc_planner_has_room(const himc_planner *planner, const himc_stroke *strokes, int count,

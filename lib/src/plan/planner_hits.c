@@ -69,8 +69,7 @@ static neighbours neighbours_at(himc_planner *planner, himc_hand hand, double at
     for (int i = 0; due.time <= at; i++) {
         if (!himc_planner_score_next(&planner->score, hand, i, &due))
             break;
-        himc_goal goal =
-            himc_planner_goal(planner, &due.stroke->stroke, due.stroke->drum, due.time);
+        himc_goal goal = himc_planner_goal(planner, &due.stroke, due.drum, due.time);
         keep_nearer(&n, at, &goal, due.time);
     }
     return n;

@@ -194,9 +194,10 @@ static bool next_written(himc_planner *planner, himc_hand hand, timed_stroke *ne
         *next = h->waiting[0];
         t = himc_planner_waiting_time(planner, next);
     } else if (scored) {
-        *next = (timed_stroke){.stroke = due.stroke->stroke,
-                               .drum = due.stroke->drum,
+        *next = (timed_stroke){.stroke = due.stroke,
+                               .drum = due.drum,
                                .index = due.index,
+                               .roll = due.roll,
                                .round = due.round};
     } else {
         return false;
@@ -217,12 +218,28 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
     return more;
 }
 
+static planner_roll_place place_of(const timed_stroke *s)
+{
+    return (planner_roll_place){s->roll - 1, s->index, s->round};
+}
+
+/// The next stroke of the score is that one, or the one of its hand after it.
+static void go_to(himc_planner *planner, const timed_stroke *s, int after)
+{
+    planner_roll_place place = place_of(s);
+    place.number += 2 * after; // the hands take turns in a roll
+    if (s->roll)
+        himc_planner_score_go_roll(&planner->score, s->stroke.hand, &place);
+    else
+        himc_planner_score_go(&planner->score, s->stroke.hand, s->index + after, s->round);
+}
+
 /// Takes the next stroke out of the score or of the queue.
 static void take(himc_planner *planner, const timed_stroke *s)
 {
     planner_hand *h = &planner->hand[s->stroke.hand];
     if (s->index >= 0) {
-        himc_planner_score_go(&planner->score, s->stroke.hand, s->index + 1, s->round);
+        go_to(planner, s, 1);
         return;
     }
     h->waiting_count--;
@@ -242,7 +259,7 @@ static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *
 {
     planner_hand *h = &planner->hand[hand];
     if (s->index >= 0) {
-        himc_planner_score_go(&planner->score, hand, s->index, s->round);
+        go_to(planner, s, 0);
         return;
     }
     if (h->waiting_count == PLANNER_WAITING) {
@@ -266,14 +283,15 @@ void himc_planner_queue(himc_planner *planner, const timed_stroke *s)
 
 static bool is_settled(const himc_planner *planner, const timed_stroke *s)
 {
-    return s->index >= 0 &&
-           himc_planner_score_is_settled(&planner->score, s->stroke.hand, s->index, s->round);
+    planner_roll_place place = place_of(s);
+    return s->index >= 0 && himc_planner_score_is_settled(&planner->score, s->stroke.hand, &place);
 }
 
 static void settle(himc_planner *planner, const timed_stroke *s)
 {
+    planner_roll_place place = place_of(s);
     if (s->index >= 0 && !planner->clear.planning)
-        himc_planner_score_settle(&planner->score, s->stroke.hand, s->index, s->round);
+        himc_planner_score_settle(&planner->score, s->stroke.hand, &place);
 }
 
 static void renew_home(himc_planner *planner, himc_hand hand)
@@ -581,9 +599,10 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     for (int i = 0; i < MOST_TRIES && due.time <= goal->time; i++) {
         if (!himc_planner_score_next(&planner->score, hand, i, &due))
             break;
-        if (himc_planner_score_is_settled(&planner->score, hand, due.index, due.round))
+        planner_roll_place place = {due.roll - 1, due.index, due.round};
+        if (himc_planner_score_is_settled(&planner->score, hand, &place))
             continue;
-        himc_goal own = himc_planner_goal(planner, &due.stroke->stroke, due.stroke->drum, due.time);
+        himc_goal own = himc_planner_goal(planner, &due.stroke, due.drum, due.time);
         bool first = due.time <= goal->time;
         if (!himc_hand_can_follow(first ? &own : goal, first ? goal : &own))
             return false;
@@ -617,6 +636,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
         extend_alone(planner, other, from);
     cut_plan(planner, other, from);
     taken.index = -1;
+    taken.roll = 0;
     taken.reassigned = true;
     taken.stroke.hand = other;
     taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
@@ -727,7 +747,14 @@ void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index)
 {
     planner_hand *h = &planner->hand[hand];
     for (int i = 0; i < h->planned_count; i++)
-        h->planned[i].index += h->planned[i].index >= index;
+        h->planned[i].index += !h->planned[i].roll && h->planned[i].index >= index;
+}
+
+void himc_planner_roll_inserted(himc_planner *planner, int roll)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < planner->hand[hand].planned_count; i++)
+            planner->hand[hand].planned[i].roll += planner->hand[hand].planned[i].roll > roll;
 }
 
 void himc_planner_count_hits(himc_planner *planner)
@@ -744,7 +771,7 @@ void himc_planner_detach(himc_planner *planner, himc_hand hand)
 {
     planner_hand *h = &planner->hand[hand];
     for (int i = 0; i < h->planned_count; i++)
-        h->planned[i].index = -1;
+        h->planned[i].index = -1, h->planned[i].roll = 0;
 }
 
 double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
@@ -761,8 +788,7 @@ double himc_planner_lateness(himc_planner *planner)
         planner_due due;
         if (!himc_planner_score_next(&planner->score, (himc_hand)hand, 0, &due))
             continue;
-        himc_goal goal =
-            himc_planner_goal(planner, &due.stroke->stroke, due.stroke->drum, due.time);
+        himc_goal goal = himc_planner_goal(planner, &due.stroke, due.drum, due.time);
         if (goal.gesture.speed > HIMC_SLOWEST_GESTURE)
             late = fmax(late, plan->end + himc_hand_time(plan, &goal) - due.time);
     }
@@ -910,8 +936,8 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
     if (!himc_planner_score_next(&planner->score, hand, 0, &due))
         return false;
     if (stroke)
-        *stroke = due.stroke->stroke;
-    *drum = due.stroke->drum;
+        *stroke = due.stroke;
+    *drum = due.drum;
     *contact_time = due.time;
     return true;
 }

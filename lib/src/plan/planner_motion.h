@@ -37,6 +37,7 @@ typedef struct timed_stroke {
     himc_stroke stroke;
     int drum;
     int index;       ///< in the hand's part of the score, -1 for a hit or a reassigned stroke
+    int roll;        ///< 1 + the roll in which `index` is its number; 0: it is of none
     int round;       ///< of the loop
     bool reassigned; ///< it is from the other hand's part of the score
     bool separated;  ///< the tip has left the head again
@@ -204,6 +205,8 @@ HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
 /// A stroke has been put into the hand's score at `index`: later ones move up by one.
 HIMC_RT void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index);
+/// A roll has been put into the score at that index.
+HIMC_RT void himc_planner_roll_inserted(himc_planner *planner, int roll);
 /// The hand's plan so far rests on no stroke of its part after this time (s); *index is that of the
 /// last one that has been looked at, if it is before that time.
 HIMC_RT double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index);

@@ -27,8 +27,7 @@ static int own_drum(const himc_planner *planner, himc_hand hand)
 {
     const planner_score *score = &planner->score;
     const planner_hand *h = &planner->hand[hand];
-    return h->struck ? h->drum
-                     : himc_planner_score_first_drum(&score->part[hand], score->beat, h->drum);
+    return h->struck ? h->drum : himc_planner_score_first_drum(score, hand, score->beat, h->drum);
 }
 
 /// The drum over which a hand rests: its own, but the hands do not rest crossed.

@@ -6,7 +6,8 @@
 /// where it is. In a loop with rounds of length L, beat b of round k is at origin + k S(L) +
 /// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
 /// strictly, so every time has one beat.
-#include "plan/planner_score.h"
+#include "plan/planner_part.h"
+#include "plan/planner_roll.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,6 +34,7 @@ void himc_planner_score_free(planner_score *score)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         free(score->part[hand].list);
+    free(score->roll);
     free(score->tempi);
 }
 
@@ -41,52 +43,9 @@ static double seconds_to(const planner_score *score, double beat)
     return himc_score_seconds(score->tempi, score->tempo_count, beat);
 }
 
-/// Time of a stroke from beat 0 (s).
-static double seconds_of(const planner_score *score, const himc_stroke *stroke)
-{
-    return seconds_to(score, stroke->beat) - stroke->early;
-}
-
-/// The first stroke after `beat`, or with `from` the first at it or after it.
-static int first_after(const planner_part *part, double beat, bool from)
-{
-    int low = 0, high = part->count;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        double at = part->list[middle].stroke.beat;
-        if (from ? at < beat : at <= beat)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 static double gap(const planner_score *score, double a, double b)
 {
     return fabs(seconds_to(score, b) - seconds_to(score, a));
-}
-
-/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
-static int place_of(const planner_part *part, const himc_stroke *stroke)
-{
-    int at = first_after(part, stroke->beat, false);
-    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
-           part->list[at - 1].stroke.early < stroke->early)
-        at--;
-    return at;
-}
-
-double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke)
-{
-    const planner_part *part = &score->part[stroke->hand];
-    int at = place_of(part, stroke);
-    double least = HUGE_VAL, time = seconds_of(score, stroke);
-    if (at > 0)
-        least = time - seconds_of(score, &part->list[at - 1].stroke);
-    if (at < part->count)
-        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
-    return least;
 }
 
 static bool check_count(int count, himc_error *error)
@@ -140,7 +99,7 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
-    int at = place_of(part, stroke);
+    int at = himc_planner_part_place(part, stroke);
     return check_stroke(score, stroke, drum, error) && grow(part, error) ? at : -1;
 }
 
@@ -174,12 +133,18 @@ int himc_planner_score_common(const planner_part *a, const planner_part *b)
 
 static int first_from(const planner_part *part, double beat)
 {
-    return first_after(part, beat - BEAT_ROUNDING, true);
+    return himc_planner_part_after(part, beat - BEAT_ROUNDING, true);
 }
 
-int himc_planner_score_first_drum(const planner_part *part, double beat, int none)
+int himc_planner_score_first_drum(const planner_score *score, himc_hand hand, double beat, int none)
 {
-    int first = first_from(part, beat);
+    const planner_part *part = &score->part[hand];
+    int first = first_from(part, beat), roll = 0;
+    while (roll < score->roll_count && himc_planner_roll_end(score, roll) <= beat)
+        roll++;
+    if (roll < score->roll_count &&
+        (first == part->count || score->roll[roll].stroke.beat < part->list[first].stroke.beat))
+        return score->roll[roll].drum;
     return first < part->count ? part->list[first].drum : none;
 }
 
@@ -196,6 +161,9 @@ void himc_planner_score_clear(planner_score *score, himc_hand hand)
 {
     planner_part *part = &score->part[hand];
     part->count = part->next = part->round = 0;
+    part->rolls = (planner_roll_place){0, 0, 0};
+    score->roll_count = 0;
+    score->anchor.any = false;
 }
 
 himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi, int count,
@@ -258,6 +226,23 @@ void himc_planner_score_hold(planner_score *score, double t, double beat)
     score->origin = t - seconds_to(score, beat);
 }
 
+void himc_planner_score_seat(planner_score *score, himc_hand hand, double t)
+{
+    int round = himc_planner_score_round_at(score, t);
+    himc_planner_roll_from(score, hand, round, t - himc_planner_score_time(score, round, 0));
+}
+
+double himc_planner_score_anchor(planner_score *score)
+{
+    himc_planner_roll_anchor(score);
+    return score->anchor.time + himc_planner_score_time(score, score->anchor.round, 0);
+}
+
+void himc_planner_score_keep(planner_score *score, double anchor)
+{
+    score->anchor.time = anchor - himc_planner_score_time(score, score->anchor.round, 0);
+}
+
 void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
@@ -265,9 +250,12 @@ void himc_planner_score_start(planner_score *score, double t)
     score->starts++;
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
+    score->anchor.any = false;
+    double begin = seconds_to(score, score->beat - BEAT_ROUNDING);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int next = first_from(&score->part[hand], score->beat);
         himc_planner_score_go(score, (himc_hand)hand, next, 0);
+        himc_planner_roll_from(score, (himc_hand)hand, 0, begin);
     }
 }
 
@@ -305,8 +293,11 @@ int himc_planner_score_rebase(planner_score *score, double t)
     score->past += round;
     score->origin += round * himc_planner_score_round_length(score);
     score->rounds -= round;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    score->anchor.round -= round;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
         score->part[hand].round -= round;
+        score->part[hand].rolls.round -= round;
+    }
     return round;
 }
 
@@ -316,21 +307,64 @@ void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int 
     score->part[hand].round = round;
 }
 
-bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
-                             planner_due *due)
+void himc_planner_score_go_roll(planner_score *score, himc_hand hand,
+                                const planner_roll_place *place)
+{
+    score->part[hand].rolls = *place;
+}
+
+/// The stroke of its list `ahead` strokes after the next of a hand.
+static bool list_next(const planner_score *score, himc_hand hand, int ahead, planner_due *due)
 {
     const planner_part *part = &score->part[hand];
-    if (!score->playing || score->empties || part->count == 0)
+    if (part->count == 0)
         return false;
     long at = (long)part->next + ahead;
     due->round = part->round + (int)(at / part->count);
     due->index = (int)(at % part->count);
+    due->roll = 0;
     if (!score->loop && due->round > score->rounds)
         return false;
-    due->stroke = &part->list[due->index];
-    due->time = himc_planner_score_time(score, due->round, due->stroke->stroke.beat) -
-                due->stroke->stroke.early;
+    due->stroke = part->list[due->index].stroke;
+    due->drum = part->list[due->index].drum;
+    due->time = himc_planner_score_time(score, due->round, due->stroke.beat) - due->stroke.early;
     return true;
+}
+
+/// The stroke of a roll at `place` or after it.
+static bool roll_next(const planner_score *score, himc_hand hand, planner_roll_place *place,
+                      planner_due *due)
+{
+    if (!himc_planner_roll_due(score, hand, place, due))
+        return false;
+    due->time = himc_planner_score_time(score, due->round, due->stroke.beat);
+    return true;
+}
+
+bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
+                             planner_due *due)
+{
+    planner_roll_place place = score->part[hand].rolls;
+    planner_due listed, rolled;
+    if (!score->playing || score->empties)
+        return false;
+    if (score->roll_count == 0)
+        return list_next(score, hand, ahead, due);
+    bool lists = list_next(score, hand, 0, &listed),
+         rolls = roll_next(score, hand, &place, &rolled);
+    for (int past = 0, of_list = 0; lists || rolls; past++) {
+        bool list = lists && (!rolls || listed.time <= rolled.time);
+        *due = list ? listed : rolled;
+        if (past == ahead)
+            return true;
+        if (list) {
+            lists = list_next(score, hand, ++of_list, &listed);
+        } else {
+            place.number += 2;
+            rolls = roll_next(score, hand, &place, &rolled);
+        }
+    }
+    return false;
 }
 
 /// Names a round of the loop, through all starts of the transport; never 0.
@@ -339,20 +373,35 @@ static long round_name(const planner_score *score, int round)
     return 1 + round + (score->starts & 0xffffL) * 0x100000000L;
 }
 
-void himc_planner_score_settle(planner_score *score, himc_hand hand, int index, int round)
+void himc_planner_score_settle(planner_score *score, himc_hand hand,
+                               const planner_roll_place *place)
 {
-    score->part[hand].list[index].settled = round_name(score, round);
+    planner_part *part = &score->part[hand];
+    long name = round_name(score, place->round);
+    if (place->roll < 0)
+        part->list[place->number].settled = name;
+    else
+        part->mark[part->marks++ % PLANNER_MARKS] =
+            (planner_mark){name, place->roll, place->number};
+    part->marks %= PLANNER_MARKS;
 }
 
-bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand, int index, int round)
+bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
+                                   const planner_roll_place *place)
 {
-    return score->part[hand].list[index].settled == round_name(score, round);
+    const planner_part *part = &score->part[hand];
+    long name = round_name(score, place->round);
+    bool settled = place->roll < 0 && part->list[place->number].settled == name;
+    for (int i = 0; i < PLANNER_MARKS && place->roll >= 0; i++)
+        settled |= part->mark[i].name == name && part->mark[i].roll == place->roll &&
+                   part->mark[i].number == place->number;
+    return settled;
 }
 
 /// -1 without strokes.
 static double last_stroke(const planner_score *score)
 {
-    double beat = -1;
+    double beat = himc_planner_roll_last_beat(score);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_part *part = &score->part[hand];
         if (part->count > 0)
@@ -408,10 +457,12 @@ double himc_planner_score_period(const planner_score *score, double beat)
     return gap(score, beat - 1, beat);
 }
 
-double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat)
+/// The same of the strokes in its list.
+static double list_gap(const planner_score *score, himc_hand hand, double beat)
 {
     const planner_part *part = &score->part[hand];
-    int before = first_after(part, beat, true) - 1, after = first_after(part, beat, false);
+    int before = himc_planner_part_after(part, beat, true) - 1,
+        after = himc_planner_part_after(part, beat, false);
     if (part->count == 0)
         return HUGE_VAL;
     double length = himc_planner_score_length(score), first = part->list[0].stroke.beat,
@@ -423,12 +474,24 @@ double himc_planner_score_gap(const planner_score *score, himc_hand hand, double
     return fmin(to, from);
 }
 
+double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat)
+{
+    double least = list_gap(score, hand, beat), before, after;
+    himc_planner_roll_near(score, hand, beat, &before, &after);
+    if (before >= 0)
+        least = fmin(least, gap(score, before, beat));
+    return isfinite(after) ? fmin(least, gap(score, beat, after)) : least;
+}
+
 double himc_planner_score_since(const planner_score *score, double beat)
 {
-    double since = HUGE_VAL;
+    double since = HUGE_VAL, rolled, after;
+    himc_planner_roll_near(score, HIMC_HAND_ANY, beat, &rolled, &after);
+    if (rolled >= 0)
+        since = gap(score, rolled, beat);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_part *part = &score->part[hand];
-        int before = first_after(part, beat, true) - 1;
+        int before = himc_planner_part_after(part, beat, true) - 1;
         if (before >= 0)
             since = fmin(since, gap(score, part->list[before].stroke.beat, beat));
     }
@@ -439,27 +502,33 @@ planner_walk himc_planner_score_walk(const planner_score *score, int round, doub
 {
     planner_walk walk = {.round = round, .before = beats_before(score, round)};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        walk.at[hand] = first_after(&score->part[hand], beat, false);
+        walk.at[hand] = himc_planner_part_after(&score->part[hand], beat, false);
+    walk.rolls = himc_planner_roll_walk(score, round, beat);
     return walk;
 }
 
 /// The beat of the next stroke of a walk, -1 if none is left in its round.
-static double beat_back(const planner_score *score, const planner_walk *walk)
+static double beat_back(const planner_score *score, planner_walk *walk)
 {
-    double beat = -1;
+    double beat = -1, rolled;
+    himc_hand unused;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (walk->at[hand] > 0)
             beat = fmax(beat, score->part[hand].list[walk->at[hand] - 1].stroke.beat);
+    if (himc_planner_roll_back(score, &walk->rolls, &rolled, &unused))
+        beat = fmax(beat, rolled);
     return beat;
 }
 
 bool himc_planner_score_back(const planner_score *score, planner_walk *walk, planner_onset *onset)
 {
-    double beat = beat_back(score, walk);
+    double beat = beat_back(score, walk), rolled;
+    himc_hand rolls;
     if (beat < 0 && walk->round > -score->past) {
         walk->before = beats_before(score, --walk->round);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             walk->at[hand] = score->part[hand].count;
+        walk->rolls = himc_planner_roll_walk(score, walk->round, HUGE_VAL);
         beat = beat_back(score, walk);
     }
     if (beat < 0)
@@ -470,6 +539,10 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
         int at = walk->at[hand];
         onset->strikes[hand] = at > 0 && list[at - 1].stroke.beat == beat;
         walk->at[hand] -= onset->strikes[hand];
+    }
+    if (himc_planner_roll_back(score, &walk->rolls, &rolled, &rolls) && rolled == beat) {
+        onset->strikes[rolls] = true;
+        walk->rolls.number--;
     }
     return true;
 }

@@ -13,16 +13,49 @@ typedef struct planner_stroke {
     long settled; ///< names the round in which it was reassigned or given up last; 0: none
 } planner_stroke;
 
+/// A roll: its strokes are made when they are asked for (planner_roll.h).
+typedef struct planner_roll {
+    himc_stroke stroke; ///< its kind, first beat, length and dynamics
+    int drum;
+    double rate; ///< strokes of both hands (1/s)
+} planner_roll;
+
+/// A stroke of a roll.
+typedef struct planner_roll_place {
+    int roll, number, round;
+} planner_roll_place;
+
+/// From here on the strokes of a roll have been counted anew.
+typedef struct planner_anchor {
+    bool any;
+    int roll, round, number; ///< the last stroke that stays ...
+    double time;             ///< ... so long after the beginning of its round (s)
+} planner_anchor;
+
+/// A stroke of a roll that was reassigned or given up.
+typedef struct planner_mark {
+    long name; ///< of its round; 0: none
+    int roll, number;
+} planner_mark;
+
+#define PLANNER_MARKS 32 ///< chosen: twice the strokes that can be planned
+
 /// The strokes of one hand.
 typedef struct planner_part {
     planner_stroke *list; ///< owned, sorted by beat
     int count, room;
-    int next;  ///< first of the list that is not planned ...
-    int round; ///< ... and its round of the loop
+    int next;                         ///< first of the list that is not planned ...
+    int round;                        ///< ... and its round of the loop
+    planner_roll_place rolls;         ///< first stroke of the rolls that is not planned
+    planner_mark mark[PLANNER_MARKS]; ///< a ring ...
+    int marks;                        ///< ... and its next place
 } planner_part;
 
 typedef struct planner_score {
     planner_part part[HIMC_HANDS];
+    planner_roll *roll; ///< owned, sorted by beat
+    int roll_count, roll_room;
+    planner_anchor anchor;
     himc_tempo_change *tempi; ///< owned
     int tempo_count;
     bool playing;
@@ -38,8 +71,11 @@ typedef struct planner_score {
 
 /// A stroke of the score with its place in it.
 typedef struct planner_due {
-    const planner_stroke *stroke;
-    int index, round;
+    himc_stroke stroke;
+    int drum;
+    int roll;  ///< 1 + that of a roll; 0: it is of none
+    int index; ///< in its hand's list, or its number in the roll
+    int round;
     double time; ///< (s)
 } planner_due;
 
@@ -54,6 +90,7 @@ typedef struct planner_walk {
     int at[HIMC_HANDS]; ///< strokes of the round that are still to come
     int round;
     double before; ///< beats of the rounds before it
+    planner_roll_place rolls;
 } planner_walk;
 
 /// False without memory.
@@ -72,11 +109,12 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
 /// Number of strokes with which both lists begin.
 int himc_planner_score_common(const planner_part *a, const planner_part *b);
 /// Drum of the first stroke from a beat on; `none` without one.
-HIMC_RT int himc_planner_score_first_drum(const planner_part *part, double beat, int none);
+HIMC_RT int himc_planner_score_first_drum(const planner_score *score, himc_hand hand, double beat,
+                                          int none);
 /// Exchanges the lists of strokes, and nothing else; what has been reassigned or given up of the
 /// strokes that are the same is so in both.
 void himc_planner_score_exchange(planner_part *a, planner_part *b);
-/// Drops the strokes of a hand.
+/// Drops the strokes of a hand, and all rolls.
 void himc_planner_score_clear(planner_score *score, himc_hand hand);
 
 /// A checked copy of a tempo map, or NULL with the reason.
@@ -92,6 +130,13 @@ HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, dou
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
 
+/// The hand's next stroke of a roll is the first one after `t` (s).
+HIMC_RT void himc_planner_score_seat(planner_score *score, himc_hand hand, double t);
+/// Before the tempo changes: of a roll that has begun the strokes that are not planned yet will be
+/// counted anew. Returns the time of the last one that is (s) ...
+HIMC_RT double himc_planner_score_anchor(planner_score *score);
+/// ... which it keeps after the change.
+HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
 /// All beats are `late` seconds later.
@@ -109,14 +154,19 @@ HIMC_RT void himc_planner_score_loop(planner_score *score, bool on, int rounds);
 HIMC_RT int himc_planner_score_rebase(planner_score *score, double t);
 /// The next stroke of a hand is this one.
 HIMC_RT void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int round);
+/// The same of its strokes of rolls.
+HIMC_RT void himc_planner_score_go_roll(planner_score *score, himc_hand hand,
+                                        const planner_roll_place *place);
 /// The stroke `ahead` strokes after the next of a hand; false if there is none.
 HIMC_RT bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
                                      planner_due *due);
 
-/// The stroke has been reassigned or given up in that round: it is not planned again in it.
-HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand, int index, int round);
-HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand, int index,
-                                           int round);
+/// The stroke (`number` in its hand's list if `roll` is -1) has been reassigned or given up in that
+/// round: it is not planned again in it.
+HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
+                                       const planner_roll_place *place);
+HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
+                                           const planner_roll_place *place);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);

@@ -1,0 +1,41 @@
+/// planner_roll.h: rolls of the score: each is one entry, its strokes are made when they are asked
+/// for.
+#ifndef HIMC_PLANNER_ROLL_H
+#define HIMC_PLANNER_ROLL_H
+
+#include "plan/planner_score.h"
+
+/// Adds a roll of so many strokes a second of both hands; `stroke` has its kind, length and
+/// dynamics. Returns its index, or -1 with the reason.
+int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, int drum, double rate,
+                             himc_error *error);
+/// How many of a roll's strokes are left out, too near to other strokes of their hand.
+int himc_planner_roll_left_out(const planner_score *score, int roll);
+/// True if both have the same rolls.
+bool himc_planner_roll_equal(const planner_score *a, const planner_score *b);
+/// The stroke of a hand at `place` or after it, with its place, without its time; false if there is
+/// none left.
+HIMC_RT bool himc_planner_roll_due(const planner_score *score, himc_hand hand,
+                                   planner_roll_place *place, planner_due *due);
+/// The hand's next stroke of a roll is the first one that comes later than `t` (s) after the
+/// beginning of that round.
+HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int round, double t);
+/// The tempo is about to change: of a roll that has begun the strokes that are not planned yet are
+/// counted anew, from the last one that is.
+HIMC_RT void himc_planner_roll_anchor(planner_score *score);
+/// Beat of the last stroke of all rolls, -1 without any.
+HIMC_RT double himc_planner_roll_last_beat(const planner_score *score);
+/// Beat at which a roll ends: where it is written to, or where the next one begins.
+HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
+/// Beats of the strokes of a hand (HIMC_HAND_ANY: of both) next to a beat and not on it;
+/// -HUGE_VAL and HUGE_VAL if there is none.
+HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat,
+                                    double *before, double *after);
+/// A walk back through the strokes of all rolls of a round: first those at and before `beat` ...
+HIMC_RT planner_roll_place himc_planner_roll_walk(const planner_score *score, int round,
+                                                  double beat);
+/// ... whose last has this beat and hand; false if none is left. HIMC_RT.
+HIMC_RT bool himc_planner_roll_back(const planner_score *score, planner_roll_place *walk,
+                                    double *beat, himc_hand *hand);
+
+#endif
