@@ -221,7 +221,8 @@ static t_int *membrane_perform(t_int *w)
         /* all inlets are read before an outlet is written: they may be the same memory */
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < n; i++)
-                in[k][i] = membrane_number(x, x->x_in[k][done + i], k == 0 ? HIMC_FORCE_MAX : DBL_MAX);
+                in[k][i] =
+                    membrane_number(x, x->x_in[k][done + i], k == 0 ? HIMC_FORCE_MAX : DBL_MAX);
         membrane_play(x, n, in, out);
         for (int k = 0; k <= x->x_channels; k++)
             for (int i = 0; i < n; i++)

@@ -130,11 +130,22 @@ static inline void finite_watch_event(finite_watch *w, const himc_event *event)
     himc_osc_event(w->osc, event);
 }
 
+/// The plans of the tips, now and ahead.
+static inline void finite_watch_plans(finite_watch *w)
+{
+    double t = himc_clock_time(&w->p->clock);
+    for (int i = 0; !w->bad && i < 2 * HIMC_HANDS; i++) {
+        himc_target s =
+            himc_motion_planned(w->p->motion, (himc_hand)(i / 2), t + (i % 2) * PLANNED_AHEAD);
+        if (!himc_target_finite(&s))
+            w->bad = "a planned target";
+    }
+}
+
 /// After `seconds` have been played; `bad` then says what was not finite, if anything.
 static inline void finite_watch_played(finite_watch *w, double seconds)
 {
     _Alignas(8) unsigned char data[65536];
-    double t = himc_clock_time(&w->p->clock);
     w->clock += seconds;
     himc_osc_publish(w->osc, w->p, 0);
     himc_osc_step(w->osc);
@@ -143,12 +154,7 @@ static inline void finite_watch_played(finite_watch *w, double seconds)
         if (!w->bad && !osc_packet_finite(data, (size_t)n))
             w->bad = "a packet";
     }
-    for (int i = 0; !w->bad && i < 2 * HIMC_HANDS; i++) {
-        himc_target s =
-            himc_motion_planned(w->p->motion, (himc_hand)(i / 2), t + (i % 2) * PLANNED_AHEAD);
-        if (!himc_target_finite(&s))
-            w->bad = "a planned target";
-    }
+    finite_watch_plans(w);
 }
 
 static inline void finite_watch_end(finite_watch *w)

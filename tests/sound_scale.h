@@ -11,9 +11,6 @@
 /// S, and of their slopes, at most 4 S per sample. It is a cubic that adds 4/27 L times the slope
 /// at most. A change before its end begins another one at its value and slope, which like an
 /// oscillator with v'' = -6 v/L^2 - 4 v'/L only falls. So (3 + 0.6 L) S bounds the sum.
-///
-/// An ear adds four paths: a ray times the sum of a tap's weights, its shelf beside it; the
-/// shadow's filter has no more than 1. Noise is white, at most sqrt(3), through filters of power 1.
 #ifndef HIMC_TESTS_SOUND_SCALE_H
 #define HIMC_TESTS_SOUND_SCALE_H
 
@@ -70,59 +67,6 @@ static inline double largest_sample(const himc_drum *d, int pickup, double energ
 static inline double largest_declicked(const himc_drum *d, double scale)
 {
     return (3 + 0.6 * (DECLICK_TIME * d->rate + 1)) * scale;
-}
-
-#define NOISE_PEAK 30 // of filtered white noise of power 1: sqrt(3) sum |h| is 28 at 192 kHz
-#define NOISE_RISES 4 // it may have been louder a block ago; chosen
-
-/// Largest sample of the noise that sounds, at 1 m.
-static inline double largest_noise(const himc_drum *d)
-{
-    double sum = 0;
-    for (int i = 0; i < HIMC_NOISE_BANDS; i++)
-        sum += d->noise.band[i].level + d->noise.amount * d->noise.band[i].root;
-    return NOISE_PEAK * NOISE_RISES * sum * 100 / HIMC_PICKUP_PRESSURE;
-}
-
-static inline double tap_strength(const himc_ear_tap *t)
-{
-    double sum = 0;
-    for (int i = 0; i < 4; i++)
-        sum += fabs(t->weight[i]);
-    return sum * (fabs(t->shelf) + fabs(1 - t->shelf));
-}
-
-/// Largest sample of an ear per sample of the rays.
-static inline double ear_strength(const himc_ears *e, int ear)
-{
-    return tap_strength(&e->before.direct[ear]) + tap_strength(&e->before.floor[ear]) +
-           tap_strength(&e->now.direct[ear]) + tap_strength(&e->now.floor[ear]);
-}
-
-/// Largest sample that walls return to an ear per sample of the rays: each pass leaves them less.
-static inline double walls_strength(const himc_room *r)
-{
-    double gain = 0;
-    for (int l = 0; l < HIMC_ROOM_LINES; l++)
-        gain = fmax(gain, fmax(r->from.take[l] / (1 - r->from.keep[l]),
-                               r->to.take[l] / (1 - r->to.keep[l])));
-    double sum = fmax(r->from.out, r->to.out) * HIMC_ROOM_LINES / (1 - gain);
-    return himc_room_heard(r) ? HIMC_EARS_LEVEL * sum : 0;
-}
-
-/// Largest sample of a channel without declicks, of pickups, noise and ears.
-static inline double largest_in_channel(const himc_drum *d, int channel, double energy)
-{
-    int count;
-    const himc_pickup *at = himc_membrane_pickups(d->membrane, &count);
-    double noise = largest_noise(d), sum = 0;
-    if (channel < count)
-        sum = largest_sample(d, channel, energy) +
-              (at[channel].kind == HIMC_PICKUP_AIR ? noise / at[channel].distance : 0);
-    if (channel < HIMC_EARS && himc_membrane_rays(d->membrane))
-        sum += (ear_strength(&d->ears, channel) + walls_strength(&d->ears.room)) *
-               (largest_sample(d, HIMC_PICKUPS, energy) + noise);
-    return sum * fmax(1, fmax(d->gain * d->fader, d->level));
 }
 
 /// Energy in the head and in its own mallets (J).

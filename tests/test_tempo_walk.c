@@ -8,11 +8,12 @@
 #include "finite_watch.h"
 #include "session.h"
 
-#define TAKE "build/tempo-walk.bvh"
 #define RATE 16000 // (Hz) of samples, physics at 1000 Hz: to save time
 #define PIECE 20   // changes of tempo; then another piece
 #define SLOWEST 5.0
 #define FASTEST 600.0
+
+static char take_file[64]; // its own, so that two walks may run at once
 
 static long from_environment(const char *name, long usual)
 {
@@ -34,9 +35,10 @@ static void make_take(void)
 {
     himc_skeleton body;
     himc_skeleton_config config = himc_skeleton_default();
+    snprintf(take_file, sizeof take_file, "build/tempo-walk-%d.bvh", (int)getpid());
     TEST_ASSERT_TRUE(himc_skeleton_init(&body, &config, &error));
     himc_take *take = beaten_take(&body, 100, 4, &error);
-    TEST_ASSERT_TRUE_MESSAGE(take && himc_take_save(take, TAKE, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(take && himc_take_save(take, take_file, &error), error.text);
     himc_take_free(take);
 }
 
@@ -49,7 +51,7 @@ static void begin_piece(himc_performance *p, unsigned *seed)
                                                 "staccato"},
                              *const hand[] = {"left", "right"};
     if (choose(seed, 6) == 0) {
-        session_do(p, "take " TAKE);
+        session_do(p, "take %s", take_file);
         session_do(p, "play");
         return;
     }
@@ -145,7 +147,7 @@ static void test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays
     expect_hit_as_new(p);
     heard_free(&h);
     himc_performance_free(p);
-    unlink(TAKE);
+    unlink(take_file);
 }
 
 // what a user does with a slider, at the usual rates

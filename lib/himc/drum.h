@@ -52,9 +52,9 @@ HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y,
 
 /// Advances a drum that no performer drives by `n` samples, with its own strikes and an outside
 /// force. Fills the ring that himc_drum_read reads. `force` (N, down positive) (n) may be NULL for
-/// none; a value that is not finite counts as 0, one beyond HIMC_FORCE_MAX as that. It acts at `x`, `y` (m) (n), which is also the
-/// watched point; NULL: the point stays where it is, at first 0.75 of the radius towards the
-/// performer.
+/// none; a value that is not finite counts as 0, one beyond HIMC_FORCE_MAX as that. It acts at `x`,
+/// `y` (m) (n), which is also the watched point; NULL: the point stays where it is, at first 0.75
+/// of the radius towards the performer.
 HIMC_RT void himc_drum_advance(himc_drum *drum, int n, const double *force, const double *x,
                                const double *y);
 

@@ -4,8 +4,11 @@
 /// commands, atoms of every OSC type with words and numbers of the commands' grammars, wrong
 /// lengths, and at last some bytes changed. So most packets get past the first checks. Each is
 /// decoded alone and sent to a himc_osc, whose counters must agree; commands are carried out. What
-/// comes back is one clean line a packet.
+/// comes back is one clean line a packet. A millisecond is played after each, and all motion stays
+/// finite.
 #include "fuzz.h"
+
+#include "../finite_watch.h"
 
 #include "himc/osc.h"
 #include "osc/decode.h"
@@ -32,6 +35,7 @@ static himc_word words[MOST_WORDS];
 static int word_count;
 static himc_osc *osc;
 static himc_performance *performance;
+static finite_watch motion;
 static int ear = -1;
 static double simulated;
 
@@ -304,7 +308,7 @@ static void fresh(void)
     himc_error error;
     himc_osc_config config = {.files = "tests/fuzz"};
     osc_clock clock = {monotonic, monotonic, NULL};
-    himc_performance_config rates = himc_performance_default();
+    himc_performance_config rates = {16000, 1000, 250}; // to save time
     himc_osc_free(osc);
     himc_performance_free(performance);
     performance = himc_performance_new(&rates, &error);
@@ -312,6 +316,8 @@ static void fresh(void)
     require(performance && drum && himc_performance_add_drum(performance, drum, &error),
             "a performance");
     himc_drum_release(drum);
+    motion.p = performance;
+    himc_performance_on_motion(performance, watch_row, &motion);
     osc = himc_osc_new_stepped(&config, &clock, &error);
     require(osc != NULL, "a socket");
     if (ear < 0)
@@ -363,6 +369,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     simulated += STEP;
     check_counts(&b, &v);
     himc_osc_receive(osc, performance, 1);
+    himc_performance_process(performance, (int)(STEP * 16000), NULL);
+    finite_watch_plans(&motion);
+    require(!motion.bad, motion.bad ? motion.bad : "");
     hear();
     return 0;
 }

@@ -1,0 +1,42 @@
+/// loudest_stroke.h: how loud a drum is when it is struck as hard as a player can: fff, vertical
+/// accent, near the centre and at the usual spot.
+#ifndef HIMC_TESTS_LOUDEST_STROKE_H
+#define HIMC_TESTS_LOUDEST_STROKE_H
+
+#include "drum/drum_state.h"
+#include "plan/gesture.h"
+
+#include <math.h>
+
+#define LOUDEST_HEARD 0.1 // after each stroke (s): all modes have swung, air and ears have it
+
+/// Largest sample of each channel of a copy of the drum, at rest before; false without memory.
+static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUPS])
+{
+    static const double place[] = {-0.3, -0.75}; // of the radius: loudest, usual
+    double sound[256], speed = himc_gesture_of(HIMC_VERTICAL_ACCENT, 1).speed;
+    himc_error error;
+    himc_drum_form form = himc_drum_form_of(drum);
+    himc_drum *copy = himc_drum_new_of(&form, &error);
+    himc_drum_form_free(&form);
+    for (int k = 0; k < HIMC_PICKUPS; k++)
+        peak[k] = 0;
+    if (!copy)
+        return false;
+    copy->fader = drum->fader;
+    for (int i = 0; i < 2; i++) {
+        himc_drum_strike_at(copy, 0, place[i] * copy->place.radius, 0, speed, &error);
+        for (int n = 0; n < LOUDEST_HEARD * copy->rate; n += 256) {
+            himc_drum_advance(copy, 256, NULL, NULL, NULL);
+            for (int k = 0; k < HIMC_PICKUPS; k++) {
+                himc_drum_read_channel(copy, k, himc_drum_time(copy) - 256, 256, sound);
+                for (int s = 0; s < 256; s++)
+                    peak[k] = fmax(peak[k], fabs(sound[s]));
+            }
+        }
+    }
+    himc_drum_release(copy);
+    return true;
+}
+
+#endif
