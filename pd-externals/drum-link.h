@@ -37,7 +37,22 @@ typedef struct t_drum_link {
     double l_rate; /* sample rate of the drum; kept by the object that drives it (Hz) */
     /* The guest of a further performer, borrowed; NULL with the reason. */
     himc_drum *(*l_guest)(struct t_drum_link *link, const void *performer, himc_error *error);
+    /* Before a command that came by way of a performer: its file is beside the [membrane~]'s patch. */
+    bool (*l_locate)(struct t_drum_link *link, himc_command *command, himc_error *error);
+    /* After it: the guests take it, too. */
+    void (*l_commanded)(struct t_drum_link *link, const himc_command *command);
 } t_drum_link;
+
+/* True if a drum can have that name: to [himc~] a message that begins with it is for the drum. */
+static inline bool drum_name_check(const char *name, himc_error *error)
+{
+    static const char *const own[] = {"comment", "save", "state", "dsp", "list"};
+    bool taken = himc_command_find(HIMC_PERFORMER, name) != NULL;
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        taken = taken || strcmp(name, own[i]) == 0;
+    return !taken ||
+           himc_error_set(error, "drum %s: the name of a command, expected another name", name);
+}
 
 static inline t_symbol *drum_link_symbol(const char *name)
 {

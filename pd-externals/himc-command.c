@@ -16,6 +16,12 @@ the patch. */
                                  than a block of 128 samples */
 #define NETWORK_COMMANDS 8 /* most of them at one look; chosen: none makes a block late */
 
+/* Who answers `DRUM dump`. */
+typedef struct t_drum_answer {
+    t_himc *a_himc;
+    const char *a_name;
+} t_drum_answer;
+
 /* A search for a file. */
 typedef struct _search {
     const char *name;
@@ -138,18 +144,64 @@ static void himc_tilde_loaded(void *object, const char *error)
 }
 
 /* What takes long, and what comes behind it, waits for the loader. */
-static bool himc_tilde_perform_command(t_himc *x, const himc_command *command, himc_error *error)
+static bool himc_tilde_perform_command(t_himc *x, himc_drum *drum, const himc_command *command,
+                                       himc_error *error)
 {
     int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
-    himc_load_target target = {
-        .performance = x->x_performance, .delay = delay, .done = himc_tilde_loaded, .user = x};
+    himc_load_target target = {.performance = x->x_performance,
+                               .drum = drum,
+                               .delay = delay,
+                               .done = himc_tilde_loaded,
+                               .user = x};
     if (pd_in_real_time()) {
         bool good = himc_loader_command(x->x_loader, &target, command, error);
         himc_tilde_load(x);
         return good;
     }
     himc_loader_finish(x->x_loader);
-    return himc_performance_command(x->x_performance, command, delay, error);
+    return drum ? himc_drum_command(drum, command, error)
+                : himc_performance_command(x->x_performance, command, delay, error);
+}
+
+static bool himc_tilde_has_drum(const t_himc *x, const char *name)
+{
+    bool has = false;
+    for (int i = 0; i < x->x_count; i++)
+        has = has || strcmp(x->x_drum[i].d_name, name) == 0;
+    return has;
+}
+
+static void himc_tilde_drum_state(void *object, const char *line)
+{
+    const t_drum_answer *answer = object;
+    char text[MAXPDSTRING];
+    snprintf(text, sizeof text, "%s %s", answer->a_name, line);
+    outlet_words(answer->a_himc->x_messages, "dump", text);
+}
+
+/* DRUM COMMAND ...: of [membrane~ DRUM], whose own guests take it, too, or of a silent drum. */
+static bool himc_tilde_command_drum(t_himc *x, const char *name, himc_command *command,
+                                    himc_error *error)
+{
+    himc_error none;
+    t_drum_answer answer = {x, name};
+    himc_tilde_resolve(x, false);
+    t_drum_link *link = drum_link_find(name, &none);
+    bool good = !link || link->l_locate(link, command, error);
+    snprintf(command->drum, sizeof command->drum, "%s", name);
+    if (!link)
+        return himc_tilde_perform_command(x, NULL, command, error);
+    if (good && command->id == HIMC_COMMAND_DRUM_DUMP && command->count == 0)
+        himc_drum_describe(link->l_drum, HIMC_DESCRIBE_STATE, himc_tilde_drum_state, &answer);
+    else if (good && command->id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader))
+        good = himc_drum_strike_at(
+            link->l_drum, stream_delay(&x->x_stream, himc_drum_time(link->l_drum)),
+            command->atom[0].number, command->atom[1].number, command->atom[2].number, error);
+    else
+        good = good && himc_tilde_perform_command(x, link->l_drum, command, error);
+    if (good)
+        link->l_commanded(link, command);
+    return good || himc_error_prefix(error, "%s", name);
 }
 
 /* The drums save their own state, and a word that is no command of the performer is a drum's
@@ -159,7 +211,7 @@ static void himc_tilde_save_line(void *saving, const char *line)
     char word[HIMC_NAME_SIZE];
     snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " "), line);
     const himc_command_row *row = himc_command_find(HIMC_PERFORMER, word);
-    if (strcmp(word, "at") == 0 || (row && row->id != HIMC_COMMAND_MAKE_DRUM))
+    if (row && row->id != HIMC_COMMAND_MAKE_DRUM)
         saved_line(saving, line);
 }
 
@@ -206,6 +258,15 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
     himc_tilde_restore(x);
     if (s == gensym("save"))
         return saved_switch(&x->x_saves, argc, argv, error);
+    if (argc > 0 && argv->a_type == A_SYMBOL && himc_tilde_has_drum(x, s->s_name))
+        return (command_from_pd(&command, HIMC_DRUM, argv->a_w.w_symbol, argc - 1, argv + 1,
+                                error) ||
+                himc_error_prefix(error, "%s", s->s_name)) &&
+               himc_tilde_command_drum(x, s->s_name, &command, error);
+    if (himc_tilde_has_drum(x, s->s_name))
+        return himc_error_set(error,
+                              "%s: a drum, expected a command behind its name, as in %s damp 1",
+                              s->s_name, s->s_name);
     if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
         return false;
     himc_command_when when = himc_command_table((int)command.id)->when;
@@ -224,7 +285,7 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return himc_error_prefix(error, "%s", s->s_name);
     /* a command may come before DSP is on, and needs its drums */
     himc_tilde_resolve(x, false);
-    return himc_tilde_perform_command(x, &command, error);
+    return himc_tilde_perform_command(x, NULL, &command, error);
 }
 
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)
