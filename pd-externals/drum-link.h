@@ -22,6 +22,7 @@ other reads its ring. */
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
@@ -222,6 +223,25 @@ static inline bool take_flag(int *argc, t_atom **argv, const char *flag)
     return true;
 }
 
+/* The lines of an answer. What is sent may come back as a command, so all are written first. */
+typedef struct t_answer {
+    const char *a_before; /* a drum's name before each line, or NULL */
+    char *a_text;         /* owned; lines that end with \n */
+    size_t a_size;
+} t_answer;
+
+static inline void answer_line(void *answer, const char *line)
+{
+    t_answer *a = answer;
+    size_t size = strlen(line) + (a->a_before ? strlen(a->a_before) : 0) + 3;
+    char *text = realloc(a->a_text, a->a_size + size);
+    if (!text)
+        return;
+    a->a_text = text;
+    a->a_size += (size_t)snprintf(text + a->a_size, size, "%s%s%s\n",
+                                  a->a_before ? a->a_before : "", a->a_before ? " " : "", line);
+}
+
 /* Sends `selector` and the words of `line` as one message, without commas and semicolons, which
 mean something else in Pd. */
 static inline void outlet_words(t_outlet *outlet, const char *selector, const char *line)
@@ -234,6 +254,17 @@ static inline void outlet_words(t_outlet *outlet, const char *selector, const ch
     binbuf_text(words, text, strlen(text));
     outlet_anything(outlet, gensym(selector), binbuf_getnatom(words), binbuf_getvec(words));
     binbuf_free(words);
+}
+
+/* Sends the lines of an answer, and frees it. */
+static inline void answer_send(t_answer *answer, t_outlet *outlet, const char *selector)
+{
+    char *line = answer->a_text;
+    for (char *end; line && (end = strchr(line, '\n')); line = end + 1) {
+        *end = '\0';
+        outlet_words(outlet, selector, line);
+    }
+    free(answer->a_text);
 }
 
 #endif

@@ -16,12 +16,6 @@ the patch. */
                                  than a block of 128 samples */
 #define NETWORK_COMMANDS 8 /* most of them at one look; chosen: none makes a block late */
 
-/* Who answers `DRUM dump`. */
-typedef struct t_drum_answer {
-    t_himc *a_himc;
-    const char *a_name;
-} t_drum_answer;
-
 /* A search for a file. */
 typedef struct _search {
     const char *name;
@@ -85,11 +79,6 @@ static bool himc_tilde_file(t_himc *x, himc_command *command, himc_error *error)
 static void himc_tilde_line(void *object, const char *line)
 {
     outlet_words(((t_himc *)object)->x_messages, "info", line);
-}
-
-static void himc_tilde_state(void *object, const char *line)
-{
-    outlet_words(((t_himc *)object)->x_messages, "dump", line);
 }
 
 void himc_tilde_network(t_himc *x)
@@ -171,29 +160,24 @@ static bool himc_tilde_has_drum(const t_himc *x, const char *name)
     return has;
 }
 
-static void himc_tilde_drum_state(void *object, const char *line)
-{
-    const t_drum_answer *answer = object;
-    char text[MAXPDSTRING];
-    snprintf(text, sizeof text, "%s %s", answer->a_name, line);
-    outlet_words(answer->a_himc->x_messages, "dump", text);
-}
-
 /* DRUM COMMAND ...: of [membrane~ DRUM], whose own guests take it, too, or of a silent drum. */
 static bool himc_tilde_command_drum(t_himc *x, const char *name, himc_command *command,
                                     himc_error *error)
 {
     himc_error none;
-    t_drum_answer answer = {x, name};
     himc_tilde_resolve(x, false);
     t_drum_link *link = drum_link_find(name, &none);
     bool good = !link || link->l_locate(link, command, error);
     snprintf(command->drum, sizeof command->drum, "%s", name);
     if (!link)
         return himc_tilde_perform_command(x, NULL, command, error);
-    if (good && command->id == HIMC_COMMAND_DRUM_DUMP && command->count == 0)
-        himc_drum_describe(link->l_drum, HIMC_DESCRIBE_STATE, himc_tilde_drum_state, &answer);
-    else if (good && command->id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader))
+    if (good && command->id == HIMC_COMMAND_DRUM_DUMP && command->count == 0) {
+        t_answer answer = {.a_before = name};
+        himc_drum_describe(link->l_drum, HIMC_DESCRIBE_STATE, answer_line, &answer);
+        answer_send(&answer, x->x_messages, "dump");
+        return true;
+    }
+    if (good && command->id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader))
         good = himc_drum_strike_at(
             link->l_drum, stream_delay(&x->x_stream, himc_drum_time(link->l_drum)),
             command->atom[0].number, command->atom[1].number, command->atom[2].number, error);
@@ -276,7 +260,9 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
     }
     if (command.id == HIMC_COMMAND_DUMP && command.count == 0) {
         himc_tilde_resolve(x, false);
-        himc_performance_describe(x->x_performance, HIMC_DESCRIBE_STATE, himc_tilde_state, x);
+        t_answer answer = {NULL};
+        himc_performance_describe(x->x_performance, HIMC_DESCRIBE_STATE, answer_line, &answer);
+        answer_send(&answer, x->x_messages, "dump");
         return true;
     }
     if (when == HIMC_WHEN_NETWORK)

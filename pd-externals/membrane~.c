@@ -342,9 +342,11 @@ static void membrane_line(void *object, const char *line)
     outlet_words(((t_membrane *)object)->x_messages, "info", line);
 }
 
-static void membrane_state(void *object, const char *line)
+static void membrane_dump(t_membrane *x)
 {
-    outlet_words(((t_membrane *)object)->x_messages, "dump", line);
+    t_answer answer = {NULL};
+    himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, answer_line, &answer);
+    answer_send(&answer, x->x_messages, "dump");
 }
 
 static void membrane_info(t_membrane *x)
@@ -541,7 +543,7 @@ static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv
     else if (s == gensym("save"))
         pd_error(x, "membrane~: %s", error.text);
     else if (s == gensym("dump") && argc == 0)
-        himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, membrane_state, x);
+        membrane_dump(x);
     else if (!membrane_command(x, s, argc, argv, &error))
         pd_error(x, "membrane~: %s", error.text);
 }
