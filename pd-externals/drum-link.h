@@ -38,7 +38,7 @@ typedef struct t_drum_link {
     double l_rate; /* sample rate of the drum; kept by the object that drives it (Hz) */
     /* The guest of a further performer, borrowed; NULL with the reason. */
     himc_drum *(*l_guest)(struct t_drum_link *link, const void *performer, himc_error *error);
-    /* Before a command that came by way of a performer: its file is beside the [membrane~]'s patch. */
+    /* Before a command by way of a performer: its file is beside the [membrane~]'s patch. */
     bool (*l_locate)(struct t_drum_link *link, himc_command *command, himc_error *error);
     /* After it: the guests take it, too. */
     void (*l_commanded)(struct t_drum_link *link, const himc_command *command);
