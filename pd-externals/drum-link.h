@@ -22,6 +22,7 @@ other reads its ring. */
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
@@ -37,7 +38,22 @@ typedef struct t_drum_link {
     double l_rate; /* sample rate of the drum; kept by the object that drives it (Hz) */
     /* The guest of a further performer, borrowed; NULL with the reason. */
     himc_drum *(*l_guest)(struct t_drum_link *link, const void *performer, himc_error *error);
+    /* Before a command by way of a performer: its file is beside the [membrane~]'s patch. */
+    bool (*l_locate)(struct t_drum_link *link, himc_command *command, himc_error *error);
+    /* After it: the guests take it, too. */
+    void (*l_commanded)(struct t_drum_link *link, const himc_command *command);
 } t_drum_link;
+
+/* True if a drum can have that name: to [himc~] a message that begins with it is for the drum. */
+static inline bool drum_name_check(const char *name, himc_error *error)
+{
+    static const char *const own[] = {"comment", "save", "state", "dsp", "list"};
+    bool taken = himc_command_find(HIMC_PERFORMER, name) != NULL;
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        taken = taken || strcmp(name, own[i]) == 0;
+    return !taken ||
+           himc_error_set(error, "drum %s: the name of a command, expected another name", name);
+}
 
 static inline t_symbol *drum_link_symbol(const char *name)
 {
@@ -207,6 +223,25 @@ static inline bool take_flag(int *argc, t_atom **argv, const char *flag)
     return true;
 }
 
+/* The lines of an answer. What is sent may come back as a command, so all are written first. */
+typedef struct t_answer {
+    const char *a_before; /* a drum's name before each line, or NULL */
+    char *a_text;         /* owned; lines that end with \n */
+    size_t a_size;
+} t_answer;
+
+static inline void answer_line(void *answer, const char *line)
+{
+    t_answer *a = answer;
+    size_t size = strlen(line) + (a->a_before ? strlen(a->a_before) : 0) + 3;
+    char *text = realloc(a->a_text, a->a_size + size);
+    if (!text)
+        return;
+    a->a_text = text;
+    a->a_size += (size_t)snprintf(text + a->a_size, size, "%s%s%s\n",
+                                  a->a_before ? a->a_before : "", a->a_before ? " " : "", line);
+}
+
 /* Sends `selector` and the words of `line` as one message, without commas and semicolons, which
 mean something else in Pd. */
 static inline void outlet_words(t_outlet *outlet, const char *selector, const char *line)
@@ -219,6 +254,17 @@ static inline void outlet_words(t_outlet *outlet, const char *selector, const ch
     binbuf_text(words, text, strlen(text));
     outlet_anything(outlet, gensym(selector), binbuf_getnatom(words), binbuf_getvec(words));
     binbuf_free(words);
+}
+
+/* Sends the lines of an answer, and frees it. */
+static inline void answer_send(t_answer *answer, t_outlet *outlet, const char *selector)
+{
+    char *line = answer->a_text;
+    for (char *end; line && (end = strchr(line, '\n')); line = end + 1) {
+        *end = '\0';
+        outlet_words(outlet, selector, line);
+    }
+    free(answer->a_text);
 }
 
 #endif

@@ -82,11 +82,6 @@ static void himc_tilde_line(void *object, const char *line)
     outlet_words(((t_himc *)object)->x_messages, "info", line);
 }
 
-static void himc_tilde_state(void *object, const char *line)
-{
-    outlet_words(((t_himc *)object)->x_messages, "dump", line);
-}
-
 void himc_tilde_network(t_himc *x)
 {
     char line[HIMC_OSC_LINE];
@@ -139,18 +134,59 @@ static void himc_tilde_loaded(void *object, const char *error)
 }
 
 /* What takes long, and what comes behind it, waits for the loader. */
-static bool himc_tilde_perform_command(t_himc *x, const himc_command *command, himc_error *error)
+static bool himc_tilde_perform_command(t_himc *x, himc_drum *drum, const himc_command *command,
+                                       himc_error *error)
 {
     int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
-    himc_load_target target = {
-        .performance = x->x_performance, .delay = delay, .done = himc_tilde_loaded, .user = x};
+    himc_load_target target = {.performance = x->x_performance,
+                               .drum = drum,
+                               .delay = delay,
+                               .done = himc_tilde_loaded,
+                               .user = x};
     if (pd_in_real_time()) {
         bool good = himc_loader_command(x->x_loader, &target, command, error);
         himc_tilde_load(x);
         return good;
     }
     himc_loader_finish(x->x_loader);
-    return himc_performance_command(x->x_performance, command, delay, error);
+    return drum ? himc_drum_command(drum, command, error)
+                : himc_performance_command(x->x_performance, command, delay, error);
+}
+
+static bool himc_tilde_has_drum(const t_himc *x, const char *name)
+{
+    bool has = false;
+    for (int i = 0; i < x->x_count; i++)
+        has = has || strcmp(x->x_drum[i].d_name, name) == 0;
+    return has;
+}
+
+/* DRUM COMMAND ...: of [membrane~ DRUM], whose own guests take it, too, or of a silent drum. */
+static bool himc_tilde_command_drum(t_himc *x, const char *name, himc_command *command,
+                                    himc_error *error)
+{
+    himc_error none;
+    himc_tilde_resolve(x, false);
+    t_drum_link *link = drum_link_find(name, &none);
+    bool good = !link || link->l_locate(link, command, error);
+    snprintf(command->drum, sizeof command->drum, "%s", name);
+    if (!link)
+        return himc_tilde_perform_command(x, NULL, command, error);
+    if (good && command->id == HIMC_COMMAND_DRUM_DUMP && command->count == 0) {
+        t_answer answer = {.a_before = name};
+        himc_drum_describe(link->l_drum, HIMC_DESCRIBE_STATE, answer_line, &answer);
+        answer_send(&answer, x->x_messages, "dump");
+        return true;
+    }
+    if (good && command->id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader))
+        good = himc_drum_strike_at(
+            link->l_drum, stream_delay(&x->x_stream, himc_drum_time(link->l_drum)),
+            command->atom[0].number, command->atom[1].number, command->atom[2].number, error);
+    else
+        good = good && himc_tilde_perform_command(x, link->l_drum, command, error);
+    if (good)
+        link->l_commanded(link, command);
+    return good || himc_error_prefix(error, "%s", name);
 }
 
 /* The drums save their own state, and a word that is no command of the performer is a drum's
@@ -159,7 +195,8 @@ static void himc_tilde_save_line(void *saving, const char *line)
 {
     char word[HIMC_NAME_SIZE];
     snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " "), line);
-    if (strcmp(word, "at") == 0 || himc_command_find(HIMC_PERFORMER, word))
+    const himc_command_row *row = himc_command_find(HIMC_PERFORMER, word);
+    if (row && row->id != HIMC_COMMAND_MAKE_DRUM)
         saved_line(saving, line);
 }
 
@@ -231,6 +268,15 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return saved_switch(&x->x_saves, argc, argv, error);
     if (s == &s_bang)
         s = gensym("play");
+    if (argc > 0 && argv->a_type == A_SYMBOL && himc_tilde_has_drum(x, s->s_name))
+        return (command_from_pd(&command, HIMC_DRUM, argv->a_w.w_symbol, argc - 1, argv + 1,
+                                error) ||
+                himc_error_prefix(error, "%s", s->s_name)) &&
+               himc_tilde_command_drum(x, s->s_name, &command, error);
+    if (himc_tilde_has_drum(x, s->s_name))
+        return himc_error_set(error,
+                              "%s: a drum, expected a command behind its name, as in %s damp 1",
+                              s->s_name, s->s_name);
     if (!command_from_pd(&command, HIMC_PERFORMER, s, argc, argv, error))
         return false;
     himc_command_when when = himc_command_table((int)command.id)->when;
@@ -240,7 +286,9 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
     }
     if (command.id == HIMC_COMMAND_DUMP && command.count == 0) {
         himc_tilde_resolve(x, false);
-        himc_performance_describe(x->x_performance, HIMC_DESCRIBE_STATE, himc_tilde_state, x);
+        t_answer answer = {NULL};
+        himc_performance_describe(x->x_performance, HIMC_DESCRIBE_STATE, answer_line, &answer);
+        answer_send(&answer, x->x_messages, "dump");
         return true;
     }
     if (when == HIMC_WHEN_NETWORK)
@@ -249,7 +297,7 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return himc_error_prefix(error, "%s", s->s_name);
     /* a command may come before DSP is on, and needs its drums */
     himc_tilde_resolve(x, false);
-    return himc_tilde_waits(x, &command) || himc_tilde_perform_command(x, &command, error);
+    return himc_tilde_waits(x, &command) || himc_tilde_perform_command(x, NULL, &command, error);
 }
 
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)

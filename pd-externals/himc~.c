@@ -148,6 +148,8 @@ static bool himc_tilde_arguments(int argc, const t_atom *argv, himc_error *error
             return himc_error_set(error,
                                   "argument %d: %s, allowed: a drum's name of up to %d characters",
                                   i + 1, text, HIMC_NAME_SIZE - 1);
+        if (!drum_name_check(text, error))
+            return false;
         for (int k = 0; k < i; k++)
             if (argv[k].a_w.w_symbol == argv[i].a_w.w_symbol)
                 return himc_error_set(error, "argument %d: %s is named twice", i + 1, text);

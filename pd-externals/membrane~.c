@@ -344,9 +344,11 @@ static void membrane_line(void *object, const char *line)
     outlet_words(((t_membrane *)object)->x_messages, "info", line);
 }
 
-static void membrane_state(void *object, const char *line)
+static void membrane_dump(t_membrane *x)
 {
-    outlet_words(((t_membrane *)object)->x_messages, "dump", line);
+    t_answer answer = {NULL};
+    himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, answer_line, &answer);
+    answer_send(&answer, x->x_messages, "dump");
 }
 
 static void membrane_info(t_membrane *x)
@@ -436,6 +438,25 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     return good;
 }
 
+static t_membrane *membrane_of(t_drum_link *link)
+{
+    return (t_membrane *)((char *)link - offsetof(t_membrane, x_link));
+}
+
+static bool membrane_locate(t_drum_link *link, himc_command *command, himc_error *error)
+{
+    return membrane_file(membrane_of(link), command, error);
+}
+
+static void membrane_commanded(t_drum_link *link, const himc_command *command)
+{
+    t_membrane *x = membrane_of(link);
+    membrane_command_guests(x, command);
+    if (himc_loader_busy(x->x_loader))
+        membrane_load(x);
+    membrane_changed(x, NULL);
+}
+
 static void membrane_save(t_gobj *object, t_binbuf *to)
 {
     t_membrane *x = (t_membrane *)object;
@@ -479,7 +500,7 @@ static int membrane_guest_place(const t_membrane *x, const void *performer)
 
 static himc_drum *membrane_invite(t_drum_link *link, const void *performer, himc_error *error)
 {
-    t_membrane *x = (t_membrane *)((char *)link - offsetof(t_membrane, x_link));
+    t_membrane *x = membrane_of(link);
     const char *name = himc_drum_name(link->l_drum);
     int place = membrane_guest_place(x, performer);
     if (place < 0) {
@@ -524,7 +545,7 @@ static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv
     else if (s == gensym("save"))
         pd_error(x, "membrane~: %s", error.text);
     else if (s == gensym("dump") && argc == 0)
-        himc_drum_describe(x->x_link.l_drum, HIMC_DESCRIBE_STATE, membrane_state, x);
+        membrane_dump(x);
     else if (!membrane_command(x, s, argc, argv, &error))
         pd_error(x, "membrane~: %s", error.text);
 }
@@ -559,6 +580,8 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
                               text);
     if (argc > 0)
         wish->w_name = argv[0].a_w.w_symbol->s_name;
+    if (argc > 0 && !drum_name_check(wish->w_name, error))
+        return false;
     if (!membrane_number_argument(argc, argv, 2, "a diameter in inches", &wish->w_inches, error) ||
         !membrane_number_argument(argc, argv, 3, "a number of channels", &wish->w_channels,
                                   error) ||
@@ -656,7 +679,13 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
         return NULL;
     }
     t_membrane *x = (t_membrane *)pd_new(membrane_class);
-    x->x_link = (t_drum_link){DRUM_LINK_MAGIC, HIMC_BUILD_ID, drum, rate, membrane_invite};
+    x->x_link = (t_drum_link){.l_magic = DRUM_LINK_MAGIC,
+                              .l_build = HIMC_BUILD_ID,
+                              .l_drum = drum,
+                              .l_rate = rate,
+                              .l_guest = membrane_invite,
+                              .l_locate = membrane_locate,
+                              .l_commanded = membrane_commanded};
     x->x_layer = layer;
     x->x_loader = loader;
     x->x_load = clock_new(x, (t_method)membrane_load);

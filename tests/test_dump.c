@@ -264,6 +264,77 @@ static void test_performer_takes_the_dump_of_another_body(void)
     himc_performance_free(other);
 }
 
+static void send(himc_performance *p, const char *state)
+{
+    char line[2048];
+    for (const char *end; (end = strstr(state, ";\n")); state = end + 2) {
+        snprintf(line, sizeof line, "%.*s", (int)(end - state), state);
+        bool good = session_try(p, "%s", line);
+        if (!good)
+            printf("%s\n", line);
+        TEST_ASSERT_TRUE_MESSAGE(good, error.text);
+    }
+}
+
+// to the drum of that name, which may refuse it
+static void session_drum_command(himc_performance *p, const char *name, himc_command *command)
+{
+    snprintf(command->drum, sizeof command->drum, "%s", name);
+    himc_performance_command(p, command, 0, NULL);
+}
+
+// what a player of two drums writes: strokes, ornaments, pedals, hands, tempi, in any order
+static void write_at_random(himc_performance *p, random_seed *seed)
+{
+    static const char *const drum[] = {"low", "high"}, *const nuance[] = {"legato", "accent"};
+    static const char *const stroke[] = {"stroke", "flam", "drag", "ruff"};
+    static const char *const change[] = {"tune A2", "tune D3", "damp 1", "damp 0", "glide 0.5"};
+    for (int i = 0; i < 3; i++) // how many grace notes fit depends on it
+        session_do(p, "tempo %d %d", 60 + any_of(seed, 90), any_of(seed, 8));
+    for (int i = 0; i < 20; i++) {
+        const char *name = drum[any_of(seed, 2)];
+        switch (any_of(seed, 4)) {
+        case 0:
+        case 1: session_try(p, "at %g %s %s", 12 * any(seed), name, change[any_of(seed, 5)]); break;
+        default: // one that is too near to another is refused, as a pitch that a head has not
+            session_try(p, "%s %d %s %s %g %s %s", stroke[any_of(seed, 4)], 1 + any_of(seed, 8),
+                        any_of(seed, 2) ? "left" : "right", nuance[any_of(seed, 2)], any(seed),
+                        any_of(seed, 2) ? "rim" : "normal", name);
+        }
+    }
+}
+
+static void test_a_dump_sent_back_line_by_line_makes_the_same_performance(void)
+{
+    random_seed seed = 11;
+    for (int trial = 0; trial < 12; trial++) {
+        himc_performance *p = session_new(), *other = session_new();
+        himc_command command;
+        for (int i = 0; i < 4; i++) {
+            random_setting(&command, HIMC_PERFORMER, &seed);
+            himc_performance_command(p, &command, 0, NULL);
+        }
+        session_do(p, "clear"); // what `at` was among them
+        session_do(p, "drum low 29");
+        session_do(p, "drum high 23");
+        for (int i = 0; i < 6; i++) {
+            random_setting(&command, HIMC_DRUM, &seed);
+            session_drum_command(p, i % 2 ? "low" : "high", &command);
+        }
+        session_try(p, "low shape circle"); // a pedal needs a pitch
+        session_try(p, "high shape circle");
+        session_do(p, "high damp 0.2");
+        write_at_random(p, &seed);
+        char *state = copy_of(state_of(p));
+        send(other, state);
+        TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+        compare_playing(p, other, 40);
+        free(state);
+        himc_performance_free(p);
+        himc_performance_free(other);
+    }
+}
+
 static void test_a_state_is_restored_from_text_all_or_nothing(void)
 {
     himc_performance *p = session_new(), *other = session_new();
@@ -340,6 +411,7 @@ int main(void)
     RUN_TEST(test_performance_made_again_from_its_dump_plays_the_same_bit_by_bit);
     RUN_TEST(test_performance_with_four_drums_and_odd_settings_plays_the_same_from_its_dump);
     RUN_TEST(test_performer_takes_the_dump_of_another_body);
+    RUN_TEST(test_a_dump_sent_back_line_by_line_makes_the_same_performance);
     RUN_TEST(test_a_state_is_restored_from_text_all_or_nothing);
     RUN_TEST(test_presets_are_what_a_dump_has_written_all_or_nothing);
     free(lines.bytes);

@@ -69,10 +69,11 @@ static bool do_latency(himc_performance *p, const himc_command *c, himc_error *e
 
 static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    if (c->count > 1)
-        return himc_error_set(error,
-                              "tempo: BEAT: only in a score file; here a tempo holds from now on");
-    return himc_performance_set_tempo(p, c->atom[0].number, error);
+    if (c->count == 1)
+        return himc_performance_set_tempo(p, c->atom[0].number, error);
+    himc_tempo_change tempo = {.bpm = c->atom[0].number, .beat = c->atom[1].number};
+    himc_motion_replan(p->motion);
+    return himc_planner_add_tempo(p->motion->planner, &tempo, error);
 }
 
 static bool do_clear(himc_performance *p, const himc_command *c, himc_error *error)
@@ -595,7 +596,8 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
         return command_drum(p, command, delay, error);
     if (!act)
         return himc_error_set(error, "a drum's command, not the performer's");
-    if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE)
+    bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates
+    if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE || on_beat)
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);

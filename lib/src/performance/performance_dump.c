@@ -69,9 +69,28 @@ void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
     himc_text_add(lines, line.text);
 }
 
+// A note is told by its name: its frequency is no number in single precision.
+static bool add_note(himc_state_line *line, double hz)
+{
+    static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
+                                        "F#", "G",  "G#", "A",  "A#", "B"};
+    char note[8];
+    double of_note;
+    for (int key = 0; key < 12 * 10; key++) {
+        himc_format(note, sizeof note, "%s%d", names[key % 12], key / 12);
+        if (!himc_note_frequency(note, &of_note) || of_note != hz)
+            continue;
+        himc_state_word(line, note);
+        return true;
+    }
+    return false;
+}
+
 static void add_command(himc_state_line *line, const himc_command *c)
 {
     himc_state_word(line, himc_command_table((int)c->id)->name);
+    if (c->id == HIMC_COMMAND_TUNE && add_note(line, c->atom[0].number))
+        return;
     for (int i = 0; i < c->count; i++)
         if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
             himc_state_word(line, c->atom[i].symbol);

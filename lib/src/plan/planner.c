@@ -235,6 +235,16 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     return true;
 }
 
+bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *tempo,
+                            himc_error *error)
+{
+    int count;
+    himc_tempo_change *all = himc_planner_score_add_tempo(&planner->score, tempo, &count, error);
+    bool good = all && himc_planner_set_tempi(planner, all, count, error);
+    free(all);
+    return good;
+}
+
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                                double beat, himc_error *error)
 {

@@ -158,6 +158,9 @@ HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
 HIMC_RT const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count);
 /// What himc_planner_loop has set.
 HIMC_RT bool himc_planner_is_looped(const himc_planner *planner);
+/// Adds a change to the tempo map, or replaces that on its beat; as himc_planner_set_tempi.
+bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *tempo,
+                            himc_error *error);
 /// Appends a tempo map (copied) that holds from `beat` on; later changes of the old one are
 /// dropped.
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,

@@ -187,6 +187,26 @@ himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi,
     return copy;
 }
 
+himc_tempo_change *himc_planner_score_add_tempo(const planner_score *score,
+                                                const himc_tempo_change *more, int *count,
+                                                himc_error *error)
+{
+    himc_tempo_change *all = malloc(((size_t)score->tempo_count + 1) * sizeof *all);
+    int at = score->tempo_count;
+    if (!all) {
+        himc_error_set(error, "tempo: out of memory");
+        return NULL;
+    }
+    while (at > 0 && score->tempi[at - 1].beat >= more->beat)
+        at--;
+    int after = at < score->tempo_count && score->tempi[at].beat == more->beat ? at + 1 : at;
+    *count = at + 1 + score->tempo_count - after;
+    memcpy(all, score->tempi, (size_t)at * sizeof *all);
+    all[at] = *more;
+    memcpy(all + at + 1, score->tempi + after, (size_t)(*count - at - 1) * sizeof *all);
+    return all;
+}
+
 void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count)
 {
     free(score->tempi);
