@@ -182,8 +182,9 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
     bool known = next->drum < s->drums->count;
     himc_motion_answer(s->motion, hand, next->time);
     himc_statistics_strokes(s->statistics, 1, 0);
-    himc_events_note(s->events, "%s stick missed the %s at %.3f s", himc_hand_name(hand),
-                     known ? himc_drum_name(s->drums->slot[next->drum].drum) : "drum", next->time);
+    himc_events_note(s->events, "%s stick missed %s%s at %.3f s", himc_hand_name(hand),
+                     known ? "drum " : "its drum",
+                     known ? himc_drum_name(s->drums->slot[next->drum].drum) : "", next->time);
     if (!beside)
         go_on_from_here(c, s, hand, t);
 }
