@@ -108,6 +108,13 @@ if [ -n "${HIMC_LONG-}" ] && [ -f "$reach" ]; then
     "$himc" evaluate --take "$stroke" "$reach" --right-tip RTIP,Daphnee:INDEX --csv both.csv --quiet
     check test_a_reaching_arm_teaches_no_stroke [ "$(grep -v markers_analogs both.csv | cut -d, -f 2-)" = "$(cut -d, -f 2- own.csv)" ]
 fi
+# what the table does not explain is told in a line: strokes that did not land, a posture that was not learned
+"$himc" render piece.txt -o a.wav --set "record recorded.bvh" --quiet >out
+"$himc" evaluate --take recorded.bvh --csv recorded.csv 2>err
+check test_rows_with_lost_strokes_are_explained \
+    [ "$(awk -F, 'NR > 1 && $5 < $4' recorded.csv | wc -l)" = "$(grep -c '^note: recorded.bvh: .* plays [0-9]* of [0-9]* strokes ' err)" ]
+check test_the_published_law_is_explained grep -q "id printed plays 0 of 2 strokes .*the law as published" err
+check test_a_posture_that_was_not_learned_is_explained [ "$(grep -c 'built-in posture.*one more take' err)" = 1 ]
 refuses test_own_captures_must_be_takes "score.txt: not a take by its suffix" evaluate --take score.txt
 
 # the commands of the first ten minutes, as they stand there (evaluate has been, above)

@@ -388,7 +388,7 @@ static void test_presets_are_what_a_dump_has_written_all_or_nothing(void)
     save("bad.txt", "tune 150;\nmallet soft;\nnoise 7;\n");
     TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, "preset bad", &error));
     TEST_ASSERT_FALSE(himc_drum_command(second, &c, &error));
-    TEST_ASSERT_EQUAL_STRING("bad.txt:3: noise: AMOUNT: 7, allowed 0 .. 1", error.text);
+    TEST_ASSERT_EQUAL_STRING("preset: bad.txt:3: noise: AMOUNT: 7, allowed 0 .. 1", error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of_drum(second));
     free(state);
     himc_performance_free(p);

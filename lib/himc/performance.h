@@ -58,14 +58,14 @@ void himc_performance_make_drums(himc_performance *performance, bool make_drums)
 // The commands `stroke`, `hit`, `tempo`, `play` and `stop` for C programs: they act now.
 
 /// Adds a stroke to the score: beat 0 .. 1e9, dynamic 0 .. 1, x and y -1 .. 1 m. May allocate.
-/// False if a field is out of its range, the hand has another stroke within 40 ms, there are too
-/// many strokes or drums, or there is no memory.
+/// False if a field is out of its range, there is no drum of that name, the hand has another stroke
+/// within 40 ms, there are too many strokes, or there is no memory.
 bool himc_performance_add_stroke(himc_performance *performance, const himc_stroke *stroke,
                                  himc_error *error);
-/// Plays a stroke (its beat is ignored), to land as the command `latency` says. Allocates only for
-/// a drum that there is not yet. False if a field is out of its range, while a take plays, or
-/// without memory for that drum. A hit for which no hand has time is given up, and a note counts
-/// it.
+/// Plays a stroke (its beat is ignored), to land as the command `latency` says. Allocates only
+/// if there is no drum yet. False if a field is out of its range, there is no drum of that name,
+/// while a take plays, or without memory. A hit for which no hand has time is given up, and a note
+/// counts it.
 bool himc_performance_hit(himc_performance *performance, const himc_stroke *stroke,
                           himc_error *error);
 /// Sets the tempo (1 .. 1000 beats per minute, else false) from now to the next change in the

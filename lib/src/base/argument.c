@@ -227,7 +227,7 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", words); break;
     case HIMC_ARGUMENT_NAME:
         snprintf(text, size,
-                 "a drum's name: up to %d letters and digits, none of the performer's commands",
+                 "a drum's name: up to %d letters and digits, no spot, no command of the performer",
                  HIMC_NAME_SIZE - 1);
         break;
     case HIMC_ARGUMENT_TEXT:

@@ -191,8 +191,8 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
     memcpy(missed.nuance, stroke.nuance, sizeof missed.nuance);
     himc_motion_answer(s->motion, hand, next->time);
     himc_statistics_strokes(s->statistics, 1, 0);
-    himc_events_note(s->events, "%s stick missed the %s at %.3f s", himc_hand_name(hand), drum,
-                     next->time);
+    himc_events_note(s->events, "%s stick missed %s%s at %.3f s", himc_hand_name(hand),
+                     known ? "drum " : "its ", drum, next->time);
     himc_events_missed(s->events, &missed, drum);
     if (!beside)
         go_on_from_here(c, s, hand, t);

@@ -224,6 +224,20 @@ static bool read_performer_line(reader *r, const himc_atom *atom, int count)
     }
 }
 
+/// True if the line is for a drum: its second word is a drum's command, perhaps a misspelt one, or
+/// its first is a drum's name, which may also be a drum's command, as kettle.
+static bool is_for_drum(const reader *r, const himc_atom *atom)
+{
+    const himc_command_row *row;
+    himc_nearest nearest = {.word = atom[1].symbol};
+    for (int i = 0; (row = himc_command_table(i)); i++)
+        if (row->receiver == HIMC_DRUM)
+            himc_nearest_try(&nearest, row->name);
+    return nearest.name || is_known_drum(r->score, atom[0].symbol) ||
+           (himc_command_find(HIMC_DRUM, atom[0].symbol) &&
+            himc_command_find(HIMC_PERFORMER, atom[1].symbol));
+}
+
 static bool read_statement(reader *r, const himc_text_statement *s)
 {
     int count = s->count < s->capacity ? s->count : s->capacity;
@@ -238,8 +252,7 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     if (strcmp(atom[0].symbol, "at") == 0)
         return read_timed_line(r, atom, count);
     bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, atom[0].symbol);
-    if (two_words &&
-        (himc_command_find(HIMC_DRUM, atom[1].symbol) || is_known_drum(r->score, atom[0].symbol)))
+    if (two_words && is_for_drum(r, atom))
         return read_drum_line(r, atom, count);
     return read_performer_line(r, atom, count);
 }
