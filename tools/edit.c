@@ -220,6 +220,7 @@ static bool change_again(const session *s, edit_text *t, himc_error *error)
     if (good && check(s, t, error))
         return true;
     edit_text_revert(t);
+    edit_text_settle(t, true);
     return false;
 }
 
@@ -231,10 +232,12 @@ static void keep_old(session *s, himc_error *error)
     bool known = t && change_again(s, t, error) && (text = edit_text_join(t)) && now;
     if (known && !strcmp(text, now)) // it has been saved over the source
         edit_journal_forget(&s->journal);
-    else if (edit_journal_keep(&s->journal, known ? text : s->journal.old, kept, error)) {
+    else if (edit_journal_keep(&s->journal, known ? text : NULL, kept, error)) {
         edit_journal_forget(&s->journal);
         himc_error_set(&s->restored,
-                       "%.80s has changed since it was edited here: the edited score is kept in %s",
+                       known ? "%.80s has changed since it was edited here: the edited score is "
+                               "kept in %s"
+                             : "%.80s: its changes from before do not fit it, and are kept in %s",
                        s->name, kept);
     } else {
         unkept(s, error);
@@ -392,19 +395,21 @@ static bool read_lines(session *s, bool *fatal, himc_error *error)
 static bool take_back(session *s, const edit_frame *frame, himc_error *error)
 {
     char text[sizeof error->text];
-    bool undone = s->changed && edit_text_undo(s->text);
+    // never played: what was made before a kill may be what cannot be played
+    bool first = !s->played;
+    bool undone = first ? edit_text_revert(s->text) : s->changed && edit_text_undo(s->text);
     snprintf(text, sizeof text, "%.*s", (int)frame->size, (const char *)frame->bytes);
-    if (!undone && !s->played)
+    if (!undone && first)
         return himc_error_set(error, "%s", text);
     s->changed = false;
     if (undone) {
-        keep(s, "undo");
+        keep(s, first ? "revert" : "undo");
         tell_text(s, false);
     }
     tell(undone ? "undone" : "failed", "text", text);
     if (!undone)
         return true;
-    return replay(s, false, error);
+    return replay(s, first, error);
 }
 
 static bool pass_frame(session *s, himc_error *error)

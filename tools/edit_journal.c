@@ -6,14 +6,13 @@
 /// is `NAME-HASH.himc-edit` in $XDG_STATE_HOME/himc. Only the user may read it. It begins with
 /// the first change, and one process holds it: POSIX locks are not inherited by the processes that
 /// play. A line that was cut short has not been answered, so it is left out.
-#define _GNU_SOURCE // fcntl locks, fdatasync
+#define _XOPEN_SOURCE 700 // fcntl locks, realpath
 #include "edit_journal.h"
 #include "base/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
-#include <libgen.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -187,7 +186,7 @@ bool edit_journal_add(edit_journal *j, const char *line, himc_error *error)
     if (!j->path[0] || (!j->stream && !begin(j, error)))
         return false;
     fprintf(j->stream, "%s\n", line);
-    if (fflush(j->stream) == 0 && fdatasync(fileno(j->stream)) == 0)
+    if (fflush(j->stream) == 0 && fsync(fileno(j->stream)) == 0)
         return true;
     return himc_error_set(error, "%.300s: %s", j->path, strerror(errno));
 }
@@ -196,12 +195,14 @@ bool edit_journal_keep(const edit_journal *j, const char *text, char kept[4096],
 {
     int number = 1;
     for (; number <= SCORES; number++) {
-        snprintf(kept, 4096, "%.4070s-%d.txt", j->path, number);
+        snprintf(kept, 4096, "%.4070s-%d%s", j->path, number, text ? ".txt" : "");
         if (access(kept, F_OK) != 0)
             break;
     }
     if (number > SCORES)
         return himc_error_set(error, "%.300s: there are %d others", kept, SCORES);
+    if (!text)
+        return rename(j->path, kept) == 0 || himc_error_set(error, "%s", strerror(errno));
     mode_t mask = umask(077);
     FILE *file = himc_file_write(kept, HIMC_FILE_REPLACE, error);
     umask(mask);

@@ -25,7 +25,8 @@ bool edit_journal_open(edit_journal *journal, const char *source, const char *na
                        const char *text, himc_error *error);
 /// Adds a line (without newline); it is on the disk when this returns. False with the reason.
 bool edit_journal_add(edit_journal *journal, const char *line, himc_error *error);
-/// Keeps a text of another journal as a score beside it, whose name becomes `kept`.
+/// Keeps a text of another journal as a score beside it, whose name becomes `kept`; the journal
+/// itself if `text` is NULL.
 bool edit_journal_keep(const edit_journal *journal, const char *text, char kept[4096],
                        himc_error *error);
 /// Forgets the journal that was found: the next change begins another one.

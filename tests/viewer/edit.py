@@ -430,6 +430,42 @@ def test_one_program_at_a_time_keeps_the_changes_of_a_piece():
     assert read(other) == b"mine"
 
 
+def test_a_journal_that_cannot_be_played_is_taken_back():
+    """The program was killed between a change and the answer that it cannot be played."""
+    text = "stroke 0 right legato mf;"
+    path = made("piece.txt", text)
+    journal = os.path.join(os.path.dirname(path), ".piece.txt.himc-edit")
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None
+        assert piece.play("set 0 stroke 0 right legato f") is None
+        piece.process.kill()
+    drums = "".join(f"set {i} stroke {i} left legato f drum{i}\n" for i in range(1, 40))
+    with open(journal, "a") as file:
+        file.write(drums)  # more drums than a performer has
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        event = piece.until("undone")
+        assert event["event"] == "undone" and "drums" in event["text"], event
+        assert piece.text["undo"] == 0 and piece.score().decode().strip() == text
+    # one that does not fit is kept as it is
+    path = made("piece.txt", text)
+    journal = os.path.join(os.path.dirname(path), ".piece.txt.himc-edit")
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        piece.until("text")
+        piece.say("set 0 stroke 0 right legato f")
+        piece.until("text")
+        piece.process.kill()
+    with open(journal, "a") as file:
+        file.write("set 77 stroke 0 right legato f\n")
+    wrong = read(journal)
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        piece.until("restored")
+        assert piece.score().decode() == text and (piece.text["undo"], piece.text["redo"]) == (0, 0)
+    assert read(journal + "-1") == wrong and not os.path.exists(journal)
+
+
 def test_what_a_page_has_sent_is_known_again_by_its_name_and_contents():
     def sent(contents, name="my score.txt"):
         return Piece(HIMC, made("piece.txt", contents), "--confined", "--name", name)
