@@ -3,7 +3,7 @@
 # `make test-arm64` runs it.
 . tests/check.sh
 : "${HIMC_BUILD:=build}"
-root=$HIMC_BUILD/arm64/debian/root/usr/lib/aarch64-linux-gnu
+root=$(realpath "$HIMC_BUILD")/arm64/debian/root/usr/lib/aarch64-linux-gnu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 printf '%s\n' "tempo 120;" "stroke 0 right legato mf;" "stroke 1 left accent f;" "stroke 2 right staccato p rim;" "play;" >"$work/score.txt"
@@ -19,7 +19,7 @@ render arm64 qemu-aarch64 -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH="$root" "
 check test_three_strikes_are_played [ "$(wc -l <"$work/here.csv")" = 4 ]
 check test_strikes_are_those_of_this_machine cmp "$work/here.csv" "$work/arm64.csv"
 check test_sound_is_that_of_this_machine cmp "$work/here.wav" "$work/arm64.wav"
-needed=$(LC_ALL=C aarch64-linux-gnu-readelf -d "$HIMC_BUILD"/arm64/externals/himc/*.so | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
+needed=$(LC_ALL=C aarch64-linux-gnu-readelf -d "$HIMC_BUILD"/arm64/externals/himc/*.l_arm64 | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
     grep -vE '^(libc|libm|ld-linux.*)\.so\.[0-9]+$')
 check test_externals_need_the_c_library_alone [ -z "$needed" ]
 finish
