@@ -127,7 +127,7 @@ arm64: deps ## program and externals for Linux on arm64 with glibc 2.31 and newe
 	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 $(call OLDER,$(BUILD)/arm64/debian,aarch64) TABLE=$(TABLE)
 arm64-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
-	$(call make_externals,$(BUILD)/externals extension=linux-arm64-32.so OBJCOPY=aarch64-linux-gnu-objcopy)
+	$(call make_externals,$(BUILD)/externals extension=l_arm64 OBJCOPY=aarch64-linux-gnu-objcopy)
 # the vectorizer of GCC 12 for arm64 ends with an internal error here
 $(BUILD)/tools/live.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-tree-loop-vectorize)
 

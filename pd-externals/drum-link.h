@@ -25,6 +25,13 @@ other reads its ring. */
 #include <stdlib.h>
 #include <string.h>
 
+/* for the one symbol that a binary shows, its setup function */
+#ifdef _WIN32
+#define EXPORTED __attribute__((dllexport))
+#else
+#define EXPORTED __attribute__((visibility("default")))
+#endif
+
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
 #define DRUM_LINK_CLASS "membrane~"
 #define DRUM_LINK_ID_SIZE 32 /* chosen: room for two numbers of ten digits */

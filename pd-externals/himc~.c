@@ -211,8 +211,7 @@ static void himc_tilde_free(t_himc *x)
     clock_free(x->x_clock);
 }
 
-/* the one symbol this binary exports */
-__attribute__((visibility("default"))) void himc_tilde_setup(void);
+EXPORTED void himc_tilde_setup(void);
 
 void himc_tilde_setup(void)
 {

@@ -725,8 +725,7 @@ static void membrane_free(t_membrane *x)
     clock_free(x->x_touch_clock);
 }
 
-/* the one symbol this binary exports */
-__attribute__((visibility("default"))) void membrane_tilde_setup(void);
+EXPORTED void membrane_tilde_setup(void);
 
 void membrane_tilde_setup(void)
 {

@@ -19,5 +19,7 @@ if COMMANDS & set(sys.argv):  # not for a mere question about the package
     program.parent.mkdir(exist_ok=True)
     shutil.copy2(ROOT / BUILD / "bin" / "himc", program)
     subprocess.call(["strip", str(program)])
+    for terms in ("LICENSE", "LIBRARIES.txt"):
+        shutil.copy2(ROOT / terms, HERE / "himc" / "bin")
 
 setup(cffi_modules=["build_himc.py:ffi"])

@@ -11,16 +11,20 @@ docs="start manual pd panel osc viewer scene model glossary"
 stage=$build/package himc=$build/package/himc
 rm -rf "$stage"
 mkdir -p "$himc/clips" "$himc/docs"
-cp LICENSE LIBRARIES.txt README.md "$build"/linux/externals/himc/* "$build"/linux/externals-64/himc/*.so "$build"/arm64/externals/himc/*.so \
+cp LICENSE LIBRARIES.txt README.md "$build"/linux/externals/himc/*.pd "$build"/linux/externals-64/himc/*.so "$build"/arm64/externals/himc/*.l_arm64 \
     "$build"/windows/externals/himc/*.m_amd64 patches/techniques/* "$himc"
+# by the ending that each Pd looks for first: on arm64 it would take .pd_linux for its own, and .linux-arm64-32.so is unknown before 0.54
+for object in "$build"/linux/externals/himc/*.pd_linux; do
+    cp "$object" "$himc/$(basename "$object" .pd_linux).l_amd64"
+done
 cp -r patches "$himc/patches"
 rm -r "$himc/patches/techniques"
 cp "$build"/clips/* "$himc/clips"
 for page in $docs; do
     cp "docs/$page.md" "$himc/docs"
 done
-strip --strip-unneeded "$himc"/*.pd_linux "$himc"/*.linux-amd64-64.so
-aarch64-linux-gnu-strip --strip-unneeded "$himc"/*.linux-arm64-32.so
+strip --strip-unneeded "$himc"/*.l_amd64 "$himc"/*.linux-amd64-64.so
+aarch64-linux-gnu-strip --strip-unneeded "$himc"/*.l_arm64
 x86_64-w64-mingw32-strip --strip-unneeded "$himc"/*.m_amd64
 
 # technique~ is beside the objects here

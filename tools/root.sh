@@ -8,7 +8,7 @@ set -eu
 folder=$1 arch=$2
 shift 2
 case $arch in amd64) machine=x86_64-linux-gnu ;; arm64) machine=aarch64-linux-gnu ;; esac
-[ "$(cat "$folder/root/packages" 2>/dev/null)" != "$*" ] || exit 0
+! grep -qxF -e "$*" "$folder/root/packages" 2>/dev/null || exit 0
 rm -rf "$folder/root" "$folder/bin"
 mkdir -p "$folder/apt/lists/partial" "$folder/apt/cache/archives/partial" "$folder/packages" "$folder/bin"
 cd "$folder"
@@ -38,7 +38,7 @@ for compiler in gcc g++; do
     cat >bin/$machine-$compiler <<END
 #!/bin/sh
 exec $machine-$compiler --sysroot=$root -nostdinc $plus -isystem $own -isystem $root/usr/include/$machine \\
-    -isystem $root/usr/include -B$root/usr/lib/$machine/ -L$root/usr/lib/gcc/$machine/10 -L$root/usr/lib/$machine "\$@"
+    -isystem $root/usr/include -B$root/usr/lib/$machine/ -L$root/usr/lib/gcc/$machine/10 -L$root/usr/lib/$machine -L$root/lib/$machine "\$@"
 END
     chmod +x bin/$machine-$compiler
 done

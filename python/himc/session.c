@@ -22,8 +22,8 @@ typedef struct session {
     char *notes; // lines
     size_t notes_size;
     bool done, keeps_rows, failed; // `failed`: no memory for a row, strike or note
-    uint64_t samples, zero; // played in all, and at the last reset
-    double peak; // of the last session_process
+    uint64_t samples, zero;        // played in all, and at the last reset
+    double peak;                   // of the last session_process
     char left[64], right[64];
 } session;
 

@@ -154,6 +154,10 @@ class Package(unittest.TestCase):
         p.command("tempo 120")
         self.assertAlmostEqual(p.time, 0.5)
 
+    def test_licences_are_in_the_package(self):
+        self.assertIn("Russell L. Smith", (PROGRAM.parent / "LIBRARIES.txt").read_text())
+        self.assertIn("himc contributors", (PROGRAM.parent / "LICENSE").read_text())
+
     def test_the_module_shows_its_own_names(self):
         self.assertEqual({name for name in dir(himc) if not name.startswith("_")}, set(himc.__all__))
 

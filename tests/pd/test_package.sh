@@ -56,7 +56,7 @@ report each_help_is_in_the_list_of_objects "$(for help in "$himc"/*-help.pd; do
     grep -q "^$(basename "$help" -help.pd)	[^ ].* " "$package.txt" || echo "$help"
 done)"
 report each_line_of_the_list_is_an_object "$(cut -f 1 "$package.txt" | while read -r object; do
-    ls "$himc/$object".[pm]* "$himc/$object.l"* >/dev/null 2>&1 || echo "$object"
+    ls "$himc/$object".[plm]* >/dev/null 2>&1 || echo "$object"
 done)"
 
 # the binaries: of the machines in the package's name, for C libraries since 2020 (glibc 2.31), and neighbours of others
@@ -72,14 +72,19 @@ linux_fault() { # linux_fault FILE: what keeps it from being loaded
     [ "$shown" = "$(basename "$1" | sed 's/~.*/_tilde_setup/')" ] || echo "shows" $shown
     nm -D --undefined-only "$1" | awk '$1 == "U" && $2 !~ /@/ { print "lacks", $2 }' | sort -k 2 | join -1 2 -v 1 - "$pd_names"
 }
-for file in himc~.pd_linux himc~.linux-amd64-64.so himc~.linux-arm64-32.so himc~.m_amd64; do
+windows_fault() {
+    shown=$(x86_64-w64-mingw32-objdump -p "$1" | sed -n '/Ordinal\/Name Pointer/,/^$/s/.*\[ *[0-9]*\] //p')
+    [ "$shown" = "$(basename "$1" | sed 's/~.*/_tilde_setup/')" ] || echo "shows" $shown
+    x86_64-w64-mingw32-objdump -p "$1" | sed -n 's/.*DLL Name: /needs /p' | grep -viE ' (kernel32|msvcrt|user32|ws2_32|pd).dll$'
+}
+for file in himc~.l_amd64 himc~.linux-amd64-64.so himc~.l_arm64 himc~.m_amd64; do
     for object in himc membrane; do
         file=$object~.${file#*.}
-        case $file in *.m_amd64) why=$([ -s "$himc/$file" ] || echo "no $file") ;; *) why=$(linux_fault "$himc/$file") ;; esac
-        report "${file}_loads_on_systems_of_2020" "$(echo $why)"
+        case $file in *.m_amd64) why=$(windows_fault "$himc/$file" 2>&1) ;; *) why=$(linux_fault "$himc/$file") ;; esac
+        report "${file}_needs_the_system_alone_and_shows_its_setup_alone" "$(echo $why)"
     done
 done
-report arm64_is_arm64 "$(readelf -h "$himc/himc~.linux-arm64-32.so" | grep -q AArch64 || echo "another machine")"
+report arm64_is_arm64 "$(readelf -h "$himc/himc~.l_arm64" | grep -q AArch64 || echo "another machine")"
 
 # a patch that makes both, declared or by prefix, and says what it hears of a blow
 sounds() { # sounds PREFIX DECLARE
