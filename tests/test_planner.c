@@ -330,6 +330,17 @@ static void test_a_tip_that_has_time_does_not_dart_on_its_way_behind_the_spot(vo
     }
 }
 
+static void test_lift_without_a_dwell_is_finite_and_ends_where_it_began(void)
+{
+    himc_hand_plan plan;
+    himc_vec3 home = {0.5, 0, 1}, way = {0, 0, 0.08};
+    himc_hand_place(&plan, 0, home);
+    TEST_ASSERT_TRUE(himc_hand_lift(&plan, 0.1, 0.2, 0.2, 0.3, way));
+    TEST_ASSERT_TRUE(himc_hand_is_sound(&plan, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, home.z + way.z, himc_hand_at(&plan, 0.2).x.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, home.z, himc_hand_at(&plan, 0.3).x.z);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -346,5 +357,6 @@ int main(void)
     RUN_TEST(test_tip_lands_on_the_other_drum_along_its_normal);
     RUN_TEST(test_a_tip_that_has_time_does_not_dart_on_its_way_behind_the_spot);
     RUN_TEST(test_a_leap_in_a_hurry_takes_all_its_time_and_is_not_halted_on_the_way);
+    RUN_TEST(test_lift_without_a_dwell_is_finite_and_ends_where_it_began);
     return UNITY_END();
 }

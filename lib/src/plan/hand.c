@@ -224,7 +224,8 @@ bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, 
     if (busy || lift->count + 3 > HIMC_SPLINE_SEGMENTS || !in_time)
         return false;
     himc_spline_add(lift, begin, &nothing, from, &raised);
-    himc_spline_add(lift, from, &raised, to, &raised);
+    if (to > from)
+        himc_spline_add(lift, from, &raised, to, &raised);
     himc_spline_add(lift, to, &raised, end, &nothing);
     return true;
 }
