@@ -328,8 +328,11 @@ static void membrane_tick(t_membrane *x)
         pd_error(x, "membrane~: %s: silent at %g Hz, for [himc~] plays it at %g Hz", name,
                  x->x_stream.s_rate, x->x_link.l_rate);
     else if (membrane_troubled(x))
-        pd_error(x, "membrane~: %s: inlet: a sample that is not a finite number is taken as 0, a force "
-                 "beyond %g N as that", name, HIMC_FORCE_MAX);
+        pd_error(
+            x,
+            "membrane~: %s: inlet: a sample that is not a finite number is taken as 0, a force "
+            "beyond %g N as that",
+            name, HIMC_FORCE_MAX);
     x->x_told |= membrane_troubled(x);
     membrane_tell_technique(x);
     while (x->x_waiting) {

@@ -165,7 +165,7 @@ static void test_a_note_at_the_end_counts_the_strokes_not_played_as_written(void
     session_play(p, 12, &h);
     TEST_ASSERT_EQUAL_INT(1, h.dones);
     TEST_ASSERT_EQUAL_INT(7, h.notes); // the drum, each of them, and the count
-    TEST_ASSERT_EQUAL_STRING("in all 0 strokes smaller, 0 by the other hand, 5 given up", h.note);
+    TEST_ASSERT_EQUAL_STRING("in all 0 strokes softer, 0 by the other hand, 5 given up", h.note);
     TEST_ASSERT_EQUAL_INT(5, himc_performance_measure(p).missed);
     heard_free(&h);
     himc_performance_free(p);

@@ -359,7 +359,7 @@ static void test_strokes_that_no_hand_reaches_are_given_up_once_each(void)
     himc_planner_finish(planner, 100);
     while (himc_planner_note_next(planner, &note))
         notes++;
-    TEST_ASSERT_EQUAL_STRING("in all 0 strokes smaller, 0 by the other hand, 40 given up",
+    TEST_ASSERT_EQUAL_STRING("in all 0 strokes softer, 0 by the other hand, 40 given up",
                              note.text);
     TEST_ASSERT_TRUE(notes > 8 && notes <= 41);
     himc_planner_miss miss;

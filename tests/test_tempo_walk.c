@@ -23,7 +23,8 @@ static long from_environment(const char *name, long usual)
 
 static himc_performance *performer(double physics)
 {
-    himc_performance_config config = {.sample_rate = RATE, .physics_rate = physics, .task_rate = 250};
+    himc_performance_config config = {
+        .sample_rate = RATE, .physics_rate = physics, .task_rate = 250};
     himc_performance *p = himc_performance_new(&config, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(p, error.text);
     himc_performance_make_drums(p, true);

@@ -19,16 +19,16 @@
 
 #define ROUND 500        // commands
 #define LONGEST_BLOCK 64 // samples between two commands
-#define RATE 16000   // (Hz) of samples; physics at 1000 Hz until `rate` changes it: to save time
-#define SPOILT 0.5   // share of commands
-#define TWINS 4      // one round of so many has a twin
-#define PLAYED 0.3   // (s) of the piece
-#define LOUDER 10.0  // 20 dB above the loudest real stroke
-#define THROWN 15.0  // (m/s) a tip that has been so fast was thrown: gains that hold no arm ...
+#define RATE 16000  // (Hz) of samples; physics at 1000 Hz until `rate` changes it: to save time
+#define SPOILT 0.5  // share of commands
+#define TWINS 4     // one round of so many has a twin
+#define PLAYED 0.3  // (s) of the piece
+#define LOUDER 10.0 // 20 dB above the loudest real stroke
+#define THROWN 15.0 // (m/s) a tip that has been so fast was thrown: gains that hold no arm ...
 #define THROWN_LOUDER 100.0 // ... and the weight of that arm is behind its blows
-#define OF_TEMPO 0.2 // share of commands that change the tempo, or what depends on it
-#define HEAVIEST_BLOW 450 // (J) a mallet of 1 kg, the heaviest, at 30 m/s
-#define LOUDEST_ARM 3600  // (J) a stick that weighs as much as an arm, 2 kg, at 60 m/s
+#define OF_TEMPO 0.2        // share of commands that change the tempo, or what depends on it
+#define HEAVIEST_BLOW 450   // (J) a mallet of 1 kg, the heaviest, at 30 m/s
+#define LOUDEST_ARM 3600    // (J) a stick that weighs as much as an arm, 2 kg, at 60 m/s
 
 static char folder[] = "/tmp/himc-torment-XXXXXX", files[8][64];
 static const char *file_list[9];

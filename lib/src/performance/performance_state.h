@@ -34,7 +34,7 @@
 typedef struct performance_host {
     himc_performance_config config; ///< given to himc_performance_new
     himc_take_options take_options;
-    bool make_drums;                                 ///< `drum` makes one that sounds
+    bool make_drums; ///< `drum` makes one that sounds
 } performance_host;
 
 typedef struct performance_recording {

@@ -376,7 +376,7 @@ static bool is_softer(himc_planner *planner, const timed_stroke *s)
     // a roll's strokes are as fast as its drum asks
     if (s->stroke.ornament >= HIMC_ROLL_SINGLE || speed >= SOFTER_SHARE * asked)
         return false;
-    himc_planner_say(&planner->notes, PLANNER_SMALLER,
+    himc_planner_say(&planner->notes, PLANNER_HURRIED,
                      "%s: too little time for %.2g m/s, struck with %.2g", name_of(s, name), asked,
                      speed);
     return true;
@@ -899,7 +899,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     if (h->planned_count > 0) {
         timed_stroke *last = &h->planned[h->planned_count - 1];
         if (last->softer && !last->separated)
-            himc_planner_notes_count(&planner->notes, PLANNER_SMALLER);
+            himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
         last->separated = true;
         h->plan.last = last->goal;
         h->plan.rebounding = t - last->goal.time < BOUNCE_TIME;

@@ -54,7 +54,7 @@ void himc_planner_say(planner_notes *notes, planner_kind kind, const char *forma
     va_list args;
     va_start(args, format);
     bool minor = kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE &&
-                 kind != PLANNER_DROPPED && kind != PLANNER_OTHER_HAND;
+                 kind != PLANNER_DROPPED && kind != PLANNER_OTHER_HAND && kind != PLANNER_HURRIED;
     put(notes, minor, format, args);
     va_end(args);
 }
@@ -148,11 +148,11 @@ void himc_planner_notes_tell(planner_notes *notes, double t)
 
 void himc_planner_notes_sum_up(planner_notes *notes)
 {
-    int smaller = notes->strokes[PLANNER_SMALLER], other = notes->strokes[PLANNER_REASSIGNED],
+    int softer = notes->strokes[PLANNER_HURRIED], other = notes->strokes[PLANNER_REASSIGNED],
         given_up = notes->strokes[PLANNER_GIVEN_UP];
-    if (smaller + other + given_up > 1)
+    if (softer + other + given_up > 1)
         say_always(notes, given_up == 0,
-                   "in all %d strokes smaller, %d by the other hand, %d given up", smaller, other,
+                   "in all %d strokes softer, %d by the other hand, %d given up", softer, other,
                    given_up);
 }
 

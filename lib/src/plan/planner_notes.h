@@ -8,7 +8,7 @@
 #define PLANNER_MISSES 256 ///< the same; chosen: more than are given up between two steps
 
 typedef enum planner_kind {
-    PLANNER_SMALLER,
+    PLANNER_HURRIED,
     PLANNER_GIVEN_UP,
     PLANNER_REASSIGNED,
     PLANNER_LATE,
