@@ -242,6 +242,12 @@ himc=$whole
 refuses test_one_file_for_two_tables_is_refused "x.csv: named twice" \
     render piece.txt -o x.wav --strokes x.csv --motion x.csv
 refuses test_score_is_not_overwritten "piece.txt: named twice" render piece.txt -o ./piece.txt
+refuses test_score_is_not_overwritten_by_its_dump "piece.txt: named twice" \
+    render piece.txt -o x.wav --set "dump ./piece.txt"
+cp piece.txt own.bvh # by its name alone
+echo "take own.bvh; record own.bvh;" >over.txt
+refuses test_score_does_not_record_over_its_take "own.bvh: named twice" render over.txt -o x.wav
+refuses test_take_is_not_overwritten_by_its_table "own.bvh: named twice" evaluate --take own.bvh --csv own.bvh
 check test_nothing_is_left_of_what_was_refused [ -z "$(ls | grep '^x')" ]
 echo old >kept.wav
 refuses test_table_that_cannot_be_written_is_refused "none/x.csv: cannot be written" \

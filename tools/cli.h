@@ -97,6 +97,8 @@ const char *cli_input(const char *operand, himc_error *error);
 void cli_name_input(char *line);
 /// True if both names are one file, existing or still to be made.
 bool cli_same_file(const char *a, const char *b);
+/// False with the reason if `name` is one of the `count` files; entries and name may be NULL.
+bool cli_apart(const char *name, const char *const *files, int count, himc_error *error);
 
 /// The drum of a score that makes none.
 #define CLI_DRUM "kettle"

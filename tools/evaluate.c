@@ -97,8 +97,8 @@ static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_e
     if (!cli_count("--trials", value[TRIALS], 1, TRIALS_MAX, "", &trials, error) ||
         !cli_count("--jobs", value[JOBS], 1, 256, "", &e->jobs, error))
         return false;
-    if (value[CSV] && value[LOG] && cli_same_file(value[CSV], value[LOG]))
-        return himc_error_set(error, "%s: named twice, allowed are different files", value[LOG]);
+    if (!cli_apart(value[LOG], &value[CSV], 1, error))
+        return false;
     e->first = 1;
     e->last = trials;
     return trial_table_make(&e->table, trials, error) && read_range(value[RANGE], e, error) &&
@@ -176,6 +176,11 @@ static bool run_own(const cli_arguments *arguments, cli_file *csv, cli_file *fig
 {
     himc_take_options take_options;
     int jobs = pool_cores();
+    const char *const *written[] = {&arguments->value[CSV], &arguments->value[FIGURE]};
+    for (int i = 0; i < 2; i++)
+        if (!cli_apart(*written[i], arguments->repeated, arguments->repeats, error) ||
+            (i > 0 && !cli_apart(*written[i], written[0], 1, error)))
+            return false;
     return cli_count("--jobs", arguments->value[JOBS], 1, 256, "", &jobs, error) &&
            cli_take_options(arguments->repeated[0], arguments->value + TAKE, &take_options,
                             error) &&

@@ -196,6 +196,14 @@ bool cli_same_file(const char *a, const char *b)
     return !strcmp(name[0], name[1]) && himc_system_same(folder[0], folder[1]);
 }
 
+bool cli_apart(const char *name, const char *const *files, int count, himc_error *error)
+{
+    for (int i = 0; i < count; i++)
+        if (cli_same_file(name, files[i]))
+            return himc_error_set(error, "%s: named twice, expected different files", name);
+    return true;
+}
+
 bool cli_is_standard(const char *path)
 {
     return path && !strcmp(path, "-");

@@ -79,8 +79,8 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
         return himc_error_set(error, "%s: allowed endings are .webm, .png, .glb", out->out);
     if (!is_word(out->camera, cameras))
         return himc_error_set(error, "--camera %s: allowed %s", out->camera, cameras);
-    if (cli_same_file(out->scene, out->out))
-        return himc_error_set(error, "%s: named twice, allowed are different files", out->out);
+    if (!cli_apart(out->out, &out->scene, 1, error))
+        return false;
     if (!read_size(value[SIZE], &out->width, &out->height, error) ||
         !cli_count("--fps", value[FPS], 1, 120, "", &out->fps, error) ||
         !read_number("from", value[FROM], 0, 1e6, &out->from, error) ||

@@ -75,8 +75,8 @@ static bool make(const cli_arguments *arguments, midi_score *made, himc_error *e
     midi_options wanted = {MIDI_ANY, 0};
     if (!out)
         return himc_error_set(error, "no -o SCORE given (himc import --help)");
-    if (cli_same_file(path, out))
-        return himc_error_set(error, "%s: named twice, allowed are different files", out);
+    if (!cli_apart(out, &path, 1, error))
+        return false;
     const char *dot = strrchr(out, '.');
     if (cli_is_take(out) || (dot && (!strcmp(dot, ".mid") || !strcmp(dot, ".wav"))))
         return himc_error_set(error, "%s: a score is a text, allowed a name like score.txt", out);

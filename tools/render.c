@@ -70,8 +70,10 @@ static const cli_option options[] = {
 };
 
 /// The arguments.
+enum { FILES = 5 };
+
 typedef struct job {
-    const char *source;
+    const char *source, *files[FILES]; ///< `files`: the source and what is written
     const cli_arguments *arguments;
     int rate, block, channels;
     himc_take_options take;
@@ -122,6 +124,14 @@ static bool check_compare(const char *list, const char *scene, const char *sourc
            himc_error_set(error, "--compare captured: %s is no take", source);
 }
 
+// What a command writes is none of the files named beside it.
+static bool writes_apart(const himc_command *c, const char *const *files, himc_error *error)
+{
+    int atom;
+    return himc_command_file(c, &atom) != HIMC_FILE_WRITE ||
+           cli_apart(c->atom[atom].symbol, files, FILES, error);
+}
+
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
 {
     const char *const *value = arguments->value;
@@ -133,18 +143,22 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
     if (!out->source)
         return false;
     const char *files[] = {out->source, value[OUT], value[STROKES], value[MOTION], value[SCENE]};
-    enum { FILES = sizeof files / sizeof *files };
+    memcpy(out->files, files, sizeof files);
     if (!value[OUT])
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
     if (value[COLUMNS] && !value[MOTION])
         return himc_error_set(error, "--columns: no --motion F given");
     if (value[COMPARE] && !check_compare(value[COMPARE], value[SCENE], out->source, error))
         return false;
-    for (int i = 0; i < FILES; i++)
-        for (int k = i + 1; k < FILES; k++)
-            if (cli_same_file(files[i], files[k]))
-                return himc_error_set(error, "%s: named twice, allowed are different files",
-                                      files[k]);
+    for (int i = 1; i < FILES; i++)
+        if (!cli_apart(files[i], files, i, error))
+            return false;
+    for (int i = 0; i < arguments->repeats; i++) {
+        himc_command c;
+        if (himc_command_parse_text(&c, HIMC_PERFORMER, arguments->repeated[i], NULL) &&
+            !writes_apart(&c, files, error))
+            return himc_error_prefix(error, "--set");
+    }
     return cli_count("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
            cli_count("--block", value[BLOCK], 1, BLOCK_MAX, "samples", &out->block, error) &&
            cli_count("--channels", value[CHANNELS], 1, 2, "", &out->channels, error) &&
@@ -168,6 +182,23 @@ static double room(const job *wanted)
     return sound_file_room(wanted->arguments->value[OUT], wanted->channels);
 }
 
+// No line of the score reads what line `at` writes.
+static bool reads_apart(const himc_score *score, int at, himc_error *error)
+{
+    int atom;
+    const himc_command *c = &score->lines[at].command;
+    if (himc_command_file(c, &atom) != HIMC_FILE_WRITE)
+        return true;
+    const char *written = c->atom[atom].symbol;
+    for (int i = 0; i < score->line_count; i++) {
+        const himc_command *read = &score->lines[i].command;
+        if (himc_command_file(read, &atom) == HIMC_FILE_READ &&
+            !cli_apart(written, &read->atom[atom].symbol, 1, error))
+            return false;
+    }
+    return true;
+}
+
 /// Finds out if the score makes drums itself, if it loops and how long it is; false if it is too
 /// long for the sound file.
 static bool inspect_score(job *wanted, bool *makes_drums, bool *loops, himc_error *error)
@@ -176,11 +207,17 @@ static bool inspect_score(job *wanted, bool *makes_drums, bool *loops, himc_erro
     if (!score)
         return false;
     *makes_drums = cli_first_drum(score) != NULL;
-    for (int i = 0; i < score->line_count; i++)
-        if (score->lines[i].command.id == HIMC_COMMAND_LOOP)
-            *loops = score->lines[i].command.atom[0].number != 0;
+    bool good = true;
+    for (int i = 0; i < score->line_count; i++) {
+        const himc_command *c = &score->lines[i].command;
+        if (c->id == HIMC_COMMAND_LOOP)
+            *loops = c->atom[0].number != 0;
+        good = good && writes_apart(c, wanted->files, error) && reads_apart(score, i, error);
+    }
     wanted->length = score_seconds(score);
     himc_score_free(score);
+    if (!good)
+        return himc_error_prefix(error, "%s", wanted->source);
     if (wanted->length + CLI_TAIL > room(wanted) / wanted->rate)
         return himc_error_set(error,
                               "%s: lasts %.0f s, allowed in this file at %d Hz: %.0f s (.w64 and "

@@ -45,8 +45,8 @@ static int run(const cli_arguments *arguments)
     const char *out = arguments->value[OUT];
     if (!out)
         return cli_fail(&cli_share, "no -o PAGE.html given (himc share --help)");
-    if (cli_same_file(arguments->operand, out))
-        return cli_fail(&cli_share, "%s: named twice, allowed are different files", out);
+    if (!cli_apart(out, &arguments->operand, 1, &error))
+        return cli_fail(&cli_share, "%s", error.text);
     return share(arguments->operand, out, &error) ? cli_finish(&cli_share)
                                                   : cli_fail(&cli_share, "%s", error.text);
 }
