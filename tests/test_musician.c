@@ -1,7 +1,7 @@
 /// test_musician.c: relations that a musician takes for granted, whatever is played: equal strokes
-/// are equal, louder is louder, mirrored is mirrored. Strokes are drawn from a seed over all nuances,
-/// dynamics, intervals of 80 to 1000 ms, hands, tempi, scores and hits. What is compared is the
-/// simulated impact. HIMC_LONG=1 draws ten times as many.
+/// are equal, louder is louder, mirrored is mirrored. Strokes are drawn from a seed over all
+/// nuances, dynamics, intervals of 80 to 1000 ms, hands, tempi, scores and hits. What is compared
+/// is the simulated impact. HIMC_LONG=1 draws ten times as many.
 #include "session.h"
 
 #define EQUAL 0.5        // of equal strokes, at most (dB): below what is heard

@@ -1,7 +1,7 @@
 /// test_torment.c: random commands of the whole vocabulary, half of them spoilt, to a performance
 /// that plays: sound, strikes, targets, tips, joints, rows and packets are finite, no sample is
-/// 20 dB above the loudest real stroke (40 dB once gains have thrown an arm), a refused command is answered by one line and without
-/// effect, and `reset` is as good as new.
+/// 20 dB above the loudest real stroke (40 dB once gains have thrown an arm), a refused command is
+/// answered by one line and without effect, and `reset` is as good as new.
 ///
 /// `make torment` sends a million: HIMC_TORMENT is their number, HIMC_SEED the first seed. Rounds
 /// of 500 commands begin with a `reset` and the fixed piece of test_reset.c, compared bit by bit
