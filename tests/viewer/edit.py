@@ -430,6 +430,78 @@ def test_one_program_at_a_time_keeps_the_changes_of_a_piece():
     assert read(other) == b"mine"
 
 
+def journal_of(text, *lines):
+    """A journal as the program writes it."""
+    total = 0xCBF29CE484222325
+    for byte in text.encode():
+        total = (total ^ byte) * 0x100000001B3 % 2**64
+    head = f"himc edit 1 {total:016x} {len(text.encode())}\n{text}"
+    return (head + "".join(f"{line}\n" for line in lines)).encode()
+
+
+def strangers_folder(journal, links):
+    """A source and files beside it as its sender has made them, and where their links lead to."""
+    path = made("piece.txt", "stroke 0 right legato mf;")
+    beside, home = os.path.dirname(path), tempfile.mkdtemp(dir=folder.name)
+    if journal:
+        with open(os.path.join(beside, ".piece.txt.himc-edit"), "wb") as file:
+            file.write(journal)
+    for name, to in links.items():
+        os.symlink(os.path.join(home, to), os.path.join(beside, name))
+    return path, beside, home
+
+
+def test_a_folder_from_somebody_else_writes_nothing_elsewhere():
+    other, line = "stroke 3 left legato p;", "set 0 stroke 3 left legato ff"
+    changed = "stroke 3 left legato ff;"
+    # the text that is kept takes a name that nothing has, a link included
+    path, beside, home = strangers_folder(
+        journal_of(other, line), {".piece.txt.himc-edit-1.txt": "profile"}
+    )
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert "-2.txt" in piece.until("restored")["text"]
+    assert os.listdir(home) == []
+    assert read(os.path.join(beside, ".piece.txt.himc-edit-2.txt")).decode() == changed
+    # so does a journal that does not fit
+    path, beside, home = strangers_folder(
+        journal_of(other, "set 0 record /tmp/x.bvh"), {".piece.txt.himc-edit-1": "profile"}
+    )
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert "-2" in piece.until("restored")["text"]
+    assert os.listdir(home) == []
+    assert read(os.path.join(beside, ".piece.txt.himc-edit-2")) == journal_of(
+        other, "set 0 record /tmp/x.bvh"
+    )
+    # a journal that is a link, to nothing, to a file or to a folder, or a file with two names
+    for target, contents in (("new", None), ("old", b""), ("old", journal_of(other, line)), (".", None)):
+        path, beside, home = strangers_folder(None, {".piece.txt.himc-edit": target})
+        if contents is not None:
+            with open(os.path.join(home, target), "wb") as file:
+                file.write(contents)
+        refuses_its_journal(path)
+        assert [read(os.path.join(home, name)) for name in os.listdir(home)] == (
+            [] if contents is None else [contents]
+        )
+        assert sorted(os.listdir(beside)) == [".piece.txt.himc-edit", "piece.txt"]
+    path, beside, home = strangers_folder(None, {})
+    with open(os.path.join(home, "old"), "wb") as file:
+        file.write(b"")
+    os.link(os.path.join(home, "old"), os.path.join(beside, ".piece.txt.himc-edit"))
+    refuses_its_journal(path)
+    assert read(os.path.join(home, "old")) == b""
+
+
+def refuses_its_journal(path):
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert ".piece.txt.himc-edit: " in piece.until("unkept")["text"]
+        piece.say("set 0 stroke 0 right legato ff")
+        event = piece.until("text")
+        assert event["event"] == "text" and not event["kept"], event
+
+
 def test_a_journal_that_cannot_be_played_is_taken_back():
     """The program was killed between a change and the answer that it cannot be played."""
     text = "stroke 0 right legato mf;"
