@@ -342,6 +342,43 @@ def test_what_is_refused_leaves_what_could_be_done_again():
         assert event["redo"] == 0 and event["statements"][1]["dynamic"] == 6 / 7, event
 
 
+PUSH = "at 0 push head 1 0 0 0.1"
+
+
+def test_the_change_that_cannot_be_played_is_taken_back_alone():
+    strokes = "stroke 0 left legato f;\nstroke 1 right legato f;\n"
+    bad, good = "set 0 stroke 0 left legato f tympani", "set 1 stroke 1 right legato mf"
+    with Piece(HIMC, made("two.txt", strokes)) as piece:
+        assert piece.play("hello") is None
+        piece.say(f"{bad}\n{good}")
+        event = piece.until("text")
+        assert event["event"] == "refused" and "tympani: no " in event["text"], event
+        assert "kettle" in event["text"], event
+        piece.until("over")
+        assert piece.text["undo"] == 1 and "undone" not in piece.said
+        assert piece.score().decode() == strokes.replace("right legato f", "right legato mf")
+        assert piece.play("set 0 stroke 0 left legato p kettle") is None
+    # one more push than a score may have is only found when it is to be played
+    path = made("pushes.txt", strokes + (PUSH + ";\n") * 256)
+    for sent_with_hello in (False, True):
+        with Piece(HIMC, path) as piece:
+            if not sent_with_hello:
+                assert piece.play("hello") is None
+            lines = [f"set 258 {PUSH}", good, "set 0 stroke 0 left legato p"]
+            piece.say("\n".join(["hello"] * sent_with_hello + lines))
+            assert "one too many" in piece.until("undone")["text"]
+            while piece.text["undo"] < 2:
+                assert piece.until("text")["event"] == "text"
+            wanted = strokes.replace("right legato f", "right legato mf").replace("left legato f", "left legato p")
+            assert piece.score().decode().strip() == (wanted + (PUSH + ";\n") * 256).strip()
+            assert "failed" not in piece.said and piece.play("set 0 stroke 0 left legato pp") is None
+            piece.say("revert")
+            piece.until("text")
+            assert piece.play("undo")["event"] == "refused"
+            piece.process.kill()
+        os.unlink(os.path.join(os.path.dirname(path), ".pushes.txt.himc-edit"))
+
+
 def test_changes_survive_kill_9():
     text = read(SCORE)
     path = made("piece.txt", text)
@@ -511,13 +548,12 @@ def test_a_journal_that_cannot_be_played_is_taken_back():
         assert piece.play("hello") is None
         assert piece.play("set 0 stroke 0 right legato f") is None
         piece.process.kill()
-    drums = "".join(f"set {i} stroke {i} left legato f drum{i}\n" for i in range(1, 40))
     with open(journal, "a") as file:
-        file.write(drums)  # more drums than a performer has
+        file.write("".join(f"set {i} {PUSH}\n" for i in range(1, 258)))  # one too many
     with Piece(HIMC, path) as piece:
         piece.say("hello")
         event = piece.until("undone")
-        assert event["event"] == "undone" and "no drum" in event["text"], event
+        assert event["event"] == "undone" and "one too many" in event["text"], event
         assert piece.text["undo"] == 0 and piece.score().decode().strip() == text
     # one that does not fit is kept as it is
     path = made("piece.txt", text)
