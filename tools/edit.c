@@ -256,20 +256,23 @@ static bool change_again(const session *s, edit_text *t, himc_error *error)
     return false;
 }
 
-// the journal is of another text than the source's: what it has led to is kept beside it
+// the journal is of another text than the source's, or damaged: what it has led to, or else the
+// journal, is kept beside it
 static void keep_old(session *s, himc_error *error)
 {
     char kept[4096], *text = NULL, *now = edit_text_join(s->text);
-    edit_text *t = edit_text_new(s->journal.old, error);
+    edit_text *t = s->journal.damaged ? NULL : edit_text_new(s->journal.old, error);
     bool known = t && change_again(s, t, error) && (text = edit_text_join(t)) && now;
     if (known && !strcmp(text, now)) // it has been saved over the source
         edit_journal_forget(&s->journal);
     else if (edit_journal_keep(&s->journal, known ? text : NULL, kept, error)) {
         edit_journal_forget(&s->journal);
         himc_error_set(&s->restored,
-                       known ? "%.80s has changed since it was edited here: the edited score is "
-                               "kept in %s"
-                             : "%.80s: its changes from before do not fit it, and are kept in %s",
+                       s->journal.damaged
+                           ? "%.80s: its changes from before cannot be read, and are kept in %s"
+                       : known ? "%.80s has changed since it was edited here: the edited score is "
+                                 "kept in %s"
+                               : "%.80s: its changes from before do not fit it, and are kept in %s",
                        s->name, kept);
     } else {
         unkept(s, error);
@@ -290,10 +293,10 @@ static void restore(session *s, const char *text, bool sent)
         unkept(s, &error);
         return;
     }
-    if (!s->journal.lines)
+    if (!s->journal.lines && !s->journal.damaged)
         return;
-    if (s->journal.old || !change_again(s, s->text, &error)) {
-        if (!s->journal.old)
+    if (s->journal.damaged || s->journal.old || !change_again(s, s->text, &error)) {
+        if (!s->journal.damaged && !s->journal.old)
             s->journal.old = strdup(text);
         keep_old(s, &error);
         return;

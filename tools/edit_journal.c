@@ -136,23 +136,36 @@ static bool hold(edit_journal *j, bool fresh, himc_error *error)
     return himc_error_set(error, "another program edits it");
 }
 
-// reads the journal that was found; one that was cut short in its text never had a change
-static void understand(edit_journal *j, const char *bytes, size_t size)
+// true if a journal of this text has been cut short before its first change
+static bool has_begun(const edit_journal *j, const char *bytes, size_t size)
+{
+    char head[80];
+    size_t base = strlen(j->base),
+           used = (size_t)snprintf(head, sizeof head, HEAD "%016" PRIx64 " %zu\n", j->hash, base);
+    return size <= used + base && !memcmp(bytes, head, size < used ? size : used) &&
+           (size <= used || !memcmp(bytes + used, j->base, size - used));
+}
+
+// reads the journal that was found; false if it is damaged
+static bool understand(edit_journal *j, const char *bytes, size_t size)
 {
     uint64_t of;
     size_t base = 0;
     int head = 0;
-    if (sscanf(bytes, HEAD "%" SCNx64 " %zu%n", &of, &base, &head) != 2 || bytes[head] != '\n' ||
-        base > size - (size_t)head - 1)
-        return;
+    if (has_begun(j, bytes, size))
+        return true;
+    if (memchr(bytes, 0, size) || sscanf(bytes, HEAD "%" SCNx64 " %zu%n", &of, &base, &head) != 2 ||
+        bytes[head] != '\n' || base > size - (size_t)head - 1)
+        return false;
     const char *text = bytes + head + 1, *lines = text + base, *end = strrchr(lines, '\n');
     if (!end)
-        return;
+        return true;
     bool same = of == j->hash && base == strlen(j->base) && !memcmp(text, j->base, base);
-    j->lines = strndup(lines, (size_t)(end + 1 - lines));
     if (ftruncate(fileno(j->stream), end + 1 - bytes) != 0 || fseek(j->stream, 0, SEEK_END) != 0)
-        return;
+        return false;
     j->old = same ? NULL : strndup(text, base);
+    j->lines = same || j->old ? strndup(lines, (size_t)(end + 1 - lines)) : NULL;
+    return j->lines;
 }
 
 // false if what stands there is no journal
@@ -171,12 +184,11 @@ static bool find(edit_journal *j, himc_error *error)
     if (bytes)
         size = fread(bytes, 1, (size_t)status.st_size, j->stream);
     bool good = bytes && !memcmp(bytes, HEAD, size < head ? size : head);
-    if (good)
-        understand(j, bytes, size);
+    j->damaged = good && !understand(j, bytes, size);
     free(bytes);
     if (!good)
         return himc_error_set(error, "%.300s: not a journal", j->path);
-    if (!j->lines)
+    if (!j->lines && !j->damaged)
         edit_journal_forget(j);
     return true;
 }

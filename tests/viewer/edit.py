@@ -574,6 +574,42 @@ def test_a_journal_that_cannot_be_played_is_taken_back():
     assert read(journal + "-1") == wrong and not os.path.exists(journal)
 
 
+def test_a_damaged_journal_is_kept_and_one_cut_short_holds_nothing():
+    text, line = "stroke 0 right legato mf;", "set 0 stroke 0 right legato f"
+    good = journal_of(text, line)
+    begun = len(good) - len(line) - 1
+    damages = {
+        "hash": good.replace(good[12:20], b"nonsense", 1),
+        "size": good.replace(b" 25\n", b" 2500\n", 1),
+        "no size": good.replace(b" 25\n", b" \n", 1),
+        "end of the head": good[:20],
+        "head": good[:15] + good[begun:],
+        "zeros": good + b"\0\0\0\0" + line.encode() + b"\n",
+    }
+    for name, wrong in damages.items():
+        path, beside, _ = strangers_folder(wrong, {})
+        with Piece(HIMC, path) as piece:
+            piece.say("hello")
+            if name == "end of the head":  # cut short
+                assert piece.until("text")["kept"] and "restored" not in piece.said
+                piece.until("over")
+                assert os.listdir(beside) == ["piece.txt"]
+                continue
+            piece.until("over")
+            assert "-1" in piece.said.get("restored", ""), name
+            assert piece.text["undo"] == 0 and piece.text["kept"], name
+            piece.say(line)
+            assert piece.until("text")["kept"], name
+        journal = os.path.join(beside, ".piece.txt.himc-edit")
+        assert read(journal + "-1") == wrong and read(journal) == good, name
+    for size in range(begun, len(good) - 1, 8):  # nor one without a whole change
+        path, beside, _ = strangers_folder(good[:size], {})
+        with Piece(HIMC, path) as piece:
+            piece.say("hello")
+            piece.until("over")
+            assert "restored" not in piece.said and os.listdir(beside) == ["piece.txt"], size
+
+
 def test_what_a_page_has_sent_is_known_again_by_its_name_and_contents():
     def sent(contents, name="my score.txt"):
         return Piece(HIMC, made("piece.txt", contents), "--confined", "--name", name)
