@@ -12,6 +12,7 @@
 #include "edit_play.h"
 #include "edit_text.h"
 #include "midi/import.h"
+#include "performance/performance_drums.h"
 #include "plan/score.h"
 #include "scene.h"
 #include "system/files.h"
@@ -48,9 +49,10 @@ typedef struct session {
     char wanted[FILE_NAME];      ///< and the name under which it is wanted
     char line[LINE];
     size_t used;
-    bool played;  ///< once, at least a part
-    bool changed; ///< the last line has changed the text, and it has not been played yet
-    bool over;    ///< no more lines
+    bool played;   ///< once, at least a part
+    bool changed;  ///< the last line has changed the text, and it has not been played yet
+    bool unproved; ///< the text has not been played yet, nor failed
+    bool over;     ///< no more lines
 } session;
 
 // --- frames out
@@ -126,6 +128,34 @@ static char *text_of(const char *source, himc_error *error)
     return text;
 }
 
+static bool is_among(const char *const *names, int count, const char *name)
+{
+    for (int i = 0; i < count; i++)
+        if (!strcmp(names[i], name))
+            return true;
+    return false;
+}
+
+// true if the strokes' drums are those that will be there: the score's, or the program's own
+static bool has_drums(const session *s, const himc_score *score, himc_error *error)
+{
+    const char *names[HIMC_DRUMS] = {CLI_DRUM};
+    int count = !cli_first_drum(score);
+    for (int i = 0; i < score->line_count && count < HIMC_DRUMS; i++) {
+        const himc_command *c = &score->lines[i].command;
+        if (c->id == HIMC_COMMAND_MAKE_DRUM && !is_among(names, count, c->atom[0].symbol))
+            names[count++] = c->atom[0].symbol;
+    }
+    for (int i = 0; i < score->stroke_count; i++) {
+        const himc_stroke *stroke = &score->strokes[i];
+        if (!stroke->drum[0] || is_among(names, count, stroke->drum))
+            continue;
+        himc_drums_refuse_of(names, count, stroke->drum, stroke->spot, error);
+        return himc_error_prefix(error, "%s:%d", s->name, score->stroke_lines[i]);
+    }
+    return true;
+}
+
 // the score of a text; NULL with the reason, also if it may not name the files that it names
 static himc_score *parse(const session *s, const edit_text *t, himc_error *error)
 {
@@ -143,8 +173,9 @@ static himc_score *parse(const session *s, const edit_text *t, himc_error *error
 static bool check(const session *s, const edit_text *t, himc_error *error)
 {
     himc_score *score = parse(s, t, error);
+    bool good = score && has_drums(s, score, error);
     himc_score_free(score);
-    return score;
+    return good;
 }
 
 // its beats are then seconds
@@ -165,6 +196,7 @@ static bool replay(session *s, bool all, himc_error *error)
     if (from > 0 && score && !has_take(score))
         from = himc_score_seconds(score->tempi, score->tempo_count, from);
     bool good = text && edit_play_start(s->play, text, from, NULL, error);
+    s->unproved = good;
     himc_score_free(score);
     free(text);
     return good;
@@ -224,20 +256,23 @@ static bool change_again(const session *s, edit_text *t, himc_error *error)
     return false;
 }
 
-// the journal is of another text than the source's: what it has led to is kept beside it
+// the journal is of another text than the source's, or damaged: what it has led to, or else the
+// journal, is kept beside it
 static void keep_old(session *s, himc_error *error)
 {
     char kept[4096], *text = NULL, *now = edit_text_join(s->text);
-    edit_text *t = edit_text_new(s->journal.old, error);
+    edit_text *t = s->journal.damaged ? NULL : edit_text_new(s->journal.old, error);
     bool known = t && change_again(s, t, error) && (text = edit_text_join(t)) && now;
     if (known && !strcmp(text, now)) // it has been saved over the source
         edit_journal_forget(&s->journal);
     else if (edit_journal_keep(&s->journal, known ? text : NULL, kept, error)) {
         edit_journal_forget(&s->journal);
         himc_error_set(&s->restored,
-                       known ? "%.80s has changed since it was edited here: the edited score is "
-                               "kept in %s"
-                             : "%.80s: its changes from before do not fit it, and are kept in %s",
+                       s->journal.damaged
+                           ? "%.80s: its changes from before cannot be read, and are kept in %s"
+                       : known ? "%.80s has changed since it was edited here: the edited score is "
+                                 "kept in %s"
+                               : "%.80s: its changes from before do not fit it, and are kept in %s",
                        s->name, kept);
     } else {
         unkept(s, error);
@@ -258,10 +293,10 @@ static void restore(session *s, const char *text, bool sent)
         unkept(s, &error);
         return;
     }
-    if (!s->journal.lines)
+    if (!s->journal.lines && !s->journal.damaged)
         return;
-    if (s->journal.old || !change_again(s, s->text, &error)) {
-        if (!s->journal.old)
+    if (s->journal.damaged || s->journal.old || !change_again(s, s->text, &error)) {
+        if (!s->journal.damaged && !s->journal.old)
             s->journal.old = strdup(text);
         keep_old(s, &error);
         return;
@@ -366,29 +401,6 @@ static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
     return !*fatal;
 }
 
-static bool read_lines(session *s, bool *fatal, himc_error *error)
-{
-    ssize_t got = read(STDIN_FILENO, s->line + s->used, sizeof s->line - s->used);
-    char *begin = s->line, *end;
-    s->over = got == 0 || (got < 0 && errno != EINTR);
-    s->used += got > 0 ? (size_t)got : 0;
-    for (; (end = memchr(begin, '\n', s->used - (size_t)(begin - s->line))); begin = end + 1) {
-        *end = 0;
-        if (!obey(s, begin, fatal, error)) {
-            if (*fatal)
-                return false;
-            tell("refused", "text", error->text);
-        }
-    }
-    s->used -= (size_t)(begin - s->line);
-    memmove(s->line, begin, s->used);
-    if (s->used == sizeof s->line) {
-        tell("refused", "text", "a line is too long");
-        s->used = 0;
-    }
-    return true;
-}
-
 // --- what is played
 
 // a change that cannot be played is undone
@@ -401,7 +413,7 @@ static bool take_back(session *s, const edit_frame *frame, himc_error *error)
     snprintf(text, sizeof text, "%.*s", (int)frame->size, (const char *)frame->bytes);
     if (!undone && first)
         return himc_error_set(error, "%s", text);
-    s->changed = false;
+    s->changed = s->unproved = false;
     if (undone) {
         keep(s, first ? "revert" : "undo");
         tell_text(s, false);
@@ -417,13 +429,48 @@ static bool pass_frame(session *s, himc_error *error)
     edit_frame frame;
     if (!edit_play_next(s->play, &frame, error))
         return false;
-    if (!strcmp(frame.kind, "from"))
-        s->changed = false;
-    s->played |= !strcmp(frame.kind, "pcm ");
+    bool sounds = !strcmp(frame.kind, "pcm ");
+    s->played |= sounds;
+    if (sounds || !strcmp(frame.kind, "over"))
+        s->changed = s->unproved = false;
     if (!strcmp(frame.kind, "fail"))
         return take_back(s, &frame, error);
     if (strcmp(frame.kind, "late") && strcmp(frame.kind, "bye!"))
         put(frame.kind, frame.bytes, frame.size);
+    return true;
+}
+
+// waits until the text has been played or taken back, so that a failure is that of the last line
+static bool prove(session *s, himc_error *error)
+{
+    bool good = true;
+    fflush(stdout);
+    while (good && s->unproved)
+        good = pass_frame(s, error);
+    return good;
+}
+
+static bool read_lines(session *s, bool *fatal, himc_error *error)
+{
+    ssize_t got = read(STDIN_FILENO, s->line + s->used, sizeof s->line - s->used);
+    char *begin = s->line, *end;
+    s->over = got == 0 || (got < 0 && errno != EINTR);
+    s->used += got > 0 ? (size_t)got : 0;
+    for (; (end = memchr(begin, '\n', s->used - (size_t)(begin - s->line))); begin = end + 1) {
+        *end = 0;
+        *fatal = !prove(s, error);
+        if (*fatal || !obey(s, begin, fatal, error)) {
+            if (*fatal)
+                return false;
+            tell("refused", "text", error->text);
+        }
+    }
+    s->used -= (size_t)(begin - s->line);
+    memmove(s->line, begin, s->used);
+    if (s->used == sizeof s->line) {
+        tell("refused", "text", "a line is too long");
+        s->used = 0;
+    }
     return true;
 }
 

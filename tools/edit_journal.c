@@ -9,6 +9,7 @@
 #define _XOPEN_SOURCE 700 // fcntl locks, realpath
 #include "edit_journal.h"
 #include "base/file.h"
+#include "system/files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -90,52 +91,91 @@ static bool choose_path(edit_journal *j, const char *source, const char *name, b
     return good;
 }
 
-// opens the file, which only this process may have open
-static bool hold(edit_journal *j, himc_error *error)
+// Opens a file of the user's for reading and adding; `fresh` makes it. The folder may be from
+// somebody else: no link is followed, and nothing but a file of this user's under this one name is
+// taken. True with *stream NULL if there is none, or, if it is to be made, something has the name.
+static bool open_own(const char *path, bool fresh, FILE **stream, himc_error *error)
+{
+    struct stat status;
+    mode_t mask = umask(077);
+    int file = himc_system_open(path, O_RDWR | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY |
+                                          O_CLOEXEC | (fresh ? O_CREAT | O_EXCL : 0));
+    int why = errno;
+    umask(mask);
+    *stream = NULL;
+    if (file < 0 && why == (fresh ? EEXIST : ENOENT))
+        return true;
+    if (file < 0)
+        return himc_error_set(error, "%.300s: %s", path,
+                              why == ELOOP ? "a link, expected a file" : strerror(why));
+    bool own = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
+               status.st_nlink == 1;
+    if (own && (*stream = fdopen(file, "a+b"))) {
+        rewind(*stream);
+        return true;
+    }
+    close(file);
+    return himc_error_set(error, "%.300s: expected a file of this user alone, without other links",
+                          path);
+}
+
+// opens the journal, which only this process may have open; true without a stream as open_own()
+static bool hold(edit_journal *j, bool fresh, himc_error *error)
 {
     struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     struct stat status;
-    mode_t mask = umask(077);
-    j->stream = himc_file_write(j->path, HIMC_FILE_CONTINUE, error);
-    umask(mask);
-    if (!j->stream)
+    if (!open_own(j->path, fresh, &j->stream, error))
         return false;
-    bool own = fstat(fileno(j->stream), &status) == 0 && status.st_uid == geteuid();
-    if (own && fcntl(fileno(j->stream), F_SETLK, &lock) == 0)
+    if (!j->stream)
+        return true;
+    if (fcntl(fileno(j->stream), F_SETLK, &lock) == 0 && fstat(fileno(j->stream), &status) == 0 &&
+        status.st_nlink == 1) // the one that held it until now has not removed it
         return true;
     fclose(j->stream);
     j->stream = NULL;
-    return himc_error_set(error, own ? "another program edits it" : "%.300s: of another user",
-                          j->path);
+    return himc_error_set(error, "another program edits it");
 }
 
-// reads the journal that was found; one that was cut short in its text never had a change
-static void understand(edit_journal *j, const char *bytes, size_t size)
+// true if a journal of this text has been cut short before its first change
+static bool has_begun(const edit_journal *j, const char *bytes, size_t size)
+{
+    char head[80];
+    size_t base = strlen(j->base),
+           used = (size_t)snprintf(head, sizeof head, HEAD "%016" PRIx64 " %zu\n", j->hash, base);
+    return size <= used + base && !memcmp(bytes, head, size < used ? size : used) &&
+           (size <= used || !memcmp(bytes + used, j->base, size - used));
+}
+
+// reads the journal that was found; false if it is damaged
+static bool understand(edit_journal *j, const char *bytes, size_t size)
 {
     uint64_t of;
     size_t base = 0;
     int head = 0;
-    if (sscanf(bytes, HEAD "%" SCNx64 " %zu%n", &of, &base, &head) != 2 || bytes[head] != '\n' ||
-        base > size - (size_t)head - 1)
-        return;
+    if (has_begun(j, bytes, size))
+        return true;
+    if (memchr(bytes, 0, size) || sscanf(bytes, HEAD "%" SCNx64 " %zu%n", &of, &base, &head) != 2 ||
+        bytes[head] != '\n' || base > size - (size_t)head - 1)
+        return false;
     const char *text = bytes + head + 1, *lines = text + base, *end = strrchr(lines, '\n');
     if (!end)
-        return;
+        return true;
     bool same = of == j->hash && base == strlen(j->base) && !memcmp(text, j->base, base);
-    j->lines = strndup(lines, (size_t)(end + 1 - lines));
     if (ftruncate(fileno(j->stream), end + 1 - bytes) != 0 || fseek(j->stream, 0, SEEK_END) != 0)
-        return;
+        return false;
     j->old = same ? NULL : strndup(text, base);
+    j->lines = same || j->old ? strndup(lines, (size_t)(end + 1 - lines)) : NULL;
+    return j->lines;
 }
 
 // false if what stands there is no journal
 static bool find(edit_journal *j, himc_error *error)
 {
     size_t size = 0, head = strlen(HEAD);
-    if (access(j->path, F_OK) != 0)
-        return true;
-    if (!hold(j, error))
+    if (!hold(j, false, error))
         return false;
+    if (!j->stream)
+        return true;
     // closing any descriptor of the file would end the lock, so it is read through the stream
     struct stat status;
     char *bytes = NULL;
@@ -144,12 +184,11 @@ static bool find(edit_journal *j, himc_error *error)
     if (bytes)
         size = fread(bytes, 1, (size_t)status.st_size, j->stream);
     bool good = bytes && !memcmp(bytes, HEAD, size < head ? size : head);
-    if (good)
-        understand(j, bytes, size);
+    j->damaged = good && !understand(j, bytes, size);
     free(bytes);
     if (!good)
         return himc_error_set(error, "%.300s: not a journal", j->path);
-    if (!j->lines)
+    if (!j->lines && !j->damaged)
         edit_journal_forget(j);
     return true;
 }
@@ -167,15 +206,11 @@ bool edit_journal_open(edit_journal *j, const char *source, const char *name, bo
 
 static bool begin(edit_journal *j, himc_error *error)
 {
-    if (!hold(j, error))
+    if (!hold(j, true, error))
         return false;
-    size_t size = strlen(j->base);
-    fseek(j->stream, 0, SEEK_END);
-    if (ftell(j->stream) > 0) {
-        fclose(j->stream);
-        j->stream = NULL;
+    if (!j->stream)
         return himc_error_set(error, "another program has edited it");
-    }
+    size_t size = strlen(j->base);
     fprintf(j->stream, HEAD "%016" PRIx64 " %zu\n", j->hash, size);
     fwrite(j->base, 1, size, j->stream);
     return true;
@@ -191,24 +226,32 @@ bool edit_journal_add(edit_journal *j, const char *line, himc_error *error)
     return himc_error_set(error, "%.300s: %s", j->path, strerror(errno));
 }
 
+// all bytes of a stream after those of another one
+static bool copy(FILE *from, FILE *to)
+{
+    char bytes[65536];
+    size_t got;
+    rewind(from);
+    while ((got = fread(bytes, 1, sizeof bytes, from)) > 0)
+        if (fwrite(bytes, 1, got, to) != got)
+            return false;
+    return !ferror(from);
+}
+
 bool edit_journal_keep(const edit_journal *j, const char *text, char kept[4096], himc_error *error)
 {
-    int number = 1;
-    for (; number <= SCORES; number++) {
+    FILE *file = NULL;
+    for (int number = 1; number <= SCORES && !file; number++) {
         snprintf(kept, 4096, "%.4070s-%d%s", j->path, number, text ? ".txt" : "");
-        if (access(kept, F_OK) != 0)
-            break;
+        if (!open_own(kept, true, &file, error))
+            return false;
     }
-    if (number > SCORES)
+    if (!file)
         return himc_error_set(error, "%.300s: there are %d others", kept, SCORES);
-    if (!text)
-        return rename(j->path, kept) == 0 || himc_error_set(error, "%s", strerror(errno));
-    mode_t mask = umask(077);
-    FILE *file = himc_file_write(kept, HIMC_FILE_REPLACE, error);
-    umask(mask);
-    bool written = file && fputs(text, file) >= 0, closed = file && fclose(file) == 0;
-    return (written && closed) ||
-           (file && himc_error_set(error, "%.300s: %s", kept, strerror(errno)));
+    bool written = text ? fputs(text, file) >= 0 : copy(j->stream, file);
+    written = written && fflush(file) == 0 && fsync(fileno(file)) == 0; // what it was in goes now
+    bool closed = fclose(file) == 0;
+    return (written && closed) || himc_error_set(error, "%.300s: %s", kept, strerror(errno));
 }
 
 void edit_journal_forget(edit_journal *j)

@@ -16,6 +16,7 @@ typedef struct edit_journal {
     char *base;      ///< owned; the text before all changes
     char *lines;     ///< owned; of the journal that was found, each ends with \n; NULL for none
     char *old;       ///< owned; the text to which they belong, if it is another one than `base`
+    bool damaged;    ///< the journal that was found cannot be read, but kept
 } edit_journal;
 
 /// Finds the journal of `source`, beside it, or, if its folder cannot be written or the file has

@@ -342,6 +342,43 @@ def test_what_is_refused_leaves_what_could_be_done_again():
         assert event["redo"] == 0 and event["statements"][1]["dynamic"] == 6 / 7, event
 
 
+PUSH = "at 0 push head 1 0 0 0.1"
+
+
+def test_the_change_that_cannot_be_played_is_taken_back_alone():
+    strokes = "stroke 0 left legato f;\nstroke 1 right legato f;\n"
+    bad, good = "set 0 stroke 0 left legato f tympani", "set 1 stroke 1 right legato mf"
+    with Piece(HIMC, made("two.txt", strokes)) as piece:
+        assert piece.play("hello") is None
+        piece.say(f"{bad}\n{good}")
+        event = piece.until("text")
+        assert event["event"] == "refused" and "tympani: no " in event["text"], event
+        assert "kettle" in event["text"], event
+        piece.until("over")
+        assert piece.text["undo"] == 1 and "undone" not in piece.said
+        assert piece.score().decode() == strokes.replace("right legato f", "right legato mf")
+        assert piece.play("set 0 stroke 0 left legato p kettle") is None
+    # one more push than a score may have is only found when it is to be played
+    path = made("pushes.txt", strokes + (PUSH + ";\n") * 256)
+    for sent_with_hello in (False, True):
+        with Piece(HIMC, path) as piece:
+            if not sent_with_hello:
+                assert piece.play("hello") is None
+            lines = [f"set 258 {PUSH}", good, "set 0 stroke 0 left legato p"]
+            piece.say("\n".join(["hello"] * sent_with_hello + lines))
+            assert "one too many" in piece.until("undone")["text"]
+            while piece.text["undo"] < 2:
+                assert piece.until("text")["event"] == "text"
+            wanted = strokes.replace("right legato f", "right legato mf").replace("left legato f", "left legato p")
+            assert piece.score().decode().strip() == (wanted + (PUSH + ";\n") * 256).strip()
+            assert "failed" not in piece.said and piece.play("set 0 stroke 0 left legato pp") is None
+            piece.say("revert")
+            piece.until("text")
+            assert piece.play("undo")["event"] == "refused"
+            piece.process.kill()
+        os.unlink(os.path.join(os.path.dirname(path), ".pushes.txt.himc-edit"))
+
+
 def test_changes_survive_kill_9():
     text = read(SCORE)
     path = made("piece.txt", text)
@@ -430,6 +467,78 @@ def test_one_program_at_a_time_keeps_the_changes_of_a_piece():
     assert read(other) == b"mine"
 
 
+def journal_of(text, *lines):
+    """A journal as the program writes it."""
+    total = 0xCBF29CE484222325
+    for byte in text.encode():
+        total = (total ^ byte) * 0x100000001B3 % 2**64
+    head = f"himc edit 1 {total:016x} {len(text.encode())}\n{text}"
+    return (head + "".join(f"{line}\n" for line in lines)).encode()
+
+
+def strangers_folder(journal, links):
+    """A source and files beside it as its sender has made them, and where their links lead to."""
+    path = made("piece.txt", "stroke 0 right legato mf;")
+    beside, home = os.path.dirname(path), tempfile.mkdtemp(dir=folder.name)
+    if journal:
+        with open(os.path.join(beside, ".piece.txt.himc-edit"), "wb") as file:
+            file.write(journal)
+    for name, to in links.items():
+        os.symlink(os.path.join(home, to), os.path.join(beside, name))
+    return path, beside, home
+
+
+def test_a_folder_from_somebody_else_writes_nothing_elsewhere():
+    other, line = "stroke 3 left legato p;", "set 0 stroke 3 left legato ff"
+    changed = "stroke 3 left legato ff;"
+    # the text that is kept takes a name that nothing has, a link included
+    path, beside, home = strangers_folder(
+        journal_of(other, line), {".piece.txt.himc-edit-1.txt": "profile"}
+    )
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert "-2.txt" in piece.until("restored")["text"]
+    assert os.listdir(home) == []
+    assert read(os.path.join(beside, ".piece.txt.himc-edit-2.txt")).decode() == changed
+    # so does a journal that does not fit
+    path, beside, home = strangers_folder(
+        journal_of(other, "set 0 record /tmp/x.bvh"), {".piece.txt.himc-edit-1": "profile"}
+    )
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert "-2" in piece.until("restored")["text"]
+    assert os.listdir(home) == []
+    assert read(os.path.join(beside, ".piece.txt.himc-edit-2")) == journal_of(
+        other, "set 0 record /tmp/x.bvh"
+    )
+    # a journal that is a link, to nothing, to a file or to a folder, or a file with two names
+    for target, contents in (("new", None), ("old", b""), ("old", journal_of(other, line)), (".", None)):
+        path, beside, home = strangers_folder(None, {".piece.txt.himc-edit": target})
+        if contents is not None:
+            with open(os.path.join(home, target), "wb") as file:
+                file.write(contents)
+        refuses_its_journal(path)
+        assert [read(os.path.join(home, name)) for name in os.listdir(home)] == (
+            [] if contents is None else [contents]
+        )
+        assert sorted(os.listdir(beside)) == [".piece.txt.himc-edit", "piece.txt"]
+    path, beside, home = strangers_folder(None, {})
+    with open(os.path.join(home, "old"), "wb") as file:
+        file.write(b"")
+    os.link(os.path.join(home, "old"), os.path.join(beside, ".piece.txt.himc-edit"))
+    refuses_its_journal(path)
+    assert read(os.path.join(home, "old")) == b""
+
+
+def refuses_its_journal(path):
+    with Piece(HIMC, path) as piece:
+        piece.say("hello")
+        assert ".piece.txt.himc-edit: " in piece.until("unkept")["text"]
+        piece.say("set 0 stroke 0 right legato ff")
+        event = piece.until("text")
+        assert event["event"] == "text" and not event["kept"], event
+
+
 def test_a_journal_that_cannot_be_played_is_taken_back():
     """The program was killed between a change and the answer that it cannot be played."""
     text = "stroke 0 right legato mf;"
@@ -439,13 +548,12 @@ def test_a_journal_that_cannot_be_played_is_taken_back():
         assert piece.play("hello") is None
         assert piece.play("set 0 stroke 0 right legato f") is None
         piece.process.kill()
-    drums = "".join(f"set {i} stroke {i} left legato f drum{i}\n" for i in range(1, 40))
     with open(journal, "a") as file:
-        file.write(drums)  # more drums than a performer has
+        file.write("".join(f"set {i} {PUSH}\n" for i in range(1, 258)))  # one too many
     with Piece(HIMC, path) as piece:
         piece.say("hello")
         event = piece.until("undone")
-        assert event["event"] == "undone" and "no drum" in event["text"], event
+        assert event["event"] == "undone" and "one too many" in event["text"], event
         assert piece.text["undo"] == 0 and piece.score().decode().strip() == text
     # one that does not fit is kept as it is
     path = made("piece.txt", text)
@@ -464,6 +572,42 @@ def test_a_journal_that_cannot_be_played_is_taken_back():
         piece.until("restored")
         assert piece.score().decode() == text and (piece.text["undo"], piece.text["redo"]) == (0, 0)
     assert read(journal + "-1") == wrong and not os.path.exists(journal)
+
+
+def test_a_damaged_journal_is_kept_and_one_cut_short_holds_nothing():
+    text, line = "stroke 0 right legato mf;", "set 0 stroke 0 right legato f"
+    good = journal_of(text, line)
+    begun = len(good) - len(line) - 1
+    damages = {
+        "hash": good.replace(good[12:20], b"nonsense", 1),
+        "size": good.replace(b" 25\n", b" 2500\n", 1),
+        "no size": good.replace(b" 25\n", b" \n", 1),
+        "end of the head": good[:20],
+        "head": good[:15] + good[begun:],
+        "zeros": good + b"\0\0\0\0" + line.encode() + b"\n",
+    }
+    for name, wrong in damages.items():
+        path, beside, _ = strangers_folder(wrong, {})
+        with Piece(HIMC, path) as piece:
+            piece.say("hello")
+            if name == "end of the head":  # cut short
+                assert piece.until("text")["kept"] and "restored" not in piece.said
+                piece.until("over")
+                assert os.listdir(beside) == ["piece.txt"]
+                continue
+            piece.until("over")
+            assert "-1" in piece.said.get("restored", ""), name
+            assert piece.text["undo"] == 0 and piece.text["kept"], name
+            piece.say(line)
+            assert piece.until("text")["kept"], name
+        journal = os.path.join(beside, ".piece.txt.himc-edit")
+        assert read(journal + "-1") == wrong and read(journal) == good, name
+    for size in range(begun, len(good) - 1, 8):  # nor one without a whole change
+        path, beside, _ = strangers_folder(good[:size], {})
+        with Piece(HIMC, path) as piece:
+            piece.say("hello")
+            piece.until("over")
+            assert "restored" not in piece.said and os.listdir(beside) == ["piece.txt"], size
 
 
 def test_what_a_page_has_sent_is_known_again_by_its_name_and_contents():
