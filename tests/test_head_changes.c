@@ -2,9 +2,11 @@
 #include "session.h"
 
 #include "allocations.h"
+#include "drum/membrane_form.h"
 #include "himc/membrane.h"
 
 #define SCORE "build/head-changes.txt"
+#define DUMP "build/head-changes-dump.txt"
 #define DRUM "drum low 26; low tune A2; tempo 120; "
 #define STROKES "stroke 1 right legato f; stroke 3 left legato f; stroke 5.5 right legato f; "
 
@@ -294,6 +296,134 @@ static void test_a_drums_command_finds_it_by_its_name(void)
     himc_performance_free(p);
 }
 
+// all that a person may set beside damping
+static const char *const by_hand[] = {
+    "modes 50", "radius 0.25", "tune A2", "tension 2500", "decay 0.5",
+    "glide 0",  "density 0.3", "air 0",   "kettle 0.1",   "uniformity 0.5 7"};
+#define BY_HAND ((int)(sizeof by_hand / sizeof *by_hand))
+#define SLOW "drum low 26; tempo 60; stroke 1 right legato f; stroke 4 left legato f; "
+
+// the same with a line that damps nothing and without it, whenever the drum was changed
+static void test_a_change_touches_only_what_it_names(void)
+{
+    enum { LENGTH = 5 * 48000, EDIT = 48000 };
+    static double sound[2][LENGTH];
+    for (int i = 0; i < 2 * BY_HAND; i++) {
+        himc_head after[2];
+        bool before_play = i >= BY_HAND;
+        const char *text = by_hand[i % BY_HAND];
+        for (int k = 0; k < 2; k++) {
+            himc_performance *p = with_score(k ? SLOW : SLOW "at 2 low damp 0;");
+            himc_head was = *himc_membrane_head(head(p, 0));
+            if (before_play)
+                session_drum(p, 0, text);
+            session_do(p, "play");
+            read_all(p, sound[k], 0, EDIT);
+            if (!before_play)
+                session_drum(p, 0, text);
+            read_all(p, sound[k], EDIT, LENGTH);
+            after[k] = *himc_membrane_head(head(p, 0));
+            TEST_ASSERT_FALSE_MESSAGE(himc_head_equal(&was, &after[k]), text);
+            himc_performance_free(p);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(himc_head_equal(&after[0], &after[1]), text);
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(sound[1], sound[0], sizeof sound[0], text);
+    }
+}
+
+// what is set by hand and what is written may come in any order, before the piece begins
+static void test_a_change_and_a_command_may_come_in_any_order(void)
+{
+    enum { LENGTH = 5 * 48000 };
+    static double sound[3][LENGTH];
+    static const char *const at[] = {"at 2 low tune C3", "at 2 low damp 0.5", "at 2 low glide 0"};
+    for (int i = 0; i < BY_HAND; i++) {
+        for (int k = 0; k < 3; k++) {
+            himc_performance *p = with_score(SLOW);
+            for (int line = 0; line < 4; line++)
+                if (line == k)
+                    session_drum(p, 0, by_hand[i]);
+                else
+                    session_do(p, at[line - (line > k)]);
+            session_do(p, "play");
+            read_all(p, sound[k], 0, LENGTH);
+            himc_performance_free(p);
+            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(sound[0], sound[k], sizeof sound[k], by_hand[i]);
+        }
+    }
+}
+
+// a note at a beat is that note on the head that the drum has then; without memory
+static void test_a_change_is_tuned_on_the_head_as_it_was_changed(void)
+{
+    himc_performance *p = with_score(SLOW "at 1.5 low damp 0.5; at 2 low tune D3; play;");
+    session_play(p, 1, NULL);
+    session_drum(p, 0, "radius 0.28");
+    watch_allocations();
+    session_play(p, 1.2, NULL);
+    TEST_ASSERT_EQUAL_INT(0, allocations_seen());
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, D3, pitch(p));
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, damping(p));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.28, himc_membrane_head(head(p, 0))->radius);
+    himc_performance_free(p);
+}
+
+static void test_a_note_that_a_changed_head_cannot_have_is_left_out_and_told(void)
+{
+    heard h = {.strikes = 0};
+    himc_performance *p = with_score(SLOW "at 2 low tune 500; at 2 low damp 0.5; play;");
+    session_play(p, 1, &h);
+    session_drum(p, 0, "radius 0.6");
+    double before = pitch(p);
+    session_play(p, 1.2, &h);
+    TEST_ASSERT_EQUAL_DOUBLE(before, pitch(p));
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, damping(p));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.note, "at: low tune: 500 Hz, allowed "), h.note);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// in a loop, too: what is set by hand stays up to the line that sets the same
+static void test_a_loop_keeps_what_was_set_by_hand(void)
+{
+    himc_performance *p =
+        with_score(DRUM "at 2 low tune D3; at 3 low damp 0.5; " STROKES "loop 1; play;");
+    session_play(p, 1.2, NULL); // beat 2 is at 1 s
+    session_drum(p, 0, "tune C3");
+    session_drum(p, 0, "decay 0.5");
+    himc_head set = *himc_membrane_head(head(p, 0));
+    session_play(p, 0.5, NULL); // past beat 3
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 130.813, pitch(p));
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, damping(p));
+    session_play(p, 1.8, NULL); // a round is 3 s
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 130.813, pitch(p));
+    TEST_ASSERT_EQUAL_DOUBLE(0, damping(p));
+    session_play(p, 0.6, NULL);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, D3, pitch(p));
+    TEST_ASSERT_EQUAL_DOUBLE(set.decay_constant, himc_membrane_head(head(p, 0))->decay_constant);
+    himc_performance_free(p);
+}
+
+static void test_a_dump_with_changes_and_a_changed_drum_plays_the_same(void)
+{
+    enum { LENGTH = 5 * 48000 };
+    static double first[LENGTH], again[LENGTH];
+    himc_performance *p = with_score(SLOW "at 2 low tune C3; at 3 low damp 0.5;");
+    session_drum(p, 0, "modes 300");
+    session_drum(p, 0, "decay 0.5");
+    session_do(p, "dump " DUMP);
+    session_do(p, "play");
+    read_all(p, first, 0, LENGTH);
+    himc_performance_free(p);
+    p = session_new();
+    session_do(p, "score " DUMP);
+    session_do(p, "play");
+    read_all(p, again, 0, LENGTH);
+    himc_performance_free(p);
+    TEST_ASSERT_EQUAL_MEMORY(first, again, sizeof first);
+    TEST_ASSERT_TRUE(fabs(first[48000 + 5000]) > 1e-6); // it rang
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -309,5 +439,11 @@ int main(void)
     RUN_TEST(test_a_queued_score_changes_heads_from_its_own_beats_on);
     RUN_TEST(test_clear_and_another_score_end_the_changes);
     RUN_TEST(test_a_wrong_change_is_refused_with_its_line);
+    RUN_TEST(test_a_change_touches_only_what_it_names);
+    RUN_TEST(test_a_change_and_a_command_may_come_in_any_order);
+    RUN_TEST(test_a_change_is_tuned_on_the_head_as_it_was_changed);
+    RUN_TEST(test_a_note_that_a_changed_head_cannot_have_is_left_out_and_told);
+    RUN_TEST(test_a_loop_keeps_what_was_set_by_hand);
+    RUN_TEST(test_a_dump_with_changes_and_a_changed_drum_plays_the_same);
     return UNITY_END();
 }

@@ -131,16 +131,16 @@ static void check_release(const char *damp, double seconds, bool ears)
     for (int k = 0; k < 2; k++) {
         drum[k] = drum_of(ears);
         heads[k] = heads_for(drum[k], change, 2);
-        himc_drum_heads_turn(heads[k], drum[k], 0);
+        himc_drum_heads_turn(heads[k], drum[k], 0, &error);
         strike(drum[k]);
         play(drum[k], RATE / 10, stroke);
         loud = level(stroke, RATE / 10);
         most = energy_of(drum[k]);
         play(drum[k], RATE / 2, NULL);
-        himc_drum_heads_turn(heads[k], drum[k], 1);
+        himc_drum_heads_turn(heads[k], drum[k], 1, &error);
         play(drum[k], (int)(seconds * RATE), NULL);
         left = energy_of(drum[k]);
-        himc_drum_heads_turn(heads[k], drum[k], k ? 2 : 1);
+        himc_drum_heads_turn(heads[k], drum[k], k ? 2 : 1, &error);
         play(drum[k], AFTER, k ? released : held);
         rest = energy_of(drum[k]);
         TEST_ASSERT_TRUE(rest <= left * (1 + ROUNDING));
@@ -179,7 +179,7 @@ static void test_a_pedal_that_returns_sounds_as_one_moved_by_hand(void)
         strike(drum);
         strike(hand);
         for (int i = 0; i < 4; i++) {
-            himc_drum_heads_turn(heads, drum, i + 1);
+            himc_drum_heads_turn(heads, drum, i + 1, &error);
             say(hand, change[i]);
             if (i == 0) // the stroke
                 play(drum, CHUNK * 10, NULL), play(hand, CHUNK * 10, NULL);
@@ -233,7 +233,7 @@ static void test_heads_return_in_any_order_and_bring_nothing(void)
             int n = pause_of(&random);
             double before = energy_of(drum);
             unsigned revision = himc_membrane_revision(himc_drum_membrane(drum));
-            himc_drum_heads_turn(heads, drum, i + 1);
+            himc_drum_heads_turn(heads, drum, i + 1, &error);
             TEST_ASSERT_TRUE_MESSAGE(energy_of(drum) <= before * (1 + ROUNDING), change[i]);
             if (himc_membrane_revision(himc_drum_membrane(drum)) != revision)
                 say(hand, change[i]); // else it is so already

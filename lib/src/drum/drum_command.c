@@ -95,39 +95,84 @@ static himc_head usual_head(const himc_drum *drum)
 }
 
 // one number of the head
-static bool set_field(himc_drum *drum, const himc_command *c, size_t field, himc_error *error)
+static bool find_field(const himc_drum *drum, const himc_command *c, size_t field, himc_head *head)
 {
-    himc_head head = *himc_membrane_head(drum->membrane), usual = usual_head(drum);
+    himc_head usual = usual_head(drum);
     double value;
     memcpy(&value, (char *)&usual + field, sizeof value);
     value = himc_argument_usual(number(c, 0), value);
-    memcpy((char *)&head + field, &value, sizeof value);
-    return set_head(drum, &head, error);
+    memcpy((char *)head + field, &value, sizeof value);
+    return true;
+}
+
+static bool find_decay(const himc_drum *drum, const himc_command *c, himc_head *head)
+{
+    enum { T60, BOTH };
+    head->decay_constant =
+        c->form == T60 ? as_said("SIGMA0", log(1000) / number(c, 0)) : number(c, 0);
+    head->decay_square = c->form == BOTH ? number(c, 1) : 0;
+    head->decay_constant = himc_argument_usual(head->decay_constant, drum->usual.decay_constant);
+    head->decay_square = himc_argument_usual(head->decay_square, drum->usual.decay_square);
+    return true;
+}
+
+static bool find_tune(const himc_drum *drum, const himc_command *c, himc_head *head,
+                      himc_error *error)
+{
+    himc_head lowest = *head, highest = *head;
+    double hz = number(c, 0);
+    lowest.tension = HIMC_TENSION_MIN;
+    highest.tension = HIMC_TENSION_MAX;
+    if (!himc_check_range("tune", hz, himc_membrane_principal(drum->membrane, &lowest),
+                          himc_membrane_principal(drum->membrane, &highest), "Hz", error))
+        return false;
+    head->tension = as_said("TENSION", himc_membrane_tension_for(drum->membrane, head, hz));
+    return true;
+}
+
+bool himc_drum_find_head(const himc_drum *drum, const himc_command *c, himc_head *head,
+                         himc_error *error)
+{
+    switch (c->id) {
+    case HIMC_COMMAND_RADIUS: return find_field(drum, c, offsetof(himc_head, radius), head);
+    case HIMC_COMMAND_TENSION: return find_field(drum, c, offsetof(himc_head, tension), head);
+    case HIMC_COMMAND_DENSITY: return find_field(drum, c, offsetof(himc_head, density), head);
+    case HIMC_COMMAND_GLIDE: return find_field(drum, c, offsetof(himc_head, glide), head);
+    case HIMC_COMMAND_DAMP: return find_field(drum, c, offsetof(himc_head, damp), head);
+    case HIMC_COMMAND_DECAY: return find_decay(drum, c, head);
+    default: return find_tune(drum, c, head, error);
+    }
+}
+
+static bool change_head(himc_drum *drum, const himc_command *c, himc_error *error)
+{
+    himc_head head = *himc_membrane_head(drum->membrane);
+    return himc_drum_find_head(drum, c, &head, error) && set_head(drum, &head, error);
 }
 
 static bool do_radius(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    return set_field(drum, c, offsetof(himc_head, radius), error);
+    return change_head(drum, c, error);
 }
 
 static bool do_tension(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    return set_field(drum, c, offsetof(himc_head, tension), error);
+    return change_head(drum, c, error);
 }
 
 static bool do_density(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    return set_field(drum, c, offsetof(himc_head, density), error);
+    return change_head(drum, c, error);
 }
 
 static bool do_glide(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    return set_field(drum, c, offsetof(himc_head, glide), error);
+    return change_head(drum, c, error);
 }
 
 static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    return set_field(drum, c, offsetof(himc_head, damp), error);
+    return change_head(drum, c, error);
 }
 
 static bool do_noise(himc_drum *drum, const himc_command *c, himc_error *error)
@@ -161,27 +206,12 @@ static bool do_modes(himc_drum *drum, const himc_command *c, himc_error *error)
 
 static bool do_decay(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    enum { T60, BOTH };
-    himc_head head = *himc_membrane_head(drum->membrane);
-    head.decay_constant =
-        c->form == T60 ? as_said("SIGMA0", log(1000) / number(c, 0)) : number(c, 0);
-    head.decay_square = c->form == BOTH ? number(c, 1) : 0;
-    head.decay_constant = himc_argument_usual(head.decay_constant, drum->usual.decay_constant);
-    head.decay_square = himc_argument_usual(head.decay_square, drum->usual.decay_square);
-    return set_head(drum, &head, error);
+    return change_head(drum, c, error);
 }
 
 static bool do_tune(himc_drum *drum, const himc_command *c, himc_error *error)
 {
-    himc_head head = *himc_membrane_head(drum->membrane), lowest = head, highest = head;
-    double hz = number(c, 0);
-    lowest.tension = HIMC_TENSION_MIN;
-    highest.tension = HIMC_TENSION_MAX;
-    if (!himc_check_range("tune", hz, himc_membrane_principal(drum->membrane, &lowest),
-                          himc_membrane_principal(drum->membrane, &highest), "Hz", error))
-        return false;
-    head.tension = as_said("TENSION", himc_membrane_tension_for(drum->membrane, &head, hz));
-    return set_head(drum, &head, error);
+    return change_head(drum, c, error);
 }
 
 static bool do_mallet(himc_drum *drum, const himc_command *c, himc_error *error)

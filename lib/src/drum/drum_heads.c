@@ -5,6 +5,10 @@
 /// not depend on the way there, so a loop or `seek` finds it, too. Invariant: the drum's head is
 /// that of the last change at or before the last beat asked for.
 ///
+/// A change sets only what its command names. What a person has set on the drum since the heads
+/// were made stays (himc_drum_heads_notice): from then on a change acts on the drum's head as it is,
+/// and is computed at its beat unless a head made ahead is the same.
+///
 /// A change may be added to those in use: it is prepared beside them, with all that comes after it,
 /// and put in their place between two blocks.
 #include "drum/drum_state.h"
@@ -20,13 +24,15 @@ typedef struct head_change {
     double beat;
     himc_head head;
     himc_command_id id; ///< of the command that made it, whose atoms are all numbers
-    int count;
+    int form, count;
     double number[HIMC_COMMAND_ATOMS];
 } head_change;
 
 struct himc_drum_heads {
     himc_drum *copy;     ///< owned; the commands act on it
     himc_head first;     ///< before the first change
+    himc_head known;     ///< of the drum, when it was last looked at; of the latest heads only
+    bool edited;         ///< the drum was changed by hand: the heads of changes are out of date
     himc_drum_form form; ///< owned
     head_change *change; ///< owned, in the order of beats
     int count, room;
@@ -51,7 +57,7 @@ himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *err
         return NULL;
     }
     heads->form = himc_drum_form_of(heads->copy);
-    heads->first = *himc_membrane_head(heads->copy->membrane);
+    heads->first = heads->known = *himc_membrane_head(heads->copy->membrane);
     heads->now = -2;
     return heads;
 }
@@ -66,14 +72,22 @@ static void keep_command(head_change *change, const himc_command *command)
     }
 }
 
+static himc_command command_of(const head_change *change)
+{
+    himc_command command = {.id = change->id, .form = change->form, .count = change->count};
+    for (int i = 0; i < change->count; i++)
+        command.atom[i] = (himc_atom){HIMC_ATOM_NUMBER, change->number[i], NULL};
+    return command;
+}
+
 /// Carries out the command of a change on the copy, and keeps the head that it leaves.
 static bool find_head(himc_drum *copy, head_change *change, himc_error *error)
 {
-    himc_command command = {.id = change->id, .count = change->count};
-    for (int i = 0; i < change->count; i++)
-        command.atom[i] = (himc_atom){HIMC_ATOM_NUMBER, change->number[i], NULL};
-    if (!himc_drum_command(copy, &command, error))
+    himc_command command = command_of(change), checked;
+    if (!himc_command_check(&checked, HIMC_DRUM, &command, error) ||
+        !himc_drum_act(copy, &checked, error))
         return false;
+    change->form = checked.form;
     change->head = *himc_membrane_head(copy->membrane);
     return true;
 }
@@ -162,33 +176,116 @@ bool himc_drum_heads_due(const himc_drum_heads *heads, double beat)
                    : wanted_at(heads, beat) != heads->now;
 }
 
-double himc_drum_heads_damp(const himc_drum_heads *heads, double beat)
+/// Sets in `head` what differs between `was` and `now`.
+static void keep_edits(himc_head *head, const himc_head *was, const himc_head *now)
 {
-    while (heads->before && beat < heads->from)
-        heads = heads->before;
-    return head_of(heads, wanted_at(heads, beat))->damp;
+#define KEEP(field) head->field = now->field != was->field ? now->field : head->field
+    KEEP(radius);
+    KEEP(tension);
+    KEEP(density);
+    KEEP(decay_constant);
+    KEEP(decay_square);
+    KEEP(modes);
+    KEEP(air);
+    KEEP(kettle);
+    KEEP(glide);
+    KEEP(damp);
+    KEEP(uniformity);
+    KEEP(uniformity_seed);
+#undef KEEP
 }
 
-void himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat)
+void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum)
 {
+    const himc_head *now = himc_membrane_head(drum->membrane);
+    if (himc_head_equal(&heads->known, now))
+        return;
+    himc_head was = heads->known;
+    heads->known = *now;
+    for (; heads; heads = heads->before) {
+        keep_edits(&heads->first, &was, now);
+        heads->edited = true;
+    }
+}
+
+/// From the present change on, the drum's head stays but for the changes from here on.
+static int first_to_act(const himc_drum_heads *heads, int change)
+{
+    return heads->now != -2 && change >= heads->now ? heads->now + 1 : 0;
+}
+
+double himc_drum_heads_damp(const himc_drum_heads *heads, double beat)
+{
+    double present = heads->known.damp;
+    while (heads->before && beat < heads->from)
+        heads = heads->before;
+    int change = wanted_at(heads, beat), from = first_to_act(heads, change);
+    if (!heads->edited)
+        return head_of(heads, change)->damp;
+    while (change >= from && heads->change[change].id != HIMC_COMMAND_DAMP)
+        change--;
+    if (change >= from)
+        return heads->change[change].number[0];
+    return from > 0 || heads->now == -1 ? present : heads->first.damp;
+}
+
+/// The head of a drum that was changed by hand, after a change: of the commands that set the same,
+/// only the last acts. False with the reason if the drum refuses one, which is left out.
+static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int change,
+                    himc_head *head, himc_error *error)
+{
+    enum { PITCH = 1, DECAY = 2, GLIDE = 4, DAMP = 8, ALL = 15 };
+    int from = first_to_act(heads, change);
+    bool onward = from > 0 || heads->now == -1, good = true;
+    *head = onward ? *himc_membrane_head(drum->membrane) : heads->first;
+    for (int i = change, set = 0; i >= from && set != ALL; i--) {
+        himc_command command = command_of(&heads->change[i]);
+        int sets = command.id == HIMC_COMMAND_DECAY   ? DECAY
+                   : command.id == HIMC_COMMAND_GLIDE ? GLIDE
+                   : command.id == HIMC_COMMAND_DAMP  ? DAMP
+                                                      : PITCH;
+        if (!(set & sets))
+            good = himc_drum_find_head(drum, &command, head, error) && good;
+        set |= sets;
+    }
+    return good;
+}
+
+/// Gives the drum the head of a change.
+static bool give_head(himc_drum_heads *heads, himc_drum *drum, int change, himc_error *error)
+{
+    bool good = true;
+    himc_membrane *membrane = drum->membrane;
+    himc_membrane_form form = himc_membrane_form_of(membrane);
+    form.head = *head_of(heads, change);
+    if (heads->edited)
+        good = overlay(heads, drum, change, &form.head, error);
+    bool same = himc_membrane_has_form(membrane, &form);
+    himc_membrane *spare = same ? NULL : find_spare(heads, &form);
+    if (spare)
+        himc_membrane_exchange(membrane, spare);
+    else if (!same)
+        good = himc_membrane_set_head(membrane, &form.head, error) && good;
+    himc_membrane_form_free(&form);
+    return good;
+}
+
+bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, himc_error *error)
+{
+    himc_drum_heads *latest = heads;
+    himc_drum_heads_notice(heads, drum);
     for (; heads->before && beat < heads->from; heads = heads->before)
         heads->now = -2;
     if (heads->before)
         heads->before->now = -2;
     int change = wanted_at(heads, beat);
     if (change == heads->now)
-        return;
+        return true;
     heads->since = 0;
-    himc_membrane *membrane = drum->membrane;
-    himc_membrane_form form = himc_membrane_form_of(membrane);
-    form.head = *head_of(heads, change);
+    bool good = give_head(heads, drum, change, error);
     heads->now = change;
-    himc_membrane *spare = find_spare(heads, &form);
-    if (spare && !himc_membrane_has_form(membrane, &form))
-        himc_membrane_exchange(membrane, spare);
-    else if (!spare)
-        himc_membrane_set_head(membrane, &form.head, NULL);
-    himc_membrane_form_free(&form);
+    latest->known = *himc_membrane_head(drum->membrane);
+    return good;
 }
 
 himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads *before,
@@ -196,6 +293,8 @@ himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads 
 {
     heads->before = before;
     heads->from = from;
+    if (before)
+        heads->known = before->known;
     himc_drum_heads *present = before;
     while (present && present->before && now < present->from)
         present = present->before;
@@ -229,6 +328,7 @@ struct himc_head_insertion {
     himc_drum *copy;              ///< owned; the commands act on it
     head_change *change;          ///< owned; those of `to` with the new one
     int count, at;                ///< the new one's index
+    bool anew;                    ///< the drum was changed by hand: all heads are made again
     himc_head known[MOST_SPARES]; ///< heads that are made already ...
     int known_count;
     himc_membrane *spare[MOST_SPARES]; ///< ... and those that are not, owned
@@ -270,6 +370,7 @@ himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *
     *j = (himc_head_insertion){.drum = drum, .to = to, .change = change, .count = old + 1};
     j->form = himc_drum_form_of(drum);
     j->first = to ? to->first : j->form.head.head;
+    j->anew = to && to->edited;
     while (j->at < old && to->change[j->at].beat <= beat)
         j->at++;
     for (int i = 0; i < old; i++)
@@ -296,14 +397,19 @@ static bool is_known(const himc_head_insertion *j, const himc_head *head)
 
 bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
 {
-    const himc_head *before = j->at > 0 ? &j->change[j->at - 1].head : &j->first;
+    int from = j->anew ? 0 : j->at;
+    const himc_head *before = from > 0 ? &j->change[from - 1].head : &j->first;
     himc_membrane_form form = j->form.head;
+    if (j->anew) {
+        himc_drum_release(j->copy);
+        j->copy = NULL;
+    }
     if (!j->copy)
         j->copy = himc_drum_new_of(&j->form, error);
     if (!j->copy || (!himc_head_equal(himc_membrane_head(j->copy->membrane), before) &&
                      !himc_membrane_set_head(j->copy->membrane, before, error)))
         return false;
-    for (int i = j->at; i < j->count; i++) {
+    for (int i = from; i < j->count; i++) {
         if (!find_head(j->copy, &j->change[i], error))
             return false;
         form.head = j->change[i].head;
@@ -340,7 +446,7 @@ bool himc_head_insertion_install(himc_head_insertion *j, himc_drum_heads **heads
         return false;
     if (!to) {
         to = *heads = j->fresh;
-        *to = (himc_drum_heads){.first = j->first, .form = j->form, .now = -1};
+        *to = (himc_drum_heads){.first = j->first, .known = j->first, .form = j->form, .now = -1};
         j->fresh = NULL;
         j->form = (himc_drum_form){.name = ""};
     }

@@ -112,8 +112,11 @@ HIMC_RT bool himc_drum_heads_due(const himc_drum_heads *heads, double beat);
 HIMC_RT double himc_drum_heads_damp(const himc_drum_heads *heads, double beat);
 /// Gives the drum the head that it has at that beat: that of the form before the first change.
 /// Quick where the drum has still the pickups and the listener of the form, else the head is
-/// computed now. Between two samples.
-void himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat);
+/// computed now. Between two samples. False with the reason if a change cannot act on the drum as
+/// it is by now; the others do.
+bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, himc_error *error);
+/// Notices what commands have changed on the drum: it stays until a change sets the same.
+HIMC_RT void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum);
 /// Before beat `from` the drum has the heads of `before` (NULL: none), which are `heads`' own from
 /// now on. Returns those that are over at beat `now`, to be freed, or NULL.
 himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads *before,

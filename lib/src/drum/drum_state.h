@@ -78,6 +78,11 @@ void himc_drum_set_manner(himc_drum *drum, const himc_drum_manner *manner);
 /// Carries out a checked command that is no job.
 bool himc_drum_act(himc_drum *drum, const himc_command *checked, himc_error *error);
 
+/// The head after a checked command of one that a score may have at a beat, or of `radius` or
+/// `density`. False with the reason if the drum refuses it.
+HIMC_RT bool himc_drum_find_head(const himc_drum *drum, const himc_command *checked,
+                                 himc_head *head, himc_error *error);
+
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.
 HIMC_RT void himc_drum_find_ways(himc_drum *drum);
 

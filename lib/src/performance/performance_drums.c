@@ -270,14 +270,18 @@ void himc_drums_drop_heads(performance_drums *d)
         himc_drum_heads_free(himc_drums_set_heads(d, i, NULL));
 }
 
-void himc_drums_turn_heads(performance_drums *d, double beat)
+void himc_drums_turn_heads(performance_drums *d, double beat, performance_events *events)
 {
-    for (int i = 0; i < d->count && beat >= 0; i++) {
+    for (int i = 0; i < d->count; i++) {
         drum_slot *slot = &d->slot[i];
-        if (!slot->heads || !himc_drum_heads_due(slot->heads, beat))
+        himc_error why = {""};
+        if (slot->heads)
+            himc_drum_heads_notice(slot->heads, slot->drum);
+        if (!slot->heads || beat < 0 || !himc_drum_heads_due(slot->heads, beat))
             continue;
         himc_drums_catch_up_one(d, i);
-        himc_drum_heads_turn(slot->heads, slot->drum, beat);
+        if (!himc_drum_heads_turn(slot->heads, slot->drum, beat, &why))
+            himc_events_note(events, "at: %s %s", himc_drum_name(slot->drum), why.text);
     }
 }
 

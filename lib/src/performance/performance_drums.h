@@ -89,8 +89,10 @@ void himc_drums_release(performance_drums *drums);
 himc_drum_heads *himc_drums_set_heads(performance_drums *drums, int index, himc_drum_heads *heads);
 /// Drops the changes of all heads.
 void himc_drums_drop_heads(performance_drums *drums);
-/// Gives the drums the heads that they have at that beat; nothing if it is negative.
-HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat);
+/// Gives the drums the heads that they have at that beat; nothing if it is negative. Notes a change
+/// that cannot act.
+HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat,
+                                   performance_events *events);
 
 /// True if the head of a drum is damped.
 HIMC_RT bool himc_drums_damped(const performance_drums *drums, int index);
