@@ -308,6 +308,38 @@ static void test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_
     himc_performance_free(p);
 }
 
+/// The score's strikes are on the spots as written, whenever a hit is asked for between them.
+static void test_a_hit_moves_no_stroke_of_the_playing_score_aside(void)
+{
+    static const struct {
+        const char *hit;
+        double at; // (s) after play
+    } asked[] = {{"hit left legato f", 0.69},
+                 {"hit left legato f", 0.7},
+                 {"hit right legato f", 1.27},
+                 {"hit right legato f", 1.3}};
+    for (int i = 0; i < 4; i++) {
+        heard h = {0};
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        session_do(p, "tempo 100");
+        for (int beat = 0; beat < 5; beat++)
+            session_do(p, "stroke %d %s legato mf", beat, beat % 2 ? "left" : "right");
+        session_play(p, 0.01, NULL);
+        session_do(p, "play");
+        session_play(p, asked[i].at, &h);
+        session_do(p, "%s", asked[i].hit);
+        session_play(p, 3.2 - asked[i].at, &h);
+        TEST_ASSERT_EQUAL_INT(6, h.strikes);
+        for (int k = 1; k < h.strikes; k++) {
+            TEST_ASSERT_DOUBLE_WITHIN(0.002, h.strike[0].x, h.strike[k].x);
+            TEST_ASSERT_DOUBLE_WITHIN(0.002, fabs(h.strike[0].y), fabs(h.strike[k].y));
+        }
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -322,5 +354,6 @@ int main(void)
     RUN_TEST(test_a_stick_that_drifts_is_brought_back_before_it_lands);
     RUN_TEST(test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may);
     RUN_TEST(test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds);
+    RUN_TEST(test_a_hit_moves_no_stroke_of_the_playing_score_aside);
     return UNITY_END();
 }

@@ -231,13 +231,15 @@ static bool make_candidate(himc_planner *planner)
 }
 
 /// Whether it is worth while to try the next candidate. A lift that would come too late if more
-/// were tried is made, if nothing meets.
+/// were tried is made, if nothing meets. A stroke is played in another way only if the hands meet:
+/// a slightly larger gap is not worth another spot.
 static bool goes_on(const himc_planner *planner)
 {
     const planner_clear *c = &planner->clear;
+    double enough = c->candidate < 2 * LIFT_TRIES ? HIMC_SURE_GAP : 0;
     bool due = c->best_lift.end > 0 && c->best_lift.begin < planner->now + 2 * LEAST_AHEAD;
     return c->least.lack > 0 && c->candidate < 2 * (LIFT_TRIES + STROKE_WAYS) &&
-           (c->least.gap < HIMC_SURE_GAP || (c->candidate < LIFT_TRIES && !due));
+           (c->least.gap < enough || (c->candidate < LIFT_TRIES && !due));
 }
 
 static void begin_search(planner_clear *c)
