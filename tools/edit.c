@@ -101,7 +101,7 @@ static void tell_text(const session *s, bool begun)
     free(json);
 }
 
-// a source by the name that people know, and once: a take is named by its score's line and by itself
+// a source by the name that people know; only once, where its score names it, too
 static void name_source(const session *s, himc_error *error)
 {
     himc_error said = *error;
