@@ -101,9 +101,22 @@ static void tell_text(const session *s, bool begun)
     free(json);
 }
 
+// a source by the name that people know; only once, where its score names it, too
+static void name_source(const session *s, himc_error *error)
+{
+    himc_error said = *error;
+    size_t name = strlen(s->name), source = strlen(s->source);
+    const char *at = strstr(said.text, s->source), *line = said.text + name;
+    if (!strncmp(said.text, s->name, name) && !strncmp(line, ":1: ", 4) &&
+        !strncmp(line + 4, s->source, source))
+        himc_error_set(error, "%s%s", s->name, line + 4 + source);
+    else if (at && s->name != s->source)
+        himc_error_set(error, "%.*s%s%s", (int)(at - said.text), said.text, s->name, at + source);
+}
+
 // --- the piece
 
-static char *text_of(const char *source, himc_error *error)
+static char *text_of(const char *source, const char *name, himc_error *error)
 {
     size_t size;
     if (cli_is_take(source)) {
@@ -119,10 +132,10 @@ static char *text_of(const char *source, himc_error *error)
         return bytes;
     midi_score made = {0};
     char *text = NULL;
-    if (himc_midi_import(&made, bytes, size, source, NULL, error))
+    if (himc_midi_import(&made, bytes, size, name, NULL, error))
         text = strdup(made.text);
     else
-        himc_error_prefix(error, "%s", source);
+        himc_error_prefix(error, "%s", name);
     himc_midi_score_free(&made);
     free(bytes);
     return text;
@@ -406,19 +419,20 @@ static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
 // a change that cannot be played is undone
 static bool take_back(session *s, const edit_frame *frame, himc_error *error)
 {
-    char text[sizeof error->text];
+    himc_error failure;
     // never played: what was made before a kill may be what cannot be played
     bool first = !s->played;
     bool undone = first ? edit_text_revert(s->text) : s->changed && edit_text_undo(s->text);
-    snprintf(text, sizeof text, "%.*s", (int)frame->size, (const char *)frame->bytes);
+    himc_error_set(&failure, "%.*s", (int)frame->size, (const char *)frame->bytes);
+    name_source(s, &failure);
     if (!undone && first)
-        return himc_error_set(error, "%s", text);
+        return himc_error_set(error, "%s", failure.text);
     s->changed = s->unproved = false;
     if (undone) {
         keep(s, first ? "revert" : "undo");
         tell_text(s, false);
     }
-    tell(undone ? "undone" : "failed", "text", text);
+    tell(undone ? "undone" : "failed", "text", failure.text);
     if (!undone)
         return true;
     return replay(s, first, error);
@@ -524,7 +538,7 @@ static int run(const cli_arguments *arguments)
     bool good = !cli_is_standard(s.source) ||
                 himc_error_set(&error, "-: allowed is a file, lines come from standard input");
     good = good && cli_take_options(s.source, arguments->value + TAKE, &s.take, &error);
-    char *text = good ? text_of(s.source, &error) : NULL;
+    char *text = good ? text_of(s.source, s.name, &error) : NULL;
     s.confined = arguments->value[CONFINED] && !cli_is_take(s.source);
     s.text = text ? edit_text_new(text, &error) : NULL;
     good = s.text && check(&s, s.text, &error);
@@ -533,6 +547,7 @@ static int run(const cli_arguments *arguments)
     s.play = good ? edit_play_new(s.name, &s.take, &error) : NULL;
     good = s.play && serve(&s, &error);
     if (!good) {
+        name_source(&s, &error);
         tell("failed", "text", error.text);
         fflush(stdout);
     }

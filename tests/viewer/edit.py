@@ -630,6 +630,23 @@ def test_what_a_page_has_sent_is_known_again_by_its_name_and_contents():
     assert edited != text.encode()
 
 
+def test_what_a_page_has_sent_is_told_by_its_name_alone():
+    for ending in ("bvh", "c3d", "trc", "mid", "txt"):
+        path = made(f"piece.0.{ending}", b"MThd\0\0\0\6junk" if ending == "mid" else b"junk")
+        for options, name in ((["--confined", "--name", f"my.{ending}"], f"my.{ending}"), ([], path)):
+            pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+            with subprocess.Popen([HIMC, "edit", path, *options], **pipes) as process:
+                try:
+                    process.stdin.write(b"hello\n")
+                    process.stdin.flush()
+                except BrokenPipeError:
+                    pass  # it has ended already
+                out, why = process.stdout.read(), process.stderr.read()
+            for text in (out[out.index(b'{"event":"failed"') :].decode(), why.decode()):
+                assert process.returncode == 1 and text.count(name) == 1, text
+                assert options == [] or "piece.0" not in text, text
+
+
 TESTS = [f for name, f in list(globals().items()) if name.startswith("test_")]
 
 if __name__ == "__main__":
