@@ -367,19 +367,19 @@ static himc_gesture in_haste(himc_planner *planner, const timed_stroke *s)
     return share * own.speed < g.speed ? himc_gesture_scale(own, share) : g;
 }
 
-/// Whether the stroke, just planned, is softer than it was asked for.
-static bool is_softer(himc_planner *planner, const timed_stroke *s)
+/// Counts a stroke that was struck softer than asked for, and says so once; a plan may still change
+/// before.
+static void tell_haste(himc_planner *planner, const timed_stroke *struck)
 {
     char name[64];
-    double asked = s->goal.gesture.speed;
-    double speed = planner->hand[s->stroke.hand].plan.last.gesture.speed;
+    double speed = struck->goal.gesture.speed;
     // a roll's strokes are as fast as its drum asks
-    if (s->stroke.ornament >= HIMC_ROLL_SINGLE || speed >= SOFTER_SHARE * asked)
-        return false;
+    if (struck->stroke.ornament >= HIMC_ROLL_SINGLE || speed >= SOFTER_SHARE * struck->asked)
+        return;
+    himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
     himc_planner_say(&planner->notes, PLANNER_HURRIED,
-                     "%s: too little time for %.2g m/s, struck with %.2g", name_of(s, name), asked,
-                     speed);
-    return true;
+                     "%s: too little time for %.2g m/s, struck with %.2g", name_of(struck, name),
+                     struck->asked, speed);
 }
 
 /// Whether a varied stroke can be played, and leaves as much to the stroke after it as the written
@@ -433,11 +433,10 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     himc_goal goal = s->goal;
     goal.gesture = in_haste(planner, s);
     himc_hand_strike(&h->plan, &goal);
-    bool softer = is_softer(planner, s);
     timed_stroke *planned = &h->planned[h->planned_count++];
     *planned = *s;
     planned->goal = h->plan.last;
-    planned->softer = softer;
+    planned->asked = s->goal.gesture.speed;
     h->drum = s->drum;
     h->struck = true;
     h->targeted = false;
@@ -898,8 +897,8 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     himc_hand_restart(&h->plan, t, measured, more ? next.goal.time : HUGE_VAL);
     if (h->planned_count > 0) {
         timed_stroke *last = &h->planned[h->planned_count - 1];
-        if (last->softer && !last->separated)
-            himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
+        if (!last->separated)
+            tell_haste(planner, last);
         last->separated = true;
         h->plan.last = last->goal;
         h->plan.rebounding = t - last->goal.time < BOUNCE_TIME;

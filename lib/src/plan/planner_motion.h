@@ -41,7 +41,7 @@ typedef struct timed_stroke {
     int round;       ///< of the loop
     bool reassigned; ///< it is from the other hand's part of the score
     bool separated;  ///< the tip has left the head again
-    bool softer;     ///< played softer than written, for want of time
+    double asked;    ///< speed of impact that was asked for (m/s)
     bool varied;     ///< the goal is not as written
     bool exact;      ///< a hit with a time, still to be corrected before its touch
     double latency;  ///< time that a hit with a time has, since its message (s), else 0
