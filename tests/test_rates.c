@@ -1,4 +1,4 @@
-/// test_rates.c: ordinary strokes are played at each end of each rate, by each law and in each mode.
+/// test_rates.c: ordinary strokes at each end of each rate, by each law and in each mode.
 #include "session.h"
 
 #include "himc/body.h"
