@@ -187,6 +187,89 @@ static void test_strangers_get_50_answers_a_second(void)
     }
 }
 
+// strokes whose dump is longer than an answer
+static void load_strokes(int begun, int strokes)
+{
+    himc_error error;
+    himc_stroke stroke = {.drum = "kettle", .dynamic = 0.5};
+    for (int i = 0; i < strokes; i++) {
+        stroke.beat = begun + i;
+        TEST_ASSERT_TRUE_MESSAGE(himc_performance_add_stroke(performance, &stroke, &error),
+                                 error.text);
+    }
+}
+
+// packets that so many dumps bring; the clock stands still
+static long ask_for_dumps(int dumps)
+{
+    long before = himc_osc_count(osc).sent;
+    forget();
+    for (int i = 0; i < dumps; i++) {
+        say("/himc/dump", "");
+        settle();
+        himc_osc_receive(osc, performance, 8);
+        serve();
+        settle();
+    }
+    return himc_osc_count(osc).sent - before;
+}
+
+static bool ends_with_a_cut(void)
+{
+    return heard_count > 0 && last("/himc/error") == &heard[heard_count - 1] &&
+           strstr(last_error(), "cut after");
+}
+
+// an IPv4 address mapped into IPv6 is none of loopback: the ear is a host elsewhere
+static void listen_to_all(const char *allow)
+{
+    restart(&(himc_osc_config){.bind = "::", .allow = allow});
+}
+
+// 1024 packets for one of 16 bytes, before
+static void test_a_stranger_pays_for_each_line_of_a_dump(void)
+{
+    listen_to_all(NULL);
+    load_strokes(0, 2000);
+    for (int second = 0; second < 3; second++) {
+        long sent = ask_for_dumps(1);
+        TEST_ASSERT_TRUE(ends_with_a_cut());
+        sent += ask_for_dumps(31);
+        TEST_ASSERT_TRUE_MESSAGE(sent > 40 && sent <= 50, "50 lines a second");
+        simulated += 1;
+    }
+}
+
+static void test_a_long_dump_to_a_friend_ends_with_an_error(void)
+{
+    long whole = ask_for_dumps(1);
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/error"));
+    load_strokes(0, 500);
+    TEST_ASSERT_EQUAL_INT(whole + 500, ask_for_dumps(1));
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/error"));
+    load_strokes(500, 20000);
+    TEST_ASSERT_GREATER_THAN(whole + 500, ask_for_dumps(1));
+    TEST_ASSERT_TRUE(ends_with_a_cut());
+    TEST_ASSERT_EQUAL_INT(0, himc_osc_count(osc).lost);
+}
+
+// also one of --allow gets no more than 500 kB a second, an eighth of a megabyte at once
+static void test_dumps_are_within_the_bytes_of_a_host(void)
+{
+    listen_to_all("127.0.0.1");
+    load_strokes(0, 900);
+    long whole = ask_for_dumps(1);
+    TEST_ASSERT_GREATER_THAN(900, whole);
+    for (int i = 0; i < 40 && himc_osc_count(osc).capped == 0; i++) {
+        long sent = ask_for_dumps(1);
+        TEST_ASSERT_TRUE(sent == whole || ends_with_a_cut());
+    }
+    TEST_ASSERT_GREATER_THAN(0, himc_osc_count(osc).capped);
+    TEST_ASSERT_EQUAL_INT(0, ask_for_dumps(1));
+    simulated += 0.25;
+    TEST_ASSERT_EQUAL_INT(whole, ask_for_dumps(1));
+}
+
 static void test_refusals_are_told_once_and_sent_to_their_subscribers(void)
 {
     int port = 0, other = open_ear(&port), lines = 0;
@@ -390,6 +473,9 @@ int main(void)
     RUN_TEST(test_a_command_that_takes_long_is_the_last_of_its_block);
     RUN_TEST(test_commands_beyond_1000_points_a_second_are_counted);
     RUN_TEST(test_strangers_get_50_answers_a_second);
+    RUN_TEST(test_a_stranger_pays_for_each_line_of_a_dump);
+    RUN_TEST(test_a_long_dump_to_a_friend_ends_with_an_error);
+    RUN_TEST(test_dumps_are_within_the_bytes_of_a_host);
     RUN_TEST(test_refusals_are_told_once_and_sent_to_their_subscribers);
     RUN_TEST(test_a_full_ring_is_counted_and_blocks_no_call);
     RUN_TEST(test_a_storm_is_counted_and_poses_continue);

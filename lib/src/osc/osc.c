@@ -32,6 +32,7 @@
 #include <time.h>
 
 #define RECORDS 1024         // chosen: poses of 4 s at 250 Hz
+#define RECORDS_OF_STATES 64 // that no answer takes; chosen: poses of 0.25 s
 #define COMMANDS_WAITING 512 // chosen: half a second of 1000 points
 #define LINES 64             // chosen: the host reads them after each block
 #define PACKETS_AT_ONCE 256  // read in one pass; chosen: then states are sent again
@@ -44,6 +45,7 @@
 #define POINTS_PER_SECOND 1000.0  // of commands; chosen: 4 targets at 250 Hz
 #define POINTS_AT_ONCE 4000.0     // chosen: a score of 1000 strokes, sent one by one
 #define LINES_PER_SECOND 50.0     // of answers; chosen: a stranger gets no more than he sends
+#define CUT "the answer is cut after %d lines: "
 #define WORK_SHARE 0.1    // of the host's time, for commands; chosen: the sound needs the rest
 #define WORK_AT_ONCE 0.05 // (s) chosen: two heads of 2000 modes
 
@@ -58,8 +60,8 @@ typedef struct osc_bucket {
 
 typedef struct osc_line {
     osc_address to;
-    bool error; // else an information
-    bool paid;  // by a line before it
+    bool error;   // else an information
+    bool further; // than the first line of its answer; an error: the answer ends here, cut
     char text[HIMC_OSC_LINE];
 } osc_line;
 
@@ -113,7 +115,9 @@ struct himc_osc {
     osc_network network;
     osc_subscriptions subscriptions;
     osc_bucket packets, points, answers;
-    osc_packets line;           // the answer being sent
+    osc_packets line;           // the answer being sent ...
+    int answered;               // ... its lines that were sent ...
+    bool cut;                   // ... and no further line is sent
     uint32_t refusal[REFUSALS]; // of lines that the user has been told
     int refusals;
     char *files; // real path, or NULL
@@ -362,28 +366,35 @@ typedef struct sender {
     himc_osc *osc;
     const osc_address *address;
     bool error;
-    bool paid; // as the first line of this answer
+    int lines; // of this answer, so far
+    bool cut;  // takes no further lines
 } sender;
 
+// leaves room in the ring for states; the line that ends a long answer is in that room
 static void answer(void *object, const char *line)
 {
     sender *s = object;
-    osc_record *r = himc_osc_ring_slot(&s->osc->records);
+    bool full = s->lines > 0 && himc_osc_ring_room(&s->osc->records) <= RECORDS_OF_STATES;
+    osc_record *r = s->cut ? NULL : himc_osc_ring_slot(&s->osc->records);
+    s->cut = full || !r;
     if (!r)
         return;
     r->kind = RECORD_LINE;
     r->line.to = *s->address;
-    r->line.error = s->error;
-    r->line.paid = s->paid;
-    s->paid = true;
-    snprintf(r->line.text, sizeof r->line.text, "%s", line);
+    r->line.error = s->error || full;
+    r->line.further = s->lines > 0;
+    if (full)
+        snprintf(r->line.text, sizeof r->line.text, CUT "no more fit into one answer", s->lines);
+    else
+        snprintf(r->line.text, sizeof r->line.text, "%s", line);
+    s->lines++;
     end(s->osc);
 }
 
 static void refuse_to(himc_osc *osc, const osc_address *to, const char *error)
 {
     himc_osc_add(&osc->counts, COUNT_REFUSED, 1);
-    answer(&(sender){osc, to, true, false}, error);
+    answer(&(sender){.osc = osc, .address = to, .error = true}, error);
 }
 
 // the loader has carried out a command, or refused it
@@ -445,7 +456,7 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
 {
     himc_error error = {""};
     const osc_request *request = &order->request;
-    sender from = {osc, &order->from, false, false};
+    sender from = {.osc = osc, .address = &order->from};
     himc_command_id id = request->command.id;
     const himc_drum *drum = NULL;
     if (id == HIMC_COMMAND_DRUM_DUMP)
@@ -507,13 +518,21 @@ himc_osc_counts himc_osc_count(const himc_osc *osc)
 
 // --- the network thread
 
-static void send_line(himc_osc *osc, const osc_address *to, bool error, const char *text)
+static bool allows(himc_osc *osc, const osc_address *to, size_t bytes)
+{
+    return himc_osc_allows(&osc->subscriptions, to, (double)bytes, 1, monotonic(osc));
+}
+
+// false if the host has had its bytes; `paid`: they are paid for already
+static bool send_line(himc_osc *osc, const osc_address *to, bool error, const char *text, bool paid)
 {
     osc_packets *p = &osc->line;
     himc_osc_encode_begin(p, SMALL_PACKET, false, 0);
     himc_osc_encode_line(p, error, text);
-    if (p->count)
+    bool good = p->count && (paid || allows(osc, to, p->size[0]));
+    if (good)
         himc_osc_network_send(&osc->network, to, p->data[0], p->size[0]);
+    return good;
 }
 
 // tells the user a refusal of a stranger, each line once
@@ -536,11 +555,11 @@ static void tell_refusal(himc_osc *osc, const char *line)
 static void send_refusal(himc_osc *osc, const osc_address *to, const char *line)
 {
     const osc_subscription *one = NULL;
-    send_line(osc, to, true, line);
+    send_line(osc, to, true, line, false);
     tell_refusal(osc, line);
     while ((one = himc_osc_errors_next(&osc->subscriptions, one)))
         if (!himc_osc_address_same(&one->to, to) && afford(&osc->answers, monotonic(osc), 1))
-            send_line(osc, &one->to, true, line);
+            send_line(osc, &one->to, true, line, false);
 }
 
 static void refuse(himc_osc *osc, const osc_address *to, const char *line)
@@ -609,7 +628,7 @@ static bool take_packet(himc_osc *osc)
     long size = himc_osc_network_receive(&osc->network, &from, data, sizeof data);
     if (size < 0)
         return himc_osc_network_discard(&osc->network);
-    himc_osc_decode(data, (size_t)size, take_message, &(sender){osc, &from, false, false});
+    himc_osc_decode(data, (size_t)size, take_message, &(sender){.osc = osc, .address = &from});
     return true;
 }
 
@@ -627,6 +646,41 @@ static bool take_packets(himc_osc *osc)
     return false;
 }
 
+// a refusal, or the first line of an answer; this pays for the line of a cut in addition
+static bool send_first(himc_osc *osc, const osc_line *line, bool stranger)
+{
+    const osc_address *to = &line->to;
+    if (!afford(&osc->answers, monotonic(osc), stranger && !line->error ? 2 : 1))
+        return false;
+    if (line->error)
+        send_refusal(osc, to, line->text);
+    return line->error ||
+           (allows(osc, to, SMALL_PACKET) && send_line(osc, to, false, line->text, false));
+}
+
+// each line to a stranger is paid for, so that a short command brings no flood to a forged address
+static void send_answer(himc_osc *osc, const osc_line *line)
+{
+    char text[HIMC_OSC_LINE];
+    bool stranger = !himc_osc_trusted(&osc->subscriptions, &line->to), sent;
+    if (!line->further) {
+        osc->answered = sent = send_first(osc, line, stranger);
+        osc->cut = !sent;
+        return;
+    }
+    if (osc->cut)
+        return;
+    sent = !line->error && (!stranger || afford(&osc->answers, monotonic(osc), 1)) &&
+           send_line(osc, &line->to, false, line->text, false);
+    osc->answered += sent;
+    osc->cut = !sent;
+    if (sent)
+        return;
+    snprintf(text, sizeof text, CUT "expected at most %g lines and 500 kB a second", osc->answered,
+             LINES_PER_SECOND);
+    send_line(osc, &line->to, true, line->error ? line->text : text, true);
+}
+
 static void send_record(himc_osc *osc, const osc_record *r)
 {
     himc_osc_counts counts;
@@ -635,14 +689,7 @@ static void send_record(himc_osc *osc, const osc_record *r)
         counts = himc_osc_count(osc);
         himc_osc_deliver(&osc->subscriptions, &r->state, &counts, monotonic(osc));
         break;
-    case RECORD_LINE:
-        if (!r->line.paid && !afford(&osc->answers, monotonic(osc), 1))
-            break;
-        if (r->line.error)
-            send_refusal(osc, &r->line.to, r->line.text);
-        else
-            send_line(osc, &r->line.to, false, r->line.text);
-        break;
+    case RECORD_LINE: send_answer(osc, &r->line); break;
     case RECORD_CHANGE: subscribe(osc, &r->change); break;
     }
 }

@@ -34,6 +34,12 @@ void *himc_osc_ring_slot(osc_ring *ring)
     return ring->data + written % ring->count * ring->slot;
 }
 
+size_t himc_osc_ring_room(const osc_ring *ring)
+{
+    size_t written = atomic_load_explicit(&ring->written, memory_order_relaxed);
+    return ring->count - (written - atomic_load_explicit(&ring->read, memory_order_acquire));
+}
+
 void himc_osc_ring_push(osc_ring *ring)
 {
     size_t written = atomic_load_explicit(&ring->written, memory_order_relaxed);

@@ -19,6 +19,8 @@ bool himc_osc_ring_init(osc_ring *ring, size_t slot, size_t count);
 void himc_osc_ring_free(osc_ring *ring);
 /// The writer's next slot, to be filled and then pushed; NULL if the ring is full (counted).
 void *himc_osc_ring_slot(osc_ring *ring);
+/// Slots that the writer may fill before it is full.
+size_t himc_osc_ring_room(const osc_ring *ring);
 void himc_osc_ring_push(osc_ring *ring);
 /// The oldest record, or NULL if there is none.
 const void *himc_osc_ring_peek(osc_ring *ring);

@@ -129,16 +129,21 @@ static bool unsubscribe(osc_subscriptions *s, const osc_change *change, const os
     return removed || refuse(change, error, "not subscribed");
 }
 
+bool himc_osc_trusted(const osc_subscriptions *s, const osc_address *host)
+{
+    bool trusted = himc_osc_address_loopback(host);
+    for (int i = 0; i < s->allowed_count && !trusted; i++)
+        trusted = himc_osc_address_same_host(host, &s->allowed[i]);
+    return trusted;
+}
+
 // when the subscription ends unless renewed; 0: never
 static double expiry_of(const osc_subscriptions *s, const osc_change *change, const osc_address *to,
                         double now)
 {
     if (change->granted)
         return change->expires;
-    bool trusted = change->local || himc_osc_address_loopback(to);
-    for (int i = 0; i < s->allowed_count && !trusted; i++)
-        trusted = himc_osc_address_same_host(to, &s->allowed[i]);
-    return trusted ? 0 : now + RENEWED_WITHIN;
+    return change->local || himc_osc_trusted(s, to) ? 0 : now + RENEWED_WITHIN;
 }
 
 static bool make_change(osc_subscriptions *s, const osc_change *change, const osc_address *to,
@@ -304,7 +309,7 @@ void himc_osc_forget(osc_subscriptions *s, double now)
 // --- states out
 
 // true if the host may get so many bytes more
-static bool allows(osc_subscriptions *s, const osc_address *to, double bytes, double now)
+static bool has_left(osc_subscriptions *s, const osc_address *to, double bytes, double now)
 {
     osc_allowance *a = NULL, *full = NULL;
     for (int i = 0; i < SUBSCRIPTIONS && !a; i++) {
@@ -328,16 +333,22 @@ static bool allows(osc_subscriptions *s, const osc_address *to, double bytes, do
     return true;
 }
 
+bool himc_osc_allows(osc_subscriptions *s, const osc_address *to, double bytes, int packets,
+                     double now)
+{
+    bool good = himc_osc_address_loopback(to) || has_left(s, to, bytes, now);
+    himc_osc_add(s->counts, COUNT_CAPPED, good ? 0 : packets);
+    return good;
+}
+
 static void send_packets(osc_subscriptions *s, const osc_address *to, const osc_packets *p,
                          double now)
 {
     double bytes = 0;
     for (int i = 0; i < p->count; i++)
         bytes += (double)p->size[i];
-    if (!himc_osc_address_loopback(to) && !allows(s, to, bytes, now)) {
-        himc_osc_add(s->counts, COUNT_CAPPED, p->count);
+    if (!himc_osc_allows(s, to, bytes, p->count, now))
         return;
-    }
     for (int i = 0; i < p->count; i++)
         if (!himc_osc_network_send(s->network, to, p->data[i], p->size[i]))
             mark_unreachable(s, to, now);

@@ -114,6 +114,12 @@ bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, double n
 void himc_osc_subscribe_found(osc_subscriptions *s, double now);
 void himc_osc_subscriptions_free(osc_subscriptions *s);
 
+/// This machine, or a host of himc_osc_allow.
+bool himc_osc_trusted(const osc_subscriptions *s, const osc_address *host);
+/// True if the host may get so many bytes more this second, which are then taken from it; else the
+/// packets are counted as capped.
+bool himc_osc_allows(osc_subscriptions *s, const osc_address *to, double bytes, int packets,
+                     double now);
 /// Sends a state to its subscribers, and the counters with a status; `now` on the monotonic clock
 /// (s).
 void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_osc_counts *counts,
