@@ -165,7 +165,8 @@ bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *temp
 /// dropped.
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                                double beat, himc_error *error);
-/// Sets the tempo (1 .. 1000 beats per minute) from `t` (s) to the next change of the tempo map.
+/// Sets the tempo (1 .. 1000 beats per minute) from `t` (s) to the next change of the tempo map; in
+/// a loop in place of the one valid at `t`, in later rounds too.
 /// The motion stays C2; a stroke less than 80 ms away keeps its time.
 HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
 
