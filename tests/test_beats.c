@@ -124,10 +124,26 @@ static void test_tempo_in_a_loop_keeps_the_tempi_of_other_parts_in_later_rounds(
     }
 }
 
+static void test_a_loop_of_one_beat_reports_it_in_each_round(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "drum kettle 26");
+    session_do(p, "stroke 0 right legato mf");
+    session_do(p, "loop 1");
+    session_do(p, "play");
+    session_play(p, 5, &h);
+    TEST_ASSERT_GREATER_THAN_INT(4, h.strikes);
+    TEST_ASSERT_EQUAL_INT(h.strikes, h.beats);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_beats_and_the_end_come_in_the_same_steps_at_any_block_size);
     RUN_TEST(test_tempo_in_a_loop_keeps_the_tempi_of_other_parts_in_later_rounds);
+    RUN_TEST(test_a_loop_of_one_beat_reports_it_in_each_round);
     return UNITY_END();
 }

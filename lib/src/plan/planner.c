@@ -469,6 +469,11 @@ double himc_planner_beat(const himc_planner *planner, double t)
                                                                       : beat;
 }
 
+long himc_planner_round(const himc_planner *planner, double t)
+{
+    return (long)planner->score.past + himc_planner_score_round_at(&planner->score, t);
+}
+
 bool himc_planner_is_preparing(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;

@@ -233,6 +233,8 @@ HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, d
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
 /// begins again.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
+/// Round of the loop at time `t` since it began to play, from 0.
+HIMC_RT long himc_planner_round(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.
 HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
 /// End of the last stroke's contact, as predicted, or of all else (s). Infinite while stopped or in
