@@ -202,6 +202,7 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
         himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){*roll, drum, false, end});
         himc_planner_say(&planner->notes, PLANNER_GIVEN_UP,
                          "roll at beat %g: given up, that beat is past", roll->beat);
+        return 0; // that line is enough
     }
     return himc_planner_roll_left_out(score, at);
 }

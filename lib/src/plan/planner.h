@@ -112,7 +112,8 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
 /// Adds a roll of so many strokes a second; `roll` has its kind, first beat, length and dynamics.
-/// Returns how many of its strokes are left out, too near to others; -1 with the reason.
+/// Returns how many of its strokes are left out, too near to others (0 if it is given up, which a
+/// note says); -1 with the reason.
 int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int drum, double rate,
                           himc_error *error);
 /// True if so many strokes can be added behind those of the score, as far as they are no rolls;
