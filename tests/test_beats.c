@@ -76,9 +76,74 @@ static void test_beats_and_the_end_come_in_the_same_steps_at_any_block_size(void
     }
 }
 
+/// A round of a loop with a tempo on beat 0 and another on beat 2, after `tempo 200` on a beat.
+typedef struct round_length {
+    double first, second; ///< of beats 0 and 1, of beats 2 and 3 (s)
+} round_length;
+
+static round_length round_after_tempo_on(double beat)
+{
+    himc_performance *p = session_new();
+    himc_event event;
+    double begun[4][8], due = INFINITY; // (s)
+    int rounds = 0, sent = 0;
+    session_do(p, "drum kettle 26");
+    for (int i = 0; i < 4; i++)
+        session_do(p, "stroke %d %s legato mf", i, i % 2 ? "left" : "right");
+    session_do(p, "loop 1");
+    session_do(p, "tempo 120");
+    session_do(p, "tempo 60 2");
+    session_do(p, "play");
+    for (int i = 0; i < 2000 && rounds < 6; i++) {
+        himc_performance_process(p, 480, NULL);
+        if (himc_performance_measure(p).seconds >= due) {
+            session_do(p, "tempo 200");
+            due = INFINITY;
+            sent = 1;
+        }
+        while (himc_performance_event(p, &event))
+            if (event.kind == HIMC_EVENT_BEAT) {
+                rounds += event.beat == 0;
+                if (!sent && event.beat == floor(beat))
+                    due = event.time + (beat - floor(beat)) * (beat < 2 ? 0.5 : 1);
+                begun[(int)event.beat][rounds] = event.time;
+            }
+    }
+    himc_performance_free(p);
+    TEST_ASSERT_EQUAL_INT(6, rounds);
+    return (round_length){begun[2][4] - begun[0][4], begun[0][5] - begun[2][4]};
+}
+
+static void test_tempo_in_a_loop_keeps_the_tempi_of_other_parts_in_later_rounds(void)
+{
+    static const double beat[] = {0.1, 0.6, 1.9, 2.1, 3.9};
+    for (int i = 0; i < 5; i++) {
+        round_length r = round_after_tempo_on(beat[i]);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, beat[i] < 2 ? 0.6 : 1, r.first);  // 200 or 120
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, beat[i] < 2 ? 2 : 0.6, r.second); // 60 or 200
+    }
+}
+
+static void test_a_loop_of_one_beat_reports_it_in_each_round(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "drum kettle 26");
+    session_do(p, "stroke 0 right legato mf");
+    session_do(p, "loop 1");
+    session_do(p, "play");
+    session_play(p, 5, &h);
+    TEST_ASSERT_GREATER_THAN_INT(4, h.strikes);
+    TEST_ASSERT_EQUAL_INT(h.strikes, h.beats);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_beats_and_the_end_come_in_the_same_steps_at_any_block_size);
+    RUN_TEST(test_tempo_in_a_loop_keeps_the_tempi_of_other_parts_in_later_rounds);
+    RUN_TEST(test_a_loop_of_one_beat_reports_it_in_each_round);
     return UNITY_END();
 }

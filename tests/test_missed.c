@@ -112,6 +112,24 @@ static void test_hits_that_come_late_all_the_time_are_told_of_meanwhile(void)
     himc_performance_free(p);
 }
 
+static void test_a_roll_that_is_past_is_given_up_in_one_line(void)
+{
+    heard h = {0};
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    for (int beat = 0; beat < 8; beat++)
+        session_do(p, "stroke %d %s legato mf", beat, beat % 2 ? "left" : "right");
+    session_do(p, "play");
+    session_play(p, 2.5, &h);
+    TEST_ASSERT_EQUAL_INT(0, h.notes);
+    session_do(p, "roll 1 0.5 single mf");
+    session_play(p, 0.3, &h);
+    TEST_ASSERT_EQUAL_STRING("roll at beat 1: given up, that beat is past", h.note);
+    TEST_ASSERT_EQUAL_INT(1, h.notes);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -119,5 +137,6 @@ int main(void)
     RUN_TEST(test_of_200_hits_at_once_each_is_played_or_missed_and_lines_are_few);
     RUN_TEST(test_hits_without_latency_that_find_no_room_are_missed);
     RUN_TEST(test_hits_that_come_late_all_the_time_are_told_of_meanwhile);
+    RUN_TEST(test_a_roll_that_is_past_is_given_up_in_one_line);
     return UNITY_END();
 }

@@ -783,6 +783,12 @@ double himc_motion_score_beat(const performance_motion *m, double t)
     return m->playing ? t - m->track_start : -1;
 }
 
+/// True if a beat begins by t: another one, or the same one of a later round.
+static bool begins_beat(const performance_motion *m, double t)
+{
+    return whole_beat(m, t) != m->last_beat || himc_planner_round(m->planner, t) > m->last_round;
+}
+
 static bool is_over(const performance_motion *m, double t)
 {
     double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
@@ -797,7 +803,7 @@ bool himc_motion_is_calm(const performance_motion *m, double t)
 void himc_motion_foresee(performance_motion *m, double next)
 {
     // beats follow each other in time, so that none begins between two equal ones
-    m->calm = whole_beat(m, next) == m->last_beat && !is_over(m, next) ? next : -INFINITY;
+    m->calm = !begins_beat(m, next) && !is_over(m, next) ? next : -INFINITY;
 }
 
 void himc_motion_stir(performance_motion *m)
@@ -808,8 +814,9 @@ void himc_motion_stir(performance_motion *m)
 long himc_motion_beat(performance_motion *m, double t)
 {
     long whole = whole_beat(m, t);
-    bool begun = whole != m->last_beat;
+    bool begun = begins_beat(m, t);
     m->last_beat = whole;
+    m->last_round = himc_planner_round(m->planner, t);
     return begun ? whole : -1;
 }
 

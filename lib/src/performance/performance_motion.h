@@ -73,8 +73,8 @@ typedef struct performance_motion {
     bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
-    long last_beat;
-    double calm; ///< no beat begins and no end comes before, if nothing changes (s)
+    long last_beat, last_round; ///< that have been reported
+    double calm;                ///< no beat begins and no end comes before, if nothing changes (s)
 } performance_motion;
 
 /// Motion from time 0 without a body: himc_motion_build gives it one. NULL without memory.

@@ -202,6 +202,7 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
         himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){*roll, drum, false, end});
         himc_planner_say(&planner->notes, PLANNER_GIVEN_UP,
                          "roll at beat %g: given up, that beat is past", roll->beat);
+        return 0; // that line is enough
     }
     return himc_planner_roll_left_out(score, at);
 }
@@ -467,6 +468,11 @@ double himc_planner_beat(const himc_planner *planner, double t)
     double beat = himc_planner_score_beat_at(score, t);
     return t < score->origin + himc_planner_score_round_length(score) ? fmax(beat, score->beat)
                                                                       : beat;
+}
+
+long himc_planner_round(const himc_planner *planner, double t)
+{
+    return (long)planner->score.past + himc_planner_score_round_at(&planner->score, t);
 }
 
 bool himc_planner_is_preparing(const himc_planner *planner, double t)

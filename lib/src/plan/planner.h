@@ -112,7 +112,8 @@ bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int 
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
 /// Adds a roll of so many strokes a second; `roll` has its kind, first beat, length and dynamics.
-/// Returns how many of its strokes are left out, too near to others; -1 with the reason.
+/// Returns how many of its strokes are left out, too near to others (0 if it is given up, which a
+/// note says); -1 with the reason.
 int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int drum, double rate,
                           himc_error *error);
 /// True if so many strokes can be added behind those of the score, as far as they are no rolls;
@@ -165,7 +166,8 @@ bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *temp
 /// dropped.
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                                double beat, himc_error *error);
-/// Sets the tempo (1 .. 1000 beats per minute) from `t` (s) to the next change of the tempo map.
+/// Sets the tempo (1 .. 1000 beats per minute) from `t` (s) to the next change of the tempo map; in
+/// a loop in place of the one valid at `t`, in later rounds too.
 /// The motion stays C2; a stroke less than 80 ms away keeps its time.
 HIMC_RT void himc_planner_tempo(himc_planner *planner, double t, double bpm);
 
@@ -232,6 +234,8 @@ HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, d
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
 /// begins again.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
+/// Round of the loop at time `t` since it began to play, from 0.
+HIMC_RT long himc_planner_round(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.
 HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
 /// End of the last stroke's contact, as predicted, or of all else (s). Infinite while stopped or in

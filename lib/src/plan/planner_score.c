@@ -235,6 +235,10 @@ void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
     int past = 1;
     while (past < score->tempo_count && score->tempi[past].beat <= beat)
         past++;
+    if (score->playing && score->loop) {
+        score->tempi[past - 1].bpm = bpm;
+        return;
+    }
     score->tempo_count -= past - 1;
     memmove(score->tempi + 1, score->tempi + past,
             (size_t)(score->tempo_count - 1) * sizeof *score->tempi);

@@ -130,7 +130,8 @@ void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *temp
 /// The tempo map up to `beat`, then another shifted to begin there; false without memory.
 bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change *tempi, int count,
                                    double beat, himc_error *error);
-/// One tempo up to the first change after `beat`.
+/// One tempo up to the first change after `beat`; in a loop that plays, only in place of the one
+/// valid at `beat`: the others are for later rounds.
 HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
