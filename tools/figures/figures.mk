@@ -162,6 +162,6 @@ $(TRIED)/costs.csv: $(BUILD)/tools/papers/measure $(PROGRAM)
 # all tables at once, and the commit that they are of
 TABLES := evaluation spread claim measures strokes strokes-default phases database landed first costs
 check-trials: $(patsubst %,$(TRIED)/%.csv,$(TABLES))
-	cp $^ $(RESULTS)
-	echo "commit $$(git describe --always --dirty=' with changes' --abbrev=40 --exclude '*'), $$(date -u +%F), $(TRIALS) trials" >$(RESULTS)/trials.txt
+	at=$$(git describe --always --dirty=' with changes' --abbrev=40 --exclude '*') && cp $^ $(RESULTS) && \
+	    echo "commit $$at, $$(date -u +%F), $(TRIALS) trials" >$(RESULTS)/trials.txt
 .PHONY: trials check-trials
