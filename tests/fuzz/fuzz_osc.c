@@ -308,7 +308,8 @@ static void fresh(void)
     himc_error error;
     himc_osc_config config = {.files = "tests/fuzz"};
     osc_clock clock = {monotonic, monotonic, NULL};
-    himc_performance_config rates = {16000, 1000, 250}; // to save time
+    himc_performance_config rates = {
+        .sample_rate = 16000, .physics_rate = 1000, .task_rate = 250}; // to save time
     himc_osc_free(osc);
     himc_performance_free(performance);
     performance = himc_performance_new(&rates, &error);

@@ -23,7 +23,7 @@ static himc_performance *make(void)
 {
     static const char *const none[] = {"none", NULL};
     himc_error error;
-    himc_performance_config rates = {RATE, 1000, 250};
+    himc_performance_config rates = {.sample_rate = RATE, .physics_rate = 1000, .task_rate = 250};
     himc_performance *p = himc_performance_new(&rates, &error);
     himc_drum *drum = himc_drum_new("kettle", 23, RATE, &error);
     require(p && drum && himc_performance_add_drum(p, drum, &error), "a performance");

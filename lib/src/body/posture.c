@@ -139,39 +139,37 @@ static himc_trunk_posture trunk_posture_after(const himc_trunk_posture *b, doubl
     return after;
 }
 
-// x''' = -3 w x'' - 3 w^2 x' - w^3 (x - goal) after t, exact for any w t: with e = x - goal
-// e = (e + (v + w e) t + (a + 2 w v + w^2 e) t^2 / 2) exp(-w t); in the end it is 0
-static void approach(const himc_trunk_posture *now, double w, double t, int begin, int end,
-                     himc_trunk_posture *then)
-{
-    double fade = exp(-w * t);
-    for (int i = begin; i < end; i++) {
-        double e = now->value[i] - then->value[i], b = now->rate[i] + w * e,
-               c = now->acceleration[i] + 2 * w * now->rate[i] + w * w * e;
-        double p = e + t * (b + 0.5 * t * c), v = b + t * c;
-        then->value[i] += fade * p;
-        then->rate[i] = fade * (v - w * p);
-        then->acceleration[i] = fade * (c + w * (w * p - 2 * v));
-    }
-}
-
+// x''' = -3 w x'' - 3 w^2 x' - w^3 (x - goal), constant during dt
 himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
                                                const himc_trunk_posture *goal, double dt)
 {
-    enum { ARMS = HIMC_TRUNK_POSTURE_ELBOW, SIDE = HIMC_TRUNK_POSTURE_SIDE };
-    himc_trunk_posture next = *goal;
-    approach(now, TRUNK_POSTURE_RATE, dt, 0, ARMS, &next);
-    approach(now, ARM_POSTURE_RATE, dt, ARMS, SIDE, &next);
-    approach(now, TRUNK_POSTURE_RATE, dt, SIDE, HIMC_TRUNK_POSTURE_PARTS, &next);
+    himc_trunk_posture next = trunk_posture_after(now, dt);
+    for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++) {
+        bool arms = i >= HIMC_TRUNK_POSTURE_ELBOW && i < HIMC_TRUNK_POSTURE_SIDE;
+        double w = arms ? ARM_POSTURE_RATE : TRUNK_POSTURE_RATE;
+        double jerk = w * (-3 * now->acceleration[i] +
+                           w * (-3 * now->rate[i] + w * (goal->value[i] - now->value[i])));
+        next.value[i] += jerk * dt * dt * dt / 6;
+        next.rate[i] += jerk * dt * dt / 2;
+        next.acceleration[i] += jerk * dt;
+    }
     return next;
 }
 
 himc_trunk_posture himc_trunk_posture_foreseen(const himc_trunk_posture *now,
                                                const himc_trunk_posture *goal, double time)
 {
+    // e = x - goal = (e + (v + w e) t + (a + 2 w v + w^2 e) t^2 / 2) exp(-w t); in the end it is 0
+    double w = TRUNK_POSTURE_RATE, t = fmin(time, FORESEEN_LONGEST), fade = exp(-w * t);
     himc_trunk_posture then = *goal;
-    approach(now, TRUNK_POSTURE_RATE, fmin(time, FORESEEN_LONGEST), 0, HIMC_TRUNK_POSTURE_ELBOW,
-             &then);
+    for (int i = 0; i < HIMC_TRUNK_POSTURE_ELBOW; i++) {
+        double e = now->value[i] - goal->value[i], b = now->rate[i] + w * e,
+               c = now->acceleration[i] + 2 * w * now->rate[i] + w * w * e;
+        double p = e + t * (b + 0.5 * t * c), v = b + t * c;
+        then.value[i] += fade * p;
+        then.rate[i] = fade * (v - w * p);
+        then.acceleration[i] = fade * (c + w * (w * p - 2 * v));
+    }
     return then;
 }
 

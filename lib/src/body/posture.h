@@ -63,7 +63,7 @@ HIMC_RT double himc_posture_seat(const himc_skeleton_config *body, double lowest
 /// middle, leaning forward as far as the farther one requires. At rest.
 HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip);
 
-/// The trunk posture `dt` seconds after `now` on its way to `goal`: critically damped
+/// The trunk posture `dt` seconds (up to 0.02) after `now` on its way to `goal`: critically damped
 /// motion of third order, so the acceleration has no jumps. It takes half a second from one drum
 /// to another.
 HIMC_RT himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,

@@ -6,7 +6,7 @@
 /// that of the last change at or before the last beat asked for.
 ///
 /// A change sets only what its command names. What a person has set on the drum since the heads
-/// were made stays (himc_drum_heads_notice): from then on a change acts on the drum's head as it is,
+/// were made stays (himc_drum_heads_notice): from then on a change acts on the head as it is,
 /// and is computed at its beat unless a head made ahead is the same.
 ///
 /// A change may be added to those in use: it is prepared beside them, with all that comes after it,

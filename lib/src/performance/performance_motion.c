@@ -21,6 +21,7 @@
 #define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
 #define REHEARSED_STEP 0.004    // of the rehearsed trunk, at most (s): a usual tick
 #define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
+#define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
 // postures a second of the planner's rehearsal; chosen: 10 % of a core, and a tenth of that near
 // contacts, whose steps cost most
 #define WORK 50000.0
@@ -337,7 +338,7 @@ static himc_vec3 attention(const performance_motion *m, const performance_drums 
 static himc_trunk_posture trunk_at(const performance_motion *m, double t)
 {
     return himc_trunk_posture_approach(&m->course.from, &m->course.goal,
-                                       fmax(t - m->course.time, 0));
+                                       fmin(fmax(t - m->course.time, 0), TRUNK_STEP));
 }
 
 // head, weight and breath; a take shows its own
