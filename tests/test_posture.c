@@ -369,6 +369,26 @@ static void test_feet_of_a_seated_body_stand_on_the_floor(void)
     }
 }
 
+// the longest step that is allowed, and a usual one: the same motion, which ends at its goal and never goes past it
+static void test_a_trunk_posture_approaches_its_goal_in_steps_of_any_length(void)
+{
+    himc_trunk_posture usual = {{0}, {0}, {0}}, goal = usual;
+    for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++)
+        goal.value[i] = 0.1 * (i + 1);
+    himc_trunk_posture longest = usual;
+    for (int k = 0; k < 100; k++) {
+        longest = himc_trunk_posture_approach(&longest, &goal, 0.02);
+        for (int j = 0; j < 5; j++)
+            usual = himc_trunk_posture_approach(&usual, &goal, 0.004);
+        for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++) {
+            TEST_ASSERT_DOUBLE_WITHIN(0.01 * goal.value[i], usual.value[i], longest.value[i]);
+            TEST_ASSERT_TRUE(longest.value[i] >= 0 && longest.value[i] <= 1.0001 * goal.value[i]);
+        }
+    }
+    for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, goal.value[i], longest.value[i]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -388,5 +408,6 @@ int main(void)
     RUN_TEST(test_left_and_right_mirror_each_other);
     RUN_TEST(test_thumbs_point_inwards_in_german_and_up_in_french_grip);
     RUN_TEST(test_feet_of_a_seated_body_stand_on_the_floor);
+    RUN_TEST(test_a_trunk_posture_approaches_its_goal_in_steps_of_any_length);
     return UNITY_END();
 }

@@ -59,7 +59,8 @@
 #define TURN_LIMIT 1.05         // (rad)
 #define ARM_POSTURE_RATE 40.0   // chosen: a quarter of a second for elbow and wrist (rad/s)
 #define TRUNK_POSTURE_RATE 11.0 // chosen: half a second from drum to drum (rad/s)
-#define FORESEEN_LONGEST 6.0    // after so long the trunk is at its goal (s)
+#define LONGEST_STEP 0.005 // chosen: of the motion to a goal (s); from 0.017 on it does not settle
+#define FORESEEN_LONGEST 6.0 // after so long the trunk is at its goal (s)
 // Rest of the body. Chosen: looks at a head half a metre ahead, sits with the feet flat.
 #define LOOK_DOWN 0.22     // of neck and head together (rad)
 #define ANKLE_HEIGHT 0.075 // (m)
@@ -140,8 +141,8 @@ static himc_trunk_posture trunk_posture_after(const himc_trunk_posture *b, doubl
 }
 
 // x''' = -3 w x'' - 3 w^2 x' - w^3 (x - goal), constant during dt
-himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
-                                               const himc_trunk_posture *goal, double dt)
+static himc_trunk_posture step_towards(const himc_trunk_posture *now,
+                                       const himc_trunk_posture *goal, double dt)
 {
     himc_trunk_posture next = trunk_posture_after(now, dt);
     for (int i = 0; i < HIMC_TRUNK_POSTURE_PARTS; i++) {
@@ -154,6 +155,16 @@ himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
         next.acceleration[i] += jerk * dt;
     }
     return next;
+}
+
+himc_trunk_posture himc_trunk_posture_approach(const himc_trunk_posture *now,
+                                               const himc_trunk_posture *goal, double dt)
+{
+    himc_trunk_posture next = *now;
+    double left = dt;
+    for (; left > LONGEST_STEP; left -= LONGEST_STEP)
+        next = step_towards(&next, goal, LONGEST_STEP);
+    return step_towards(&next, goal, left);
 }
 
 himc_trunk_posture himc_trunk_posture_foreseen(const himc_trunk_posture *now,
