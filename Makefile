@@ -293,7 +293,7 @@ soak: deps ## a session of HOURS=24 simulated hours (SEED=1 PHYSICS=10000): no d
 # of how many mutants, from which room
 COUNT ?= 200
 ROOM  ?=
-mutants: deps ## faults drawn at random, put into the library one at a time; what no unit test notices is told (SEED=1 COUNT=200 ROOM=plan)
+mutants: deps $(UNITY_DIR)/unity.c ## faults drawn at random, put into the library one at a time; what no unit test notices is told (SEED=1 COUNT=200 ROOM=plan)
 	@mkdir -p $(BUILD)
 	@HIMC_BUILD=$(BUILD) COMPILE="$(COMPILE)" SEED=$(SEED) COUNT=$(COUNT) ROOM=$(ROOM) tests/mutants/mutants.py
 
