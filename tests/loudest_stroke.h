@@ -23,7 +23,10 @@ static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUP
         peak[k] = 0;
     if (!copy)
         return false;
-    copy->fader = drum->fader;
+    bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
+    copy->gain = fmax(sounds ? drum->gain * drum->fader : 0, drum->level); // as set, or still is
+    copy->technique = HIMC_TECHNIQUE_MODAL;
+    copy->mute = false;
     for (int i = 0; i < 2; i++) {
         himc_drum_strike_at(copy, 0, place[i] * copy->place.radius, 0, speed, &error);
         for (int n = 0; n < LOUDEST_HEARD * copy->rate; n += 256) {

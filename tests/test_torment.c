@@ -25,6 +25,7 @@
 #define PLAYED 0.3  // (s) of the piece
 #define LOUDER 10.0 // 20 dB above the loudest real stroke
 #define THROWN 15.0 // (m/s) a tip that has been so fast was thrown: gains that hold no arm ...
+#define INAUDIBLE 1e-5 // full scale: what the noise of a blow leaves in a channel that is made after it
 #define THROWN_LOUDER 100.0 // ... and the weight of that arm is behind its blows
 #define OF_TEMPO 0.2        // share of commands that change the tempo, or what depends on it
 #define HEAVIEST_BLOW 450   // (J) a mallet of 1 kg, the heaviest, at 30 m/s
@@ -231,11 +232,11 @@ static void check_sound(const himc_drum *d, int slot, int pickup, int n)
         sum += sound[i];
     }
     double *scale = &loudest[slot][pickup], louder = thrown ? THROWN_LOUDER : LOUDER;
-    if (most > louder * *scale) // the head may have changed by itself
+    if (most > louder * fmax(*scale, INAUDIBLE)) // the head may have changed by itself
         hear_loudest(d, slot);
     seen.loudest = fmax(seen.loudest, most);
-    seen.share = fmax(seen.share, *scale > 0 ? most / *scale : 0);
-    if (!isfinite(sum) || most > louder * *scale) {
+    seen.share = fmax(seen.share, most / fmax(*scale, INAUDIBLE));
+    if (!isfinite(sum) || most > louder * fmax(*scale, INAUDIBLE)) {
         printf("%g, the loudest stroke %g\n", most, *scale);
         fail(thrown ? "a sample 40 dB above the loudest real stroke, after an arm was thrown"
                     : "a sample 20 dB above the loudest real stroke");
