@@ -172,6 +172,25 @@ static void test_tracks_of_format_2_follow_each_other(void)
     himc_midi_file_free(&file);
 }
 
+static void test_a_note_ends_at_its_note_off_or_with_the_file(void)
+{
+    builder b;
+    midi_file file;
+    begin(&b);
+    event(&b, 0, 0x99, 36, 90);
+    event(&b, 0, 0x99, 43, 90);
+    event(&b, QUARTER, 0x99, 36, 0);
+    event(&b, QUARTER, 0x99, 36, 90);
+    event(&b, QUARTER, 0x99, 36, 0);
+    end(&b);
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, b.bytes, b.size, &error), error.text);
+    TEST_ASSERT_EQUAL_INT(3, file.note_count);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, file.notes[0].off);
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, file.notes[1].off);
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, file.notes[2].off);
+    himc_midi_file_free(&file);
+}
+
 // wherever a file ends, what was there is kept, or one line refuses it
 static void test_a_file_cut_anywhere_is_read_up_to_there_or_refused_in_a_line(void)
 {
@@ -510,6 +529,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_reader_finds_the_notes_that_mido_finds);
     RUN_TEST(test_tracks_of_format_2_follow_each_other);
+    RUN_TEST(test_a_note_ends_at_its_note_off_or_with_the_file);
     RUN_TEST(test_a_file_cut_anywhere_is_read_up_to_there_or_refused_in_a_line);
     RUN_TEST(test_a_bad_file_is_refused_in_one_line);
     RUN_TEST(test_velocities_become_dynamics_by_both_curves);
