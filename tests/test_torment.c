@@ -25,7 +25,8 @@
 #define PLAYED 0.3  // (s) of the piece
 #define LOUDER 10.0 // 20 dB above the loudest real stroke
 #define THROWN 15.0 // (m/s) a tip that has been so fast was thrown: gains that hold no arm ...
-#define INAUDIBLE 1e-5 // full scale: what the noise of a blow leaves in a channel that is made after it
+// of full scale: what the noise of a blow leaves in a channel that is made after it
+#define INAUDIBLE 1e-5
 #define THROWN_LOUDER 100.0 // ... and the weight of that arm is behind its blows
 #define OF_TEMPO 0.2        // share of commands that change the tempo, or what depends on it
 #define HEAVIEST_BLOW 450   // (J) a mallet of 1 kg, the heaviest, at 30 m/s
@@ -150,11 +151,19 @@ static void remember(const spoken *s, int drum, int delay)
 // The loudest real stroke of each channel, of all settings of a drum since the round began: a head
 // that is set to be softer still rings as it did.
 static double loudest[HIMC_DRUMS][HIMC_PICKUPS];
-static bool thrown; // since the round began
+static double fastest[HIMC_DRUMS]; // wave across a head (1/s) since the round began
+static bool thrown;                // since the round began
+
+static double wave(const himc_drum *d)
+{
+    const himc_head *head = himc_membrane_head(d->membrane);
+    return sqrt(head->tension / head->density) / head->radius;
+}
 
 static void hear_loudest(const himc_drum *d, int slot)
 {
     double now[HIMC_PICKUPS];
+    fastest[slot] = fmax(fastest[slot], wave(d));
     seen.measured++;
     TEST_ASSERT_TRUE(loudest_stroke(d, now));
     for (int k = 0; k < HIMC_PICKUPS; k++)
@@ -222,7 +231,8 @@ static void take_notes(himc_performance *p, finite_watch *watch)
     }
 }
 
-// the samples of a drum's pickup against the loudest real stroke
+// The samples of a drum's pickup against the loudest real stroke. A head that rings while it is made
+// slacker keeps its speed: a pickup of displacement, at a point, shows it wider as it is slower.
 static void check_sound(const himc_drum *d, int slot, int pickup, int n)
 {
     double sound[LONGEST_BLOCK], most = 0, sum = 0;
@@ -231,13 +241,17 @@ static void check_sound(const himc_drum *d, int slot, int pickup, int n)
         most = fmax(most, fabs(sound[i]));
         sum += sound[i];
     }
+    int count;
+    const himc_pickup *at = himc_membrane_pickups(d->membrane, &count);
     double *scale = &loudest[slot][pickup], louder = thrown ? THROWN_LOUDER : LOUDER;
+    if (pickup < count && at[pickup].kind == HIMC_PICKUP_POINT)
+        louder *= fmax(1, fastest[slot] / wave(d));
     if (most > louder * fmax(*scale, INAUDIBLE)) // the head may have changed by itself
         hear_loudest(d, slot);
     seen.loudest = fmax(seen.loudest, most);
     seen.share = fmax(seen.share, most / fmax(*scale, INAUDIBLE));
     if (!isfinite(sum) || most > louder * fmax(*scale, INAUDIBLE)) {
-        printf("%g, the loudest stroke %g\n", most, *scale);
+        printf("%s, channel %d: %g, the loudest stroke %g\n", d->name, pickup, most, *scale);
         fail(thrown ? "a sample 40 dB above the loudest real stroke, after an arm was thrown"
                     : "a sample 20 dB above the loudest real stroke");
     }
@@ -387,6 +401,7 @@ static void test_hostile_commands_leave_a_performance_finite_bounded_and_as_good
         write_files();
         TEST_ASSERT_TRUE(finite_watch_begin(&of.watch, of.p));
         memset(loudest, 0, sizeof loudest);
+        memset(fastest, 0, sizeof fastest);
         thrown = false;
         for (int i = 0; i < ROUND; i++) {
             say_one(&of, &seed);
