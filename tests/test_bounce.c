@@ -29,7 +29,6 @@ static int bounce_on(himc_bounce *b, double impact, double e, double speed[], in
         TEST_ASSERT_TRUE(energy_of(b, y, v) <= energy + 1e-6 * (1 + energy));
         if (y > 0 || v > 0)
             continue;
-        himc_bounce_touched(b, t, -v);
         speed[n++] = -v;
         t += contact;
         v *= -e;
@@ -46,7 +45,7 @@ static void test_energy_of_a_bounce_never_grows_and_its_impacts_fall(void)
     for (int i = 0; i < 200; i++) {
         int bounces = i % 2 ? HIMC_BUZZ : 1;
         double time = 0.02 + 0.18 * chance(&seed), impact = 0.3 + 5 * chance(&seed);
-        himc_bounce b = himc_bounce_begin(bounces, time, 0, impact);
+        himc_bounce b = himc_bounce_begin(bounces, time, 0);
         int n = bounce_on(&b, impact, 0.55 + 0.4 * chance(&seed), speed, 40);
         for (int k = 1; k < n; k++)
             TEST_ASSERT_TRUE(speed[k] < speed[k - 1]);
@@ -56,7 +55,7 @@ static void test_energy_of_a_bounce_never_grows_and_its_impacts_fall(void)
 static void test_bounces_end_in_time_also_without_a_head(void)
 {
     for (int bounces = HIMC_BUZZ; bounces <= 1; bounces += 2) {
-        himc_bounce b = himc_bounce_begin(bounces, 0.1, 2, 1);
+        himc_bounce b = himc_bounce_begin(bounces, 0.1, 2);
         himc_bounce_separated(&b, 2.01, 0.001, 0, 0.8);
         TEST_ASSERT_FALSE(himc_bounce_is_over(&b, 2.05, -1));
         TEST_ASSERT_TRUE(himc_bounce_is_over(&b, 2.2, -1));
@@ -69,9 +68,9 @@ static void test_a_double_comes_when_it_shall_unless_it_is_too_fast_for_fingers(
     for (double time = 0.02; time < 0.08; time += 0.01)
         for (double e = 0.6; e < 0.95; e += 0.1) {
             double impact = fmin(2, himc_bounce_fastest(1, time));
-            himc_bounce b = himc_bounce_begin(1, time, 0, impact);
+            himc_bounce b = himc_bounce_begin(1, time, 0);
             TEST_ASSERT_EQUAL_INT(2, bounce_on(&b, impact, e, speed, 2));
-            himc_bounce hard = himc_bounce_begin(1, time, 0, 8), again = b;
+            himc_bounce hard = himc_bounce_begin(1, time, 0), again = b;
             himc_bounce_separated(&again, 7e-3, 0, 0, e * impact);
             himc_bounce_separated(&hard, 7e-3, 0, 0, 8 * e);
             TEST_ASSERT_TRUE(hard.stiffness > again.stiffness);
@@ -170,35 +169,59 @@ static void test_doubles_have_two_contacts_a_quarter_period_apart_at_4_to_12_Hz(
     plays_doubles("himc", 12);
 }
 
-static void plays_buzzes(const char *mode, const char *dynamic)
+#define ROLL_END 3.0 // of the press rolls (s)
+
+// The last stroke of the roll has less time: three contacts or more, and all before the end. The
+// head swings, more on a large drum and when loud, so contact by contact the mean gets softer.
+static void plays_buzzes(const char *mode, const char *drum, const char *dynamic)
 {
-    himc_performance *p = with_kettle(mode);
+    himc_performance *p = session_new();
     heard h = {0};
-    group groups[2][8] = {{{.count = 0}}};
-    session_do(p, "roll 1 1 press %s", dynamic);
+    group groups[2][16] = {{{.count = 0}}};
+    double mean[5] = {0}, last = 0;
+    int strokes = 0, contacts = 0;
+    session_do(p, "drum %s", drum);
+    session_drum(p, 0, strstr(drum, "32") ? "tune C2" : "tune A2");
+    session_do(p, "mode %s", mode);
+    session_do(p, "tempo 60");
+    session_do(p, "roll 1 2 press %s", dynamic);
     session_do(p, "play");
-    session_play(p, 2.5, &h);
-    for (int hand = 0; hand < 2; hand++)
-        for (int i = groups_of(&h, (himc_hand)hand, groups[hand]) - 1; i >= 0; i--) {
+    session_play(p, 4.5, &h);
+    for (int hand = 0; hand < 2; hand++) {
+        int n = groups_of(&h, (himc_hand)hand, groups[hand]);
+        for (int i = 0; i < n; i++, strokes++) {
             const group *g = &groups[hand][i];
-            TEST_ASSERT_TRUE(g->count >= 5);
-            gets_softer(g);
-            for (int k = 1; k < g->count; k++)
-                TEST_ASSERT_TRUE(g->time[k] - g->time[k - 1] > 0.02 &&
-                                 g->time[k] - g->time[k - 1] < 0.06);
+            TEST_ASSERT_TRUE(g->count >= 3);
+            for (int k = 1; k < g->count && k < 4; k++) // the soft ones after them may chatter
+                TEST_ASSERT_DOUBLE_WITHIN(0.04, 0.06, g->time[k] - g->time[k - 1]);
+            for (int k = 0; k < g->count && k < 5; k++)
+                mean[k] += g->speed[k];
+            contacts += g->count;
         }
+        last = fmax(last, groups[hand][n - 1].time[groups[hand][n - 1].count - 1]);
+    }
+    printf("%s, %s %s: %.1f contacts a stroke, the last %.0f ms before the end, speeds", mode, drum,
+           dynamic, (double)contacts / strokes, 1e3 * (ROLL_END - last));
+    for (int k = 0; k < 5; k++)
+        printf(" %.2f", mean[k] / strokes);
+    printf("\n");
+    for (int k = 1; k < 5; k++)
+        TEST_ASSERT_TRUE(mean[k] < mean[k - 1]);
+    TEST_ASSERT_TRUE(contacts > 4.5 * strokes && last < ROLL_END);
     TEST_ASSERT_EQUAL_INT(himc_performance_measure(p).strokes, himc_performance_measure(p).played);
-    TEST_ASSERT_TRUE(h.notes <= 1); // faster than its bounces allow
-    TEST_ASSERT_TRUE(himc_performance_measure(p).strokes > 5);
+    TEST_ASSERT_TRUE(h.notes <= 1);
+    TEST_ASSERT_TRUE(strokes > 8);
     heard_free(&h);
     himc_performance_free(p);
 }
 
-static void test_each_stroke_of_a_press_roll_has_five_contacts_or_more_that_get_softer(void)
+static void test_strokes_of_a_press_roll_have_five_contacts_that_get_softer_and_end_in_time(void)
 {
-    plays_buzzes("himc", "p");
-    plays_buzzes("id", "f");
-    plays_buzzes("ik", "mf");
+    plays_buzzes("himc", "kettle 26", "p");
+    plays_buzzes("id", "kettle 26", "f");
+    plays_buzzes("ik", "kettle 26", "mf");
+    plays_buzzes("himc", "kettle 32", "pp");
+    plays_buzzes("himc", "kettle 32", "mf");
 }
 
 // ornaments
@@ -298,7 +321,7 @@ static void test_info_tells_the_servo_grip(void)
 static void test_ornaments_do_not_depend_on_the_block_size(void)
 {
     static const char *const lines[] = {"roll 1 0.5 double mf", "drag 2 left legato f",
-                                        "roll 2.5 0.5 press p f", NULL};
+                                        "roll 2.5 1 press p f", NULL};
     heard a = play_piece(lines, 4, 64), b = play_piece(lines, 4, 1500);
     TEST_ASSERT_TRUE(a.strikes > 30);
     TEST_ASSERT_EQUAL_INT(a.strikes, b.strikes);
@@ -420,7 +443,7 @@ int main(void)
     RUN_TEST(test_bounces_end_in_time_also_without_a_head);
     RUN_TEST(test_a_double_comes_when_it_shall_unless_it_is_too_fast_for_fingers);
     RUN_TEST(test_doubles_have_two_contacts_a_quarter_period_apart_at_4_to_12_Hz);
-    RUN_TEST(test_each_stroke_of_a_press_roll_has_five_contacts_or_more_that_get_softer);
+    RUN_TEST(test_strokes_of_a_press_roll_have_five_contacts_that_get_softer_and_end_in_time);
     RUN_TEST(test_grace_notes_come_before_the_beat_by_their_hands_and_softer);
     RUN_TEST(test_between_their_bounces_tips_are_on_their_targets);
     RUN_TEST(test_with_the_servo_grip_nothing_bounces);

@@ -157,7 +157,8 @@ static void test_rounds_of_a_loop_whose_tempo_changed_in_a_roll_are_whole_rolls(
             continue;
         if (h.strike[i].hand == HIMC_RIGHT && i - from > 5 && accents > 1) {
             intervals own = intervals_of(&h, from, i);
-            TEST_ASSERT_DOUBLE_WITHIN(0.001, own.mean, own.most);
+            TEST_ASSERT_DOUBLE_WITHIN(0.13 * own.mean, own.mean, own.most); // as a player's
+            TEST_ASSERT_DOUBLE_WITHIN(0.13 * own.mean, own.mean, own.least);
             TEST_ASSERT_DOUBLE_WITHIN(0.01, 2,
                                       h.strike[i].planned_time - h.strike[from].planned_time);
             TEST_ASSERT_EQUAL_INT(0, (i - from) % 2);
@@ -185,10 +186,13 @@ static void test_play_from_within_a_roll_plays_the_rest_of_it(void)
     }
     sort(&h);
     sort(&all);
-    TEST_ASSERT_EQUAL_INT(all.strikes / 2, h.strikes);
+    int first = 0;
+    while (all.strike[first].beat < 2)
+        first++;
+    TEST_ASSERT_EQUAL_INT(all.strikes - first, h.strikes);
     for (int i = 0; i < h.strikes; i++) {
-        TEST_ASSERT_EQUAL_INT(all.strike[all.strikes / 2 + i].hand, h.strike[i].hand);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, all.strike[all.strikes / 2 + i].beat, h.strike[i].beat);
+        TEST_ASSERT_EQUAL_INT(all.strike[first + i].hand, h.strike[i].hand);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, all.strike[first + i].beat, h.strike[i].beat);
     }
     heard_free(&h);
     heard_free(&all);

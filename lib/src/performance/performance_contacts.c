@@ -349,14 +349,12 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                               .beat = planned ? next.beat : NAN};
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
     strcpy(c->strike.nuance, nuance.text);
-    if (bounced)
-        himc_bounce_touched(&c->bounce, time, -velocity);
-    else if (!planned)
+    if (!bounced && !planned)
         himc_statistics_unplanned(s->statistics);
     if (!planned)
         return;
     if (next.bounces && !s->settings->servo)
-        c->bounce = himc_bounce_begin(next.bounces, next.bounce_time, time, -velocity);
+        c->bounce = himc_bounce_begin(next.bounces, next.bounce_time, time);
     double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
     bool played =
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;

@@ -12,7 +12,6 @@ typedef struct himc_bounce {
     double time;      ///< from the first contact to the second, or to the last (s)
     double begin;     ///< of the first contact (s)
     int contacts;     ///< ended so far
-    double impact;    ///< speed of the last touch (m/s)
     double rest;      ///< height at which the grip is at rest (m)
     double stiffness; ///< of the grip, omega^2 (1/s^2)
     double damping;   ///< 2 zeta omega (1/s)
@@ -23,11 +22,11 @@ typedef struct himc_bounce {
 /// time; infinite without bounces.
 HIMC_RT double himc_bounce_fastest(int bounces, double time);
 
-/// The first contact, at `t` with that speed (m/s, down).
-HIMC_RT himc_bounce himc_bounce_begin(int bounces, double time, double t, double impact);
+/// Time that fingers need for all contacts of a stroke of that speed (m/s), also of a full buzz.
+HIMC_RT double himc_bounce_full_time(int bounces, double speed);
 
-/// Another touch at `t` with that speed.
-HIMC_RT void himc_bounce_touched(himc_bounce *bounce, double t, double impact);
+/// The first contact, at `t`.
+HIMC_RT himc_bounce himc_bounce_begin(int bounces, double time, double t);
 
 /// The fingers' acceleration of the tip along the normal (m/s^2).
 HIMC_RT double himc_bounce_acceleration(const himc_bounce *bounce, double height, double velocity);

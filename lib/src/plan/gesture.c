@@ -21,7 +21,6 @@
 
 #include <math.h>
 
-#define FORTE (5.0 / 7)     // dynamic of f, the fifth step from ppp = 0 to fff = 1
 #define FORTE_OVER_PPP 7.2  // speed ratio; with the next, 10 from ppp to fff
 #define FFF_OVER_FORTE 1.39 // speed ratio of the louder takes
 
@@ -54,18 +53,29 @@ static const struct profile {
     [HIMC_STACCATO] = {.36, 2.8, 2.0, .8, .05, .24, .16, 0, .75, 0.8},
 };
 
+static double dynamic_of(double louder)
+{
+    double step =
+        louder < 1 ? HIMC_FORTE / log(FORTE_OVER_PPP) : (1 - HIMC_FORTE) / log(FFF_OVER_FORTE);
+    return HIMC_FORTE + step * log(louder);
+}
+
 double himc_gesture_dynamic(double louder)
 {
-    double d = louder < 1 ? FORTE * log(louder) / log(FORTE_OVER_PPP)
-                          : (1 - FORTE) * log(louder) / log(FFF_OVER_FORTE);
-    return fmax(0, fmin(FORTE + d, 1));
+    return fmax(0, fmin(dynamic_of(louder), 1));
+}
+
+double himc_gesture_dynamic_at(himc_nuance nuance, double speed)
+{
+    return fmin(dynamic_of(speed / profile[nuance].speed), 1);
 }
 
 himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic)
 {
     const struct profile *p = &profile[nuance];
-    double d = dynamic - FORTE;
-    double louder = d < 0 ? pow(FORTE_OVER_PPP, d / FORTE) : pow(FFF_OVER_FORTE, d / (1 - FORTE));
+    double d = dynamic - HIMC_FORTE;
+    double louder =
+        d < 0 ? pow(FORTE_OVER_PPP, d / HIMC_FORTE) : pow(FFF_OVER_FORTE, d / (1 - HIMC_FORTE));
     himc_gesture g = {.dwell = p->dwell,
                       .rise = p->rise,
                       .arc = p->arc,
@@ -105,14 +115,6 @@ himc_gesture himc_gesture_scale(himc_gesture g, double factor)
     g.height = fmax(fmin(g.height * factor, HIGHEST_GESTURE), LOWEST_GESTURE);
     g.down = shape * g.height / g.speed;
     return g;
-}
-
-double himc_gesture_softer(double dynamic, double factor)
-{
-    double d = dynamic - FORTE, below = log(FORTE_OVER_PPP) / FORTE,
-           above = log(FFF_OVER_FORTE) / (1 - FORTE);
-    double level = d * (d < 0 ? below : above) + log(factor);
-    return fmin(fmax(FORTE + level / (level < 0 ? below : above), 0), 1);
 }
 
 double himc_gesture_time(const himc_gesture *gesture, double height)

@@ -8,6 +8,9 @@
 /// while v T/h <= 2.5. Chosen: 4 % less.
 #define HIMC_STEEPEST_QUINTIC 2.4
 
+/// Dynamic of f, the fifth step from ppp = 0 to fff = 1.
+#define HIMC_FORTE (5.0 / 7)
+
 /// A gesture that would have to be slower has this speed (m/s), and no hand plays it. Chosen: a
 /// tenth of ppp.
 #define HIMC_SLOWEST_GESTURE 0.04
@@ -38,8 +41,9 @@ HIMC_RT himc_gesture himc_gesture_from(const himc_unit *unit, himc_nuance nuance
 /// limits of all strokes, HIMC_SLOWEST_GESTURE among them.
 HIMC_RT himc_gesture himc_gesture_scale(himc_gesture gesture, double factor);
 
-/// The dynamic (0 .. 1) of a stroke with `factor` times the speed of one of that dynamic.
-HIMC_RT double himc_gesture_softer(double dynamic, double factor);
+/// The dynamic with which a stroke of that nuance has that speed (m/s, > 0), 1 at most; below 0 for
+/// one that is softer than ppp, as a grace note may be.
+HIMC_RT double himc_gesture_dynamic_at(himc_nuance nuance, double speed);
 
 /// Time of the stroke from a tip at rest `height` above the point of contact (s).
 HIMC_RT double himc_gesture_time(const himc_gesture *gesture, double height);

@@ -2,16 +2,22 @@
 ///
 /// No tables of their times have been published, and names differ by school; the figures are chosen
 /// as percussionists describe them. Timpani rolls are single strokes, faster on a higher drum and
-/// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. A double roll
-/// has fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce
-/// comes half a stroke later. In a press roll each stroke bounces on a little longer than to the
-/// next one, so that the hands overlap. Grace notes keep their time before the beat at any tempo, a
-/// roll its rate (planner_roll.c). The other hand plays them all, the second of a drag or a ruff as
-/// a bounce, so that the hand of the main stroke has all its time since its stroke before: after a
-/// grace note of its own, 90 ms earlier, an arm has no forte. A ruff is as a drag, more open.
+/// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. From f on they
+/// get no faster, as arms then need all the time for their speed. A double roll has fewer arm
+/// strokes, each of which bounces once, so that all contacts are even: the bounce comes half a
+/// stroke later. In a press roll each stroke bounces on a little longer than to the next one, so
+/// that the hands overlap. Both slow down when loud, until fingers can turn the stick round in time
+/// (bounce.c): a louder roll is louder.
+///
+/// Grace notes keep their time before the beat at any tempo, a roll its rate (planner_roll.c). The
+/// other hand plays them all, the second of a drag or a ruff as a bounce, so that the hand of the
+/// main stroke has all its time since its stroke before: after a grace note of its own, 90 ms
+/// earlier, an arm has no forte. A ruff is as a drag, more open.
 #include "plan/ornament.h"
 
+#include "plan/bounce.h"
 #include "plan/planner_motion.h"
+#include "plan/planner_roll.h"
 
 #define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
 
@@ -19,7 +25,7 @@
 #define USUAL_RATE 11.0
 #define USUAL_PITCH 110.0 // (Hz)
 #define SOFT_RATE 0.85    // share at ppp ...
-#define LOUD_RATE 0.3     // ... and so much more at fff
+#define LOUD_RATE 0.3     // ... and so much more for a dynamic of 1, up to f
 #define SLOWEST_SINGLE 8.0
 #define FASTEST_SINGLE 16.0
 #define DOUBLE_SHARE 0.8 // of the rate of singles
@@ -28,6 +34,8 @@
 #define PRESS_SHARE 0.6 // march tempo with five bounces each
 #define SLOWEST_PRESS 5.0
 #define FASTEST_PRESS 8.0
+#define DOUBLE_GAP 0.44  // of the time between strokes: to the bounce, where they are nearest
+#define SLOWEST_LOUD 6.0 // of loud doubles, which wait for their bounces; chosen: still a roll
 
 // grace notes; chosen, see above
 #define FLAM_TIME 0.025  // before the beat (s) ...
@@ -35,7 +43,8 @@
 #define DRAG_TIME 0.040  // between the notes of a drag (s)
 #define RUFF_TIME 0.045  // ... and of a ruff (s)
 #define GRACE_SHARE 0.35 // of the time since the stroke before, all together, at most
-#define GRACE_SPEED 0.4  // of the stroke's speed
+#define GRACE_SPEED 0.4  // of the stroke's speed; of two their mean
+#define GRACE_FIRST 1.13 // of two the first over the mean, as a bounce keeps .77 of its speed
 #define LOUD 0.8         // dynamic from which graces are wider
 #define SLOW_PERIOD 0.85 // a beat longer than this, too (s): 70 beats a minute
 #define WIDER 1.2
@@ -58,10 +67,11 @@ static void add_grace(addition *to, const himc_stroke *stroke, double early, dou
     himc_stroke grace = *stroke;
     grace.ornament = HIMC_PLAIN;
     grace.hand = stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
-    // a staccato ppp is softer than any legato
+    double speed = GRACE_SPEED * himc_gesture_of(stroke->nuance, stroke->dynamic).speed;
     if (stroke->nuance != HIMC_STACCATO)
         grace.nuance = HIMC_LEGATO;
-    grace.dynamic = himc_gesture_softer(stroke->dynamic, GRACE_SPEED);
+    grace.dynamic =
+        himc_gesture_dynamic_at(grace.nuance, speed * (bounce_time > 0 ? GRACE_FIRST : 1));
     grace.early = early;
     grace.bounces = bounce_time > 0;
     grace.bounce_time = bounce_time;
@@ -94,11 +104,18 @@ static double clip(double x, double low, double high)
 /// Strokes of both arms a second.
 static double rate_of(const himc_stroke *roll, double pitch)
 {
-    double dynamic = 0.5 * (roll->dynamic + roll->last_dynamic);
+    double dynamic = fmin(0.5 * (roll->dynamic + roll->last_dynamic), HIMC_FORTE);
     double rate = USUAL_RATE * sqrt(pitch / USUAL_PITCH) * (SOFT_RATE + LOUD_RATE * dynamic);
+    // of its loudest stroke
+    double speed = himc_gesture_of(roll->nuance, fmax(roll->dynamic, roll->last_dynamic)).speed,
+           bounce = himc_bounce_full_time(roll->bounces, speed);
     switch (roll->ornament) {
-    case HIMC_ROLL_DOUBLE: return clip(DOUBLE_SHARE * rate, SLOWEST_DOUBLE, FASTEST_DOUBLE);
-    case HIMC_ROLL_PRESS: return clip(PRESS_SHARE * rate, SLOWEST_PRESS, FASTEST_PRESS);
+    case HIMC_ROLL_DOUBLE:
+        rate = clip(DOUBLE_SHARE * rate, SLOWEST_DOUBLE, FASTEST_DOUBLE);
+        return fmin(rate, fmax(DOUBLE_GAP / bounce, SLOWEST_LOUD));
+    case HIMC_ROLL_PRESS:
+        rate = clip(PRESS_SHARE * rate, SLOWEST_PRESS, FASTEST_PRESS);
+        return fmin(rate, fmax(PLANNER_PRESS_OVERLAP / bounce, SLOWEST_PRESS));
     default: return clip(rate, SLOWEST_SINGLE, FASTEST_SINGLE);
     }
 }
@@ -110,7 +127,7 @@ static void add_roll(addition *to, const himc_stroke *roll, double pitch)
     s.bounces = roll->ornament == HIMC_ROLL_DOUBLE  ? 1
                 : roll->ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
                                                     : 0;
-    int left_out = himc_planner_add_roll(to->planner, &s, to->drum, rate_of(roll, pitch), &unused);
+    int left_out = himc_planner_add_roll(to->planner, &s, to->drum, rate_of(&s, pitch), &unused);
     to->left_out += left_out < 0 ? 1 : left_out;
 }
 

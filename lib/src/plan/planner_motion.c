@@ -371,15 +371,20 @@ static himc_gesture in_haste(himc_planner *planner, const timed_stroke *s)
 /// before.
 static void tell_haste(himc_planner *planner, const timed_stroke *struck)
 {
-    char name[64];
+    char text[64];
     double speed = struck->goal.gesture.speed;
-    // a roll's strokes are as fast as its drum asks
-    if (struck->stroke.ornament >= HIMC_ROLL_SINGLE || speed >= SOFTER_SHARE * struck->asked)
+    if (speed >= SOFTER_SHARE * struck->asked)
         return;
+    const char *name = name_of(struck, text);
+    if (struck->roll) {
+        himc_format(text, sizeof text, "roll at beat %g",
+                    planner->score.roll[struck->roll - 1].stroke.beat);
+        name = text;
+    }
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
     himc_planner_say(&planner->notes, PLANNER_HURRIED,
-                     "%s: too little time for %.2g m/s, struck with %.2g", name_of(struck, name),
-                     struck->asked, speed);
+                     "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,
+                     speed);
 }
 
 /// Whether a varied stroke can be played, and leaves as much to the stroke after it as the written

@@ -5,6 +5,9 @@
 
 #include "plan/planner_score.h"
 
+/// A buzz of a press roll lasts so many strokes. Chosen: the hands overlap.
+#define PLANNER_PRESS_OVERLAP 1.1
+
 /// Adds a roll of so many strokes a second of both hands; `stroke` has its kind, length and
 /// dynamics. Returns its index, or -1 with the reason.
 int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, int drum, double rate,
