@@ -236,7 +236,21 @@ static void test_a_file_may_be_descriptor_0(void)
         dup2(input, 0);
         TEST_ASSERT_TRUE_MESSAGE(good, error.text);
     }
-    TEST_ASSERT_NULL(himc_file_read(folder, &error)); // refused, and closed again
+    // inside a folder, which has the descriptor before its file does
+    close(0);
+    size_t size;
+    char *bytes = himc_file_load_in(folder, "good.trc", 1 << 20, &size, &error);
+    dup2(input, 0);
+    TEST_ASSERT_NOT_NULL_MESSAGE(bytes, error.text);
+    free(bytes);
+    // what is refused is closed again: 0 is free
+    close(0);
+    FILE *none[] = {himc_file_read(folder, &error), himc_file_read("/dev/null", &error)};
+    char *beside = himc_file_load_in(folder, ".", 1 << 20, &size, &error);
+    int free_one = dup(input);
+    dup2(input, 0);
+    TEST_ASSERT_TRUE(!none[0] && !none[1] && !beside);
+    TEST_ASSERT_EQUAL_INT(0, free_one);
     close(input);
 }
 
