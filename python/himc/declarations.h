@@ -5,7 +5,7 @@ typedef struct himc_performance himc_performance;
 typedef struct himc_take himc_take;
 
 typedef struct {
-    double joint[19]; double contact[2]; double push, placed, numerical, kinetic, potential; double felt[2]; double heads, lost;
+    double joint[19]; double contact[2]; double mallet[2]; double push, placed, numerical, kinetic, potential; double felt[2]; double heads, lost;
 } himc_energy;
 
 typedef struct {
@@ -13,7 +13,7 @@ typedef struct {
     himc_vec3 target[2]; himc_vec3 tip[2]; double force[2]; himc_vec3 joint[19]; himc_vec3 elbow[2]; double limit[19];
     himc_vec3 target_velocity[2]; himc_vec3 tip_velocity[2]; himc_vec3 tip_error[2]; double joint_error[19];
     himc_quat rotation[19]; himc_vec3 rate[19]; himc_vec3 acceleration[19]; himc_vec3 torque[19]; double power[19];
-    himc_vec3 segment[20]; himc_quat orientation[20]; himc_vec3 center[20]; himc_vec3 tip_force[2]; double impulse[2];
+    himc_vec3 segment[20]; himc_quat orientation[20]; himc_vec3 center[20]; himc_vec3 tip_force[2]; himc_vec3 mallet_force[2]; double impulse[2];
     himc_vec3 push[20]; himc_vec3 push_at[20]; double null_space[2]; himc_energy energy;
 } himc_motion_row;
 

@@ -501,8 +501,9 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             continue;
         double impulse =
             note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
-        if (impulse > 0)
-            himc_statistics_given(s->statistics, -work_on(&before[hand], &c->hand[hand].stick));
+        double work = impulse > 0 ? work_on(&before[hand], &c->hand[hand].stick) : 0;
+        himc_statistics_contact_work(s->statistics, (himc_hand)hand, work,
+                                     (1 - c->hand[hand].share) * work);
         double force = impulse * s->clock->sample_rate / n;
         tip_force[hand] =
             himc_vec3_scale(normal_of(s, near.below[hand]), c->hand[hand].share * force);

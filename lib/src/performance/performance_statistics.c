@@ -70,9 +70,11 @@ void himc_statistics_hit(performance_statistics *s, double latency)
     s->hits++;
 }
 
-void himc_statistics_given(performance_statistics *s, double work)
+void himc_statistics_contact_work(performance_statistics *s, himc_hand hand, double work,
+                                  double own)
 {
-    s->given += work;
+    s->given -= work;
+    s->mallet[hand] += own;
 }
 
 void himc_statistics_force(performance_statistics *s, double force)

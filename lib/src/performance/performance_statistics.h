@@ -23,7 +23,8 @@ typedef struct performance_statistics {
     double rate[HIMC_JOINTS];   ///< largest squared rate of each joint (rad^2/s^2)
     double torque[HIMC_JOINTS]; ///< largest squared torque (N^2 m^2)
     long recoveries;
-    double given; ///< by sticks to heads (J)
+    double given;              ///< by sticks to heads (J)
+    double mallet[HIMC_HANDS]; ///< work of the heads on mallets' own masses since the rows began (J)
 } performance_statistics;
 
 HIMC_RT void himc_statistics_clear(performance_statistics *statistics);
@@ -46,8 +47,9 @@ HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double 
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
 /// Adds a hit, with the time from its command to its planned contact (s).
 HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double latency);
-/// Adds the work of a stick on a head (J).
-HIMC_RT void himc_statistics_given(performance_statistics *statistics, double work);
+/// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.
+HIMC_RT void himc_statistics_contact_work(performance_statistics *statistics, himc_hand hand,
+                                          double work, double own);
 HIMC_RT void himc_statistics_force(performance_statistics *statistics, double force);
 /// Counts a state that was not finite and was replaced; returns the count before.
 HIMC_RT long himc_statistics_recovery(performance_statistics *statistics);
