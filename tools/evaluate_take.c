@@ -24,9 +24,9 @@
 #define LEARNED 16 // other takes that a regression is learned from, at most; chosen
 
 typedef struct own_result {
-    double rms, most;                  ///< to the capture (m)
-    double height, percent;            ///< of the captured strokes (m); rms of it (%)
-    double elbow;                      ///< range of the elbows' height, simulated / captured
+    double rms, most;       ///< to the capture (m)
+    double height, percent; ///< of the captured strokes (m); rms of it (%)
+    double elbow;           ///< range of the elbows' height, simulated / captured
     int strokes, played;
     bool arm;     ///< the take shows a whole one
     bool learned; ///< the regression comes from the other takes

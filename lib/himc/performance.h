@@ -220,6 +220,8 @@ typedef struct himc_performance_stats {
     int strokes;            ///< of the score, due so far
     int played;             ///< landed within 5 ms, on the planned drum, within 2 cm of the point
     int missed;             ///< strokes that did not
+    int moved;              ///< struck beside the point asked for, as the hands would have met ...
+    double moved_most;      ///< ... by so much at most (m); they count as played there
     double tip_rms;         ///< distance of tip and target outside contact (m)
     double stroke_height;   ///< mean over strokes, apex to contact (m)
     double tip_rms_percent; ///< tip_rms / stroke_height (%), NaN before the first stroke

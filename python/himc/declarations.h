@@ -23,7 +23,7 @@ typedef struct {
 } himc_strike;
 
 typedef struct {
-    double seconds; int strokes, played, missed; double tip_rms, stroke_height, tip_rms_percent, peak_force;
+    double seconds; int strokes, played, missed, moved; double moved_most, tip_rms, stroke_height, tip_rms_percent, peak_force;
     int unplanned_contacts; double longest_contact, captured_rms, captured_most, captured_rms_percent, captured_most_percent;
     double peak_rate; int peak_rate_joint; double peak_torque; int peak_torque_joint; int hits;
     double hit_latency, longest_latency; long recoveries, limit_hits, events_lost; double sample_rate, physics_rate, task_rate; ...;

@@ -63,6 +63,12 @@ void himc_statistics_strokes(performance_statistics *s, int strokes, int played)
     s->played += played;
 }
 
+void himc_statistics_yields(performance_statistics *s, double yields)
+{
+    s->moved += yields > 0;
+    s->moved_most = fmax(s->moved_most, yields);
+}
+
 void himc_statistics_hit(performance_statistics *s, double latency)
 {
     s->hit_latency = latency;
@@ -112,6 +118,8 @@ void himc_statistics_read(const performance_statistics *s, himc_performance_stat
     out->strokes = s->strokes;
     out->played = s->played;
     out->missed = s->strokes - s->played;
+    out->moved = s->moved;
+    out->moved_most = s->moved_most;
     out->peak_force = s->peak_force;
     out->hits = s->hits;
     out->hit_latency = s->hit_latency;

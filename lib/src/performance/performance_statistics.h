@@ -13,6 +13,8 @@ typedef struct performance_statistics {
     long height_count;
     double apex[HIMC_HANDS]; ///< highest target over the head since the last strike (m)
     int strokes, played, hits;
+    int moved;         ///< strokes that were moved aside, as the hands would have met ...
+    double moved_most; ///< ... by so much at most (m)
     double hit_latency, longest_latency; ///< from a hit's command to its planned contact (s)
     double peak_force;                   ///< (N)
     int unplanned;                       ///< contacts
@@ -23,8 +25,9 @@ typedef struct performance_statistics {
     double rate[HIMC_JOINTS];   ///< largest squared rate of each joint (rad^2/s^2)
     double torque[HIMC_JOINTS]; ///< largest squared torque (N^2 m^2)
     long recoveries;
-    double given;              ///< by sticks to heads (J)
-    double mallet[HIMC_HANDS]; ///< work of the heads on mallets' own masses since the rows began (J)
+    double given; ///< by sticks to heads (J)
+    double
+        mallet[HIMC_HANDS]; ///< work of the heads on mallets' own masses since the rows began (J)
 } performance_statistics;
 
 HIMC_RT void himc_statistics_clear(performance_statistics *statistics);
@@ -45,6 +48,8 @@ HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
 HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double duration);
 /// Adds finished strokes of the score; `played` of them landed on time and place.
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
+/// Adds a stroke that was struck so far from where it was asked for (m).
+HIMC_RT void himc_statistics_yields(performance_statistics *statistics, double yields);
 /// Adds a hit, with the time from its command to its planned contact (s).
 HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double latency);
 /// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.
