@@ -34,6 +34,15 @@ void himc_statistics_captured(performance_statistics *s, himc_vec3 away)
     s->captured_most = fmax(s->captured_most, square);
 }
 
+static double peak(const double squares[HIMC_JOINTS], int *joint)
+{
+    *joint = 0;
+    for (int j = 1; j < HIMC_JOINTS; j++)
+        if (squares[j] > squares[*joint])
+            *joint = j;
+    return sqrt(squares[*joint]);
+}
+
 // squares, in every step: peaks of a blow are shorter than a tick, and roots would cost more
 void himc_statistics_joints(performance_statistics *s, const himc_skeleton *skeleton,
                             const himc_body_state *state, const himc_vec3 *torque)
@@ -45,6 +54,15 @@ void himc_statistics_joints(performance_statistics *s, const himc_skeleton *skel
         square = torque ? himc_vec3_dot(torque[j], torque[j]) : 0;
         s->torque[j] = square > s->torque[j] ? square : s->torque[j];
     }
+}
+
+bool himc_statistics_too_fast(performance_statistics *s, int *joint, double *rate)
+{
+    if (s->told_fast)
+        return false;
+    *rate = peak(s->rate, joint);
+    s->told_fast = *rate > HIMC_FASTEST_JOINT;
+    return s->told_fast;
 }
 
 void himc_statistics_unplanned(performance_statistics *s)
@@ -93,15 +111,6 @@ long himc_statistics_recovery(performance_statistics *s)
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         s->apex[hand] = 0;
     return s->recoveries++;
-}
-
-static double peak(const double squares[HIMC_JOINTS], int *joint)
-{
-    *joint = 0;
-    for (int j = 1; j < HIMC_JOINTS; j++)
-        if (squares[j] > squares[*joint])
-            *joint = j;
-    return sqrt(squares[*joint]);
 }
 
 static void read_capture(const performance_statistics *s, himc_performance_stats *out)

@@ -6,6 +6,10 @@
 #include "himc/performance.h"
 #include "himc/vec.h"
 
+// A pitcher's shoulder, the fastest joint that has been measured of people, turns at some 7000
+// degrees a second (Dillman, Fleisig & Andrews 1993); chosen: a third more is no person's
+#define HIMC_FASTEST_JOINT 160.0 // (rad/s)
+
 typedef struct performance_statistics {
     double square_sum; ///< of the distances from tip to target outside contact (m^2)
     long square_count;
@@ -23,6 +27,7 @@ typedef struct performance_statistics {
     long captured_count;
     double captured_most;       ///< the largest of them (m^2)
     double rate[HIMC_JOINTS];   ///< largest squared rate of each joint (rad^2/s^2)
+    bool told_fast;             ///< himc_statistics_too_fast has been true
     double torque[HIMC_JOINTS]; ///< largest squared torque (N^2 m^2)
     long recoveries;
     double given; ///< by sticks to heads (J)
@@ -42,6 +47,8 @@ HIMC_RT void himc_statistics_captured(performance_statistics *statistics, himc_v
 HIMC_RT void himc_statistics_joints(performance_statistics *statistics,
                                     const himc_skeleton *skeleton, const himc_body_state *state,
                                     const himc_vec3 *torque);
+/// True once, when a joint has turned faster than any person's: the joint and its rate (rad/s).
+HIMC_RT bool himc_statistics_too_fast(performance_statistics *statistics, int *joint, double *rate);
 /// Adds a contact that no stroke asked for.
 HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
 /// Adds a contact that has lasted so long (s).
