@@ -113,6 +113,19 @@ fi
 "$himc" evaluate --take recorded.bvh --csv recorded.csv 2>err
 check test_rows_with_lost_strokes_are_explained \
     [ "$(awk -F, 'NR > 1 && $5 < $4' recorded.csv | wc -l)" = "$(grep -c '^note: recorded.bvh: .* plays [0-9]* of [0-9]* strokes ' err)" ]
+# Percentages are of the captured amplitude, however the strokes are played; these are on two drums, between which the take's one drum is put.
+# It is the mean height of the tips above the head (0.85 m) and a mallet's radius, from one stroke of a hand to the next.
+printf 'drum near;\ndrum far;\nnear place 0.45 -0.4 0.85;\nfar place 0.45 0.4 0.85;\nstroke 1 right accent ff near;\nstroke 2 left legato p far;
+stroke 3 right tenuto mp near;\nstroke 4 left staccato mp far;\n' >apart.txt
+"$himc" render apart.txt -o a.wav --motion apart.csv --columns tips --strokes hits.csv --set "record apart.bvh" --quiet >/dev/null
+"$himc" evaluate --take apart.bvh --csv own.csv --quiet
+check test_own_captures_are_compared_in_percent_of_their_own_amplitude [ "$(awk -F, '
+    FILENAME == "hits.csv" { if (FNR > 1) { n++; at[n] = $1; from[n] = last[$2]; hand[n] = $2; last[$2] = $1 } next }
+    FILENAME == "apart.csv" && FNR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
+    FILENAME == "apart.csv" { for (k = 1; k <= n; k++) if ($1 <= at[k] && $1 > from[k] + 0 && (z = $column[hand[k] "_tip_z_m"] - 0.8675) > top[k]) top[k] = z; next }
+    FNR == 1 { for (k = 1; k <= n; k++) wanted += 1000 * top[k] / n; next }
+    { rows++; kinds[$8]; bad += ($8 / wanted - 1) ^ 2 > 0.01 ^ 2 || ($9 * $8 / 100 / $6 - 1) ^ 2 > 1e-8 }
+    END { for (k in kinds) different++; print rows, different, bad + 0 }' hits.csv apart.csv own.csv)" = "7 1 0" ]
 check test_the_published_law_is_explained grep -q "id printed plays 0 of 2 strokes .*the law as published" err
 check test_a_posture_that_was_not_learned_is_explained [ "$(grep -c 'built-in posture.*one more take' err)" = 1 ]
 refuses test_own_captures_must_be_takes "score.txt: not a take by its suffix" evaluate --take score.txt

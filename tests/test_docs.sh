@@ -61,6 +61,20 @@ for way in 1 2 3 4; do
     verdicts "$work/spoilt-$way" | sed 1,2d
 done | cat - "$work/verdicts" | sort | uniq -c | awk '$1 >= 5' >"$work/still"
 check test_no_verdict_is_typed_in_or_it_says_stated [ "$(wc -l <"$work/still" | awk '{print ($1 > 0)}')$(grep -v 'stated: ' "$work/still")" = 1 ]
+# deviation TRIALS PLAYER DEFAULT OTHER: the row's verdict if HIMC's deviation is so many times that of ID by the printed law with the
+# player's and the default servos, and by the other laws
+deviation() {
+    mkdir -p "$work/deviation"
+    cp "$work"/kept/*.csv "$work/deviation"
+    awk -F , -v OFS=, -v trials="$1" -v player="$2" -v default="$3" -v other="$4" 'FNR > 1 { $5 = trials; $7 = $8 = $3 == "id" ? 1 : $4 != "printed" ? other : $1 == 1 ? player : default } { print }' \
+        "$work/kept/spread.csv" >"$work/deviation/spread.csv"
+    awk -f tools/papers/papers.awk "$work"/deviation/*.csv | awk -F ' [|] ' '/figure 6b, deviation/ { print $4 }'
+}
+check test_a_deviation_of_few_trials_is_not_measured [ "$(deviation 17 .5 .5 .5)$(deviation 100 nan .5 .5)" = "stated: not measuredstated: not measured" ]
+check test_a_smaller_deviation_by_the_papers_law_agrees [ "$(deviation 18 .5 .5 2)" = agrees ]
+check test_a_deviation_says_by_which_servos_and_laws_it_is_smaller [ "$(deviation 100 2 .5 .5)$(deviation 100 2 2 .5)" = \
+    "of trials of one sequence, not by the player's servos (0 of 5)of trials of one sequence, by laws that the papers do not have; by theirs in 0 of 10" ]
+check test_a_larger_deviation_does_not_agree [ "$(deviation 100 2 2 2)" = "does not agree" ]
 check test_nothing_agrees_without_a_number [ "$(awk -F ' [|] ' '$4 == "agrees" && $3 !~ /[0-9]/' "$work/documented")" = "" ]
 
 # trials are played again as the tables of `make trials` have them: of each nuance one, of all with HIMC_LONG; a number that differs says that

@@ -209,6 +209,78 @@ static void test_a_piece_with_rows_has_the_bits_of_one_without(void)
     TEST_ASSERT_EQUAL_MEMORY(&tip[0], &tip[1], sizeof tip[0]);
 }
 
+/// Forces, impulses and works of contacts, with a row for each step.
+typedef struct contact_sums {
+    double step;      // (s)
+    himc_vec3 body;   // impulse on the bodies' sticks (N s) ...
+    himc_vec3 mallet; // ... and on the mallets' mass beyond them
+    double impulse;   // as the rows have it (N s)
+    himc_energy first, last;
+    bool begun;
+} contact_sums;
+
+static void add_row(void *user, const himc_motion_row *row)
+{
+    contact_sums *s = user;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        s->body = himc_vec3_madd(s->body, s->step, row->tip_force[hand]);
+        s->mallet = himc_vec3_madd(s->mallet, s->step, row->mallet_force[hand]);
+        s->impulse += row->impulse[hand];
+    }
+    if (!s->begun)
+        s->first = row->energy;
+    s->begun = true;
+    s->last = row->energy;
+}
+
+// work of the heads on both hands' sticks and mallets (J)
+static double work_of_heads(const himc_energy *e)
+{
+    return e->contact[HIMC_LEFT] + e->contact[HIMC_RIGHT] + e->mallet[HIMC_LEFT] +
+           e->mallet[HIMC_RIGHT];
+}
+
+static double held_by_heads(const himc_energy *e)
+{
+    return e->felt[HIMC_LEFT] + e->felt[HIMC_RIGHT] + e->heads + e->lost;
+}
+
+// The body feels the share of the head's force that moves its own stick; a drum's mallet has more
+// or less mass. With that mass the sums close, to the rounding of forces and to the step of works.
+static void test_forces_and_works_of_a_contact_add_up_with_any_mallet(void)
+{
+    static const char *const mallet[] = {"soft", "medium", "hard", "wood"};
+    for (int k = 0; k < 4; k++) {
+        contact_sums s = {.step = 1 / 2000.0};
+        char line[200];
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        session_do(p, "rate physics 2000");
+        session_do(p, "rate task 2000");
+        session_do(p, "kettle mallet %s", mallet[k]);
+        session_do(p, "stroke 1 right accent f");
+        session_do(p, "stroke 2 left tenuto mf");
+        himc_performance_on_motion(p, add_row, &s);
+        session_do(p, "play");
+        session_play(p, 2, NULL);
+        himc_performance_free(p);
+        double all = himc_vec3_length(himc_vec3_add(s.body, s.mallet)), body = s.body.z;
+        double given = held_by_heads(&s.last) - held_by_heads(&s.first);
+        double work = work_of_heads(&s.last) - work_of_heads(&s.first);
+        double own = s.last.contact[HIMC_LEFT] + s.last.contact[HIMC_RIGHT];
+        snprintf(line, sizeof line, "%s: impulse %.6g of %.6g N s, body %.6g; work %.6g of %.6g J",
+                 mallet[k], all, s.impulse, body, work, -given);
+        TEST_ASSERT_TRUE_MESSAGE(s.impulse > 0.1 && given > 0.01, line);
+        TEST_ASSERT_TRUE_MESSAGE(fabs(all - s.impulse) < 1e-9 * s.impulse, line);
+        TEST_ASSERT_TRUE_MESSAGE(fabs(work + given) < 2e-3 * given, line);
+        // soft is heavier than the body's stick, wood lighter
+        TEST_ASSERT_TRUE_MESSAGE(k == 0   ? body < 0.95 * s.impulse && -own < 0.95 * given
+                                 : k == 3 ? body > 1.05 * s.impulse && -own > 1.05 * given
+                                          : true,
+                                 line);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -216,6 +288,7 @@ int main(void)
     RUN_TEST(test_the_balance_of_a_disturbed_piece_closes);
     RUN_TEST(test_the_balance_of_a_pushed_take_closes_under_the_printed_law_and_ode);
     RUN_TEST(test_inverse_kinematics_has_no_forces_on_the_body);
+    RUN_TEST(test_forces_and_works_of_a_contact_add_up_with_any_mallet);
     RUN_TEST(test_a_piece_with_rows_has_the_bits_of_one_without);
     return UNITY_END();
 }

@@ -126,6 +126,59 @@ static void test_the_peak_torque_is_within_the_strength_that_limits_it(void)
     himc_performance_free(p);
 }
 
+// both hands at one point: their sticks cannot be there at once, so one is struck beside it
+static void test_a_stroke_moved_aside_where_hands_meet_is_counted_and_measured(void)
+{
+    for (int apart = 0; apart < 2; apart++) {
+        heard h = {0};
+        double farthest = 0, y = apart ? 0.1 : 0;
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        for (int beat = 2; beat < 4; beat++)
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                session_do(p, "stroke %d %s accent f -0.1 %g", beat, hand ? "right" : "left",
+                           hand ? -y : y);
+        session_do(p, "play");
+        session_play(p, 2, &h);
+        for (int i = 0; i < h.strikes; i++)
+            farthest = fmax(farthest, hypot(h.strike[i].x + 0.1, fabs(h.strike[i].y) - y));
+        himc_performance_stats s = himc_performance_measure(p);
+        TEST_ASSERT_EQUAL_INT(4, s.played);
+        TEST_ASSERT_EQUAL_INT(apart ? 0 : 2, s.moved);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, farthest, s.moved_most);
+        TEST_ASSERT_TRUE(apart || s.moved_most > 0.02);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
+// pushes lead sticks aside by 3 to 30 mm: only those near their point count
+static void test_a_stroke_is_played_within_2_cm_of_its_point_and_5_ms_of_its_time(void)
+{
+    int near = 0, far = 0;
+    heard h = {0};
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "tempo 120");
+    for (int beat = 2; beat < 26; beat += 2) {
+        session_do(p, "stroke %d right accent f", beat);
+        session_do(p, "at %g push right-stick 0 %d 0 0.1", beat - 0.16, beat);
+    }
+    session_do(p, "play");
+    session_play(p, 15, &h);
+    for (int i = 0; i < h.strikes; i++) {
+        const himc_strike *s = &h.strike[i];
+        double off = hypot(s->x - s->planned_x, s->y - s->planned_y);
+        bool in_time = fabs(s->time - s->planned_time) <= 0.005; // false without one
+        near += in_time && off <= 0.02;
+        far += in_time && off > 0.02 && off < 0.2;
+    }
+    TEST_ASSERT_TRUE(near > 2 && far > 2);
+    TEST_ASSERT_EQUAL_INT(near, himc_performance_measure(p).played);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -134,5 +187,7 @@ int main(void)
     RUN_TEST(test_a_stick_laid_on_the_head_is_one_long_unplanned_contact);
     RUN_TEST(test_the_peak_rate_is_that_of_the_fastest_joint_in_any_step);
     RUN_TEST(test_the_peak_torque_is_within_the_strength_that_limits_it);
+    RUN_TEST(test_a_stroke_moved_aside_where_hands_meet_is_counted_and_measured);
+    RUN_TEST(test_a_stroke_is_played_within_2_cm_of_its_point_and_5_ms_of_its_time);
     return UNITY_END();
 }

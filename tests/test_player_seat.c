@@ -172,6 +172,49 @@ static void test_description_has_height_mass_and_place_of_the_head(void)
                                  all);
 }
 
+static void test_the_seat_says_how_it_follows_from_the_take(void)
+{
+    static const struct {
+        double moved, head; // the take, and the drum's height (m)
+        const char *said;
+    } seats[] = {{0, 0.85, "above the floor, as the take shows;"},
+                 {0.3, 0.85, "above the floor, lowered by 0.3"},
+                 {-0.2, 0.85, "above the floor, raised by 0."},
+                 {0, 1.9, "1.300 m above the floor, the most allowed;"},
+                 {0, 0.2, "0.300 m above the floor, the least allowed;"}};
+    for (size_t i = 0; i < sizeof seats / sizeof *seats; i++) {
+        char all[4096] = "";
+        himc_head_frame drum = usual_drum;
+        drum.center.z = seats[i].head;
+        make_take(&given);
+        move_take(himc_vec3_make(0, 0, seats[i].moved));
+        read_player();
+        TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
+        himc_player_describe(player, &drum, hear, all);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(all, seats[i].said), all);
+        tearDown();
+        setUp();
+    }
+}
+
+static void test_a_hand_that_is_given_as_a_tip_is_named(void)
+{
+    for (int hand = 0; hand < 2; hand++) {
+        himc_take_options options = himc_take_default();
+        options.right_tip = hand ? "RightHand" : NULL;
+        make_take(&given);
+        player = himc_player_new(take, &options, &given, &error);
+        TEST_ASSERT_NOT_NULL_MESSAGE(player, error.text);
+        char all[4096] = "";
+        himc_player_describe(player, NULL, hear, all);
+        TEST_ASSERT_TRUE_MESSAGE(
+            !!strstr(all, "note: RightHand is 0.00 m from the wrist: a hand") == hand, all);
+        TEST_ASSERT_NULL_MESSAGE(strstr(all, "Left"), all);
+        tearDown();
+        setUp();
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -183,5 +226,7 @@ int main(void)
     RUN_TEST(test_tips_without_strikes_are_brought_into_reach_and_the_drum_out_of_the_way);
     RUN_TEST(test_a_walking_player_is_held_and_a_swaying_one_is_not_walking);
     RUN_TEST(test_description_has_height_mass_and_place_of_the_head);
+    RUN_TEST(test_the_seat_says_how_it_follows_from_the_take);
+    RUN_TEST(test_a_hand_that_is_given_as_a_tip_is_named);
     return UNITY_END();
 }

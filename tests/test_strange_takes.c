@@ -106,8 +106,8 @@ static void test_a_take_without_sticks_is_playable_within_its_limits(void)
     TEST_ASSERT_TRUE_MESSAGE(s.tip_rms < 0.1, notes); // once 246 mm
 }
 
-// markers of two tips that swing 1.2 m to each side; y is up
-static void write_swings(const char *path)
+// markers of two tips that swing by so much (m) to each side; y is up
+static void write_swings(const char *path, double way)
 {
     FILE *file = fopen(path, "w");
     int frames = (int)(100 * SECONDS);
@@ -119,7 +119,7 @@ static void write_swings(const char *path)
             "Frame#\tTime\tLTIP\t\t\tRTIP\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n",
             path, frames, frames);
     for (int i = 0; i < frames; i++) {
-        double t = i / 100.0, aside = 1.2 * sin(2 * HIMC_PI * t / SECONDS);
+        double t = i / 100.0, aside = way * sin(2 * HIMC_PI * t / SECONDS);
         fprintf(file, "%d\t%.2f\t0.5\t1\t%.5f\t0.5\t1\t%.5f\n", i + 1, t, aside - 0.15,
                 aside + 0.15);
     }
@@ -156,7 +156,7 @@ static void test_an_arm_is_stretched_towards_targets_out_of_reach(void)
     himc_performance *p = session_new();
     himc_skeleton_config config = himc_skeleton_default();
     TEST_ASSERT_TRUE(himc_skeleton_init(&s.skeleton, &config, &error));
-    write_swings(path);
+    write_swings(path, 1.2);
     himc_performance_on_tick(p, see, &s);
     session_do(p, "take %s", path);
     notes_of(p, notes, sizeof notes);
@@ -171,6 +171,36 @@ static void test_an_arm_is_stretched_towards_targets_out_of_reach(void)
     himc_performance_free(p);
 }
 
+static void test_a_take_in_reach_that_strikes_nothing_is_called_silent_alone(void)
+{
+    char notes[1024];
+    write_swings("build/small-swings.trc", 0.1);
+    play("himc", "build/small-swings.trc", NULL, NULL, 0.1, notes, sizeof notes);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(notes, "silent: no tip falls onto a head (y up, as usual in TRC files"), notes);
+    TEST_ASSERT_NULL_MESSAGE(strstr(notes, "out of reach"), notes);
+}
+
+// nothing a person does: said when it happens, once since the start or `reset`
+static void test_a_joint_faster_than_a_persons_is_told_once(void)
+{
+    char notes[1024];
+    himc_performance *p = session_new();
+    for (int time = 0; time < 2; time++) {
+        session_play(p, 0.5, NULL);
+        TEST_ASSERT_NULL(strstr(notes_of(p, notes, sizeof notes), "rad/s"));
+        for (int again = 0; again < 2; again++) {
+            session_do(p, "push right-stick 0 -1000 0 0.05");
+            for (int i = 0; i < 40; i++)
+                himc_performance_process(p, 480, NULL);
+            const char *line = strstr(notes_of(p, notes, sizeof notes), "rad/s, a person's at 160");
+            TEST_ASSERT_TRUE_MESSAGE(again ? !line : !!line, notes);
+        }
+        session_do(p, "reset");
+    }
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -178,5 +208,7 @@ int main(void)
     RUN_TEST(test_a_person_hopping_through_the_room_is_held_at_the_seat);
     RUN_TEST(test_a_take_without_sticks_is_playable_within_its_limits);
     RUN_TEST(test_an_arm_is_stretched_towards_targets_out_of_reach);
+    RUN_TEST(test_a_take_in_reach_that_strikes_nothing_is_called_silent_alone);
+    RUN_TEST(test_a_joint_faster_than_a_persons_is_told_once);
     return UNITY_END();
 }

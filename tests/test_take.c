@@ -222,8 +222,7 @@ static void test_describe_lists_contents_units_and_axes(void)
         "gaps: 0 frames in 0 points\n",
         "tip: right is Anna:R_Stick_Tip, 0 frames in gaps are filled\n",
         "strikes: 15\n",
-        "drum: centre of the strikes at 0.650 0.050 m, tips touch the head at a height of 0.811 "
-        "m\n"};
+        "struck: around 0.650 0.050 m on the head, which tips touch at a height of 0.811 m\n"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, lines[i]), lines[i]);
     himc_take_free(take);
@@ -242,9 +241,36 @@ static void test_describe_tells_of_strikes_too_far_apart_for_one_drum(void)
     himc_take *take = read_motions("two.trc", names, motions, 250, 600);
     told[0] = 0;
     himc_take_describe(take, NULL, hear, NULL);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, "drum: 15 strikes are more than 0.45 m from that "
-                                              "centre, but a take is played on one drum\n"),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, "drum: 15 strikes are more than 0.45 m from there, "
+                                              "but a take is played on one drum\n"),
                                  told);
+    himc_take_free(take);
+}
+
+// at 1000 Hz the last frame before the touch falls as fast as the stick; at 60 Hz it was slower
+static void test_describe_tells_which_speeds_are_extrapolated(void)
+{
+    for (int slow = 0; slow < 2; slow++) {
+        himc_take *take = read_motion(right_roll, slow ? 60 : 1000, slow ? 120 : 2000);
+        told[0] = 0;
+        himc_take_describe(take, NULL, hear, NULL);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, " m/s down"), told);
+        TEST_ASSERT_TRUE_MESSAGE(!!strstr(told, "m/s down, extrapolated from 3.") == slow, told);
+        himc_take_free(take);
+    }
+}
+
+static himc_vec3 wave(double t)
+{
+    return himc_vec3_make(0.6, -0.2, 1 + 0.1 * sin(6 * t));
+}
+
+static void test_describe_asks_for_the_axis_where_nothing_is_struck(void)
+{
+    himc_take *take = read_motion(wave, 250, 1000);
+    told[0] = 0;
+    himc_take_describe(take, NULL, hear, NULL);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, "strikes: 0, no tip falls onto a head; --up"), told);
     himc_take_free(take);
 }
 
@@ -275,6 +301,8 @@ int main(void)
     RUN_TEST(test_files_of_other_formats_are_refused);
     RUN_TEST(test_describe_lists_contents_units_and_axes);
     RUN_TEST(test_describe_tells_of_strikes_too_far_apart_for_one_drum);
+    RUN_TEST(test_describe_tells_which_speeds_are_extrapolated);
+    RUN_TEST(test_describe_asks_for_the_axis_where_nothing_is_struck);
     RUN_TEST(test_two_readings_of_a_file_are_equal_bit_by_bit);
     return UNITY_END();
 }

@@ -24,8 +24,9 @@
 #define LEARNED 16 // other takes that a regression is learned from, at most; chosen
 
 typedef struct own_result {
-    double rms, most, height, percent; ///< to the capture (m, m, m, %)
-    double elbow;                      ///< range of the elbows' height, simulated / captured
+    double rms, most;       ///< to the capture (m)
+    double height, percent; ///< of the captured strokes (m); rms of it (%)
+    double elbow;           ///< range of the elbows' height, simulated / captured
     int strokes, played;
     bool arm;     ///< the take shows a whole one
     bool learned; ///< the regression comes from the other takes
@@ -225,6 +226,29 @@ static double elbow_ratio(const elbows *e, const himc_player *player)
     return captured > 0 ? simulated / captured : NAN;
 }
 
+/// Mean height of the captured strokes, from the highest place since the hand's last strike to the
+/// head; 0 without strikes, NaN without memory. As in the published comparison, and so the same
+/// under each controller.
+static double captured_amplitude(himc_take *take, const himc_take_options *options)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_strike_survey seen;
+    int from[HIMC_HANDS] = {0, 0};
+    double sum = 0;
+    if (!himc_take_tips(take, options, tips, NULL) || !himc_take_strikes(take, tips, &seen))
+        return NAN;
+    for (int i = 0; i < seen.count; i++) {
+        const himc_take_strike *s = &seen.strikes[i];
+        double head = seen.head[s->head].z, top = head;
+        for (int k = from[s->hand]; k < s->frame; k++)
+            top = fmax(top, tips[s->hand].x[k].z);
+        sum += top - head;
+        from[s->hand] = s->frame;
+    }
+    free(seen.strikes);
+    return seen.count > 0 ? sum / seen.count : 0;
+}
+
 static void play(himc_performance *p)
 {
     himc_event event = {.kind = HIMC_EVENT_BEAT};
@@ -255,8 +279,8 @@ static bool play_take(himc_performance *p, const own_takes *own, int file, const
     himc_performance_stats s = himc_performance_measure(p);
     result->rms = s.captured_rms;
     result->most = s.captured_most;
-    result->height = s.stroke_height;
-    result->percent = s.captured_rms_percent;
+    result->height = captured_amplitude(o->take, &o->options);
+    result->percent = result->height > 0 ? 100 * result->rms / result->height : NAN;
     result->arm = shows_any_arm(o->player);
     result->strokes = s.strokes;
     result->played = s.played;

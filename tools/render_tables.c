@@ -52,6 +52,8 @@ static void put_measures(FILE *out, const himc_performance_stats *s)
 {
     fprintf(out, "\"unplanned_contacts\": %d, ", s->unplanned_contacts);
     put_json(out, "longest_contact_s", s->longest_contact, ", ");
+    fprintf(out, "\"moved\": %d, ", s->moved);
+    put_json(out, "moved_max_mm", 1e3 * s->moved_most, ", ");
     put_json(out, "captured_rms_mm", 1e3 * s->captured_rms, ", ");
     put_json(out, "captured_rms_percent", s->captured_rms_percent, ", ");
     put_json(out, "captured_max_mm", 1e3 * s->captured_most, ", ");
@@ -68,6 +70,9 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
     double rms_mm = stats->tip_rms * 1e3;
     if (stats->strokes)
         cli_say("strokes   %d of %d landed within 5 ms and 2 cm\n", stats->played, stats->strokes);
+    if (stats->moved)
+        cli_say("moved     %d strokes by up to %.0f mm, where the hands would have met\n",
+                stats->moved, 1e3 * stats->moved_most);
     if (stats->strokes && isfinite(stats->tip_rms_percent))
         cli_say("accuracy  sticks %.3g mm RMS off their targets, %.2g %% of the strokes' height\n",
                 rms_mm, stats->tip_rms_percent);

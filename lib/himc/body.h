@@ -61,7 +61,7 @@ typedef enum himc_segment_id {
 /// Source of the segments' masses.
 typedef enum himc_anthropometry {
     HIMC_DE_LEVA, ///< de Leva 1996, table 4, from height and mass
-    HIMC_TABLE_1  ///< 2012 paper, table 1: each row once per body, scaled to sum to one
+    HIMC_TABLE_1  ///< 2012 paper, table 1: a row of limbs is both of a pair
 } himc_anthropometry;
 
 /// The measures of a body and its sticks.

@@ -146,7 +146,8 @@ HIMC_RT bool himc_performance_event(himc_performance *performance, himc_event *e
 /// to rounding. NaN in `ik`, whose body has no forces, but for felt, heads and lost.
 typedef struct himc_energy {
     double joint[HIMC_JOINTS];  ///< work of each joint's torque
-    double contact[HIMC_HANDS]; ///< work of the heads on the sticks
+    double contact[HIMC_HANDS]; ///< work of the heads on the body's sticks
+    double mallet[HIMC_HANDS];  ///< and on the mass that a drum's mallet has beyond them
     double push;                ///< work of the command `push`
     double placed;              ///< given to the body when it was put elsewhere: a new player ...
     double numerical;           ///< given by the integrator (docs/data.md)
@@ -180,7 +181,8 @@ typedef struct himc_motion_row {
     himc_vec3 segment[HIMC_SEGMENTS];      ///< the segment's joint to its parent (m)
     himc_quat orientation[HIMC_SEGMENTS];  ///< of the segment's frame
     himc_vec3 center[HIMC_SEGMENTS];       ///< of mass (m)
-    himc_vec3 tip_force[HIMC_HANDS];       ///< of the heads on the sticks (N)
+    himc_vec3 tip_force[HIMC_HANDS];       ///< of the heads on the body's sticks (N)
+    himc_vec3 mallet_force[HIMC_HANDS];    ///< and on a mallet's mass beyond them (N)
     double impulse[HIMC_HANDS];            ///< of a head on the stick, since the last row (N s)
     himc_vec3 push[HIMC_SEGMENTS];         ///< force of the command `push` (N) ...
     himc_vec3 push_at[HIMC_SEGMENTS];      ///< ... and where it acts (m)
@@ -218,6 +220,8 @@ typedef struct himc_performance_stats {
     int strokes;            ///< of the score, due so far
     int played;             ///< landed within 5 ms, on the planned drum, within 2 cm of the point
     int missed;             ///< strokes that did not
+    int moved;              ///< struck beside the point asked for, as the hands would have met ...
+    double moved_most;      ///< ... by so much at most (m); they count as played there
     double tip_rms;         ///< distance of tip and target outside contact (m)
     double stroke_height;   ///< mean over strokes, apex to contact (m)
     double tip_rms_percent; ///< tip_rms / stroke_height (%), NaN before the first stroke

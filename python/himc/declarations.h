@@ -5,7 +5,7 @@ typedef struct himc_performance himc_performance;
 typedef struct himc_take himc_take;
 
 typedef struct {
-    double joint[19]; double contact[2]; double push, placed, numerical, kinetic, potential; double felt[2]; double heads, lost;
+    double joint[19]; double contact[2]; double mallet[2]; double push, placed, numerical, kinetic, potential; double felt[2]; double heads, lost;
 } himc_energy;
 
 typedef struct {
@@ -13,7 +13,7 @@ typedef struct {
     himc_vec3 target[2]; himc_vec3 tip[2]; double force[2]; himc_vec3 joint[19]; himc_vec3 elbow[2]; double limit[19];
     himc_vec3 target_velocity[2]; himc_vec3 tip_velocity[2]; himc_vec3 tip_error[2]; double joint_error[19];
     himc_quat rotation[19]; himc_vec3 rate[19]; himc_vec3 acceleration[19]; himc_vec3 torque[19]; double power[19];
-    himc_vec3 segment[20]; himc_quat orientation[20]; himc_vec3 center[20]; himc_vec3 tip_force[2]; double impulse[2];
+    himc_vec3 segment[20]; himc_quat orientation[20]; himc_vec3 center[20]; himc_vec3 tip_force[2]; himc_vec3 mallet_force[2]; double impulse[2];
     himc_vec3 push[20]; himc_vec3 push_at[20]; double null_space[2]; himc_energy energy;
 } himc_motion_row;
 
@@ -23,7 +23,7 @@ typedef struct {
 } himc_strike;
 
 typedef struct {
-    double seconds; int strokes, played, missed; double tip_rms, stroke_height, tip_rms_percent, peak_force;
+    double seconds; int strokes, played, missed, moved; double moved_most, tip_rms, stroke_height, tip_rms_percent, peak_force;
     int unplanned_contacts; double longest_contact, captured_rms, captured_most, captured_rms_percent, captured_most_percent;
     double peak_rate; int peak_rate_joint; double peak_torque; int peak_torque_joint; int hits;
     double hit_latency, longest_latency; long recoveries, limit_hits, events_lost; double sample_rate, physics_rate, task_rate; ...;

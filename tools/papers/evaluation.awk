@@ -8,7 +8,8 @@ file == 2 {
     line[$1, $2] = sprintf("| %s | %s | %s | %s | %s .. %s | %s, %s, %s | %d of %d |", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
     next
 }
-function cell(k) { return sprintf("%.2f ± %.2f (%.2f)", mean[k], sd[k], own[k]) }
+# the deviation in one sequence only where a sequence was played twice
+function cell(k) { return sprintf("%.2f ± %.2f", mean[k], sd[k]) (own[k] ~ /[0-9]/ ? sprintf(" (%.2f)", own[k]) : "") }
 function pair(gain, nuance, law,    id, himc) {
     id = gain SUBSEP nuance SUBSEP "id" SUBSEP law
     himc = gain SUBSEP nuance SUBSEP "himc" SUBSEP law

@@ -18,6 +18,7 @@
 #define DEGREES (180 / HIMC_PI)
 #define RUNS 5              // chosen: odd, for a median
 #define TRUNK_OF_TABLE 46.0 // 2012 paper, table 1 (%)
+#define STICKS_OF_TABLE 0.5
 #define FAR 3.0             // chosen: so many times as far from the mean as captured
 #define STRONG 1e4          // chosen: above what any joint has (N m)
 #define METRES_PER_INCH 0.0254
@@ -80,7 +81,8 @@ static void measure_body(void)
     fact("upper_joints", joints);
     fact("upper_freedoms", 3 * joints);
     // the program's shares sum to one without the sticks
-    fact("printed_mass", TRUNK_OF_TABLE * s.mass / s.segment[HIMC_TRUNK].mass);
+    fact("printed_mass", TRUNK_OF_TABLE * s.mass / s.segment[HIMC_TRUNK].mass + STICKS_OF_TABLE);
+    fact("thigh_share", 100 * s.segment[HIMC_LEFT_UPPER_LEG].mass / s.mass);
 }
 
 // the ellipsoids of table 1: neck and left arm

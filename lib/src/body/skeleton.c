@@ -5,7 +5,8 @@
 /// has more or fewer segments: de Leva's head becomes head and neck (masses 4 : 1), his upper and
 /// middle trunk become one segment (by the parallel axis theorem), his lower trunk is the pelvis,
 /// and his foot becomes foot and toes (85 : 15). Invariant: the masses sum to the performer's mass
-/// exactly. Table 1 of the 2012 paper sums to 1.28 with both limbs of a pair, so it is scaled to 1.
+/// exactly. Table 1 of the 2012 paper sums to 100 % if a row of limbs is both of a pair, sticks
+/// included; those have their own masses here, so its other 99.5 % are scaled to 1.
 #include "himc/body.h"
 #include "himc/ranges.h"
 
@@ -24,7 +25,7 @@ typedef struct row {
     double origin[3];   // the joint in the parent's frame (m)
     double axis[3];     // towards the far end
     double fraction;    // of the body's mass, de Leva
-    double table1;      // 2012 paper, table 1 (%)
+    double table1;      // 2012 paper, table 1: half of the printed row for a limb of a pair (%)
     double center;      // of mass, fraction of the length from the joint
     double gyration[3]; // about x, y, z, fraction of the length
     double radius;      // of the capsule (m)
@@ -43,21 +44,21 @@ static const row rows[] = {
      0.8 * HEAD_AND_NECK, 4, 0.4024, {0.362, 0.376, 0.312}, 0.09},
     // upper arm, forearm, hand, stick (set by build_stick)
     {HIMC_TRUNK, 0.2817, {0, 0.185, 0.345}, {0, 0, -1},
-     0.0271, 4, 0.5772, {0.285, 0.269, 0.158}, 0.045},
+     0.0271, 0.5 * 4, 0.5772, {0.285, 0.269, 0.158}, 0.045},
     {HIMC_LEFT_UPPER_ARM, 0.2689, {0, 0, -0.2817}, {0, 0, -1},
-     0.0162, 2, 0.4574, {0.276, 0.265, 0.121}, 0.036},
+     0.0162, 0.5 * 2, 0.4574, {0.276, 0.265, 0.121}, 0.036},
     {HIMC_LEFT_FOREARM, 0.0862, {0, 0, -0.2689}, {0, 0, -1},
-     0.0061, 1, 0.79, {0.628, 0.513, 0.401}, 0.025},
+     0.0061, 0.5 * 1, 0.79, {0.628, 0.513, 0.401}, 0.025},
     {HIMC_LEFT_HAND, 0, {0, 0, -0.0862}, {0, 0, -1}, 0, 0, 0, {0, 0, 0}, 0.006},
     // upper leg, lower leg, foot, toes
     {HIMC_PELVIS, 0.4222, {0, 0.085, 0}, {0, 0, -1},
-     0.1416, 14, 0.4095, {0.329, 0.329, 0.149}, 0.075},
+     0.1416, 0.5 * 14, 0.4095, {0.329, 0.329, 0.149}, 0.075},
     {HIMC_LEFT_UPPER_LEG, 0.434, {0, 0, -0.4222}, {0, 0, -1},
-     0.0433, 5, 0.4459, {0.255, 0.249, 0.103}, 0.05},
+     0.0433, 0.5 * 5, 0.4459, {0.255, 0.249, 0.103}, 0.05},
     {HIMC_LEFT_LOWER_LEG, 0.2194, {0, 0, -0.434}, {1, 0, 0},
-     0.85 * FOOT_AND_TOES, 0.85 * 1.5, 0.33, {0.124, 0.257, 0.245}, 0.03},
+     0.85 * FOOT_AND_TOES, 0.85 * 0.5 * 1.5, 0.33, {0.124, 0.257, 0.245}, 0.03},
     {HIMC_LEFT_FOOT, 0.07, {0.16, 0, -0.05}, {1, 0, 0},
-     0.15 * FOOT_AND_TOES, 0.15 * 1.5, 0.5, {0.3, 0.35, 0.35}, 0.02},
+     0.15 * FOOT_AND_TOES, 0.15 * 0.5 * 1.5, 0.5, {0.3, 0.35, 0.35}, 0.02},
 };
 
 static const char *const segment_names[HIMC_SEGMENTS] = {

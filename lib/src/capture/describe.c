@@ -1,5 +1,6 @@
 /// describe.c: a take and its player in lines for a person, one per fact: `himc info`.
 #include "base/line.h"
+#include "capture/player.h"
 #include "capture/take.h"
 
 #include <math.h>
@@ -81,9 +82,8 @@ static void tell_heads(const himc_strike_survey *s, const himc_line_sink *to)
         far += hypot(s->strikes[i].x.x - place.x, s->strikes[i].x.y - place.y) > ONE_DRUM;
         there[s->strikes[i].head]++;
     }
-    himc_tell(
-        to, "drum: centre of the strikes at %.3f %.3f m, tips touch the head at a height of %.3f m",
-        place.x, place.y, place.z);
+    himc_tell(to, "struck: around %.3f %.3f m on the head, which tips touch at a height of %.3f m",
+              place.x, place.y, place.z);
     for (int i = 1; i < s->heads; i++)
         himc_tell(to,
                   "drum: %d strikes are on another head, at a height of %.3f m, but a take is "
@@ -91,9 +91,21 @@ static void tell_heads(const himc_strike_survey *s, const himc_line_sink *to)
                   there[i], s->head[i].z);
     if (far > 0)
         himc_tell(to,
-                  "drum: %d strikes are more than %g m from that centre, but a take is played "
+                  "drum: %d strikes are more than %g m from there, but a take is played "
                   "on one drum",
                   far, ONE_DRUM);
+}
+
+// a capture blunts the fall, so the speed at the head is that of the fall before, carried on
+static void tell_strike(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                        const himc_take_strike *s, const himc_line_sink *to)
+{
+    char carried[64] = "";
+    double seen = himc_take_fastest_fall(take, &tips[s->hand], s);
+    if (s->velocity > HIMC_TAKE_CARRIED_ON * seen)
+        snprintf(carried, sizeof carried, ", extrapolated from %.2f in the take", seen);
+    himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down%s", s->time,
+              himc_hand_name(s->hand), s->x.x, s->x.y, s->x.z, s->velocity, carried);
 }
 
 static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
@@ -104,11 +116,10 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
         himc_tell(to, "strikes: no memory to find them");
         return;
     }
-    himc_tell(to, "strikes: %d", s.count);
+    himc_tell(to, "strikes: %d%s", s.count,
+              s.count ? "" : ", no tip falls onto a head; --up says which axis is up");
     for (int i = 0; i < s.count && i < STRIKE_LINES; i++)
-        himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down", s.strikes[i].time,
-                  himc_hand_name(s.strikes[i].hand), s.strikes[i].x.x, s.strikes[i].x.y,
-                  s.strikes[i].x.z, s.strikes[i].velocity);
+        tell_strike(take, tips, &s.strikes[i], to);
     if (s.left_out > 0)
         himc_tell(
             to,
@@ -200,20 +211,37 @@ static void tell_posture(const himc_player *player, const himc_line_sink *to)
               used ? " known joints" : " natural, because the take shows no joint", text);
 }
 
+// how the seat follows from the take
+static void seat_text(const himc_player *player, char *text, size_t size)
+{
+    double seat = himc_skeleton_seat(&player->config), moved = player->offset.z;
+    if (!player->placed)
+        snprintf(text, size, "by the tips");
+    else if (fabs(moved) < 5e-4)
+        snprintf(text, size, "as the take shows");
+    else if (seat <= PLAYER_LOWEST_SEAT || seat >= PLAYER_HIGHEST_SEAT)
+        snprintf(text, size, "the %s allowed", seat <= PLAYER_LOWEST_SEAT ? "least" : "most");
+    else
+        snprintf(text, size, "%s by %.3f m so that the strikes meet the head",
+                 moved > 0 ? "raised" : "lowered", fabs(moved));
+}
+
 // in the world, with its origin on the floor under the player, and in the take
 static void tell_places(const himc_player *player, const himc_head_frame *drum,
                         const himc_line_sink *to)
 {
-    himc_vec3 floor = himc_vec3_scale(player->offset, -1);
-    himc_vec3 head = himc_vec3_add(drum->center, floor), hips = player->hips;
-    himc_tell(to, "seat: hip joints %.3f m above the floor, %s; in the take at %.3f %.3f %.3f m",
-              himc_skeleton_seat(&player->config),
-              player->placed ? "as the take shows" : "by the tips", hips.x, hips.y, hips.z);
-    himc_tell(
-        to,
-        "drumhead: centre %.3f m in front of the player, %.3f m to the left, %.3f m high; in the "
-        "take at %.3f %.3f %.3f m",
-        drum->center.x, drum->center.y, drum->center.z, head.x, head.y, head.z);
+    char seat[80];
+    const char *held = player->walks ? ", without the walk," : "";
+    himc_vec3 floor = himc_vec3_scale(player->offset, -1), c = drum->center;
+    himc_vec3 head = himc_vec3_add(c, floor), hips = player->hips;
+    seat_text(player, seat, sizeof seat);
+    himc_tell(to, "seat: hip joints %.3f m above the floor, %s; in the take%s at %.3f %.3f %.3f m",
+              himc_skeleton_seat(&player->config), seat, held, hips.x, hips.y, hips.z);
+    himc_tell(to,
+              "drumhead: centre %.3f m %s the player, %.3f m to the %s, %.3f m high; in the take%s "
+              "at %.3f %.3f %.3f m",
+              fabs(c.x), c.x < 0 ? "behind" : "in front of", fabs(c.y), c.y < 0 ? "right" : "left",
+              c.z, held, head.x, head.y, head.z);
 }
 
 void himc_player_describe(const himc_player *player, const himc_head_frame *drum,

@@ -31,6 +31,7 @@
 #define USUAL_BREADTH 0.37 // between the shoulder joints of that man (m)
 #define LEAST_BREADTH 0.2  // range of himc_skeleton_config (m)
 #define USUAL_HEAD 0.85    // chosen: height of a timpano's head, for the natural pose (m)
+#define HAND_REACH 0.2     // chosen: a hand is shorter, a stick in it reaches farther (m)
 #define WALK 0.15          // chosen: a seated player's hips sway by less, RMS (m)
 
 static void measure_limb(const player_points *p, const player_measure *m, himc_player *player)
@@ -65,6 +66,21 @@ static void measure_lengths(const player_points *p, himc_player *player)
     double breadth = himc_player_distance(p, POINT_SHOULDER, POINT_SHOULDER + 1, 0.5);
     player->config.shoulders =
         breadth >= LEAST_BREADTH ? himc_player_plausible(breadth, USUAL_BREADTH) : 0;
+}
+
+// a tip within a hand's length of the wrist is no stick's: the body's stick is then to be put there
+static void note_hands(const player_points *p, himc_player *player)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        double far = himc_player_distance(p, POINT_WRIST + hand, POINT_TIP + hand, 0.5);
+        int node = p->node[POINT_TIP + hand];
+        bool shown = p->x[POINT_WRIST + hand] && p->x[POINT_TIP + hand] && node >= 0;
+        if (shown && far < HAND_REACH)
+            himc_player_note(player,
+                             "%s is %.2f m from the wrist: a hand, not the tip of a stick; the "
+                             "arms are bent until a stick's tip is there",
+                             himc_take_point_name(p->take, node), far);
+    }
 }
 
 // ratio of the summed lengths of the parts to the reference; 0 if no length is known
@@ -205,6 +221,7 @@ static bool read_player(himc_player *player, player_points *p, himc_error *error
     if (!himc_player_check(p, player, error))
         return false;
     measure_lengths(p, player);
+    note_hands(p, player);
     if (!find_height(p, player, error) || !himc_skeleton_init(&skeleton, &player->config, error))
         return false;
     player->mean = natural_pose(&skeleton);
@@ -250,9 +267,6 @@ void himc_player_free(himc_player *player)
 
 // The seat.
 
-// chosen: hip joints of a child on a stool, and of a tall standing man (m)
-#define LOWEST_SEAT 0.3
-#define HIGHEST_SEAT 1.3
 #define ON_HEAD 0.97 // chosen: share of the radius within which strikes meet the head
 #define DENT 0.012   // chosen: dent of a struck head; a smaller change of the seat is not made (m)
 #define REST_OVER_HEAD 0.085 // of resting sticks (m), as the planner has them
@@ -346,7 +360,7 @@ static void seat_player(himc_player *player, himc_vec3 struck, himc_head_frame *
     }
     double head =
         drum->center.z + local.x * tan(drum->tilt) + player->config.mallet_radius / cos(drum->tilt);
-    double seat = head - spot.z, kept = fmin(fmax(seat, LOWEST_SEAT), HIGHEST_SEAT);
+    double seat = head - spot.z, kept = fmin(fmax(seat, PLAYER_LOWEST_SEAT), PLAYER_HIGHEST_SEAT);
     if (fabs(kept - player->hips.z) < DENT)
         kept = seat = player->hips.z;
     drum->center.z += kept - seat;
@@ -357,7 +371,7 @@ static void seat_player(himc_player *player, himc_vec3 struck, himc_head_frame *
 // a player without strikes keeps the captured height above the floor
 static void keep_player(himc_player *player)
 {
-    double seat = fmin(fmax(player->hips.z, LOWEST_SEAT), HIGHEST_SEAT);
+    double seat = fmin(fmax(player->hips.z, PLAYER_LOWEST_SEAT), PLAYER_HIGHEST_SEAT);
     player->config.seat = seat;
     player->offset = himc_vec3_make(-player->hips.x, -player->hips.y, seat - player->hips.z);
 }

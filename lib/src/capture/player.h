@@ -45,6 +45,10 @@ typedef struct player_measure {
 #define PLAYER_SPINE 3
 extern const player_measure himc_player_limbs[PLAYER_LIMBS], himc_player_spine[PLAYER_SPINE];
 
+// chosen: hip joints of a child on a stool, and of a tall standing man (m)
+#define PLAYER_LOWEST_SEAT 0.3
+#define PLAYER_HIGHEST_SEAT 1.3
+
 // Joint centres: player_points.c.
 
 /// Finds the centres and bridges gaps; a centre with a longer gap is not shown, with a note to the

@@ -139,6 +139,12 @@ typedef struct himc_strike_survey {
 bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                        himc_strike_survey *survey);
 
+/// The fastest fall of the tip between two frames just before the strike (m/s).
+double himc_take_fastest_fall(const himc_take *take, const himc_take_tip *tip,
+                              const himc_take_strike *strike);
+/// A strike that is faster by more than this is extrapolated; chosen: a frame's own acceleration.
+#define HIMC_TAKE_CARRIED_ON 1.02
+
 // The library's frame: take_frame.c.
 
 /// Metres per unit by the unit's name ("mm", "Centimeters", "in"); 0 if unknown.

@@ -495,6 +495,16 @@ bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HAND
     return found_all;
 }
 
+double himc_take_fastest_fall(const himc_take *take, const himc_take_tip *tip,
+                              const himc_take_strike *strike)
+{
+    double fastest = 0;
+    int from = strike->frame - (int)(STRIKE_WINDOW * take->rate);
+    for (int i = from < 1 ? 1 : from; i <= strike->frame; i++)
+        fastest = fmax(fastest, (tip->x[i - 1].z - tip->x[i].z) * take->rate);
+    return fastest;
+}
+
 himc_take_strike *himc_take_find_strikes(const himc_take *take,
                                          const himc_take_tip tips[HIMC_HANDS], int *count)
 {

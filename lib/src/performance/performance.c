@@ -98,6 +98,18 @@ static void step_kinematics(himc_performance *p, int n, double t, double h, bool
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, NULL);
 }
 
+// targets that no body can follow, once
+static void tell_too_fast(himc_performance *p, double t)
+{
+    int joint;
+    double rate;
+    if (himc_statistics_too_fast(&p->statistics, &joint, &rate))
+        himc_events_note(&p->events,
+                         "at %.2f s %s turns at %.0f rad/s, a person's at %.0f at most: the arms "
+                         "cannot follow these targets",
+                         t, himc_joint_name(joint), rate, HIMC_FASTEST_JOINT);
+}
+
 static void tell_planner_notes(himc_performance *p)
 {
     himc_planner_note note;
@@ -156,8 +168,10 @@ static void performance_step(himc_performance *p)
         step_kinematics(p, n, t, h, tick);
     else
         step_dynamics(p, n, t, h, tick);
-    if (tick)
+    if (tick) {
         himc_performance_tell_tick(p, t);
+        tell_too_fast(p, t);
+    }
     watch(p, t);
     himc_clock_step(&p->clock, n);
 }

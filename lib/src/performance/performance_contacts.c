@@ -360,6 +360,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
     himc_motion_answer(s->motion, hand, next.time);
     himc_statistics_strokes(s->statistics, 1, played);
+    himc_statistics_yields(s->statistics, next.yields);
 }
 
 // adds the forces of a step's `n` samples to the strike; returns the impulse (N s)
@@ -499,8 +500,9 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             continue;
         double impulse =
             note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
-        if (impulse > 0)
-            himc_statistics_given(s->statistics, -work_on(&before[hand], &c->hand[hand].stick));
+        double work = impulse > 0 ? work_on(&before[hand], &c->hand[hand].stick) : 0;
+        himc_statistics_contact_work(s->statistics, (himc_hand)hand, work,
+                                     (1 - c->hand[hand].share) * work);
         double force = impulse * s->clock->sample_rate / n;
         tip_force[hand] =
             himc_vec3_scale(normal_of(s, near.below[hand]), c->hand[hand].share * force);

@@ -291,6 +291,7 @@ planned_stroke himc_motion_stroke(const performance_motion *m, const performance
         if (next.any)
             himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
         strcpy(next.nuance, himc_nuance_name(stroke.nuance));
+        next.yields = himc_planner_yields(m->planner, hand, t);
         next.beat = stroke.beat;
         next.bounces = stroke.bounces;
         next.bounce_time = stroke.bounce_time;

@@ -36,10 +36,11 @@ typedef struct planned_contact {
 /// The stroke of that contact.
 typedef struct planned_stroke {
     bool any;
-    double time; ///< of contact (s)
-    int drum;    ///< slot
-    double x, y; ///< on the head (m)
-    double beat; ///< in the score, NaN of a take
+    double time;   ///< of contact (s)
+    int drum;      ///< slot
+    double x, y;   ///< on the head (m)
+    double yields; ///< so far from where it was asked for, as the hands would have met (m)
+    double beat;   ///< in the score, NaN of a take
     char nuance[HIMC_NAME_SIZE];
     int bounces;        ///< of a stroke that bounces (himc_stroke)
     double bounce_time; ///< (s)

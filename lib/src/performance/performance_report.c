@@ -21,6 +21,7 @@ void himc_performance_on_motion(himc_performance *p, void (*row)(void *, const h
 {
     himc_events_on_motion(&p->events, row, user);
     himc_body_account(p->body, row != NULL);
+    memset(p->statistics.mallet, 0, sizeof p->statistics.mallet);
     double unused[2];
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_contacts_take_row(&p->contacts, (himc_hand)hand, &unused[0], &unused[1]);
@@ -55,6 +56,7 @@ void himc_performance_take_energy(himc_performance *p)
     *e = (himc_energy){.push = w->push, .placed = w->placed, .numerical = w->numerical};
     memcpy(e->joint, w->joint, sizeof e->joint);
     memcpy(e->contact, w->contact, sizeof e->contact);
+    memcpy(e->mallet, p->statistics.mallet, sizeof e->mallet);
     e->kinetic = himc_character_kinetic(b->character);
     e->potential = himc_character_potential(b->character);
     himc_drums_catch_up(&p->drums);
@@ -83,6 +85,13 @@ static double null_share(const himc_body_state *state, himc_hand hand, const him
     return all > 0 ? share / all : 0;
 }
 
+// the head's force on the mallet's own mass, as a share of that on the body's stick
+static double mallet_share(const himc_performance *p, himc_hand hand)
+{
+    double share = p->contacts.hand[hand].share;
+    return share > 0 ? 1 / share - 1 : 0;
+}
+
 static void fill_hands(himc_performance *p, himc_motion_row *row)
 {
     const performance_body *b = p->body;
@@ -97,6 +106,7 @@ static void fill_hands(himc_performance *p, himc_motion_row *row)
         himc_contacts_take_row(&p->contacts, hand, &row->force[i], &row->impulse[i]);
         row->elbow[i] = b->state.origin[HIMC_LEFT_FOREARM + i];
         row->tip_force[i] = b->tip_force[i];
+        row->mallet_force[i] = himc_vec3_scale(b->tip_force[i], mallet_share(p, hand));
         row->null_space[i] = null_share(&b->state, hand, row->rate);
     }
 }
@@ -174,7 +184,7 @@ static void fill_no_dynamics(himc_motion_row *row)
     himc_energy *e = &row->energy;
     e->push = e->placed = e->numerical = e->kinetic = e->potential = NAN;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        e->contact[hand] = NAN;
+        e->contact[hand] = e->mallet[hand] = NAN;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         row->acceleration[j] = row->torque[j] = none;
         row->power[j] = e->joint[j] = NAN;

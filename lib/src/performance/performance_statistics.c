@@ -34,6 +34,15 @@ void himc_statistics_captured(performance_statistics *s, himc_vec3 away)
     s->captured_most = fmax(s->captured_most, square);
 }
 
+static double peak(const double squares[HIMC_JOINTS], int *joint)
+{
+    *joint = 0;
+    for (int j = 1; j < HIMC_JOINTS; j++)
+        if (squares[j] > squares[*joint])
+            *joint = j;
+    return sqrt(squares[*joint]);
+}
+
 // squares, in every step: peaks of a blow are shorter than a tick, and roots would cost more
 void himc_statistics_joints(performance_statistics *s, const himc_skeleton *skeleton,
                             const himc_body_state *state, const himc_vec3 *torque)
@@ -45,6 +54,15 @@ void himc_statistics_joints(performance_statistics *s, const himc_skeleton *skel
         square = torque ? himc_vec3_dot(torque[j], torque[j]) : 0;
         s->torque[j] = square > s->torque[j] ? square : s->torque[j];
     }
+}
+
+bool himc_statistics_too_fast(performance_statistics *s, int *joint, double *rate)
+{
+    if (s->told_fast)
+        return false;
+    *rate = peak(s->rate, joint);
+    s->told_fast = *rate > HIMC_FASTEST_JOINT;
+    return s->told_fast;
 }
 
 void himc_statistics_unplanned(performance_statistics *s)
@@ -63,6 +81,12 @@ void himc_statistics_strokes(performance_statistics *s, int strokes, int played)
     s->played += played;
 }
 
+void himc_statistics_yields(performance_statistics *s, double yields)
+{
+    s->moved += yields > 0;
+    s->moved_most = fmax(s->moved_most, yields);
+}
+
 void himc_statistics_hit(performance_statistics *s, double latency)
 {
     s->hit_latency = latency;
@@ -70,9 +94,11 @@ void himc_statistics_hit(performance_statistics *s, double latency)
     s->hits++;
 }
 
-void himc_statistics_given(performance_statistics *s, double work)
+void himc_statistics_contact_work(performance_statistics *s, himc_hand hand, double work,
+                                  double own)
 {
-    s->given += work;
+    s->given -= work;
+    s->mallet[hand] += own;
 }
 
 void himc_statistics_force(performance_statistics *s, double force)
@@ -85,15 +111,6 @@ long himc_statistics_recovery(performance_statistics *s)
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         s->apex[hand] = 0;
     return s->recoveries++;
-}
-
-static double peak(const double squares[HIMC_JOINTS], int *joint)
-{
-    *joint = 0;
-    for (int j = 1; j < HIMC_JOINTS; j++)
-        if (squares[j] > squares[*joint])
-            *joint = j;
-    return sqrt(squares[*joint]);
 }
 
 static void read_capture(const performance_statistics *s, himc_performance_stats *out)
@@ -110,6 +127,8 @@ void himc_statistics_read(const performance_statistics *s, himc_performance_stat
     out->strokes = s->strokes;
     out->played = s->played;
     out->missed = s->strokes - s->played;
+    out->moved = s->moved;
+    out->moved_most = s->moved_most;
     out->peak_force = s->peak_force;
     out->hits = s->hits;
     out->hit_latency = s->hit_latency;

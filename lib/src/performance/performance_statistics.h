@@ -6,6 +6,10 @@
 #include "himc/performance.h"
 #include "himc/vec.h"
 
+// A pitcher's shoulder, the fastest joint that has been measured of people, turns at some 7000
+// degrees a second (Dillman, Fleisig & Andrews 1993); chosen: a third more is no person's
+#define HIMC_FASTEST_JOINT 160.0 // (rad/s)
+
 typedef struct performance_statistics {
     double square_sum; ///< of the distances from tip to target outside contact (m^2)
     long square_count;
@@ -13,6 +17,8 @@ typedef struct performance_statistics {
     long height_count;
     double apex[HIMC_HANDS]; ///< highest target over the head since the last strike (m)
     int strokes, played, hits;
+    int moved;         ///< strokes that were moved aside, as the hands would have met ...
+    double moved_most; ///< ... by so much at most (m)
     double hit_latency, longest_latency; ///< from a hit's command to its planned contact (s)
     double peak_force;                   ///< (N)
     int unplanned;                       ///< contacts
@@ -21,9 +27,12 @@ typedef struct performance_statistics {
     long captured_count;
     double captured_most;       ///< the largest of them (m^2)
     double rate[HIMC_JOINTS];   ///< largest squared rate of each joint (rad^2/s^2)
+    bool told_fast;             ///< himc_statistics_too_fast has been true
     double torque[HIMC_JOINTS]; ///< largest squared torque (N^2 m^2)
     long recoveries;
     double given; ///< by sticks to heads (J)
+    double
+        mallet[HIMC_HANDS]; ///< work of the heads on mallets' own masses since the rows began (J)
 } performance_statistics;
 
 HIMC_RT void himc_statistics_clear(performance_statistics *statistics);
@@ -38,16 +47,21 @@ HIMC_RT void himc_statistics_captured(performance_statistics *statistics, himc_v
 HIMC_RT void himc_statistics_joints(performance_statistics *statistics,
                                     const himc_skeleton *skeleton, const himc_body_state *state,
                                     const himc_vec3 *torque);
+/// True once, when a joint has turned faster than any person's: the joint and its rate (rad/s).
+HIMC_RT bool himc_statistics_too_fast(performance_statistics *statistics, int *joint, double *rate);
 /// Adds a contact that no stroke asked for.
 HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
 /// Adds a contact that has lasted so long (s).
 HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double duration);
 /// Adds finished strokes of the score; `played` of them landed on time and place.
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
+/// Adds a stroke that was struck so far from where it was asked for (m).
+HIMC_RT void himc_statistics_yields(performance_statistics *statistics, double yields);
 /// Adds a hit, with the time from its command to its planned contact (s).
 HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double latency);
-/// Adds the work of a stick on a head (J).
-HIMC_RT void himc_statistics_given(performance_statistics *statistics, double work);
+/// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.
+HIMC_RT void himc_statistics_contact_work(performance_statistics *statistics, himc_hand hand,
+                                          double work, double own);
 HIMC_RT void himc_statistics_force(performance_statistics *statistics, double force);
 /// Counts a state that was not finite and was replaced; returns the count before.
 HIMC_RT long himc_statistics_recovery(performance_statistics *statistics);

@@ -61,6 +61,7 @@ typedef struct take_job {
     himc_take_tip tips[HIMC_HANDS];
     take_reach reach;
     int strikes, outside; ///< of the take, and those beside the drum
+    double fastest, seen; ///< of the strikes, as found and between frames of the take (m/s)
     int left_out;         ///< motions as sharp as strikes, but off the head
     himc_posture_regression regression;
     bool fitted;
@@ -213,10 +214,14 @@ static bool count_strikes(take_job *j, himc_error *error)
     j->strikes = s.count;
     j->left_out = s.left_out;
     j->outside = 0;
+    j->fastest = j->seen = 0;
     for (int i = 0; i < s.count; i++) {
         himc_vec3 at = himc_vec3_add(s.strikes[i].x, himc_track_offset(j->track));
         himc_vec3 local = himc_head_frame_from_world(&j->frame, at);
         j->outside += hypot(local.x, local.y) > j->frame.radius;
+        j->fastest = fmax(j->fastest, s.strikes[i].velocity);
+        j->seen = fmax(j->seen,
+                       himc_take_fastest_fall(j->take, &j->tips[s.strikes[i].hand], &s.strikes[i]));
     }
     free(s.strikes);
     return true;
@@ -361,6 +366,18 @@ static void note_repairs(const take_job *j)
     himc_performance *p = j->performance;
     for (int i = 0; i < j->take->note_count; i++)
         himc_events_note(&p->events, "%s: %s", j->name, j->take->notes[i]);
+    for (int i = 0; i < j->player->note_count; i++)
+        himc_events_note(&p->events, "%s: %s", j->name, j->player->notes[i]);
+    if (j->strikes == 0)
+        himc_events_note(
+            &p->events,
+            "%s: silent: no tip falls onto a head (%s; if another axis is up, say --up)", j->name,
+            j->take->axes_text);
+    if (j->fastest > HIMC_TAKE_CARRIED_ON * j->seen)
+        himc_events_note(&p->events,
+                         "%s: strikes up to %.2f m/s, extrapolated from falls up to %.2f in the "
+                         "take",
+                         j->name, j->fastest, j->seen);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (j->tips[hand].present && j->tips[hand].filled > 0)
             himc_events_note(&p->events, "%s: %s is missing in %d frames, which are filled",

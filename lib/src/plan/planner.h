@@ -230,6 +230,8 @@ HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand
 /// stroke is where it will be played; `stroke` may be NULL. False if there is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
+/// How far the spot of that stroke is moved aside, as the hands would have met (m); usually 0.
+HIMC_RT double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t);
 
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
 /// begins again.

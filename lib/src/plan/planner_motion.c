@@ -427,8 +427,11 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         return LEFT_OUT;
     if (way->other && s->index >= 0)
         return MEETS;
+    s->yields = 0;
     if (way->aside != 0) {
-        s->goal.spot = himc_planner_aside(planner, s, way->aside);
+        himc_vec3 to = himc_planner_aside(planner, s, way->aside);
+        s->yields = himc_vec3_length(himc_vec3_sub(to, s->goal.spot));
+        s->goal.spot = to;
         s->varied = true;
     }
     if (way->waits)
@@ -922,6 +925,12 @@ static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc
     stroke->spot = HIMC_SPOT_XY;
     stroke->x = at.x;
     stroke->y = at.y;
+}
+
+double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t)
+{
+    const timed_stroke *s = himc_planner_current_planned(&planner->hand[hand], t);
+    return s ? s->yields : 0;
 }
 
 bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,

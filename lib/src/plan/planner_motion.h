@@ -43,6 +43,7 @@ typedef struct timed_stroke {
     bool separated;  ///< the tip has left the head again
     double asked;    ///< speed of impact that was asked for (m/s)
     bool varied;     ///< the goal is not as written
+    double yields;   ///< its spot is moved by so much, as the hands would have met (m)
     bool exact;      ///< a hit with a time, still to be corrected before its touch
     double latency;  ///< time that a hit with a time has, since its message (s), else 0
     himc_variation variation; ///< of a hit since it came, of another stroke since it was varied
