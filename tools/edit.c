@@ -179,7 +179,10 @@ static himc_score *parse(const session *s, const edit_text *t, himc_error *error
     free(text);
     if (!score || !s->confined || !edit_text_names_file(score, &line))
         return score;
-    himc_error_set(error, "%s:%d: names other files", s->name, line);
+    himc_error_set(error,
+                   "%s:%d: names other files, which a score from a page may not; open it by "
+                   "himc-viewer --edit",
+                   s->name, line);
     himc_score_free(score);
     return NULL;
 }

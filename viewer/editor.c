@@ -145,7 +145,10 @@ bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error)
 {
     const char *zero = memchr(bytes, 0, size), *ending = zero ? ending_of(bytes) : NULL;
     if (!ending)
-        return himc_error_set(error, "allowed are scores (.txt), .mid, .bvh, .c3d, .trc, .himc");
+        return himc_error_set(error,
+                              "%.80s: expected a score (.txt), a MIDI file (.mid) or a take "
+                              "(.bvh .c3d .trc)",
+                              zero ? bytes : "a file without a name");
     if (!folder_make(e->folder, error))
         return false;
     char file[32];

@@ -140,6 +140,14 @@ export class Piece {
         socket.onclose = e => this.on.ended(e.code === TAKEN ? "taken" : opened ? "lost" : "refused");
     }
 
+    // ends the channel of a program that cannot be reached, which would be noticed much later
+    leave() {
+        if (this.socket.readyState >= WebSocket.CLOSING) return;
+        this.socket.onclose = this.socket.onmessage = null;
+        this.socket.close();
+        this.on.ended("lost");
+    }
+
     get live() {
         return this.socket.readyState === WebSocket.OPEN;
     }
@@ -157,6 +165,7 @@ export class Piece {
 
     // a score, a MIDI file or a take, to be edited from now on
     async send(file) {
+        if (!this.live) throw new Error(`${file.name}: himc-viewer cannot be reached by this page`);
         if (file.size > MOST) throw new Error(`${file.name}: larger than ${MOST >> 20} MB`);
         const name = new TextEncoder().encode(`${file.name}\0`),
             message = new Uint8Array(name.length + file.size);
