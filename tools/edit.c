@@ -269,8 +269,8 @@ static void unkept(session *s, const himc_error *why)
     himc_error_set(&s->unkept, "Changes are lost when this page ends, save them: %s", why->text);
 }
 
-// The changes of the journal; false if they do not fit. `back` takes the one before it back; the last
-// one stays open: the program may have been killed before it was played.
+// The changes of the journal; false if they do not fit. `back` takes the one before it back; the
+// last one stays open: the program may have been killed before it was played.
 static bool change_again(const session *s, edit_text *t, himc_error *error)
 {
     bool good = true;

@@ -150,8 +150,8 @@ static void require_text(const edit_text *t, const char *wanted, const char *wha
     free(text);
 }
 
-// A line of the input: number of a statement, its words; other lines are steps in the history. After
-// a `b` it is taken back, good or not.
+// A line of the input: number of a statement, its words; other lines are steps in the history.
+// After a `b` it is taken back, good or not.
 static void change(edit_text *t, const char *line)
 {
     himc_error error = {""};

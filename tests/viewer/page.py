@@ -1435,14 +1435,41 @@ def test_a_scene_that_unpacks_without_end_is_refused():
         assert told.startswith("bomb.himc") and "more than" in told, told
 
 
+DROP = """
+    const data = new DataTransfer();
+    data.items.add(new File([arguments[0]], arguments[1]));
+    viewer.panel.note("");
+    dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+"""
+
+
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
     with tempfile.TemporaryDirectory() as home, editing("tests/viewer/editable.txt"):
-        browser.run(
-            "const score = [0, 1, 2, 3].map(b => `stroke ${b} right legato mf;`).join('');"
-            "const data = new DataTransfer();"
-            "data.items.add(new File([score], 'dropped.txt'));"
-            "dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }))"
-        )
+        # what is refused changes nothing
+        browser.run("viewer.playback.seek(2000)")
+        before = browser.run("viewer.scene = viewer.playback.scene; return [viewer.playback.at, viewer.editor.piece.cuts]")
+        for contents, name, why in (
+            ("stroke 1 left boing f;", "bad.txt", "boing"),
+            ("record x.bvh;stroke 1 left legato f;", "writes.txt", "names other files"),
+            ("RIFF", "sound.wav", "expected a score"),
+            ("not a capture", "bad.bvh", "bad.bvh"),
+        ):
+            browser.run(DROP, contents, name)
+            assert browser.wait("return document.getElementById('note').textContent").startswith(name), name
+            said = browser.run("return document.getElementById('note').textContent")
+            assert why in said, said
+        assert browser.run("return [viewer.playback.at, viewer.editor.piece.cuts]") == before
+        assert browser.run("return viewer.playback.scene === viewer.scene")
+        browser.run(DROP, "".join(f"stroke {b} right legato mf;" for b in range(4)), "dropped.txt")
+        assert browser.wait("return viewer.editor.piece.text.statements.length === 4 && viewer.editor.piece.over")
+        # undo goes back to what was before, redo forth again
+        source = "return viewer.editor.piece.text.source.endsWith('%s') && viewer.editor.piece.over"
+        for button, wanted in (("undo", "editable.txt"), ("redo", "dropped.txt")):
+            browser.run(f"document.getElementById('e-{button}').click()")
+            assert browser.wait(source % wanted), button
+            assert browser.run("return ['e-undo', 'e-redo'].map(id => document.getElementById(id).disabled)") == [
+                button == "undo", button == "redo"
+            ]
         assert browser.wait("return viewer.editor.piece.text.statements.length === 4 && viewer.editor.piece.over")
         assert browser.wait("return viewer.playback.scene.strikes.length === 4")
         browser.run(

@@ -211,8 +211,10 @@ export class Editor {
 
     step(name) {
         if (!this.able()) return;
-        this.unsure = true;
-        this.piece.say(name);
+        const { text, before, after } = this.piece,
+            other = name === "undo" && !text.undo && before ? "back" : name === "redo" && !text.redo && after ? "forth" : "";
+        this.unsure = !other;
+        this.piece.say(other || name);
     }
 
     // does `use` with the number in a field; one that is none, or out of its limits, is refused
@@ -233,8 +235,8 @@ export class Editor {
         if (event.begun || event.kept) this.state(""); // what was said of the changes from before
         document.body.classList.add("editing");
         document.body.classList.toggle("take", event.take);
-        $("e-undo").disabled = !event.undo;
-        $("e-redo").disabled = !event.redo;
+        $("e-undo").disabled = !event.undo && !this.piece.before;
+        $("e-redo").disabled = !event.redo && !this.piece.after;
         $("e-revert").disabled = !event.undo;
         const c = this.chosen,
             index = c?.index ?? c?.statement?.index;

@@ -136,7 +136,7 @@ export class Piece {
         this.rest = new Uint8Array();
         socket.binaryType = "arraybuffer";
         socket.onopen = () => (opened = true);
-        socket.onmessage = e => this.hear(new Uint8Array(e.data));
+        socket.onmessage = e => (typeof e.data === "string" ? this.told(JSON.parse(e.data)) : this.hear(new Uint8Array(e.data)));
         socket.onclose = e => this.on.ended(e.code === TAKEN ? "taken" : opened ? "lost" : "refused");
     }
 
@@ -172,6 +172,13 @@ export class Piece {
         message.set(name);
         message.set(new Uint8Array(await file.arrayBuffer()), name.length);
         this.socket.send(message);
+    }
+
+    // what himc-viewer itself says: another program begins, and how many pieces were before it, or are after
+    // it; or a file that was dropped is refused
+    told(event) {
+        if (event.event === "begun") Object.assign(this, { rest: new Uint8Array(), before: event.before, after: event.after });
+        else this.on.trouble(event.text);
     }
 
     hear(bytes) {

@@ -3,8 +3,8 @@
 /// Packets to the network that we listen at leave from the listening socket, so that a receiver can
 /// answer; all others leave from sockets that only send. No call waits but the one named so.
 ///
-/// An IPv4 address mapped into IPv6 (::ffff:a.b.c.d), as a socket of both has it, is compared as the
-/// IPv4 address, so that a host is one host, and this machine is not a stranger.
+/// An IPv4 address mapped into IPv6 (::ffff:a.b.c.d), as a socket of both has it, is compared as
+/// the IPv4 address, so that a host is one host, and this machine is not a stranger.
 #define _POSIX_C_SOURCE 200809L // names of hosts, threads
 #include "osc/network.h"
 #include "system/thread.h"
