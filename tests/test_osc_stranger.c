@@ -282,6 +282,27 @@ static void test_a_long_dump_to_a_friend_ends_with_an_error(void)
     TEST_ASSERT_EQUAL_INT(0, himc_osc_count(osc).lost);
 }
 
+// a block of the host has time for a part of it; what comes behind it waits
+static void test_a_long_dump_is_told_in_parts(void)
+{
+    int blocks = 1;
+    load_strokes(0, 500);
+    long whole = ask_for_dumps(1), before = himc_osc_count(osc).sent;
+    clock_step = 6e-5;
+    say("/himc/dump", "");
+    say("/himc/clear", "");
+    settle();
+    for (; himc_osc_count(osc).sent < before + whole; blocks++) {
+        TEST_ASSERT_LESS_THAN(100, blocks);
+        himc_osc_receive(osc, performance, 8);
+        serve();
+    }
+    clock_step = 0;
+    TEST_ASSERT_GREATER_THAN(3, blocks);
+    himc_osc_receive(osc, performance, 8);
+    TEST_ASSERT_LESS_THAN(whole - 499, ask_for_dumps(1)); // it has been cleared, after its dump
+}
+
 // also one of --allow gets no more than 500 kB a second, an eighth of a megabyte at once
 static void test_dumps_are_within_the_bytes_of_a_host(void)
 {
@@ -503,6 +524,7 @@ int main(void)
     RUN_TEST(test_commands_beyond_1000_points_a_second_are_counted);
     RUN_TEST(test_strangers_get_50_answers_a_second);
     RUN_TEST(test_this_machine_is_no_stranger_at_a_socket_of_both_families);
+    RUN_TEST(test_a_long_dump_is_told_in_parts);
     RUN_TEST(test_a_long_dump_to_a_friend_ends_with_an_error);
     RUN_TEST(test_refusals_are_told_once_and_sent_to_their_subscribers);
     RUN_TEST(test_a_full_ring_is_counted_and_blocks_no_call);
