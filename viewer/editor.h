@@ -34,8 +34,8 @@ bool editor_is_key(const char *key, const char *given);
 bool editor_start(editor *e, himc_error *error);
 /// Sends a line, "" to 4000 bytes without a newline; false if it is none, or not taken.
 bool editor_say(const editor *e, const char *line, size_t size);
-/// Keeps a file that came from a page (name, 0, bytes) as the source, in a place of those that pages
-/// have sent (from 0), which is taken from what was there; false with the reason.
+/// Keeps a file that came from a page (name, 0, bytes) as the source, in a place of those that
+/// pages have sent (from 0), which is taken from what was there; false with the reason.
 bool editor_keep(editor *e, int place, const char *bytes, size_t size, himc_error *error);
 /// Ends the program, and with it all processes that play.
 void editor_stop(editor *e);
