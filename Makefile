@@ -546,6 +546,7 @@ $(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h
 $(VIEWER_TESTS:=.o): private CPPFLAGS += -Iviewer -I$(BUILD)/viewer
 
 $(BUILD)/tests/fuzz/fuzz_edit: $(addprefix $(BUILD)/tools/,edit_text.o cli.o file.o)
+$(BUILD)/tests/test_osc_stranger: private LIBS += -Wl,--wrap=himc_osc_address_loopback
 $(BUILD)/tests/fuzz/fuzz_edit: private LIBS += -Wl,--wrap=himc_system_open -Wl,--wrap=himc_system_open_inside
 $(BUILD)/tests/fuzz/fuzz_log: $(addprefix $(BUILD)/tools/,evaluate_log.o trial.o) $(MOCAP_O)
 

@@ -406,6 +406,10 @@ check test_tuned_drum_sounds_there [ "$tuned" = 1 ]
 check test_info_counts_strokes [ "$(sed -n 's/^strokes *//p; s/^right *//p' out | tr '\n' ' ')" = \
     "4 1 legato, 1 accent " ]
 check test_info_tells_tempi [ "$(sed -n 's/^tempo *//p' out)" = "120, from beat 3 90 BPM" ]
+printf 'tempo 120; roll 0 8 press pp f; flam 9 left accent f; ruff 11 right accent f; stroke 12 left legato mf; roll 14 2 single mf;' >rolls.txt
+"$himc" info rolls.txt >out
+check test_info_counts_rolls_and_grace_notes [ "$(tr -s ' \n' ' ' <out)" = \
+    "strokes 3 left 1 legato, 1 accent right 1 accent grace 1 flam, 1 ruff rolls 1 single, 1 press beats 0 to 16 length 8.000 s from the first stroke to the last tempo 120 BPM drums kettle 26 inches (none named) " ]
 
 # MIDI files
 # near SECONDS: rows of struck.csv within 10 ms of a note that mido finds (notes.csv), which is played so much later
@@ -429,8 +433,8 @@ cp "$root/tests/midi/scherzo.csv" notes.csv
 check test_render_tells_what_of_a_midi_file_it_plays [ "$(grep -c '^note: 24 of 24 notes for timpani are played' err)" = 1 ]
 check test_a_midi_file_is_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1.0345)" = "24 24" ]
 "$himc" info roll.mid >out
-check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n 's/^strokes *//p' out)" = \
-    "40 notes are played as 3 rolls 3" ]
+check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n 's/^strokes *//p; s/^rolls *//p' out | tr '\n' ' ')" = \
+    "40 notes are played as 3 rolls 0 3 single " ]
 refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
 refuses test_import_does_not_write_over_its_source "named twice" import roll.mid -o ./roll.mid
 refuses test_import_of_text_is_refused "not a MIDI file" import piece.txt -o x.txt

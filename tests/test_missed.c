@@ -8,6 +8,7 @@
 typedef struct told {
     heard h;
     himc_strike missed[MISSES];
+    char why[512]; // of the last one
     int misses, hit_lines;
 } told;
 
@@ -20,8 +21,10 @@ static void listen_to(himc_performance *p, double seconds, told *to)
             heard_event(&to->h, &event);
             to->hit_lines += event.kind == HIMC_EVENT_NOTE && !event.minor &&
                              strncmp(event.text, "hit:", 4) == 0;
-            if (event.kind == HIMC_EVENT_MISSED && to->misses < MISSES)
-                to->missed[to->misses++] = event.strike;
+            if (event.kind != HIMC_EVENT_MISSED || to->misses == MISSES)
+                continue;
+            to->missed[to->misses++] = event.strike;
+            snprintf(to->why, sizeof to->why, "%s", event.text);
         }
     }
 }
@@ -48,6 +51,7 @@ static void test_each_stroke_is_played_or_missed_with_its_beat_hand_drum_and_tim
     TEST_ASSERT_EQUAL_INT(4, t.h.strikes);
     TEST_ASSERT_EQUAL_INT(2, t.misses);
     TEST_ASSERT_EQUAL_INT(2, himc_performance_measure(p).missed);
+    TEST_ASSERT_EQUAL_STRING_LEN("out of reach by 2.", t.why, 18);
     for (int i = 0; i < 2; i++) {
         const himc_strike *m = &t.missed[i];
         TEST_ASSERT_EQUAL_DOUBLE(i ? 5.5 : 2.5, m->beat);

@@ -54,6 +54,23 @@ static void test_all_loopback_addresses_are_one_host(void)
     }
 }
 
+// as a packet to a socket of both families brings it, not as a name is read
+static void test_this_machine_mapped_into_ipv6_is_no_stranger(void)
+{
+    osc_address here = address("127.0.0.1", 1), six = address("::1", 1),
+                raw = {.v6 = true, .port = 9, .host = {[10] = 0xff, 0xff, 127, 0, 0, 1}};
+    TEST_ASSERT_TRUE(himc_osc_address_loopback(&raw));
+    TEST_ASSERT_TRUE(himc_osc_address_same_host(&raw, &here));
+    TEST_ASSERT_TRUE(himc_osc_address_same_host(&six, &raw));
+    raw.host[15] = 7, raw.host[13] = 3;
+    TEST_ASSERT_TRUE(himc_osc_address_loopback(&raw));
+    raw.host[12] = 128;
+    TEST_ASSERT_FALSE(himc_osc_address_loopback(&raw));
+    raw.host[12] = 127, raw.host[9] = 1; // IPv6, which happens to end so
+    TEST_ASSERT_FALSE(himc_osc_address_loopback(&raw));
+    TEST_ASSERT_FALSE(himc_osc_address_same_host(&raw, &here));
+}
+
 static void test_addresses_are_printed_as_a_user_writes_them(void)
 {
     static const char *const text[][2] = {{"192.0.2.7", "192.0.2.7:9"},
@@ -81,6 +98,7 @@ int main(void)
     RUN_TEST(test_an_ipv4_address_mapped_into_ipv6_is_the_ipv4_address);
     RUN_TEST(test_a_host_is_the_same_at_any_port_an_address_is_not);
     RUN_TEST(test_all_loopback_addresses_are_one_host);
+    RUN_TEST(test_this_machine_mapped_into_ipv6_is_no_stranger);
     RUN_TEST(test_addresses_are_printed_as_a_user_writes_them);
     RUN_TEST(test_a_name_is_no_numeric_address);
     return UNITY_END();

@@ -34,12 +34,17 @@ void tearDown(void)
 }
 
 // by that host itself, or by the user of this machine
-static void subscribe(const char *host, int port, osc_stream stream, bool user, double now)
+static bool try(const char *host, int port, osc_stream stream, bool user, double now)
 {
     osc_change change = {.port = port, .stream = stream, .hz = 33, .local = user};
     strcpy(change.host, host);
     TEST_ASSERT_TRUE(himc_osc_address_parse(host, port, &change.from));
-    TEST_ASSERT_TRUE_MESSAGE(himc_osc_subscribe(&table, &change, now, &error), error.text);
+    return himc_osc_subscribe(&table, &change, now, &error);
+}
+
+static void subscribe(const char *host, int port, osc_stream stream, bool user, double now)
+{
+    TEST_ASSERT_TRUE_MESSAGE(try(host, port, stream, user, now), error.text);
 }
 
 static int subscribed_at(double now)
@@ -105,17 +110,17 @@ static long sound_for(double seconds, double *bytes)
 static void test_a_host_elsewhere_gets_its_bytes_of_a_second_and_no_more(void)
 {
     double bytes;
-    for (int i = 0; i < 50; i++)
+    for (int i = 0; i < 32; i++)
         subscribe("192.0.2.1", 9001 + i, STREAM_SOUND, false, 0);
     sound_for(4, &bytes);
     TEST_ASSERT_DOUBLE_WITHIN(2000, (4 - 1 / 200.0) * CAP + BURST, bytes);
-    TEST_ASSERT_EQUAL_INT(200 * 4 * 50, tried() + himc_osc_read(&counters, COUNT_CAPPED));
+    TEST_ASSERT_EQUAL_INT(200 * 4 * 32, tried() + himc_osc_read(&counters, COUNT_CAPPED));
 }
 
 static void test_another_host_and_this_machine_get_all_of_theirs(void)
 {
     double bytes;
-    for (int i = 0; i < 50; i++)
+    for (int i = 0; i < 32; i++)
         subscribe("192.0.2.1", 9001 + i, STREAM_SOUND, false, 0);
     long one = sound_for(4, &bytes);
     memset(table.allowance, 0, sizeof table.allowance);
@@ -125,12 +130,50 @@ static void test_another_host_and_this_machine_get_all_of_theirs(void)
     TEST_ASSERT_EQUAL_INT(one + 11 * 200 * 4, sound_for(4, &bytes));
 }
 
+static void test_a_stranger_has_so_many_subscriptions_and_no_more(void)
+{
+    int had = 0;
+    while (try("192.0.2.1", 9001 + had, STREAM_POSE, false, 0))
+        TEST_ASSERT_LESS_THAN(256, ++had);
+    TEST_ASSERT_EQUAL_INT(32, had);
+    TEST_ASSERT_EQUAL_STRING(
+        "subscribe: 192.0.2.1 port 9033: 32 subscriptions of 192.0.2.1 already,"
+        " expected no more",
+        error.text);
+    subscribe("192.0.2.1", 9001, STREAM_POSE, false, 50); // renewed, as are the first two
+    subscribe("192.0.2.1", 9002, STREAM_POSE, false, 50);
+    subscribe("192.0.2.2", 9001, STREAM_POSE, false, 0);
+    TEST_ASSERT_EQUAL_INT(2, subscribed_at(61)); // then there is room again
+    subscribe("192.0.2.1", 9033, STREAM_POSE, false, 61);
+}
+
+static void test_all_strangers_leave_some_to_the_user_this_machine_and_allowed_hosts(void)
+{
+    char host[16];
+    int had = 0;
+    TEST_ASSERT_TRUE(himc_osc_allow(&table, "192.0.2.200", &error));
+    for (int i = 0; i < 256; i++) {
+        snprintf(host, sizeof host, "192.0.2.%d", 1 + i % 100);
+        had += try(host, 9001 + i, STREAM_POSE, false, 0);
+    }
+    TEST_ASSERT_EQUAL_INT(192, had);
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "192 subscriptions of other machines already"));
+    for (int i = 0; i < 20; i++) {
+        subscribe("192.0.2.200", 9001 + i, STREAM_SOUND, false, 0);
+        subscribe("::ffff:127.0.0.1", 9001 + i, STREAM_SOUND, false, 0);
+        subscribe("192.0.2.3", 19001 + i, STREAM_SOUND, true, 0); // the user's
+    }
+    TEST_ASSERT_EQUAL_INT(60, subscribed_at(61));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_strangers_subscription_ends_after_a_minute_unless_renewed);
     RUN_TEST(test_subscriptions_of_this_machine_of_its_user_and_of_allowed_hosts_stay);
     RUN_TEST(test_a_subscription_handed_over_keeps_its_end);
+    RUN_TEST(test_a_stranger_has_so_many_subscriptions_and_no_more);
+    RUN_TEST(test_all_strangers_leave_some_to_the_user_this_machine_and_allowed_hosts);
     RUN_TEST(test_a_host_elsewhere_gets_its_bytes_of_a_second_and_no_more);
     RUN_TEST(test_another_host_and_this_machine_get_all_of_theirs);
     return UNITY_END();

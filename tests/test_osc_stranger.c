@@ -1,5 +1,6 @@
 // OSC from strangers: packets they cannot make us send, malformed ones, floods.
 #include "osc_ear.h"
+#include "osc/network.h"
 #include "osc/ring.h"
 
 #include "allocations.h"
@@ -220,10 +221,38 @@ static bool ends_with_a_cut(void)
            strstr(last_error(), "cut after");
 }
 
-// an IPv4 address mapped into IPv6 is none of loopback: the ear is a host elsewhere
+// for subscriptions and answers (Makefile): true makes the ear a host elsewhere
+static bool elsewhere;
+bool __real_himc_osc_address_loopback(const osc_address *a);
+bool __wrap_himc_osc_address_loopback(const osc_address *a);
+
+bool __wrap_himc_osc_address_loopback(const osc_address *a)
+{
+    return !elsewhere && __real_himc_osc_address_loopback(a);
+}
+
 static void listen_to_all(const char *allow)
 {
     restart(&(himc_osc_config){.bind = "::", .allow = allow});
+    elsewhere = true;
+}
+
+// its packets come to a socket of both families as from ::ffff:127.0.0.1
+static void test_this_machine_is_no_stranger_at_a_socket_of_both_families(void)
+{
+    restart(&(himc_osc_config){.bind = "::"});
+    load_strokes(0, 200);
+    TEST_ASSERT_GREATER_THAN(200, ask_for_dumps(1));
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/error"));
+    char wanted[64];
+    snprintf(wanted, sizeof wanted, "127.0.0.1 %d strikes", ear_port);
+    say("/himc/subscribe", wanted);
+    settle();
+    serve();
+    TEST_ASSERT_EQUAL_INT(1, himc_osc_count(osc).subscriptions);
+    simulated += 1000;
+    serve();
+    TEST_ASSERT_EQUAL_INT(1, himc_osc_count(osc).subscriptions);
 }
 
 // 1024 packets for one of 16 bytes, before
@@ -251,6 +280,27 @@ static void test_a_long_dump_to_a_friend_ends_with_an_error(void)
     TEST_ASSERT_GREATER_THAN(whole + 500, ask_for_dumps(1));
     TEST_ASSERT_TRUE(ends_with_a_cut());
     TEST_ASSERT_EQUAL_INT(0, himc_osc_count(osc).lost);
+}
+
+// a block of the host has time for a part of it; what comes behind it waits
+static void test_a_long_dump_is_told_in_parts(void)
+{
+    int blocks = 1;
+    load_strokes(0, 500);
+    long whole = ask_for_dumps(1), before = himc_osc_count(osc).sent;
+    clock_step = 6e-5;
+    say("/himc/dump", "");
+    say("/himc/clear", "");
+    settle();
+    for (; himc_osc_count(osc).sent < before + whole; blocks++) {
+        TEST_ASSERT_LESS_THAN(100, blocks);
+        himc_osc_receive(osc, performance, 8);
+        serve();
+    }
+    clock_step = 0;
+    TEST_ASSERT_GREATER_THAN(3, blocks);
+    himc_osc_receive(osc, performance, 8);
+    TEST_ASSERT_LESS_THAN(whole - 499, ask_for_dumps(1)); // it has been cleared, after its dump
 }
 
 // also one of --allow gets no more than 500 kB a second, an eighth of a megabyte at once
@@ -473,14 +523,17 @@ int main(void)
     RUN_TEST(test_a_command_that_takes_long_is_the_last_of_its_block);
     RUN_TEST(test_commands_beyond_1000_points_a_second_are_counted);
     RUN_TEST(test_strangers_get_50_answers_a_second);
-    RUN_TEST(test_a_stranger_pays_for_each_line_of_a_dump);
+    RUN_TEST(test_this_machine_is_no_stranger_at_a_socket_of_both_families);
+    RUN_TEST(test_a_long_dump_is_told_in_parts);
     RUN_TEST(test_a_long_dump_to_a_friend_ends_with_an_error);
-    RUN_TEST(test_dumps_are_within_the_bytes_of_a_host);
     RUN_TEST(test_refusals_are_told_once_and_sent_to_their_subscribers);
     RUN_TEST(test_a_full_ring_is_counted_and_blocks_no_call);
     RUN_TEST(test_a_storm_is_counted_and_poses_continue);
     RUN_TEST(test_the_reader_yields_when_it_has_taken_its_share);
     RUN_TEST(test_packets_to_the_socket_for_sending_are_counted_too);
     RUN_TEST(test_packets_lost_in_the_system_are_counted);
+    // from here on the ear is elsewhere
+    RUN_TEST(test_a_stranger_pays_for_each_line_of_a_dump);
+    RUN_TEST(test_dumps_are_within_the_bytes_of_a_host);
     return UNITY_END();
 }

@@ -26,6 +26,7 @@
 
 enum { CONFINED, NAME, TAKE };
 #define LINE 4096                       // a line of standard input (bytes); chosen
+#define TAKEN_BACK "back"               // line of a journal after one that could not be played
 #define FILE_NAME 64                    // of a file for the page, with its final 0
 #define LARGEST_TEXT ((size_t)64 << 20) // as himc_score_load
 
@@ -44,14 +45,14 @@ typedef struct session {
     edit_text *text;
     edit_journal journal;
     himc_error restored, unkept; ///< a line about the journal for the page, or ""
+    himc_error held;             ///< a line about what is not carried out in an edit, or ""
     edit_play *play, *saver;     ///< `saver` while a take is saved
     char saved[256];             ///< the take's temporary file
     char wanted[FILE_NAME];      ///< and the name under which it is wanted
     char line[LINE];
     size_t used;
     bool played;   ///< once, at least a part
-    bool changed;  ///< the last line has changed the text, and it has not been played yet
-    bool unproved; ///< the text has not been played yet, nor failed
+    bool unproved; ///< the text has not been played yet, nor failed; its last change is open
     bool over;     ///< no more lines
 } session;
 
@@ -178,7 +179,10 @@ static himc_score *parse(const session *s, const edit_text *t, himc_error *error
     free(text);
     if (!score || !s->confined || !edit_text_names_file(score, &line))
         return score;
-    himc_error_set(error, "%s:%d: names other files", s->name, line);
+    himc_error_set(error,
+                   "%s:%d: names other files, which a score from a page may not; open it by "
+                   "himc-viewer --edit",
+                   s->name, line);
     himc_score_free(score);
     return NULL;
 }
@@ -189,6 +193,23 @@ static bool check(const session *s, const edit_text *t, himc_error *error)
     bool good = score && has_drums(s, score, error);
     himc_score_free(score);
     return good;
+}
+
+// the first file that the score would record is named for the page
+static void hold_back(session *s)
+{
+    himc_error unused;
+    himc_score *score = parse(s, s->text, &unused);
+    for (int i = 0; score && i < score->line_count && !s->held.text[0]; i++) {
+        const himc_command *c = &score->lines[i].command;
+        int file;
+        if (himc_command_file(c, &file) == HIMC_FILE_WRITE)
+            himc_error_set(&s->held,
+                           "%.80s:%d: record %.100s: nothing is recorded in an edit; save it here, "
+                           "or with himc render",
+                           s->name, score->lines[i].line, c->atom[file].symbol);
+    }
+    himc_score_free(score);
 }
 
 // its beats are then seconds
@@ -203,7 +224,7 @@ static bool has_take(const himc_score *score)
 // plays the text as it is now; all of it, or from before the last change
 static bool replay(session *s, bool all, himc_error *error)
 {
-    char *text = edit_text_join(s->text);
+    char *text = edit_text_played(s->text);
     himc_score *score = parse(s, s->text, error);
     double from = all ? -1 : edit_text_changed_from(s->text);
     if (from > 0 && score && !has_take(score))
@@ -217,22 +238,17 @@ static bool replay(session *s, bool all, himc_error *error)
 
 // --- lines in
 
-// `known`: the change has been good before
-static bool set(const session *s, edit_text *t, const char *words, bool known, himc_error *error)
+static bool set(edit_text *t, const char *words, himc_error *error)
 {
     char *end;
     long index = strtol(words, &end, 10);
     if (end == words || (*end && *end != ' '))
         return himc_error_set(error, "set: no number of a statement");
-    if (!edit_text_set(t, (int)fmax(-1, fmin(index, 1e9)), end + (*end == ' '), error))
-        return false;
-    bool good = known || check(s, t, error);
-    edit_text_settle(t, good);
-    return good;
+    return edit_text_set(t, (int)fmax(-1, fmin(index, 1e9)), end + (*end == ' '), error);
 }
 
-// obeys a line that changes the text
-static bool change(const session *s, edit_text *t, const char *line, bool known, himc_error *error)
+// obeys a line that changes the text; the change is open then
+static bool change(edit_text *t, const char *line, himc_error *error)
 {
     if (!strcmp(line, "undo"))
         return edit_text_undo(t) || himc_error_set(error, "nothing to undo");
@@ -241,7 +257,7 @@ static bool change(const session *s, edit_text *t, const char *line, bool known,
     if (!strcmp(line, "revert"))
         return edit_text_revert(t) || himc_error_set(error, "nothing to undo");
     if (!strncmp(line, "set ", 4))
-        return set(s, t, line + 4, known, error);
+        return set(t, line + 4, error);
     return himc_error_set(error, "\"%.40s\": allowed hello, set, undo, redo, revert, save, take",
                           line);
 }
@@ -253,20 +269,19 @@ static void unkept(session *s, const himc_error *why)
     himc_error_set(&s->unkept, "Changes are lost when this page ends, save them: %s", why->text);
 }
 
-// the changes of the journal; false if they do not fit, and then there are none
+// The changes of the journal; false if they do not fit. `back` takes the one before it back; the
+// last one stays open: the program may have been killed before it was played.
 static bool change_again(const session *s, edit_text *t, himc_error *error)
 {
     bool good = true;
     for (char *line = s->journal.lines, *end; good && (end = strchr(line, '\n')); line = end + 1) {
         *end = 0;
-        good = change(s, t, line, true, error);
+        bool back = !strcmp(line, TAKEN_BACK);
+        edit_text_settle(t, !back);
+        good = back || change(t, line, error);
         *end = '\n';
     }
-    if (good && check(s, t, error))
-        return true;
-    edit_text_revert(t);
-    edit_text_settle(t, true);
-    return false;
+    return good && check(s, t, error);
 }
 
 // the journal is of another text than the source's, or damaged: what it has led to, or else the
@@ -311,6 +326,8 @@ static void restore(session *s, const char *text, bool sent)
     if (s->journal.damaged || s->journal.old || !change_again(s, s->text, &error)) {
         if (!s->journal.damaged && !s->journal.old)
             s->journal.old = strdup(text);
+        edit_text_free(s->text);
+        s->text = edit_text_new(text, &error);
         keep_old(s, &error);
         return;
     }
@@ -337,7 +354,7 @@ static bool save_take(session *s, const char *name, himc_error *error)
         return himc_error_set(error, "%s", strerror(errno));
     close(file);
     snprintf(s->wanted, sizeof s->wanted, "%s", name);
-    char *text = edit_text_join(s->text);
+    char *text = edit_text_played(s->text);
     s->saver = text ? edit_play_new(s->name, &s->take, error) : NULL;
     bool good = s->saver && edit_play_start(s->saver, text, -1, s->saved, error);
     free(text);
@@ -382,6 +399,8 @@ static void greet(session *s)
         tell("unkept", "text", s->unkept.text);
     if (s->restored.text[0])
         tell("restored", "text", s->restored.text);
+    if (s->held.text[0])
+        tell("held", "text", s->held.text);
 }
 
 static void keep(session *s, const char *line)
@@ -403,13 +422,18 @@ static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
         return save_take(s, line + 5, error);
     if (hello)
         greet(s);
-    else if (!change(s, s->text, line, false, error))
+    else if (!change(s->text, line, error))
         return false;
+    else if (!check(s, s->text, error))
+        return edit_text_settle(s->text, false), false;
     else {
-        keep(s, line);
+        bool changed = edit_text_is_open(s->text);
+        if (changed)
+            keep(s, line);
         tell_text(s, false);
+        if (!changed)
+            return true;
     }
-    s->changed = !hello;
     *fatal = !replay(s, hello, error);
     return !*fatal;
 }
@@ -421,15 +445,16 @@ static bool take_back(session *s, const edit_frame *frame, himc_error *error)
 {
     himc_error failure;
     // never played: what was made before a kill may be what cannot be played
-    bool first = !s->played;
-    bool undone = first ? edit_text_revert(s->text) : s->changed && edit_text_undo(s->text);
+    bool first = !s->played, last = edit_text_settle(s->text, false),
+         all = first && !last && edit_text_revert(s->text), undone = last || all;
+    edit_text_settle(s->text, true);
     himc_error_set(&failure, "%.*s", (int)frame->size, (const char *)frame->bytes);
     name_source(s, &failure);
     if (!undone && first)
         return himc_error_set(error, "%s", failure.text);
-    s->changed = s->unproved = false;
+    s->unproved = false;
     if (undone) {
-        keep(s, first ? "revert" : "undo");
+        keep(s, all ? "revert" : TAKEN_BACK);
         tell_text(s, false);
     }
     tell(undone ? "undone" : "failed", "text", failure.text);
@@ -445,8 +470,10 @@ static bool pass_frame(session *s, himc_error *error)
         return false;
     bool sounds = !strcmp(frame.kind, "pcm ");
     s->played |= sounds;
-    if (sounds || !strcmp(frame.kind, "over"))
-        s->changed = s->unproved = false;
+    if (sounds || !strcmp(frame.kind, "over")) {
+        edit_text_settle(s->text, true);
+        s->unproved = false;
+    }
     if (!strcmp(frame.kind, "fail"))
         return take_back(s, &frame, error);
     if (strcmp(frame.kind, "late") && strcmp(frame.kind, "bye!"))
@@ -542,9 +569,11 @@ static int run(const cli_arguments *arguments)
     s.confined = arguments->value[CONFINED] && !cli_is_take(s.source);
     s.text = text ? edit_text_new(text, &error) : NULL;
     good = s.text && check(&s, s.text, &error);
-    if (good)
+    if (good) {
+        hold_back(&s);
         restore(&s, text, sent);
-    s.play = good ? edit_play_new(s.name, &s.take, &error) : NULL;
+    }
+    s.play = good && s.text ? edit_play_new(s.name, &s.take, &error) : NULL;
     good = s.play && serve(&s, &error);
     if (!good) {
         name_source(&s, &error);

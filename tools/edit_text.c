@@ -26,8 +26,10 @@ struct edit_text {
     int count, room;
     change *changes; ///< (made)
     int made, done, changes_room;
-    bool adds;   ///< the change that is not settled yet has added its statement
-    double from; ///< of the last change
+    int before;  ///< `done` before the call that is not settled yet; else `done`
+    bool sets;   ///< that call was edit_text_set; what redo can make again stands after its change
+    bool adds;   ///< and it has added its statement
+    double from; ///< of the last call
 };
 
 static bool grow(void *array, int count, int *room, size_t size)
@@ -99,25 +101,6 @@ static bool is_closed(const char *bytes)
     return *words_end(bytes) == ';';
 }
 
-char *edit_text_join(const edit_text *t)
-{
-    const char *mark = t->marked ? BYTE_ORDER_MARK : "";
-    size_t size = strlen(mark) + 1;
-    for (int i = 0; i < t->count; i++)
-        size += strlen(t->at[i]) + 1;
-    char *all = malloc(size), *end = all;
-    bool open = false; // the last statement has no `;`, as the last of a file may
-    if (all)
-        end += sprintf(end, "%s", mark);
-    for (int i = 0; all && i < t->count; i++) {
-        const char *bytes = t->at[i];
-        bool empty = is_empty(bytes);
-        end += sprintf(end, "%s%s", open && !empty ? ";" : "", bytes);
-        open = empty ? open : !is_closed(bytes);
-    }
-    return all;
-}
-
 // the command of a statement, `;` or not, and the beat of its `at`, else -1; false if it is none
 // for the performer
 static bool command_of(const char *bytes, himc_command *out, double *beat, himc_error *error)
@@ -141,6 +124,52 @@ static bool command_of(const char *bytes, himc_command *out, double *beat, himc_
         count -= 2;
     }
     return himc_command_parse(out, HIMC_PERFORMER, first->symbol, first + 1, count - 1, error);
+}
+
+// the bytes of a statement as they are played: of one that would write a file the lines alone
+static size_t put_statement(char *out, const char *bytes, bool played)
+{
+    himc_command c;
+    himc_error unused;
+    double beat;
+    size_t used = 0;
+    if (!played || !command_of(bytes, &c, &beat, &unused) || c.id != HIMC_COMMAND_RECORD)
+        return (size_t)sprintf(out, "%s", bytes);
+    for (; *bytes; bytes++)
+        if (*bytes == '\n')
+            out[used++] = '\n';
+    out[used] = 0;
+    return used;
+}
+
+static char *join(const edit_text *t, bool played)
+{
+    const char *mark = t->marked ? BYTE_ORDER_MARK : "";
+    size_t size = strlen(mark) + 1;
+    for (int i = 0; i < t->count; i++)
+        size += strlen(t->at[i]) + 1;
+    char *all = malloc(size), *end = all;
+    bool open = false; // the last statement has no `;`, as the last of a file may
+    if (all)
+        end += sprintf(end, "%s", mark);
+    for (int i = 0; all && i < t->count; i++) {
+        const char *bytes = t->at[i];
+        bool empty = is_empty(bytes);
+        end += sprintf(end, "%s", open && !empty ? ";" : "");
+        end += put_statement(end, bytes, played);
+        open = empty ? open : !is_closed(bytes);
+    }
+    return all;
+}
+
+char *edit_text_join(const edit_text *t)
+{
+    return join(t, false);
+}
+
+char *edit_text_played(const edit_text *t)
+{
+    return join(t, true);
 }
 
 static bool is_stroke(const himc_command *c)
@@ -197,9 +226,19 @@ static void exchange(edit_text *t, int i)
 {
     change *c = &t->changes[i];
     char *now = t->at[c->index];
-    t->from = fmin(acts_from(now), acts_from(c->bytes));
+    t->from = fmin(t->from, fmin(acts_from(now), acts_from(c->bytes)));
     t->at[c->index] = c->bytes;
     c->bytes = now;
+}
+
+// takes changes back, or makes them again, until so many are made
+static void go_to(edit_text *t, int done)
+{
+    t->from = HUGE_VAL;
+    while (t->done > done)
+        exchange(t, --t->done);
+    while (t->done < done)
+        exchange(t, t->done++);
 }
 
 // past the word at `at`
@@ -276,60 +315,72 @@ bool edit_text_set(edit_text *t, int index, const char *words, himc_error *error
         return himc_error_set(error, "one statement at a time");
     if (!may_change(adds ? "" : t->at[index], error) || !may_change(words, error))
         return false;
-    char *bytes = with_words(adds ? "\n" : t->at[index], words);
+    const char *old = adds ? "\n" : t->at[index];
+    char *bytes = with_words(old, words);
+    if (bytes && !strcmp(bytes, old)) {
+        free(bytes);
+        return true;
+    }
     if (!bytes || !grow(&t->changes, t->made, &t->changes_room, sizeof *t->changes) ||
         (adds && !append(t, strdup("")))) {
         free(bytes);
         return himc_error_set(error, "out of memory");
     }
+    t->sets = true;
     t->adds = adds;
     memmove(t->changes + t->done + 1, t->changes + t->done,
             (size_t)(t->made++ - t->done) * sizeof *t->changes);
     t->changes[t->done] = (change){index, bytes};
-    exchange(t, t->done++);
+    go_to(t, t->done + 1);
     return true;
 }
 
-void edit_text_settle(edit_text *t, bool keep)
+bool edit_text_is_open(const edit_text *t)
 {
-    while (keep && t->made > t->done)
+    return t->sets || t->before != t->done;
+}
+
+bool edit_text_settle(edit_text *t, bool keep)
+{
+    bool open = edit_text_is_open(t), sets = t->sets;
+    while (sets && keep && t->made > t->done)
         free(t->changes[--t->made].bytes);
-    if (keep)
-        return;
-    exchange(t, --t->done);
-    free(t->changes[t->done].bytes);
-    memmove(t->changes + t->done, t->changes + t->done + 1,
-            (size_t)(--t->made - t->done) * sizeof *t->changes);
-    if (t->adds)
-        free(t->at[--t->count]);
+    if (open && !keep)
+        go_to(t, t->before);
+    if (sets && !keep) {
+        free(t->changes[t->done].bytes);
+        memmove(t->changes + t->done, t->changes + t->done + 1,
+                (size_t)(--t->made - t->done) * sizeof *t->changes);
+        if (t->adds)
+            free(t->at[--t->count]);
+    }
+    t->sets = false;
+    t->before = t->done;
+    return open;
 }
 
 bool edit_text_undo(edit_text *t)
 {
-    if (t->done > 0)
-        exchange(t, --t->done);
-    else
+    if (t->done == 0)
         return false;
+    go_to(t, t->done - 1);
     return true;
 }
 
 bool edit_text_redo(edit_text *t)
 {
-    if (t->done < t->made)
-        exchange(t, t->done++);
-    else
+    if (t->done == t->made)
         return false;
+    go_to(t, t->done + 1);
     return true;
 }
 
 bool edit_text_revert(edit_text *t)
 {
-    double from = HUGE_VAL;
-    bool any = false;
-    for (; edit_text_undo(t); any = true)
-        from = fmin(from, t->from);
-    t->from = any ? from : t->from;
-    return any;
+    if (t->done == 0)
+        return false;
+    go_to(t, 0);
+    return true;
 }
 
 int edit_text_changes(const edit_text *t)
@@ -387,8 +438,8 @@ void edit_text_print(const edit_text *t, FILE *to)
     himc_error unused;
     double at;
     bool first = true;
-    fprintf(to, "\"undo\":%d,\"redo\":%d,\"count\":%d,\"statements\":[", t->done, t->made - t->done,
-            t->count);
+    fprintf(to, "\"undo\":%d,\"redo\":%d,\"count\":%d,\"statements\":[", t->done,
+            t->sets ? 0 : t->made - t->done, t->count);
     for (int i = 0; i < t->count; i++) {
         if (!command_of(t->at[i], &c, &at, &unused) || !can_change(&c, at))
             continue;

@@ -6,6 +6,7 @@
 #include "himc/drum.h"
 #include "himc/mocap.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -54,29 +55,61 @@ static void count_nuances(const himc_score *score, int hand, char *text, size_t 
     for (int nuance = 0; nuance < HIMC_NUANCES; nuance++) {
         int count = 0;
         for (int i = 0; i < score->stroke_count; i++)
-            count += (int)score->strokes[i].hand == hand && (int)score->strokes[i].nuance == nuance;
+            count += score->strokes[i].ornament < HIMC_ROLL_SINGLE &&
+                     (int)score->strokes[i].hand == hand && (int)score->strokes[i].nuance == nuance;
         if (count && used < size)
             used += (size_t)snprintf(text + used, size - used, "%s%d %s", used ? ", " : "", count,
                                      himc_nuance_name((himc_nuance)nuance));
     }
 }
 
+// "rolls   2 single, 1 press", or nothing
+static void tell_ornaments(const himc_score *score, const char *name, const char *const *kinds,
+                           int first, int last)
+{
+    char text[80] = "";
+    int all = 0;
+    for (int kind = first; kind <= last; kind++) {
+        int count = 0;
+        for (int i = 0; i < score->stroke_count; i++)
+            count += (int)score->strokes[i].ornament == kind;
+        if (count)
+            sprintf(text + strlen(text), "%s%d %s", all ? ", " : "", count, kinds[kind - first]);
+        all += count;
+    }
+    if (all)
+        tell("%-7s %s", name, text);
+}
+
+// strokes with their grace notes as one; both hands play a roll
 static void print_strokes(const himc_score *score)
 {
-    tell("strokes %d", score->stroke_count);
+    static const char *const graces[] = {"flam", "drag", "ruff"}, *const rolls[] = {
+                                                                      "single", "double", "press"};
+    int count = 0;
+    for (int i = 0; i < score->stroke_count; i++)
+        count += score->strokes[i].ornament < HIMC_ROLL_SINGLE;
+    tell("strokes %d", count);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         char text[160];
         count_nuances(score, hand, text, sizeof text);
         tell("%-7s %s", himc_hand_name((himc_hand)hand), text[0] ? text : "nothing");
     }
+    tell_ornaments(score, "grace", graces, HIMC_FLAM, HIMC_RUFF);
+    tell_ornaments(score, "rolls", rolls, HIMC_ROLL_SINGLE, HIMC_ROLL_PRESS);
 }
 
-/// From the first stroke to the last, in beats and through the tempo changes in seconds.
+/// From the first stroke to the last, or the end of the last roll, in beats and through the tempo
+/// changes in seconds.
 static void print_length(const himc_score *score)
 {
     if (!score->stroke_count)
         return;
-    double first = score->strokes[0].beat, last = score->strokes[score->stroke_count - 1].beat;
+    double first = score->strokes[0].beat, last = first;
+    for (int i = 0; i < score->stroke_count; i++)
+        last = fmax(last, score->strokes[i].beat + (score->strokes[i].ornament >= HIMC_ROLL_SINGLE
+                                                        ? score->strokes[i].length
+                                                        : 0));
     double seconds = himc_score_seconds(score->tempi, score->tempo_count, last) -
                      himc_score_seconds(score->tempi, score->tempo_count, first);
     tell("beats   %g to %g", first, last);

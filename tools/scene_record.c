@@ -191,27 +191,35 @@ void scene_record_row(void *record, const himc_motion_row *row)
 
 void scene_record_event(scene_record *r, const himc_event *event)
 {
-    char text[6 * sizeof event->text], nuance[6 * HIMC_NAME_SIZE];
+    char text[6 * sizeof event->text], nuance[6 * HIMC_NAME_SIZE], drum[6 * HIMC_NAME_SIZE];
+    char beat[40] = "null";
     const himc_strike *s = &event->strike;
+    bool stroke = event->kind == HIMC_EVENT_STRIKE || event->kind == HIMC_EVENT_MISSED;
+    if (stroke && isfinite(s->beat))
+        snprintf(beat, sizeof beat, "%.9g", s->beat);
     if (event->kind == HIMC_EVENT_BEAT)
         scene_event(r->scene, "\"event\":\"beat\",\"time\":%.6f,\"beat\":%.9g", own(r, event->time),
                     event->beat);
     else if (event->kind == HIMC_EVENT_NOTE)
         scene_event(r->scene, "\"event\":\"note\",\"time\":%.6f,\"text\":\"%s\"", now(r),
                     scene_text(text, sizeof text, event->text));
-    else if (event->kind == HIMC_EVENT_STRIKE) {
-        char beat[40] = "null";
-        if (isfinite(s->beat))
-            snprintf(beat, sizeof beat, "%.9g", s->beat);
+    else if (event->kind == HIMC_EVENT_MISSED)
+        scene_event(
+            r->scene,
+            "\"event\":\"missed\",\"time\":%.6f,\"due\":%.6f,\"hand\":\"%s\",\"drum\":\"%s\","
+            "\"nuance\":\"%s\",\"beat\":%s,\"x\":%.6f,\"y\":%.6f,\"why\":\"%s\"",
+            now(r), own(r, s->time), himc_hand_name(s->hand),
+            scene_text(drum, sizeof drum, s->drum), scene_text(nuance, sizeof nuance, s->nuance),
+            beat, s->x, s->y, scene_text(text, sizeof text, event->text));
+    else if (event->kind == HIMC_EVENT_STRIKE)
         scene_event(r->scene,
                     "\"event\":\"strike\",\"time\":%.6f,\"hand\":\"%s\",\"drum\":\"%s\","
                     "\"nuance\":\"%s\",\"beat\":%s,\"x\":%.6f,\"y\":%.6f,\"velocity\":%.5g,"
                     "\"force\":%.6g,\"impulse\":%.6g,\"duration\":%.6g",
                     own(r, s->time), himc_hand_name(s->hand),
-                    scene_text(text, sizeof text, s->drum),
+                    scene_text(drum, sizeof drum, s->drum),
                     scene_text(nuance, sizeof nuance, s->nuance), beat, s->x, s->y, s->velocity,
                     s->force, s->impulse, s->duration);
-    }
 }
 
 // --- drums

@@ -47,11 +47,11 @@ static void become(const editor *e)
     char path[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", path, sizeof path - 8);
     char *slash = length > 0 ? memrchr(path, '/', (size_t)length) : NULL;
-    char *const own[] = {"himc", "edit", (char *)e->now.source, NULL},
-                *const sent[] = {"himc",       "edit",   (char *)e->now.source,
-                                 "--confined", "--name", (char *)e->now.name,
+    char *const own[] = {"himc", "edit", (char *)e->piece.source, NULL},
+                *const sent[] = {"himc",       "edit",   (char *)e->piece.source,
+                                 "--confined", "--name", (char *)e->piece.name,
                                  NULL},
-                *const *arguments = e->now.name[0] ? sent : own;
+                *const *arguments = e->piece.name[0] ? sent : own;
     static const char missing[] =
         "{\"event\":\"failed\",\"text\":\"the program himc is not beside himc-viewer\"}";
     uint32_t size = sizeof missing - 1;
@@ -141,15 +141,18 @@ static void keep_name(editor_piece *e, const char *name)
         e->name[0] = '_'; // it would be an option
 }
 
-bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error)
+bool editor_keep(editor *e, int place, const char *bytes, size_t size, himc_error *error)
 {
     const char *zero = memchr(bytes, 0, size), *ending = zero ? ending_of(bytes) : NULL;
     if (!ending)
-        return himc_error_set(error, "allowed are scores (.txt), .mid, .bvh, .c3d, .trc, .himc");
+        return himc_error_set(error,
+                              "%.80s: expected a score (.txt), a MIDI file (.mid) or a take "
+                              "(.bvh .c3d .trc)",
+                              zero ? bytes : "a file without a name");
     if (!folder_make(e->folder, error))
         return false;
     char file[32];
-    editor_piece piece = {.place = !e->good.place};
+    editor_piece piece = {.place = place};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         snprintf(file, sizeof file, "piece.%d%s", piece.place, endings[i]);
         folder_unlink(e->folder, file);
@@ -160,18 +163,6 @@ bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error)
         return false;
     snprintf(piece.source, sizeof piece.source, "%s/%s", e->folder->path, file);
     keep_name(&piece, bytes);
-    e->now = piece;
+    e->piece = piece;
     return true;
-}
-
-void editor_accept(editor *e)
-{
-    e->good = e->now;
-}
-
-bool editor_back(editor *e)
-{
-    bool same = !strcmp(e->now.source, e->good.source);
-    e->now = e->good;
-    return !same && e->now.source[0];
 }

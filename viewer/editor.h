@@ -14,16 +14,15 @@
 typedef struct editor_piece {
     char source[512]; ///< "" for none
     char name[128];   ///< under which a page has sent it; "": none has
-    int place;        ///< of what pages have sent, 0 or 1
+    int place;        ///< of what pages have sent
 } editor_piece;
 
-/// A piece that is being edited. All zero: none.
+/// A program that edits a piece. All zero: none.
 typedef struct editor {
-    editor_piece now;
-    editor_piece good; ///< the last one that could be played
-    folder *folder;    ///< borrowed; of what came from pages, and of files that are being made
-    pid_t process;     ///< 0: none runs
-    int to, from;      ///< its standard input and output
+    editor_piece piece;
+    folder *folder; ///< borrowed; of what came from pages, and of files that are being made
+    pid_t process;  ///< 0: none runs
+    int to, from;   ///< its standard input and output
 } editor;
 
 /// A random key, hexadecimal; false with the reason.
@@ -35,12 +34,9 @@ bool editor_is_key(const char *key, const char *given);
 bool editor_start(editor *e, himc_error *error);
 /// Sends a line, "" to 4000 bytes without a newline; false if it is none, or not taken.
 bool editor_say(const editor *e, const char *line, size_t size);
-/// Keeps a file that came from a page (name, 0, bytes) as the source; false with the reason.
-bool editor_keep(editor *e, const char *bytes, size_t size, himc_error *error);
-/// The present piece could be played.
-void editor_accept(editor *e);
-/// After a piece that could not: back to the one before; false if this is it, or there is none.
-bool editor_back(editor *e);
+/// Keeps a file that came from a page (name, 0, bytes) as the source, in a place of those that
+/// pages have sent (from 0), which is taken from what was there; false with the reason.
+bool editor_keep(editor *e, int place, const char *bytes, size_t size, himc_error *error);
 /// Ends the program, and with it all processes that play.
 void editor_stop(editor *e);
 

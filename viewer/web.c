@@ -5,13 +5,16 @@
 /// protocol. The page never sends data; clients that send anything but control frames are
 /// disconnected. Another stream is for editing: it is for a page that knows the key in its address.
 /// Its messages go to `himc edit` (editor.c), one line each, or are a file to be edited; and what
-/// that program tells goes back, as fast as the page takes it. It ends with its page; the piece's
-/// journal (tools/edit_journal.c) brings the changes back to the next one. A slow browser gets the
+/// that program tells goes back, as fast as the page takes it; what this program itself says to the
+/// page goes between, as text. It ends with its page; the piece's journal (tools/edit_journal.c)
+/// brings the changes back to the next one. A piece that is dropped is played aside until it can be
+/// heard, so that one that is refused disturbs nothing. A slow browser gets the
 /// newest pose when it is ready for it, so no queue grows here. Invariant: connections are bounded
 /// in number, and each that makes no progress in time.
 #define _GNU_SOURCE // memmem
 #include "web.h"
 #include "access.h"
+#include "base/line.h"
 #include "editor.h"
 #include "receive.h"
 #include "pages.h"
@@ -38,6 +41,8 @@ enum {
     CLOSE_TIMEOUT = 500, // from the decision to close a stream to its end (ms)
     PAUSE = 3,           // (ms), a tenth of the time between poses: waking up costs most
     PASSED = 65536,      // of what `himc edit` tells in one message (bytes)
+    PIECES = 8,          // that undo goes back to, of those that were dropped; 64 MB each at most
+    NOTE = 1024,         // of a line for the page (bytes)
     TAKEN = 4001,        // status of a close, for the page (edit.js)
     HEADER_SIZE = 264    // of a host or an origin with its zero; longer ones are refused
 };
@@ -51,6 +56,12 @@ typedef struct session {
     bool taken;   // another page edits now: closed with TAKEN
 } session;
 
+/// What a program has told, and nobody has taken.
+typedef struct told {
+    char *bytes; // owned
+    size_t size, room, at;
+} told;
+
 struct web {
     struct lws_context *context;
     struct lws_vhost *vhost;
@@ -59,13 +70,20 @@ struct web {
     int clients, connections;
     struct lws *osc; // the OSC socket in the loop
     uint64_t rejected;
-    char session[1024]; // JSON: where OSC is received, what is played
-    editor edit;
-    struct lws *editing, *edited; // the page that edits, the program's output in the loop
-    session *editing_own;         // of `editing`
-    char *heard;                  // owned: what has come of a message of that page
+    char session[1024];          // JSON: where OSC is received, what is played
+    editor_piece pieces[PIECES]; // one after the other, as they were dropped
+    int piece, piece_count;      // the one that is edited; how many
+    editor edit, next;           // its program; that of one just dropped, until it can be heard
+    struct lws *edited, *coming; // their output in the loop
+    bool sounds;                 // something of the piece has been heard
+    struct lws *editing;         // the page that edits
+    session *editing_own;        // of `editing`
+    bool begun;                  // the page is to be told that another program begins
+    char note[NOTE];             // JSON for the page, or ""
+    char *heard;                 // owned: what has come of a message of that page
     size_t heard_size, heard_room;
-    size_t waiting; // bytes of the program in `passed`
+    told early, first; // what the program of `next` has told; the rest of that, once it is `edit`
+    size_t waiting;    // bytes of the program in `passed`
     unsigned char passed[LWS_PRE + PASSED];
     lws_sorted_usec_list_t pause, second, back;
     double cpu, clock; // at the last report (s)
@@ -313,43 +331,65 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
 
 // --- editing
 
-// a line for the page, as `himc edit` tells it; dropped if other bytes wait
+// a line for the page, between the messages of the program
 static void tell_page(web *w, const char *text)
 {
-    char line[512], *json = (char *)w->passed + LWS_PRE + 8;
-    uint32_t size;
-    if (!w->editing || w->waiting)
-        return;
+    char line[NOTE - 64];
     scene_word(line, sizeof line, text);
-    size = (uint32_t)snprintf(json, PASSED - 8, "{\"event\":\"failed\",\"text\":\"%s\"}", line);
-    memcpy(json - 8, "edit", 4);
-    memcpy(json - 4, &size, 4);
-    w->waiting = size + 8;
-    lws_callback_on_writable(w->editing);
+    snprintf(w->note, sizeof w->note, "{\"event\":\"failed\",\"text\":\"%s\"}", line);
+    if (w->editing)
+        lws_callback_on_writable(w->editing);
 }
 
-// the program and all its processes end
+static void close_output(struct lws **output)
+{
+    if (*output)
+        lws_set_timeout(*output, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
+    *output = NULL;
+}
+
+// the program of a piece that was just dropped ends
+static void end_next(web *w)
+{
+    close_output(&w->coming);
+    editor_stop(&w->next);
+    w->early.size = 0;
+}
+
+// the programs and all their processes end
 static void end_editing(web *w)
 {
-    if (w->edited)
-        lws_set_timeout(w->edited, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
-    w->waiting = 0;
+    end_next(w);
+    close_output(&w->edited);
+    w->waiting = w->first.size = w->first.at = 0;
     editor_stop(&w->edit);
 }
 
-// the program for w->edit plays from the start
-static void begin_editing(web *w)
+// a program plays its piece from the start
+static struct lws *begin_program(web *w, editor *e)
 {
     himc_error error;
-    end_editing(w);
-    if (!editor_start(&w->edit, &error)) {
+    if (!editor_start(e, &error)) {
         tell_page(w, error.text);
-        return;
+        return NULL;
     }
-    lws_sock_file_fd_type from = {.filefd = w->edit.from};
-    w->edited = lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, from,
-                                           protocols[3].name, NULL);
-    editor_say(&w->edit, "hello", 5);
+    lws_sock_file_fd_type from = {.filefd = e->from};
+    editor_say(e, "hello", 5);
+    return lws_adopt_descriptor_vhost(w->vhost, LWS_ADOPT_RAW_FILE_DESC, from, protocols[3].name,
+                                      NULL);
+}
+
+static void begin_editing(web *w)
+{
+    end_editing(w);
+    if (w->piece_count == 0)
+        return;
+    w->edit.piece = w->pieces[w->piece];
+    w->begun = true;
+    w->sounds = false;
+    w->edited = begin_program(w, &w->edit);
+    if (w->editing)
+        lws_callback_on_writable(w->editing);
 }
 
 // the newest page edits; the one before is told so
@@ -362,17 +402,117 @@ static void take_over(web *w, struct lws *wsi, session *own)
     w->editing = wsi;
     w->editing_own = own;
     w->heard_size = 0;
+    w->note[0] = 0;
     folder_unlink(w->config.folder, WEB_DOOR);
-    if (w->edit.now.source[0])
-        begin_editing(w);
+    begin_editing(w);
 }
 
-// a piece that could not be played has ended its program: the one before is edited again
+// --- pieces that are dropped
+
+// a number of a file that no piece has
+static int free_place(const web *w)
+{
+    for (int place = 0;; place++) {
+        int i = 0;
+        while (i < w->piece_count && !(w->pieces[i].name[0] && w->pieces[i].place == place))
+            i++;
+        if (i == w->piece_count)
+            return place;
+    }
+}
+
+// what was dropped is played aside until it can be heard, while the page goes on with what it has
+static bool begin_next(web *w)
+{
+    himc_error error;
+    end_next(w);
+    bool good = editor_keep(&w->next, free_place(w), w->heard, w->heard_size, &error);
+    if (good)
+        w->coming = begin_program(w, &w->next);
+    else
+        tell_page(w, error.text);
+    return good;
+}
+
+// the piece that was dropped is the one that is edited from now on; those that it was dropped over
+// follow no more, and with too many the first one that was dropped goes
+static void accept_next(web *w)
+{
+    close_output(&w->edited);
+    editor_stop(&w->edit);
+    w->piece_count = w->piece_count ? w->piece + 1 : 0;
+    if (w->piece_count == PIECES)
+        memmove(w->pieces + 1, w->pieces + 2, (size_t)(--w->piece_count - 1) * sizeof *w->pieces);
+    w->piece = w->piece_count++;
+    w->pieces[w->piece] = w->next.piece;
+    w->edit = w->next;
+    w->edited = w->coming;
+    w->next.process = 0;
+    w->coming = NULL;
+    told empty = w->first;
+    w->first = w->early;
+    w->early = empty;
+    w->first.at = w->early.size = w->waiting = 0;
+    w->begun = w->sounds = true;
+    if (w->editing)
+        lws_callback_on_writable(w->editing);
+}
+
+// the reason is in the last message
+static void refuse_next(web *w)
+{
+    static const char failed[] = "{\"event\":\"failed\"";
+    const char *why =
+        w->early.size ? memmem(w->early.bytes, w->early.size, failed, strlen(failed)) : NULL;
+    size_t size = why ? (size_t)(w->early.bytes + w->early.size - why) : 0;
+    if (size && size < sizeof w->note) {
+        snprintf(w->note, sizeof w->note, "%.*s", (int)size, why);
+        himc_line_clean(w->note);
+    } else
+        tell_page(w, "what was dropped cannot be played");
+    end_next(w);
+    if (w->editing)
+        lws_callback_on_writable(w->editing);
+}
+
+// what the program of a piece that was just dropped tells; false at its end
+static bool hear_next(web *w)
+{
+    told *e = &w->early;
+    if (e->size + PASSED > e->room) {
+        char *more = realloc(e->bytes, e->room + 4 * PASSED);
+        if (!more)
+            return false;
+        e->bytes = more;
+        e->room += 4 * PASSED;
+    }
+    ssize_t got = read(w->next.from, e->bytes + e->size, PASSED);
+    e->size += got > 0 ? (size_t)got : 0;
+    if (e->size && memmem(e->bytes, e->size, "pcm ", 4))
+        accept_next(w);
+    return got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR));
+}
+
+// to the piece before, or the one after
+static void step_piece(web *w, int by)
+{
+    if (w->piece + by < 0 || w->piece + by >= w->piece_count)
+        return;
+    w->piece += by;
+    begin_editing(w);
+}
+
+// A program has ended by itself. One whose piece had been heard is started again, once: the journal
+// has all changes. After one that could not be played the piece before is edited again.
 static void on_back(lws_sorted_usec_list_t *list)
 {
     web *w = lws_container_of(list, web, back);
-    if (!w->edited && w->editing && editor_back(&w->edit))
+    if (w->edited || !w->editing)
+        return;
+    if (w->sounds)
         begin_editing(w);
+    else
+        step_piece(w, -1);
 }
 
 static int send_away(struct lws *wsi)
@@ -393,13 +533,13 @@ static void leave_page(web *w, struct lws *wsi)
 // a whole message of the page: a line, or a file
 static bool take_message(web *w, bool file)
 {
-    himc_error error;
-    if (!file)
+    if (file)
+        return begin_next(w), true;
+    bool back = w->heard_size == 4 && !memcmp(w->heard, "back", 4),
+         forth = w->heard_size == 5 && !memcmp(w->heard, "forth", 5);
+    if (!back && !forth)
         return editor_say(&w->edit, w->heard, w->heard_size);
-    if (editor_keep(&w->edit, w->heard, w->heard_size, &error))
-        begin_editing(w);
-    else
-        tell_page(w, error.text);
+    step_piece(w, back ? -1 : 1);
     return true;
 }
 
@@ -426,18 +566,52 @@ static bool hear_page(web *w, struct lws *wsi, const char *in, size_t length)
     return good;
 }
 
+static bool write_line(struct lws *wsi, const char *json)
+{
+    unsigned char line[LWS_PRE + NOTE];
+    size_t size = strlen(json);
+    memcpy(line + LWS_PRE, json, size);
+    return lws_write(wsi, line + LWS_PRE, size, LWS_WRITE_TEXT) == (int)size;
+}
+
+// the page forgets what came of the program before, and is told to which pieces undo and redo go
+static bool tell_begun(web *w, struct lws *wsi)
+{
+    char line[NOTE];
+    w->begun = false;
+    snprintf(line, sizeof line, "{\"event\":\"begun\",\"before\":%d,\"after\":%d}", w->piece,
+             w->piece_count - 1 - w->piece);
+    return write_line(wsi, line);
+}
+
+// one message; more follow when the page has taken it
 static int pass_on(web *w, struct lws *wsi)
 {
-    if (!w->waiting || wsi != w->editing)
+    bool good = true;
+    if (wsi != w->editing)
         return 0;
-    int size = (int)w->waiting;
-    w->waiting = 0;
+    if (w->begun)
+        good = tell_begun(w, wsi);
+    else if (w->note[0]) {
+        good = write_line(wsi, w->note);
+        w->note[0] = 0;
+    } else if (w->waiting) {
+        int size = (int)w->waiting;
+        w->waiting = 0;
+        good = lws_write(wsi, w->passed + LWS_PRE, (size_t)size, LWS_WRITE_BINARY) == size;
+    } else if (w->first.at < w->first.size) {
+        size_t left = w->first.size - w->first.at, size = left < PASSED ? left : PASSED;
+        memcpy(w->passed + LWS_PRE, w->first.bytes + w->first.at, size);
+        w->first.at += size;
+        good = lws_write(wsi, w->passed + LWS_PRE, size, LWS_WRITE_BINARY) == (int)size;
+    } else {
+        if (w->edited)
+            lws_rx_flow_control(w->edited, 1);
+        return 0;
+    }
     lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0);
-    if (lws_write(wsi, w->passed + LWS_PRE, (size_t)size, LWS_WRITE_BINARY) < size)
-        return -1;
-    if (w->edited)
-        lws_rx_flow_control(w->edited, 1);
-    return 0;
+    lws_callback_on_writable(wsi);
+    return good ? 0 : -1;
 }
 
 static int on_edit(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
@@ -463,31 +637,40 @@ static int on_edit(struct lws *wsi, enum lws_callback_reasons reason, void *user
 }
 
 // what the program tells waits until the page has taken what came before
+static bool hear_edited(web *w, struct lws *wsi)
+{
+    if (w->waiting || w->begun || !w->editing || w->first.at < w->first.size) {
+        lws_rx_flow_control(wsi, 0);
+        return true;
+    }
+    ssize_t got = read(w->edit.from, w->passed + LWS_PRE, PASSED);
+    if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR))
+        return false;
+    if (got > 0) {
+        w->sounds |= memmem(w->passed + LWS_PRE, (size_t)got, "pcm ", 4) != NULL;
+        w->waiting = (size_t)got;
+        lws_rx_flow_control(wsi, 0);
+        lws_callback_on_writable(w->editing);
+    }
+    return true;
+}
+
 static int on_edited(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                      size_t length)
 {
     web *w = web_of(wsi);
     (void)user, (void)in, (void)length;
-    if (reason == LWS_CALLBACK_RAW_CLOSE_FILE && w->edited == wsi) {
+    bool coming = wsi == w->coming, edited = wsi == w->edited;
+    if (reason == LWS_CALLBACK_RAW_CLOSE_FILE && edited) {
         w->edited = NULL;
         lws_sul_schedule(w->context, 0, &w->back, on_back, 1);
-    }
-    if (reason != LWS_CALLBACK_RAW_RX_FILE || w->edited != wsi)
-        return 0;
-    if (w->waiting || !w->editing) {
-        lws_rx_flow_control(wsi, 0);
-        return 0;
-    }
-    ssize_t got = read(w->edit.from, w->passed + LWS_PRE, PASSED);
-    if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR))
-        return -1;
-    if (got > 0) {
-        if (memmem(w->passed + LWS_PRE, (size_t)got, "pcm ", 4)) // something is heard of it
-            editor_accept(&w->edit);
-        w->waiting = (size_t)got;
-        lws_rx_flow_control(wsi, 0);
-        lws_callback_on_writable(w->editing);
-    }
+    } else if (reason == LWS_CALLBACK_RAW_CLOSE_FILE && coming) {
+        w->coming = NULL;
+        refuse_next(w);
+    } else if (reason == LWS_CALLBACK_RAW_RX_FILE && edited)
+        return hear_edited(w, wsi) ? 0 : -1;
+    else if (reason == LWS_CALLBACK_RAW_RX_FILE && coming)
+        return hear_next(w) ? 0 : -1;
     return 0;
 }
 
@@ -608,9 +791,9 @@ web *web_new(const web_config *config, scene *s, himc_error *error)
     w->s = s;
     w->config = *config;
     describe_session(w);
-    w->edit.folder = config->folder;
+    w->edit.folder = w->next.folder = config->folder;
     if (config->edit)
-        snprintf(w->edit.now.source, sizeof w->edit.now.source, "%s", config->edit);
+        snprintf(w->pieces[w->piece_count++].source, sizeof w->pieces->source, "%s", config->edit);
     if (!listen_to_all(w)) {
         himc_error_set(error, "cannot serve the page on %s port %d", config->address, config->port);
         web_free(w);
@@ -639,7 +822,10 @@ void web_free(web *w)
         lws_context_destroy(w->context);
     if (w) {
         editor_stop(&w->edit);
+        editor_stop(&w->next);
         free(w->heard);
+        free(w->early.bytes);
+        free(w->first.bytes);
     }
     free(w);
 }

@@ -131,7 +131,7 @@ typedef struct himc_event {
     himc_strike strike;
     double beat;                              ///< of HIMC_EVENT_BEAT ...
     double time;                              ///< ... and when it began (s, as of a strike)
-    char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE
+    char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE; of _MISSED, why
     bool minor; ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
 } himc_event;
 

@@ -1,7 +1,8 @@
 /// fuzz_edit.c: a score under edit, and changes of it. The input is a text, a 0, and lines as
 /// `himc edit` takes them. The text comes back to the byte; what can be changed is what is played;
-/// what is refused changes nothing; undo and redo are each other's inverse. And the fence: if a
-/// score is said to name no file, playing it opens none.
+/// what is refused or taken back changes nothing, nor what undo and redo can do, which are each
+/// other's inverse. And the fences: if a score is said to name no file, playing it opens none; and
+/// none is played with a line that writes a file.
 #include "../../tools/edit_text.h"
 #include "fuzz.h"
 #include "himc/performance.h"
@@ -79,16 +80,23 @@ static int count(const char *text, const char *part)
     return n;
 }
 
-// what the page is told of the text: strokes and pushes are those that will be played
-static void check_told(const edit_text *t, const himc_score *score)
+// what the page is told of the text and its history; owned by the caller
+static char *tell(const edit_text *t)
 {
     char *told = NULL;
     size_t size;
     FILE *to = open_memstream(&told, &size);
-    int strokes = 0, pushes = 0;
     require(to != NULL, "memory for what is told");
     edit_text_print(t, to);
     fclose(to);
+    return told;
+}
+
+// strokes and pushes that are told are those that will be played
+static void check_told(const edit_text *t, const himc_score *score)
+{
+    char *told = tell(t);
+    int strokes = 0, pushes = 0;
     for (int i = 0; i < score->stroke_count; i++)
         strokes += score->strokes[i].ornament == HIMC_PLAIN;
     for (int i = 0; i < score->change_count; i++)
@@ -98,6 +106,24 @@ static void check_told(const edit_text *t, const himc_score *score)
     free(told);
 }
 
+// what is played is the score without what writes a file; its lines are where they were
+static void check_played(const edit_text *t, const himc_score *score)
+{
+    himc_error error = {""};
+    int atom;
+    char *text = edit_text_played(t);
+    himc_score *played = himc_score_parse(text, "fuzz.txt", &error);
+    require(played != NULL, error.text);
+    for (int i = 0; i < played->line_count; i++)
+        require(himc_command_file(&played->lines[i].command, &atom) != HIMC_FILE_WRITE,
+                "an edit writes no file");
+    require(played->stroke_count == score->stroke_count, "all strokes are played");
+    for (int i = 0; i < played->stroke_count; i++)
+        require(played->stroke_lines[i] == score->stroke_lines[i], "lines keep their numbers");
+    himc_score_free(played);
+    free(text);
+}
+
 // true if the text is a score; `first` also plays it
 static bool check_text(const edit_text *t, bool first)
 {
@@ -105,8 +131,10 @@ static bool check_text(const edit_text *t, bool first)
     int line;
     char *text = edit_text_join(t);
     himc_score *score = himc_score_parse(text, "fuzz.txt", &error);
-    if (score)
+    if (score) {
         check_told(t, score);
+        check_played(t, score);
+    }
     if (score && first && !edit_text_names_file(score, &line) && strlen(text) < LONGEST_PLAYED &&
         speaks_of_files(text))
         play(text);
@@ -122,23 +150,28 @@ static void require_text(const edit_text *t, const char *wanted, const char *wha
     free(text);
 }
 
-// a line of the input: number of a statement, its words; other lines are steps in the history
+// A line of the input: number of a statement, its words; other lines are steps in the history.
+// After a `b` it is taken back, good or not.
 static void change(edit_text *t, const char *line)
 {
     himc_error error = {""};
-    char *end, *before = edit_text_join(t);
+    bool back = line[0] == 'b';
+    char *end, *before = edit_text_join(t), *told = tell(t);
+    line += back;
     long index = strtol(line, &end, 10);
-    if (end == line)
-        (void)(line[0] == 'r' ? edit_text_redo(t) : edit_text_undo(t));
-    else if (!edit_text_set(t, (int)index, end + (*end == ' '), &error)) {
+    bool done = end == line ? (line[0] == 'r' ? edit_text_redo(t) : edit_text_undo(t))
+                            : edit_text_set(t, (int)index, end + (*end == ' '), &error);
+    if (!done && end != line)
         require_line(&error);
-        require_text(t, before, "what is refused changes nothing");
-    } else {
-        bool good = check_text(t, false);
-        edit_text_settle(t, good);
-        if (!good)
-            require_text(t, before, "what is taken back has changed nothing");
+    bool keep = done && !back && check_text(t, false), open = edit_text_is_open(t);
+    require(edit_text_settle(t, keep) == open && !edit_text_is_open(t), "all is settled");
+    if (!keep) {
+        char *now = tell(t);
+        require_text(t, before, "what is taken back has changed nothing");
+        require(strcmp(now, told) == 0, "what is taken back leaves undo and redo as they were");
+        free(now);
     }
+    free(told);
     free(before);
 }
 

@@ -467,26 +467,32 @@ class Editing(Stream):
             viewer, protocol="edit", path=f"/edit/{viewer.key if key is None else key}", **options
         )
         self.told = b""
+        self.begun = None  # what was said when the program began
 
     def next(self):
-        """(kind, bytes) of the next message; None at the end."""
-
-        def need(size):
-            while len(self.told) < size:
-                got = self.frame()
-                if not got or got[0] == 8:
-                    raise EOFError
+        """(kind, bytes) of the next message; None at the end. What himc-viewer itself says is "edit"."""
+        while True:
+            size = struct.unpack_from("<I", self.told, 4)[0] if len(self.told) >= 8 else 0
+            if len(self.told) >= 8 + size:
+                kind, data = self.told[:4].decode(), self.told[8 : 8 + size]
+                self.told = self.told[8 + size :]
+                return kind, data
+            got = self.frame()
+            if not got or got[0] == 8:
+                return None
+            if got[0] == 2:
                 self.told += got[1]
+                continue
+            event = json.loads(got[1])
+            if event["event"] != "begun":
+                return "edit", got[1]
+            self.told, self.begun = b"", event
 
-        try:
-            need(8)
-            size = struct.unpack_from("<I", self.told, 4)[0]
-            need(8 + size)
-        except EOFError:
-            return None
-        kind, data = self.told[:4].decode(), self.told[8 : 8 + size]
-        self.told = self.told[8 + size :]
-        return kind, data
+    def next_event(self):
+        """The next message, which is an event."""
+        kind, data = self.next()
+        assert kind == "edit", kind
+        return json.loads(data)
 
     def closed_with(self):
         """The status of the close frame."""
@@ -627,22 +633,46 @@ def test_a_dropped_file_is_played():
         page.say(b"my score.txt\0" + score_of("0 right legato mf"))
         text = page.until("text")
         assert len(text["statements"]) == 1 and text["source"] == "my score.txt", text
-        page.until("pcm ")
+        page.until("over")
+        # what is refused leaves the piece as it is: nothing is computed, nothing of it is told
         page.say(b"none.exe\0MZ")
-        assert ".bvh" in page.until("failed")["text"]
+        assert "none.exe: expected" in (said := page.next_event())["text"] and ".bvh" in said["text"], said
         for reads in (b"take /etc/passwd;", b"\xef\xbb\xbftake /etc/passwd;", b"drum k;\nk shape /etc/passwd;"):
             page.say(b"reads.txt\0" + reads)
-            assert "names other files" in page.until("failed")["text"]
-        page.say(b"bad.c3d\0not a capture")
-        assert "not a capture" not in page.until("failed")["text"]
-        # after what cannot be played the piece before goes on, also for the next page
-        text = page.until("text")
-        assert text["begun"] and text["source"] == "my score.txt", text
-        page.until("pcm ")
+            assert "names other files" in page.next_event()["text"]
+        page.say("schön ö\u202e.c3d".encode() + b"\0not a capture")
+        assert "not a capture" not in page.next_event()["text"]
         page.say(b"set 0 stroke 0 right legato ff", 1)
         assert page.until("text")["undo"] == 1
-        text = Editing(v).until("text")
+        page.until("over")
+        assert page.begun["before"] == page.begun["after"] == 0
+        # there is a way back after a drop, and forth again; each piece has its changes
+        page.say(b"other.txt\0" + score_of("0 left legato mf", "1 left legato mf"))
+        text = page.until("text")
+        assert text["begun"] and text["source"] == "other.txt" and text["undo"] == 0, text
+        assert (page.begun["before"], page.begun["after"]) == (1, 0)
+        page.until("over")
+        page.say(b"set 0 stroke 0 left legato pp", 1)
+        page.until("text")
+        page.say(b"back", 1)
+        text = page.until("text")
         assert text["source"] == "my score.txt" and text["undo"] == 1, text
+        assert (page.begun["before"], page.begun["after"]) == (0, 1)
+        page.say(b"forth", 1)
+        text = page.until("text")
+        assert text["begun"] and text["source"] == "other.txt" and text["undo"] == 1, text
+        page.say(b"forth", 1)  # there is none
+        page.say(b"back", 1)
+        assert page.until("text")["source"] == "my score.txt"
+        # also for the next page; another drop, in mid-play, takes the place of what followed
+        page = Editing(v)
+        text = page.until("text")
+        assert text["source"] == "my score.txt" and text["undo"] == 1, text
+        assert (page.begun["before"], page.begun["after"]) == (0, 1)
+        for i in range(10):  # more than are kept
+            page.say(b"%d.txt\0" % i + score_of(*(f"{b} right legato mf" for b in range(9))))
+            assert page.until("text")["source"] == f"{i}.txt"
+        assert (page.begun["before"], page.begun["after"]) == (7, 0), page.begun
         assert len(os.listdir(home)) == 1
         v.process.terminate()
         v.process.wait(WAIT)

@@ -379,6 +379,60 @@ def test_the_change_that_cannot_be_played_is_taken_back_alone():
         os.unlink(os.path.join(os.path.dirname(path), ".pushes.txt.himc-edit"))
 
 
+def test_a_change_that_cannot_be_played_leaves_undo_and_redo():
+    """Found only when it is to be played: as if it had never been, also for whoever opens the piece again."""
+    strokes = "stroke 0 left legato f;\nstroke 1 right legato f;\n"
+    path = made("pushes.txt", strokes + (PUSH + ";\n") * 256)
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None
+        for line in ("set 0 stroke 0 left legato p", "set 1 stroke 1 right legato mf", "undo"):
+            assert piece.play(line) is None
+        before, steps = piece.score(), (piece.text["undo"], piece.text["redo"])
+        assert steps == (1, 1)
+        for _ in range(2):
+            assert piece.play(f"set 258 {PUSH}")["event"] == "undone"
+            assert piece.score() == before and (piece.text["undo"], piece.text["redo"]) == steps
+        piece.process.kill()
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None
+        assert piece.score() == before and (piece.text["undo"], piece.text["redo"]) == steps
+        assert piece.play("redo") is None
+        assert piece.text["statements"][1]["words"].endswith("mf") and piece.text["undo"] == 2
+
+
+def test_words_that_are_there_already_are_no_change():
+    text = "stroke 0  right legato mf; flam 1 left accent f ;"
+    path = made("two.txt", text)
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None
+        for line in ("set 0 stroke 0 right legato mf", "set 1 flam 1 left accent f", "set 2 ", "set 0 stroke 0 right  legato mf"):
+            piece.say(line)
+            event = piece.until("text")
+            assert event["event"] == "text" and (event["undo"], event["redo"]) == (0, 0), (line, event)
+        assert piece.play("undo")["event"] == "refused" and piece.score().decode() == text
+    assert os.listdir(os.path.dirname(path)) == ["two.txt"]  # nor a journal
+
+
+def test_a_score_under_edit_records_nothing():
+    victim = made("victim.bvh", "PRECIOUS")
+    stroke = "stroke 0 right legato mf;"
+    for index, text in (
+        (1, f"record {victim};\n{stroke}"),
+        (1, f"rec\\ord\t{victim};{stroke}record stop;"),
+        (0, f"{stroke}\nrecord\n {victim}"),
+    ):
+        with Piece(HIMC, made("piece.txt", text)) as piece:
+            assert piece.play("hello") is None, text
+            assert victim in piece.said["held"] and "nothing is recorded" in piece.said["held"], piece.said
+            assert piece.play(f"set {index} stroke 0 right legato ff") is None
+            assert b"ff" in piece.score() and victim.encode() in piece.score()
+            piece.say("take take.trc")
+            piece.until("file")
+        assert read(victim) == b"PRECIOUS", text
+    with Piece(HIMC, made("piece.txt", stroke)) as piece:
+        assert piece.play("hello") is None and "held" not in piece.said
+
+
 def test_changes_survive_kill_9():
     text = read(SCORE)
     path = made("piece.txt", text)
@@ -554,7 +608,8 @@ def test_a_journal_that_cannot_be_played_is_taken_back():
         piece.say("hello")
         event = piece.until("undone")
         assert event["event"] == "undone" and "one too many" in event["text"], event
-        assert piece.text["undo"] == 0 and piece.score().decode().strip() == text
+        assert piece.text["undo"] == 257 and piece.text["redo"] == 0  # all but the last
+        assert piece.score().decode().count("push") == 256
     # one that does not fit is kept as it is
     path = made("piece.txt", text)
     journal = os.path.join(os.path.dirname(path), ".piece.txt.himc-edit")

@@ -12,6 +12,7 @@ import math
 import os
 import random
 import shutil
+import signal
 import socket
 import struct
 import subprocess
@@ -1237,6 +1238,90 @@ def test_a_field_changes_its_own_word_and_a_paused_piece_stays_paused():
         assert saved_score() == written
 
 
+def type_in(field, value):
+    """What the page says then, and the field's value."""
+    browser.run("viewer.panel.note('')")
+    browser.run(SET % (field, value))
+    return browser.run(
+        "return [document.getElementById('note').textContent, document.getElementById(arguments[0]).value]", f"e-{field}"
+    )
+
+
+def test_a_stroke_out_of_reach_is_shown_and_wrong_numbers_are_refused():
+    with tempfile.TemporaryDirectory() as home:
+        source = os.path.join(home, "far.txt")
+        with open(source, "w") as file:
+            file.write(
+                "tempo 90;drum kettle;drum far;far place 1.6 0.9 0.85;stroke 1 right legato mf normal kettle;"
+                "stroke 2 left legato mf normal far;stroke 3 right legato mf normal kettle;"
+            )
+        with editing(source):
+            written = saved_score()
+            missed = "return viewer.playback.scene.missed.map(s => [s.hand, s.beat, s.drum, s.why])"
+            told = browser.run(missed)
+            assert [m[:3] for m in told] == [["left", 2, "far"]] and "out of reach" in told[0][3], told
+            browser.run("viewer.actions.pick(viewer.playback.scene.missed[0])")
+            why = "const e = document.getElementById('e-missed'); return e.hidden ? '' : e.textContent"
+            assert "out of reach" in browser.run(why) and browser.run(WORDS) == "stroke 2 left legato mf normal far"
+            words = browser.run(WORDS)
+            for field, value, there in (("beat", "", "2"), ("beat", "-3", "2"), ("x", "", "-0.248"), ("y", "7", "0.015"), ("words", "  ", words)):
+                said, now = type_in(field, value)
+                assert said and now == there, (field, value, said, now)
+            # a field that is left after what it belonged to has gone
+            browser.run("viewer.editor.choose(null)")
+            for field in ("beat", "words", "dynamic"):
+                browser.run(f"document.getElementById('e-{field}').onchange()")
+            browser.run("document.getElementById('e-delete').click()")
+            # the words that are there already
+            browser.run("viewer.actions.pick(viewer.playback.scene.missed[0]); viewer.cuts = viewer.editor.piece.cuts")
+            browser.run(SET % ("beat", "2"))
+            assert saved_score() == written
+            assert browser.run("return [viewer.editor.piece.text.undo, viewer.editor.piece.cuts - viewer.cuts]") == [0, 0]
+            # within reach it is played, and the mark has gone; undo brings it back
+            assert change(SET % ("words", "stroke 2 left legato mf normal kettle")).endswith("kettle")
+            assert browser.run(missed) == [] and browser.run(why) == ""
+            assert len(browser.run("return viewer.playback.scene.strikes")) == 3
+            undo_all()
+            assert browser.run(missed) == told
+            browser.resize(844, 390)
+            browser.run("dispatchEvent(new Event('resize')); viewer.step(2000, false)")
+            # a phone that lies on its side: the inspector covers no drum
+            covered = browser.run(
+                "const right = document.getElementById('edit').getBoundingClientRect().right;"
+                "return [...viewer.drums.values()].map(d => { const at = d.head.getWorldPosition(viewer.view.camera.position.clone());"
+                "at.x -= d.place[4]; return viewer.editor.screen(at)[0] - right; })"
+            )
+            browser.resize(480, 480)
+            assert len(covered) == 2 and min(covered) > 0, covered
+
+
+def test_a_page_whose_program_is_silent_says_so_and_takes_no_edits():
+    with tempfile.TemporaryDirectory() as home:
+        path = copied("tests/viewer/editable.txt", home)
+        with Started(VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", path) as started:
+            edits(started.process.stdout.readline().split()[0])
+            choose(8)
+            started.process.send_signal(signal.SIGSTOP)
+            try:
+                assert browser.wait("return viewer.editor.ends === 'lost'")
+                assert "cannot be reached" in browser.run(SAID)
+                assert browser.run("return [viewer.editor.chosen, viewer.editor.risky]") == [None, False]
+                for act in (
+                    "dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true }))",
+                    "document.getElementById('e-save').onclick()",
+                    "viewer.editor.pushes.add('left-forearm', [100, 0, 0])",
+                    "viewer.actions.pick(viewer.playback.scene.strikes[3]); document.getElementById('e-delete').onclick()",
+                ):
+                    browser.run("viewer.panel.note('');" + act)
+                    assert "cannot be reached" in browser.run("return document.getElementById('note').textContent"), act
+            finally:
+                started.process.send_signal(signal.SIGCONT)
+            assert browser.wait("return !viewer.editor.ends && viewer.editor.piece.live && viewer.editor.piece.over")
+            choose(8)
+            change(SET % ("dynamic", 0.9))
+            browser.open("about:blank")
+
+
 def test_the_cursor_stays_where_something_is_computed():
     with editing("tests/viewer/editable.txt"):
         choose(2)
@@ -1350,14 +1435,41 @@ def test_a_scene_that_unpacks_without_end_is_refused():
         assert told.startswith("bomb.himc") and "more than" in told, told
 
 
+DROP = """
+    const data = new DataTransfer();
+    data.items.add(new File([arguments[0]], arguments[1]));
+    viewer.panel.note("");
+    dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+"""
+
+
 def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
     with tempfile.TemporaryDirectory() as home, editing("tests/viewer/editable.txt"):
-        browser.run(
-            "const score = [0, 1, 2, 3].map(b => `stroke ${b} right legato mf;`).join('');"
-            "const data = new DataTransfer();"
-            "data.items.add(new File([score], 'dropped.txt'));"
-            "dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }))"
-        )
+        # what is refused changes nothing
+        browser.run("viewer.playback.seek(2000)")
+        before = browser.run("viewer.scene = viewer.playback.scene; return [viewer.playback.at, viewer.editor.piece.cuts]")
+        for contents, name, why in (
+            ("stroke 1 left boing f;", "bad.txt", "boing"),
+            ("record x.bvh;stroke 1 left legato f;", "writes.txt", "names other files"),
+            ("RIFF", "sound.wav", "expected a score"),
+            ("not a capture", "bad.bvh", "bad.bvh"),
+        ):
+            browser.run(DROP, contents, name)
+            assert browser.wait("return document.getElementById('note').textContent").startswith(name), name
+            said = browser.run("return document.getElementById('note').textContent")
+            assert why in said, said
+        assert browser.run("return [viewer.playback.at, viewer.editor.piece.cuts]") == before
+        assert browser.run("return viewer.playback.scene === viewer.scene")
+        browser.run(DROP, "".join(f"stroke {b} right legato mf;" for b in range(4)), "dropped.txt")
+        assert browser.wait("return viewer.editor.piece.text.statements.length === 4 && viewer.editor.piece.over")
+        # undo goes back to what was before, redo forth again
+        source = "return viewer.editor.piece.text.source.endsWith('%s') && viewer.editor.piece.over"
+        for button, wanted in (("undo", "editable.txt"), ("redo", "dropped.txt")):
+            browser.run(f"document.getElementById('e-{button}').click()")
+            assert browser.wait(source % wanted), button
+            assert browser.run("return ['e-undo', 'e-redo'].map(id => document.getElementById(id).disabled)") == [
+                button == "undo", button == "redo"
+            ]
         assert browser.wait("return viewer.editor.piece.text.statements.length === 4 && viewer.editor.piece.over")
         assert browser.wait("return viewer.playback.scene.strikes.length === 4")
         browser.run(

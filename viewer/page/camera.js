@@ -28,6 +28,7 @@ export class View {
         this.now = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.goal = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.lift = 0; // what is written below takes this share of the height, twice
+        this.aside = 0; // what is written at the left takes this share of the width, twice
         this.spread = 0; // half the width of the group of performers (m)
         this.pointers = new Map();
         this.preset("stage");
@@ -59,10 +60,8 @@ export class View {
         if (name === "eye") this.name = name;
         else if (Object.hasOwn(presets, name)) {
             const [target, azimuth, elevation, distance] = presets[name];
-            const narrow = Math.max(
-                1,
-                0.95 / Math.max(0.3, window.innerWidth / window.innerHeight),
-            );
+            const wide = window.innerWidth * (1 - 2 * this.aside), // that is left beside the writing
+                narrow = Math.max(1, 0.95 / Math.max(0.3, wide / window.innerHeight));
             const above = 1 + 2 * this.lift; // what is left over the writing
             this.name = name;
             Object.assign(this.goal, {
@@ -92,7 +91,8 @@ export class View {
         const before = this.goal.distance;
         this.goal.distance = Math.min(30, Math.max(NEAREST, before * factor));
         if (e) {
-            const [x, high] = this.screen(e),
+            const [right, high] = this.screen(e),
+                x = right - 2 * this.aside,
                 y = high - 2 * this.lift, // over the target
                 half = Math.tan((this.camera.fov * Math.PI) / 360) * (before - this.goal.distance),
                 m = this.camera.matrixWorld.elements;
@@ -129,11 +129,11 @@ export class View {
         this.goal.distance = Math.min(this.goal.distance, CLOSE_UP);
     }
 
-    // to the window's size; the middle of the picture is above what is written below
+    // to the window's size; the middle of the picture is above what is written below, and beside
     resize() {
         const w = innerWidth,
             h = innerHeight;
-        this.camera.setViewOffset(w, h, 0, this.lift * h, w, h);
+        this.camera.setViewOffset(w, h, -this.aside * w, this.lift * h, w, h);
     }
 
     // by an angle (rad)

@@ -9,7 +9,7 @@ import { Pushes } from "./push.js";
 import { When } from "./when.js";
 import { before } from "./scene.js";
 import { segments } from "./skeleton.js";
-import { handColor } from "./timeline.js";
+import { MISSED, handColor } from "./timeline.js";
 
 const $ = id => document.getElementById(id);
 const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger (pixels)
@@ -28,7 +28,7 @@ const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger 
 const round = (v, digits = 4) => +v.toFixed(digits);
 const ENDED = {
     taken: "Another page edits this piece now. It has all that was changed here.",
-    lost: "himc-viewer has ended. This page goes on playing what it has; your changes are kept with the piece.",
+    lost: "himc-viewer has ended, or cannot be reached. This page goes on playing what it has; your changes are kept with the piece.",
     refused: "himc-viewer has been started again: open the address that it prints. Your changes are kept with the piece.",
 };
 const reach = e => GRAB[e.pointerType === "touch" ? 1 : 0];
@@ -72,7 +72,7 @@ export class Editor {
             grown: piece => this.grown(piece),
             over: piece => this.over(piece),
             text: event => this.written(event),
-            trouble: text => ((this.unsure = false), (this.waiting = null), on.note(text)),
+            trouble: text => this.refused(text),
             restored: text => this.state(text),
             unkept: text => this.state(text),
             ended: why => this.ended(why),
@@ -117,19 +117,33 @@ export class Editor {
     ended(why) {
         if (why === "refused" && !this.reachable) why = "lost";
         ((this.waiting = null), (this.ends = why), this.state(ENDED[why], why));
+        this.choose(null);
         if (why === "lost") setTimeout(() => this.reachable && this.again(), AGAIN);
     }
 
-    // the program can be reached, or not
+    // whether a change can be made now; else the page says why not
+    able() {
+        if (!this.piece.live) this.on.note(ENDED[this.ends] ?? "himc-viewer is asked for the piece; nothing can be changed yet.");
+        return this.piece.live;
+    }
+
+    // the program can be reached, or not; its channel may not have noticed
     connected(yes) {
         this.reachable = yes;
-        if (yes && this.ends === "lost") this.again();
+        if (!yes) this.piece.leave();
+        else if (this.ends === "lost") this.again();
     }
 
     // edits again, from where the page is
     again() {
-        if (this.piece.socket.readyState !== WebSocket.CLOSED) return;
-        this.piece.open();
+        if (this.piece.socket.readyState >= WebSocket.CLOSING) this.piece.open();
+    }
+
+    // a line that changed nothing: the fields are as they were, and what played plays on
+    refused(text) {
+        const { waiting } = this;
+        ((this.unsure = false), (this.waiting = null), this.on.note(text), this.show());
+        if (waiting?.plays) this.on.playback()?.play(true);
     }
 
     // another piece, or this one from its start: then the cursor comes back to where it was
@@ -169,22 +183,25 @@ export class Editor {
     // --- what is written beside the stage
 
     inspector() {
-        const say = line => this.piece.say(line),
-            number = id => Number($(id).value);
         for (const nuance of FAMILY) $("e-nuance").add(new Option(nuance.replace("-", " "), nuance));
         for (const hand of HANDS) $("e-hand").add(new Option(hand, hand));
         for (const name of ["hand", "nuance"]) $(`e-${name}`).onchange = () => this.commit({ [name]: $(`e-${name}`).value });
-        for (const name of ["beat", "dynamic", "x", "y"]) $(`e-${name}`).onchange = () => this.commit({ [name]: number(`e-${name}`) });
-        $("e-span").onchange = () => this.chosen?.take && this.word(3, $("e-span").value);
-        $("e-dynamic").oninput = () => ($("e-loud").textContent = number("e-dynamic").toFixed(2));
-        $("e-words").onchange = e => this.send(this.chosen?.statement?.index, e.target.value);
+        for (const name of ["beat", "dynamic", "x", "y"]) $(`e-${name}`).onchange = () => this.typed(`e-${name}`, value => this.commit({ [name]: value }));
+        $("e-span").onchange = () => this.chosen?.take && this.typed("e-span", value => this.word(3, value));
+        $("e-dynamic").oninput = () => ($("e-loud").textContent = Number($("e-dynamic").value).toFixed(2));
+        $("e-words").onchange = () => {
+            const words = $("e-words").value.trim().replace(/\s+/g, " ");
+            if (words) this.send(this.chosen?.statement?.index, words);
+            else this.refused("An empty line: \"delete\" takes the stroke away.");
+        };
         $("e-delete").onclick = () => this.send(this.chosen?.statement?.index, "");
         $("e-undo").onclick = () => this.step("undo");
         $("e-redo").onclick = () => this.step("redo");
         $("e-revert").onclick = () => this.step("revert");
         $("e-here").onclick = () => this.again();
-        $("e-save").onclick = () => say("save");
-        for (const ending of ["bvh", "trc", "c3d"]) $(`e-${ending}`).onclick = () => (say(`take ${this.piece.stem}.${ending}`), this.on.note("The take is being played and saved …"));
+        $("e-save").onclick = () => this.able() && this.piece.say("save");
+        for (const ending of ["bvh", "trc", "c3d"])
+            $(`e-${ending}`).onclick = () => this.able() && (this.piece.say(`take ${this.piece.stem}.${ending}`), this.on.note("The take is being played and saved …"));
         addEventListener("keydown", e => {
             if (!(e.ctrlKey || e.metaKey) || e.target.tagName === "INPUT") return;
             const name = e.key === "z" && !e.shiftKey ? "undo" : e.key === "y" || (e.key === "Z" && e.shiftKey) ? "redo" : null;
@@ -193,18 +210,33 @@ export class Editor {
     }
 
     step(name) {
-        this.unsure = this.piece.live;
-        this.piece.say(name);
+        if (!this.able()) return;
+        const { text, before, after } = this.piece,
+            other = name === "undo" && !text.undo && before ? "back" : name === "redo" && !text.redo && after ? "forth" : "";
+        this.unsure = !other;
+        this.piece.say(other || name);
+    }
+
+    // does `use` with the number in a field; one that is none, or out of its limits, is refused
+    typed(id, use) {
+        const field = $(id),
+            { rangeUnderflow, rangeOverflow } = field.validity,
+            name = field.getAttribute("aria-label") ?? field.parentElement.firstChild.textContent.trim();
+        if (!Number.isNaN(field.valueAsNumber) && !rangeUnderflow && !rangeOverflow) return use(field.valueAsNumber);
+        const said = field.value === "" ? "no number" : field.value;
+        field.value = field.defaultValue; // where nothing is chosen
+        this.refused(`${name}: ${said}, expected ${field.min}${field.max ? ` to ${field.max}` : " or more"}`);
     }
 
     written(event) {
         this.unsure = false;
         if (!event.begun || event.source !== this.named) this.on.note(""); // of what was refused before
-        if (event.begun) ((this.ends = ""), this.state(""));
+        if (event.begun) this.ends = "";
+        if (event.begun || event.kept) this.state(""); // what was said of the changes from before
         document.body.classList.add("editing");
         document.body.classList.toggle("take", event.take);
-        $("e-undo").disabled = !event.undo;
-        $("e-redo").disabled = !event.redo;
+        $("e-undo").disabled = !event.undo && !this.piece.before;
+        $("e-redo").disabled = !event.redo && !this.piece.after;
         $("e-revert").disabled = !event.undo;
         const c = this.chosen,
             index = c?.index ?? c?.statement?.index;
@@ -253,6 +285,8 @@ export class Editor {
         document.body.classList.toggle("chosen", !!c);
         $("e-none").hidden = !!c;
         $("e-chosen").hidden = !c;
+        $("e-missed").hidden = !c?.strike?.why;
+        $("e-missed").textContent = c?.strike?.why ? `Not played: ${c.strike.why}` : "";
         this.pushes.show();
         if (!c) return;
         $("e-words").value = s?.words ?? "";
@@ -274,13 +308,14 @@ export class Editor {
     // time, index, statement }
     choose(what) {
         const { scene, text } = this.piece;
-        this.chosen = null;
+        ((this.chosen = null), (this.drag = null), (this.late = false));
         this.when.stay();
         if (what?.take || what?.push) this.chosen = what;
         else if (what) {
-            const near = text.statements.filter(s => s.hand === what.hand && Math.abs(s.beat - what.beat) < 1e-4);
-            this.chosen = { strike: what, hand: what.hand, time: what.time, statement: near[0] };
-            if (!near[0]) this.on.note("This stroke is not written by itself: it is part of an ornament, or of a take.");
+            const near = text.statements.filter(s => Math.abs(s.beat - what.beat) < 1e-4),
+                own = near.find(s => s.hand === what.hand) ?? (near.length === 1 ? near[0] : undefined); // or the other hand had no time
+            this.chosen = { strike: what, hand: what.hand, time: what.time, statement: own };
+            if (!own) this.on.note("This stroke is not written by itself: it is part of an ornament, or of a take.");
         }
         draw(this.ghost, []);
         this.show();
@@ -372,7 +407,7 @@ export class Editor {
     }
 
     press(e) {
-        if (e.button || !this.piece.text || !this.piece.scene || !this.piece.live) return;
+        if (e.button || !this.piece.text || !this.piece.scene || !this.group.visible || !this.piece.live) return;
         const c = this.chosen,
             pushes = this.pushes.press(e),
             handle = !pushes && this.grabbed([this.spot, this.top], e);
@@ -492,15 +527,25 @@ export class Editor {
     }
 
     // `to` is its new time (s)
-    send(index, words, moved = null, to = this.chosen.time) {
-        if (index === undefined || !this.piece.live) return;
-        const c = this.chosen,
-            plays = this.played || !!this.on.playback()?.playing,
+    send(index, words, moved = null, to = this.chosen?.time) {
+        const c = this.chosen;
+        if (!c || index === undefined) return;
+        if (!this.able()) return this.show();
+        if (words === c.statement?.words) return this.same();
+        const plays = this.played || !!this.on.playback()?.playing,
             times = [c.time, to].sort((a, b) => a - b);
         if (c.push && !this.ghost.visible) draw(this.ghost, c.points);
         this.waiting = { begun: performance.now(), cuts: this.piece.cuts, times, to, moved, plays };
         ((this.unsure = true), (this.played = false));
         this.piece.say(`set ${index} ${words}`);
+    }
+
+    // nothing has changed: what was dragged goes back, and what played plays on
+    same() {
+        this.show();
+        this.trace();
+        if (this.played) this.on.playback().play(true);
+        this.played = false;
     }
 
     // --- what comes
@@ -526,8 +571,10 @@ export class Editor {
         if (!c) return;
         if (!c.take && !c.push) {
             const wanted = moved ?? c.strike,
-                found = scene.strikes.filter(s => s.hand === wanted.hand && Math.abs(s.beat - wanted.beat) < 1e-3)[0];
+                there = [...scene.strikes, ...scene.missed].filter(s => Math.abs(s.beat - wanted.beat) < 1e-3),
+                found = there.find(s => s.hand === wanted.hand) ?? there[0];
             if (!found) return;
+            if (found.why) this.on.note(`Not played: ${found.why}`);
             Object.assign(c, { strike: found, hand: found.hand, time: found.time });
         } else c.time = to;
         this.trace();
@@ -553,21 +600,22 @@ export class Editor {
     update() {
         const p = this.on.playback(),
             here = p && p.scene === this.piece.scene;
-        this.group.visible = !!here && !p.playing;
+        this.group.visible = !!here && !p.playing && this.piece.live;
         this.pushes.update();
         if (this.late) this.trace();
         if (!this.group.visible || this.piece.text?.take) return;
         const list = p.scene.strikes,
-            first = before(list, p.at / 1000 - STROKES, s => s.time) + 1;
+            first = before(list, p.at / 1000 - STROKES, s => s.time) + 1,
+            near = [...p.scene.missed.filter(s => Math.abs(s.time - p.at / 1000) < STROKES), ...list.slice(first, first + this.dots.length)];
         this.dots.forEach((mesh, i) => {
-            const s = list[first + i],
+            const s = near[i],
                 head = s && s.time < p.at / 1000 + STROKES && this.head(s.drum);
             mesh.visible = !!head;
             if (!head || mesh.strike === s) return;
             mesh.strike = s;
             mesh.position.set(s.x, s.y, 0.006);
             head.localToWorld(mesh.position);
-            mesh.material.color = rgb(handColor[HANDS.indexOf(s.hand)]);
+            mesh.material.color = rgb(s.why ? MISSED : handColor[HANDS.indexOf(s.hand)]);
         });
     }
 }

@@ -363,6 +363,8 @@ function step(ms, draw = true) {
 // --- a scene
 
 const phone = matchMedia("(max-width: 760px), (max-height: 480px)"),
+    lying = matchMedia("(max-height: 480px)"), // then the inspector is beside the figure
+    inspector = document.getElementById("edit"),
     footer = document.querySelector("footer");
 
 // on a phone the picture is in the middle of what the writing leaves
@@ -372,15 +374,20 @@ function lifted() {
     return panel.timeline.all ? TALL : LIFT;
 }
 
-new ResizeObserver(() => {
-    document.body.style.setProperty("--footer", `${footer.offsetHeight}px`);
-    if (phone.matches && Math.abs(lifted() - view.lift) > 0.01) setLift(lifted());
-}).observe(footer);
+const aside = () => (lying.matches ? inspector.getBoundingClientRect().right / 2 / innerWidth : 0);
 
-phone.onchange = () => setLift(lifted());
+const resized = new ResizeObserver(() => {
+    document.body.style.setProperty("--footer", `${footer.offsetHeight}px`);
+    const moves = Math.abs(lifted() - view.lift) > 0.01 || Math.abs(aside() - view.aside) > 0.01;
+    if (phone.matches && moves) setLift(lifted());
+});
+for (const part of [footer, inspector]) resized.observe(part);
+
+for (const kind of [phone, lying]) kind.onchange = () => setLift(lifted());
 
 function setLift(lift) {
     view.lift = lift;
+    view.aside = aside();
     dispatchEvent(new Event("resize"));
 }
 

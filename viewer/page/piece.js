@@ -136,8 +136,16 @@ export class Piece {
         this.rest = new Uint8Array();
         socket.binaryType = "arraybuffer";
         socket.onopen = () => (opened = true);
-        socket.onmessage = e => this.hear(new Uint8Array(e.data));
+        socket.onmessage = e => (typeof e.data === "string" ? this.told(JSON.parse(e.data)) : this.hear(new Uint8Array(e.data)));
         socket.onclose = e => this.on.ended(e.code === TAKEN ? "taken" : opened ? "lost" : "refused");
+    }
+
+    // ends the channel of a program that cannot be reached, which would be noticed much later
+    leave() {
+        if (this.socket.readyState >= WebSocket.CLOSING) return;
+        this.socket.onclose = this.socket.onmessage = null;
+        this.socket.close();
+        this.on.ended("lost");
     }
 
     get live() {
@@ -157,12 +165,20 @@ export class Piece {
 
     // a score, a MIDI file or a take, to be edited from now on
     async send(file) {
+        if (!this.live) throw new Error(`${file.name}: himc-viewer cannot be reached by this page`);
         if (file.size > MOST) throw new Error(`${file.name}: larger than ${MOST >> 20} MB`);
         const name = new TextEncoder().encode(`${file.name}\0`),
             message = new Uint8Array(name.length + file.size);
         message.set(name);
         message.set(new Uint8Array(await file.arrayBuffer()), name.length);
         this.socket.send(message);
+    }
+
+    // what himc-viewer itself says: another program begins, and how many pieces were before it, or are after
+    // it; or a file that was dropped is refused
+    told(event) {
+        if (event.event === "begun") Object.assign(this, { rest: new Uint8Array(), before: event.before, after: event.after });
+        else this.on.trouble(event.text);
     }
 
     hear(bytes) {

@@ -37,9 +37,9 @@ export class Pushes {
         for (const s of segments.slice(1)) $("e-segment").add(new Option(s.name.replaceAll("-", " "), s.name));
         $("e-segment").value = "left-forearm";
         ["e-segment", "e-fx", "e-fy", "e-fz", "e-seconds", "e-along"].forEach(
-            (id, i) => ($(id).onchange = () => this.editor.chosen?.push && this.editor.word(3 + i, $(id).value)),
+            (id, i) => ($(id).onchange = () => this.editor.chosen?.push && this.change(id, 3 + i)),
         );
-        $("e-add").onclick = () => this.add($("e-segment").value, this.fields(), this.along());
+        $("e-add").onclick = () => this.numbers(["e-fx", "e-fy", "e-fz", "e-seconds", "e-along"], (x, y, z, _, along) => this.add($("e-segment").value, [x, y, z], along));
         $("e-grab").onclick = () => $("e-grab").setAttribute("aria-pressed", document.body.classList.toggle("pushing"));
         $("e-pushes").onchange = e => this.choose(this.list().find(s => s.index === Number(e.target.value)));
     }
@@ -72,13 +72,18 @@ export class Pushes {
 
     // --- what is written
 
-    fields() {
-        return ["e-fx", "e-fy", "e-fz"].map(id => Number($(id).value));
+    // the word at that place of the chosen push, as the field has it; without a place along the segment the
+    // push acts on its centre of mass
+    change(id, place) {
+        if (id === "e-segment" || $("e-along").value === "" && id === "e-along") this.editor.word(place, $(id).value);
+        else this.editor.typed(id, value => this.editor.word(place, value));
     }
 
-    // undefined: the centre of mass
-    along() {
-        return $("e-along").value === "" ? undefined : Number($("e-along").value);
+    // does `use` with the numbers in these fields, if they are such; undefined: the centre of mass
+    numbers([id, ...rest], use, ...values) {
+        if (!id) return use(...values);
+        if (id === "e-along" && $(id).value === "") this.numbers(rest, use, ...values, undefined);
+        else this.editor.typed(id, value => this.numbers(rest, use, ...values, value));
     }
 
     words(at, name, force, along) {
@@ -87,8 +92,9 @@ export class Pushes {
 
     // at the moment that is shown
     add(name, force, along) {
-        const { editor } = this,
-            time = editor.on.playback().at / 1000,
+        const { editor } = this;
+        if (!editor.able()) return;
+        const time = editor.on.playback().at / 1000,
             at = round(Math.max(0, this.beatAt(time)), 4);
         editor.choose({ push: true, time, segment: bone(name), along, index: editor.piece.text.count });
         editor.send(editor.piece.text.count, this.words(at, name, force, along));

@@ -52,6 +52,7 @@ const wanted = {
         e.modes.every(([hz, decay]) => hz > 0 && decay >= 0 && decay < 7 * hz) &&
         e.shapes.every(([shape, mode, part]) => shape >= 0 && shape < 64 && mode in e.modes && finite(part)),
     strike: e => HANDS.includes(e.hand) && finite(e.x, e.y, e.force),
+    missed: e => HANDS.includes(e.hand) && finite(e.x, e.y, e.due) && typeof e.why === "string",
     beat: e => finite(e.beat),
 };
 
@@ -59,7 +60,7 @@ export class Scene {
     constructor(name) {
         this.name = name;
         ((this.head = null), (this.end = 0), (this.score = []));
-        ((this.bodies = []), (this.drums = new Map()), (this.strikes = []));
+        ((this.bodies = []), (this.drums = new Map()), (this.strikes = []), (this.missed = []));
         ((this.beats = []), (this.notes = []), (this.sounds = []), (this.ghosts = []));
         ((this.times = []), (this.blocks = []), (this.column = new Map()));
         this.local = new Float64Array(4 * segments.length);
@@ -78,6 +79,8 @@ export class Scene {
         else if (event.event === "drum") this.drum(event.drum, event).changes.push(event);
         else if (event.event === "modes") this.drum(event.drum).modes.push(event);
         else if (event.event === "strike") this.strikes.push({ ...event, from: this.name });
+        // as a strike that should have been; `told`: when
+        else if (event.event === "missed") this.missed.push({ ...event, force: 0, time: event.due, told: event.time });
         else if (event.event === "beat") this.beats.push(event);
         else if (event.event === "note") this.notes.push(event);
         else if (event.event === "score") this.score = event.lines;
@@ -139,8 +142,9 @@ export class Scene {
         this.times.length = before(this.times, time - 1e-6) + 1;
         this.blocks = this.blocks.filter(b => b.first < this.times.length);
         for (const name of ["bodies", "strikes", "beats", "notes"]) this[name] = this[name].filter(past);
+        this.missed = this.missed.filter(e => past({ time: e.told }));
         for (const drum of this.drums.values())
-            ((drum.changes = drum.changes.filter(past)), (drum.frames = drum.frames.filter(past)));
+            for (const part of ["changes", "modes", "frames"]) drum[part] = drum[part].filter(past);
         ((this.end = this.times.length ? this.times[this.times.length - 1] : 0), (this.tipHeights = null));
     }
 
@@ -261,7 +265,9 @@ export async function readScene(bytes, name, depth = 0) {
         view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length),
         text = new TextDecoder();
     if (text.decode(bytes.subarray(0, 7)) !== MAGIC)
-        throw new Error(`${name}: not a scene; himc render SOURCE -o SOUND.wav --scene FILE.himc makes one`);
+        throw new Error(
+            `${name}: expected a score (.txt), a MIDI file (.mid), a take (.bvh .c3d .trc) or a scene (.himc), which himc render SOURCE -o SOUND.wav --scene FILE.himc makes`,
+        );
     if (bytes[7] !== VERSION)
         throw new Error(`${name}: version ${bytes[7]} of scenes, this page reads ${VERSION}`);
     let left = MOST;

@@ -9,6 +9,7 @@ const KEY = 80,
     TARGET = 4 * 2 * 3;
 const FIRST_WAIT = 250, // before connecting again (ms); chosen
     LONGEST_WAIT = 30000; // or until the page is looked at again
+const QUIET = 10; // looks, one a second, that find no news, of which there are some each second; chosen: a loaded machine
 const text = new TextDecoder();
 const word = (bytes, at, size) => {
     const end = bytes.indexOf(0, at);
@@ -80,6 +81,7 @@ export class Stream {
         this.on = on;
         this.wait = FIRST_WAIT;
         this.connections = 0;
+        setInterval(() => this.look(), 1000);
         for (const name of ["focus", "online"]) addEventListener(name, () => this.timer && this.open());
         this.open();
     }
@@ -94,11 +96,22 @@ export class Stream {
             this.connections++;
             this.on.connected(true);
         };
-        socket.onmessage = message => readFrame(message.data, this.on);
-        socket.onclose = () => {
-            this.on.connected(false);
-            this.timer = setTimeout(() => this.open(), this.wait);
-            this.wait = Math.min(this.wait * 1.5, LONGEST_WAIT);
-        };
+        socket.onmessage = message => ((this.quiet = 0), readFrame(message.data, this.on));
+        socket.onclose = () => this.lost();
+        ((this.socket = socket), (this.quiet = 0));
+    }
+
+    lost() {
+        this.on.connected(false);
+        this.timer = setTimeout(() => this.open(), this.wait);
+        this.wait = Math.min(this.wait * 1.5, LONGEST_WAIT);
+    }
+
+    // a connection that brings no news is none, though nobody has ended it
+    look() {
+        if (this.socket.readyState !== WebSocket.OPEN || ++this.quiet < QUIET) return;
+        this.socket.onclose = this.socket.onmessage = null;
+        this.socket.close();
+        this.lost();
     }
 }

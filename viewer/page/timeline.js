@@ -12,6 +12,7 @@ export const nuanceColor = {
     "vertical-accent": "#ff6f8e",
     staccato: "#ffd76a",
 };
+export const MISSED = "#ff5a4d"; // a stroke that is not played
 const STRONGEST = 150, // tallest stroke (N); a forte stroke
     NEAR = [6, 14], // a click this near to a stroke jumps to it, by mouse, by finger (pixels)
     GRIP = [9, 20], // a press this near to a chosen stroke's mark takes hold of it (pixels)
@@ -168,7 +169,7 @@ export class Timeline {
             list = this.playback.scene.strikes,
             i = before(list, at / 1000, s => s.time);
         return (
-            [...this.actions.marks, list[i], list[i + 1]]
+            [...this.actions.marks, ...this.playback.scene.missed, list[i], list[i + 1]]
                 .filter(s => s && Math.abs(this.x(1000 * s.time) - this.x(at)) < NEAR[finger(e)])
                 .sort((a, b) => Math.abs(1000 * a.time - at) - Math.abs(1000 * b.time - at))[0] ?? null
         );
@@ -294,6 +295,17 @@ export class Timeline {
             c.arc(x, up ? mid - tall : mid + tall, 2.6, 0, 7);
             c.fill();
         }
+        // a cross where a stroke should have been
+        c.strokeStyle = MISSED;
+        c.lineWidth = 2;
+        for (const s of this.playback.scene.missed) {
+            const x = this.x(1000 * s.time),
+                y = s.hand === "left" ? mid / 2 : (3 * mid) / 2;
+            c.beginPath();
+            (c.moveTo(x - 4, y - 4), c.lineTo(x + 4, y + 4), c.moveTo(x - 4, y + 4), c.lineTo(x + 4, y - 4));
+            c.stroke();
+        }
+        c.lineWidth = 1;
     }
 
     // the joint's three columns of that kind, and the largest value in them; null where there are none
@@ -463,7 +475,7 @@ export class Timeline {
 
     tell(c, s, w) {
         const beat = Number.isFinite(s.beat) ? ` · beat ${+s.beat.toFixed(3)}` : "",
-            text = s.statement ? s.statement.words : `${s.hand} ${s.nuance} · ${s.drum} · ${s.force.toFixed(0)} N${beat}`;
+            text = s.statement ? s.statement.words : s.why ? `${s.hand} ${s.nuance} · ${s.drum} · not played: ${s.why}${beat}` : `${s.hand} ${s.nuance} · ${s.drum} · ${s.force.toFixed(0)} N${beat}`;
         this.write(c, text, this.x(1000 * s.time), w, 2);
     }
 

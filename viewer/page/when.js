@@ -28,7 +28,7 @@ export class When {
     // what its mark on the timeline says (time in ms); null without a statement
     get mark() {
         const c = this.editor.chosen;
-        if (!c?.statement) return null;
+        if (!c?.statement || !this.editor.piece.live) return null;
         const name = this.take ? `${this.value().toFixed(3)} s` : `beat ${+this.value().toFixed(3)}`;
         return { time: 1000 * (this.to ?? c.time), from: 1000 * c.time, moves: this.to !== null, hand: c.hand, name };
     }
@@ -71,7 +71,7 @@ export class When {
     key(e) {
         const { chosen, pushes } = this.editor;
         if (!KEYS[e.key] || !chosen?.statement || e.ctrlKey || e.metaKey || e.altKey) return;
-        if (["INPUT", "SELECT"].includes(e.target.tagName)) return;
+        if (["INPUT", "SELECT"].includes(e.target.tagName) || !this.editor.able()) return;
         e.preventDefault();
         this.move(pushes.timeAt(pushes.beatAt(this.to ?? chosen.time) + KEYS[e.key] * STEP[this.take ? 1 : 0]));
         clearTimeout(this.timer);

@@ -3,8 +3,8 @@
 /// Packets to the network that we listen at leave from the listening socket, so that a receiver can
 /// answer; all others leave from sockets that only send. No call waits but the one named so.
 ///
-/// An IPv4 address mapped into IPv6 (::ffff:a.b.c.d) is compared as the IPv4 address, so that a
-/// host is one host.
+/// An IPv4 address mapped into IPv6 (::ffff:a.b.c.d), as a socket of both has it, is compared as
+/// the IPv4 address, so that a host is one host, and this machine is not a stranger.
 #define _POSIX_C_SOURCE 200809L // names of hosts, threads
 #include "osc/network.h"
 #include "system/thread.h"
@@ -89,10 +89,11 @@ bool himc_osc_address_find(const char *host, int port, osc_address *out)
     return resolve(host, port, AI_NUMERICSERV, out);
 }
 
-bool himc_osc_address_loopback(const osc_address *a)
+bool himc_osc_address_loopback(const osc_address *address)
 {
     static const unsigned char loopback6[16] = {[15] = 1};
-    return a->v6 ? memcmp(a->host, loopback6, 16) == 0 : a->host[0] == 127;
+    osc_address a = unmapped(address);
+    return a.v6 ? memcmp(a.host, loopback6, 16) == 0 : a.host[0] == 127;
 }
 
 static bool same_number(const osc_address *a, const osc_address *b)

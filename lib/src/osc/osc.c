@@ -21,6 +21,7 @@
 #include "osc/decode.h"
 #include "osc/stepped.h"
 #include "osc/subscribe.h"
+#include "performance/describe.h"
 #include "system/files.h"
 #include "system/thread.h"
 
@@ -81,6 +82,23 @@ typedef struct osc_order {
     osc_request request;
 } osc_order;
 
+// the sender of a command, for the lines of an answer
+typedef struct sender {
+    himc_osc *osc;
+    const osc_address *address;
+    bool error;
+    int lines; // of this answer, so far
+    bool cut;  // takes no further lines
+} sender;
+
+// an answer to `dump`, which is told in parts: all of it may take 10 ms
+typedef struct osc_dump {
+    bool tells;
+    himc_describe_place place;
+    osc_address to;
+    sender from;
+} osc_dump;
+
 // owned by the host's thread
 typedef struct osc_host {
     double time;                 // t, of the last block (s)
@@ -97,7 +115,8 @@ typedef struct osc_host {
     bool loading;                      // a command waits in the loader ...
     osc_address loading_for;           // ... for this sender
     char loading_drum[HIMC_NAME_SIZE]; // and this drum, or ""
-    unsigned revision[HIMC_DRUMS];     // of the drums, as last sent
+    osc_dump dump;
+    unsigned revision[HIMC_DRUMS]; // of the drums, as last sent
 } osc_host;
 
 #define REFUSALS 64 // kinds of refusals that the user is told; chosen: a page of a terminal
@@ -361,15 +380,6 @@ bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *er
     return true;
 }
 
-// the sender of a command, for the lines of an answer
-typedef struct sender {
-    himc_osc *osc;
-    const osc_address *address;
-    bool error;
-    int lines; // of this answer, so far
-    bool cut;  // takes no further lines
-} sender;
-
 // leaves room in the ring for states; the line that ends a long answer is in that room
 static void answer(void *object, const char *line)
 {
@@ -452,6 +462,20 @@ static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_or
     return good || (to.drum && himc_error_prefix(error, "%s", request->drum));
 }
 
+static void begin_dump(himc_osc *osc, const osc_address *to)
+{
+    osc_dump *d = &osc->host.dump;
+    *d = (osc_dump){.tells = true, .to = *to};
+    d->from = (sender){.osc = osc, .address = &d->to};
+}
+
+static void dump_on(himc_osc *osc, himc_performance *performance)
+{
+    osc_dump *d = &osc->host.dump;
+    d->tells =
+        himc_performance_describe_on(performance, &d->place, answer, &d->from) && !d->from.cut;
+}
+
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
 {
     himc_error error = {""};
@@ -464,7 +488,7 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
     if (id == HIMC_COMMAND_INFO)
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
     else if (id == HIMC_COMMAND_DUMP)
-        himc_performance_describe(performance, HIMC_DESCRIBE_STATE, answer, &from);
+        begin_dump(osc, &order->from);
     else if (drum)
         himc_drum_describe(drum, HIMC_DESCRIBE_STATE, answer, &from);
     else if (!carry_out(osc, performance, order, &error))
@@ -475,16 +499,22 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
 // must not take the time of the sound, so their time is paid for from a bucket of seconds
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
 {
-    const osc_order *order;
+    osc_host *h = &osc->host;
+    const osc_order *order = NULL;
     double spent = 0;
-    for (int i = 0; i < most && (order = himc_osc_ring_peek(&osc->orders)); i++) {
-        if (osc->host.loading || spent > BLOCK_WORK || !afford(&osc->host.work, monotonic(osc), 0))
+    for (int i = 0; h->dump.tells || (i < most && (order = himc_osc_ring_peek(&osc->orders)));) {
+        if (h->loading || spent > BLOCK_WORK || !afford(&h->work, monotonic(osc), 0))
             return;
         double start = monotonic(osc);
-        obey(osc, performance, order);
-        himc_osc_ring_pop(&osc->orders);
+        if (h->dump.tells)
+            dump_on(osc, performance);
+        else {
+            obey(osc, performance, order);
+            himc_osc_ring_pop(&osc->orders);
+            i++;
+        }
         double took = monotonic(osc) - start;
-        osc->host.work.level -= took;
+        h->work.level -= took;
         spent += took;
     }
 }

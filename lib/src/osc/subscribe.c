@@ -7,8 +7,8 @@
 ///
 /// The sender of a UDP packet can be forged, and a firewall may hide that nobody listens. So what
 /// is asked for over the network, for a host that is neither this machine nor one of --allow, ends
-/// after a minute unless it is asked for again; and each host elsewhere gets so many bytes a second
-/// and no more.
+/// after a minute unless it is asked for again; each host elsewhere gets so many bytes a second and
+/// no more, has so many subscriptions, and all of them together leave some to the others.
 ///
 /// A state is encoded once for all its subscribers: in one packet for this machine, and in packets
 /// below 1400 bytes for the others, so that none is fragmented on the way.
@@ -30,6 +30,8 @@
 #define RENEWED_WITHIN 60.0   // (s) chosen: a receiver that subscribes twice a minute keeps it
 #define HOST_BYTES 500e3      // a second; chosen: the largest stream, vmc at 250 Hz, has 468,000
 #define HOST_BURST 0.25       // of a second's bytes at once; chosen: poses come in bursts of blocks
+#define OF_A_HOST 32          // subscriptions of a stranger; chosen: four receivers of all streams
+#define OF_STRANGERS 192      // chosen: the user, this machine and --allow keep a quarter of all
 #define REPORTS_AT_ONCE 192   // read at a time; chosen: 64 for each socket
 
 void himc_osc_tell(osc_ring *lines, const char *format, ...)
@@ -146,10 +148,35 @@ static double expiry_of(const osc_subscriptions *s, const osc_change *change, co
     return change->local || himc_osc_trusted(s, to) ? 0 : now + RENEWED_WITHIN;
 }
 
+// false if strangers have as many as they may
+static bool has_room(const osc_subscriptions *s, const osc_change *change, const osc_address *to,
+                     himc_error *error)
+{
+    char host[80], why[160];
+    int own = 0, all = 0;
+    for (const osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS;
+         one++)
+        if (one->used && one->expires > 0) {
+            own += himc_osc_address_same_host(&one->to, to);
+            all++;
+        }
+    if (own < OF_A_HOST && all < OF_STRANGERS)
+        return true;
+    himc_osc_address_print(to, host);
+    if (own < OF_A_HOST)
+        snprintf(why, sizeof why, "%d subscriptions of other machines already, expected no more",
+                 all);
+    else
+        snprintf(why, sizeof why, "%d subscriptions of %.*s already, expected no more", own,
+                 (int)(strrchr(host, ':') - host), host);
+    return refuse(change, error, why);
+}
+
 static bool make_change(osc_subscriptions *s, const osc_change *change, const osc_address *to,
                         double now, himc_error *error)
 {
     osc_subscription *place = NULL;
+    double expires = expiry_of(s, change, to, now);
     if (change->remove)
         return unsubscribe(s, change, to, error);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
@@ -161,12 +188,14 @@ static bool make_change(osc_subscriptions *s, const osc_change *change, const os
             place = one;
     }
     if (!place)
-        return refuse(change, error, "256 subscriptions already, allowed no more");
+        return refuse(change, error, "256 subscriptions already, expected no more");
+    if (!place->used && expires > 0 && !has_room(s, change, to, error))
+        return false;
     *place = (osc_subscription){.used = true,
                                 .to = *to,
                                 .stream = change->stream,
                                 .hz = change->hz,
-                                .expires = expiry_of(s, change, to, now),
+                                .expires = expires,
                                 .local = himc_osc_address_loopback(to)};
     update(s);
     return true;

@@ -193,7 +193,7 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
     himc_statistics_strokes(s->statistics, 1, 0);
     himc_events_note(s->events, "%s stick missed %s%s at %.3f s", himc_hand_name(hand),
                      known ? "drum " : "its ", drum, next->time);
-    himc_events_missed(s->events, &missed, drum);
+    himc_events_missed(s->events, &missed, drum, "the stick missed the head");
     if (!beside)
         go_on_from_here(c, s, hand, t);
 }

@@ -7,6 +7,8 @@
 /// sounding heads and hits that wait are no part of the state.
 #include "performance/performance_state.h"
 
+#include "performance/describe.h"
+
 #include "base/argument.h"
 #include "base/file.h"
 #include "base/format.h"
@@ -17,6 +19,7 @@
 
 #define METRES_PER_INCH 0.0254
 #define LINE_ROOM (2 * HIMC_PATH_SIZE + 2) // of the longest line (bytes)
+#define LINES_AT_ONCE 32                   // of a list; chosen: 0.1 ms at most
 
 // what is written
 
@@ -114,16 +117,21 @@ void himc_written_units(himc_text_lines *lines, const himc_command *command)
     himc_text_add(lines, line.text + 1);
 }
 
-// to `to`, without ";\n"
-static void dump_written(const himc_text_lines *lines, const himc_line_sink *to)
+// Lists are told from *at on; false once all of it has been. The text may have been written anew.
+static bool dump_written(const himc_text_lines *lines, size_t *at, const himc_line_sink *to)
 {
     char text[LINE_ROOM];
-    const char *at = lines->bytes, *end;
-    for (; at && (end = strstr(at, ";\n")); at = end + 2) {
-        memcpy(text, at, (size_t)(end - at));
-        text[end - at] = '\0';
+    const char *line = lines->bytes, *end = line;
+    if (!line || *at > lines->size || (*at > 0 && line[*at - 1] != '\n'))
+        return false;
+    line += *at;
+    for (int i = 0; i < LINES_AT_ONCE && (end = strstr(line, ";\n")); i++, line = end + 2) {
+        memcpy(text, line, (size_t)(end - line));
+        text[end - line] = '\0';
         to->line(to->user, text);
     }
+    *at = (size_t)(line - lines->bytes);
+    return end && *line;
 }
 
 // settings
@@ -257,36 +265,52 @@ static void dump_drums(const himc_performance *p, const himc_line_sink *to)
         if (can_be_named(drum))
             himc_state_tell(to, "drum", himc_drum_name(drum), 1, &inches);
     }
-    for (int i = 0; i < p->drums.count; i++) {
-        const himc_drum *drum = p->drums.slot[i].drum;
-        named_sink named = {to, himc_drum_name(drum)};
-        if (can_be_named(drum))
-            himc_drum_describe(drum, HIMC_DESCRIBE_STATE, tell_named, &named);
-    }
 }
 
-static void dump_tempi(const himc_planner *planner, const himc_line_sink *to)
+// one drum
+static bool dump_drum(const himc_performance *p, size_t *at, const himc_line_sink *to)
+{
+    if (*at >= (size_t)p->drums.count)
+        return false;
+    const himc_drum *drum = p->drums.slot[(*at)++].drum;
+    named_sink named = {to, himc_drum_name(drum)};
+    if (can_be_named(drum))
+        himc_drum_describe(drum, HIMC_DESCRIBE_STATE, tell_named, &named);
+    return true;
+}
+
+// the end of what is told now of a list
+static size_t list_end(size_t at, int count)
+{
+    return at + LINES_AT_ONCE < (size_t)count ? at + LINES_AT_ONCE : (size_t)count;
+}
+
+static bool dump_tempi(const himc_planner *planner, size_t *at, const himc_line_sink *to)
 {
     int count;
     const himc_tempo_change *tempi = himc_planner_tempi(planner, &count);
-    for (int i = 0; i < count; i++)
-        himc_state_tell(to, "tempo", NULL, tempi[i].beat > 0 ? 2 : 1,
-                        (double[]){tempi[i].bpm, tempi[i].beat});
+    for (size_t end = list_end(*at, count); *at < end; ++*at)
+        himc_state_tell(to, "tempo", NULL, tempi[*at].beat > 0 ? 2 : 1,
+                        (double[]){tempi[*at].bpm, tempi[*at].beat});
+    return *at < (size_t)count;
 }
 
-static void dump_nudges(const himc_track *track, const himc_line_sink *to)
+static bool dump_nudges(const himc_track *track, size_t *at, const himc_line_sink *to)
 {
     int count = 0;
-    const himc_nudge *n = track ? himc_track_nudges(track, &count) : NULL;
-    for (int i = 0; i < count; i++, n++)
+    const himc_nudge *nudges = track ? himc_track_nudges(track, &count) : NULL;
+    for (size_t end = list_end(*at, count); *at < end; ++*at) {
+        const himc_nudge *n = &nudges[*at];
         himc_state_tell(to, "nudge", himc_hand_name(n->hand), 5,
                         (double[]){n->time, n->span, n->way.x, n->way.y, n->way.z});
+    }
+    return *at < (size_t)count;
 }
 
-static void dump_pushes(const performance_body *b, const himc_line_sink *to)
+static bool dump_pushes(const performance_body *b, size_t *at, const himc_line_sink *to)
 {
-    for (int i = 0; i < b->planned_count; i++) {
-        const planned_push *push = &b->planned[i];
+    for (size_t end = list_end(*at, b->planned_count); *at < end; ++*at) {
+        const planned_push *push = &b->planned[*at];
         himc_state_line line = himc_state_begin("at");
         himc_state_numbers(&line, 1, &push->beat);
         himc_state_word(&line, "push");
@@ -296,27 +320,53 @@ static void dump_pushes(const performance_body *b, const himc_line_sink *to)
         himc_state_numbers(&line, push->along < 0 ? 4 : 5, how);
         himc_state_end(&line, to);
     }
+    return *at < (size_t)b->planned_count;
 }
 
-static void dump(const himc_performance *p, const himc_line_sink *to)
+static void dump_settings(const himc_performance *p, const himc_line_sink *to)
 {
-    dump_drums(p, to);
-    dump_rates(p, to);
-    if (p->written.take[0])
-        himc_state_tell(to, "take", p->written.take, 0, NULL);
-    dump_nudges(p->motion->track, to);
     dump_player(p, to);
     dump_control(p, to);
     dump_gains(p, to);
     dump_strength(p, to);
     dump_playing(p, to);
     dump_hearing(&p->drums, to);
-    dump_written(&p->written.units, to);
-    dump_tempi(p->motion->planner, to);
-    tell_switch(to, "loop", himc_planner_is_looped(p->motion->planner));
-    if (!p->written.take[0])
-        dump_written(&p->written.score, to);
-    dump_pushes(p->body, to);
+}
+
+bool himc_performance_describe_on(const himc_performance *p, himc_describe_place *place,
+                                  void (*line)(void *, const char *), void *user)
+{
+    enum { NAMES, DRUMS, RATES, NUDGES, SETTINGS, UNITS, TEMPI, LOOP, SCORE, PUSHES, END };
+    const himc_line_sink sink = {line, user}, *to = &sink;
+    size_t *at = &place->at;
+    bool more = false;
+    switch (place->part) {
+    case NAMES: dump_drums(p, to); break;
+    case DRUMS: more = dump_drum(p, at, to); break;
+    case RATES:
+        dump_rates(p, to);
+        if (p->written.take[0])
+            himc_state_tell(to, "take", p->written.take, 0, NULL);
+        break;
+    case NUDGES: more = dump_nudges(p->motion->track, at, to); break;
+    case SETTINGS: dump_settings(p, to); break;
+    case UNITS: more = dump_written(&p->written.units, at, to); break;
+    case TEMPI: more = dump_tempi(p->motion->planner, at, to); break;
+    case LOOP: tell_switch(to, "loop", himc_planner_is_looped(p->motion->planner)); break;
+    case SCORE: more = !p->written.take[0] && dump_written(&p->written.score, at, to); break;
+    case PUSHES: more = dump_pushes(p->body, at, to); break;
+    default: return false;
+    }
+    if (!more)
+        *place = (himc_describe_place){place->part + 1, 0};
+    return place->part < END;
+}
+
+static void dump(const himc_performance *p, const himc_line_sink *to)
+{
+    himc_describe_place place = {0};
+    while (himc_performance_describe_on(p, &place, to->line, to->user))
+        ;
 }
 
 void himc_performance_describe(const himc_performance *p, himc_description what,

@@ -46,10 +46,12 @@ void himc_events_note_as(performance_events *e, bool minor, const char *format, 
     va_end(args);
 }
 
-void himc_events_missed(performance_events *e, const himc_strike *missed, const char *drum)
+void himc_events_missed(performance_events *e, const himc_strike *missed, const char *drum,
+                        const char *why)
 {
     himc_event event = {.kind = HIMC_EVENT_MISSED, .strike = *missed};
     himc_format(event.strike.drum, sizeof event.strike.drum, "%s", drum);
+    himc_format(event.text, sizeof event.text, "%s", why);
     event.strike.planned_x = missed->x;
     event.strike.planned_y = missed->y;
     himc_events_add(e, &event);

@@ -26,9 +26,9 @@ HIMC_RT void himc_events_note(performance_events *events, const char *format, ..
 HIMC_RT void himc_events_note_as(performance_events *events, bool minor, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /// Adds a stroke that is not played, on the drum of that name; its place is where it should have
-/// been.
+/// been. `why` in a few words.
 HIMC_RT void himc_events_missed(performance_events *events, const himc_strike *missed,
-                                const char *drum);
+                                const char *drum, const char *why);
 /// Takes the oldest event; false if there is none.
 HIMC_RT bool himc_events_take(performance_events *events, himc_event *event);
 

@@ -20,6 +20,7 @@
 // (s)
 #define NEIGHBOUR_TIME 1.0
 #define LATENESS_NOTED 0.001 // a smaller delay of the first beat is not worth a note (s)
+#define PAST "that beat is past"
 
 himc_planner_config himc_planner_default(void)
 {
@@ -142,10 +143,9 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
         himc_planner_notes_miss(
             &planner->notes,
-            &(himc_planner_miss){part->list[at].stroke, part->list[at].drum, false, time});
-        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP,
-                         "stroke at beat %g %s: given up, that beat is past", beat,
-                         himc_hand_name(hand));
+            &(himc_planner_miss){part->list[at].stroke, part->list[at].drum, false, time, PAST});
+        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, %s",
+                         beat, himc_hand_name(hand), PAST);
     }
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
@@ -199,9 +199,10 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     double end = himc_planner_score_time(score, 0, himc_planner_roll_end(score, at));
     if (running && !score->loop && end < t) {
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
-        himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){*roll, drum, false, end});
-        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP,
-                         "roll at beat %g: given up, that beat is past", roll->beat);
+        himc_planner_notes_miss(&planner->notes,
+                                &(himc_planner_miss){*roll, drum, false, end, PAST});
+        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "roll at beat %g: given up, %s",
+                         roll->beat, PAST);
         return 0; // that line is enough
     }
     return himc_planner_roll_left_out(score, at);

@@ -68,8 +68,9 @@ typedef struct himc_planner_note {
 typedef struct himc_planner_miss {
     himc_stroke stroke;
     int drum;
-    bool hit;    ///< of no score: it has no beat
-    double time; ///< at which it should have touched (s)
+    bool hit;     ///< of no score: it has no beat
+    double time;  ///< at which it should have touched (s)
+    char why[48]; ///< in a few words
 } himc_planner_miss;
 
 himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *error);

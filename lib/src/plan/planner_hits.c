@@ -207,8 +207,8 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     if (h->waiting_count >= QUEUED_HITS || !himc_planner_find_gap(planner, hand, &touch)) {
         himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
                          himc_hand_name(hand));
-        himc_planner_notes_miss(&planner->notes,
-                                &(himc_planner_miss){hit.stroke, drum, true, touch});
+        himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){hit.stroke, drum, true, touch,
+                                                                      "others are waiting"});
         touch = HUGE_VAL;
     } else {
         hit.goal.time = touch;

@@ -250,8 +250,9 @@ static void take(himc_planner *planner, const timed_stroke *s)
 void himc_planner_give_up_hit(himc_planner *planner, const timed_stroke *s, double t)
 {
     himc_planner_notes_hit(&planner->notes, t, HUGE_VAL);
-    himc_planner_notes_miss(&planner->notes,
-                            &(himc_planner_miss){s->stroke, s->drum, true, s->goal.time});
+    himc_planner_notes_miss(
+        &planner->notes,
+        &(himc_planner_miss){s->stroke, s->drum, true, s->goal.time, "no hand has the time"});
 }
 
 /// Puts a planned stroke back where it was taken from; a hit is dropped if no room is left.
@@ -494,19 +495,20 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
 /// same; where the hands then meet, the search leaves it out.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
-    char name[64], reason[48];
+    char name[64];
     timed_stroke anyway = *s;
+    himc_planner_miss miss = {s->stroke, s->drum, s->index < 0 && !s->reassigned, s->written.time,
+                              ""};
     planner->hand[s->stroke.hand].way.other = false;
     if (result == MEETS && plan_stroke(planner, &anyway) == PLANNED)
         return;
     if (s->index >= 0 || s->reassigned)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
-    himc_planner_notes_miss(
-        &planner->notes,
-        &(himc_planner_miss){s->stroke, s->drum, s->index < 0 && !s->reassigned, s->written.time});
+    reason_of(planner, s, result, miss.why);
+    himc_planner_notes_miss(&planner->notes, &miss);
     settle(planner, s);
     himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s", name_of(s, name),
-                     reason_of(planner, s, result, reason));
+                     miss.why);
 }
 
 /// Drops the plan from where it has been checked on, with its strokes: no body could follow it. The
