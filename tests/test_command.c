@@ -501,7 +501,7 @@ static void test_a_change_at_a_beat_without_its_drum_is_answered_with_that(void)
     TEST_ASSERT_TRUE_MESSAGE(perform("at 4 push head 1 1 1 1"), error.text);
 }
 
-static void test_a_refused_line_for_a_drum_names_the_command_that_its_name_may_mean(void)
+static void test_a_refused_line_for_a_drum_asks_if_drum_was_meant(void)
 {
     refused(perform("drums kettle"),
             "drums: kettle: atoms missing, allowed kettle usual | VOLUME; or did you mean drum?");
@@ -679,7 +679,7 @@ int main(void)
     RUN_TEST(test_errors_name_field_value_and_allowed_values);
     RUN_TEST(test_a_word_that_fits_no_form_is_answered_with_all_forms);
     RUN_TEST(test_a_change_at_a_beat_without_its_drum_is_answered_with_that);
-    RUN_TEST(test_a_refused_line_for_a_drum_names_the_command_that_its_name_may_mean);
+    RUN_TEST(test_a_refused_line_for_a_drum_asks_if_drum_was_meant);
     RUN_TEST(test_centre_and_center_are_one_spot);
     RUN_TEST(test_unknown_commands_are_answered_with_the_nearest_name);
     RUN_TEST(test_numbers_that_are_not_finite_are_refused);

@@ -391,11 +391,8 @@ static bool is_for_drum(const char *name, const himc_atom *atoms, int count)
 
 bool himc_command_doubt_drum(const char *name, himc_error *error)
 {
-    const himc_command_row *row;
     himc_nearest nearest = {.word = name};
-    for (int i = 0; (row = himc_command_table(i)); i++)
-        if (row->receiver == HIMC_PERFORMER)
-            himc_nearest_try(&nearest, row->name);
+    himc_nearest_try(&nearest, himc_command_table(HIMC_COMMAND_MAKE_DRUM)->name);
     himc_error_prefix(error, "%s", name);
     size_t used = error ? strlen(error->text) : 0;
     if (error && nearest.name)

@@ -11,6 +11,7 @@
 #include "base/format.h"
 #include "base/text.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -329,7 +330,7 @@ static bool report_swallowed(reader *r, const char *begin, const char *end)
     himc_command command;
     int line = r->line;
     begin += strspn(begin, " \t\r\n");
-    for (const char *at = begin; at < end; line++) {
+    for (const char *at = begin; at < end;) {
         size_t length = (size_t)(end - at);
         if (at != begin && length < sizeof text) {
             memcpy(text, at, length);
@@ -342,8 +343,8 @@ static bool report_swallowed(reader *r, const char *begin, const char *end)
                                   r->name, line, (int)strcspn(at, ";\r\n"), at, r->line);
             }
         }
-        at += strcspn(at, "\n");
-        at += *at == '\n';
+        for (at += strcspn(at, "\n"); at < end && isspace((unsigned char)*at); at++)
+            line += *at == '\n';
     }
     return true;
 }
