@@ -574,13 +574,10 @@ static himc_job *state_job(void *receiver, const char *state, himc_error *error)
 
 const himc_runner himc_performance_runner = {takes_long, run, job_of, state_job, drum_of};
 
-// makes drums for waiting commands now, not in the audio callback, and refuses what cannot be done
+// makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
 {
     int index;
-    planned_push push;
-    if (command->id == HIMC_COMMAND_PUSH)
-        return himc_body_read_push(command, &push, error);
     if (command->id == HIMC_COMMAND_HIT)
         return himc_performance_ensure_drum(p, command->stroke.drum, command->stroke.spot, &index,
                                             error);
