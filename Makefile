@@ -177,7 +177,7 @@ deken: deps ## the package for Pd's package manager, in build/package, tried as 
 	@tools/package.sh $(BUILD) $(VERSION)
 	@HIMC_BUILD=$(BUILD) tests/pd/test_package.sh $(BUILD)/package/*.dek
 
-INSTALL = BUILD=$(BUILD) DESTDIR=$(DESTDIR) PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) PDEXTRA=$(PDEXTRA) VERSION=$(VERSION) STRIP="$(STRIP)" tools/install.sh
+INSTALL = BUILD=$(BUILD) DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" LIBDIR="$(LIBDIR)" PDEXTRA="$(PDEXTRA)" VERSION=$(VERSION) STRIP="$(STRIP)" tools/install.sh
 install: all ## install program, library, headers, externals, patches, manual pages and completions under PREFIX (DESTDIR for packagers; STRIP= keeps what debuggers need)
 	@$(INSTALL) install
 
@@ -324,7 +324,8 @@ test-midi: deps ## plays MIDI files of two games and holds what is struck agains
 
 test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
 	@tools/deps.sh tools/deps-python.txt
-	@test -x build/python/bin/python || { python3 -m venv build/python && build/python/bin/pip -q install numpy cffi setuptools wheel matplotlib; }
+	@build/python/bin/python -c 'import cffi, setuptools as s; assert int(s.__version__.split(".")[0]) >= 77' 2>/dev/null || \
+		{ python3 -m venv build/python && build/python/bin/pip -q install numpy cffi 'setuptools>=77' wheel matplotlib; }
 	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
 	@build/python/bin/python python/tests/test_himc.py
 
@@ -418,9 +419,13 @@ $(SHARED): $(LIB_O)
 	$(Q)$(LINK) $(LINK_SHARED) $^ $(LIB_LIBS) -o $@
 
 # made anew each time, since it holds paths of the command line; touched only when it changes
+# pkg-config wants a space in a path quoted
+EMPTY   :=
+pc_path  = $(subst $(EMPTY) $(EMPTY),\\ ,$(1))
+
 $(PKGCONFIG): tools/himc.pc.in FORCE
 	@mkdir -p $(@D)
-	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBS@|$(LIB_LIBS)|' $< >$@.new
+	@sed -e 's|@PREFIX@|$(call pc_path,$(PREFIX))|; s|@LIBDIR@|$(call pc_path,$(LIBDIR))|; s|@VERSION@|$(VERSION)|; s|@LIBS@|$(LIB_LIBS)|' $< >$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
 $(BUILD)/lib/%.o: lib/src/%.c

@@ -55,11 +55,14 @@ typedef struct t_drum_link {
 static inline bool drum_name_check(const char *name, himc_error *error)
 {
     static const char *const own[] = {"comment", "save", "state", "dsp", "list"};
+    himc_command drum;
+    himc_atom word = {HIMC_ATOM_SYMBOL, 0, name};
     bool taken = himc_command_find(HIMC_PERFORMER, name) != NULL;
     for (size_t i = 0; i < sizeof own / sizeof *own; i++)
         taken = taken || strcmp(name, own[i]) == 0;
-    return !taken ||
-           himc_error_set(error, "drum %s: the name of a command, expected another name", name);
+    if (taken)
+        return himc_error_set(error, "drum %s: the name of a command, expected another name", name);
+    return himc_command_parse(&drum, HIMC_PERFORMER, "drum", &word, 1, error);
 }
 
 static inline t_symbol *drum_link_symbol(const char *name)

@@ -161,6 +161,20 @@ static bool himc_tilde_has_drum(const t_himc *x, const char *name)
     return has;
 }
 
+/* `DRUM info`: as the drum itself answers it. */
+static bool himc_tilde_drum_info(t_himc *x, const char *name, himc_error *error)
+{
+    himc_error none;
+    himc_tilde_resolve(x, false);
+    t_drum_link *link = drum_link_find(name, &none);
+    himc_drum *drum = link ? link->l_drum : himc_performance_drum(x->x_performance, 0);
+    for (int i = 1; drum && strcmp(himc_drum_name(drum), name) != 0; i++) /* a silent one */
+        drum = himc_performance_drum(x->x_performance, i);
+    if (drum)
+        himc_drum_describe(drum, HIMC_DESCRIBE_INFO, himc_tilde_line, x);
+    return drum || himc_error_set(error, "%s: info: no [membrane~ %s]", name, name);
+}
+
 /* DRUM COMMAND ...: of [membrane~ DRUM], whose own guests take it, too, or of a silent drum. */
 static bool himc_tilde_command_drum(t_himc *x, const char *name, himc_command *command,
                                     himc_error *error)
@@ -268,6 +282,9 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return saved_switch(&x->x_saves, argc, argv, error);
     if (s == &s_bang)
         s = gensym("play");
+    if (argc == 1 && argv->a_type == A_SYMBOL && argv->a_w.w_symbol == gensym("info") &&
+        himc_tilde_has_drum(x, s->s_name))
+        return himc_tilde_drum_info(x, s->s_name, error);
     if (argc > 0 && argv->a_type == A_SYMBOL && himc_tilde_has_drum(x, s->s_name))
         return (command_from_pd(&command, HIMC_DRUM, argv->a_w.w_symbol, argc - 1, argv + 1,
                                 error) ||

@@ -114,7 +114,10 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
         break;
     case HIMC_EVENT_DONE: outlet_anything(x->x_messages, gensym("done"), 0, NULL); break;
     case HIMC_EVENT_NOTE:
-        logpost(x, event->minor ? PD_VERBOSE : PD_NORMAL, "himc~: %s", event->text);
+        if (event->refused)
+            pd_error(x, "himc~: %s", event->text);
+        else
+            logpost(x, event->minor ? PD_VERBOSE : PD_NORMAL, "himc~: %s", event->text);
         break;
     }
 }

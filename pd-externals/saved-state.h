@@ -159,8 +159,12 @@ static inline char *saved_text(t_canvas *canvas, int argc, const t_atom *argv)
 static inline bool saved_switch(bool *on, int argc, const t_atom *argv, himc_error *error)
 {
     t_float value = argc == 1 && argv->a_type == A_FLOAT ? argv->a_w.w_float : -1;
+    char text[80] = "an atom is missing";
+    if (argc == 1)
+        atom_string(argv, text, sizeof text);
     if (value != 0 && value != 1)
-        return himc_error_set(error, "save: allowed 0 or 1");
+        return himc_error_set(error, "save: %s, allowed 0 or 1",
+                              argc > 1 ? "more than one atom" : text);
     *on = value == 1;
     return true;
 }

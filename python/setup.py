@@ -11,6 +11,9 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 BUILD = os.environ.get("HIMC_BUILD", "build")
 
+for terms in ("LICENSE", "LIBRARIES.txt"):  # named in pyproject.toml, so they go into the wheel
+    shutil.copy2(ROOT / terms, HERE)
+
 COMMANDS = {"bdist_wheel", "build", "build_ext", "editable_wheel", "install"}
 if COMMANDS & set(sys.argv):  # not for a mere question about the package
     subprocess.check_call(["make", "-s", "-C", str(ROOT), "-j", str(os.cpu_count() or 1), f"BUILD={BUILD}",
@@ -19,7 +22,5 @@ if COMMANDS & set(sys.argv):  # not for a mere question about the package
     program.parent.mkdir(exist_ok=True)
     shutil.copy2(ROOT / BUILD / "bin" / "himc", program)
     subprocess.call(["strip", str(program)])
-    for terms in ("LICENSE", "LIBRARIES.txt"):
-        shutil.copy2(ROOT / terms, HERE / "himc" / "bin")
 
 setup(cffi_modules=["build_himc.py:ffi"])

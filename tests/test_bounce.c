@@ -412,6 +412,19 @@ static void test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so(void)
     himc_performance_free(p);
 }
 
+static void test_a_roll_for_no_drum_or_too_long_is_refused_and_makes_no_drum(void)
+{
+    himc_performance *p = with_kettle("himc");
+    TEST_ASSERT_FALSE(session_try(p, "roll 4 2 double f pp normal other"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "other: no spot"), error.text);
+    TEST_ASSERT_NULL(himc_performance_drum(p, 1));
+    TEST_ASSERT_FALSE(session_try(p, "roll 4 755 double f pp normal kettle"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "roll: LENGTH"), error.text);
+    TEST_ASSERT_NULL(himc_performance_drum(p, 1));
+    TEST_ASSERT_TRUE_MESSAGE(session_try(p, "roll 4 2 double f pp normal kettle"), error.text);
+    himc_performance_free(p);
+}
+
 static void test_a_roll_has_one_dynamic_or_two_and_a_place_or_none(void)
 {
     himc_command c;
@@ -453,6 +466,7 @@ int main(void)
     RUN_TEST(test_rolls_follow_tempo_seek_and_loop);
     RUN_TEST(test_in_a_loop_the_grace_notes_of_beat_0_come_at_the_end_of_the_round);
     RUN_TEST(test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so);
+    RUN_TEST(test_a_roll_for_no_drum_or_too_long_is_refused_and_makes_no_drum);
     RUN_TEST(test_a_roll_has_one_dynamic_or_two_and_a_place_or_none);
     return UNITY_END();
 }

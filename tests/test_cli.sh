@@ -241,6 +241,24 @@ refuses test_full_disk_under_a_table_is_refused "x.csv: cannot be written: File 
 himc=$whole
 refuses test_one_file_for_two_tables_is_refused "x.csv: named twice" \
     render piece.txt -o x.wav --strokes x.csv --motion x.csv
+ln -s target.csv link.csv # to nothing yet
+ln -s ./target.csv other.csv
+refuses test_two_links_to_one_file_are_refused "other.csv: named twice" \
+    render piece.txt -o /dev/null --strokes link.csv --motion other.csv
+refuses test_a_link_and_its_file_are_refused "link.csv: named twice" render piece.txt -o target.csv --strokes link.csv
+ln -s piece.txt link.txt
+refuses test_score_is_not_overwritten_by_a_link "link.txt: named twice" render piece.txt -o x.wav --strokes link.txt
+refuses test_strokes_are_no_arrays "--strokes: a.npz, allowed endings are .csv" render piece.txt -o x.wav --strokes a.npz
+refuses test_motion_has_two_formats "--motion: a.npy, allowed endings are .csv and .npz" \
+    render piece.txt -o x.wav --motion a.npy
+for option in "--trials 3" "--range 1-2" "--only legato" "--log x.csv"; do
+    refuses "test_$(echo "${option% *}" | tr -d -)_is_not_for_own_captures" "${option% *}: not allowed with --take FILE" \
+        evaluate --take still.trc $option
+done
+refuses test_json_is_for_own_captures "--json: not allowed without --take FILE" evaluate --trials 1 --json
+refuses test_misspelt_help_is_found 'unknown option "--hlep", did you mean --help?' --hlep
+refuses test_misspelt_command_is_found 'no help for "strok", did you mean stroke?' help strok
+refuses test_a_take_is_no_score 'own-take.bvh: a take by its suffix' modes own-take.bvh
 refuses test_score_is_not_overwritten "piece.txt: named twice" render piece.txt -o ./piece.txt
 refuses test_score_is_not_overwritten_by_its_dump "piece.txt: named twice" \
     render piece.txt -o x.wav --set "dump ./piece.txt"
@@ -253,6 +271,35 @@ echo old >kept.wav
 refuses test_table_that_cannot_be_written_is_refused "none/x.csv: cannot be written" \
     render piece.txt -o kept.wav --strokes none/x.csv
 check test_old_file_survives_a_refused_render [ "$(cat kept.wav)" = old ]
+
+# standard streams: named by calls that read or write a file, and closed ones
+"$himc" render piece.txt -o closed.wav --json >out 2>err <&-
+check test_a_closed_input_harms_no_output [ "$?$(head -c 4 closed.wav)$(wc -l <out)" = 0RIFF1 ]
+for file in - closed.wav; do
+    "$himc" render piece.txt -o $file 2>err >&-
+    check "test_a_closed_output_is_an_error_for_$(echo $file | tr '.-' '__')" \
+        [ "$?$(tail -n 1 err)" = "1himc render: standard output: Bad file descriptor" ]
+done
+"$himc" help 2>err >&-
+check test_a_closed_output_is_an_error_for_help [ "$?$(cat err)" = "1himc: standard output cannot be written" ]
+"$himc" import - -o stdin.txt <"$root/patches/pieces/zarathustra.mid" 2>err
+"$himc" import "$root/patches/pieces/zarathustra.mid" -o file.txt 2>err
+check test_import_reads_the_standard_input [ "$?$(diff stdin.txt file.txt | grep '^<')" = "0< comment made of standard_input by himc import;" ]
+refuses test_what_comes_is_no_midi "standard input: not a MIDI file" import - -o x.txt
+refuses test_what_comes_is_no_scene "-: not a scene" share - -o x.html
+refuses test_what_comes_is_no_scene_for_a_film "-: not a scene" film - -o x.glb
+"$himc" render piece.txt -o /dev/null --strokes link.csv >out 2>err
+check test_a_link_to_nothing_stays_a_link [ "$?$(readlink link.csv)$(head -c 6 target.csv)" = 0target.csvtime_s ]
+
+# a comment without its ;
+printf 'comment hello\nstroke 1 right legato mf;\nstroke 2 right legato mf;\n' >open.txt
+"$himc" render open.txt -o /dev/null >out 2>err
+check test_a_command_in_a_comment_is_noted_once [ "$(number played)$(grep '^note' err)" = \
+    "1note: open.txt:2: \"stroke 1 right legato mf\" is left out: no ; ends the comment before it, in line 1" ]
+"$himc" info open.txt >out
+check test_info_notes_it_too [ "$(grep -c '^open.txt:2: "stroke 1 right legato mf" is left out' out)" = 1 ]
+"$himc" help gain >out
+check test_help_of_a_command_has_its_ranges [ "$(grep -c -e '^gain reset | frequency FACTOR' -e '^DRUM gain DB' -e '^      DB        -60 .. 24 dB$' out)" = 4 ]
 
 # what render makes
 "$himc" render piece.txt -o one.wav --strokes strokes.csv --motion motion.csv >out 2>err

@@ -476,6 +476,36 @@ static void test_errors_name_field_value_and_allowed_values(void)
             "mallet: MASS missing, allowed mallet soft|medium|hard|wood | K ALPHA MASS");
     refused(drum("pickup air 0 0"),
             "pickup: DISTANCE missing, allowed pickup air AZIMUTH ELEVATION DISTANCE | X Y");
+    refused(drum("kettle"), "kettle: atoms missing, allowed kettle usual | VOLUME");
+}
+
+static void test_a_word_that_fits_no_form_is_answered_with_all_forms(void)
+{
+    refused(perform("listener here"), "listener: here, allowed listener off | X Y Z [YAW]");
+    refused(perform("gain loud"),
+            "gain: loud, allowed gain reset | frequency FACTOR | JOINT KS KD | DB");
+    refused(perform("gain 100"), "gain: 100, allowed reset or -60 .. 24 dB");
+    refused(perform("grip american"), "grip: american, allowed german french or servo");
+}
+
+static void test_a_change_at_a_beat_without_its_drum_is_answered_with_that(void)
+{
+    refused(perform("at 4 tune C3"),
+            "at: DRUM missing before tune, allowed at BEAT DRUM tune HZ | NOTE");
+    refused(perform("at 4 damp"), "at: DRUM missing before damp, allowed at BEAT DRUM damp AMOUNT");
+    refused(perform("at 4 damp 1"),
+            "at: DRUM missing before damp, allowed at BEAT DRUM damp AMOUNT");
+    // a drum may have the name of a drum's command
+    TEST_ASSERT_TRUE_MESSAGE(perform("at 4 damp tune C3"), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(perform("at 4 kettle tune C3"), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(perform("at 4 push head 1 1 1 1"), error.text);
+}
+
+static void test_a_refused_line_for_a_drum_asks_if_drum_was_meant(void)
+{
+    refused(perform("drums kettle"),
+            "drums: kettle: atoms missing, allowed kettle usual | VOLUME; or did you mean drum?");
+    refused(perform("low damp 2"), "low: damp: AMOUNT: 2, allowed 0 .. 1");
 }
 
 static void test_centre_and_center_are_one_spot(void)
@@ -647,6 +677,9 @@ int main(void)
     RUN_TEST(test_stroke_is_read_with_word_and_number_forms);
     RUN_TEST(test_every_form_of_every_command_is_accepted);
     RUN_TEST(test_errors_name_field_value_and_allowed_values);
+    RUN_TEST(test_a_word_that_fits_no_form_is_answered_with_all_forms);
+    RUN_TEST(test_a_change_at_a_beat_without_its_drum_is_answered_with_that);
+    RUN_TEST(test_a_refused_line_for_a_drum_asks_if_drum_was_meant);
     RUN_TEST(test_centre_and_center_are_one_spot);
     RUN_TEST(test_unknown_commands_are_answered_with_the_nearest_name);
     RUN_TEST(test_numbers_that_are_not_finite_are_refused);

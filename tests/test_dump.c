@@ -362,6 +362,35 @@ static void test_a_state_is_restored_from_text_all_or_nothing(void)
     himc_performance_free(other);
 }
 
+static void test_what_is_written_keeps_its_order_in_a_restored_state(void)
+{
+    static const char *const written[] = {"stroke 5 left legato f normal kettle",
+                                          "at 4 kettle damp 1",
+                                          "stroke 3 right accent p rim kettle",
+                                          "at 3 low tune C3",
+                                          "at 2 kettle tune D3",
+                                          "roll 2.5 1 press f f normal low",
+                                          "stroke 1 left legato f normal low",
+                                          "at 2 kettle damp 0",
+                                          "at 4 kettle damp 0.5"};
+    char expected[1000] = "";
+    himc_performance *p = session_new(), *other = session_new();
+    session_do(p, "drum low 29");
+    session_do(p, "drum kettle 26");
+    for (size_t i = 0; i < sizeof written / sizeof *written; i++) {
+        session_do(p, "%s", written[i]);
+        sprintf(expected + strlen(expected), "%s;\n", written[i]);
+    }
+    char *state = copy_of(state_of(p));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(state, expected), state);
+    save(score, state);
+    session_do(other, "score %s", score);
+    TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+    free(state);
+    himc_performance_free(p);
+    himc_performance_free(other);
+}
+
 static void test_presets_are_what_a_dump_has_written_all_or_nothing(void)
 {
     himc_command c;
@@ -413,6 +442,7 @@ int main(void)
     RUN_TEST(test_performer_takes_the_dump_of_another_body);
     RUN_TEST(test_a_dump_sent_back_line_by_line_makes_the_same_performance);
     RUN_TEST(test_a_state_is_restored_from_text_all_or_nothing);
+    RUN_TEST(test_what_is_written_keeps_its_order_in_a_restored_state);
     RUN_TEST(test_presets_are_what_a_dump_has_written_all_or_nothing);
     free(lines.bytes);
     snprintf(all, sizeof all, "rm -rf %s", folder);

@@ -101,9 +101,26 @@ unstripped() { # binaries with what only a debugger needs
     done
 }
 check test_installed_files_are_stripped [ -z "$(unstripped)" ]
+# dead: links of the installed documentation to what is not there
+dead_links() {
+    for page in "$prefix"/share/doc/himc/*.md "$prefix"/share/doc/himc/docs/*.md; do
+        sed '/^```/,/^```/d' "$page" | grep -oE '\]\([^) ]+\)' | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*:' | while read -r to; do
+            [ -z "$to" ] || [ -e "${page%/*}/$to" ] || echo "$page: $to"
+        done
+    done
+}
+check test_installed_documentation_has_no_dead_link [ -z "$(dead_links)" ]
+check test_installed_documentation_has_its_links [ "$(cat "$prefix"/share/doc/himc/docs/*.md | grep -c '](manual.md')" -ge 5 ]
 check test_licences_are_installed [ -s "$prefix/share/doc/himc/LIBRARIES.txt" ]
 check test_patches_are_installed [ -s "$prefix/pd/himc/patches/pieces/tide.pd" ]
 check test_installed_panel_names_the_technique_beside_the_objects [ "$(grep -c ' technique~ kettle' "$prefix/pd/himc/patches/performance.pd")" = 1 ]
+spaced="$dir/with a space"
+check test_install_takes_a_prefix_with_a_space quiet make -s install BUILD="$HIMC_BUILD" PREFIX="$spaced" PDEXTRA="$spaced/pd"
+check test_a_prefix_with_a_space_has_the_same_files [ "$(cd "$spaced" && find . | sort)" = "$(cd "$prefix" && find . | sort)" ]
+check test_pkg_config_quotes_the_space [ "$(PKG_CONFIG_PATH="$spaced/lib/pkgconfig" pkg-config --cflags himc)" = \
+    "-I$dir/with\\ a\\ space/include " ]
+check test_uninstall_takes_a_prefix_with_a_space quiet make -s uninstall BUILD="$HIMC_BUILD" PREFIX="$spaced" PDEXTRA="$spaced/pd"
+check test_nothing_is_left_in_a_prefix_with_a_space [ -z "$(find "$spaced" ! -type d)" ]
 touch "$prefix/pd/himc/of-the-user"
 check test_uninstall_succeeds quiet make -s uninstall BUILD="$HIMC_BUILD" PREFIX="$prefix" PDEXTRA="$prefix/pd"
 check test_uninstall_leaves_what_is_not_ours [ "$(find "$prefix" ! -type d)" = "$prefix/pd/himc/of-the-user" ]

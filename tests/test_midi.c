@@ -365,12 +365,20 @@ static const char *hands(void)
     return text;
 }
 
+// from eight a second down to one, on each of the four drums
 static void test_one_drum_is_played_hand_by_hand(void)
 {
-    builder b;
-    timpani(&b, (int[]){48, 48, 48, 48, 48, 48}, 6, 23, 12); // 0.12 s
-    import(&b, NULL);
-    TEST_ASSERT_TRUE(!strcmp(hands(), "RLRLRL") || !strcmp(hands(), "LRLRLR"));
+    static const int gap[] = {23, 48, 96, 2 * QUARTER}; // beside the note's 12: 0.12 s .. 1 s
+    static const int key[] = {38, 45, 49, 57};
+    for (int i = 0; i < 16; i++) {
+        builder b;
+        int k = key[i / 4], keys[12] = {k, k, k, k, k, k, k, k, k, k, k, k};
+        timpani(&b, keys, 12, gap[i % 4], 12);
+        import(&b, NULL);
+        TEST_ASSERT_TRUE_MESSAGE(
+            !strcmp(hands(), "RLRLRLRLRLRL") || !strcmp(hands(), "LRLRLRLRLRLR"), hands());
+        tearDown();
+    }
 }
 
 // it grows, stays loud, dies away; the file's own strokes are not kept

@@ -307,9 +307,16 @@ static void test_errors_name_files_as_the_sender_did(void)
     write_text("share/wrong.txt", "tempo 100;\ntempo fast;\n");
     TEST_ASSERT_EQUAL_STRING("wrong.txt:2: tempo: BPM: fast, allowed 1 .. 1000 beats per minute",
                              attempt("/himc/score", "wrong.txt", NULL));
-    TEST_ASSERT_EQUAL_STRING("attack.txt:1: record, units and shapes from files: not over the "
-                             "network",
+    TEST_ASSERT_EQUAL_STRING("attack.txt:1: record x.bvh: no file is written over the network",
                              attempt_line("record x.bvh"));
+    TEST_ASSERT_EQUAL_STRING("record stop: no file is written over the network",
+                             attempt("/himc/record", "stop", NULL));
+    TEST_ASSERT_EQUAL_STRING("dump x.txt: no file is written over the network",
+                             attempt("/himc/dump", "x.txt", NULL));
+    TEST_ASSERT_EQUAL_STRING("shape x.txt: no file is read by it over the network",
+                             attempt("/membrane/kettle/shape", "x.txt", NULL));
+    TEST_ASSERT_EQUAL_STRING("x.txt: no such file in the folder given by --files",
+                             attempt("/himc/preset", "x", NULL));
     remove_folder();
 }
 
@@ -404,6 +411,8 @@ static void test_no_file_is_read_over_the_network_without_a_folder(void)
     TEST_ASSERT_NOT_NULL(
         strstr(attempt("/himc/score", "patches/improvisation.txt", NULL), "--files"));
     TEST_ASSERT_NOT_NULL(strstr(attempt("/himc/take", "x.bvh", NULL), "--files"));
+    TEST_ASSERT_EQUAL_STRING("x.txt: no file is read over the network, allowed with --files",
+                             attempt("/himc/preset", "x", NULL));
 }
 
 static void test_the_whole_disk_may_be_the_folder(void)

@@ -94,6 +94,38 @@ static void test_changes_of_heads_are_sorted_by_beat_and_keep_their_lines(void)
     himc_score_free(s);
 }
 
+static void test_strokes_and_changes_have_their_order_in_the_file(void)
+{
+    static const double beat[] = {5, 4, 3, 3, 2, 1, 2, 6};
+    himc_score *s = parse("drum low; drum high; stroke 5 left legato f;\nat 4 low damp 1;\n"
+                          "stroke 3 right accent p; at 3 high tune C3; tempo 90;\n"
+                          "at 2 low tune D3; stroke 1 left legato f; at 2 low damp 0;\n"
+                          "at 6 push head 1 2 3 0.1;");
+    TEST_ASSERT_NOT_NULL_MESSAGE(s, error.text);
+    TEST_ASSERT_EQUAL_INT(8, s->stroke_count + s->change_count);
+    for (int i = 0; i < 8; i++) {
+        int at = s->order[i];
+        TEST_ASSERT_EQUAL_DOUBLE(beat[i], at < 0 ? s->changes[-1 - at].beat : s->strokes[at].beat);
+        TEST_ASSERT_EQUAL_INT(i != 0 && i != 2 && i != 5, at < 0);
+    }
+    himc_score_free(s);
+}
+
+static void test_a_command_that_a_comment_without_its_end_takes_with_it_is_reported(void)
+{
+    himc_score *s = parse("comment Overture\n\n  stroke 1 left legato f;\n"
+                          "comment of two\nlines, play it at 3;\ncomment a\ncomment b\n"
+                          "low tune A2;\nstroke 2 left legato f;\ncomment the end");
+    TEST_ASSERT_NOT_NULL_MESSAGE(s, error.text);
+    TEST_ASSERT_EQUAL_INT(1, s->stroke_count);
+    TEST_ASSERT_EQUAL_STRING(
+        "s.txt:3: \"stroke 1 left legato f\" is left out: no ; ends the comment before it, in line "
+        "1\ns.txt:8: \"low tune A2\" is left out: no ; ends the comment before it, in line 6\n",
+        s->report);
+    TEST_ASSERT_EQUAL_INT(2, s->left_out);
+    himc_score_free(s);
+}
+
 static void test_empty_score_has_the_default_tempo(void)
 {
     himc_score *s = parse("");
@@ -243,6 +275,8 @@ int main(void)
     RUN_TEST(test_score_sorts_strokes_and_keeps_other_lines_in_order);
     RUN_TEST(test_a_score_of_many_lines_keeps_each_and_sorts_its_tempi);
     RUN_TEST(test_changes_of_heads_are_sorted_by_beat_and_keep_their_lines);
+    RUN_TEST(test_strokes_and_changes_have_their_order_in_the_file);
+    RUN_TEST(test_a_command_that_a_comment_without_its_end_takes_with_it_is_reported);
     RUN_TEST(test_empty_score_has_the_default_tempo);
     RUN_TEST(test_errors_name_file_and_line);
     RUN_TEST(test_a_statement_of_more_than_1280_characters_is_refused_in_one_line);

@@ -119,6 +119,38 @@ static void test_loop_begins_again_on_its_whole_beat_and_ends_when_told(void)
     himc_performance_free(p);
 }
 
+// wherever in the round the loop is cleared: no beat is missing while its new strokes are prepared,
+// and none is reported twice
+static void test_beats_go_on_while_a_cleared_loop_prepares_its_new_strokes(void)
+{
+    for (int trial = 0; trial < 8; trial++) {
+        himc_performance *p = with_kettle();
+        himc_event event;
+        double last = -1;
+        int beats = 0;
+        session_do(p, "tempo 120");
+        session_do(p, "stroke 0 left legato mf");
+        session_do(p, "stroke 2 right legato mf");
+        session_do(p, "loop 1");
+        session_do(p, "play");
+        himc_performance_process(p, 96000 + 9000 * trial, NULL);
+        session_do(p, "clear");
+        himc_performance_process(p, trial % 2 ? 48000 : 0, NULL);
+        session_do(p, "stroke 0 left accent f");
+        session_do(p, "stroke 1 right accent f");
+        himc_performance_process(p, 144000, NULL);
+        for (; himc_performance_event(p, &event);) {
+            if (event.kind != HIMC_EVENT_BEAT)
+                continue;
+            if (beats++ > 0)
+                TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.5, event.time - last);
+            last = event.time;
+        }
+        TEST_ASSERT_TRUE(last > 4.5 && beats >= 9);
+        himc_performance_free(p);
+    }
+}
+
 // a stroke that can no longer be taken back brings its whole round with it
 static void test_loop_that_ends_just_before_a_round_plays_that_round(void)
 {
@@ -380,6 +412,7 @@ int main(void)
     RUN_TEST(test_roll_of_14_a_second_is_even);
     RUN_TEST(test_roll_makes_a_crescendo_of_10_dB);
     RUN_TEST(test_loop_begins_again_on_its_whole_beat_and_ends_when_told);
+    RUN_TEST(test_beats_go_on_while_a_cleared_loop_prepares_its_new_strokes);
     RUN_TEST(test_loop_that_ends_just_before_a_round_plays_that_round);
     RUN_TEST(test_tempo_bends_a_loop_without_losing_a_stroke);
     RUN_TEST(test_scores_that_are_queued_follow_each_other_at_their_own_tempi);

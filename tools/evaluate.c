@@ -193,9 +193,25 @@ static bool run_own(const cli_arguments *arguments, cli_file *csv, cli_file *fig
            cli_file_keep(csv, error) && cli_file_keep(figure, error);
 }
 
+// an option of the other kind of trials would be ignored
+static bool check_options(const cli_arguments *arguments, himc_error *error)
+{
+    bool own = arguments->repeats > 0;
+    for (int i = 0; options[i].name; i++) {
+        bool published = i == TRIALS || i == RANGE || i == ONLY || i == LOG;
+        bool captured = i == JSON || i == FIGURE || i >= TAKE;
+        if (arguments->value[i] && (own ? published : captured))
+            return himc_error_set(error, "--%s: not allowed %s --take FILE", options[i].name,
+                                  own ? "with" : "without");
+    }
+    return true;
+}
+
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
+    if (!check_options(arguments, &error))
+        return cli_fail(&cli_evaluate, "%s", error.text);
     if (arguments->repeats) {
         cli_file own = {0}, figure = {0};
         bool played = run_own(arguments, &own, &figure, &error);

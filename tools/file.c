@@ -94,7 +94,7 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
     bool exists = !stat(path, &status);
     mode_t mask = umask(0);
     umask(mask);
-    char *real = exists ? himc_system_real_path(path) : NULL;
+    char *real = exists ? himc_system_real_path(path) : himc_system_target(path);
     int length = snprintf(file->path, sizeof file->path, "%s", real ? real : path);
     free(real);
     if (length >= (int)sizeof file->path)
@@ -182,18 +182,28 @@ static const char *folder_of(const char *path, char folder[PATH_MAX])
     return path + length;
 }
 
+// of files that are not both there yet
+static bool will_be_same(const char *a, const char *b)
+{
+    char folder[2][PATH_MAX];
+    const char *name[2] = {folder_of(a, folder[0]), folder_of(b, folder[1])};
+    return !strcmp(name[0], name[1]) && himc_system_same(folder[0], folder[1]);
+}
+
 bool cli_same_file(const char *a, const char *b)
 {
     struct stat first, second;
-    char folder[2][PATH_MAX];
     if (!a || !b)
         return false;
     if (!strcmp(a, b))
         return true;
     if (!stat(a, &first) && !stat(b, &second))
         return S_ISREG(first.st_mode) && himc_system_same(a, b);
-    const char *name[2] = {folder_of(a, folder[0]), folder_of(b, folder[1])};
-    return !strcmp(name[0], name[1]) && himc_system_same(folder[0], folder[1]);
+    char *target[2] = {himc_system_target(a), himc_system_target(b)};
+    bool same = target[0] && target[1] && will_be_same(target[0], target[1]);
+    free(target[0]);
+    free(target[1]);
+    return same;
 }
 
 bool cli_apart(const char *name, const char *const *files, int count, himc_error *error)

@@ -64,7 +64,7 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
     static const char kinds[] = "webm png glb", cameras[] = "stage front side top eye hands head";
     const char *const *value = arguments->value,
                       *dot = value[OUT] ? strrchr(value[OUT], '.') : NULL;
-    *out = (job){.scene = arguments->operand,
+    *out = (job){.scene = cli_input(arguments->operand, error),
                  .out = value[OUT],
                  .kind = dot ? dot + 1 : "",
                  .camera = value[CAMERA] ? value[CAMERA] : "stage",
@@ -73,6 +73,8 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
                  .fps = 30,
                  .to = 1e6,
                  .speed = 1};
+    if (!out->scene)
+        return false;
     if (!out->out)
         return himc_error_set(error, "no -o F.webm given (himc film --help)");
     if (!is_word(out->kind, kinds))

@@ -2,11 +2,14 @@
 ///
 /// Exit status 0, or 1 with one line on stderr that says what was wrong, where, and what is
 /// allowed.
+#include "base/argument.h"
+#include "base/format.h"
 #include "base/text.h"
 #include "cli.h"
 #include "himc/himc.h"
 #include "system/files.h"
 
+#include <ctype.h>
 #include <string.h>
 
 static const cli_call *const calls[] = {
@@ -37,9 +40,51 @@ static void print_help(void)
         printf("  %-8s %s\n", calls[i]->name, calls[i]->does);
     printf(
         "\nhimc CALL --help says more, himc help commands lists the commands of scores and patches,\n"
+        "himc help COMMAND one of them with the allowed values of its atoms,\n"
         "himc --version prints the version, --licences the terms of himc and of what it contains.\n"
         "A file - is the standard input or output. Exit status 0, or 1 with one line on standard\n"
         "error that says what was wrong and where.\n");
+}
+
+// what each argument of a command may be, once
+static void print_arguments(const himc_command_row *row)
+{
+    char context[64], text[256], word[64];
+    const himc_argument *told[HIMC_COMMAND_ATOMS];
+    int count = 0;
+    himc_format(context, sizeof context, "%s", row->name);
+    for (const char *at = row->atoms; *at; at += strspn(at, " []|")) {
+        size_t length = strcspn(at, " []|");
+        himc_format(word, sizeof word, "%.*s", (int)length, at);
+        at += length;
+        const himc_argument *argument = himc_argument_find(word, context);
+        if (!argument && islower((unsigned char)word[0]))
+            himc_format(context, sizeof context, "%s", word);
+        bool again = !argument || count == HIMC_COMMAND_ATOMS;
+        for (int i = 0; i < count; i++)
+            again = again || told[i] == argument;
+        if (again)
+            continue;
+        told[count++] = argument;
+        himc_argument_describe(argument, text, sizeof text);
+        printf("      %-9s %s\n", word, text);
+    }
+}
+
+// a command of the performer, of a drum, or both; false if there is none
+static bool print_command(const char *name)
+{
+    const himc_command_row *row;
+    bool found = false;
+    for (int i = 0; (row = himc_command_table(i)); i++) {
+        if (strcmp(row->name, name) != 0)
+            continue;
+        printf("%s%s %s\n    %s\n", row->receiver == HIMC_DRUM ? "DRUM " : "", row->name,
+               row->atoms, row->does);
+        print_arguments(row);
+        found = true;
+    }
+    return found;
 }
 
 // what a score, a patch and a packet may say
@@ -63,12 +108,20 @@ static const cli_call *find_call(const char *name)
     return NULL;
 }
 
-static int refuse(const char *what, const char *name)
+// `commands`: a command of scores may be meant, too
+static int refuse(const char *what, const char *name, bool commands)
 {
+    const himc_command_row *row;
+    static const char *const other[] = {"help",   "version",   "licences",
+                                        "--help", "--version", "--licences"};
     himc_error line;
     himc_nearest nearest = {.word = name ? name : ""};
+    for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+        himc_nearest_try(&nearest, other[i]);
     for (size_t i = 0; i < CALLS; i++)
         himc_nearest_try(&nearest, calls[i]->name);
+    for (int i = 0; commands && (row = himc_command_table(i)); i++)
+        himc_nearest_try(&nearest, row->name);
     himc_error_set(&line, "%s%s%s%s", what, name ? " \"" : "", name ? name : "", name ? "\"" : "");
     fprintf(stderr, "himc: %s, ", line.text);
     if (nearest.name)
@@ -84,10 +137,13 @@ static int refuse(const char *what, const char *name)
 
 static int finish(void)
 {
-    return fflush(stdout) || ferror(stdout) ? refuse("standard output cannot be written", NULL) : 0;
+    bool bad = fflush(stdout) || ferror(stdout);
+    if (bad)
+        fputs("himc: standard output cannot be written\n", stderr);
+    return bad;
 }
 
-/// `himc help`, `himc help CALL`, `himc help commands`.
+/// `himc help`, `himc help CALL`, `himc help commands`, `himc help COMMAND`.
 static int help(const char *what)
 {
     const cli_call *call = what ? find_call(what) : NULL;
@@ -97,8 +153,8 @@ static int help(const char *what)
         print_help();
     else if (!strcmp(what, "commands"))
         print_commands();
-    else
-        return refuse("no help for", what);
+    else if (!print_command(what))
+        return refuse("no help for", what, true);
     return finish();
 }
 
@@ -124,7 +180,7 @@ int main(int argc, char **argv)
 {
     himc_system_binary();
     if (argc < 2)
-        return refuse("no call given", NULL);
+        return refuse("no call given", NULL, false);
     if (is_one_of(argv[1], "help", "--help", "-h"))
         return help(argc > 2 ? argv[2] : NULL);
     if (is_one_of(argv[1], "version", "--version", "-V")) {
@@ -137,6 +193,6 @@ int main(int argc, char **argv)
     }
     const cli_call *call = find_call(argv[1]);
     if (!call)
-        return refuse(argv[1][0] == '-' ? "unknown option" : "unknown call", argv[1]);
+        return refuse(argv[1][0] == '-' ? "unknown option" : "unknown call", argv[1], false);
     return run_call(call, argc - 1, argv + 1);
 }

@@ -45,13 +45,13 @@ static bool read_part(const char *word, midi_choice *part, himc_error *error)
            himc_error_set(error, "--part: \"%s\", allowed timpani or drums", word);
 }
 
-static bool import(const char *path, const midi_options *wanted, midi_score *made,
+static bool import(const char *path, const char *name, const midi_options *wanted, midi_score *made,
                    himc_error *error)
 {
     size_t size;
     char *bytes = himc_file_load(path, HIMC_MIDI_BYTES_MAX, &size, error);
-    bool good = bytes && (himc_midi_import(made, bytes, size, path, wanted, error) ||
-                          himc_error_prefix(error, "%s", path));
+    bool good = bytes && (himc_midi_import(made, bytes, size, name, wanted, error) ||
+                          himc_error_prefix(error, "%s", name));
     free(bytes);
     return good;
 }
@@ -71,18 +71,20 @@ static bool write_text(const char *path, const char *text, himc_error *error)
 
 static bool make(const cli_arguments *arguments, midi_score *made, himc_error *error)
 {
-    const char *path = arguments->operand, *out = arguments->value[OUT];
+    const char *path, *out = arguments->value[OUT];
     midi_options wanted = {MIDI_ANY, 0};
     if (!out)
         return himc_error_set(error, "no -o SCORE given (himc import --help)");
-    if (!cli_apart(out, &path, 1, error))
+    if (!(path = cli_input(arguments->operand, error)) || !cli_apart(out, &path, 1, error))
         return false;
     const char *dot = strrchr(out, '.');
     if (cli_is_take(out) || (dot && (!strcmp(dot, ".mid") || !strcmp(dot, ".wav"))))
         return himc_error_set(error, "%s: a score is a text, allowed a name like score.txt", out);
     return read_part(arguments->value[PART], &wanted.choice, error) &&
            read_curve(arguments->value[CURVE], &wanted.range, error) &&
-           import(path, &wanted, made, error) && write_text(out, made->text, error);
+           import(path, cli_is_standard(arguments->operand) ? "standard input" : path, &wanted,
+                  made, error) &&
+           write_text(out, made->text, error);
 }
 
 static int run(const cli_arguments *arguments)

@@ -4,23 +4,49 @@
 set -eu
 major=${VERSION%%.*}
 share=$PREFIX/share
+doc=$share/doc/himc
 himc=$BUILD/bin/himc
 
-# MODE FOLDER FILE..., a line for all that goes into one folder
+tab=$(printf '\t')
+
+# a line for all that goes into one folder, whose name may have spaces
+entry() { # entry MODE FOLDER FILE...
+    line="$1$tab$2$tab"
+    shift 2
+    echo "$line$*"
+}
+
 lists() {
-    echo "755 $PREFIX/bin $himc $(ls "$BUILD/bin/himc-viewer" 2>/dev/null || true)"
-    echo "644 $LIBDIR $BUILD/libhimc.a $BUILD/libhimc.so.$VERSION"
-    echo "644 $LIBDIR/pkgconfig $BUILD/himc.pc"
-    echo "644 $PREFIX/include/himc" lib/himc/*.h
-    echo "644 $PDEXTRA/himc LICENSE LIBRARIES.txt" "$BUILD"/externals/himc/* patches/techniques/*
-    echo "644 $PDEXTRA/himc/clips" "$BUILD"/clips/*
-    echo "644 $PDEXTRA/himc/patches" patches/*.pd patches/*.txt
-    echo "644 $PDEXTRA/himc/patches/lib" patches/lib/*
-    echo "644 $PDEXTRA/himc/patches/pieces" patches/pieces/*
-    echo "644 $share/doc/himc LICENSE LIBRARIES.txt README.md CHANGELOG.md" docs/*.md
-    echo "644 $share/man/man1" "$BUILD"/share/*.1
-    echo "644 $share/bash-completion/completions $BUILD/share/himc"
-    echo "644 $share/zsh/site-functions $BUILD/share/_himc"
+    entry 755 "$PREFIX/bin" "$himc" $(ls "$BUILD/bin/himc-viewer" 2>/dev/null || true)
+    entry 644 "$LIBDIR" "$BUILD/libhimc.a" "$BUILD/libhimc.so.$VERSION"
+    entry 644 "$LIBDIR/pkgconfig" "$BUILD/himc.pc"
+    entry 644 "$PREFIX/include/himc" lib/himc/*.h
+    entry 644 "$PDEXTRA/himc" LICENSE LIBRARIES.txt "$BUILD"/externals/himc/* patches/techniques/*
+    entry 644 "$PDEXTRA/himc/clips" "$BUILD"/clips/*
+    entry 644 "$PDEXTRA/himc/patches" patches/*.pd patches/*.txt
+    entry 644 "$PDEXTRA/himc/patches/lib" patches/lib/*
+    entry 644 "$PDEXTRA/himc/patches/pieces" patches/pieces/*
+    entry 644 "$doc" LICENSE LIBRARIES.txt README.md CHANGELOG.md
+    entry 644 "$doc/docs" docs/*.md
+    for part in examples figures sounds; do
+        entry 644 "$doc/docs/$part" docs/$part/*
+    done
+    entry 644 "$share/man/man1" "$BUILD"/share/*.1
+    entry 644 "$share/bash-completion/completions" "$BUILD/share/himc"
+    entry 644 "$share/zsh/site-functions" "$BUILD/share/_himc"
+}
+
+# a link of the documentation to what is not installed becomes its text
+drop_dead_links() {
+    for page in "$DESTDIR$doc"/*.md "$DESTDIR$doc"/docs/*.md; do
+        grep -oE '\]\([^) ]+\)' "$page" | sed 's/^](//; s/)$//' | sort -u | while read -r link; do
+            case $link in *://* | mailto:* | "#"*) continue ;; esac
+            [ -e "${page%/*}/${link%%#*}" ] && continue
+            sed "s|\[\([^]]*\)\]($(echo "$link" | sed 's/[].[*^$|]/\\&/g'))|\1|g" "$page" >"$page.new"
+            cat "$page.new" >"$page"
+            rm "$page.new"
+        done
+    done
 }
 
 page() { # page CALL COMMAND...: the manual page himc-CALL
@@ -45,13 +71,14 @@ make_pages() {
 }
 
 install_all() {
-    lists | while read -r mode folder files; do
+    lists | while IFS=$tab read -r mode folder files; do
         install -d "$DESTDIR$folder"
         install -m "$mode" $files "$DESTDIR$folder"
         for file in $files; do
             case $file in */bin/himc* | */libhimc.* | *.pd_*) ${STRIP:-:} -S -x "$DESTDIR$folder/${file##*/}" ;; esac
         done
     done
+    drop_dead_links
     # technique~ is beside the objects there
     sed 's|techniques/technique~|technique~|' patches/performance.pd >"$DESTDIR$PDEXTRA/himc/patches/performance.pd"
     ln -sf "libhimc.so.$VERSION" "$DESTDIR$LIBDIR/libhimc.so.$major"
@@ -60,13 +87,13 @@ install_all() {
 
 # folders of ours that are empty then go, too; others' files in them stay
 uninstall_all() {
-    lists | while read -r mode folder files; do
+    lists | while IFS=$tab read -r mode folder files; do
         for file in $files; do
             rm -f "$DESTDIR$folder/${file##*/}"
         done
     done
     rm -f "$DESTDIR$LIBDIR/libhimc.so.$major" "$DESTDIR$LIBDIR/libhimc.so"
-    lists | while read -r mode folder files; do
+    lists | while IFS=$tab read -r mode folder files; do
         case $folder in */himc | */himc/*) echo "$folder" ;; esac
     done | sort -r | while read -r folder; do
         rmdir "$DESTDIR$folder" 2>/dev/null || true

@@ -138,7 +138,8 @@ static bool play(const cli_arguments *arguments, himc_error *error)
     if (!cli_count("--rate", arguments->value[RATE], 8000, 192000, "Hz", &rate, error) ||
         !cli_count("--latency", arguments->value[LATENCY], 5, 500, "ms", &latency, error))
         return false;
-    himc_performance *p = cli_load(arguments->operand, rate, CLI_LISTENER, error);
+    const char *source = cli_input(arguments->operand, error);
+    himc_performance *p = source ? cli_load(source, rate, CLI_LISTENER, error) : NULL;
     bool good = p && cli_tell(p, "play", NULL, error) &&
                 open_device(&stream, arguments->value[DEVICE], rate, latency, error);
     signal(SIGINT, stop);

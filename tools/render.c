@@ -18,6 +18,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #define HEARD_BY_TWO 2 // channels, one for each ear
@@ -132,6 +133,17 @@ static bool writes_apart(const himc_command *c, const char *const *files, himc_e
            cli_apart(c->atom[atom].symbol, files, FILES, error);
 }
 
+// The ending of a table's name says its format; a name without one is a CSV.
+static bool check_table(const char *option, const char *path, bool npz, himc_error *error)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    const char *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
+    return !dot || !strcasecmp(dot, ".csv") || !strcasecmp(dot, ".txt") ||
+           (npz && !strcasecmp(dot, ".npz")) ||
+           himc_error_set(error, "--%s: %s, allowed endings are .csv%s", option, path,
+                          npz ? " and .npz" : "");
+}
+
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
 {
     const char *const *value = arguments->value;
@@ -146,6 +158,9 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
     memcpy(out->files, files, sizeof files);
     if (!value[OUT])
         return himc_error_set(error, "no -o OUT.wav given (himc render --help)");
+    if (!check_table("strokes", value[STROKES], false, error) ||
+        !check_table("motion", value[MOTION], true, error))
+        return false;
     if (value[COLUMNS] && !value[MOTION])
         return himc_error_set(error, "--columns: no --motion F given");
     if (value[COMPARE] && !check_compare(value[COMPARE], value[SCENE], out->source, error))

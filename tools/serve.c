@@ -164,11 +164,12 @@ static bool open_server(server *s, const cli_arguments *arguments, himc_error *e
     config.allow = arguments->value[ALLOW];
     if (!cli_count("--port", arguments->value[PORT], 0, 65535, "", &config.port, error))
         return false;
-    s->performance = cli_load(arguments->operand, RATE, NULL, error);
+    const char *source = cli_input(arguments->operand, error); // it may be left out
+    s->performance = source || !arguments->operand ? cli_load(source, RATE, NULL, error) : NULL;
     s->loader = config.loader = s->performance ? himc_loader_new(error) : NULL;
     s->osc = config.loader ? himc_osc_new(&config, error) : NULL;
-    return s->osc && (!arguments->value[SCENE] ||
-                      begin_record(s, arguments->value[SCENE], arguments->operand, error));
+    return s->osc &&
+           (!arguments->value[SCENE] || begin_record(s, arguments->value[SCENE], source, error));
 }
 
 static void close_server(server *s)

@@ -45,10 +45,9 @@ static int run(const cli_arguments *arguments)
     const char *out = arguments->value[OUT];
     if (!out)
         return cli_fail(&cli_share, "no -o PAGE.html given (himc share --help)");
-    if (!cli_apart(out, &arguments->operand, 1, &error))
-        return cli_fail(&cli_share, "%s", error.text);
-    return share(arguments->operand, out, &error) ? cli_finish(&cli_share)
-                                                  : cli_fail(&cli_share, "%s", error.text);
+    const char *scene = cli_input(arguments->operand, &error);
+    bool good = scene && cli_apart(out, &scene, 1, &error) && share(scene, out, &error);
+    return good ? cli_finish(&cli_share) : cli_fail(&cli_share, "%s", error.text);
 }
 
 const cli_call cli_share = {

@@ -36,9 +36,11 @@ HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
                  "that suits better")
-HIMC_COMMAND_ROW(LATENCY, latency, PERFORMER, AT_SAMPLE, 0, "MS | auto",
-                 "has every hit land exactly so long after its message, 150 by default, as strong "
-                 "as that allows; auto: 330, as long as any hit needs; 0: each as soon as it can")
+HIMC_COMMAND_ROW(
+    LATENCY, latency, PERFORMER, AT_SAMPLE, 0, "MS | auto",
+    "has every hit land exactly so long after its message, 150 by default, as strong "
+    "as that allows; auto: 330, so that all but vertical accents from f on are as strong as "
+    "written; 0: each as soon as it can")
 HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [DRUM] | "
@@ -55,7 +57,7 @@ HIMC_COMMAND_ROW(AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push
                  "moves a drum's pedal or lays a hand on it at a beat: tune, tension, damp, decay "
                  "or glide; or pushes the performer")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
-                 "sets the tempo, from that beat or from now on")
+                 "sets the tempo, 100 by default, from that beat or from now on")
 HIMC_COMMAND_ROW(
     GRIP, grip, PERFORMER, NOW, 0, "german|french [servo] | servo",
     "sets the grip: palms down (german), or thumbs up (french), and lets strokes bounce "

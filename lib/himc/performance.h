@@ -132,7 +132,8 @@ typedef struct himc_event {
     double beat;                              ///< of HIMC_EVENT_BEAT ...
     double time;                              ///< ... and when it began (s, as of a strike)
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE; of _MISSED, why
-    bool minor; ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
+    bool minor;   ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
+    bool refused; ///< of HIMC_EVENT_NOTE: a command that could not be carried out on its sample
 } himc_event;
 
 /// Takes the oldest event; false if none waits. At most 1024 wait; the oldest are dropped and

@@ -42,9 +42,12 @@ typedef struct himc_score {
     int line_count;           ///< 0 .. 10000
     himc_score_line *changes; ///< `at` lines by beat (change_count), owned; NULL if there are none
     int change_count;         ///< 0 .. 10000, with the lines
-    char *report; ///< of a MIDI file: what is played and what not, lines that end with \n, owned;
-                  ///< else NULL
-    int left_out; ///< of a MIDI file: notes of its part that are not played, tracks cut short
+    int *order;   ///< strokes and changes as in the file (stroke_count + change_count), owned: i of
+                  ///< strokes, or -1 - i of changes; NULL if there are none
+    char *report; ///< of a MIDI file: what is played and what not; of a text: commands that stand
+                  ///< inside a comment; lines that end with \n, owned; NULL if there are none
+    int left_out; ///< of a MIDI file: notes of its part that are not played, tracks cut short; of a
+                  ///< text: commands that stand inside a comment
 } himc_score;
 
 /// Reads the file, a score or a Standard MIDI File (told by its first bytes), whose parts of

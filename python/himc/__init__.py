@@ -262,13 +262,18 @@ def _is_take(path: str) -> bool:
     return Path(path).suffix.lower() in (".bvh", ".c3d", ".trc", ".csv", ".tsv")
 
 
+def _is_text(score: str) -> bool:
+    words = score.split()
+    return ";" in score or len(words) > 1 and not Path(score).exists() and bool(lib.session_is_command(words[0].encode()))
+
+
 def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, motion: bool = True, settings: Iterable[str] = (),
            left_tip: Optional[str] = None, right_tip: Optional[str] = None, up: Optional[str] = None) -> Rendering:
     """Plays a score, a MIDI file or a take to its end, as ``himc render`` does, to the same bits.
 
-    `score` is a path, or the text of a score (it has a ``;``). `settings` are commands: before a take, after a score.
+    `score` is a path, or the text of a score: it has a ``;`` or begins with a command, and no file has that name. `settings` are commands: before a take, after a score.
     """
-    if ";" in str(score):
+    if _is_text(str(score)):
         with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
             file.write(str(score))
             file.flush()

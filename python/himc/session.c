@@ -126,6 +126,11 @@ static bool session_add_drum(session *s, const char *name, double inches, himc_e
     return good;
 }
 
+static bool session_is_command(const char *word)
+{
+    return himc_command_find(HIMC_PERFORMER, word) != NULL;
+}
+
 // 1 if the score makes drums itself, 0 if not, -1 with the reason
 static int session_makes_drums(const char *path, himc_error *error)
 {

@@ -5,6 +5,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,14 @@ class Package(unittest.TestCase):
         r = himc.render(PIECE, channels=1, motion=False, settings=["law printed"])
         np.testing.assert_array_equal(r.sound, samples(self.at / "a.wav", 1))
         self.assertEqual(len(r.motion), 0)
+
+    def test_one_command_is_a_score(self):
+        r = himc.render("stroke 1 right accent f")
+        self.assertEqual(r.stats["played"], 1)
+        with self.assertRaisesRegex(himc.Error, "^score:1: stroke: HAND: rigt, allowed left right$"):
+            himc.render("stroke 1 rigt accent f")
+        with self.assertRaisesRegex(himc.Error, "my piece.txt: cannot be read"):
+            himc.render("my piece.txt")
 
     def test_motion_is_the_librarys_memory(self):
         r = himc.render(PIECE)
@@ -155,8 +164,11 @@ class Package(unittest.TestCase):
         self.assertAlmostEqual(p.time, 0.5)
 
     def test_licences_are_in_the_package(self):
-        self.assertIn("Russell L. Smith", (PROGRAM.parent / "LIBRARIES.txt").read_text())
-        self.assertIn("himc contributors", (PROGRAM.parent / "LICENSE").read_text())
+        package = metadata.distribution("himc")
+        terms = {f.name: f.read_text() for f in package.files if "licenses" in str(f)}
+        self.assertEqual(package.metadata["License-Expression"], "BSD-3-Clause")
+        self.assertIn("Russell L. Smith", terms["LIBRARIES.txt"])
+        self.assertIn("himc contributors", terms["LICENSE"])
 
     def test_the_module_shows_its_own_names(self):
         self.assertEqual({name for name in dir(himc) if not name.startswith("_")}, set(himc.__all__))

@@ -229,7 +229,10 @@ membrane~: 4 arguments, allowed: [-save] NAME [INCHES [CHANNELS]]
 membrane~: argument 3: loud, allowed: a number of channels
 membrane~: channels: 9, allowed 1 .. 8
 membrane~: channels: 1.5, allowed a whole number
-membrane~: drum: name a-name-that-is-much-longer-than-any-drum-has, allowed up to 31 characters
+membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, allowed a drum's name: up to 31 letters and digits, no spot, no command of the performer
+himc~: drum: NAME: rim, allowed a drum's name
+membrane~: drum: NAME: centre, allowed a drum's name
+himc~: drum tempo: the name of a command, expected another name
 himc~: argument 1: 3, allowed: a drum's name of up to 31 characters
 himc~: argument 2: one is named twice
 himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, allowed: a drum's name of up to 31 characters")"
@@ -277,6 +280,10 @@ report a_drum_that_comes_later_takes_the_place_of_a_silent_one \
     "$(lines "no drum later: playing on a silent one")$([ "$(strikes left later)" = 1 ] || echo "$(strikes left later) strikes")"
 report a_drum_that_is_nowhere_is_an_error \
     "$(lines "himc~: othr: no spot (center normal rim), no drum (kettle other), did you mean other?")"
+report a_push_refused_on_its_sample_is_an_error "$(lines "error: himc~: push: SEGMENT: nose, allowed trunk neck")"
+report info_of_a_drum_is_answered_by_the_performer "$(lines "himc: info kettle: radius
+himc: info other: radius")"
+report a_change_at_a_beat_without_a_drum_says_so "$(lines "himc~: at: DRUM missing before tune, allowed at BEAT DRUM tune HZ")"
 
 mkfifo "$work/fifo.bvh"
 for word in take record; do

@@ -95,7 +95,9 @@ static const himc_argument arguments[] = {
     {"K", NULL, HIMC_ARGUMENT_NUMBER, 1e3, 1e13, "N/m^alpha", NULL},
     {"ALPHA", NULL, HIMC_ARGUMENT_NUMBER, 1, 4, "", NULL},
     {"VOLUME", "room", HIMC_ARGUMENT_NUMBER, 20, 1e5, "m^3", NULL},
-    {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10, "m^3", NULL},
+    // chosen: wider than any head's range, half to twice its usual volume, which do_kettle tells
+    {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10,
+     "m^3, half to twice the usual one of the head's size", NULL},
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
     {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},
     {"SEED", NULL, HIMC_ARGUMENT_COUNT, 0, HIMC_SEED_MAX, "", NULL},

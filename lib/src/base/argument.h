@@ -53,6 +53,10 @@ static inline double himc_argument_usual(double number, double usual)
 /// What would fit, for a person: "0 .. 1 m", "left right".
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size);
 
+/// For a refused command of a drum that may not exist: its name before the reason, and behind it
+/// `drum` if the name may mean that. Returns false.
+bool himc_command_doubt_drum(const char *name, himc_error *error);
+
 /// Frequency of a note name: letter, any # or b, octave; A4 is 440 Hz (so A2 is 110).
 bool himc_note_frequency(const char *note, double *hz);
 

@@ -30,7 +30,8 @@ typedef struct reading {
 typedef struct attempt {
     int rank; ///< larger is closer
     enum { FITS, WRONG, MISSING, TOO_MANY } end;
-    int at; ///< atom that stopped it
+    int at;    ///< atom that stopped it
+    int forms; ///< that came as close
     char name[WORD_SIZE];
     char allowed[ALLOWED_SIZE];
 } attempt;
@@ -167,7 +168,7 @@ static const char *follow(const char *grammar, walk w, attempt *result)
     char token[WORD_SIZE], allowed[ALLOWED_SIZE];
     int least = 0, most = 0;
     bool optional;
-    *result = (attempt){.end = FITS};
+    *result = (attempt){.end = FITS, .forms = 1};
     while (*grammar && *grammar != '|') {
         grammar = next_token(grammar, token, &optional);
         least += !optional;
@@ -199,6 +200,16 @@ static void print_value(char *out, size_t size, const himc_atom *atom)
                  atom->number);
 }
 
+// True if the first atom is a word that fits none of several forms, of which `best` is only some.
+static bool fits_no_form(const himc_command_row *row, const himc_atom *atoms, const attempt *best)
+{
+    int forms = 1;
+    for (const char *s = row->atoms; (s = strstr(s, " | ")); s += 3)
+        forms++;
+    return best->at == 0 && best->forms < forms && !is_argument(best->name) &&
+           atoms[0].kind == HIMC_ATOM_SYMBOL;
+}
+
 static bool refuse(const himc_command_row *row, const himc_atom *atoms, const attempt *best,
                    himc_error *error)
 {
@@ -208,8 +219,12 @@ static bool refuse(const himc_command_row *row, const himc_atom *atoms, const at
     bool named = is_argument(best->name);
     const char *space = row->atoms[0] ? " " : "";
     if (best->end == MISSING)
-        return himc_error_set(error, "%s: %s missing, allowed %s %s", row->name, best->name,
+        return himc_error_set(error, "%s: %s missing, allowed %s %s", row->name,
+                              best->at > 0 || is_argument(best->name) ? best->name : "atoms",
                               row->name, row->atoms);
+    if (best->end == WRONG && fits_no_form(row, atoms, best))
+        return himc_error_set(error, "%s: %s, allowed %s %s", row->name, value, row->name,
+                              row->atoms);
     if (best->end == TOO_MANY)
         return himc_error_set(error, "%s: %s is one atom too many, allowed %s%s%s", row->name,
                               value, row->name, space, row->atoms);
@@ -222,8 +237,10 @@ static void keep_closer(attempt *best, const attempt *other)
 {
     if (other->rank > best->rank || (other->rank == best->rank && best->end == TOO_MANY)) {
         *best = *other;
-    } else if (other->rank == best->rank && other->end == WRONG && best->end == WRONG &&
-               strcmp(other->allowed, best->allowed) != 0) {
+    } else if (other->rank == best->rank && other->end == WRONG && best->end == WRONG) {
+        best->forms++;
+        if (strcmp(other->allowed, best->allowed) == 0)
+            return;
         size_t used = strlen(best->allowed);
         int room = (int)(sizeof best->allowed - used);
         snprintf(best->allowed + used, (size_t)room, " or %.*s", room - 5 > 0 ? room - 5 : 0,
@@ -372,13 +389,36 @@ static bool is_for_drum(const char *name, const himc_atom *atoms, int count)
            himc_argument_accepts(himc_argument_find("NAME", NULL), &drum);
 }
 
+bool himc_command_doubt_drum(const char *name, himc_error *error)
+{
+    himc_nearest nearest = {.word = name};
+    himc_nearest_try(&nearest, himc_command_table(HIMC_COMMAND_MAKE_DRUM)->name);
+    himc_error_prefix(error, "%s", name);
+    size_t used = error ? strlen(error->text) : 0;
+    if (error && nearest.name)
+        himc_format(error->text + used, sizeof error->text - used, "; or did you mean %s?",
+                    nearest.name);
+    return false;
+}
+
 static bool parse_for_drum(himc_command *out, const char *name, const himc_atom *atoms, int count,
                            himc_error *error)
 {
     if (!himc_command_parse(out, HIMC_DRUM, atoms[0].symbol, atoms + 1, count - 1, error))
-        return himc_error_prefix(error, "%s", name);
+        return himc_command_doubt_drum(name, error);
     snprintf(out->drum, sizeof out->drum, "%s", name);
     return true;
+}
+
+// BEAT COMMAND ...: what acts at a beat, without the drum before it
+static bool misses_drum(const himc_command_row *row, const himc_atom *atoms, int count)
+{
+    if (row->id != HIMC_COMMAND_AT || count < 2 || atoms[1].kind != HIMC_ATOM_SYMBOL)
+        return false;
+    const himc_command_row *act = himc_command_find(HIMC_DRUM, atoms[1].symbol);
+    bool named = count > 2 && atoms[2].kind == HIMC_ATOM_SYMBOL &&
+                 himc_command_find(HIMC_DRUM, atoms[2].symbol);
+    return act && (act->marks & HIMC_AT_BEAT) && !named;
 }
 
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
@@ -390,6 +430,10 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
         return parse_for_drum(out, name, atoms, count, error);
     if (!row)
         return refuse_name(receiver, name, error);
+    if (misses_drum(row, atoms, count))
+        return himc_error_set(error, "at: DRUM missing before %s, allowed at BEAT DRUM %s %s",
+                              atoms[1].symbol, atoms[1].symbol,
+                              himc_command_find(HIMC_DRUM, atoms[1].symbol)->atoms);
     if (!check(row, atoms, count, &read, error))
         return false;
     if (row->id == HIMC_COMMAND_PRESET)

@@ -99,10 +99,9 @@ bool himc_take_is_capture(const char *path)
 
 bool himc_take_can_save(const char *path, himc_error *error)
 {
-    const format *f = format_of(path, error);
-    if (!f || f->write)
-        return f != NULL;
-    return himc_error_set(error, "%s: a format that is not written, allowed " WRITTEN, path);
+    const format *f = find_format(path);
+    return (f && f->write) ||
+           himc_error_set(error, "%s: a format that is not written, allowed " WRITTEN, path);
 }
 
 #define FILE_ROOM (sizeof((himc_take *)0)->file)

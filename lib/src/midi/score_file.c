@@ -1,5 +1,6 @@
 /// score_file.c: a score from a file: a text of commands, or a MIDI file, told by its first bytes.
 #include "base/file.h"
+#include "capture/take.h"
 #include "midi/import.h"
 #include "midi/score_file.h"
 #include "midi/smf.h"
@@ -24,6 +25,7 @@ static himc_score *import(const char *bytes, size_t size, const char *path, himc
     }
     himc_score *score = himc_score_parse(made.text, path, error);
     if (score) {
+        free(score->report);
         score->report = made.report;
         score->left_out = made.left_out;
         made.report = NULL;
@@ -63,6 +65,13 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
 {
     size_t size;
     himc_score *score = NULL;
+    if (himc_take_is_capture(path)) {
+        himc_error_set(error,
+                       "%s: a take by its suffix, allowed: a score or a MIDI file; a take "
+                       "is loaded by take",
+                       path);
+        return NULL;
+    }
     char *bytes = himc_file_load_in(folder, path, SCORE_BYTES_MAX, &size, error);
     if (bytes && himc_midi_is_file(bytes, size))
         score = import(bytes, size, path, error);

@@ -1,10 +1,11 @@
 /// sticking.c: which hand plays which stroke.
 ///
 /// A search over the strokes in time. Its state is the last stroke of each hand; a stroke costs its
-/// hand what plan/sticking.h says, and a little more the left one. A stroke nearer to its hand's
-/// last than the planner can move (hand.c) is not possible; one that is left out costs more than
-/// any that is played, and the more the louder it is. The WIDTH best states are kept after each
-/// stroke.
+/// hand what plan/sticking.h says, a little more the left one, and more the hand that has just
+/// struck the same drum: hand by hand, as players do also where one hand had the time. A stroke
+/// nearer to its hand's last than the planner can move (hand.c) is not possible; one that is left
+/// out costs more than any that is played, and the more the louder it is. The WIDTH best states are
+/// kept after each stroke.
 #include "midi/part.h"
 #include "plan/sticking.h"
 
@@ -17,6 +18,10 @@
 #define MOVE_MARGIN 1.45   // ... and its margin of time for a stroke's swing, and a little more
 #define QUINTIC_PEAK 5.77  // peak acceleration of a quintic from rest to rest (way/time^2)
 #define NORMAL_SPOT 0.75   // radii from the centre, towards the player
+// chosen: five strokes on a drum between both hands are worth the other hand's way there, two are
+// not: two drums in turn are played by sides
+#define AGAIN_COST 0.2
+#define AGAIN_TIME 2.0 // (s) chosen: after a longer rest the hands begin anew
 #define OMIT_COST 45.0
 #define OMIT_LOUD_COST 20.0 // at fff
 
@@ -61,7 +66,8 @@ static double stroke_cost(const state *now, const hand_state *to, int hand)
                        .other_gap = to->at - other->at};
     if (s.gap < least_gap(s.way))
         return HUGE_VAL;
-    return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);
+    bool again = s.way == 0 && s.gap < s.other_gap && s.gap < AGAIN_TIME;
+    return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0) + (again ? AGAIN_COST : 0);
 }
 
 // among the `count` best so far; one for each pair of last strokes

@@ -17,15 +17,18 @@ bool himc_confine_command(himc_command *c, const char *folder, himc_error *error
 {
     const himc_command_row *row = himc_command_table((int)c->id);
     size_t used = used_storage(c), size = folder ? strlen(folder) + 1 : 0;
-    int atom;
+    int atom = 0;
     bool names_file = himc_command_file(c, &atom) != HIMC_FILE_NONE;
     if (c->id == HIMC_COMMAND_RECORD || (names_file && !(row->marks & HIMC_IN_FOLDER)))
-        return himc_error_set(error, "record, units and shapes from files: not over the network");
+        return himc_error_set(error, "%s %.80s: no file is %s over the network", row->name,
+                              c->atom[atom].symbol,
+                              row->marks & HIMC_WRITES_FILE ? "written" : "read by it");
     if (!names_file)
         return true;
-    if (!folder)
-        return himc_error_set(error, "%s: no file over the network, allowed with --files",
-                              row->name);
+    if (!folder) // the parser has made a score of a preset, so the file alone is named
+        return himc_error_set(error,
+                              "%.80s: no file is read over the network, allowed with --files",
+                              c->atom[atom].symbol);
     if (size > sizeof c->storage - used)
         return himc_error_set(error, "%s: a name of %zu characters, allowed %zu in that folder",
                               row->name, used - 1, sizeof c->storage - size - 1);

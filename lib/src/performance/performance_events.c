@@ -17,12 +17,11 @@ void himc_events_add(performance_events *e, const himc_event *event)
     e->event[(e->first + e->count++) % EVENTS_WAITING] = *event;
 }
 
-static void add_note(performance_events *e, bool minor, const char *format, va_list args)
+static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
     __attribute__((format(printf, 3, 0)));
 
-static void add_note(performance_events *e, bool minor, const char *format, va_list args)
+static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
 {
-    himc_event event = {.kind = HIMC_EVENT_NOTE, .minor = minor};
     const himc_event *last = &e->event[(e->first + e->count + EVENTS_WAITING - 1) % EVENTS_WAITING];
     himc_line_print(event.text, sizeof event.text, format, args);
     // a score that plays, and then its host: one cause, one line
@@ -34,7 +33,7 @@ void himc_events_note(performance_events *e, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    add_note(e, false, format, args);
+    add_note(e, (himc_event){.kind = HIMC_EVENT_NOTE}, format, args);
     va_end(args);
 }
 
@@ -42,7 +41,15 @@ void himc_events_note_as(performance_events *e, bool minor, const char *format, 
 {
     va_list args;
     va_start(args, format);
-    add_note(e, minor, format, args);
+    add_note(e, (himc_event){.kind = HIMC_EVENT_NOTE, .minor = minor}, format, args);
+    va_end(args);
+}
+
+void himc_events_refuse(performance_events *e, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    add_note(e, (himc_event){.kind = HIMC_EVENT_NOTE, .refused = true}, format, args);
     va_end(args);
 }
 

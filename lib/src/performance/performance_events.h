@@ -25,6 +25,9 @@ HIMC_RT void himc_events_note(performance_events *events, const char *format, ..
 /// The same, minor or not.
 HIMC_RT void himc_events_note_as(performance_events *events, bool minor, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/// The same, of a command that could not be carried out.
+HIMC_RT void himc_events_refuse(performance_events *events, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /// Adds a stroke that is not played, on the drum of that name; its place is where it should have
 /// been. `why` in a few words.
 HIMC_RT void himc_events_missed(performance_events *events, const himc_strike *missed,

@@ -773,9 +773,9 @@ bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
 
 static long whole_beat(const performance_motion *m, double t)
 {
-    double beat = himc_planner_beat(m->planner, t);
-    bool waits = m->track || himc_planner_is_preparing(m->planner, t);
-    return waits || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    bool prepares = himc_planner_is_preparing(m->planner, t);
+    double beat = prepares ? himc_planner_count(m->planner, t) : himc_planner_beat(m->planner, t);
+    return m->track || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
 }
 
 double himc_motion_score_beat(const performance_motion *m, double t)
@@ -785,10 +785,11 @@ double himc_motion_score_beat(const performance_motion *m, double t)
     return m->playing ? t - m->track_start : -1;
 }
 
-/// True if a beat begins by t: another one, or the same one of a later round.
+/// True if a beat begins by t: another one, or the same one of a later round or behind a count.
 static bool begins_beat(const performance_motion *m, double t)
 {
-    return whole_beat(m, t) != m->last_beat || himc_planner_round(m->planner, t) > m->last_round;
+    return whole_beat(m, t) != m->last_beat || himc_planner_round(m->planner, t) > m->last_round ||
+           (m->counted && !himc_planner_is_preparing(m->planner, t));
 }
 
 static bool is_over(const performance_motion *m, double t)
@@ -818,6 +819,7 @@ long himc_motion_beat(performance_motion *m, double t)
     long whole = whole_beat(m, t);
     bool begun = begins_beat(m, t);
     m->last_beat = whole;
+    m->counted = himc_planner_is_preparing(m->planner, t);
     m->last_round = himc_planner_round(m->planner, t);
     return begun ? whole : -1;
 }

@@ -75,6 +75,7 @@ typedef struct performance_motion {
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
     long last_beat, last_round; ///< that have been reported
+    bool counted;               ///< the last one was before a cleared loop begins again
     double calm;                ///< no beat begins and no end comes before, if nothing changes (s)
 } performance_motion;
 

@@ -47,7 +47,7 @@ void himc_queue_run(performance_queue *q, int64_t sample, performance_action *ac
         if (q->waiting[i].due > sample)
             keep_waiting(q, i, kept++);
         else if (!act(performance, &q->waiting[i].command, &error))
-            himc_events_note(events, "%s", error.text);
+            himc_events_refuse(events, "%s", error.text);
     }
     q->acting = -1;
     q->count = kept;

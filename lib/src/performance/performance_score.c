@@ -540,13 +540,6 @@ static himc_job_state begin_strokes(score_job *j, himc_error *error)
         himc_text_clear(&p->written.score);
     }
     j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
-    for (int i = 0; i < j->score->change_count; i++)
-        if (!j->score->changes[i].drum[0])
-            continue; // a push is told as it is planned
-        else if (himc_written_room(&p->written.score, "score", error))
-            himc_written_change(&p->written.score, &j->score->changes[i], j->from);
-        else
-            return HIMC_JOB_FAILED;
     if (himc_planner_append_tempi(planner, j->score->tempi, j->score->tempo_count, j->from, error))
         return HIMC_JOB_DONE;
     himc_error_prefix(error, "%s", j->path);
@@ -597,17 +590,28 @@ static himc_job_state install_changes(score_job *j, himc_error *error)
     return good ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
 }
 
-// the strokes as written, then what ornaments add, which leaves out what does not fit
+// tells a stroke or a change as the file has it, for `dump`; a push is told as it is planned
+static bool write_line(score_job *j, int place, himc_error *error)
+{
+    himc_text_lines *written = &j->performance->written.score;
+    if (!himc_written_room(written, "score", error))
+        return false;
+    if (place >= 0) {
+        himc_stroke stroke = j->score->strokes[place];
+        stroke.beat += j->from;
+        himc_written_stroke(written, &stroke);
+    } else if (j->score->changes[-1 - place].drum[0]) {
+        himc_written_change(written, &j->score->changes[-1 - place], j->from);
+    }
+    return true;
+}
+
 static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_error *error)
 {
     int drum;
-    himc_text_lines *written = &j->performance->written.score;
     stroke.beat += j->from;
-    if (!himc_written_room(written, "score", error) ||
-        !installed_drum(j, stroke.drum, &drum, error))
+    if (!installed_drum(j, stroke.drum, &drum, error))
         return false;
-    if (!ornament)
-        himc_written_stroke(written, &stroke);
     if (ornament)
         himc_performance_add_ornament(j->performance, &stroke, drum);
     if (ornament || stroke.ornament >= HIMC_ROLL_SINGLE)
@@ -616,17 +620,24 @@ static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_err
     return himc_performance_put_stroke(j->performance, &stroke, error);
 }
 
+// what is written, then the strokes, then what ornaments add, which leaves out what does not fit
 static himc_job_state add_strokes(score_job *j, himc_error *error)
 {
-    int count = j->score->stroke_count;
-    for (int added = 0; j->at < 2 * count; j->at++) {
-        bool ornament = j->at >= count;
-        const himc_stroke *stroke = &j->score->strokes[j->at % count];
+    const himc_score *score = j->score;
+    int count = score->stroke_count, lines = count + score->change_count;
+    for (int added = 0; j->at < lines + 2 * count; j->at++, added++) {
         if (added >= STROKES_AT_ONCE)
             return HIMC_JOB_MORE;
-        // a roll may be long: it is a portion by itself
-        added += ornament && stroke->ornament >= HIMC_ROLL_SINGLE ? STROKES_AT_ONCE : 1;
-        if (!add_stroke(j, *stroke, ornament, error)) {
+        bool good = true, ornament = j->at - lines >= count;
+        if (j->at < lines) {
+            good = write_line(j, score->order[j->at], error);
+        } else {
+            const himc_stroke *stroke = &score->strokes[(j->at - lines) % count];
+            // a roll may be long: it is a portion by itself
+            added += ornament && stroke->ornament >= HIMC_ROLL_SINGLE ? STROKES_AT_ONCE : 0;
+            good = add_stroke(j, *stroke, ornament, error);
+        }
+        if (!good) {
             himc_error_prefix(error, "%s", j->path);
             return HIMC_JOB_FAILED;
         }
@@ -696,7 +707,7 @@ static himc_job_state install_part(score_job *j, himc_error *error)
     }
 }
 
-// of a MIDI file: what is played of it, and what not
+// what is played of a MIDI file, and what not; what of a text stands in a comment
 static void tell_report(score_job *j)
 {
     const char *line = j->score->report ? j->score->report : "", *end;

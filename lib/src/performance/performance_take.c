@@ -307,6 +307,11 @@ static bool prepare(himc_job *job, himc_error *error)
     if (!j->given) {
         himc_player_free(j->player); // it sits before another place
         j->player = NULL;
+        if (!j->take && !himc_take_is_capture(j->name))
+            return himc_error_set(error,
+                                  "take: %s: not a take by its suffix, allowed " HIMC_TAKE_SUFFIXES
+                                  "; a score or a MIDI file is loaded by score",
+                                  j->name);
         if (!j->take)
             j->take = himc_take_load_in(j->command.folder, j->name, &j->options, error);
         if (!j->take)

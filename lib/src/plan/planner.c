@@ -168,7 +168,7 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     int at = himc_planner_score_place(score, stroke, drum, error);
     if (at < 0)
         return false;
-    if (score->playing)
+    if (score->playing && !score->empties)
         himc_planner_rebase(planner, planner->now);
     himc_planner_score_insert(score, at, stroke, drum);
     himc_planner_inserted(planner, stroke->hand, at);
@@ -183,7 +183,7 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
 {
     planner_score *score = &planner->score;
     bool running = score->playing && !score->empties;
-    if (score->playing)
+    if (running)
         himc_planner_rebase(planner, planner->now);
     int at = himc_planner_roll_insert(score, roll, drum, rate, error);
     if (at < 0)
@@ -482,6 +482,13 @@ bool himc_planner_is_preparing(const himc_planner *planner, double t)
     return score->playing && !score->empties && score->past == 0 &&
            t < score->origin + himc_planner_score_round_length(score) &&
            himc_planner_score_beat_at(score, t) < score->beat - BEAT_ROUNDING;
+}
+
+double himc_planner_count(const himc_planner *planner, double t)
+{
+    const planner_score *score = &planner->score;
+    bool counts = himc_planner_is_preparing(planner, t) && isfinite(score->count);
+    return counts ? himc_score_beat(score->tempi, score->tempo_count, t - score->count) : -1;
 }
 
 double himc_planner_end(const himc_planner *planner)

@@ -241,6 +241,8 @@ HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 HIMC_RT long himc_planner_round(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.
 HIMC_RT bool himc_planner_is_preparing(const himc_planner *planner, double t);
+/// Then, of a cleared loop that begins again: its beats before, which go on; else -1.
+HIMC_RT double himc_planner_count(const himc_planner *planner, double t);
 /// End of the last stroke's contact, as predicted, or of all else (s). Infinite while stopped or in
 /// a loop.
 HIMC_RT double himc_planner_end(const himc_planner *planner);

@@ -846,7 +846,8 @@ static void drop_past(planner_hand *h, double now)
 static void fill_loop(himc_planner *planner)
 {
     planner_score *score = &planner->score;
-    double t = planner->now + PLANNER_AHEAD, beat = ceil(himc_planner_score_beat_at(score, t));
+    double t = planner->now + PLANNER_AHEAD, count = score->origin;
+    double beat = ceil(himc_score_beat(score->tempi, score->tempo_count, t - count));
     if (himc_planner_score_last_beat(score) < 0)
         return;
     himc_planner_cut_both(planner, t);
@@ -855,6 +856,7 @@ static void fill_loop(himc_planner *planner)
     himc_planner_score_start(score, next);
     double late = ceil(himc_planner_lateness(planner) / period - BEAT_ROUNDING);
     himc_planner_score_delay(score, fmax(late, 0) * period);
+    score->count = count;
     himc_planner_replan(planner, t);
 }
 

@@ -271,6 +271,7 @@ void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
     score->empties = false;
+    score->count = NAN;
     score->starts++;
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);

@@ -63,6 +63,7 @@ typedef struct planner_score {
     double beat;   ///< where play begins or began
     bool loop;
     bool empties; ///< the loop turns without strokes: with the first ones it begins again
+    double count; ///< then, until it begins: time of beat 0 of the beats before; else NaN (s)
     int rounds;   ///< without loop: the last round to be played
     int starts;   ///< of the transport, so far
     int past;     ///< rounds of the loop played before round 0

@@ -11,7 +11,9 @@
 #include "base/format.h"
 #include "base/text.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,11 +29,12 @@
 /// A score being read.
 typedef struct reader {
     himc_score *score;
-    int stroke_room, tempo_room, line_room, change_room;
+    int stroke_room, tempo_room, line_room, change_room, order_room;
     himc_command command; ///< of the current statement
     int line;
-    bool timed;  ///< the statement begins with `at BEAT` ...
-    double beat; ///< ... this one
+    bool timed;       ///< the statement begins with `at BEAT` ...
+    double beat;      ///< ... this one
+    const char *name; ///< of the file
     himc_error *error;
 } reader;
 
@@ -50,6 +53,17 @@ static bool grow(void *array, int count, int *room, size_t size, himc_error *err
     return true;
 }
 
+/// The stroke or change that is added next has its place behind those of the file so far.
+static bool add_place(reader *r, int place)
+{
+    himc_score *score = r->score;
+    int count = score->stroke_count + score->change_count;
+    if (!grow(&score->order, count, &r->order_room, sizeof *score->order, r->error))
+        return false;
+    score->order[count] = place;
+    return true;
+}
+
 static bool add_stroke(reader *r)
 {
     himc_score *score = r->score;
@@ -57,7 +71,8 @@ static bool add_stroke(reader *r)
         return himc_error_set(r->error, "stroke: one too many, allowed %d strokes",
                               SCORE_STROKES_MAX);
     int room = r->stroke_room;
-    if (!grow(&score->stroke_lines, score->stroke_count, &room, sizeof *score->stroke_lines,
+    if (!add_place(r, score->stroke_count) ||
+        !grow(&score->stroke_lines, score->stroke_count, &room, sizeof *score->stroke_lines,
               r->error) ||
         !grow(&score->strokes, score->stroke_count, &r->stroke_room, sizeof *score->strokes,
               r->error))
@@ -131,7 +146,7 @@ static bool add_line(reader *r, const char *drum)
     if (score->line_count + score->change_count == SCORE_LINES_MAX)
         return himc_error_set(r->error, "one line too many, allowed %d besides strokes",
                               SCORE_LINES_MAX);
-    if (!grow_lines(&list, r->error))
+    if ((r->timed && !add_place(r, -1 - score->change_count)) || !grow_lines(&list, r->error))
         return false;
     himc_score_line *line = &(*list.lines)[(*list.count)++];
     snprintf(line->drum, sizeof line->drum, "%s", drum);
@@ -169,7 +184,9 @@ static bool read_drum_line(reader *r, const himc_atom *atom, int count)
     if (!himc_command_parse(&r->command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,
                             r->error) ||
         !may_stand(&r->command, r->error))
-        return himc_error_prefix(r->error, "%s", atom[0].symbol);
+        return is_known_drum(r->score, atom[0].symbol)
+                   ? himc_error_prefix(r->error, "%s", atom[0].symbol)
+                   : himc_command_doubt_drum(atom[0].symbol, r->error);
     return add_line(r, atom[0].symbol);
 }
 
@@ -285,6 +302,53 @@ static bool suggest_end(reader *r, const char *begin, const char *end)
     return false;
 }
 
+static bool add_report(reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/// A line of the score's report.
+static bool add_report(reader *r, const char *format, ...)
+{
+    himc_score *score = r->score;
+    himc_error line;
+    va_list args;
+    va_start(args, format);
+    himc_line_print(line.text, sizeof line.text, format, args);
+    va_end(args);
+    size_t used = score->report ? strlen(score->report) : 0, room = used + strlen(line.text) + 2;
+    char *report = realloc(score->report, room);
+    if (!report)
+        return himc_error_set(r->error, "out of memory for %zu bytes", room);
+    himc_format(report + used, room - used, "%s\n", line.text);
+    score->report = report;
+    return true;
+}
+
+/// A comment lasts up to its `;`. Without one it takes the next command with it: that is reported.
+/// `begin` .. `end` is the comment with its `;`.
+static bool report_swallowed(reader *r, const char *begin, const char *end)
+{
+    char text[HIMC_PATH_SIZE];
+    himc_command command;
+    int line = r->line;
+    begin += strspn(begin, " \t\r\n");
+    for (const char *at = begin; at < end;) {
+        size_t length = (size_t)(end - at);
+        if (at != begin && length < sizeof text) {
+            memcpy(text, at, length);
+            text[length] = '\0';
+            if (himc_command_parse_text(&command, HIMC_PERFORMER, text, NULL)) {
+                r->score->left_out++;
+                return add_report(r,
+                                  "%s:%d: \"%.*s\" is left out: no ; ends the comment before it, "
+                                  "in line %d",
+                                  r->name, line, (int)strcspn(at, ";\r\n"), at, r->line);
+            }
+        }
+        for (at += strcspn(at, "\n"); at < end && isspace((unsigned char)*at); at++)
+            line += *at == '\n';
+    }
+    return true;
+}
+
 static bool read_all(reader *r, const char *text)
 {
     himc_atom atoms[HIMC_COMMAND_ATOMS + 4];
@@ -303,6 +367,9 @@ static bool read_all(reader *r, const char *text)
                                   s.atom[0].symbol);
         if (!read_statement(r, &s))
             return suggest_end(r, begin, text);
+        if (s.count > 0 && strcmp(s.atom[0].symbol, "comment") == 0 &&
+            !report_swallowed(r, begin, text))
+            return false;
     }
     return true;
 }
@@ -311,6 +378,7 @@ static bool read_all(reader *r, const char *text)
 typedef struct sort_key {
     double beat;
     int index;
+    int at; ///< of score->order
 } sort_key;
 
 static int by_beat(const void *a, const void *b)
@@ -321,10 +389,28 @@ static int by_beat(const void *a, const void *b)
     return p->index - q->index;
 }
 
-static bool is_sorted(const himc_score *score)
+/// The keys of the strokes, or of the changes, sorted; owned, NULL without memory.
+static sort_key *sort_keys(const himc_score *score, bool changes)
 {
-    for (int i = 1; i < score->stroke_count; i++)
-        if (score->strokes[i].beat < score->strokes[i - 1].beat)
+    int count = changes ? score->change_count : score->stroke_count, i = 0;
+    sort_key *key = malloc((size_t)count * sizeof *key);
+    if (!key)
+        return NULL;
+    for (int at = 0; i < count; at++)
+        if ((score->order[at] < 0) == changes) {
+            key[i] = (sort_key){changes ? score->changes[i].beat : score->strokes[i].beat, i, at};
+            i++;
+        }
+    qsort(key, (size_t)count, sizeof *key, by_beat);
+    return key;
+}
+
+static bool are_sorted(const himc_score *score, bool changes)
+{
+    int count = changes ? score->change_count : score->stroke_count;
+    for (int i = 1; i < count; i++)
+        if (changes ? score->changes[i].beat < score->changes[i - 1].beat
+                    : score->strokes[i].beat < score->strokes[i - 1].beat)
             return false;
     return true;
 }
@@ -333,21 +419,19 @@ static bool sort_strokes(reader *r)
 {
     himc_score *score = r->score;
     size_t count = (size_t)score->stroke_count;
-    if (is_sorted(score))
+    if (are_sorted(score, false))
         return true;
-    sort_key *key = malloc(count * sizeof *key);
+    sort_key *key = sort_keys(score, false);
     himc_stroke *sorted = malloc(count * sizeof *sorted);
     int *line = malloc(count * sizeof *line);
     if (!key || !sorted || !line) {
         free(key), free(sorted), free(line);
         return himc_error_set(r->error, "out of memory for %zu strokes", count);
     }
-    for (size_t i = 0; i < count; i++)
-        key[i] = (sort_key){score->strokes[i].beat, (int)i};
-    qsort(key, count, sizeof *key, by_beat);
     for (size_t i = 0; i < count; i++) {
         sorted[i] = score->strokes[key[i].index];
         line[i] = score->stroke_lines[key[i].index];
+        score->order[key[i].at] = (int)i;
     }
     free(key), free(score->strokes), free(score->stroke_lines);
     score->strokes = sorted;
@@ -360,22 +444,18 @@ static bool sort_changes(reader *r)
 {
     himc_score *score = r->score;
     int count = score->change_count;
-    bool sorted = true;
-    for (int i = 1; i < count; i++)
-        sorted = sorted && score->changes[i].beat >= score->changes[i - 1].beat;
-    if (sorted)
+    if (are_sorted(score, true))
         return true;
-    sort_key *key = malloc((size_t)count * sizeof *key);
+    sort_key *key = sort_keys(score, true);
     himc_score_line *lines = malloc((size_t)count * sizeof *lines);
     if (!key || !lines) {
         free(key), free(lines);
         return himc_error_set(r->error, "out of memory for %d lines", count);
     }
-    for (int i = 0; i < count; i++)
-        key[i] = (sort_key){score->changes[i].beat, i};
-    qsort(key, (size_t)count, sizeof *key, by_beat);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; i++) {
         copy_line(&lines[i], &score->changes[key[i].index]);
+        score->order[key[i].at] = -1 - i;
+    }
     free(key), free(score->changes);
     score->changes = lines;
     return true;
@@ -427,7 +507,7 @@ static bool check_playable(reader *r)
 
 himc_score *himc_score_parse(const char *text, const char *name, himc_error *error)
 {
-    reader r = {.error = error};
+    reader r = {.name = name, .error = error};
     r.score = calloc(1, sizeof *r.score);
     bool good = r.score && grow(&r.score->tempi, 0, &r.tempo_room, sizeof *r.score->tempi, error);
     if (!good) {
@@ -453,6 +533,7 @@ void himc_score_free(himc_score *score)
     free(score->tempi);
     free(score->lines);
     free(score->changes);
+    free(score->order);
     free(score->report);
     free(score);
 }

@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LINKS_MAX 40 // followed, as Linux does
+
 // the part of a real path below the folder, with its first separator; NULL if it is not inside
 static const char *below(const char *real, const char *folder, char separator)
 {
@@ -70,6 +72,12 @@ char *himc_system_real_path(const char *path)
         return strdup(real);
     errno = ENOENT;
     return NULL;
+}
+
+char *himc_system_target(const char *path)
+{
+    char *real = himc_system_real_path(path);
+    return real ? real : strdup(path);
 }
 
 bool himc_system_rename(const char *from, const char *to)
@@ -141,6 +149,25 @@ char *himc_system_real_path(const char *path)
     return realpath(path, NULL);
 }
 
+char *himc_system_target(const char *path)
+{
+    char at[PATH_MAX], link[PATH_MAX], next[2 * PATH_MAX];
+    ssize_t length = 0;
+    snprintf(at, sizeof at, "%s", path);
+    for (int links = 0; links < LINKS_MAX; links++) {
+        length = readlink(at, link, sizeof link - 1);
+        if (length < 0)
+            break;
+        link[length] = '\0';
+        const char *slash = link[0] == '/' ? NULL : strrchr(at, '/');
+        snprintf(next, sizeof next, "%.*s%s", slash ? (int)(slash - at) + 1 : 0, at, link);
+        if (strlen(next) >= sizeof at)
+            break;
+        strcpy(at, next);
+    }
+    return strdup(strlen(path) < sizeof at ? at : path);
+}
+
 bool himc_system_rename(const char *from, const char *to)
 {
     return rename(from, to) == 0;
@@ -162,6 +189,10 @@ int himc_system_temporary(char *path, size_t size, const char *ending)
 
 void himc_system_binary(void)
 {
+    static const int refusing[] = {O_WRONLY, O_RDONLY, O_RDONLY}; // reads, writes, writes
+    for (int number = 0; number < 3; number++)
+        if (fcntl(number, F_GETFD) < 0 && errno == EBADF)
+            (void)!open("/dev/null", refusing[number]);
 }
 
 // opens "/a/b/c" from the folder down, without following a link

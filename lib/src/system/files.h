@@ -28,6 +28,10 @@ int himc_system_open(const char *path, int flags);
 /// The path with all links followed; owned. NULL with errno if nothing is there.
 char *himc_system_real_path(const char *path);
 
+/// The file that writing to the path makes or changes: a link to it is followed, also to one that
+/// is not there yet; owned. NULL without memory.
+char *himc_system_target(const char *path);
+
 /// Opens for reading what `name` stands for in `folder` (a real path), links followed as long as
 /// they stay inside. -1 if there is nothing inside.
 int himc_system_open_inside(const char *folder, const char *name);
@@ -40,7 +44,8 @@ bool himc_system_rename(const char *from, const char *to);
 /// errno.
 int himc_system_temporary(char *path, size_t size, const char *ending);
 
-/// Standard input and output give and take bytes as they are.
+/// Standard input and output give and take bytes as they are. One that is closed refuses them: no
+/// file that is opened later gets its number.
 void himc_system_binary(void);
 
 /// True if both names stand for one file or folder that exists.
