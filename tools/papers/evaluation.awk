@@ -1,10 +1,11 @@
 # evaluation.awk: docs/evaluation.md with the numbers of its tables as the trials have them (make papers).
 #   awk -f evaluation.awk spread.csv database.csv docs/evaluation.md
-# The first table with a row for each nuance is that of the printed law (gain 1 and 3), the second that of the two other laws.
+# Three rows of the requirements are of database.csv. The first table with a row for each nuance is that of the printed law (gain 1 and 3), the second that of the two other laws.
 BEGIN { FS = "," }
 FNR == 1 { file++ }
 file == 1 { mean[$1, $2, $3, $4] = $6; sd[$1, $2, $3, $4] = $7; own[$1, $2, $3, $4] = $8; next }
 file == 2 {
+    if ($2 == "all") { outside[$1] = $3; all[$1] = $4; angles[$1] = sprintf("%.2f°, %.2f°, %.2f°", $7, $8, $9); most[$1] = $7 > $8 ? ($7 > $9 ? $7 : $9) : ($8 > $9 ? $8 : $9); landed[$1] = sprintf("%d of %d strokes landed", $10, $11) }
     line[$1, $2] = sprintf("| %s | %s | %s | %s | %s .. %s | %s, %s, %s | %d of %d |", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
     next
 }
@@ -27,4 +28,10 @@ function pair(gain, nuance, law,    id, himc) {
     print line[substr(part[1], 3), part[2]]
     next
 }
+# what the requirements ask of all sequences: the cells `here` of their rows
+function met(good) { return good ? "met" : "not met" }
+function here(text) { match($0, /^[|][^|]*[|][^|]*[|]/); print substr($0, 1, RLENGTH) " " text " |" }
+/^\| tips in `himc`, default law/ { here(outside["computed-torque"] " % / " all["computed-torque"] " %, " landed["computed-torque"] ": " met(outside["computed-torque"] + 0 <= 0.05) " / " met(all["computed-torque"] + 0 <= 0.3)); next }
+/^\| `feedforward` at 2 strokes/ { here(outside["feedforward"] " %, " landed["feedforward"] ": " met(outside["feedforward"] + 0 <= 0.6) " over all; nuances below"); next }
+/^\| shoulder, elbow, wrist against/ { here(angles["computed-torque"] " over all: " met(most["computed-torque"] <= 1)); next }
 { print }
