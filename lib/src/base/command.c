@@ -413,7 +413,8 @@ static bool parse_for_drum(himc_command *out, const char *name, const himc_atom 
 // BEAT COMMAND ...: what acts at a beat, without the drum before it
 static bool misses_drum(const himc_command_row *row, const himc_atom *atoms, int count)
 {
-    if (row->id != HIMC_COMMAND_AT || count < 2 || atoms[1].kind != HIMC_ATOM_SYMBOL)
+    if (row->id != HIMC_COMMAND_AT || count < 2 || atoms[0].kind != HIMC_ATOM_NUMBER ||
+        atoms[1].kind != HIMC_ATOM_SYMBOL)
         return false;
     const himc_command_row *act = himc_command_find(HIMC_DRUM, atoms[1].symbol);
     bool named = count > 2 && atoms[2].kind == HIMC_ATOM_SYMBOL &&

@@ -98,15 +98,15 @@ static void step_kinematics(himc_performance *p, int n, double t, double h, bool
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, NULL);
 }
 
-// targets that no body can follow, once
+// targets or pushes that no body can follow, once
 static void tell_too_fast(himc_performance *p, double t)
 {
     int joint;
     double rate;
     if (himc_statistics_too_fast(&p->statistics, &joint, &rate))
         himc_events_note(&p->events,
-                         "at %.2f s %s turns at %.0f rad/s, a person's at %.0f at most: the arms "
-                         "cannot follow these targets",
+                         "at %.2f s %s turns at %.0f rad/s, a person's at %.0f at most: no arms "
+                         "follow such targets or pushes",
                          t, himc_joint_name(joint), rate, HIMC_FASTEST_JOINT);
 }
 

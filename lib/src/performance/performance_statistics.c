@@ -58,7 +58,7 @@ void himc_statistics_joints(performance_statistics *s, const himc_skeleton *skel
 
 bool himc_statistics_too_fast(performance_statistics *s, int *joint, double *rate)
 {
-    if (s->told_fast)
+    if (s->told_fast || s->recoveries > 0)
         return false;
     *rate = peak(s->rate, joint);
     s->told_fast = *rate > HIMC_FASTEST_JOINT;

@@ -48,6 +48,7 @@ HIMC_RT void himc_statistics_joints(performance_statistics *statistics,
                                     const himc_skeleton *skeleton, const himc_body_state *state,
                                     const himc_vec3 *torque);
 /// True once, when a joint has turned faster than any person's: the joint and its rate (rad/s).
+/// Not after a recovery, which is told.
 HIMC_RT bool himc_statistics_too_fast(performance_statistics *statistics, int *joint, double *rate);
 /// Adds a contact that no stroke asked for.
 HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
