@@ -5,13 +5,15 @@
 
 #include "drum/drum_state.h"
 #include "plan/gesture.h"
+#include "sound_scale.h"
 
 #include <math.h>
 
 #define LOUDEST_HEARD 0.1 // after each stroke (s): all modes have swung, air and ears have it
 
-/// Largest sample of each channel of a copy of the drum, at rest before; false without memory.
-static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUPS])
+/// Largest sample of each channel of a copy of the drum, at rest before, and the most energy (J) in
+/// its head; false without memory.
+static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUPS], double *energy)
 {
     static const double place[] = {-0.3, -0.75}; // of the radius: loudest, usual
     double sound[256], speed = himc_gesture_of(HIMC_VERTICAL_ACCENT, 1).speed;
@@ -21,6 +23,7 @@ static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUP
     himc_drum_form_free(&form);
     for (int k = 0; k < HIMC_PICKUPS; k++)
         peak[k] = 0;
+    *energy = 0;
     if (!copy)
         return false;
     bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
@@ -31,6 +34,7 @@ static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUP
         himc_drum_strike_at(copy, 0, place[i] * copy->place.radius, 0, speed, &error);
         for (int n = 0; n < LOUDEST_HEARD * copy->rate; n += 256) {
             himc_drum_advance(copy, 256, NULL, NULL, NULL);
+            *energy = fmax(*energy, drum_energy(copy));
             for (int k = 0; k < HIMC_PICKUPS; k++) {
                 himc_drum_read_channel(copy, k, himc_drum_time(copy) - 256, 256, sound);
                 for (int s = 0; s < 256; s++)
