@@ -211,8 +211,6 @@ static void test_a_drum_too_far_for_the_latency_is_struck_late_and_a_line_says_b
     himc_performance_free(p);
 }
 
-// half a newton that control does not know of carries the stick 1 mm away; the last 10 ms of the
-// plan begin where it is
 // the left hand is at the right; the right one would be there 10 ms sooner, but reach across for it
 static void test_a_late_hit_stays_with_the_hand_that_was_asked_for(void)
 {
@@ -233,6 +231,8 @@ static void test_a_late_hit_stays_with_the_hand_that_was_asked_for(void)
     himc_performance_free(p);
 }
 
+// half a newton that control does not know of carries the stick 1 mm away; the last 10 ms of the
+// plan begin where it is
 static void test_a_stick_that_drifts_is_brought_back_before_it_lands(void)
 {
     himc_performance *p = with_kettle("150");

@@ -67,8 +67,10 @@ static void test_qualisys_tables_are_read_with_and_without_frame_and_time(void)
         TSV_HEAD "1\t2\t3\t501\t2\t3\n11\t12\t13\t501\t2\t3\n",
         TSV_HEAD "TRAJECTORY_TYPES\tMeasured\tMixed\n"
                  "Frame\tTime\tLSHO X\tLSHO Y\tLSHO Z\tRTIP X\tRTIP Y\tRTIP Z\n"
-                 "1\t0.0\t1\t2\t3\t501\t2\t3\n2\t0.005\t11\t12\t13\t501\t2\t3\n"};
-    for (int i = 0; i < 2; i++) {
+                 "1\t0.0\t1\t2\t3\t501\t2\t3\n2\t0.005\t11\t12\t13\t501\t2\t3\n",
+        TSV_HEAD "Frame\tLSHO X\tLSHO Y\tLSHO Z\tRTIP X\tRTIP Y\tRTIP Z\n"
+                 "1\t1\t2\t3\t501\t2\t3\n2\t11\t12\t13\t501\t2\t3\n"};
+    for (int i = 0; i < 3; i++) {
         himc_take *take = read("a.tsv", rows[i]);
         TEST_ASSERT_EQUAL_DOUBLE(200, himc_take_rate(take));
         TEST_ASSERT_EQUAL_STRING("RTIP", himc_take_point_name(take, 1));

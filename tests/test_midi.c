@@ -332,6 +332,25 @@ static void test_five_pitches_are_played_on_four_drums_by_a_pedal(void)
     TEST_ASSERT_EQUAL_STRING("low", score->strokes[4].drum); // D to E, the shortest way
 }
 
+static void test_a_pedal_passes_the_semitone_between_two_pitches(void)
+{
+    static const int key[2][3] = {{38, 39, 40}, {40, 39, 38}}; // D to E and E to D
+    for (int i = 0; i < 2; i++) {
+        builder b;
+        int tuned = 0;
+        timpani(&b, (int[]){key[i][0], 43, 48, 53, key[i][2]}, 5, 4 * QUARTER, QUARTER);
+        import(&b, NULL);
+        for (const char *at = made.text; (at = strstr(at, "low tune ")); tuned++) {
+            TEST_ASSERT_LESS_THAN_INT_MESSAGE(3, tuned, made.text);
+            at += strlen("low tune ");
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.001, 440 * pow(2, (key[i][tuned] - 69) / 12.0),
+                                              atof(at), made.text);
+        }
+        TEST_ASSERT_EQUAL_INT_MESSAGE(3, tuned, made.text);
+        tearDown();
+    }
+}
+
 static void test_a_pitch_that_no_pedal_reaches_in_time_is_reported(void)
 {
     builder b;
@@ -544,6 +563,7 @@ int main(void)
     RUN_TEST(test_strokes_keep_the_times_of_their_notes_through_a_tempo_map);
     RUN_TEST(test_two_pitches_are_two_drums_and_no_pedal_moves);
     RUN_TEST(test_five_pitches_are_played_on_four_drums_by_a_pedal);
+    RUN_TEST(test_a_pedal_passes_the_semitone_between_two_pitches);
     RUN_TEST(test_a_pitch_that_no_pedal_reaches_in_time_is_reported);
     RUN_TEST(test_pitches_outside_the_timpani_are_moved_by_octaves);
     RUN_TEST(test_one_drum_is_played_hand_by_hand);

@@ -41,6 +41,14 @@ static void test_a_strike_asked_for_over_osc_comes_back_as_strike(void)
     TEST_ASSERT_INT_WITHIN(1, 2, count("/himc/status"));
 }
 
+// each block of 4 ms took 0.1 ms to compute
+static void test_load_is_the_share_of_real_time_that_was_computed(void)
+{
+    subscribe("strikes");
+    play(2.1);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4f, 0.025f, status("load"));
+}
+
 // the sound began at EPOCH + begun, and the strike's time is counted from there
 static void test_the_time_tag_of_a_strike_is_its_time_on_the_wall_clock(void)
 {
@@ -251,6 +259,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_pose_comes_33_times_a_second_with_20_bodies);
     RUN_TEST(test_a_strike_asked_for_over_osc_comes_back_as_strike);
+    RUN_TEST(test_load_is_the_share_of_real_time_that_was_computed);
     RUN_TEST(test_the_time_tag_of_a_strike_is_its_time_on_the_wall_clock);
     RUN_TEST(test_time_tags_hold_across_2_to_the_32_and_50_samples);
     RUN_TEST(test_head_sends_amplitudes_and_place_of_the_drum);

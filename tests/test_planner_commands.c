@@ -177,6 +177,26 @@ static void test_hit_comes_within_a_quarter_second_from_rest(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, at(planner, HIMC_LEFT, t).x.z);
 }
 
+// it only has to fall; the other one would have to come across the head
+static void test_a_hit_of_any_hand_is_played_by_the_one_above_its_spot(void)
+{
+    himc_stroke any = {
+        .hand = HIMC_HAND_ANY, .nuance = HIMC_LEGATO, .dynamic = 0.5, .spot = HIMC_SPOT_NORMAL};
+    for (int i = 0; i < 4; i++) {
+        himc_hand above = i % 2 ? HIMC_RIGHT : HIMC_LEFT, aside = i % 2 ? HIMC_LEFT : HIMC_RIGHT;
+        double side = i % 2 ? -1 : 1, tilt = i < 2 ? 0 : 0.4, touch;
+        int drum;
+        use(120);
+        himc_planner_set_drum(planner, 0, &(himc_head_frame){{0.75, 0, 0.85}, tilt, 0.3});
+        himc_planner_reach(planner, 0, above, himc_vec3_make(0.55, 0.02 * side, 1.3));
+        himc_planner_reach(planner, 0, aside, himc_vec3_make(0.55, -0.25 * side, 0.9));
+        himc_planner_advance(planner, 2);
+        himc_planner_hit_at(planner, 2, &(himc_hit){&any, 0, 2.4, false});
+        TEST_ASSERT_TRUE(himc_planner_current(planner, above, 2, NULL, &drum, &touch));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.4, touch);
+    }
+}
+
 static void test_reach_arrives_and_stays(void)
 {
     himc_vec3 goal = {0.6, 0.2, 1.2};
@@ -467,6 +487,7 @@ int main(void)
     RUN_TEST(test_tempi_out_of_order_or_none_are_refused);
     RUN_TEST(test_stop_brings_the_tip_to_rest_and_play_resumes);
     RUN_TEST(test_hit_comes_within_a_quarter_second_from_rest);
+    RUN_TEST(test_a_hit_of_any_hand_is_played_by_the_one_above_its_spot);
     RUN_TEST(test_reach_arrives_and_stays);
     RUN_TEST(test_strokes_nearer_than_40_ms_or_on_no_drum_are_refused);
     RUN_TEST(test_stroke_added_while_playing_is_played);
