@@ -370,7 +370,8 @@ static void test_feet_of_a_seated_body_stand_on_the_floor(void)
     }
 }
 
-// the longest step that is allowed, and a usual one: the same motion, which ends at its goal and never goes past it
+// the longest step that is allowed, and a usual one: the same motion, which ends at its goal and
+// never goes past it
 static void test_a_trunk_posture_approaches_its_goal_in_steps_of_any_length(void)
 {
     himc_trunk_posture usual = {{0}, {0}, {0}}, goal = usual;

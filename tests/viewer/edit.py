@@ -285,11 +285,10 @@ def test_a_score_that_names_files_is_refused_when_confined():
         process = subprocess.run(
             [HIMC, "edit", "--confined", made("piece.txt", text)],
             capture_output=True,
-            text=True,
-            input="hello\n",
+            input=b"hello\n",
         )
-        assert process.returncode == 1 and process.stderr.count("\n") == 1, (text, process)
-        assert "names other files" in process.stderr, (text, process.stderr)
+        assert process.returncode == 1 and process.stderr.count(b"\n") == 1, (text, process)
+        assert b"names other files" in process.stderr, (text, process.stderr)
         assert read(victim) == b"PRECIOUS", text
     for text in (f"comment record {victim};{stroke}", f"{mark}{stroke} kettle shape circle;"):
         with Piece(HIMC, made("piece.txt", text), "--confined") as piece:
