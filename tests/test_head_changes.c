@@ -344,7 +344,7 @@ static void test_a_change_and_a_command_may_come_in_any_order(void)
                 if (line == k)
                     session_drum(p, 0, by_hand[i]);
                 else
-                    session_do(p, at[line - (line > k)]);
+                    session_do(p, "%s", at[line - (line > k)]);
             session_do(p, "play");
             read_all(p, sound[k], 0, LENGTH);
             himc_performance_free(p);

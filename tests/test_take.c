@@ -217,8 +217,8 @@ static void test_describe_lists_contents_units_and_axes(void)
         "length: 600 frames at 250 Hz",
         "points 2: Anna:R_Stick_Tip Anna:L_Stick_Tip\n",
         "units: mm, stated by the file\n",
-        "axes: z up, set by the user; rotated so that the left tip is left of "
-        "the right one\n",
+        ("axes: z up, set by the user; rotated so that the left tip is left of "
+         "the right one\n"),
         "gaps: 0 frames in 0 points\n",
         "tip: right is Anna:R_Stick_Tip, 0 frames in gaps are filled\n",
         "strikes: 15\n",
