@@ -207,6 +207,9 @@ static void himc_tilde_free(t_himc *x)
     free(x->x_state);
     himc_osc_free(x->x_osc);
     himc_loader_free(x->x_loader);
+    himc_error error;
+    if (x->x_performance && !himc_performance_end_recording(x->x_performance, &error))
+        pd_error(NULL, "himc~: %s", error.text);
     himc_performance_free(x->x_performance);
     clock_free(x->x_network);
     clock_free(x->x_load);

@@ -238,7 +238,20 @@ chmod +x "$himc"
 refuses test_full_disk_is_refused "x.wav: cannot be written: File too large" render piece.txt -o x.wav
 refuses test_full_disk_under_a_table_is_refused "x.csv: cannot be written: File too large" \
     render piece.txt -o /dev/null --motion x.csv
+for format in bvh trc c3d; do
+    echo old >"kept.$format"
+    echo "record kept.$format; stroke 1 right legato mf;" >record.txt
+    refuses "test_full_disk_under_a_recording_is_refused_$format" "record: $PWD/kept.$format: cannot be written: File too large" \
+        render record.txt -o /dev/null
+done
+check test_a_recording_that_cannot_be_written_leaves_the_old_file [ "$(cat kept.*)$(ls kept.* | wc -l)" = "old
+old
+old3" ]
 himc=$whole
+ln -s told.bvh record.bvh # to nothing yet
+echo "record record.bvh; stroke 1 right legato mf;" >record.txt
+"$himc" render record.txt -o /dev/null >/dev/null 2>&1
+check test_a_recording_through_a_link_changes_its_file [ -L record.bvh -a -s told.bvh ]
 refuses test_one_file_for_two_tables_is_refused "x.csv: named twice" \
     render piece.txt -o x.wav --strokes x.csv --motion x.csv
 ln -s target.csv link.csv # to nothing yet

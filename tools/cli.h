@@ -2,6 +2,7 @@
 #ifndef CLI_H
 #define CLI_H
 
+#include "base/file.h"
 #include "himc/performance.h"
 #include "himc/mocap.h"
 
@@ -70,15 +71,10 @@ int cli_finish(const cli_call *call);
 bool cli_count(const char *name, const char *text, int low, int high, const char *unit, int *out,
                himc_error *error);
 
-/// A file that appears under its name complete or not at all: it is written beside it and renamed
-/// in the end. "-" is the standard output, which gets all of it in the end. /dev/null is written
-/// directly; anything else but a regular file is refused.
-typedef struct cli_file {
-    char path[4096]; ///< "" when not wanted
-    char temp[4096]; ///< where it is written until kept; "" when written directly
-    FILE *stream;    ///< NULL when closed
-    bool standard;   ///< the standard output; `stream` is a nameless file until it is kept
-} cli_file;
+/// A file that appears under its name complete or not at all; an interrupted run leaves nothing of
+/// it. Its path is "" when it is not wanted, "-" for the standard output, which gets all of it in
+/// the end, until then kept in a nameless file.
+typedef himc_file_draft cli_file;
 
 /// Opens for writing; does nothing if `path` is NULL.
 bool cli_file_open(cli_file *file, const char *path, himc_error *error);

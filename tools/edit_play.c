@@ -203,7 +203,10 @@ static void play_on(player *p)
         play_cell(p);
     }
     scene_record_end(p->record, NULL);
-    himc_performance_free(p->performance); // writes a recording
+    himc_error error;
+    if (!himc_performance_end_recording(p->performance, &error))
+        cli_say("himc edit: %s\n", error.text);
+    himc_performance_free(p->performance);
     leave(p, "over", "");
 }
 

@@ -1,8 +1,4 @@
-/// file.c: a file that appears complete or not at all.
-///
-/// It is written as NAME.XXXXXX beside its final place, so that the rename stays on one file system
-/// and is atomic. An interrupted run removes its unfinished file. Symbolic links are followed, so
-/// that the link stays and its file changes.
+/// file.c: what a call reads and writes. An interrupted run removes its unfinished files.
 #define _XOPEN_SOURCE 700
 #include "base/file.h"
 #include "cli.h"
@@ -52,31 +48,6 @@ static void forget(const char *temp)
             unfinished[i] = NULL;
 }
 
-static bool file_error(const char *path, himc_error *error)
-{
-    return himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
-}
-
-/// A new file beside the final one, with the permissions the final one has or would get.
-static int open_beside(cli_file *file, mode_t mode)
-{
-    size_t length = strlen(file->path);
-    if (length + sizeof ".XXXXXX" > sizeof file->temp) {
-        errno = ENAMETOOLONG;
-        return -1;
-    }
-    memcpy(file->temp, file->path, length);
-    memcpy(file->temp + length, ".XXXXXX", sizeof ".XXXXXX");
-    int descriptor = mkstemp(file->temp);
-    if (descriptor < 0) {
-        file->temp[0] = '\0';
-        return -1;
-    }
-    remember(file->temp);
-    fchmod(descriptor, mode & 07777);
-    return descriptor;
-}
-
 bool cli_file_open(cli_file *file, const char *path, himc_error *error)
 {
     *file = (cli_file){0};
@@ -85,48 +56,25 @@ bool cli_file_open(cli_file *file, const char *path, himc_error *error)
     if (!path[0])
         return himc_error_set(error, "\"\": no file has an empty name");
     if (cli_is_standard(path)) {
-        file->standard = true;
         file->path[0] = '-';
         file->stream = tmpfile();
-        return file->stream || file_error("/tmp", error);
+        return file->stream ||
+               himc_error_set(error, "/tmp: cannot be written: %s", strerror(errno));
     }
-    struct stat status;
-    bool exists = !stat(path, &status);
-    mode_t mask = umask(0);
-    umask(mask);
-    char *real = exists ? himc_system_real_path(path) : himc_system_target(path);
-    int length = snprintf(file->path, sizeof file->path, "%s", real ? real : path);
-    free(real);
-    if (length >= (int)sizeof file->path)
-        return himc_error_set(error, "%.64s...: the name is too long, allowed %zu bytes", path,
-                              sizeof file->path - 1);
-    if (exists && S_ISREG(status.st_mode) && access(file->path, W_OK))
-        return file_error(path, error);
-    if (exists && !S_ISREG(status.st_mode)) {
-        file->stream = himc_file_write(path, HIMC_FILE_REPLACE, error);
-        return file->stream != NULL;
-    }
-    int descriptor = open_beside(file, exists ? status.st_mode : 0666 & ~mask);
-    if (descriptor < 0)
-        return file_error(path, error);
-    file->stream = fdopen(descriptor, "wb");
-    return file->stream || file_error(path, error);
+    if (!himc_file_draft_open(file, path, error))
+        return false;
+    if (file->temp[0])
+        remember(file->temp);
+    return true;
 }
 
 bool cli_file_close(cli_file *file, himc_error *error)
 {
-    if (!file->stream || file->standard)
+    if (cli_is_standard(file->path))
         return true;
-    errno = 0;
-    bool bad = fflush(file->stream) || ferror(file->stream);
-    bad |= fclose(file->stream) != 0;
-    file->stream = NULL;
-    if (!bad)
+    if (himc_file_draft_close(file, error))
         return true;
-    if (!errno)
-        errno = EIO;
-    file_error(file->path, error);
-    cli_file_drop(file);
+    forget(file->temp);
     return false;
 }
 
@@ -147,30 +95,17 @@ static bool copy_out(cli_file *file, himc_error *error)
 
 bool cli_file_keep(cli_file *file, himc_error *error)
 {
-    if (file->standard && file->stream)
+    if (cli_is_standard(file->path) && file->stream)
         return copy_out(file, error);
-    if (!file->temp[0])
-        return true;
-    if (!himc_system_rename(file->temp, file->path)) {
-        file_error(file->path, error);
-        cli_file_drop(file);
-        return false;
-    }
+    bool good = himc_file_draft_keep(file, error);
     forget(file->temp);
-    file->temp[0] = '\0';
-    return true;
+    return good;
 }
 
 void cli_file_drop(cli_file *file)
 {
-    if (file->stream)
-        fclose(file->stream);
-    file->stream = NULL;
-    if (!file->temp[0])
-        return;
-    unlink(file->temp);
+    himc_file_draft_drop(file);
     forget(file->temp);
-    file->temp[0] = '\0';
 }
 
 // the folder that a file is or will be in; returns the file's own name
@@ -263,7 +198,7 @@ const char *cli_input(const char *operand, himc_error *error)
     int descriptor = himc_system_temporary(input, sizeof input, suffix_of(bytes, size));
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     if (!file) {
-        file_error(input, error);
+        himc_error_set(error, "%s: cannot be written: %s", input, strerror(errno));
         return NULL;
     }
     remember(input);

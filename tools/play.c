@@ -153,6 +153,7 @@ static bool play(const cli_arguments *arguments, himc_error *error)
                seconds > 0 ? o.busy / seconds : 0);
         Pa_CloseStream(stream);
     }
+    good = good && himc_performance_end_recording(p, error);
     himc_performance_free(p);
     return good;
 }

@@ -533,8 +533,10 @@ static int run(const cli_arguments *arguments)
     }
     double elapsed = play(&r, &wanted), seconds = (double)r.ending.samples / wanted.rate;
     himc_performance_stats stats = himc_performance_measure(r.performance);
-    bool good = compare(&r, &wanted, &error) && keep_files(&r, &wanted, &error),
-         piped = r.wav.standard || r.strokes.standard || r.motion.standard,
+    bool good = compare(&r, &wanted, &error) && keep_files(&r, &wanted, &error) &&
+                himc_performance_end_recording(r.performance, &error),
+         piped = cli_is_standard(r.wav.path) || cli_is_standard(r.strokes.path) ||
+                 cli_is_standard(r.motion.path),
          json = arguments->value[JSON] || !isatty(STDOUT_FILENO);
     double peak = r.ending.peak;
     close_all(&r);

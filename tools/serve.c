@@ -197,7 +197,8 @@ static int run(const cli_arguments *arguments)
     fflush(stdout);
     punctuality p = serve(&s);
     himc_osc_counts c = himc_osc_count(s.osc);
-    bool kept = !s.record || end_record(&s, &error);
+    bool kept = (!s.record || end_record(&s, &error)) &&
+                (!s.performance || himc_performance_end_recording(s.performance, &error));
     close_server(&s);
     if (!kept)
         return cli_fail(&cli_serve, "%s", error.text);

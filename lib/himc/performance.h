@@ -32,8 +32,13 @@ typedef struct himc_performance himc_performance;
 
 /// A performer at rest, without drums. NULL with the reason: a rate out of its range, or no memory.
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error);
-/// Frees it, and its references to drums. A recording under way is written first. NULL is allowed.
+/// Frees it, and its references to drums. A recording under way is written first, without a word
+/// if it cannot: himc_performance_end_recording says so. NULL is allowed.
 void himc_performance_free(himc_performance *performance);
+
+/// Writes a recording under way and ends it, as `record stop`. True also if there is none. False
+/// with the reason: it cannot be written, and goes on.
+bool himc_performance_end_recording(himc_performance *performance, himc_error *error);
 
 /// Adds a drum (retained), or replaces the one of the same name. Strokes without a drum's name go
 /// to the first drum; a performer without drums plays on a silent one. False with the reason:

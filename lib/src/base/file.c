@@ -5,15 +5,21 @@
 /// and the opened descriptor is asked for its kind, not the name. Invariant: a file is cut only
 /// after it is known to be regular.
 ///
+/// A draft is NAME.XXXXXX beside its final place, so that the rename stays on one file system and
+/// is atomic.
+///
 /// A name from the network must stand for a file in a folder (himc_system_open_inside).
 #define _POSIX_C_SOURCE 200809L // descriptors
 #include "base/file.h"
 #include "system/files.h"
 
 #include <errno.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#define MOST_TRIES 100 // of a name that nobody has; chosen
 
 // what stands under a name instead of a regular file; NULL for a regular one
 static const char *other_kind(const struct stat *status)
@@ -96,6 +102,99 @@ FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *e
     return stream;
 }
 
+static bool cannot_write(const char *path, himc_error *error)
+{
+    return himc_error_set(error, "%s: cannot be written: %s", path,
+                          strerror(errno ? errno : EIO));
+}
+
+// a new file, with the permissions of the one that it is to replace; -1 with errno
+static int open_beside(himc_file_draft *draft, const struct stat *old)
+{
+    static atomic_uint made;
+    int file = -1;
+    for (int tries = 0; file < 0 && tries < MOST_TRIES && (tries == 0 || errno == EEXIST); tries++) {
+        int length = snprintf(draft->temp, sizeof draft->temp, "%s.%06x", draft->path,
+                              ((unsigned)getpid() * 0x9e37u + made++) & 0xffffffu);
+        errno = ENAMETOOLONG;
+        if (length < (int)sizeof draft->temp)
+            file = himc_system_open(draft->temp,
+                                    O_CREAT | O_EXCL | O_WRONLY | O_BINARY | O_CLOEXEC);
+    }
+    if (file < 0)
+        draft->temp[0] = '\0';
+    else if (old)
+        fchmod(file, old->st_mode & 07777);
+    return file;
+}
+
+bool himc_file_draft_open(himc_file_draft *draft, const char *path, himc_error *error)
+{
+    *draft = (himc_file_draft){0};
+    struct stat old;
+    bool exists = stat(path, &old) == 0;
+    if (exists && !S_ISREG(old.st_mode)) {
+        draft->stream = himc_file_write(path, HIMC_FILE_REPLACE, error);
+        snprintf(draft->path, sizeof draft->path, "%s", path);
+        return draft->stream != NULL;
+    }
+    char *real = exists ? himc_system_real_path(path) : himc_system_target(path);
+    int length = snprintf(draft->path, sizeof draft->path, "%s", real ? real : path);
+    free(real);
+    if (length >= (int)sizeof draft->path)
+        return himc_error_set(error, "%.64s...: the name is too long, allowed %zu bytes", path,
+                              sizeof draft->path - 1);
+    if (exists && access(draft->path, W_OK) != 0)
+        return cannot_write(path, error);
+    int file = open_beside(draft, exists ? &old : NULL);
+    draft->stream = file < 0 ? NULL : fdopen(file, "wb");
+    if (draft->stream)
+        return true;
+    cannot_write(path, error);
+    if (file >= 0)
+        close(file);
+    himc_file_draft_drop(draft);
+    return false;
+}
+
+bool himc_file_draft_close(himc_file_draft *draft, himc_error *error)
+{
+    if (!draft->stream)
+        return true;
+    errno = 0;
+    bool bad = fflush(draft->stream) != 0 || ferror(draft->stream);
+    bad |= fclose(draft->stream) != 0;
+    draft->stream = NULL;
+    if (!bad)
+        return true;
+    cannot_write(draft->path, error);
+    himc_file_draft_drop(draft);
+    return false;
+}
+
+bool himc_file_draft_keep(himc_file_draft *draft, himc_error *error)
+{
+    if (!draft->temp[0])
+        return true;
+    if (!himc_system_rename(draft->temp, draft->path)) {
+        cannot_write(draft->path, error);
+        himc_file_draft_drop(draft);
+        return false;
+    }
+    draft->temp[0] = '\0';
+    return true;
+}
+
+void himc_file_draft_drop(himc_file_draft *draft)
+{
+    if (draft->stream)
+        fclose(draft->stream);
+    draft->stream = NULL;
+    if (draft->temp[0])
+        unlink(draft->temp);
+    draft->temp[0] = '\0';
+}
+
 // the whole stream, at most some bytes more than `most`; NULL with errno
 static char *read_all(FILE *stream, size_t most, size_t *size)
 {
@@ -158,13 +257,12 @@ typedef struct write_job {
 static bool write_lines(himc_job *job, himc_error *error)
 {
     write_job *j = (write_job *)job;
-    FILE *stream = himc_file_write(j->path, HIMC_FILE_REPLACE, error);
-    if (!stream)
-        return himc_error_prefix(error, "%s", j->command);
-    bool good = fwrite(j->lines.bytes, 1, j->lines.size, stream) == j->lines.size;
-    good = fclose(stream) == 0 && good;
-    return good || himc_error_set(error, "%s: %s: cannot be written: %s", j->command, j->path,
-                                  strerror(errno));
+    himc_file_draft draft;
+    bool good = himc_file_draft_open(&draft, j->path, error);
+    if (good)
+        fwrite(j->lines.bytes, 1, j->lines.size, draft.stream);
+    good = good && himc_file_draft_close(&draft, error) && himc_file_draft_keep(&draft, error);
+    return good || himc_error_prefix(error, "%s", j->command);
 }
 
 static himc_job_state lines_written(himc_job *job, himc_error *error)

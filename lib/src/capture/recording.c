@@ -16,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
@@ -56,15 +55,11 @@ static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
 // the contents of an existing file stay until there is something to write
 static bool check_path(const char *path, himc_error *error)
 {
-    if (!himc_take_can_save(path, error))
-        return false;
-    bool existed = access(path, F_OK) == 0;
-    FILE *file = himc_file_write(path, HIMC_FILE_CONTINUE, error);
-    if (file)
-        fclose(file);
-    if (!existed)
-        remove(path);
-    return file != NULL;
+    himc_file_draft draft;
+    bool good = himc_take_can_save(path, error) && himc_file_draft_open(&draft, path, error);
+    if (good)
+        himc_file_draft_drop(&draft);
+    return good;
 }
 
 himc_recording *himc_recording_new(const char *path, const himc_skeleton *skeleton, double rate,

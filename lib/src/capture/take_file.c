@@ -8,7 +8,6 @@
 #include "capture/take.h"
 #include "capture/take_text.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -166,16 +165,11 @@ bool himc_take_save(const himc_take *take, const char *path, himc_error *error)
 {
     if (!himc_take_can_save(path, error))
         return false;
-    const format *f = find_format(path);
-    FILE *file = himc_file_write(path, HIMC_FILE_REPLACE, error);
-    if (!file)
+    himc_file_draft draft;
+    if (!himc_file_draft_open(&draft, path, error))
         return false;
-    errno = 0;
-    bool good = f->write(file, take, error), lost = ferror(file);
-    lost = fclose(file) != 0 || lost;
-    if (good && lost)
-        himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno ? errno : EIO));
-    if (!good || lost)
-        remove(path);
-    return good && !lost;
+    if (find_format(path)->write(draft.stream, take, error))
+        return himc_file_draft_close(&draft, error) && himc_file_draft_keep(&draft, error);
+    himc_file_draft_drop(&draft);
+    return false;
 }

@@ -242,8 +242,10 @@ void himc_performance_tell_tick(himc_performance *p, double t)
     record(p, t);
 }
 
-bool himc_performance_write_recording(himc_performance *p, himc_error *error)
+bool himc_performance_end_recording(himc_performance *p, himc_error *error)
 {
+    if (!p->recording.file)
+        return true;
     if (!himc_recording_write(p->recording.file, error))
         return himc_error_prefix(error, "record");
     note_written(p, p->recording.file);

@@ -172,8 +172,7 @@ void himc_performance_free(himc_performance *p)
     if (!p)
         return;
     himc_drums_release(&p->drums);
-    if (p->recording.file)
-        himc_performance_write_recording(p, NULL);
+    himc_performance_end_recording(p, NULL);
     himc_performance_drop_recording(p);
     free_written(&p->written);
     free_parts(&(made_parts){p->motion, p->body});
@@ -188,7 +187,7 @@ bool himc_performance_reset(himc_performance *p, himc_error *error)
         return himc_error_prefix(error, "reset");
     if (p->recording.file && himc_recording_frames(p->recording.file) == 0)
         himc_performance_drop_recording(p); // nothing to write
-    if (p->recording.file && !himc_performance_write_recording(p, error)) {
+    if (!himc_performance_end_recording(p, error)) {
         free_parts(&fresh);
         return himc_error_prefix(error, "reset");
     }

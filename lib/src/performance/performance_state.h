@@ -81,8 +81,6 @@ typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc
 HIMC_RT void himc_performance_take_energy(himc_performance *p);
 /// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
-/// Writes the recording, reports it and ends it. If it cannot be written it continues.
-bool himc_performance_write_recording(himc_performance *p, himc_error *error);
 void himc_performance_drop_recording(himc_performance *p);
 /// True if `record FILE`, `record stop` or `rate` is allowed while recording, or while not.
 bool himc_performance_allows(bool recording, const himc_command *command, himc_error *error);
