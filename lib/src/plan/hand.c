@@ -343,6 +343,12 @@ static bool is_possible(const stroke_plan *s, const himc_goal *goal)
     return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HARDEST_MOVE) <= T;
 }
 
+double himc_hand_leap_time(double way)
+{
+    double T = MOVE_MARGIN * himc_move_time(way, HARDEST_MOVE);
+    return HIMC_CONTACT_TIME + T + absorb_time(T);
+}
+
 bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
 {
     stroke_plan s = frame_at(plan, t, goal->spot, goal->normal);

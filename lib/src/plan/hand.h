@@ -81,6 +81,9 @@ HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *g
 /// True if the tip could do so if its plan were cut at t.
 HIMC_RT bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal);
 
+/// Time from a touch to one so far away (m) on another head, in the greatest hurry (s).
+HIMC_RT double himc_hand_leap_time(double way);
+
 /// True if the tip can reach the second goal so after it has played the first.
 HIMC_RT bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second);
 

@@ -48,6 +48,7 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
     planner->config = *config;
     for (int i = 0; i < HIMC_DRUMS; i++)
         planner->drum[i] = (himc_head_frame){{0.75, 0, 0.85}, 0, 0.2921};
+    planner->score.drum = planner->drum;
     himc_planner_motion_init(planner);
     return planner;
 }
@@ -60,6 +61,16 @@ void himc_planner_free(himc_planner *planner)
     free(planner);
 }
 
+/// Rolls are about to change at t, with the tempo or what follows them: what of a roll is not
+/// planned yet is counted anew. Returns what himc_planner_score_keep needs.
+static double before_change(himc_planner *planner, double t)
+{
+    if (!planner->score.playing || planner->score.roll_count == 0)
+        return 0;
+    himc_planner_cut_both(planner, t);
+    return himc_planner_score_anchor(&planner->score);
+}
+
 bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place)
 {
     if (index < 0 || index >= HIMC_DRUMS || !himc_vec3_finite(place->center) ||
@@ -67,10 +78,12 @@ bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_fra
         return false;
     if (planner->known[index] && himc_head_frame_equal(&planner->drum[index], place))
         return true;
+    double t = planner->now + PLANNER_AHEAD, anchor = before_change(planner, t);
     planner->drum[index] = *place;
     planner->known[index] = true;
+    himc_planner_score_keep(&planner->score, anchor);
     himc_planner_rest_again(planner);
-    himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
+    himc_planner_replan(planner, t);
     return true;
 }
 
@@ -168,13 +181,20 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     int at = himc_planner_score_place(score, stroke, drum, error);
     if (at < 0)
         return false;
-    if (score->playing && !score->empties)
+    bool running = score->playing && !score->empties;
+    double t = planner->now + PLANNER_AHEAD;
+    if (running)
         himc_planner_rebase(planner, planner->now);
+    double anchor = running ? before_change(planner, t) : 0;
     himc_planner_score_insert(score, at, stroke, drum);
     himc_planner_inserted(planner, stroke->hand, at);
     himc_planner_rest_again(planner);
-    if (score->playing && !score->empties)
-        fit_in(planner, stroke->hand, at);
+    if (!running)
+        return true;
+    himc_planner_score_keep(score, anchor);
+    fit_in(planner, stroke->hand, at);
+    if (score->roll_count > 0)
+        himc_planner_replan(planner, t);
     return true;
 }
 
@@ -208,17 +228,6 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     return himc_planner_roll_left_out(score, at);
 }
 
-/// The tempo is about to change at t: what of a roll is not planned yet is counted anew. Returns
-/// what himc_planner_score_keep needs.
-static double before_tempo(himc_planner *planner, double t)
-{
-    himc_planner_rebase(planner, t);
-    if (!planner->score.playing || planner->score.roll_count == 0)
-        return 0;
-    himc_planner_cut_both(planner, t);
-    return himc_planner_score_anchor(&planner->score);
-}
-
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                             himc_error *error)
 {
@@ -227,7 +236,8 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     if (!copy)
         return false;
     double t = planner->now + PLANNER_AHEAD, beat = himc_planner_score_beat_at(score, t);
-    double anchor = before_tempo(planner, t);
+    himc_planner_rebase(planner, t);
+    double anchor = before_change(planner, t);
     himc_planner_score_take_tempi(score, copy, count);
     if (score->playing) {
         himc_planner_score_hold(score, t, beat);
@@ -319,6 +329,10 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
         if (!rests_the_same(planner, (himc_hand)hand, fresh) ||
             (score->playing && !may_exchange(planner, (himc_hand)hand, &fresh->part[hand])))
             return false;
+    planner_score with_fresh = *score; // at the drums' places
+    memcpy(with_fresh.part, fresh->part, sizeof fresh->part);
+    if (!himc_planner_roll_same_places(score, &with_fresh))
+        return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_planner_score_exchange(&score->part[hand], &fresh->part[hand]);
     himc_planner_rest_again(planner);
@@ -438,7 +452,8 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
     double beat = score->playing ? himc_planner_score_beat_at(score, t) : score->beat;
-    double anchor = before_tempo(planner, t);
+    himc_planner_rebase(planner, t);
+    double anchor = before_change(planner, t);
     himc_planner_score_set_tempo(score, beat, bpm);
     if (!score->playing)
         return;

@@ -16,6 +16,7 @@
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_motion.h"
 #include "plan/bounce.h"
+#include "plan/planner_roll.h"
 #include "base/format.h"
 
 #include <string.h>
@@ -38,11 +39,6 @@
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
-
-// of the time to the hand's next stroke, at most; chosen: contacts of a double roll are even, and a
-// buzz ends when the other hand has struck
-#define DOUBLE_SHARE 0.25
-#define BUZZ_SHARE 0.55
 
 // the goal; chosen: a unit of another spot further off than any of another speed, of another grip
 // further still
@@ -179,7 +175,7 @@ static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t)
     if (stroke->bounces == 0 || s->index < 0 ||
         !himc_planner_score_next(&planner->score, stroke->hand, 1, &after))
         return;
-    double share = stroke->bounces == HIMC_BUZZ ? BUZZ_SHARE : DOUBLE_SHARE;
+    double share = himc_planner_bounce_share(stroke->bounces);
     stroke->bounce_time = fmin(stroke->bounce_time, share * fmax(after.time - t, 0));
 }
 

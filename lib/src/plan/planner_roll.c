@@ -4,11 +4,21 @@
 ///
 ///     t_j = t_k + (j - k + d_j) s,   s = (t_end - t_k) / n,   n = round(rate (t_end - t_k))
 ///
-/// with k = 0, t_k the roll's first beat and an even n while the tempo does not change; then what
-/// follows begins with the right hand again. When it changes in the roll, k is the last stroke that
-/// is planned already and n is counted anew, so the rate stays and nothing jumps. A stroke too near
-/// to another one of its hand is left out; a roll ends where the next one begins. Invariant: a
-/// place (roll, number) means the same stroke as long as the tempo and the score stay.
+/// with k = 0 and t_k the roll's first beat while the tempo does not change. When it changes in the
+/// roll, k is the last stroke that is planned already and n is counted anew, so the rate stays and
+/// nothing jumps. A stroke too near to another one of its hand is left out; a roll ends where the
+/// next one begins.
+///
+/// A roll is joined to what follows it. t_end is x before the first touch after it, which may be a
+/// grace note. With k + n even the last stroke is of the second hand, else of the first one. A
+/// player ends with the hand that has less to do next, and a little earlier where a hand must go to
+/// another drum:
+///
+///     x = max(0, need_h - (t_h - t_first) - i_h s - s),   i_h = 0 for the last hand, else 1
+///
+/// over both hands h, t_h the next touch of h and need_h the time that it takes after one of the
+/// roll. Of both n the one with the smaller x is taken. Invariant: a place (roll, number) means the
+/// same stroke as long as the tempo, the score and the places of the drums stay.
 ///
 /// The strokes of a player are not quite even. Those of a machine would make a roll up to 10 dB
 /// louder where a mode has whole periods between two strokes than where it has half a period more,
@@ -18,7 +28,10 @@
 ///
 /// even in -w/2 .. w/2 and 0 on the beat. From j to j + i it changes by 2 a i j + a i^2 (mod 1), so
 /// for every i the differences are even too: the strokes add up in energy, in long rolls and short.
+#include "plan/hand.h"
+#include "plan/planner_part.h"
 #include "plan/planner_roll.h"
+#include "plan/sticking.h"
 
 #include <limits.h>
 #include <math.h>
@@ -33,8 +46,19 @@
 #define MOST_ROLLS 100000               // chosen: no score has as many strokes
 #define NO_ROUND INT_MIN                // in which no roll is anchored
 
+// the join to what follows; chosen
+#define JOINED_TIME 1.0    // what comes later after a roll's end does not hurry (s)
+#define LEAST_STEP 0.9     // of the mean: interval of a short roll
+#define JOIN_GAIN 1e-6     // a roll that would end earlier by less does not (s)
+#define GRACE_ROOM 0.1     // before a grace note: it is soft (s)
+#define MOST_HELD_BACK 0.5 // of an interval: so much a roll ends earlier for a stroke's strength
+#define MOST_JOIN 0.5      // of the roll: where a leap takes more it fails
+#define ANCHOR_BEND 0.25   // a changed interval differs by this share at most, for the last hand
+#define JOIN_ROUNDS 3      // of step and x, which depend on each other
+
 /// The strokes of a roll in a round, in time from the round's beginning.
 typedef struct roll_grid {
+    himc_hand lead;     ///< hand of its first stroke, number 0
     int first;          ///< number of the stroke ...
     double begin, step; ///< ... at this time, and time from stroke to stroke (s)
     int count;          ///< one more than the last number
@@ -52,35 +76,178 @@ double himc_planner_roll_end(const planner_score *score, int i)
     return i + 1 < score->roll_count ? fmin(end, r[1].stroke.beat) : end;
 }
 
+/// What a hand has to play after a roll.
+typedef struct roll_next {
+    double time; ///< of its touch, from the round's beginning (s); infinite: nothing soon
+    double leap; ///< time that it needs after a touch of the roll (s)
+    double calm; ///< time with which it is as strong as after a pause (intervals); 0: any
+    bool grace;  ///< it is a grace note
+} roll_next;
+
+static himc_vec3 spot_of(const planner_score *score, const himc_stroke *stroke, int drum)
+{
+    double x, y;
+    himc_stroke_spot(stroke, score->drum[drum].radius, &x, &y);
+    return himc_head_frame_to_world(&score->drum[drum], x, y);
+}
+
+/// The way from a roll to a stroke on another drum (m).
+static himc_vec3 way_to(const planner_score *score, const planner_roll *from,
+                        const himc_stroke *stroke, int drum)
+{
+    if (!score->drum || drum == from->drum)
+        return (himc_vec3){0, 0, 0};
+    return himc_vec3_sub(spot_of(score, stroke, drum), spot_of(score, &from->stroke, from->drum));
+}
+
+static himc_hand other_hand(himc_hand hand)
+{
+    return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
+}
+
+/// True if a hand on that way would cross the other one.
+static bool crosses(himc_hand hand, himc_vec3 way)
+{
+    return hand == HIMC_LEFT ? way.y < -HIMC_STICKING_CROSS : way.y > HIMC_STICKING_CROSS;
+}
+
+/// The right hand begins, but not where a roll goes on from there on a drum to the left.
+static himc_hand lead_of(const planner_score *score, int i)
+{
+    const planner_roll *r = &score->roll[i], *before = r - 1;
+    if (i == 0 || seconds_to(score, r->stroke.beat) >
+                      seconds_to(score, himc_planner_roll_end(score, i - 1)) + JOINED_TIME)
+        return HIMC_RIGHT;
+    himc_vec3 way = way_to(score, before, &r->stroke, r->drum);
+    return crosses(HIMC_RIGHT, way) ? HIMC_LEFT : HIMC_RIGHT;
+}
+
+/// The time of a leap from a roll (s).
+static double leap_time(const planner_roll *from, himc_vec3 way)
+{
+    double length = himc_vec3_length(way), share = himc_planner_bounce_share(from->stroke.bounces);
+    return length > 0 ? himc_hand_leap_time(length) / (1 - share) : 0;
+}
+
+/// The first stroke of a list after the roll; a hand that would have to cross the other one leaves
+/// it to that one.
+static void listed_next(const planner_score *score, int i, roll_next next[HIMC_HANDS])
+{
+    const planner_roll *r = &score->roll[i];
+    double end = himc_planner_roll_end(score, i), latest = seconds_to(score, end) + JOINED_TIME;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_part *part = &score->part[hand];
+        int at = himc_planner_part_after(part, end - BEAT_ROUNDING, true);
+        const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
+        double time = s ? seconds_to(score, s->beat) - s->early : HUGE_VAL;
+        if (time > latest)
+            continue;
+        himc_vec3 way = way_to(score, r, s, part->list[at].drum);
+        himc_hand by = (himc_hand)hand;
+        by = crosses(by, way) ? other_hand(by) : by;
+        if (time < next[by].time)
+            next[by] = (roll_next){time, leap_time(r, way), 2, s->early > 0};
+    }
+}
+
+/// The same of the next roll.
+static void rolled_next(const planner_score *score, int i, roll_next next[HIMC_HANDS])
+{
+    const planner_roll *r = &score->roll[i];
+    if (i + 1 == score->roll_count)
+        return;
+    double first = seconds_to(score, r[1].stroke.beat),
+           latest = seconds_to(score, himc_planner_roll_end(score, i)) + JOINED_TIME,
+           leap = leap_time(r, way_to(score, r, &r[1].stroke, r[1].drum));
+    himc_hand lead = lead_of(score, i + 1);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        double time = first + ((himc_hand)hand == lead ? 0 : LEAST_STEP / r[1].rate);
+        if (time <= latest && time < next[hand].time)
+            next[hand] = (roll_next){.time = time, .leap = leap};
+    }
+}
+
+/// How much more than a step there is from the last stroke to what follows at `first` (s).
+static double join_of(const roll_next next[HIMC_HANDS], double first, double step, int last)
+{
+    double extra = 0, calm = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const roll_next *n = &next[hand];
+        double has = n->time - first + (hand == last ? 1 : 2) * step;
+        double wanted = n->grace ? fmin(GRACE_ROOM, n->calm * step) : n->calm * step;
+        if (n->leap > 0)
+            extra = fmax(extra, n->leap + UNEVENNESS * step - has);
+        calm = fmax(calm, wanted - has);
+    }
+    extra = fmax(extra, fmin(calm, MOST_HELD_BACK * step));
+    return extra < JOIN_GAIN ? 0 : extra; // of rounding
+}
+
+/// The nearest count of intervals to `n` with which that hand has the last stroke.
+static double count_for(double n, const roll_grid *g, int last)
+{
+    int odd = (g->first + ((himc_hand)last == g->lead)) % 2;
+    return fmax(2 * round(0.5 * (n - odd)) + odd, odd ? 1 : 2);
+}
+
+/// The end of a grid that begins so, in its place, with a last stroke of that hand; returns by how
+/// much it ends before what follows (s).
+static double end_with(roll_grid *g, const roll_next next[HIMC_HANDS], double first, double rate,
+                       int last)
+{
+    double span = first - g->begin, extra = 0, n = count_for(rate * span, g, last);
+    for (int i = 0; i < JOIN_ROUNDS; i++) {
+        g->step = (span - extra) / n;
+        extra = fmin(join_of(next, first, g->step, last), MOST_JOIN * span);
+        n = i ? n : count_for(rate * (span - extra), g, last);
+    }
+    g->step = (span - extra) / n;
+    g->count = g->first + (int)n;
+    return extra;
+}
+
+/// How far the intervals are from those of its rate, as a share of the longer ones.
+static double bend_of(const roll_grid *g, double rate)
+{
+    return fabs(log(g->step * rate));
+}
+
 static roll_grid grid_of(const planner_score *score, int i, int in_round)
 {
     const planner_roll *r = &score->roll[i];
     const planner_anchor *a = &score->anchor;
-    double end = seconds_to(score, himc_planner_roll_end(score, i));
-    roll_grid g = {.begin = seconds_to(score, r->stroke.beat)};
+    double first = seconds_to(score, himc_planner_roll_end(score, i));
+    roll_grid g = {.lead = lead_of(score, i), .begin = seconds_to(score, r->stroke.beat)};
+    roll_next next[HIMC_HANDS] = {{.time = HUGE_VAL}, {.time = HUGE_VAL}};
     bool anchored = a->any && a->roll == i && a->round == in_round;
     if (anchored) {
         g.first = a->number;
         g.begin = a->time;
     }
-    double span = end - g.begin, n = r->rate * span;
-    if (!(span > 0))
-        return (roll_grid){g.first, g.begin, 1, anchored ? g.first + 1 : 0};
-    n = fmax(anchored ? round(n) : 2 * round(0.5 * n), 1);
-    g.step = span / n;
-    g.count = g.first + (int)n;
-    return g;
+    listed_next(score, i, next);
+    rolled_next(score, i, next);
+    first = fmin(first, fmin(next[HIMC_LEFT].time, next[HIMC_RIGHT].time));
+    if (!(first > g.begin))
+        return (roll_grid){g.lead, g.first, g.begin, 1, anchored ? g.first + 1 : 0};
+    roll_grid left = g, right = g;
+    double extra = end_with(&left, next, first, r->rate, HIMC_LEFT),
+           other = end_with(&right, next, first, r->rate, HIMC_RIGHT);
+    double bent = bend_of(&left, r->rate), other_bent = bend_of(&right, r->rate);
+    bool too_bent = anchored && fmax(bent, other_bent) > ANCHOR_BEND;
+    if (r->rate * (first - g.begin) < 1 || too_bent)
+        return other_bent < bent ? right : left;
+    return other < extra ? right : left;
 }
 
-static himc_hand hand_of(int number)
+static himc_hand hand_of(const roll_grid *g, int number)
 {
-    return number % 2 ? HIMC_LEFT : HIMC_RIGHT;
+    return number % 2 ? other_hand(g->lead) : g->lead;
 }
 
 /// The first number of a hand from that one on.
-static int own_number(himc_hand hand, int number)
+static int own_number(const roll_grid *g, himc_hand hand, int number)
 {
-    return hand == HIMC_HAND_ANY || hand_of(number) == hand ? number : number + 1;
+    return hand == HIMC_HAND_ANY || hand_of(g, number) == hand ? number : number + 1;
 }
 
 /// Time of a stroke from the round's beginning (s).
@@ -113,7 +280,7 @@ static himc_stroke stroke_at(const planner_score *score, int i, const roll_grid 
     const himc_stroke *roll = &score->roll[i].stroke;
     himc_stroke s = *roll;
     double share = g->count > 1 ? (double)number / (g->count - 1) : 0;
-    s.hand = hand_of(number);
+    s.hand = hand_of(g, number);
     s.beat = beat_of(score, i, g, number);
     if (g->first > 0) // numbers are no longer even over the roll
         share = (s.beat - roll->beat) / (beat_of(score, i, g, g->count - 1) - roll->beat);
@@ -198,7 +365,7 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_r
             return false;
         for (; at->roll < score->roll_count; at->roll++, at->number = 0) {
             roll_grid g = grid_of(score, at->roll, at->round);
-            at->number = own_number(hand, at->number);
+            at->number = own_number(&g, hand, at->number);
             for (; at->number < g.count; at->number += 2) {
                 due->stroke = stroke_at(score, at->roll, &g, at->number);
                 if (is_left_out(score, &due->stroke))
@@ -230,7 +397,7 @@ void himc_planner_roll_from(planner_score *score, himc_hand hand, int in_round, 
     planner_roll_place *at = &score->part[hand].rolls;
     for (int i = 0; i < score->roll_count; i++) {
         roll_grid g = grid_of(score, i, in_round);
-        int number = own_number(hand, number_after(&g, t));
+        int number = own_number(&g, hand, number_after(&g, t));
         *at = (planner_roll_place){i, number, in_round};
         if (number < g.count)
             return;
@@ -252,7 +419,7 @@ void himc_planner_roll_anchor(planner_score *score)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_roll_place *own = &score->part[hand].rolls;
         bool within = own->roll == at.roll && own->round == at.round;
-        int next = own_number((himc_hand)hand, within ? own->number : g.count);
+        int next = own_number(&g, (himc_hand)hand, within ? own->number : g.count);
         planned = next - 2 > planned ? next - 2 : planned;
     }
     if (planned < 0)
@@ -288,6 +455,25 @@ static int last_begun(const planner_score *score, double beat)
     return low - 1;
 }
 
+double himc_planner_roll_since(const planner_score *score, double beat)
+{
+    double before, after;
+    int begun = last_begun(score, beat - BEAT_ROUNDING);
+    himc_planner_roll_near(score, HIMC_HAND_ANY, beat, &before, &after);
+    bool over = begun >= 0 && himc_planner_roll_end(score, begun) <= beat + BEAT_ROUNDING;
+    return over ? fmin(before, score->roll[begun].stroke.beat) : before;
+}
+
+bool himc_planner_roll_same_places(const planner_score *a, const planner_score *b)
+{
+    bool same = a->roll_count == b->roll_count;
+    for (int i = 0; i < a->roll_count && same; i++) {
+        roll_grid g = grid_of(a, i, NO_ROUND), h = grid_of(b, i, NO_ROUND);
+        same = g.count == h.count && g.begin == h.begin && g.step == h.step;
+    }
+    return same;
+}
+
 void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat, double *before,
                             double *after)
 {
@@ -296,7 +482,7 @@ void himc_planner_roll_near(const planner_score *score, himc_hand hand, double b
     for (int i = first; i < score->roll_count && i <= begun + 1; i++) {
         roll_grid g = grid_of(score, i, NO_ROUND);
         int at = number_after(&g, seconds_to(score, beat)), from = at < 4 ? 0 : at - 4;
-        for (int k = own_number(hand, from); k < g.count && k < at + 4;
+        for (int k = own_number(&g, hand, from); k < g.count && k < at + 4;
              k += hand == HIMC_HAND_ANY ? 1 : 2) {
             double own = beat_of(score, i, &g, k);
             if (own < beat - BEAT_ROUNDING)
@@ -329,7 +515,7 @@ bool himc_planner_roll_back(const planner_score *score, planner_roll_place *at, 
         if (at->number == 0)
             continue;
         *beat = beat_of(score, at->roll, &g, at->number - 1);
-        *hand = hand_of(at->number - 1);
+        *hand = hand_of(&g, at->number - 1);
         return true;
     }
     return false;

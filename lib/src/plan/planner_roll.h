@@ -7,6 +7,16 @@
 
 /// A buzz of a press roll lasts so many strokes. Chosen: the hands overlap.
 #define PLANNER_PRESS_OVERLAP 1.1
+/// Bounces take so much of the time to the hand's next stroke, at most. Chosen: contacts of a
+/// double roll are even ...
+#define PLANNER_DOUBLE_SHARE 0.25
+/// ... and a buzz ends when the other hand has struck.
+#define PLANNER_BUZZ_SHARE 0.55
+
+HIMC_RT static inline double himc_planner_bounce_share(int bounces)
+{
+    return bounces == HIMC_BUZZ ? PLANNER_BUZZ_SHARE : bounces ? PLANNER_DOUBLE_SHARE : 0;
+}
 
 /// Adds a roll of so many strokes a second of both hands; `stroke` has its kind, length and
 /// dynamics. Returns its index, or -1 with the reason.
@@ -16,6 +26,8 @@ int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, in
 int himc_planner_roll_left_out(const planner_score *score, int roll);
 /// True if both have the same rolls.
 bool himc_planner_roll_equal(const planner_score *a, const planner_score *b);
+/// True if the strokes of the same rolls are at the same times in both.
+bool himc_planner_roll_same_places(const planner_score *a, const planner_score *b);
 /// The stroke of a hand at `place` or after it, with its place, without its time; false if there is
 /// none left.
 HIMC_RT bool himc_planner_roll_due(const planner_score *score, himc_hand hand,
@@ -34,6 +46,9 @@ HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
 /// -HUGE_VAL and HUGE_VAL if there is none.
 HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat,
                                     double *before, double *after);
+/// Beat of the last stroke of a roll before a beat; of a roll that ends there, which makes room for
+/// grace notes, its first one. Below 0: there is none.
+HIMC_RT double himc_planner_roll_since(const planner_score *score, double beat);
 /// A walk back through the strokes of all rolls of a round: first those at and before `beat` ...
 HIMC_RT planner_roll_place himc_planner_roll_walk(const planner_score *score, int round,
                                                   double beat);

@@ -264,7 +264,8 @@ double himc_planner_score_anchor(planner_score *score)
 
 void himc_planner_score_keep(planner_score *score, double anchor)
 {
-    score->anchor.time = anchor - himc_planner_score_time(score, score->anchor.round, 0);
+    if (score->playing)
+        score->anchor.time = anchor - himc_planner_score_time(score, score->anchor.round, 0);
 }
 
 void himc_planner_score_start(planner_score *score, double t)
@@ -510,8 +511,7 @@ double himc_planner_score_gap(const planner_score *score, himc_hand hand, double
 
 double himc_planner_score_since(const planner_score *score, double beat)
 {
-    double since = HUGE_VAL, rolled, after;
-    himc_planner_roll_near(score, HIMC_HAND_ANY, beat, &rolled, &after);
+    double since = HUGE_VAL, rolled = himc_planner_roll_since(score, beat);
     if (rolled >= 0)
         since = gap(score, rolled, beat);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {

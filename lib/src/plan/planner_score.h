@@ -3,6 +3,7 @@
 #ifndef HIMC_PLANNER_SCORE_H
 #define HIMC_PLANNER_SCORE_H
 
+#include "base/head_frame.h"
 #include "himc/score.h"
 
 #define BEAT_ROUNDING 1e-9 ///< of a time in seconds, in beats
@@ -68,6 +69,7 @@ typedef struct planner_score {
     int starts;   ///< of the transport, so far
     int past;     ///< rounds of the loop played before round 0
     double until; ///< last beat of what the score has beside strokes, -1: none
+    const himc_head_frame *drum; ///< places of all drums; borrowed; NULL: all in one place
 } planner_score;
 
 /// A stroke of the score with its place in it.
@@ -195,7 +197,8 @@ HIMC_RT double himc_planner_score_period(const planner_score *score, double beat
 HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat);
 /// Time from a stroke to the nearest one of its hand (s); infinite without one.
 HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
-/// Time since the last stroke of either hand before a beat (s); infinite without one.
+/// Time since the last stroke of either hand before a beat (s), or since the beginning of a roll
+/// that ends there; infinite without one.
 HIMC_RT double himc_planner_score_since(const planner_score *score, double beat);
 /// A walk that begins at a beat of a round ...
 HIMC_RT planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat);

@@ -1,0 +1,147 @@
+/// test_roll_ends.c: a roll is joined to what follows it: another drum, grace notes, an accent, at
+/// any tempo; what is given up is told.
+#include "session.h"
+
+#include <math.h>
+
+static int by_time(const void *a, const void *b)
+{
+    const himc_strike *s = a, *r = b;
+    return (s->time > r->time) - (s->time < r->time);
+}
+
+/// All strokes of that score, in the order of time, without bounces.
+static heard play(himc_performance *p, double seconds, const char *const *lines)
+{
+    heard h = {0};
+    for (int i = 0; lines[i]; i++)
+        session_do(p, "%s", lines[i]);
+    session_do(p, "play");
+    session_play(p, seconds, &h);
+    return h;
+}
+
+static void keep_asked(heard *h)
+{
+    int n = 0;
+    qsort(h->strike, (size_t)h->strikes, sizeof *h->strike, by_time);
+    for (int i = 0; i < h->strikes; i++)
+        if (isfinite(h->strike[i].planned_time))
+            h->strike[n++] = h->strike[i];
+    h->strikes = n;
+}
+
+static heard play_new(double seconds, const char *const *lines)
+{
+    himc_performance *p = session_new();
+    heard h = play(p, seconds, lines);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
+    keep_asked(&h);
+    himc_performance_free(p);
+    return h;
+}
+
+/// The longest time between two strokes of both hands, from the first to the last.
+static double longest_gap(const heard *h)
+{
+    double most = 0;
+    for (int i = 1; i < h->strikes; i++)
+        most = fmax(most, h->strike[i].planned_time - h->strike[i - 1].planned_time);
+    return most;
+}
+
+static const himc_strike *last_of(const heard *h)
+{
+    return &h->strike[h->strikes - 1];
+}
+
+// hands need 0.18 s from drum to drum, and have 0.17 s from stroke to stroke
+static void test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes(void)
+{
+    static const char *const kind[] = {"single", "double", "press"};
+    static const char *const loud[] = {"p", "mf", "ff"};
+    for (int k = 0; k < 9; k++) {
+        char a[64], b[64], c[64], d[64];
+        snprintf(a, sizeof a, "roll 1 1 %s %s a", kind[k % 3], loud[k / 3]);
+        snprintf(b, sizeof b, "roll 2 1 %s %s b", kind[k % 3], loud[k / 3]);
+        snprintf(c, sizeof c, "roll 3 1 %s %s a", kind[k % 3], loud[k / 3]);
+        snprintf(d, sizeof d, "stroke 4 %s legato f b", k % 2 ? "left" : "right");
+        const char *there[] = {"drum a 29", "drum b 26", "tempo 60", a, b, c, d, NULL};
+        const char *stays[] = {"drum a 29", "tempo 60", "roll 1 3 single mf",
+                               "stroke 4 right legato f", NULL};
+        heard h = play_new(6, there), plain = play_new(6, stays);
+        printf("%s %s: %d strokes, gaps up to %.0f ms\n", kind[k % 3], loud[k / 3], h.strikes,
+               1e3 * longest_gap(&h));
+        if (k % 3 == 0) {
+            TEST_ASSERT_INT_WITHIN(4, plain.strikes, h.strikes);
+            TEST_ASSERT_TRUE(longest_gap(&h) < 1.6 * longest_gap(&plain));
+        }
+        heard_free(&h);
+        heard_free(&plain);
+    }
+}
+
+// a roll makes room for the grace notes of the stroke in which it ends, and goes on up to them
+static void test_a_roll_ends_in_grace_notes_as_they_are_without_it(void)
+{
+    static const char *const kind[] = {"flam", "drag", "ruff"}, *const hand[] = {"left", "right"};
+    for (int k = 0; k < 12; k++) {
+        char end[64];
+        snprintf(end, sizeof end, "%s 3 %s legato %s", kind[k % 3], hand[k / 3 % 2],
+                 k < 6 ? "f" : "mp");
+        const char *rolled[] = {"drum a 29", "tempo 60", "roll 1 2 single mf", end, NULL};
+        const char *alone[] = {"drum a 29", "tempo 60", end, NULL};
+        heard h = play_new(5, rolled), plain = play_new(5, alone);
+        const himc_strike *own = last_of(&h), *grace = own - 1, *like = last_of(&plain);
+        double rolls = h.strike[5].planned_time - h.strike[4].planned_time,
+               before = grace->planned_time - grace[-1].planned_time;
+        printf("%s: grace %.1f ms before, %.2f of the speed, after %.0f ms; main %.2f of %.2f\n",
+               end, 1e3 * (own->planned_time - grace->planned_time),
+               grace->velocity / own->velocity, 1e3 * before, own->velocity, like->velocity);
+        TEST_ASSERT_EQUAL_INT(like[-1].hand, grace->hand);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, like->planned_time - like[-1].planned_time,
+                                  own->planned_time - grace->planned_time);
+        TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(grace->velocity / like[-1].velocity));
+        TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(own->velocity / like->velocity));
+        TEST_ASSERT_TRUE(before < 1.35 * rolls);
+        heard_free(&h);
+        heard_free(&plain);
+    }
+}
+
+// a tempo that comes within a roll, at many moments of it
+static void test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it(void)
+{
+    static const char *const kind[] = {"single", "double", "press"};
+    for (int k = 0; k < 3; k++) {
+        char roll[64];
+        snprintf(roll, sizeof roll, "roll 1 5 %s mf", kind[k]);
+        const char *lines[] = {"drum a 29", "tempo 60", roll, "stroke 6 right accent f", NULL};
+        heard plain = play_new(8, lines);
+        double least = HUGE_VAL;
+        for (int i = 0; i < 12; i++) {
+            himc_performance *p = session_new();
+            heard h = play(p, 2.5 + 0.037 * i, lines);
+            session_do(p, "tempo %d", 50 + 5 * i);
+            session_play(p, 6, &h);
+            keep_asked(&h);
+            least = fmin(least, last_of(&h)->velocity);
+            TEST_ASSERT_EQUAL_DOUBLE(6, last_of(&h)->beat);
+            heard_free(&h);
+            himc_performance_free(p);
+        }
+        printf("%s: %.2f m/s, after a change of tempo %.2f and more\n", kind[k],
+               last_of(&plain)->velocity, least);
+        TEST_ASSERT_TRUE(20 * log10(last_of(&plain)->velocity / least) < 0.5);
+        heard_free(&plain);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes);
+    RUN_TEST(test_a_roll_ends_in_grace_notes_as_they_are_without_it);
+    RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
+    return UNITY_END();
+}
