@@ -23,6 +23,7 @@ typedef struct _search {
     char *path;
     size_t size;
     bool found;
+    const char *other; /* what else has that name; or NULL */
 } t_search;
 
 /* Looks in one folder, "~" being the home folder; 0 ends the search. */
@@ -33,8 +34,10 @@ static int search_folder(const char *folder, void *user)
     int length = snprintf(search->path, search->size, "%s%s/%s", home ? home : "",
                           folder + (home != NULL), search->name);
     struct stat status;
-    search->found = length >= 0 && (size_t)length < search->size &&
-                    stat(search->path, &status) == 0 && S_ISREG(status.st_mode);
+    bool any = length >= 0 && (size_t)length < search->size && stat(search->path, &status) == 0;
+    search->found = any && S_ISREG(status.st_mode);
+    if (any && !search->found)
+        search->other = S_ISDIR(status.st_mode) ? "a folder" : "a device or FIFO";
     return !search->found;
 }
 
@@ -44,11 +47,13 @@ static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t si
                               himc_error *error)
 {
     bool absolute = sys_isabsolutepath(name);
-    t_search search = {name + absolute, path, size, false};
+    t_search search = {name + absolute, path, size, false, NULL};
     if (absolute)
         search_folder(name[0] == '~' ? "~" : "", &search);
     else
         canvas_path_iterate(x->x_canvas, search_folder, &search);
+    if (!search.found && search.other)
+        return himc_error_set(error, "%s: %s, allowed a regular file", name, search.other);
     return search.found ||
            himc_error_set(error, "%s: no such file beside the patch or in Pd's search path", name);
 }
@@ -180,6 +185,8 @@ static bool himc_tilde_command_drum(t_himc *x, const char *name, himc_command *c
                                     himc_error *error)
 {
     himc_error none;
+    if (command->id == HIMC_COMMAND_DRUM_INFO)
+        return himc_tilde_drum_info(x, name, error);
     himc_tilde_resolve(x, false);
     t_drum_link *link = drum_link_find(name, &none);
     bool good = !link || link->l_locate(link, command, error);
@@ -282,9 +289,6 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return saved_switch(&x->x_saves, argc, argv, error);
     if (s == &s_bang)
         s = gensym("play");
-    if (argc == 1 && argv->a_type == A_SYMBOL && argv->a_w.w_symbol == gensym("info") &&
-        himc_tilde_has_drum(x, s->s_name))
-        return himc_tilde_drum_info(x, s->s_name, error);
     if (argc > 0 && argv->a_type == A_SYMBOL && himc_tilde_has_drum(x, s->s_name))
         return (command_from_pd(&command, HIMC_DRUM, argv->a_w.w_symbol, argc - 1, argv + 1,
                                 error) ||

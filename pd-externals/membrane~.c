@@ -423,6 +423,13 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     if (!command_from_pd(&command, HIMC_DRUM, s, argc, argv, error) ||
         !membrane_file(x, &command, error))
         return false;
+    if (command.id == HIMC_COMMAND_DRUM_INFO)
+        membrane_info(x);
+    if (command.id == HIMC_COMMAND_DRUM_DUMP && command.count == 0)
+        membrane_dump(x);
+    if (command.id == HIMC_COMMAND_DRUM_INFO ||
+        (command.id == HIMC_COMMAND_DRUM_DUMP && command.count == 0))
+        return true;
     if (!pd_in_real_time())
         himc_loader_finish(x->x_loader);
     if (command.id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader)) {
@@ -538,18 +545,18 @@ static void membrane_saved(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
     membrane_changed(x, good ? NULL : error.text);
 }
 
+/* The drum's name may stand before a command, as in a message to [himc~]. */
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
 {
     himc_error error;
-    if (s == gensym("info") && argc == 0)
-        membrane_info(x);
-    else if (s == gensym("save") && saved_switch(&x->x_saves, argc, argv, &error))
-        return;
-    else if (s == gensym("save"))
-        pd_error(x, "membrane~: %s", error.text);
-    else if (s == gensym("dump") && argc == 0)
-        membrane_dump(x);
-    else if (!membrane_command(x, s, argc, argv, &error))
+    if (argc > 0 && argv->a_type == A_SYMBOL &&
+        strcmp(s->s_name, himc_drum_name(x->x_link.l_drum)) == 0) {
+        s = argv->a_w.w_symbol;
+        argc--;
+        argv++;
+    }
+    if (!(s == gensym("save") ? saved_switch(&x->x_saves, argc, argv, &error)
+                              : membrane_command(x, s, argc, argv, &error)))
         pd_error(x, "membrane~: %s", error.text);
 }
 

@@ -158,13 +158,16 @@ static inline char *saved_text(t_canvas *canvas, int argc, const t_atom *argv)
 /* The message `save SWITCH`. */
 static inline bool saved_switch(bool *on, int argc, const t_atom *argv, himc_error *error)
 {
-    t_float value = argc == 1 && argv->a_type == A_FLOAT ? argv->a_w.w_float : -1;
-    char text[80] = "an atom is missing";
-    if (argc == 1)
-        atom_string(argv, text, sizeof text);
+    t_float value = argc > 0 && argv->a_type == A_FLOAT ? argv->a_w.w_float : -1;
+    char text[80] = "";
+    if (argc > 0)
+        atom_string(argv + (argc > 1), text, sizeof text);
+    if (argc == 0)
+        return himc_error_set(error, "save: SWITCH missing, allowed save SWITCH");
+    if (argc > 1)
+        return himc_error_set(error, "save: %s is one atom too many, allowed save SWITCH", text);
     if (value != 0 && value != 1)
-        return himc_error_set(error, "save: %s, allowed 0 or 1",
-                              argc > 1 ? "more than one atom" : text);
+        return himc_error_set(error, "save: SWITCH: %s, allowed 0 .. 1, whole", text);
     *on = value == 1;
     return true;
 }

@@ -313,6 +313,14 @@ check test_a_command_in_a_comment_is_noted_once [ "$(number played)$(grep '^note
 check test_info_notes_it_too [ "$(grep -c '^open.txt:2: "stroke 1 right legato mf" is left out' out)" = 1 ]
 "$himc" help gain >out
 check test_help_of_a_command_has_its_ranges [ "$(grep -c -e '^gain reset | frequency FACTOR' -e '^DRUM gain DB' -e '^      DB        -60 .. 24 dB$' out)" = 4 ]
+for word in save missed strike; do
+    check "test_help_tells_of_the_message_$word" [ "$("$himc" help $word | grep -c -e "^$word [A-Z]")" = 1 ]
+done
+check test_help_of_info_is_of_the_call_and_of_both_messages [ "$("$himc" help info | grep -c -e '^usage: himc info' -e '^info$' -e '^DRUM info$')" = 3 ]
+for word in $("$himc" help commands | sed -n 's/^  \([a-z]*\) .*/\1/p' | sort -u); do # but with two receivers, or for two words
+    "$himc" help "$word" | sed -n 's/^      \([A-Z][A-Z0-9]*\) .*/\1/p' | sort | uniq -d | sed "s/^/$word /"
+done | grep -vxE '(rate|gain|preset|dump) .*' >out
+check test_help_lists_each_argument_once [ "$(cat out)" = "" ]
 
 # what render makes
 "$himc" render piece.txt -o one.wav --strokes strokes.csv --motion motion.csv >out 2>err

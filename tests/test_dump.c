@@ -29,6 +29,7 @@ static bool is_no_setting(himc_command_id id)
     case HIMC_COMMAND_RECORD:
     case HIMC_COMMAND_DUMP:
     case HIMC_COMMAND_DRUM_DUMP:
+    case HIMC_COMMAND_DRUM_INFO:
     case HIMC_COMMAND_PRESET:
     case HIMC_COMMAND_DRUM_PRESET:
     case HIMC_COMMAND_PLAY:

@@ -383,7 +383,7 @@ static void test_strokes_that_no_hand_reaches_are_given_up_once_each(void)
             TEST_ASSERT_NOT_NULL(strstr(note.text, "given up, out of reach by 0.50 m"));
     }
     TEST_ASSERT_EQUAL_INT(40, himc_planner_given_up(planner));
-    himc_planner_finish(planner, 100);
+    himc_planner_finish(planner);
     while (himc_planner_note_next(planner, &note))
         notes++;
     TEST_ASSERT_EQUAL_STRING("in all 0 strokes softer, 0 by the other hand, 40 given up",

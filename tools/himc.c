@@ -54,6 +54,8 @@ static void print_arguments(const himc_command_row *row)
     int count = 0;
     himc_format(context, sizeof context, "%s", row->name);
     for (const char *at = row->atoms; *at; at += strspn(at, " []|")) {
+        if (at - row->atoms >= 2 && at[-2] == '|') // another form begins
+            himc_format(context, sizeof context, "%s", row->name);
         size_t length = strcspn(at, " []|");
         himc_format(word, sizeof word, "%.*s", (int)length, at);
         at += length;
@@ -79,12 +81,35 @@ static bool print_command(const char *name)
     for (int i = 0; (row = himc_command_table(i)); i++) {
         if (strcmp(row->name, name) != 0)
             continue;
-        printf("%s%s %s\n    %s\n", row->receiver == HIMC_DRUM ? "DRUM " : "", row->name,
-               row->atoms, row->does);
+        printf("%s%s%s%s\n    %s\n", row->receiver == HIMC_DRUM ? "DRUM " : "", row->name,
+               row->atoms[0] ? " " : "", row->atoms, row->does);
         print_arguments(row);
         found = true;
     }
     return found;
+}
+
+// what is said in Pure Data alone, or comes out of an object there; false if it is none of that
+static bool print_message(const char *name)
+{
+    static const struct {
+        const char *name, *atoms, *does;
+    } messages[] = {
+        {"save", " SWITCH",
+         "to [himc~] and [membrane~]: 1 keeps the object's state in the patch, 0 does not"},
+        {"strike", " TIME HAND DRUM X Y VELOCITY FORCE DURATION",
+         "from [himc~]: a contact has ended (s, m, m/s, N, s); from [membrane~] without HAND and DRUM"},
+        {"touch", " TIME X Y VELOCITY PLACE PITCH",
+         "from [membrane~]: a blow begins; PLACE per radius from the centre, PITCH in Hz"},
+        {"missed", " BEAT HAND DRUM",
+         "from [himc~]: a stroke is not played, and a line says why; BEAT -1: a hit"},
+        {"beat", " N", "from [himc~]: a whole beat of the score begins"},
+        {"done", "", "from [himc~]: all has been played"},
+    };
+    for (size_t i = 0; i < sizeof messages / sizeof *messages; i++)
+        if (strcmp(messages[i].name, name) == 0)
+            return printf("%s%s\n    %s\n", name, messages[i].atoms, messages[i].does) > 0;
+    return false;
 }
 
 // what a score, a patch and a packet may say
@@ -143,17 +168,19 @@ static int finish(void)
     return bad;
 }
 
-/// `himc help`, `himc help CALL`, `himc help commands`, `himc help COMMAND`.
+/// `himc help`, `himc help CALL`, `himc help commands`, `himc help COMMAND`: all that has the name.
 static int help(const char *what)
 {
     const cli_call *call = what ? find_call(what) : NULL;
     if (call)
         cli_help(call);
-    else if (!what)
+    if (call && (himc_command_find(HIMC_PERFORMER, what) || himc_command_find(HIMC_DRUM, what)))
+        putchar('\n');
+    if (!what)
         print_help();
     else if (!strcmp(what, "commands"))
         print_commands();
-    else if (!print_command(what))
+    else if (!(print_command(what) | print_message(what)) && !call)
         return refuse("no help for", what, true);
     return finish();
 }

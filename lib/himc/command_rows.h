@@ -198,6 +198,7 @@ HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",
 HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
                  "chooses how blows become sound: by the head, or by the patch around it in Pure "
                  "Data")
+HIMC_COMMAND_ROW(DRUM_INFO, info, DRUM, HOST, 0, "", "describes the drum in a few lines")
 HIMC_COMMAND_ROW(DRUM_DUMP, dump, DRUM, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
                  "answers with the state as commands that make it again, or writes it to a file")
 HIMC_COMMAND_ROW(DRUM_PRESET, preset, DRUM, NOW, HIMC_NOT_IN_SCORE, "FILE",

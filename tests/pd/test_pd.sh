@@ -251,7 +251,7 @@ report number_alone_is_told_what_a_message_is \
 play_pd messages.pd
 said=$(grep -c '^error: ' "$work/log")
 report messages_that_mean_nothing_answer_with_one_line_each \
-    "$([ "$said" = 30 ] || echo "$said lines for 30 messages: ")$(lines "himc~: nonsense: unknown command
+    "$([ "$said" = 38 ] || echo "$said lines for 38 messages: ")$(lines "himc~: nonsense: unknown command
 himc~: stroke: HAND: middle, allowed left right
 himc~: rmi: no spot (center normal rim), no drum (kettle), did you mean rim?
 himc~: stroke: NUANCE missing
@@ -261,7 +261,14 @@ bad.txt:3: stroke: NUANCE: acent, allowed
 himc~: gain: JOINT: nose, allowed
 membrane~: nonsense: unknown command
 membrane~: radius: RADIUS: 0, allowed
-membrane~: mallet: silk, allowed")"
+membrane~: mallet: silk, allowed
+membrane~: save: SWITCH: 3, allowed 0 .. 1, whole
+membrane~: save: 2 is one atom too many, allowed save SWITCH
+membrane~: save: SWITCH missing, allowed save SWITCH
+membrane~: info: x is one atom too many, allowed info
+membrane~: strike: X Y, from the centre: 0.424264 m, allowed
+himc~: kettle: info: x is one atom too many, allowed info
+himc~: score: /tmp: a folder, allowed a regular file")"
 not_numbers=$(grep -c 'nan is not a finite number, allowed' "$work/log")
 report numbers_that_are_none_are_refused \
     "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: tune: inf is not a finite number")"

@@ -414,6 +414,7 @@ static bool do_strike(himc_drum *drum, const himc_command *c, himc_error *error)
 typedef bool drum_action(himc_drum *drum, const himc_command *command, himc_error *error);
 
 // the action of each row for a drum is do_ and its word; these two are jobs (drum_job.c)
+#define do_info NULL
 #define do_dump NULL
 #define do_preset NULL
 static drum_action *const actions[HIMC_COMMANDS] = {

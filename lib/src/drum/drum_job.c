@@ -110,7 +110,7 @@ static bool run_line(himc_drum *drum, const himc_text_statement *line, himc_erro
     if (!himc_command_parse(&c, HIMC_DRUM, line->atom[0].symbol, line->atom + 1, count - 1, error))
         return false;
     if (c.id == HIMC_COMMAND_DRUM_PRESET || c.id == HIMC_COMMAND_DRUM_DUMP ||
-        c.id == HIMC_COMMAND_STRIKE)
+        c.id == HIMC_COMMAND_DRUM_INFO || c.id == HIMC_COMMAND_STRIKE)
         return himc_error_set(error, "%s: not allowed in a preset", line->atom[0].symbol);
     return himc_drum_command(drum, &c, error);
 }
@@ -247,13 +247,14 @@ himc_job *himc_drum_state_job(himc_drum *drum, const char *state, himc_error *er
     return &j->job;
 }
 
-// `dump` without a file is answered by the host, with himc_drum_describe
+// `info`, and `dump` without a file, are answered by the host, with himc_drum_describe
 bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error *error)
 {
     himc_command checked; // also one that was put together without the parser
     if (!himc_command_check(&checked, HIMC_DRUM, command, error))
         return false;
-    if (checked.id == HIMC_COMMAND_DRUM_DUMP && checked.count == 0)
+    if (checked.id == HIMC_COMMAND_DRUM_INFO ||
+        (checked.id == HIMC_COMMAND_DRUM_DUMP && checked.count == 0))
         return true;
     if (checked.id == HIMC_COMMAND_DRUM_DUMP || checked.id == HIMC_COMMAND_DRUM_PRESET)
         return himc_job_carry_out(himc_drum_job(drum, &checked, error), error);

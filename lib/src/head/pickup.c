@@ -40,14 +40,14 @@ himc_pickup himc_pickup_default(void)
 bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error)
 {
     if (pickup->kind == HIMC_PICKUP_AIR)
-        return himc_check_range("pickup azimuth", pickup->azimuth, -2 * HIMC_PI, 2 * HIMC_PI, "rad",
-                                error) &&
-               himc_check_range("pickup elevation", pickup->elevation, 0, HIMC_ELEVATION_MAX, "rad",
-                                error) &&
-               himc_check_range("pickup distance", pickup->distance, HIMC_PICKUP_DISTANCE_MIN,
+        return himc_check_range("pickup: AZIMUTH", pickup->azimuth, -2 * HIMC_PI, 2 * HIMC_PI,
+                                "rad", error) &&
+               himc_check_range("pickup: ELEVATION", pickup->elevation, 0, HIMC_ELEVATION_MAX,
+                                "rad", error) &&
+               himc_check_range("pickup: DISTANCE", pickup->distance, HIMC_PICKUP_DISTANCE_MIN,
                                 HIMC_PICKUP_DISTANCE_MAX, "m", error);
     double r = hypot(pickup->x, pickup->y);
-    return himc_check_range("pickup place, from the centre", r, 0, head->radius, "m", error);
+    return himc_check_range("pickup: X Y, from the centre", r, 0, head->radius, "m", error);
 }
 
 // The integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2. J_{m+1}(j) is in the mode's

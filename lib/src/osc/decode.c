@@ -134,6 +134,7 @@ double himc_osc_request_cost(const osc_request *request)
     case HIMC_COMMAND_PLAYER:
     case HIMC_COMMAND_RESET:
     case HIMC_COMMAND_INFO:
+    case HIMC_COMMAND_DRUM_INFO:
     case HIMC_COMMAND_DUMP:
     case HIMC_COMMAND_SUBSCRIBE:
     case HIMC_COMMAND_MAKE_DRUM: return 15;

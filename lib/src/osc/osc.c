@@ -483,14 +483,16 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
     sender from = {.osc = osc, .address = &order->from};
     himc_command_id id = request->command.id;
     const himc_drum *drum = NULL;
-    if (id == HIMC_COMMAND_DRUM_DUMP)
+    if (id == HIMC_COMMAND_DRUM_DUMP || id == HIMC_COMMAND_DRUM_INFO)
         drum = find_drum(performance, request->drum, &error);
     if (id == HIMC_COMMAND_INFO)
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
     else if (id == HIMC_COMMAND_DUMP)
         begin_dump(osc, &order->from);
     else if (drum)
-        himc_drum_describe(drum, HIMC_DESCRIBE_STATE, answer, &from);
+        himc_drum_describe(drum,
+                           id == HIMC_COMMAND_DRUM_INFO ? HIMC_DESCRIBE_INFO : HIMC_DESCRIBE_STATE,
+                           answer, &from);
     else if (!carry_out(osc, performance, order, &error))
         refuse_to(osc, &order->from, error.text);
 }

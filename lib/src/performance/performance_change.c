@@ -2,7 +2,7 @@
 /// a head, the player is pushed. `at` adds one to the score that plays or will be played.
 ///
 /// It is a job (base/job.h): the heads that follow from it are computed aside. Invariants: the
-/// piece lasts until the last of them; a beat that is past is told, and not made up for.
+/// piece lasts until the last of them; a beat that is past is told, and acts when it comes again.
 #include "performance/performance_state.h"
 
 #include "plan/score.h"
@@ -28,17 +28,16 @@ void himc_performance_find_end(himc_performance *p)
     himc_planner_last_until(p->motion->planner, end);
 }
 
-/// False, and told, if the beat is past and will not come again.
-static bool is_to_come(const change_job *j, double now)
+/// Tells that the beat is past, and will not come again before the next `play`.
+static void tell_past(const change_job *j, double now)
 {
     himc_performance *p = j->performance;
     const himc_score_line *line = &j->line;
     if (now <= line->beat || (!p->motion->track && himc_planner_is_looped(p->motion->planner)))
-        return true;
+        return;
     himc_events_note(&p->events, "at %g %s%s%s: given up, that beat is past", line->beat,
                      line->drum, line->drum[0] ? " " : "",
                      himc_command_table((int)line->command.id)->name);
-    return false;
 }
 
 /// The pushes of the score with one more, in the order of beats.
@@ -111,12 +110,12 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_performance *p = j->performance;
     himc_error why = {""};
     double now = himc_motion_score_beat(p->motion, step_time(p));
-    himc_job_state state = HIMC_JOB_DONE;
     error = error ? error : &why;
-    if (is_to_come(j, now))
-        state = j->insertion         ? add_head(j, now, error)
-                : add_push(j, error) ? HIMC_JOB_DONE
-                                     : HIMC_JOB_FAILED;
+    himc_job_state state = j->insertion         ? add_head(j, now, error)
+                           : add_push(j, error) ? HIMC_JOB_DONE
+                                                : HIMC_JOB_FAILED;
+    if (state == HIMC_JOB_DONE)
+        tell_past(j, now);
     himc_performance_find_end(p);
     himc_motion_stir(p->motion);
     return state;

@@ -240,6 +240,7 @@ himc_track *himc_motion_set_track(performance_motion *m, himc_track *track,
     himc_track *old = m->track;
     himc_motion_take_hands_back(m, t);
     m->track = track;
+    m->over = false;
     m->has_learned = learned != NULL;
     if (learned)
         m->learned = *learned;
@@ -709,6 +710,7 @@ void himc_motion_play(performance_motion *m, double t)
     else
         himc_planner_play(m->planner, t);
     m->playing = true;
+    m->over = false;
     m->replan = true;
 }
 
@@ -717,7 +719,7 @@ void himc_motion_stop(performance_motion *m, double t)
     if (m->track)
         himc_track_stop(m->track, t - m->track_start, m->reference.tip);
     himc_planner_stop(m->planner, t);
-    m->playing = false;
+    m->playing = m->over = false;
     m->replan = true;
 }
 
@@ -775,14 +777,14 @@ static long whole_beat(const performance_motion *m, double t)
 {
     bool prepares = himc_planner_is_preparing(m->planner, t);
     double beat = prepares ? himc_planner_count(m->planner, t) : himc_planner_beat(m->planner, t);
-    return m->track || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    return m->track || m->over || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
 }
 
 double himc_motion_score_beat(const performance_motion *m, double t)
 {
     if (!m->track)
         return himc_planner_beat(m->planner, t);
-    return m->playing ? t - m->track_start : -1;
+    return m->playing || m->over ? t - m->track_start : -1;
 }
 
 /// True if a beat begins by t: another one, or the same one of a later round or behind a count.
@@ -829,6 +831,7 @@ bool himc_motion_done(performance_motion *m, double t)
     if (!is_over(m, t))
         return false;
     m->playing = false;
-    himc_planner_finish(m->planner, t);
+    m->over = true;
+    himc_planner_finish(m->planner);
     return true;
 }

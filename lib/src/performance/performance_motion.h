@@ -74,6 +74,7 @@ typedef struct performance_motion {
     bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
+    bool over;                  ///< played to its end: its time goes on until `play` or `stop`
     long last_beat, last_round; ///< that have been reported
     bool counted;               ///< the last one was before a cleared loop begins again
     double calm;                ///< no beat begins and no end comes before, if nothing changes (s)
@@ -194,7 +195,8 @@ HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand han
 HIMC_RT bool himc_motion_is_calm(const performance_motion *motion, double t);
 /// Finds out if a beat or the end comes before the time `next` (s).
 HIMC_RT void himc_motion_foresee(performance_motion *motion, double next);
-/// The beat at `t`, of a take the time since its first frame (s); negative if nothing is played.
+/// The beat at `t`, of a take the time since its first frame (s), going on past the end; negative
+/// if nothing has been played since the last `stop`.
 HIMC_RT double himc_motion_score_beat(const performance_motion *motion, double t);
 /// Something may have changed: nothing is foreseen.
 HIMC_RT void himc_motion_stir(performance_motion *motion);

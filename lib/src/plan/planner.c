@@ -228,6 +228,18 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     return himc_planner_roll_left_out(score, at);
 }
 
+/// The tempo has changed at t; that was the beat then.
+static void after_tempo(himc_planner *planner, double t, double beat, double anchor)
+{
+    planner_score *score = &planner->score;
+    if (score->playing || score->over)
+        himc_planner_score_hold(score, t, beat);
+    if (!score->playing)
+        return;
+    himc_planner_score_keep(score, anchor);
+    himc_planner_replan(planner, t);
+}
+
 bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
                             himc_error *error)
 {
@@ -239,11 +251,7 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     himc_planner_rebase(planner, t);
     double anchor = before_change(planner, t);
     himc_planner_score_take_tempi(score, copy, count);
-    if (score->playing) {
-        himc_planner_score_hold(score, t, beat);
-        himc_planner_score_keep(score, anchor);
-        himc_planner_replan(planner, t);
-    }
+    after_tempo(planner, t, beat, anchor);
     return true;
 }
 
@@ -408,7 +416,10 @@ void himc_planner_play(himc_planner *planner, double t)
 void himc_planner_stop(himc_planner *planner, double t)
 {
     planner_score *score = &planner->score;
-    if (!isfinite(t) || !score->playing)
+    if (!isfinite(t))
+        return;
+    score->over = false;
+    if (!score->playing)
         return;
     himc_planner_score_stop(score, himc_planner_beat(planner, t));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -451,15 +462,11 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     planner_score *score = &planner->score;
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
-    double beat = score->playing ? himc_planner_score_beat_at(score, t) : score->beat;
+    double beat = himc_planner_score_beat_at(score, t);
     himc_planner_rebase(planner, t);
     double anchor = before_change(planner, t);
-    himc_planner_score_set_tempo(score, beat, bpm);
-    if (!score->playing)
-        return;
-    himc_planner_score_hold(score, t, beat);
-    himc_planner_score_keep(score, anchor);
-    himc_planner_replan(planner, t);
+    himc_planner_score_set_tempo(score, score->playing ? beat : score->beat, bpm);
+    after_tempo(planner, t, beat, anchor);
 }
 
 double himc_planner_length(const himc_planner *planner)
@@ -479,7 +486,7 @@ double himc_planner_next_start(const himc_planner *planner, double t)
 double himc_planner_beat(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
-    if (!score->playing)
+    if (!score->playing && !score->over)
         return -1;
     double beat = himc_planner_score_beat_at(score, t);
     return t < score->origin + himc_planner_score_round_length(score) ? fmax(beat, score->beat)
@@ -528,10 +535,10 @@ bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss)
     return himc_planner_notes_miss_next(&planner->notes, miss);
 }
 
-void himc_planner_finish(himc_planner *planner, double t)
+void himc_planner_finish(himc_planner *planner)
 {
     if (planner->score.playing)
-        himc_planner_score_stop(&planner->score, himc_planner_beat(planner, t));
+        himc_planner_score_finish(&planner->score);
     himc_planner_notes_sum_up(&planner->notes);
 }
 

@@ -235,7 +235,7 @@ HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, d
 HIMC_RT double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t);
 
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
-/// begins again.
+/// begins again; when the score is over it goes on until `play`, `stop`, `seek` or `loop`.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
 /// Round of the loop at time `t` since it began to play, from 0.
 HIMC_RT long himc_planner_round(const himc_planner *planner, double t);
@@ -251,9 +251,9 @@ HIMC_RT int himc_planner_given_up(himc_planner *planner);
 /// Takes the oldest stroke of score or hit that is given up; false if there is none. It is told as
 /// soon as it is known, before its time. The latest 256 are kept.
 HIMC_RT bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss);
-/// The score is over: its beats end, the tips come to rest as planned. Adds a note with the count
+/// The score is over: the tips come to rest as planned, play begins at the top. Adds a note with the count
 /// of strokes since the last `play` that were not played as written, if there is more than one.
-HIMC_RT void himc_planner_finish(himc_planner *planner, double t);
+HIMC_RT void himc_planner_finish(himc_planner *planner);
 /// Takes the oldest note; false if there is none. 32 are kept; the last one counts those that are
 /// lost.
 HIMC_RT bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note);

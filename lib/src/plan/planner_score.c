@@ -271,7 +271,7 @@ void himc_planner_score_keep(planner_score *score, double anchor)
 void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
-    score->empties = false;
+    score->over = score->empties = false;
     score->count = NAN;
     score->starts++;
     score->rounds = score->past = 0;
@@ -298,16 +298,24 @@ void himc_planner_score_empty(planner_score *score)
 void himc_planner_score_stop(planner_score *score, double beat)
 {
     score->beat = score->empties ? 0 : beat;
-    score->playing = score->empties = false;
+    score->playing = score->over = score->empties = false;
+}
+
+void himc_planner_score_finish(planner_score *score)
+{
+    himc_planner_score_stop(score, 0);
+    score->over = true;
 }
 
 void himc_planner_score_seek(planner_score *score, double beat)
 {
     score->beat = beat;
+    score->over = false;
 }
 
 void himc_planner_score_loop(planner_score *score, bool on, int rounds)
 {
+    score->over = score->over && !on;
     score->rounds = rounds;
     score->loop = on;
 }

@@ -60,7 +60,8 @@ typedef struct planner_score {
     himc_tempo_change *tempi; ///< owned
     int tempo_count;
     bool playing;
-    double origin; ///< time of beat 0 while playing (s)
+    bool over;     ///< played to its end: its beats go on, and play begins at the top
+    double origin; ///< time of beat 0 while playing or over (s)
     double beat;   ///< where play begins or began
     bool loop;
     bool empties; ///< the loop turns without strokes: with the first ones it begins again
@@ -154,6 +155,8 @@ HIMC_RT void himc_planner_score_delay(planner_score *score, double late);
 HIMC_RT void himc_planner_score_empty(planner_score *score);
 /// Stops at that beat.
 HIMC_RT void himc_planner_score_stop(planner_score *score, double beat);
+/// Ends when all has been played.
+HIMC_RT void himc_planner_score_finish(planner_score *score);
 /// Play begins at that beat.
 HIMC_RT void himc_planner_score_seek(planner_score *score, double beat);
 /// Begins or ends a loop; without it `rounds` is the last round to be played.
