@@ -1,5 +1,5 @@
 /// test_ornaments.c: what a listener expects of grace notes: the stroke that they decorate is as
-/// strong as without them, and they are heard, softer than it and even.
+/// strong as without them, at the same place, and they are heard, softer than it and even.
 #include "session.h"
 
 static const char *const nuance[] = {"legato", "tenuto", "accent", "vertical-accent", "staccato"};
@@ -62,9 +62,31 @@ static void test_main_stroke_is_as_strong_as_without_its_grace_notes(void)
     }
 }
 
+// at a point that is written, as at a named spot, the grace notes give way
+static void test_main_stroke_has_the_point_that_is_written(void)
+{
+    static const char *const kind[] = {"flam", "drag", "ruff"};
+    for (int k = 0; k < 3; k++)
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            heard h = {0};
+            himc_performance *p = session_new();
+            session_do(p, "%s 2 %s legato f -0.1 0.05", kind[k], hand ? "right" : "left");
+            session_do(p, "play");
+            session_play(p, 2, &h);
+            himc_performance_free(p);
+            const himc_strike *own = &h.strike[h.strikes - 1];
+            TEST_ASSERT_EQUAL_INT(hand ? HIMC_RIGHT : HIMC_LEFT, own->hand);
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.001, 0.05, own->y, kind[k]);
+            for (int i = 0; i < h.strikes; i++)
+                TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.001, -0.1, h.strike[i].x, kind[k]);
+            heard_free(&h);
+        }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_main_stroke_is_as_strong_as_without_its_grace_notes);
+    RUN_TEST(test_main_stroke_has_the_point_that_is_written);
     return UNITY_END();
 }

@@ -12,7 +12,8 @@
 /// Grace notes keep their time before the beat at any tempo, a roll its rate (planner_roll.c). The
 /// other hand plays them all, the second of a drag or a ruff as a bounce, so that the hand of the
 /// main stroke has all its time since its stroke before: after a grace note of its own, 90 ms
-/// earlier, an arm has no forte. A ruff is as a drag, more open.
+/// earlier, an arm has no forte. A ruff is as a drag, more open. The main stroke has the point that
+/// is written, a grace note lies beside it, as at a named spot.
 #include "plan/ornament.h"
 
 #include "plan/bounce.h"
@@ -45,6 +46,8 @@
 #define GRACE_SHARE 0.35 // of the time since the stroke before, all together, at most
 #define GRACE_SPEED 0.4  // of the stroke's speed; of two their mean
 #define GRACE_FIRST 1.13 // of two the first over the mean, as a bounce keeps .77 of its speed
+#define BESIDE 0.03      // of a written point, as at named spots (m) ...
+#define OUTERMOST 0.92   // ... up to this share of the radius, the spot named rim
 #define LOUD 0.8         // dynamic from which graces are wider
 #define SLOW_PERIOD 0.85 // a beat longer than this, too (s): 70 beats a minute
 #define WIDER 1.2
@@ -61,12 +64,21 @@ static void add(addition *to, const himc_stroke *stroke)
                     !himc_planner_add(to->planner, stroke, to->drum, &unused);
 }
 
+/// Moves a written point to the hand's own side of it, unless that leads off the head.
+static void move_beside(const himc_head_frame *head, himc_stroke *grace)
+{
+    double y = grace->y + (grace->hand == HIMC_LEFT ? BESIDE : -BESIDE);
+    if (grace->spot == HIMC_SPOT_XY && hypot(grace->x, y) <= OUTERMOST * head->radius)
+        grace->y = y;
+}
+
 /// A grace note, or two: the second is a bounce.
 static void add_grace(addition *to, const himc_stroke *stroke, double early, double bounce_time)
 {
     himc_stroke grace = *stroke;
     grace.ornament = HIMC_PLAIN;
     grace.hand = stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
+    move_beside(&to->planner->drum[to->drum], &grace);
     double speed = GRACE_SPEED * himc_gesture_of(stroke->nuance, stroke->dynamic).speed;
     if (stroke->nuance != HIMC_STACCATO)
         grace.nuance = HIMC_LEGATO;
