@@ -201,6 +201,68 @@ static void test_a_roll_that_loses_its_beats_to_another_one_is_named(void)
     TEST_ASSERT_EQUAL_INT(0, notes_of(after, "roll"));
 }
 
+static double mean_speed(const heard *h, int from, int to)
+{
+    double sum = 0;
+    for (int i = from; i < to; i++)
+        sum += h->strike[i].velocity / (to - from);
+    return sum;
+}
+
+// the last stroke of each hand has no other one after it, and was 3 dB louder
+static void test_a_roll_is_even_to_its_end(void)
+{
+    static const char *const kind[] = {"single", "double", "press"}, *const loud[] = {"mf", "ff",
+                                                                                      "fff"};
+    for (int k = 0; k < 9; k++) {
+        char roll[64];
+        snprintf(roll, sizeof roll, "roll 1 3 %s %s", kind[k % 3], loud[k / 3]);
+        const char *lines[] = {"drum a 29", "tempo 60", roll, NULL};
+        heard h = play_new(6, lines);
+        int n = h.strikes;
+        double within = mean_speed(&h, 2, n - 2), last = mean_speed(&h, n - 2, n);
+        printf("%s %s: %.2f m/s, the last ones %.2f\n", kind[k % 3], loud[k / 3], within, last);
+        TEST_ASSERT_DOUBLE_WITHIN(0.5, 0, 20 * log10(last / within));
+        heard_free(&h);
+    }
+}
+
+/// Strokes of at most that share of a speed.
+static int strokes_below(const heard *h, double speed)
+{
+    int n = 0;
+    for (int i = 0; i < h->strikes; i++)
+        n += h->strike[i].velocity < speed;
+    return n;
+}
+
+// more than half a decibel softer; a contact differs by a hundredth from its plan
+static void test_the_line_about_softer_strokes_counts_all_that_are(void)
+{
+    static const char *const kind[] = {"single", "double", "press"}, *const loud[] = {"mf", "f",
+                                                                                      "ff", "fff"};
+    for (int k = 0; k < 12; k++) {
+        char roll[64], one[64];
+        snprintf(roll, sizeof roll, "roll 1 3 %s %s", kind[k % 3], loud[k / 3]);
+        snprintf(one, sizeof one, "stroke 2 right legato %s", loud[k / 3]);
+        const char *lines[] = {"drum a 29", "tempo 60", roll, NULL},
+                   *plain[] = {"drum a 29", "tempo 60", one, NULL};
+        heard h = play_new(6, lines), alone = play_new(4, plain);
+        double asked = last_of(&alone)->velocity, share = pow(10, -0.5 / 20);
+        int said = 0;
+        if (h.notes > 0)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(1, sscanf(h.note, "in all %d strokes softer", &said),
+                                          h.note);
+        int least = strokes_below(&h, 0.985 * share * asked),
+            most = strokes_below(&h, 1.015 * share * asked);
+        printf("%s %s: %d of %d strokes said to be softer, %d .. %d are\n", kind[k % 3],
+               loud[k / 3], said, h.strikes, least, most);
+        TEST_ASSERT_TRUE(said >= least && said <= most);
+        heard_free(&h);
+        heard_free(&alone);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -209,5 +271,7 @@ int main(void)
     RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
     RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
     RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);
+    RUN_TEST(test_a_roll_is_even_to_its_end);
+    RUN_TEST(test_the_line_about_softer_strokes_counts_all_that_are);
     return UNITY_END();
 }

@@ -61,6 +61,12 @@ static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *s
     return himc_gesture_scale(g, most / g.speed);
 }
 
+double himc_planner_asked(const himc_planner *planner, const timed_stroke *s)
+{
+    double varied = s->goal.gesture.speed / s->written.gesture.speed;
+    return varied * gesture_of(planner, &s->stroke).speed;
+}
+
 /// Moves a place into the part of a head that is struck; true if it was beyond.
 static bool keep_inside(const himc_head_frame *head, double *x, double *y)
 {

@@ -15,6 +15,7 @@
 /// does a reassigned stroke, which keeps its beat. Invariants: strokes of one hand are planned in
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_motion.h"
+#include "plan/bounce.h"
 #include "plan/planner_roll.h"
 #include "base/format.h"
 
@@ -32,8 +33,8 @@
 #define EARLY_TOUCH 0.03 // a touch may come so much before its time (s)
 #define BOUNCE_TIME 0.12 // a rise so soon after a touch is its rebound (s)
 
-// strokes that are reported as softer; chosen: 1 dB is heard
-#define SOFTER_SHARE 0.89 // of the written speed
+// strokes that are reported as softer; chosen: 0.5 dB, the spread that equal strokes may have
+#define SOFTER_SHARE 0.944 // of the written speed
 
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
@@ -266,7 +267,7 @@ static himc_gesture in_haste(himc_planner *planner, const timed_stroke *s)
 }
 
 /// Counts a stroke that was struck softer than asked for, and says so once; a plan may still change
-/// before.
+/// before. That fingers have no time for its bounces has been said already.
 static void tell_haste(himc_planner *planner, const timed_stroke *struck)
 {
     char text[64];
@@ -280,6 +281,8 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
         name = text;
     }
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
+    if (speed >= SOFTER_SHARE * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
+        return;
     himc_planner_say(&planner->notes, PLANNER_HURRIED,
                      "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,
                      speed);
@@ -342,7 +345,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     timed_stroke *planned = &h->planned[h->planned_count++];
     *planned = *s;
     planned->goal = h->plan.last;
-    planned->asked = s->goal.gesture.speed;
+    planned->asked = himc_planner_asked(planner, s);
     h->drum = s->drum;
     h->struck = true;
     h->targeted = false;
@@ -723,11 +726,12 @@ int himc_planner_last_round(const himc_planner *planner, int round)
     return round;
 }
 
-/// Drops the strokes that are past but the last, and the motion before `now`.
+/// Drops the strokes that are past but the last, which may still bounce, and the motion before
+/// `now`.
 static void drop_past(planner_hand *h, double now)
 {
     int past = 0;
-    while (past + 1 < h->planned_count && h->planned[past].goal.time + PLANNER_CURRENT < now)
+    while (past + 1 < h->planned_count && h->planned[past + 1].goal.time + PLANNER_CURRENT < now)
         past++;
     for (int i = past; past > 0 && i < h->planned_count; i++)
         h->planned[i - past] = h->planned[i];

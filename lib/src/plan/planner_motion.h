@@ -167,6 +167,8 @@ HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// planner_goal.c: where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
+/// Speed of impact that a stroke has with all the time that its bounces need (m/s).
+HIMC_RT double himc_planner_asked(const himc_planner *planner, const timed_stroke *stroke);
 /// Lets the goal differ from the written one as a player's would.
 HIMC_RT void himc_planner_vary(const himc_planner *planner, timed_stroke *stroke);
 /// planner_goal.c: where a hand rests (m): over its drum or, out of its reach, over the first one
