@@ -137,11 +137,141 @@ static void test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_
     }
 }
 
+// two rolls at once: the left hand on the left drum, the right hand on the right one, in turn
+static void test_two_rolls_at_once_on_two_drums_have_a_hand_each(void)
+{
+    static const char *const kind[] = {"single", "double", "press"};
+    for (int k = 0; k < 6; k++) {
+        char a[64], b[64];
+        snprintf(a, sizeof a, "roll 1 2 %s p %c", kind[k % 3], k < 3 ? 'a' : 'b');
+        snprintf(b, sizeof b, "roll 1 2 %s f %c", kind[k % 3], k < 3 ? 'b' : 'a');
+        const char *two[] = {"drum a 29", "drum b 26", "tempo 60", a, b, "roll 3 1 single mf a",
+                             NULL};
+        heard h = play_new(5, two);
+        int each[HIMC_HANDS] = {0};
+        double speed[HIMC_HANDS] = {0};
+        for (int i = 0; i < h.strikes && h.strike[i].beat < 3 - 1e-6; i++) {
+            himc_hand hand = h.strike[i].hand;
+            TEST_ASSERT_EQUAL_STRING(hand == HIMC_LEFT ? "a" : "b", h.strike[i].drum);
+            each[hand]++;
+            speed[hand] += h.strike[i].velocity;
+        }
+        double left = speed[HIMC_LEFT] / each[HIMC_LEFT],
+               right = speed[HIMC_RIGHT] / each[HIMC_RIGHT];
+        printf("%s: %d strokes of %.2f m/s, %d of %.2f\n", kind[k % 3], each[HIMC_LEFT], left,
+               each[HIMC_RIGHT], right);
+        TEST_ASSERT_INT_WITHIN(1, each[HIMC_LEFT], each[HIMC_RIGHT]);
+        TEST_ASSERT_TRUE(each[HIMC_LEFT] >= 4);
+        TEST_ASSERT_TRUE(k < 3 ? right > 1.5 * left : left > 1.5 * right);
+        heard_free(&h);
+    }
+}
+
+/// How many notes in the first second begin so.
+static int notes_of(const char *const *lines, const char *begin)
+{
+    himc_performance *p = session_new();
+    himc_event event;
+    int notes = 0;
+    for (int i = 0; lines[i]; i++)
+        session_do(p, "%s", lines[i]);
+    session_do(p, "play");
+    himc_performance_process(p, 48000, NULL);
+    while (himc_performance_event(p, &event))
+        notes += event.kind == HIMC_EVENT_NOTE && strncmp(event.text, begin, strlen(begin)) == 0;
+    himc_performance_free(p);
+    return notes;
+}
+
+static void test_a_roll_that_loses_its_beats_to_another_one_is_named(void)
+{
+    static const char *const same[] = {"drum a 29", "tempo 60", "roll 1 2 single mf",
+                                       "roll 1 2 double f", NULL},
+                             *const partly[] = {"drum a 29",
+                                                "drum b 26",
+                                                "tempo 60",
+                                                "roll 1 2 single mf a",
+                                                "roll 2 2 single mf b",
+                                                NULL},
+                             *const after[] = {"drum a 29", "tempo 60", "roll 1 1 single mf",
+                                               "roll 2 2 single mf", NULL};
+    TEST_ASSERT_EQUAL_INT(1, notes_of(same, "roll at beat 1: given up, another one begins there"));
+    TEST_ASSERT_EQUAL_INT(
+        1, notes_of(partly, "roll at beat 1 on a: ends at beat 2, where another one"));
+    TEST_ASSERT_EQUAL_INT(0, notes_of(after, "roll"));
+}
+
+static double mean_speed(const heard *h, int from, int to)
+{
+    double sum = 0;
+    for (int i = from; i < to; i++)
+        sum += h->strike[i].velocity / (to - from);
+    return sum;
+}
+
+// the last stroke of each hand has no other one after it, and was 3 dB louder
+static void test_a_roll_is_even_to_its_end(void)
+{
+    static const char *const kind[] = {"single", "double", "press"}, *const loud[] = {"mf", "ff",
+                                                                                      "fff"};
+    for (int k = 0; k < 9; k++) {
+        char roll[64];
+        snprintf(roll, sizeof roll, "roll 1 3 %s %s", kind[k % 3], loud[k / 3]);
+        const char *lines[] = {"drum a 29", "tempo 60", roll, NULL};
+        heard h = play_new(6, lines);
+        int n = h.strikes;
+        double within = mean_speed(&h, 2, n - 2), last = mean_speed(&h, n - 2, n);
+        printf("%s %s: %.2f m/s, the last ones %.2f\n", kind[k % 3], loud[k / 3], within, last);
+        TEST_ASSERT_DOUBLE_WITHIN(0.5, 0, 20 * log10(last / within));
+        heard_free(&h);
+    }
+}
+
+/// Strokes of at most that share of a speed.
+static int strokes_below(const heard *h, double speed)
+{
+    int n = 0;
+    for (int i = 0; i < h->strikes; i++)
+        n += h->strike[i].velocity < speed;
+    return n;
+}
+
+// more than half a decibel softer; a contact differs by a hundredth from its plan
+static void test_the_line_about_softer_strokes_counts_all_that_are(void)
+{
+    static const char *const kind[] = {"single", "double", "press"}, *const loud[] = {"mf", "f",
+                                                                                      "ff", "fff"};
+    for (int k = 0; k < 12; k++) {
+        char roll[64], one[64];
+        snprintf(roll, sizeof roll, "roll 1 3 %s %s", kind[k % 3], loud[k / 3]);
+        snprintf(one, sizeof one, "stroke 2 right legato %s", loud[k / 3]);
+        const char *lines[] = {"drum a 29", "tempo 60", roll, NULL},
+                   *plain[] = {"drum a 29", "tempo 60", one, NULL};
+        heard h = play_new(6, lines), alone = play_new(4, plain);
+        double asked = last_of(&alone)->velocity, share = pow(10, -0.5 / 20);
+        int said = 0;
+        if (h.notes > 0)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(1, sscanf(h.note, "in all %d strokes softer", &said),
+                                          h.note);
+        int least = strokes_below(&h, 0.985 * share * asked),
+            most = strokes_below(&h, 1.015 * share * asked);
+        printf("%s %s: %d of %d strokes said to be softer, %d .. %d are\n", kind[k % 3],
+               loud[k / 3], said, h.strikes, least, most);
+        TEST_ASSERT_TRUE(said >= least && said <= most);
+        heard_free(&h);
+        heard_free(&alone);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes);
     RUN_TEST(test_a_roll_ends_in_grace_notes_as_they_are_without_it);
     RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
+    RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
+    RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);
+    RUN_TEST(test_a_roll_is_even_to_its_end);
+    RUN_TEST(test_the_line_about_softer_strokes_counts_all_that_are);
     return UNITY_END();
 }

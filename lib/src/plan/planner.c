@@ -198,6 +198,25 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     return true;
 }
 
+/// A roll that has lost its beats to another one is named.
+static void tell_overlap(planner_notes *notes, const planner_roll *r, const planner_roll *by)
+{
+    const himc_stroke *own = &r->stroke, *other = &by->stroke;
+    const char *on = own->drum[0] ? " on " : "", *other_on = other->drum[0] ? " on " : "";
+    if (other->beat > own->beat)
+        himc_planner_say(notes, PLANNER_OVERLAP,
+                         "roll at beat %g%s%s: ends at beat %g, where another one begins%s%s, not "
+                         "at beat %g",
+                         own->beat, on, own->drum, other->beat, other_on, other->drum,
+                         own->beat + own->length);
+    else
+        himc_planner_say(
+            notes, PLANNER_OVERLAP,
+            "roll at beat %g%s%s: given up, another one begins there%s%s; expected two "
+            "drums, one kind and one length",
+            own->beat, on, own->drum, other_on, other->drum);
+}
+
 int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int drum, double rate,
                           himc_error *error)
 {
@@ -209,6 +228,11 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     if (at < 0)
         return -1;
     himc_planner_roll_inserted(planner, at);
+    for (int i = at > 1 ? at - 2 : 0; i <= at; i++) {
+        const planner_roll *by = himc_planner_roll_cut_by(score, i);
+        if (by)
+            tell_overlap(&planner->notes, &score->roll[i], by);
+    }
     himc_planner_rest_again(planner);
     double t = planner->now + PLANNER_AHEAD;
     for (int i = 0; i < HIMC_HANDS && running; i++) {

@@ -1,4 +1,4 @@
-/// planner_motion.c: strokes become goals, goals become motion of the two tips.
+/// planner_motion.c: goals become motion of the two tips.
 ///
 /// Each hand's plan is extended stroke by stroke from its own end, always to a point beyond the
 /// horizon. Every change (of tempo or score, a hit, the measured state at separation) cuts the plan
@@ -33,17 +33,12 @@
 #define EARLY_TOUCH 0.03 // a touch may come so much before its time (s)
 #define BOUNCE_TIME 0.12 // a rise so soon after a touch is its rebound (s)
 
-// strokes that are reported as softer; chosen: 1 dB is heard
-#define SOFTER_SHARE 0.89 // of the written speed
+// strokes that are reported as softer; chosen: 0.5 dB, the spread that equal strokes may have
+#define SOFTER_SHARE 0.944 // of the written speed
 
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
-
-// the goal; chosen: a unit of another spot further off than any of another speed, of another grip
-// further still
-#define OTHER_SPOT 10 // as a difference of log speed
-#define OTHER_GRIP 20 // as a difference of log speed
 
 #define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
@@ -63,99 +58,6 @@ void himc_planner_motion_init(himc_planner *planner)
 static himc_hand other_hand(himc_hand hand)
 {
     return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
-}
-
-/// The unit that fits best: of that nuance and hand, if possible of that grip and spot, and near in
-/// speed.
-static const himc_unit *find_unit(const himc_planner *planner, const himc_stroke *stroke)
-{
-    double speed = himc_gesture_of(stroke->nuance, stroke->dynamic).speed, least = HUGE_VAL;
-    const himc_unit *best = NULL;
-    for (int i = 0; i < planner->unit_count; i++) {
-        const himc_unit *unit = &planner->unit[i];
-        if (unit->nuance != stroke->nuance || unit->hand != stroke->hand)
-            continue;
-        bool elsewhere = unit->spot != HIMC_SPOT_XY && unit->spot != stroke->spot;
-        double away = fabs(log(unit->speed / speed)) + OTHER_SPOT * elsewhere +
-                      OTHER_GRIP * (unit->grip != planner->grip);
-        if (away < least) {
-            least = away;
-            best = unit;
-        }
-    }
-    return best;
-}
-
-static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *stroke)
-{
-    const himc_unit *unit = planner->unit_count > 0 ? find_unit(planner, stroke) : NULL;
-    return unit ? himc_gesture_from(unit, stroke->nuance, stroke->dynamic)
-                : himc_gesture_of(stroke->nuance, stroke->dynamic);
-}
-
-/// The gesture, no faster than fingers can turn the stick for its bounces.
-static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *stroke)
-{
-    himc_gesture g = gesture_of(planner, stroke);
-    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
-    if (g.speed <= most)
-        return g;
-    if (most > HIMC_SLOWEST_GESTURE) // else it is given up
-        himc_planner_say(&planner->notes, PLANNER_SOFTER,
-                         "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
-                         stroke->bounce_time, most);
-    return himc_gesture_scale(g, most / g.speed);
-}
-
-/// Moves a place into the part of a head that is struck; true if it was beyond.
-static bool keep_inside(const himc_head_frame *head, double *x, double *y)
-{
-    double r = hypot(*x, *y), limit = PLANNER_STRUCK * head->radius;
-    if (r <= limit)
-        return false;
-    *x *= limit / r;
-    *y *= limit / r;
-    return true;
-}
-
-himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
-{
-    const himc_head_frame *head = &planner->drum[drum];
-    double x, y;
-    himc_stroke_spot(stroke, head->radius, &x, &y);
-    double asked_x = x, asked_y = y;
-    if (keep_inside(head, &x, &y))
-        himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
-                         "%s hand: %.3g %.3g is beyond the rim, struck inside it",
-                         himc_hand_name(stroke->hand), asked_x, asked_y);
-    return (himc_goal){.time = t,
-                       .spot = himc_planner_tip_at(planner, head, x, y),
-                       .normal = himc_head_frame_normal(head),
-                       .back = himc_vec3_scale(himc_head_frame_away(head), -1),
-                       .gesture = bouncing_gesture(planner, stroke),
-                       .hold = stroke->bounces ? stroke->bounce_time : 0};
-}
-
-/// Lets the goal differ from the written one as a player's would.
-static void vary(const himc_planner *planner, timed_stroke *s)
-{
-    const himc_head_frame *head = &planner->drum[s->drum];
-    bool hit = s->index < 0 && !s->reassigned;
-    if (!hit)
-        s->variation = himc_human_stroke(&planner->human, &planner->score, s->stroke.hand, s->round,
-                                         s->stroke.beat);
-    const himc_variation *v = &s->variation;
-    himc_vec3 at = himc_head_frame_from_world(head, s->written.spot);
-    himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
-    keep_inside(head, &at.x, &at.y);
-    s->varied = true;
-    s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
-    if (s->goal.gesture.speed > HIMC_SLOWEST_GESTURE)
-        s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
-    himc_vec3 aside = himc_vec3_cross(s->goal.normal, s->goal.back);
-    s->goal.back = himc_vec3_madd(himc_vec3_scale(s->goal.back, cos(v->turn)), sin(v->turn), aside);
-    if (!hit) // a hit's time has been varied when it came
-        s->goal.time += v->late;
 }
 
 double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
@@ -210,7 +112,7 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
 {
     bool more = next_written(planner, hand, next);
     if (more && planner->human.amount > 0)
-        vary(planner, next);
+        himc_planner_vary(planner, next);
     return more;
 }
 
@@ -365,7 +267,7 @@ static himc_gesture in_haste(himc_planner *planner, const timed_stroke *s)
 }
 
 /// Counts a stroke that was struck softer than asked for, and says so once; a plan may still change
-/// before.
+/// before. That fingers have no time for its bounces has been said already.
 static void tell_haste(himc_planner *planner, const timed_stroke *struck)
 {
     char text[64];
@@ -379,6 +281,8 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
         name = text;
     }
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
+    if (speed >= SOFTER_SHARE * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
+        return;
     himc_planner_say(&planner->notes, PLANNER_HURRIED,
                      "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,
                      speed);
@@ -441,7 +345,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     timed_stroke *planned = &h->planned[h->planned_count++];
     *planned = *s;
     planned->goal = h->plan.last;
-    planned->asked = s->goal.gesture.speed;
+    planned->asked = himc_planner_asked(planner, s);
     h->drum = s->drum;
     h->struck = true;
     h->targeted = false;
@@ -822,11 +726,12 @@ int himc_planner_last_round(const himc_planner *planner, int round)
     return round;
 }
 
-/// Drops the strokes that are past but the last, and the motion before `now`.
+/// Drops the strokes that are past but the last, which may still bounce, and the motion before
+/// `now`.
 static void drop_past(planner_hand *h, double now)
 {
     int past = 0;
-    while (past + 1 < h->planned_count && h->planned[past].goal.time + PLANNER_CURRENT < now)
+    while (past + 1 < h->planned_count && h->planned[past + 1].goal.time + PLANNER_CURRENT < now)
         past++;
     for (int i = past; past > 0 && i < h->planned_count; i++)
         h->planned[i - past] = h->planned[i];

@@ -1,8 +1,8 @@
 /// planner_motion.h: the state of the planner, and the functions that plan motion from it.
 ///
 /// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
-/// score, planner_notes.c the notes, planner_motion.c (with planner_clear.c and planner_rest.c) the
-/// hands and the clock, and planner_hits.c what is asked for while it happens.
+/// score, planner_notes.c the notes, planner_motion.c (with planner_goal.c and
+/// planner_clear.c) the hands and the clock, and planner_hits.c what is asked for while it happens.
 #ifndef HIMC_PLANNER_MOTION_H
 #define HIMC_PLANNER_MOTION_H
 
@@ -164,10 +164,14 @@ static inline himc_vec3 himc_planner_aside(const himc_planner *p, const timed_st
 HIMC_RT void himc_planner_motion_init(himc_planner *planner);
 /// Drums, reach or first strokes have changed: the hands rest elsewhere.
 HIMC_RT void himc_planner_rest_again(himc_planner *planner);
-/// Where and how a tip plays a stroke on a drum at t, as written.
+/// planner_goal.c: where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
-/// planner_rest.c: where a hand rests (m): over its drum or, out of its reach, over the first one
+/// Speed of impact that a stroke has with all the time that its bounces need (m/s).
+HIMC_RT double himc_planner_asked(const himc_planner *planner, const timed_stroke *stroke);
+/// Lets the goal differ from the written one as a player's would.
+HIMC_RT void himc_planner_vary(const himc_planner *planner, timed_stroke *stroke);
+/// planner_goal.c: where a hand rests (m): over its drum or, out of its reach, over the first one
 /// in reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
 /// planner_clear.c: the plan of a hand is another one from t (s) on, to be checked and rehearsed.

@@ -18,6 +18,7 @@ typedef enum planner_kind {
     PLANNER_SOFTER,
     PLANNER_DROPPED,
     PLANNER_OTHER_HAND,
+    PLANNER_OVERLAP,
     PLANNER_KINDS
 } planner_kind;
 

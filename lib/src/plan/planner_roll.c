@@ -69,11 +69,41 @@ static double seconds_to(const planner_score *score, double beat)
     return himc_score_seconds(score->tempi, score->tempo_count, beat);
 }
 
+/// True if the roll is played together with the one before it: the hands have a drum each.
+static bool is_second(const planner_score *score, int i)
+{
+    const planner_roll *r = &score->roll[i], *first = r - 1;
+    return i > 0 && first->stroke.beat == r->stroke.beat && first->drum != r->drum &&
+           first->stroke.length == r->stroke.length &&
+           first->stroke.ornament == r->stroke.ornament &&
+           (i == 1 || first[-1].stroke.beat < r->stroke.beat);
+}
+
+static bool is_pair(const planner_score *score, int i)
+{
+    return i + 1 < score->roll_count && is_second(score, i + 1);
+}
+
+/// The roll after one and its second, or the count of rolls.
+static int roll_after(const planner_score *score, int i)
+{
+    return is_pair(score, i) ? i + 2 : i + 1;
+}
+
 double himc_planner_roll_end(const planner_score *score, int i)
 {
     const planner_roll *r = &score->roll[i];
     double end = r->stroke.beat + r->stroke.length;
-    return i + 1 < score->roll_count ? fmin(end, r[1].stroke.beat) : end;
+    int after = roll_after(score, i);
+    return after < score->roll_count ? fmin(end, score->roll[after].stroke.beat) : end;
+}
+
+const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int i)
+{
+    const planner_roll *r = &score->roll[i];
+    double end = r->stroke.beat + r->stroke.length;
+    bool cut = !is_second(score, i) && himc_planner_roll_end(score, i) < end - BEAT_ROUNDING;
+    return cut ? &score->roll[roll_after(score, i)] : NULL;
 }
 
 /// What a hand has to play after a roll.
@@ -89,6 +119,22 @@ static himc_vec3 spot_of(const planner_score *score, const himc_stroke *stroke, 
     double x, y;
     himc_stroke_spot(stroke, score->drum[drum].radius, &x, &y);
     return himc_head_frame_to_world(&score->drum[drum], x, y);
+}
+
+/// The roll that a hand plays: of two together that of its side.
+static const planner_roll *roll_of(const planner_score *score, int i, himc_hand hand)
+{
+    const planner_roll *r = &score->roll[i];
+    if (!is_pair(score, i) || !score->drum)
+        return r;
+    bool to_left =
+        spot_of(score, &r[1].stroke, r[1].drum).y > spot_of(score, &r->stroke, r->drum).y;
+    return (hand == HIMC_LEFT) == to_left ? r + 1 : r;
+}
+
+int himc_planner_roll_drum(const planner_score *score, int roll, himc_hand hand)
+{
+    return roll_of(score, roll, hand)->drum;
 }
 
 /// The way from a roll to a stroke on another drum (m).
@@ -114,11 +160,12 @@ static bool crosses(himc_hand hand, himc_vec3 way)
 /// The right hand begins, but not where a roll goes on from there on a drum to the left.
 static himc_hand lead_of(const planner_score *score, int i)
 {
-    const planner_roll *r = &score->roll[i], *before = r - 1;
-    if (i == 0 || seconds_to(score, r->stroke.beat) >
-                      seconds_to(score, himc_planner_roll_end(score, i - 1)) + JOINED_TIME)
+    const planner_roll *r = &score->roll[i];
+    int before = i > 0 && is_second(score, i - 1) ? i - 2 : i - 1;
+    if (before < 0 || seconds_to(score, r->stroke.beat) >
+                          seconds_to(score, himc_planner_roll_end(score, before)) + JOINED_TIME)
         return HIMC_RIGHT;
-    himc_vec3 way = way_to(score, before, &r->stroke, r->drum);
+    himc_vec3 way = way_to(score, roll_of(score, before, HIMC_RIGHT), &r->stroke, r->drum);
     return crosses(HIMC_RIGHT, way) ? HIMC_LEFT : HIMC_RIGHT;
 }
 
@@ -133,7 +180,6 @@ static double leap_time(const planner_roll *from, himc_vec3 way)
 /// it to that one.
 static void listed_next(const planner_score *score, int i, roll_next next[HIMC_HANDS])
 {
-    const planner_roll *r = &score->roll[i];
     double end = himc_planner_roll_end(score, i), latest = seconds_to(score, end) + JOINED_TIME;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_part *part = &score->part[hand];
@@ -142,28 +188,32 @@ static void listed_next(const planner_score *score, int i, roll_next next[HIMC_H
         double time = s ? seconds_to(score, s->beat) - s->early : HUGE_VAL;
         if (time > latest)
             continue;
-        himc_vec3 way = way_to(score, r, s, part->list[at].drum);
         himc_hand by = (himc_hand)hand;
-        by = crosses(by, way) ? other_hand(by) : by;
+        int drum = part->list[at].drum;
+        if (crosses(by, way_to(score, roll_of(score, i, by), s, drum)))
+            by = other_hand(by);
+        const planner_roll *r = roll_of(score, i, by);
         if (time < next[by].time)
-            next[by] = (roll_next){time, leap_time(r, way), 2, s->early > 0};
+            next[by] = (roll_next){time, leap_time(r, way_to(score, r, s, drum)), 2, s->early > 0};
     }
 }
 
 /// The same of the next roll.
 static void rolled_next(const planner_score *score, int i, roll_next next[HIMC_HANDS])
 {
-    const planner_roll *r = &score->roll[i];
-    if (i + 1 == score->roll_count)
+    int after = roll_after(score, i);
+    if (after >= score->roll_count)
         return;
-    double first = seconds_to(score, r[1].stroke.beat),
-           latest = seconds_to(score, himc_planner_roll_end(score, i)) + JOINED_TIME,
-           leap = leap_time(r, way_to(score, r, &r[1].stroke, r[1].drum));
-    himc_hand lead = lead_of(score, i + 1);
+    double first = seconds_to(score, score->roll[after].stroke.beat),
+           latest = seconds_to(score, himc_planner_roll_end(score, i)) + JOINED_TIME;
+    himc_hand lead = lead_of(score, after);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        double time = first + ((himc_hand)hand == lead ? 0 : LEAST_STEP / r[1].rate);
+        const planner_roll *from = roll_of(score, i, (himc_hand)hand),
+                           *to = roll_of(score, after, (himc_hand)hand);
+        double time = first + ((himc_hand)hand == lead ? 0 : LEAST_STEP / to->rate);
         if (time <= latest && time < next[hand].time)
-            next[hand] = (roll_next){.time = time, .leap = leap};
+            next[hand] = (roll_next){
+                .time = time, .leap = leap_time(from, way_to(score, from, &to->stroke, to->drum))};
     }
 }
 
@@ -216,6 +266,7 @@ static roll_grid grid_of(const planner_score *score, int i, int in_round)
 {
     const planner_roll *r = &score->roll[i];
     const planner_anchor *a = &score->anchor;
+    double rate = is_pair(score, i) ? fmax(r->rate, r[1].rate) : r->rate;
     double first = seconds_to(score, himc_planner_roll_end(score, i));
     roll_grid g = {.lead = lead_of(score, i), .begin = seconds_to(score, r->stroke.beat)};
     roll_next next[HIMC_HANDS] = {{.time = HUGE_VAL}, {.time = HUGE_VAL}};
@@ -227,14 +278,16 @@ static roll_grid grid_of(const planner_score *score, int i, int in_round)
     listed_next(score, i, next);
     rolled_next(score, i, next);
     first = fmin(first, fmin(next[HIMC_LEFT].time, next[HIMC_RIGHT].time));
+    if (is_second(score, i))
+        return (roll_grid){.begin = g.begin, .step = 1};
     if (!(first > g.begin))
         return (roll_grid){g.lead, g.first, g.begin, 1, anchored ? g.first + 1 : 0};
     roll_grid left = g, right = g;
-    double extra = end_with(&left, next, first, r->rate, HIMC_LEFT),
-           other = end_with(&right, next, first, r->rate, HIMC_RIGHT);
-    double bent = bend_of(&left, r->rate), other_bent = bend_of(&right, r->rate);
+    double extra = end_with(&left, next, first, rate, HIMC_LEFT),
+           other = end_with(&right, next, first, rate, HIMC_RIGHT);
+    double bent = bend_of(&left, rate), other_bent = bend_of(&right, rate);
     bool too_bent = anchored && fmax(bent, other_bent) > ANCHOR_BEND;
-    if (r->rate * (first - g.begin) < 1 || too_bent)
+    if (rate * (first - g.begin) < 1 || too_bent)
         return other_bent < bent ? right : left;
     return other < extra ? right : left;
 }
@@ -277,10 +330,11 @@ static double bounce_time(const roll_grid *g, int number, int bounces)
 
 static himc_stroke stroke_at(const planner_score *score, int i, const roll_grid *g, int number)
 {
-    const himc_stroke *roll = &score->roll[i].stroke;
+    himc_hand hand = hand_of(g, number);
+    const himc_stroke *roll = &roll_of(score, i, hand)->stroke;
     himc_stroke s = *roll;
     double share = g->count > 1 ? (double)number / (g->count - 1) : 0;
-    s.hand = hand_of(g, number);
+    s.hand = hand;
     s.beat = beat_of(score, i, g, number);
     if (g->first > 0) // numbers are no longer even over the roll
         share = (s.beat - roll->beat) / (beat_of(score, i, g, g->count - 1) - roll->beat);
@@ -370,7 +424,7 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_r
                 due->stroke = stroke_at(score, at->roll, &g, at->number);
                 if (is_left_out(score, &due->stroke))
                     continue;
-                due->drum = score->roll[at->roll].drum;
+                due->drum = himc_planner_roll_drum(score, at->roll, due->stroke.hand);
                 due->roll = at->roll + 1;
                 due->index = at->number;
                 due->round = at->round;
@@ -477,7 +531,7 @@ bool himc_planner_roll_same_places(const planner_score *a, const planner_score *
 void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat, double *before,
                             double *after)
 {
-    int begun = last_begun(score, beat), first = begun > 0 ? begun - 1 : 0;
+    int begun = last_begun(score, beat), first = begun > 1 ? begun - 2 : 0;
     *before = -HUGE_VAL, *after = HUGE_VAL;
     for (int i = first; i < score->roll_count && i <= begun + 1; i++) {
         roll_grid g = grid_of(score, i, NO_ROUND);
@@ -498,6 +552,7 @@ planner_roll_place himc_planner_roll_walk(const planner_score *score, int in_rou
     planner_roll_place at = {last_begun(score, beat), 0, in_round};
     if (at.roll < 0)
         return at;
+    at.roll -= is_second(score, at.roll);
     roll_grid g = grid_of(score, at.roll, in_round);
     at.number = number_after(&g, seconds_to(score, beat));
     if (at.number < g.count && beat_of(score, at.roll, &g, at.number) <= beat) // of rounding

@@ -42,6 +42,11 @@ HIMC_RT void himc_planner_roll_anchor(planner_score *score);
 HIMC_RT double himc_planner_roll_last_beat(const planner_score *score);
 /// Beat at which a roll ends: where it is written to, or where the next one begins.
 HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
+/// The roll that takes the place of another one from its beginning or within it; NULL if there is
+/// none.
+const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int roll);
+/// The drum on which a hand plays a roll: two rolls together have a hand each.
+HIMC_RT int himc_planner_roll_drum(const planner_score *score, int roll, himc_hand hand);
 /// Beats of the strokes of a hand (HIMC_HAND_ANY: of both) next to a beat and not on it;
 /// -HUGE_VAL and HUGE_VAL if there is none.
 HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat,

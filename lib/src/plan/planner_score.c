@@ -144,7 +144,7 @@ int himc_planner_score_first_drum(const planner_score *score, himc_hand hand, do
         roll++;
     if (roll < score->roll_count &&
         (first == part->count || score->roll[roll].stroke.beat < part->list[first].stroke.beat))
-        return score->roll[roll].drum;
+        return himc_planner_roll_drum(score, roll, hand);
     return first < part->count ? part->list[first].drum : none;
 }
 

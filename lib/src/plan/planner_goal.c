@@ -1,0 +1,166 @@
+/// planner_goal.c: where the tips go: strokes become goals, with a place, a time and a gesture, and
+/// without a stroke a tip rests over the drum it has struck last, at first over the one that it
+/// will strike first, not crossed.
+///
+/// The gesture is that of the nuance and dynamic, in the shape of the motion unit that fits best,
+/// no faster than fingers can turn the stick for its bounces, and varied as a player's.
+#include "plan/planner_motion.h"
+#include "plan/bounce.h"
+
+// the goal; chosen: a unit of another spot further off than any of another speed, of another grip
+// further still
+#define OTHER_SPOT 10 // as a difference of log speed
+#define OTHER_GRIP 20 // as a difference of log speed
+
+// where a tip rests (m); chosen: near enough to look at rest, too high to touch a ringing head; at
+// the height of the usual strike point, the hands as far apart as the shoulders
+#define REST_OVER 0.085     // the mallet over the head: a hit at mf comes within a quarter second
+#define REST_BACK (2.0 / 3) // from the centre towards the performer, of the radius
+#define REST_ASIDE 0.3      // to the hand's own side, of the radius ...
+#define REST_MOST_ASIDE 0.1 // ... and at most
+
+/// The unit that fits best: of that nuance and hand, if possible of that grip and spot, and near in
+/// speed.
+static const himc_unit *find_unit(const himc_planner *planner, const himc_stroke *stroke)
+{
+    double speed = himc_gesture_of(stroke->nuance, stroke->dynamic).speed, least = HUGE_VAL;
+    const himc_unit *best = NULL;
+    for (int i = 0; i < planner->unit_count; i++) {
+        const himc_unit *unit = &planner->unit[i];
+        if (unit->nuance != stroke->nuance || unit->hand != stroke->hand)
+            continue;
+        bool elsewhere = unit->spot != HIMC_SPOT_XY && unit->spot != stroke->spot;
+        double away = fabs(log(unit->speed / speed)) + OTHER_SPOT * elsewhere +
+                      OTHER_GRIP * (unit->grip != planner->grip);
+        if (away < least) {
+            least = away;
+            best = unit;
+        }
+    }
+    return best;
+}
+
+static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *stroke)
+{
+    const himc_unit *unit = planner->unit_count > 0 ? find_unit(planner, stroke) : NULL;
+    return unit ? himc_gesture_from(unit, stroke->nuance, stroke->dynamic)
+                : himc_gesture_of(stroke->nuance, stroke->dynamic);
+}
+
+/// The gesture, no faster than fingers can turn the stick for its bounces.
+static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *stroke)
+{
+    himc_gesture g = gesture_of(planner, stroke);
+    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
+    if (g.speed <= most)
+        return g;
+    if (most > HIMC_SLOWEST_GESTURE) // else it is given up
+        himc_planner_say(&planner->notes, PLANNER_SOFTER,
+                         "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
+                         stroke->bounce_time, most);
+    return himc_gesture_scale(g, most / g.speed);
+}
+
+double himc_planner_asked(const himc_planner *planner, const timed_stroke *s)
+{
+    double varied = s->goal.gesture.speed / s->written.gesture.speed;
+    return varied * gesture_of(planner, &s->stroke).speed;
+}
+
+/// Moves a place into the part of a head that is struck; true if it was beyond.
+static bool keep_inside(const himc_head_frame *head, double *x, double *y)
+{
+    double r = hypot(*x, *y), limit = PLANNER_STRUCK * head->radius;
+    if (r <= limit)
+        return false;
+    *x *= limit / r;
+    *y *= limit / r;
+    return true;
+}
+
+himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
+{
+    const himc_head_frame *head = &planner->drum[drum];
+    double x, y;
+    himc_stroke_spot(stroke, head->radius, &x, &y);
+    double asked_x = x, asked_y = y;
+    if (keep_inside(head, &x, &y))
+        himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
+                         "%s hand: %.3g %.3g is beyond the rim, struck inside it",
+                         himc_hand_name(stroke->hand), asked_x, asked_y);
+    return (himc_goal){.time = t,
+                       .spot = himc_planner_tip_at(planner, head, x, y),
+                       .normal = himc_head_frame_normal(head),
+                       .back = himc_vec3_scale(himc_head_frame_away(head), -1),
+                       .gesture = bouncing_gesture(planner, stroke),
+                       .hold = stroke->bounces ? stroke->bounce_time : 0};
+}
+
+void himc_planner_vary(const himc_planner *planner, timed_stroke *s)
+{
+    const himc_head_frame *head = &planner->drum[s->drum];
+    bool hit = s->index < 0 && !s->reassigned;
+    if (!hit)
+        s->variation = himc_human_stroke(&planner->human, &planner->score, s->stroke.hand, s->round,
+                                         s->stroke.beat);
+    const himc_variation *v = &s->variation;
+    himc_vec3 at = himc_head_frame_from_world(head, s->written.spot);
+    himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
+    keep_inside(head, &at.x, &at.y);
+    s->varied = true;
+    s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
+    if (s->goal.gesture.speed > HIMC_SLOWEST_GESTURE)
+        s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
+    himc_vec3 aside = himc_vec3_cross(s->goal.normal, s->goal.back);
+    s->goal.back = himc_vec3_madd(himc_vec3_scale(s->goal.back, cos(v->turn)), sin(v->turn), aside);
+    if (!hit) // a hit's time has been varied when it came
+        s->goal.time += v->late;
+}
+
+static himc_vec3 rest_over(const himc_planner *planner, himc_hand hand, int drum)
+{
+    const himc_head_frame *head = &planner->drum[drum];
+    double aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
+    himc_vec3 at = himc_planner_tip_at(planner, head, -REST_BACK * head->radius,
+                                       hand == HIMC_LEFT ? aside : -aside);
+    return himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
+}
+
+static double azimuth(const himc_head_frame *head)
+{
+    return atan2(head->center.y, head->center.x);
+}
+
+static int own_drum(const himc_planner *planner, himc_hand hand)
+{
+    const planner_score *score = &planner->score;
+    const planner_hand *h = &planner->hand[hand];
+    return h->struck ? h->drum : himc_planner_score_first_drum(score, hand, score->beat, h->drum);
+}
+
+/// The drum over which a hand rests: its own, but the hands do not rest crossed.
+static int rest_drum(const himc_planner *planner, himc_hand hand)
+{
+    int left = own_drum(planner, HIMC_LEFT), right = own_drum(planner, HIMC_RIGHT);
+    bool crossed = azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
+    return (hand == HIMC_LEFT) != crossed ? left : right;
+}
+
+static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_vec3 *place)
+{
+    const himc_planner_config *c = &planner->config;
+    *place = rest_over(planner, hand, drum);
+    return planner->known[drum] &&
+           !(c->beyond && c->beyond(c->body, hand, *place) > PLANNER_UNREACHED);
+}
+
+himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand)
+{
+    himc_vec3 place;
+    if (is_rest(planner, hand, rest_drum(planner, hand), &place))
+        return place;
+    for (int drum = 0; drum < HIMC_DRUMS; drum++)
+        if (is_rest(planner, hand, drum, &place))
+            return place;
+    return planner->config.rest[hand];
+}
