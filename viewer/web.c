@@ -339,11 +339,13 @@ static void tell_page(web *w, const char *text)
         lws_callback_on_writable(w->editing);
 }
 
+// the callback of its end takes it for nobody's
 static void close_output(struct lws **output)
 {
-    if (*output)
-        lws_set_timeout(*output, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
+    struct lws *closed = *output;
     *output = NULL;
+    if (closed)
+        lws_set_timeout(closed, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
 }
 
 // the program of a piece that was just dropped ends

@@ -707,6 +707,21 @@ def test_a_name_is_no_sound():
             page.until("over")
 
 
+def test_a_piece_that_another_one_follows_is_not_called_bad():
+    with tempfile.TemporaryDirectory() as home, Viewer(home=home) as v:
+        page = Editing(v)
+        for i in range(12):
+            page.say(b"q%d.txt\0" % i + score_of("0 right legato mf"))
+        while True:
+            kind, data = page.next()
+            event = json.loads(data)["event"] if kind == "edit" else kind
+            assert event != "failed", data
+            if event == "text":
+                source = json.loads(data)["source"]
+            if event == "over" and source == "q11.txt":
+                break
+
+
 def test_a_program_that_ends_by_itself_is_started_again_once():
     """A program beside himc-viewer that lets a piece be heard and dies, each time."""
     with tempfile.TemporaryDirectory() as home:
