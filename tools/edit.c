@@ -342,6 +342,15 @@ static void restore(session *s, const char *text, bool sent)
 
 // --- for the page
 
+static void stop_saving(session *s)
+{
+    edit_play_free(s->saver); // first: it may be writing
+    s->saver = NULL;
+    if (s->saved[0])
+        cli_temporary_remove(s->saved);
+    s->saved[0] = 0;
+}
+
 static bool save_take(session *s, const char *name, himc_error *error)
 {
     const char *dot = strrchr(name, '.');
@@ -349,7 +358,7 @@ static bool save_take(session *s, const char *name, himc_error *error)
         return himc_error_set(error, "%.40s: allowed .bvh .c3d .trc", name);
     if (s->saver)
         return himc_error_set(error, "a take is being saved");
-    int file = himc_system_temporary(s->saved, sizeof s->saved, dot);
+    int file = cli_temporary(s->saved, sizeof s->saved, dot);
     if (file < 0)
         return himc_error_set(error, "%s", strerror(errno));
     close(file);
@@ -358,6 +367,8 @@ static bool save_take(session *s, const char *name, himc_error *error)
     s->saver = text ? edit_play_new(s->name, &s->take, error) : NULL;
     bool good = s->saver && edit_play_start(s->saver, text, -1, s->saved, error);
     free(text);
+    if (!good)
+        stop_saving(s);
     return good;
 }
 
@@ -530,9 +541,7 @@ static void take_saved(session *s)
     else
         tell("refused", "text", "the take could not be saved");
     free(bytes);
-    remove(s->saved);
-    edit_play_free(s->saver);
-    s->saver = NULL;
+    stop_saving(s);
 }
 
 static bool serve(session *s, himc_error *error)
@@ -581,7 +590,7 @@ static int run(const cli_arguments *arguments)
         fflush(stdout);
     }
     edit_play_free(s.play);
-    edit_play_free(s.saver);
+    stop_saving(&s);
     edit_journal_close(&s.journal);
     edit_text_free(s.text);
     free(text);

@@ -11,6 +11,7 @@ import tempfile
 import zlib
 
 import report
+from bridge import processes, wait_until_gone
 from editing import Piece
 
 HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
@@ -197,6 +198,34 @@ def test_saved_takes_leave_no_open_file():
             assert piece.play("nothing") is not None  # all has been put away by then
             open_files.append(len(os.listdir(f"/proc/{piece.process.pid}/fd")))
         assert len(set(open_files)) == 1, open_files
+
+
+def test_processes_and_files_of_a_save_end_with_the_program():
+    path = made("long.txt", "".join(f"stroke {i} right legato mf;\n" for i in range(60)))
+
+    def close(piece):
+        piece.process.stdin.close()
+        piece.process.stdout.close()
+
+    ends = {"its input": close, "SIGTERM": lambda p: p.process.terminate(), "kill -9": lambda p: p.process.kill()}
+    for played in (True, False):
+        for name, end in ends.items():
+            home = tempfile.mkdtemp(dir=folder.name)
+            piece = Piece(HIMC, path, TMPDIR=home)
+            if played:  # so that there are copies from before the save, too
+                piece.say("hello")
+                piece.until("pcm ")
+            piece.say("take x.bvh")
+            if played:
+                piece.say("hello")
+                assert piece.until("text")["begun"]
+                piece.until("from")
+            while not os.listdir(home) or len(running := processes(piece)) < (3 if played else 1):
+                pass
+            end(piece)
+            piece.process.wait(60)
+            wait_until_gone(running)
+            assert name == "kill -9" or not os.listdir(home), (name, os.listdir(home))
 
 
 def made_take():
