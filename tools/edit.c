@@ -12,6 +12,8 @@
 #include "edit_play.h"
 #include "edit_text.h"
 #include "midi/import.h"
+#include "midi/score_file.h"
+#include "midi/smf.h"
 #include "performance/performance_drums.h"
 #include "plan/score.h"
 #include "scene.h"
@@ -117,6 +119,18 @@ static void name_source(const session *s, himc_error *error)
 
 // --- the piece
 
+static char *text_of_midi(const char *bytes, size_t size, const char *name, himc_error *error)
+{
+    midi_score made = {0};
+    char *text = NULL;
+    if (himc_midi_import(&made, bytes, size, name, NULL, error))
+        text = strdup(made.text);
+    else
+        himc_error_prefix(error, "%s", name);
+    himc_midi_score_free(&made);
+    return text;
+}
+
 static char *text_of(const char *source, const char *name, himc_error *error)
 {
     size_t size;
@@ -129,15 +143,10 @@ static char *text_of(const char *source, const char *name, himc_error *error)
         return text;
     }
     char *bytes = himc_file_load(source, LARGEST_TEXT, &size, error);
-    if (!bytes || size < 4 || memcmp(bytes, "MThd", 4) != 0)
+    bool midi = bytes && himc_midi_is_file(bytes, size);
+    if (!bytes || (!midi && himc_score_is_text(bytes, size, name, error)))
         return bytes;
-    midi_score made = {0};
-    char *text = NULL;
-    if (himc_midi_import(&made, bytes, size, name, NULL, error))
-        text = strdup(made.text);
-    else
-        himc_error_prefix(error, "%s", name);
-    himc_midi_score_free(&made);
+    char *text = midi ? text_of_midi(bytes, size, name, error) : NULL;
     free(bytes);
     return text;
 }

@@ -325,6 +325,23 @@ def test_a_score_that_names_files_is_refused_when_confined():
             assert [s["words"] for s in piece.text["statements"]] == [stroke[:-1]], text
 
 
+def test_a_file_that_is_no_score_is_refused_as_by_render():
+    """Nothing is read as if it ended at a zero byte."""
+    stroke = b"stroke 1 right legato mf;\n"
+    for bytes_ in (stroke + b"\0record x.bvh;\n", stroke + b"\0", b"\0" + stroke, b"%PDF-1.4\n" + stroke):
+        path = made("nul.txt", bytes_)
+        said = set()
+        for call in (["render", "-o", "/dev/null", path], ["info", path], ["edit", path]):
+            done = subprocess.run([HIMC, *call], capture_output=True, input=b"hello\n")
+            assert done.returncode == 1, (call, done)
+            said.add(done.stderr.decode().split(": ", 1)[1])
+        assert len(said) == 1 and "allowed: a score" in (line := said.pop()), said
+        sent = [HIMC, "edit", path, "--confined", "--name", "my.txt"]
+        done = subprocess.run(sent, capture_output=True, input=b"hello\n")
+        assert done.stderr.decode() == f"himc edit: {line.replace(path, 'my.txt')}", done
+        assert b'"failed"' in done.stdout and done.stdout.count(b"edit") == 1, done
+
+
 def test_a_change_changes_its_words_alone():
     text = (
         "\ufeffstroke 0  right\tlegato mf; comment a; b ;\n"
