@@ -781,6 +781,34 @@ def test_a_film_has_all_its_pictures_and_the_sound_in_step():
     return f"sound {1000 * (said['heard'] - loud):.1f} ms off"
 
 
+def test_an_interrupted_film_leaves_nothing():
+    made_by_film("png", "--at", "1")
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+        with tempfile.TemporaryDirectory() as home:
+            command = [HIMC, "film", FOUR, "-o", os.path.join(home, "a.png"), "--size", "96x64"]
+            film = subprocess.Popen(command, env=dict(os.environ, TMPDIR=home))
+            while not any(os.path.exists(os.path.join(home, name, "page.html")) for name in os.listdir(home)):
+                assert film.poll() is None
+                time.sleep(0.01)
+            film.send_signal(number)
+            assert film.wait(WAIT) == -number
+            end = time.time() + WAIT
+            while left := [name for name in os.listdir(home) if number != signal.SIGKILL or "a.png" not in name]:
+                assert time.time() < end, left
+                time.sleep(0.05)
+
+
+def test_a_film_of_what_the_page_refuses_says_why():
+    with open(FOUR, "rb") as file:
+        good = file.read()
+    bad = os.path.join(MADE, "bad.himc")
+    with open(bad, "wb") as file:
+        file.write(good + packed(b"json", b'[{"event":"beat","time":1,"beat":"one"}]'))
+    done = subprocess.run([HIMC, "film", bad, "-o", bad + ".png"], capture_output=True, text=True)
+    assert done.returncode == 1 and "bad.himc: a faulty beat" in done.stderr, done
+    assert done.stderr.count("\n") == 1 and not os.path.exists(bad + ".png"), done
+
+
 def test_a_still_is_a_picture_of_that_size():
     still = made_by_film("png", "--at", "2", "--camera", "hands")
     assert still[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", still[16:24]) == (96, 64)
