@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+import resource
 import struct
 import subprocess
 import sys
@@ -708,6 +709,21 @@ def test_a_damaged_journal_is_kept_and_one_cut_short_holds_nothing():
             piece.say("hello")
             piece.until("over")
             assert "restored" not in piece.said and os.listdir(beside) == ["piece.txt"], size
+
+
+def test_a_journal_that_cannot_be_written_leaves_nothing():
+    def full(size):
+        return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    strokes = "".join(f"stroke {i} right legato mf;\n" for i in range(400))
+    for text, most in (("stroke 0 right legato mf;", 0), ("stroke 0 right legato mf;", 40), (strokes, 6000)):
+        path = made("piece.txt", text)
+        pipes = dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        # as on a full disk: Python ignores SIGXFSZ, and so does what it starts
+        done = subprocess.Popen([HIMC, "edit", path], restore_signals=False, preexec_fn=full(most), **pipes)
+        said = done.communicate(b"set 0 stroke 0 right legato ff\nset 0 stroke 0 right legato f\n")[0]
+        assert said.count(b'"event":"unkept"') == 1 and b"too large" in said, said
+        assert said.count(b'"kept":false') >= 1 and os.listdir(os.path.dirname(path)) == ["piece.txt"], said
 
 
 def test_what_a_page_has_sent_is_known_again_by_its_name_and_contents():
