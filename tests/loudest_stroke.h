@@ -11,9 +11,10 @@
 
 #define LOUDEST_HEARD 0.1 // after each stroke (s): all modes have swung, air and ears have it
 
-/// Largest sample of each channel of a copy of the drum, at rest before, and the most energy (J) in
-/// its head; false without memory.
-static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUPS], double *energy)
+/// Largest sample of each channel of a copy of the drum, at rest before, at its gain or the louder
+/// `level` that it has had, and the most energy (J) in its head; false without memory.
+static inline bool loudest_stroke(const himc_drum *drum, double level, double peak[HIMC_PICKUPS],
+                                  double *energy)
 {
     static const double place[] = {-0.3, -0.75}; // of the radius: loudest, usual
     double sound[256], speed = himc_gesture_of(HIMC_VERTICAL_ACCENT, 1).speed;
@@ -27,7 +28,7 @@ static inline bool loudest_stroke(const himc_drum *drum, double peak[HIMC_PICKUP
     if (!copy)
         return false;
     bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
-    copy->gain = fmax(sounds ? drum->gain * drum->fader : 0, drum->level); // as set, or still is
+    copy->gain = fmax(sounds ? drum->gain * drum->fader : 0, fmax(drum->level, level));
     copy->technique = HIMC_TECHNIQUE_MODAL;
     copy->mute = false;
     for (int i = 0; i < 2; i++) {

@@ -153,16 +153,26 @@ static void remember(const spoken *s, int drum, int delay)
 static double loudest[HIMC_DRUMS][HIMC_PICKUPS];
 static bool thrown; // since the round began
 
-// `energy` is what the head had before its setting changed (J). Made slacker or heavier, or with
-// a lighter mallet, it is louder with that than by a stroke of today, as the root of it.
-static void hear_loudest(const himc_drum *d, int slot, double energy)
+// what a drum has had: energy in its head (J), level of its sound
+typedef struct past {
+    double energy, level;
+} past;
+
+static past past_of(const himc_drum *d)
+{
+    return (past){drum_energy(d), d->level};
+}
+
+// `before` is of before its setting changed. Made slacker or heavier, or with a lighter mallet, it
+// is louder with that energy than by a stroke of today, as the root of it.
+static void hear_loudest(const himc_drum *d, int slot, past before)
 {
     double now[HIMC_PICKUPS], struck;
     seen.measured++;
-    TEST_ASSERT_TRUE(loudest_stroke(d, now, &struck));
+    TEST_ASSERT_TRUE(loudest_stroke(d, before.level, now, &struck));
     for (int k = 0; k < HIMC_PICKUPS; k++)
         loudest[slot][k] =
-            fmax(loudest[slot][k], now[k] * (struck > 0 ? fmax(1, sqrt(energy / struck)) : 1));
+            fmax(loudest[slot][k], now[k] * (struck > 0 ? fmax(1, sqrt(before.energy / struck)) : 1));
 }
 
 static const himc_command_id of_tempo[10] = {
@@ -191,7 +201,7 @@ static void say_one(pair *of, random_seed *seed)
     if (s.receiver == HIMC_DRUM && drum < 0)
         return;
     bool parsed = himc_command_parse(&c, s.receiver, s.name, s.atom, s.count, &answer);
-    double energy = drum < 0 ? 0 : drum_energy(himc_performance_drum(of->p, drum));
+    past before = drum < 0 ? (past){0} : past_of(himc_performance_drum(of->p, drum));
     bool done = parsed && carry_out(of->p, &c, s.receiver, drum, delay, &answer);
     seen.accepted += done;
     seen.refused += !done;
@@ -208,7 +218,7 @@ static void say_one(pair *of, random_seed *seed)
     if (done && of->twin && !carry_out(of->twin, &c, s.receiver, drum, delay, &answer))
         fail("refused by the twin");
     if (done && s.receiver == HIMC_DRUM)
-        hear_loudest(himc_performance_drum(of->p, drum), drum, energy);
+        hear_loudest(himc_performance_drum(of->p, drum), drum, before);
 }
 
 // notes are single lines too; all other figures of events are finite
@@ -227,8 +237,8 @@ static void take_notes(himc_performance *p, finite_watch *watch)
     }
 }
 
-// the samples of a drum's pickup against the loudest real stroke; it had the energy `before` them
-static void check_sound(const himc_drum *d, int slot, int pickup, int n, double before)
+// the samples of a drum's pickup against the loudest real stroke; `before` is of before them
+static void check_sound(const himc_drum *d, int slot, int pickup, int n, past before)
 {
     double sound[LONGEST_BLOCK], most = 0, sum = 0;
     himc_drum_read_channel(d, pickup, himc_drum_time(d) - (uint64_t)n, n, sound);
@@ -248,10 +258,10 @@ static void check_sound(const himc_drum *d, int slot, int pickup, int n, double 
     }
 }
 
-static void check_drum(const himc_drum *d, int slot, int n, double before)
+static void check_drum(const himc_drum *d, int slot, int n, past before)
 {
     int pickups;
-    double after = drum_energy(d), most = before + 2 * LOUDEST_ARM + HEAVIEST_BLOW * HIMC_STICKS;
+    double after = drum_energy(d), most = before.energy + 2 * LOUDEST_ARM + HEAVIEST_BLOW * HIMC_STICKS;
     himc_membrane_pickups(d->membrane, &pickups);
     seen.energy = fmax(seen.energy, after);
     if (!(after <= most))
@@ -286,11 +296,12 @@ static void check_twin(const pair *of, int n, double *const a[2], double *const 
 static void play_on(pair *of, random_seed *seed)
 {
     char what[80];
-    double force[2][HIMC_HANDS][LONGEST_BLOCK], before[HIMC_DRUMS];
+    double force[2][HIMC_HANDS][LONGEST_BLOCK];
+    past before[HIMC_DRUMS];
     double *ours[] = {force[0][0], force[0][1]}, *theirs[] = {force[1][0], force[1][1]};
     int n = any_of(seed, LONGEST_BLOCK), count = of->p->drums.count;
     for (int i = 0; i < count; i++)
-        before[i] = drum_energy(of->p->drums.slot[i].drum);
+        before[i] = past_of(of->p->drums.slot[i].drum);
     himc_performance_process(of->p, n, ours);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (himc_vec3_length(of->p->body->state.tip_velocity[hand]) > THROWN)

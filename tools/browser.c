@@ -2,6 +2,9 @@
 /// descriptor 3 and writes answers to 4, JSON texts that end with a zero byte. An answer has the
 /// number of its request; everything else that comes is skipped.
 ///
+/// Its keeper, a process in a session of its own, starts it and waits until this one has closed a
+/// pipe, however it ends. Then the browser and its folder go.
+///
 /// Scripts answer with text that needs no escape (words, numbers, base64), so an answer is read
 /// without a parser.
 #define _XOPEN_SOURCE 700 // mkdtemp, nftw
@@ -20,12 +23,17 @@
 #include <unistd.h>
 
 #define PATIENCE 300000 // (ms) without a word; chosen: a slow machine draws a large frame
+// chosen:
+enum {
+    STEP = 20,     // between two looks at a browser that ends (ms)
+    FAREWELL = 250 // looks before it is killed, or its folder is left
+};
 
 struct browser {
-    pid_t process;
-    int to, from; // descriptors
-    int count;    // of requests
-    char home[64], session[128];
+    pid_t keeper;
+    int to, from, life; // descriptors
+    int count;          // of requests
+    char home[BROWSER_HOME], session[128];
     char *text; // what came, the answer at its beginning
     size_t size, room;
 };
@@ -68,8 +76,8 @@ static const char *find(himc_error *error)
 static void become(const char *name, const char *home, int requests, int answers, int width,
                    int height)
 {
-    char profile[96], size[64];
-    snprintf(profile, sizeof profile, "--user-data-dir=%s", home);
+    char profile[BROWSER_HOME + 32], size[64];
+    snprintf(profile, sizeof profile, "--user-data-dir=%s/profile", home);
     snprintf(size, sizeof size, "--window-size=%d,%d", width, height);
     // 3 and 4 may be among the descriptors that are moved there
     int a = fcntl(requests, F_DUPFD, 10), b = fcntl(answers, F_DUPFD, 10);
@@ -85,35 +93,87 @@ static void become(const char *name, const char *home, int requests, int answers
     _exit(127);
 }
 
+static int remove_one(const char *path, const struct stat *s, int kind, struct FTW *where)
+{
+    (void)s, (void)kind, (void)where;
+    remove(path);
+    return 0;
+}
+
+// true once the browser has ended
+static bool has_ended(pid_t child)
+{
+    for (int i = 0; i < FAREWELL; i++) {
+        if (waitpid(child, NULL, WNOHANG) != 0)
+            return true;
+        poll(NULL, 0, STEP);
+    }
+    return false;
+}
+
+// in the keeper; does not return
+static void keep(const char *name, const browser *b, int alive, int requests, int answers,
+                 int width, int height)
+{
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+    char byte;
+    setsid(); // what ends the program at a terminal, or by its group, leaves this one its work
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
+        signal(signals[i], SIG_DFL);
+    pid_t child = fork();
+    if (child == 0) {
+        setpgid(0, 0);
+        close(alive);
+        become(name, b->home, requests, answers, width, height);
+    }
+    close(requests);
+    close(answers);
+    if (!freopen("/dev/null", "w", stderr) || !freopen("/dev/null", "w", stdout))
+        _exit(1);
+    while (read(alive, &byte, 1) < 0 && errno == EINTR)
+        ;
+    if (child > 0 && !has_ended(child)) {
+        kill(-child, SIGKILL);
+        waitpid(child, NULL, 0);
+    }
+    // its own processes may still write
+    for (int i = 0; i < FAREWELL && access(b->home, F_OK) == 0; i++) {
+        nftw(b->home, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+        poll(NULL, 0, i ? STEP : 0);
+    }
+    _exit(0);
+}
+
 static bool start(browser *b, int width, int height, himc_error *error)
 {
-    int requests[2], answers[2];
+    int pipes[3][2] = {{-1, -1}, {-1, -1}, {-1, -1}};
     const char *name = find(error), *folder = getenv("TMPDIR");
     if (!name)
         return false;
-    snprintf(b->home, sizeof b->home, "%.40s/himc-film-XXXXXX", folder ? folder : "/tmp");
-    if (!mkdtemp(b->home)) {
-        b->home[0] = 0;
+    snprintf(b->home, sizeof b->home, "%.200s/himc-film-XXXXXX",
+             folder && folder[0] ? folder : "/tmp");
+    if (!mkdtemp(b->home))
         return himc_error_set(error, "no temporary folder: %s", strerror(errno));
+    if (pipe(pipes[0]) == 0 && pipe(pipes[1]) == 0 && pipe(pipes[2]) == 0)
+        b->keeper = fork();
+    else
+        b->keeper = -1;
+    if (b->keeper == 0) {
+        for (int i = 0; i < 3; i++)
+            close(pipes[i][i != 1]);
+        keep(name, b, pipes[2][0], pipes[0][0], pipes[1][1], width, height);
     }
-    if (pipe(requests))
-        return himc_error_set(error, "%s", strerror(errno));
-    if (pipe(answers)) {
-        close(requests[0]);
-        close(requests[1]);
-        return himc_error_set(error, "%s", strerror(errno));
-    }
-    b->to = requests[1];
-    b->from = answers[0];
-    b->process = fork();
-    if (b->process == 0) {
-        close(b->to);
-        close(b->from);
-        become(name, b->home, requests[0], answers[1], width, height);
-    }
-    close(requests[0]);
-    close(answers[1]);
-    return b->process > 0 || himc_error_set(error, "%s: %s", name, strerror(errno));
+    int why = errno;
+    for (int i = 0; i < 3; i++)
+        if (pipes[i][i == 1] >= 0)
+            close(pipes[i][i == 1]);
+    b->to = pipes[0][1];
+    b->from = pipes[1][0];
+    b->life = pipes[2][1];
+    if (b->keeper > 0)
+        return true;
+    rmdir(b->home);
+    return himc_error_set(error, "%s: %s", name, strerror(why));
 }
 
 // --- requests and answers
@@ -214,6 +274,7 @@ browser *browser_open(int width, int height, himc_error *error)
         himc_error_set(error, "out of memory");
         return NULL;
     }
+    b->to = b->from = b->life = -1;
     signal(SIGPIPE, SIG_IGN);
     snprintf(text, sizeof text,
              "\"width\":%d,\"height\":%d,\"deviceScaleFactor\":1,\"mobile\":false", width, height);
@@ -248,29 +309,22 @@ const char *browser_run(browser *b, const char *script, himc_error *error)
     return NULL;
 }
 
-static int remove_one(const char *path, const struct stat *s, int kind, struct FTW *where)
+const char *browser_home(const browser *b)
 {
-    (void)s, (void)kind, (void)where;
-    remove(path);
-    return 0;
+    return b->home;
 }
 
 void browser_close(browser *b)
 {
     if (!b)
         return;
-    himc_error error;
-    b->session[0] = 0;
-    if (b->process > 0) {
-        ask(b, "Browser.close", "", &error);
-        waitpid(b->process, NULL, 0);
-    }
-    if (b->to)
-        close(b->to);
-    if (b->from)
-        close(b->from);
-    if (b->home[0])
-        nftw(b->home, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+    // which ends the browser
+    const int open[] = {b->to, b->from, b->life};
+    for (int i = 0; i < 3; i++)
+        if (open[i] >= 0)
+            close(open[i]);
+    if (b->keeper > 0)
+        waitpid(b->keeper, NULL, 0);
     free(b->text);
     free(b);
 }

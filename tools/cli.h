@@ -86,6 +86,10 @@ bool cli_file_keep(cli_file *file, himc_error *error);
 void cli_file_drop(cli_file *file);
 /// True if the name stands for the standard input or output.
 bool cli_is_standard(const char *path);
+/// Makes a temporary file, open for writing, which an interrupt removes: `path` must stay where it
+/// is until cli_temporary_remove(). -1 with errno.
+int cli_temporary(char *path, size_t size, const char *ending);
+void cli_temporary_remove(const char *path);
 /// The operand, or the name of a file with what came from the standard input, with the suffix of
 /// its contents; it is removed when the program ends. NULL with the reason.
 const char *cli_input(const char *operand, himc_error *error);

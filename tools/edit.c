@@ -12,6 +12,8 @@
 #include "edit_play.h"
 #include "edit_text.h"
 #include "midi/import.h"
+#include "midi/score_file.h"
+#include "midi/smf.h"
 #include "performance/performance_drums.h"
 #include "plan/score.h"
 #include "scene.h"
@@ -117,6 +119,18 @@ static void name_source(const session *s, himc_error *error)
 
 // --- the piece
 
+static char *text_of_midi(const char *bytes, size_t size, const char *name, himc_error *error)
+{
+    midi_score made = {0};
+    char *text = NULL;
+    if (himc_midi_import(&made, bytes, size, name, NULL, error))
+        text = strdup(made.text);
+    else
+        himc_error_prefix(error, "%s", name);
+    himc_midi_score_free(&made);
+    return text;
+}
+
 static char *text_of(const char *source, const char *name, himc_error *error)
 {
     size_t size;
@@ -129,15 +143,10 @@ static char *text_of(const char *source, const char *name, himc_error *error)
         return text;
     }
     char *bytes = himc_file_load(source, LARGEST_TEXT, &size, error);
-    if (!bytes || size < 4 || memcmp(bytes, "MThd", 4) != 0)
+    bool midi = bytes && himc_midi_is_file(bytes, size);
+    if (!bytes || (!midi && himc_score_is_text(bytes, size, name, error)))
         return bytes;
-    midi_score made = {0};
-    char *text = NULL;
-    if (himc_midi_import(&made, bytes, size, name, NULL, error))
-        text = strdup(made.text);
-    else
-        himc_error_prefix(error, "%s", name);
-    himc_midi_score_free(&made);
+    char *text = midi ? text_of_midi(bytes, size, name, error) : NULL;
     free(bytes);
     return text;
 }
@@ -342,6 +351,15 @@ static void restore(session *s, const char *text, bool sent)
 
 // --- for the page
 
+static void stop_saving(session *s)
+{
+    edit_play_free(s->saver); // first: it may be writing
+    s->saver = NULL;
+    if (s->saved[0])
+        cli_temporary_remove(s->saved);
+    s->saved[0] = 0;
+}
+
 static bool save_take(session *s, const char *name, himc_error *error)
 {
     const char *dot = strrchr(name, '.');
@@ -349,7 +367,7 @@ static bool save_take(session *s, const char *name, himc_error *error)
         return himc_error_set(error, "%.40s: allowed .bvh .c3d .trc", name);
     if (s->saver)
         return himc_error_set(error, "a take is being saved");
-    int file = himc_system_temporary(s->saved, sizeof s->saved, dot);
+    int file = cli_temporary(s->saved, sizeof s->saved, dot);
     if (file < 0)
         return himc_error_set(error, "%s", strerror(errno));
     close(file);
@@ -358,6 +376,8 @@ static bool save_take(session *s, const char *name, himc_error *error)
     s->saver = text ? edit_play_new(s->name, &s->take, error) : NULL;
     bool good = s->saver && edit_play_start(s->saver, text, -1, s->saved, error);
     free(text);
+    if (!good)
+        stop_saving(s);
     return good;
 }
 
@@ -530,9 +550,7 @@ static void take_saved(session *s)
     else
         tell("refused", "text", "the take could not be saved");
     free(bytes);
-    remove(s->saved);
-    edit_play_free(s->saver);
-    s->saver = NULL;
+    stop_saving(s);
 }
 
 static bool serve(session *s, himc_error *error)
@@ -581,7 +599,7 @@ static int run(const cli_arguments *arguments)
         fflush(stdout);
     }
     edit_play_free(s.play);
-    edit_play_free(s.saver);
+    stop_saving(&s);
     edit_journal_close(&s.journal);
     edit_text_free(s.text);
     free(text);

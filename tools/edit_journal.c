@@ -218,12 +218,16 @@ static bool begin(edit_journal *j, himc_error *error)
 
 bool edit_journal_add(edit_journal *j, const char *line, himc_error *error)
 {
-    if (!j->path[0] || (!j->stream && !begin(j, error)))
+    bool first = !j->stream;
+    if (!j->path[0] || (first && !begin(j, error)))
         return false;
     fprintf(j->stream, "%s\n", line);
-    if (fflush(j->stream) == 0 && fsync(fileno(j->stream)) == 0)
+    if (fflush(j->stream) == 0 && !ferror(j->stream) && fsync(fileno(j->stream)) == 0)
         return true;
-    return himc_error_set(error, "%.300s: %s", j->path, strerror(errno));
+    himc_error_set(error, "%.300s: %s", j->path, strerror(errno));
+    if (first) // there is nothing in it
+        edit_journal_forget(j);
+    return false;
 }
 
 // all bytes of a stream after those of another one

@@ -41,6 +41,7 @@ enum {
 #define HEADROOM 2.0 // (s) a piece may begin so much later than its first beat
 
 struct edit_play {
+    edit_play *next; // of all in this process
     const char *name;
     const himc_take_options *options;
     atomic_int *turn; // shared: the playing whose process may write
@@ -54,6 +55,10 @@ struct edit_play {
     edit_frame held; // read before it was asked for, if `holds`
     bool holds;
 };
+
+// A process that plays holds no end of another one's pipes: whoever reads or writes there has to see
+// when the process that gives orders has gone.
+static edit_play *all;
 
 /// A process that plays.
 typedef struct player {
@@ -203,6 +208,7 @@ static void play_on(player *p)
         play_cell(p);
     }
     scene_record_end(p->record, NULL);
+    fflush(p->to); // which ends this process if nobody wants the recording any more
     himc_error error;
     if (!himc_performance_end_recording(p->performance, &error))
         cli_say("himc edit: %s\n", error.text);
@@ -228,15 +234,27 @@ static bool load(player *p, const char *text, const char *record, himc_error *er
            (!record || cli_tell(p->performance, "record", record, error));
 }
 
+// closes the ends of its pipes that the process that gives orders has, and, if it is not its `own`
+// playing, all of them
+static void close_ends(const edit_play *play, bool own)
+{
+    for (int i = 0; i < COPIES; i++) {
+        close(play->order[i][1]);
+        if (!own)
+            close(play->order[i][0]);
+    }
+    close(play->frames[0]);
+    if (!own)
+        close(play->frames[1]);
+}
+
 static void play_from_start(const edit_play *of, int turn, const char *text, const char *record)
 {
     himc_error error;
     double start = 0;
     player p = {.of = of, .turn = turn, .to = fdopen(of->frames[1], "wb")};
-    // copies end when the process that gives orders has gone
-    for (int i = 0; i < COPIES; i++)
-        close(of->order[i][1]);
-    close(of->frames[0]);
+    for (const edit_play *play = all; play; play = play->next)
+        close_ends(play, play == of);
     signal(SIGCHLD, SIG_IGN);
     signal(SIGPIPE, SIG_DFL); // nobody listens any more
     if (!p.to)
@@ -269,6 +287,11 @@ static void play_from_start(const edit_play *of, int turn, const char *text, con
 // gives back all but the processes
 static void release(edit_play *play)
 {
+    edit_play **at = &all;
+    while (*at && *at != play)
+        at = &(*at)->next;
+    if (*at)
+        *at = play->next;
     for (int i = 0; i < 2 * (COPIES + 1); i++) {
         int *pipe = i < 2 ? play->frames : play->order[i / 2 - 1];
         if (pipe[i % 2] >= 0)
@@ -300,6 +323,8 @@ edit_play *edit_play_new(const char *name, const himc_take_options *options, him
         release(play);
         return NULL;
     }
+    play->next = all;
+    all = play;
     signal(SIGCHLD, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
     return play;

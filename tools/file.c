@@ -154,13 +154,26 @@ bool cli_is_standard(const char *path)
     return path && !strcmp(path, "-");
 }
 
+int cli_temporary(char *path, size_t size, const char *ending)
+{
+    int file = himc_system_temporary(path, size, ending);
+    if (file >= 0)
+        remember(path);
+    return file;
+}
+
+void cli_temporary_remove(const char *path)
+{
+    unlink(path);
+    forget(path);
+}
+
 // where the standard input is kept, until the program ends
 static char input[HIMC_PATH_SIZE];
 
 static void remove_input(void)
 {
-    unlink(input);
-    forget(input);
+    cli_temporary_remove(input);
 }
 
 // by its first bytes; anything else is a score
@@ -195,13 +208,12 @@ const char *cli_input(const char *operand, himc_error *error)
     if (!cli_is_standard(operand))
         return operand;
     size_t size = fread(bytes, 1, sizeof bytes, stdin);
-    int descriptor = himc_system_temporary(input, sizeof input, suffix_of(bytes, size));
+    int descriptor = cli_temporary(input, sizeof input, suffix_of(bytes, size));
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     if (!file) {
         himc_error_set(error, "%s: cannot be written: %s", input, strerror(errno));
         return NULL;
     }
-    remember(input);
     atexit(remove_input);
     for (; size > 0; size = fread(bytes, 1, sizeof bytes, stdin))
         fwrite(bytes, 1, size, file);

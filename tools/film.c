@@ -99,27 +99,22 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
 #include "browser.h"
 #include "recording.h"
 #include "share.h"
-#include "system/files.h"
 
 #include <errno.h>
-#include <unistd.h>
 
-#define PAGE 256 // characters of a file's name; chosen
+#define PAGE (BROWSER_HOME + 16) // characters of a file's name
+#define PATIENCE 600             // answers, each after half a second, without progress; chosen
 
-// the page, in a file of its own whose name `path` becomes
-static bool write_page(const char *source, char path[PAGE], himc_error *error)
+// the page, in a file whose name `path` becomes
+static bool write_page(const browser *b, const char *scene, size_t size, const char *source,
+                       char path[PAGE], himc_error *error)
 {
-    size_t size;
-    char *scene = recording_load(source, &size, error);
-    if (!scene)
-        return false;
-    int file = himc_system_temporary(path, PAGE, ".html");
-    FILE *page = file < 0 ? NULL : fdopen(file, "wb");
+    snprintf(path, PAGE, "%s/page.html", browser_home(b));
+    FILE *page = fopen(path, "wb"); // the folder is this user's alone
     bool good = page ? share_write(page, scene, size, source, error)
-                     : himc_error_set(error, "no temporary file: %s", strerror(errno));
+                     : himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
     if (page && fclose(page) && good)
         good = himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
-    free(scene);
     return good;
 }
 
@@ -133,12 +128,19 @@ static void show_progress(const char *text)
 static bool wait_for_it(browser *b, himc_error *error)
 {
     const char *said;
+    char last[32] = "";
+    int same = 0;
     do {
         said = browser_run(b, "viewer.exporter.wait(500)", error);
         if (said)
             show_progress(said);
-    } while (said && strcmp(said, "done") != 0 && strncmp(said, "failed", 6) != 0);
+        same = said && !strcmp(said, last) ? same + 1 : 0;
+        snprintf(last, sizeof last, "%s", said ? said : "");
+    } while (said && strcmp(said, "done") != 0 && strncmp(said, "failed", 6) != 0 &&
+             same < PATIENCE);
     show_progress(NULL);
+    if (same == PATIENCE)
+        return himc_error_set(error, "the page: no progress in %d s", PATIENCE / 2);
     return said && (!strcmp(said, "done") || himc_error_set(error, "the page: %.300s", said + 7));
 }
 
@@ -178,13 +180,18 @@ static bool film(browser *b, const char *page, const job *j, FILE *out, himc_err
 {
     char text[512];
     snprintf(text, sizeof text, "file://%s#held", page);
-    if (!browser_go(b, text, error) ||
-        // until the scene and its sound are there
-        !browser_run(b,
-                     "new Promise(r => setInterval(() => self.viewer && viewer.playback && "
-                     "viewer.ready && r('yes'), 50))",
-                     error))
-        return false;
+    // until the scene and its sound are there
+    const char *said =
+        browser_go(b, text, error)
+            ? browser_run(b,
+                          "new Promise(r => (setTimeout(() => r('failed the scene is not there "
+                          "after four minutes'), 240000), setInterval(() => self.viewer && "
+                          "(viewer.failed ? r('failed ' + viewer.failed) : viewer.playback && "
+                          "viewer.ready && r('yes')), 50)))",
+                          error)
+            : NULL;
+    if (!said || !strncmp(said, "failed", 6))
+        return said ? himc_error_set(error, "the page: %.300s", said + 7) : false;
     snprintf(text, sizeof text,
              "viewer.actions.camera('%s'), viewer.stage.quality = 1, viewer.exporter.start('%s', "
              "{fps: %d, from: %.17g, to: %.17g, speed: %.17g, at: %.17g}), 'yes'",
@@ -194,17 +201,19 @@ static bool film(browser *b, const char *page, const job *j, FILE *out, himc_err
 
 static bool make(const job *j, himc_error *error)
 {
-    char page[PAGE] = "";
+    char page[PAGE];
     cli_file out = {0};
     browser *b = NULL;
-    bool good = write_page(j->scene, page, error) && cli_file_open(&out, j->out, error) &&
+    size_t size;
+    char *scene = recording_load(j->scene, &size, error);
+    bool good = scene && cli_file_open(&out, j->out, error) &&
                 (b = browser_open(j->width, j->height, error)) != NULL &&
+                write_page(b, scene, size, j->scene, page, error) &&
                 film(b, page, j, out.stream, error) && cli_file_close(&out, error) &&
                 cli_file_keep(&out, error);
     browser_close(b);
     cli_file_drop(&out);
-    if (page[0])
-        unlink(page);
+    free(scene);
     return good;
 }
 #else

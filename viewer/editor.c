@@ -102,6 +102,7 @@ bool editor_start(editor *e, himc_error *error)
     }
     close(in[0]), close(out[1]);
     e->to = in[1], e->from = out[0];
+    e->told = (chunks){.left = 0};
     fcntl(e->to, F_SETFL, O_NONBLOCK);
     fcntl(e->from, F_SETFL, O_NONBLOCK);
     return true;
@@ -115,6 +116,13 @@ bool editor_say(const editor *e, const char *line, size_t size)
     memcpy(all, line, size);
     all[size] = '\n';
     return write(e->to, all, size + 1) == (ssize_t)size + 1; // so short that it goes whole
+}
+
+ssize_t editor_hear(editor *e, void *bytes, size_t most)
+{
+    ssize_t got = read(e->from, bytes, most);
+    chunks_follow(&e->told, bytes, got > 0 ? (size_t)got : 0);
+    return got;
 }
 
 static const char *ending_of(const char *name)
@@ -165,4 +173,24 @@ bool editor_keep(editor *e, int place, const char *bytes, size_t size, himc_erro
     keep_name(&piece, bytes);
     e->piece = piece;
     return true;
+}
+
+int editor_free_place(const editor_pieces *p)
+{
+    for (int place = 0;; place++) {
+        int i = 0;
+        while (i < p->count && !(p->piece[i].name[0] && p->piece[i].place == place))
+            i++;
+        if (i == p->count)
+            return place;
+    }
+}
+
+void editor_add_piece(editor_pieces *p, const editor_piece *piece)
+{
+    p->count = p->count ? p->at + 1 : 0;
+    if (p->count == EDITOR_PIECES)
+        memmove(p->piece + 1, p->piece + 2, (size_t)(--p->count - 1) * sizeof *p->piece);
+    p->at = p->count++;
+    p->piece[p->at] = *piece;
 }

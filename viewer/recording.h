@@ -11,8 +11,9 @@
 /// cannot be read or is none.
 char *recording_load(const char *path, size_t *size, himc_error *error);
 
-/// True if the bytes are a scene of a version that this viewer's page reads, whose chunks are
-/// whole; false with one line in `error`. `name` is that of the file.
+/// True if the bytes are a scene of a version that this viewer's page reads, whose chunks are whole
+/// and unpack to no more than the page takes (docs/scene.md); false with one line in `error`.
+/// `name` is that of the file.
 bool recording_check(const char *bytes, size_t size, const char *name, himc_error *error);
 
 #endif

@@ -11,7 +11,7 @@
 /// heard, so that one that is refused disturbs nothing. A slow browser gets the
 /// newest pose when it is ready for it, so no queue grows here. Invariant: connections are bounded
 /// in number, and each that makes no progress in time.
-#define _GNU_SOURCE // memmem
+#define _DEFAULT_SOURCE // getaddrinfo
 #include "web.h"
 #include "access.h"
 #include "base/line.h"
@@ -41,7 +41,6 @@ enum {
     CLOSE_TIMEOUT = 500, // from the decision to close a stream to its end (ms)
     PAUSE = 3,           // (ms), a tenth of the time between poses: waking up costs most
     PASSED = 65536,      // of what `himc edit` tells in one message (bytes)
-    PIECES = 8,          // that undo goes back to, of those that were dropped; 64 MB each at most
     NOTE = 1024,         // of a line for the page (bytes)
     TAKEN = 4001,        // status of a close, for the page (edit.js)
     HEADER_SIZE = 264    // of a host or an origin with its zero; longer ones are refused
@@ -71,11 +70,10 @@ struct web {
     struct lws *osc; // the OSC socket in the loop
     uint64_t rejected;
     char session[1024];          // JSON: where OSC is received, what is played
-    editor_piece pieces[PIECES]; // one after the other, as they were dropped
-    int piece, piece_count;      // the one that is edited; how many
+    editor_pieces pieces;        // one after the other, as they were dropped
     editor edit, next;           // its program; that of one just dropped, until it can be heard
     struct lws *edited, *coming; // their output in the loop
-    bool sounds;                 // something of the piece has been heard
+    bool again;                  // it was started again after it had ended by itself
     struct lws *editing;         // the page that edits
     session *editing_own;        // of `editing`
     bool begun;                  // the page is to be told that another program begins
@@ -341,11 +339,13 @@ static void tell_page(web *w, const char *text)
         lws_callback_on_writable(w->editing);
 }
 
+// the callback of its end takes it for nobody's
 static void close_output(struct lws **output)
 {
-    if (*output)
-        lws_set_timeout(*output, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
+    struct lws *closed = *output;
     *output = NULL;
+    if (closed)
+        lws_set_timeout(closed, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_SYNC);
 }
 
 // the program of a piece that was just dropped ends
@@ -382,11 +382,10 @@ static struct lws *begin_program(web *w, editor *e)
 static void begin_editing(web *w)
 {
     end_editing(w);
-    if (w->piece_count == 0)
+    if (w->pieces.count == 0)
         return;
-    w->edit.piece = w->pieces[w->piece];
+    w->edit.piece = w->pieces.piece[w->pieces.at];
     w->begun = true;
-    w->sounds = false;
     w->edited = begin_program(w, &w->edit);
     if (w->editing)
         lws_callback_on_writable(w->editing);
@@ -403,30 +402,20 @@ static void take_over(web *w, struct lws *wsi, session *own)
     w->editing_own = own;
     w->heard_size = 0;
     w->note[0] = 0;
+    w->again = false;
     folder_unlink(w->config.folder, WEB_DOOR);
     begin_editing(w);
 }
 
 // --- pieces that are dropped
 
-// a number of a file that no piece has
-static int free_place(const web *w)
-{
-    for (int place = 0;; place++) {
-        int i = 0;
-        while (i < w->piece_count && !(w->pieces[i].name[0] && w->pieces[i].place == place))
-            i++;
-        if (i == w->piece_count)
-            return place;
-    }
-}
-
 // what was dropped is played aside until it can be heard, while the page goes on with what it has
 static bool begin_next(web *w)
 {
     himc_error error;
     end_next(w);
-    bool good = editor_keep(&w->next, free_place(w), w->heard, w->heard_size, &error);
+    bool good =
+        editor_keep(&w->next, editor_free_place(&w->pieces), w->heard, w->heard_size, &error);
     if (good)
         w->coming = begin_program(w, &w->next);
     else
@@ -434,17 +423,12 @@ static bool begin_next(web *w)
     return good;
 }
 
-// the piece that was dropped is the one that is edited from now on; those that it was dropped over
-// follow no more, and with too many the first one that was dropped goes
+// the piece that was dropped is the one that is edited from now on
 static void accept_next(web *w)
 {
     close_output(&w->edited);
     editor_stop(&w->edit);
-    w->piece_count = w->piece_count ? w->piece + 1 : 0;
-    if (w->piece_count == PIECES)
-        memmove(w->pieces + 1, w->pieces + 2, (size_t)(--w->piece_count - 1) * sizeof *w->pieces);
-    w->piece = w->piece_count++;
-    w->pieces[w->piece] = w->next.piece;
+    editor_add_piece(&w->pieces, &w->next.piece);
     w->edit = w->next;
     w->edited = w->coming;
     w->next.process = 0;
@@ -453,20 +437,17 @@ static void accept_next(web *w)
     w->first = w->early;
     w->early = empty;
     w->first.at = w->early.size = w->waiting = 0;
-    w->begun = w->sounds = true;
+    w->begun = true;
+    w->again = false;
     if (w->editing)
         lws_callback_on_writable(w->editing);
 }
 
-// the reason is in the last message
 static void refuse_next(web *w)
 {
-    static const char failed[] = "{\"event\":\"failed\"";
-    const char *why =
-        w->early.size ? memmem(w->early.bytes, w->early.size, failed, strlen(failed)) : NULL;
-    size_t size = why ? (size_t)(w->early.bytes + w->early.size - why) : 0;
-    if (size && size < sizeof w->note) {
-        snprintf(w->note, sizeof w->note, "%.*s", (int)size, why);
+    const char *why = w->next.told.failed;
+    if (why[0]) {
+        snprintf(w->note, sizeof w->note, "%s", why);
         himc_line_clean(w->note);
     } else
         tell_page(w, "what was dropped cannot be played");
@@ -486,9 +467,9 @@ static bool hear_next(web *w)
         e->bytes = more;
         e->room += 4 * PASSED;
     }
-    ssize_t got = read(w->next.from, e->bytes + e->size, PASSED);
+    ssize_t got = editor_hear(&w->next, e->bytes + e->size, PASSED);
     e->size += got > 0 ? (size_t)got : 0;
-    if (e->size && memmem(e->bytes, e->size, "pcm ", 4))
+    if (w->next.told.sounds)
         accept_next(w);
     return got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR));
 }
@@ -496,23 +477,29 @@ static bool hear_next(web *w)
 // to the piece before, or the one after
 static void step_piece(web *w, int by)
 {
-    if (w->piece + by < 0 || w->piece + by >= w->piece_count)
+    if (w->pieces.at + by < 0 || w->pieces.at + by >= w->pieces.count)
         return;
-    w->piece += by;
+    w->pieces.at += by;
     begin_editing(w);
 }
 
-// A program has ended by itself. One whose piece had been heard is started again, once: the journal
-// has all changes. After one that could not be played the piece before is edited again.
+// A program has ended by itself. One whose piece had been heard is started again: the journal has
+// all changes. If it ends again before the page has asked for anything, that is reported. After one
+// that could not be played the piece before is edited again.
 static void on_back(lws_sorted_usec_list_t *list)
 {
     web *w = lws_container_of(list, web, back);
     if (w->edited || !w->editing)
         return;
-    if (w->sounds)
-        begin_editing(w);
-    else
+    if (!w->edit.told.sounds)
         step_piece(w, -1);
+    else if (w->again)
+        tell_page(w, "himc edit has ended twice while it played this piece; the next change, undo "
+                     "or piece starts it again");
+    else {
+        w->again = true;
+        begin_editing(w);
+    }
 }
 
 static int send_away(struct lws *wsi)
@@ -537,6 +524,9 @@ static bool take_message(web *w, bool file)
         return begin_next(w), true;
     bool back = w->heard_size == 4 && !memcmp(w->heard, "back", 4),
          forth = w->heard_size == 5 && !memcmp(w->heard, "forth", 5);
+    w->again = false;
+    if (!back && !forth && !w->edited)
+        begin_editing(w); // it has ended by itself
     if (!back && !forth)
         return editor_say(&w->edit, w->heard, w->heard_size);
     step_piece(w, back ? -1 : 1);
@@ -579,8 +569,8 @@ static bool tell_begun(web *w, struct lws *wsi)
 {
     char line[NOTE];
     w->begun = false;
-    snprintf(line, sizeof line, "{\"event\":\"begun\",\"before\":%d,\"after\":%d}", w->piece,
-             w->piece_count - 1 - w->piece);
+    snprintf(line, sizeof line, "{\"event\":\"begun\",\"before\":%d,\"after\":%d}", w->pieces.at,
+             w->pieces.count - 1 - w->pieces.at);
     return write_line(wsi, line);
 }
 
@@ -643,11 +633,10 @@ static bool hear_edited(web *w, struct lws *wsi)
         lws_rx_flow_control(wsi, 0);
         return true;
     }
-    ssize_t got = read(w->edit.from, w->passed + LWS_PRE, PASSED);
+    ssize_t got = editor_hear(&w->edit, w->passed + LWS_PRE, PASSED);
     if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR))
         return false;
     if (got > 0) {
-        w->sounds |= memmem(w->passed + LWS_PRE, (size_t)got, "pcm ", 4) != NULL;
         w->waiting = (size_t)got;
         lws_rx_flow_control(wsi, 0);
         lws_callback_on_writable(w->editing);
@@ -792,8 +781,11 @@ web *web_new(const web_config *config, scene *s, himc_error *error)
     w->config = *config;
     describe_session(w);
     w->edit.folder = w->next.folder = config->folder;
-    if (config->edit)
-        snprintf(w->pieces[w->piece_count++].source, sizeof w->pieces->source, "%s", config->edit);
+    if (config->edit) {
+        editor_piece own = {.name = ""};
+        snprintf(own.source, sizeof own.source, "%s", config->edit);
+        editor_add_piece(&w->pieces, &own);
+    }
     if (!listen_to_all(w)) {
         himc_error_set(error, "cannot serve the page on %s port %d", config->address, config->port);
         web_free(w);

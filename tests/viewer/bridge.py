@@ -30,9 +30,9 @@ WAIT = 300  # longest wait for an event (s): only a test that fails waits so lon
 class Viewer:
     """A running bridge on free ports."""
 
-    def __init__(self, *options, home="/tmp", browser=("--no-browser",), **environment):
+    def __init__(self, *options, home="/tmp", browser=("--no-browser",), program=VIEWER, **environment):
         self.process = subprocess.Popen(
-            [VIEWER, *browser, "--osc", "0", "--http", "0", *options],
+            [program, *browser, "--osc", "0", "--http", "0", *options],
             stdout=subprocess.PIPE,
             text=True,
             # memory is measured: the address sanitizer, if there, keeps less of what was freed
@@ -677,6 +677,76 @@ def test_a_dropped_file_is_played():
         v.process.terminate()
         v.process.wait(WAIT)
         assert not os.listdir(home)
+
+
+def test_a_name_is_no_sound():
+    """What has been heard is known by the kind of a message, not by letters in a name or an error."""
+    with tempfile.TemporaryDirectory() as home:
+        os.mkdir(os.path.join(home, "my pcm files"))
+        own = os.path.join(home, "my pcm files", "b.txt")
+        with open(own, "wb") as file:
+            file.write(b"stroke nonsense;")
+        with Viewer("--edit", own, home=home) as v:
+            page = Editing(v)
+            assert "my pcm files" in page.until("failed")["text"]
+            page.s.settimeout(1)
+            try:
+                assert not page.next(), "it is started again"
+            except TimeoutError:
+                pass
+        with Viewer(home=home) as v:
+            page = Editing(v)
+            page.say(b"my score.txt\0" + score_of("0 right legato mf"))
+            page.until("over")
+            page.say(b"pcm bad.txt\0stroke nonsense;")
+            assert page.next_event()["text"].startswith("pcm bad.txt:1: stroke: ")
+            page.say(b"save", 1)  # the piece before goes on
+            assert b"stroke 0 right" in page.until("file")
+            page.say(b"pcm good.txt\0" + score_of("1 right legato mf"))
+            assert page.until("text")["source"] == "pcm good.txt"
+            page.until("over")
+
+
+def test_a_piece_that_another_one_follows_is_not_called_bad():
+    with tempfile.TemporaryDirectory() as home, Viewer(home=home) as v:
+        page = Editing(v)
+        for i in range(12):
+            page.say(b"q%d.txt\0" % i + score_of("0 right legato mf"))
+        while True:
+            kind, data = page.next()
+            event = json.loads(data)["event"] if kind == "edit" else kind
+            assert event != "failed", data
+            if event == "text":
+                source = json.loads(data)["source"]
+            if event == "over" and source == "q11.txt":
+                break
+
+
+def test_a_program_that_ends_by_itself_is_started_again_once():
+    """A program beside himc-viewer that lets a piece be heard and dies, each time."""
+    with tempfile.TemporaryDirectory() as home:
+        viewer = shutil.copy(VIEWER, home)
+        starts = os.path.join(home, "starts")
+        with open(os.path.join(home, "himc"), "w") as file:
+            file.write(f"#!/bin/sh\necho start >>{starts}\nread line\nprintf 'pcm \\001\\000\\000\\000x'\n")
+        os.chmod(os.path.join(home, "himc"), 0o755)
+        with open(os.path.join(home, "piece.txt"), "wb") as file:
+            file.write(score_of("0 right legato mf"))
+
+        def started():
+            with open(starts) as file:
+                return len(file.readlines())
+
+        with Viewer("--edit", os.path.join(home, "piece.txt"), home=home, program=viewer) as v:
+            page = Editing(v)
+            for wanted in (2, 4):  # once more after each line of the page
+                assert "has ended twice" in page.until("failed")["text"]
+                time.sleep(0.3)  # the next start would come at once
+                assert started() == wanted
+                page.say(b"undo", 1)
+            assert "has ended twice" in page.until("failed")["text"] and started() == 6
+            page.s.close()
+            assert "has ended twice" in Editing(v).until("failed")["text"] and started() == 8
 
 
 def test_what_is_no_line_ends_the_stream_of_editing():

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+import resource
 import struct
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import tempfile
 import zlib
 
 import report
+from bridge import processes, wait_until_gone
 from editing import Piece
 
 HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
@@ -199,6 +201,34 @@ def test_saved_takes_leave_no_open_file():
         assert len(set(open_files)) == 1, open_files
 
 
+def test_processes_and_files_of_a_save_end_with_the_program():
+    path = made("long.txt", "".join(f"stroke {i} right legato mf;\n" for i in range(60)))
+
+    def close(piece):
+        piece.process.stdin.close()
+        piece.process.stdout.close()
+
+    ends = {"its input": close, "SIGTERM": lambda p: p.process.terminate(), "kill -9": lambda p: p.process.kill()}
+    for played in (True, False):
+        for name, end in ends.items():
+            home = tempfile.mkdtemp(dir=folder.name)
+            piece = Piece(HIMC, path, TMPDIR=home)
+            if played:  # so that there are copies from before the save, too
+                piece.say("hello")
+                piece.until("pcm ")
+            piece.say("take x.bvh")
+            if played:
+                piece.say("hello")
+                assert piece.until("text")["begun"]
+                piece.until("from")
+            while not os.listdir(home) or len(running := processes(piece)) < (3 if played else 1):
+                pass
+            end(piece)
+            piece.process.wait(60)
+            wait_until_gone(running)
+            assert name == "kill -9" or not os.listdir(home), (name, os.listdir(home))
+
+
 def made_take():
     strokes = (f"stroke {i / 2} {['right', 'left'][i % 2]} legato mf;\n" for i in range(10))
     with Piece(HIMC, made("one.txt", "".join(strokes))) as piece:
@@ -294,6 +324,23 @@ def test_a_score_that_names_files_is_refused_when_confined():
         with Piece(HIMC, made("piece.txt", text), "--confined") as piece:
             assert piece.play("hello") is None, text
             assert [s["words"] for s in piece.text["statements"]] == [stroke[:-1]], text
+
+
+def test_a_file_that_is_no_score_is_refused_as_by_render():
+    """Nothing is read as if it ended at a zero byte."""
+    stroke = b"stroke 1 right legato mf;\n"
+    for bytes_ in (stroke + b"\0record x.bvh;\n", stroke + b"\0", b"\0" + stroke, b"%PDF-1.4\n" + stroke):
+        path = made("nul.txt", bytes_)
+        said = set()
+        for call in (["render", "-o", "/dev/null", path], ["info", path], ["edit", path]):
+            done = subprocess.run([HIMC, *call], capture_output=True, input=b"hello\n")
+            assert done.returncode == 1, (call, done)
+            said.add(done.stderr.decode().split(": ", 1)[1])
+        assert len(said) == 1 and "allowed: a score" in (line := said.pop()), said
+        sent = [HIMC, "edit", path, "--confined", "--name", "my.txt"]
+        done = subprocess.run(sent, capture_output=True, input=b"hello\n")
+        assert done.stderr.decode() == f"himc edit: {line.replace(path, 'my.txt')}", done
+        assert b'"failed"' in done.stdout and done.stdout.count(b"edit") == 1, done
 
 
 def test_a_change_changes_its_words_alone():
@@ -662,6 +709,21 @@ def test_a_damaged_journal_is_kept_and_one_cut_short_holds_nothing():
             piece.say("hello")
             piece.until("over")
             assert "restored" not in piece.said and os.listdir(beside) == ["piece.txt"], size
+
+
+def test_a_journal_that_cannot_be_written_leaves_nothing():
+    def full(size):
+        return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    strokes = "".join(f"stroke {i} right legato mf;\n" for i in range(400))
+    for text, most in (("stroke 0 right legato mf;", 0), ("stroke 0 right legato mf;", 40), (strokes, 6000)):
+        path = made("piece.txt", text)
+        pipes = dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        # as on a full disk: Python ignores SIGXFSZ, and so does what it starts
+        done = subprocess.Popen([HIMC, "edit", path], restore_signals=False, preexec_fn=full(most), **pipes)
+        said = done.communicate(b"set 0 stroke 0 right legato ff\nset 0 stroke 0 right legato f\n")[0]
+        assert said.count(b'"event":"unkept"') == 1 and b"too large" in said, said
+        assert said.count(b'"kept":false') >= 1 and os.listdir(os.path.dirname(path)) == ["piece.txt"], said
 
 
 def test_what_a_page_has_sent_is_known_again_by_its_name_and_contents():

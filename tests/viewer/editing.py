@@ -10,9 +10,12 @@ import zlib
 class Piece:
     """What is played of a piece under edit: the hash of each part's exact samples, the rows."""
 
-    def __init__(self, himc, source, *options):
+    def __init__(self, himc, source, *options, **environment):
         self.process = subprocess.Popen(
-            [himc, "edit", source, *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            [himc, "edit", source, *options],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=dict(os.environ, **environment),
         )
         self.parts, self.chunks, self.text, self.files = {}, [], None, {}
         self.said = {}  # the last text of each event

@@ -426,7 +426,8 @@ async function play(bytes, name, others = []) {
     window.viewer.ready = true; // all is there, the sound too
 }
 
-const tell = name => error => (panel.loading(null), panel.note(error.message || name));
+// `failed` is for himc film
+const tell = name => error => (panel.loading(null), panel.note((window.viewer.failed = error.message || name)));
 
 // one file, or several of one piece, the first with its sound
 async function drop(files) {

@@ -6,8 +6,10 @@ import { segments } from "./skeleton.js";
 const MAGIC = "himcscn",
     VERSION = 1;
 
+// the budget of a file, as in recording.c
 const LARGEST = 64 << 20, // of an unpacked chunk (bytes); chosen: a second of a scene is 200 kB
-    MOST = 2 ** 32; // of all of a scene (bytes); chosen: some hours
+    MOST = 2 ** 32, // of all of a scene (bytes); chosen: some hours
+    ITEMS = 2 ** 23; // rows, frames of heads and values of events; chosen: 5 hours
 
 // A few bytes may stand for a thousand times as many, so no more than `most` are unpacked.
 export async function inflate(bytes, most = LARGEST) {
@@ -41,7 +43,7 @@ export function before(list, time, of = x => x) {
 
 const finite = (...values) => values.every(Number.isFinite);
 const wanted = {
-    scene: e => Array.isArray(e.columns) && e.columns.every(([n, s]) => typeof n === "string" && s > 0),
+    scene: e => Array.isArray(e.columns) && e.columns.length > 0 && e.columns.every(([n, s]) => typeof n === "string" && s > 0),
     body: e =>
         e.segments.length === segments.length &&
         e.segments.every((s, i) => s.name === segments[i].name && finite(...s.origin)) &&
@@ -73,6 +75,8 @@ export class Scene {
         if (!finite(event.time) || (check && !check(event)))
             throw new Error(`${this.name}: a faulty ${event.event}`);
         if (event.event === "scene") {
+            if (this.head && JSON.stringify(this.head.columns) !== JSON.stringify(event.columns))
+                throw new Error(`${this.name}: a second scene with other columns`);
             this.head = event;
             event.columns.forEach(([name], i) => this.column.set(name, i));
         } else if (event.event === "body") this.bodies.push(event);
@@ -165,6 +169,7 @@ export class Scene {
         for (const drum of this.drums.values())
             drum.blows = this.strikes.filter(s => s.drum === drum.name);
         this.joints = segments.map(s => this.column.get(`${s.joint}_x_rad`));
+        if (this.joints.some(c => c + 2 >= this.head.columns.length)) throw new Error(`${this.name}: faulty columns`);
     }
 
     // the row at or before `time`, and how far it is to the next (0 .. 1)
@@ -259,8 +264,42 @@ export class Scene {
     }
 }
 
-// `depth` is 1 for a scene within a scene, which has none in itself
-export async function readScene(bytes, name, depth = 0) {
+// what may still come of a file, the scenes in it included
+class Budget {
+    constructor() {
+        ((this.bytes = MOST), (this.items = ITEMS));
+    }
+
+    async unpack(packed) {
+        const out = await inflate(packed, Math.min(this.bytes, LARGEST));
+        this.bytes -= out.length;
+        return out;
+    }
+
+    count(items) {
+        if ((this.items -= items) < 0) throw new Error(`more than ${ITEMS} rows, frames of heads and values of events`);
+    }
+}
+
+// of a list in JSON: each value but the first stands behind one of these
+function values(text) {
+    const [quote, escape, ...signs] = [...'"\\,[{'].map(c => c.charCodeAt(0)),
+        [comma, list, object] = signs;
+    let found = 0,
+        quoted = false;
+    for (let i = 0; i < text.length; i++) {
+        const c = text[i];
+        if (c === quote) quoted = !quoted;
+        else if (quoted) i += c === escape ? 1 : 0;
+        else if (c === comma || c === list || c === object) found++;
+    }
+    return found;
+}
+
+const u32 = (bytes, at) => new DataView(bytes.buffer, bytes.byteOffset, bytes.length).getUint32(at, true);
+
+// a scene within a scene has its `budget`, and none in itself
+export async function readScene(bytes, name, budget) {
     const scene = new Scene(name),
         view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length),
         text = new TextDecoder();
@@ -270,10 +309,11 @@ export async function readScene(bytes, name, depth = 0) {
         );
     if (bytes[7] !== VERSION)
         throw new Error(`${name}: version ${bytes[7]} of scenes, this page reads ${VERSION}`);
-    let left = MOST;
-    const unpack = async body => {
-        const out = await inflate(body, Math.min(left, LARGEST));
-        left -= out.length;
+    const outer = !budget;
+    budget ??= new Budget();
+    const unpack = async (body, items) => {
+        const out = await budget.unpack(body);
+        budget.count(items(out));
         return out;
     };
     try {
@@ -283,12 +323,12 @@ export async function readScene(bytes, name, depth = 0) {
                 body = bytes.subarray(at + 8, at + 8 + size);
             at += 8 + size;
             if (at > bytes.length) break; // a recording that was cut short is good up to here
-            if (kind === "json") JSON.parse(text.decode(await unpack(body))).forEach(e => scene.add(e));
-            else if (kind === "rows") scene.rows(await unpack(body));
-            else if (kind === "ring") scene.heads(await unpack(body));
+            if (kind === "json") JSON.parse(text.decode(await unpack(body, values))).forEach(e => scene.add(e));
+            else if (kind === "rows") scene.rows(await unpack(body, out => u32(out, 16)));
+            else if (kind === "ring") scene.heads(await unpack(body, out => u32(out, 0)));
             else if (kind === "snd ") scene.sounds.push(body);
-            else if (kind === "more" && !depth)
-                scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, 1));
+            else if (kind === "more" && outer)
+                scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, budget));
         }
         scene.finish();
     } catch (error) {

@@ -61,6 +61,13 @@ static const char *other_kind(const char *bytes, size_t size)
     return memchr(bytes, 0, size) ? "not a text file" : NULL;
 }
 
+bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_error *error)
+{
+    const char *kind = other_kind(bytes, size);
+    return !kind ||
+           himc_error_set(error, "%s: %s; allowed: a score, a MIDI file or a take", name, kind);
+}
+
 himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
 {
     size_t size;
@@ -75,10 +82,7 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
     char *bytes = himc_file_load_in(folder, path, SCORE_BYTES_MAX, &size, error);
     if (bytes && himc_midi_is_file(bytes, size))
         score = import(bytes, size, path, error);
-    else if (bytes && other_kind(bytes, size))
-        himc_error_set(error, "%s: %s; allowed: a score, a MIDI file or a take", path,
-                       other_kind(bytes, size));
-    else if (bytes)
+    else if (bytes && himc_score_is_text(bytes, size, path, error))
         score = himc_score_parse(bytes, path, error);
     free(bytes);
     return score;
