@@ -423,6 +423,8 @@ class Log:
 
 
 def main():
+    if sys.argv[1:] not in ([], ["--check"]):
+        sys.exit(__doc__)
     if "--check" in sys.argv:
         return check()
     seed, count, only = os.environ.get("SEED") or "1", int(os.environ.get("COUNT") or 200), os.environ.get("ROOM")
