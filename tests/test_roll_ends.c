@@ -201,6 +201,19 @@ static void test_a_roll_that_loses_its_beats_to_another_one_is_named(void)
     TEST_ASSERT_EQUAL_INT(0, notes_of(after, "roll"));
 }
 
+static void test_notes_that_are_left_out_are_named_as_they_are_written(void)
+{
+    static const char *const near[] = {"drum a 29", "tempo 60", "stroke 1.96 left legato mf",
+                                       "drag 2 right legato f", NULL},
+                             *const within[] = {"drum a 29", "tempo 60",
+                                                "stroke 2.04 left legato mf", "roll 1 3 single mf",
+                                                NULL};
+    TEST_ASSERT_EQUAL_INT(
+        1, notes_of(near, "drag at beat 2: no grace notes, the left hand has another"));
+    TEST_ASSERT_EQUAL_INT(1,
+                          notes_of(within, "roll at beat 1: 1 of its strokes left out, too near"));
+}
+
 static double mean_speed(const heard *h, int from, int to)
 {
     double sum = 0;
@@ -271,6 +284,7 @@ int main(void)
     RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
     RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
     RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);
+    RUN_TEST(test_notes_that_are_left_out_are_named_as_they_are_written);
     RUN_TEST(test_a_roll_is_even_to_its_end);
     RUN_TEST(test_the_line_about_softer_strokes_counts_all_that_are);
     return UNITY_END();

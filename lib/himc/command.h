@@ -55,7 +55,7 @@ typedef enum himc_ornament {
     HIMC_PLAIN,       ///< itself alone
     HIMC_FLAM,        ///< a grace note by the other hand
     HIMC_DRAG,        ///< two by the other hand, which bounces
-    HIMC_RUFF,        ///< two, by this hand and the other
+    HIMC_RUFF,        ///< the same, more open
     HIMC_ROLL_SINGLE, ///< both hands in turn
     HIMC_ROLL_DOUBLE, ///< so that each stroke bounces once
     HIMC_ROLL_PRESS   ///< so that each stroke bounces on until the next

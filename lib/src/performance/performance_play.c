@@ -84,16 +84,26 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
     return true;
 }
 
+static const char *const grace_name[] = {
+    [HIMC_FLAM] = "flam", [HIMC_DRAG] = "drag", [HIMC_RUFF] = "ruff"};
+
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum)
 {
     if (stroke->ornament == HIMC_PLAIN)
         return;
     int left_out = himc_planner_add_ornament(p->motion->planner, stroke, drum,
                                              himc_drum_pitch(p->drums.slot[drum].drum));
-    if (left_out > 0)
+    if (left_out == 0)
+        return;
+    if (stroke->ornament >= HIMC_ROLL_SINGLE)
         himc_events_note(&p->events,
-                         "ornament at beat %g: %d of its strokes left out, too near to others",
+                         "roll at beat %g: %d of its strokes left out, too near to others",
                          stroke->beat, left_out);
+    else
+        himc_events_note(&p->events,
+                         "%s at beat %g: no grace notes, the %s hand has another stroke there",
+                         grace_name[stroke->ornament], stroke->beat,
+                         himc_hand_name(stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT));
 }
 
 /// The time for which a command was meant that acts in this step (s): its sample's, up to a step
