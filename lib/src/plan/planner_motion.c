@@ -130,8 +130,8 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
     double asked_x = x, asked_y = y;
     if (keep_inside(head, &x, &y))
         himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
-                         "%s hand: %.3g %.3g is beyond the rim, struck inside it",
-                         himc_hand_name(stroke->hand), asked_x, asked_y);
+                         "%.3g %.3g is beyond the rim at %.3g m: struck at %.3g %.3g", asked_x,
+                         asked_y, head->radius, x, y);
     return (himc_goal){.time = t,
                        .spot = himc_planner_tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),
@@ -923,6 +923,8 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
 static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
 {
     *stroke = s->stroke;
+    if (s->index < 0 && !s->reassigned) // a hit
+        stroke->beat = NAN;
     if (!s->varied)
         return;
     himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
