@@ -103,6 +103,7 @@ typedef struct heard {
     int beats, dones, notes;
     int softer;     ///< notes of strokes for which there is too little time
     char note[192]; ///< the last one
+    char all[2048]; ///< all of them, one a line, as far as they have room
 } heard;
 
 static inline void heard_event(heard *h, const himc_event *event)
@@ -113,6 +114,8 @@ static inline void heard_event(heard *h, const himc_event *event)
         h->notes++;
         h->softer += strstr(event->text, "too little time") != NULL;
         memcpy(h->note, event->text, sizeof h->note);
+        size_t used = strlen(h->all);
+        snprintf(h->all + used, sizeof h->all - used, "%s\n", event->text);
     }
     if (event->kind != HIMC_EVENT_STRIKE)
         return;

@@ -102,6 +102,47 @@ static void test_any_hand_is_the_other_one_in_a_fast_run_and_so_louder(void)
     himc_performance_free(q);
 }
 
+// as a player does, at any tempo; two drums are played by sides
+static void test_any_hand_goes_from_hand_to_hand_on_one_drum(void)
+{
+    static const double interval[] = {0.1, 0.2, 0.3, 0.5, 1, 1.5};
+    static const char *const how[] = {"legato mf", "accent f rim", "staccato p center"};
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 6; i++) {
+            himc_performance *p = with_kettle("150");
+            taps r = tap(p, 6, interval[i], LATENCY, any, how[k]);
+            TEST_ASSERT_EQUAL_INT(6, r.h.strikes);
+            TEST_ASSERT_EQUAL_INT(3, r.left);
+            for (int n = 1; n < 6; n++) {
+                TEST_ASSERT_NOT_EQUAL(r.h.strike[n - 1].hand, r.h.strike[n].hand);
+                TEST_ASSERT_DOUBLE_WITHIN(0.06 * r.speed, r.speed, r.h.strike[n].velocity);
+            }
+            heard_free(&r.h);
+            himc_performance_free(p);
+        }
+}
+
+static void test_any_hand_is_that_of_the_side_on_two_drums(void)
+{
+    heard h = {.strikes = 0};
+    himc_performance *p = session_new();
+    session_do(p, "drum west");
+    session_do(p, "drum east");
+    session_do(p, "west place 0.6 0.36 0.85");
+    session_do(p, "east place 0.6 -0.36 0.85");
+    session_play(p, 0.6, NULL);
+    for (int i = 0; i < 8; i++) {
+        session_do(p, "hit any legato mf %s", i % 2 ? "west" : "east");
+        session_play(p, 0.4, &h);
+    }
+    for (int i = 0; i < h.strikes; i++)
+        TEST_ASSERT_EQUAL_INT(strcmp(h.strike[i].drum, "west") == 0 ? HIMC_LEFT : HIMC_RIGHT,
+                              h.strike[i].hand);
+    TEST_ASSERT_EQUAL_INT(8, h.strikes);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 static void test_a_hit_is_as_strong_as_its_latency_allows(void)
 {
     static const char *const latency[] = {"80", "150", "auto"}, *const dynamic[] = {"p", "ff"};
@@ -340,12 +381,46 @@ static void test_a_hit_moves_no_stroke_of_the_playing_score_aside(void)
     }
 }
 
+// anywhere on the head and beyond it: what lands more than 2 cm beside the place of a point on the
+// head, or is not played, has a line
+static void test_a_hit_elsewhere_than_asked_is_told(void)
+{
+    static const double place[][2] = {{0, 0},    {0.2, 0},   {0.22, 0},   {0.25, 0},
+                                      {0.3, 0},  {0.5, 0},   {-0.5, 0.1}, {0, 0.32},
+                                      {0, -0.4}, {0.2, 0.2}, {-0.3, 0}};
+    int aside = 0;
+    for (size_t i = 0; i < sizeof place / sizeof *place; i++)
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_performance *p = with_kettle("150");
+            heard h = {.strikes = 0};
+            session_do(p, "hit %s legato f %g %g", himc_hand_name((himc_hand)hand), place[i][0],
+                       place[i][1]);
+            session_play(p, 0.8, &h);
+            bool off = heard_asked(&h) == 0;
+            for (int k = 0; k < h.strikes; k++) {
+                const himc_strike *s = &h.strike[k];
+                off = off || hypot(s->x - place[i][0], s->y - place[i][1]) > 0.02;
+                TEST_ASSERT_TRUE(isnan(s->beat)); // it is on none
+            }
+            aside += off;
+            TEST_ASSERT_TRUE_MESSAGE(!off || strstr(h.all, "landed at") ||
+                                         strstr(h.all, "beyond the rim") ||
+                                         strstr(h.all, "out of reach"),
+                                     h.all);
+            heard_free(&h);
+            himc_performance_free(p);
+        }
+    TEST_ASSERT_TRUE(aside >= 8); // those beyond the rim, at least
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_taps_land_evenly_at_all_intervals_with_one_hand_and_two);
     RUN_TEST(test_a_run_too_fast_for_its_hand_is_shared_and_a_roll_of_hits_is_counted);
     RUN_TEST(test_any_hand_is_the_other_one_in_a_fast_run_and_so_louder);
+    RUN_TEST(test_any_hand_goes_from_hand_to_hand_on_one_drum);
+    RUN_TEST(test_any_hand_is_that_of_the_side_on_two_drums);
     RUN_TEST(test_a_hit_is_as_strong_as_its_latency_allows);
     RUN_TEST(test_the_sample_of_the_message_counts_in_blocks_of_any_size);
     RUN_TEST(test_hits_leave_the_strokes_of_a_score_alone);
@@ -355,5 +430,6 @@ int main(void)
     RUN_TEST(test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may);
     RUN_TEST(test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds);
     RUN_TEST(test_a_hit_moves_no_stroke_of_the_playing_score_aside);
+    RUN_TEST(test_a_hit_elsewhere_than_asked_is_told);
     return UNITY_END();
 }

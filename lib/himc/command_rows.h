@@ -35,7 +35,7 @@ HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds one stroke to the score")
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
-                 "that suits better")
+                 "that suits better, on one drum in turns")
 HIMC_COMMAND_ROW(
     LATENCY, latency, PERFORMER, AT_SAMPLE, 0, "MS | auto",
     "has every hit land exactly so long after its message, 150 by default, as strong "

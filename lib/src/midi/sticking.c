@@ -18,10 +18,6 @@
 #define MOVE_MARGIN 1.45   // ... and its margin of time for a stroke's swing, and a little more
 #define QUINTIC_PEAK 5.77  // peak acceleration of a quintic from rest to rest (way/time^2)
 #define NORMAL_SPOT 0.75   // radii from the centre, towards the player
-// chosen: five strokes on a drum between both hands are worth the other hand's way there, two are
-// not: two drums in turn are played by sides
-#define AGAIN_COST 0.2
-#define AGAIN_TIME 2.0 // (s) chosen: after a longer rest the hands begin anew
 #define OMIT_COST 45.0
 #define OMIT_LOUD_COST 20.0 // at fff
 
@@ -64,10 +60,10 @@ static double stroke_cost(const state *now, const hand_state *to, int hand)
                        .way = hypot(to->x - from->x, to->y - from->y),
                        .inwards = hand == HIMC_LEFT ? other->y - to->y : to->y - other->y,
                        .other_gap = to->at - other->at};
+    s.same_spot = s.way == 0;
     if (s.gap < least_gap(s.way))
         return HUGE_VAL;
-    bool again = s.way == 0 && s.gap < s.other_gap && s.gap < AGAIN_TIME;
-    return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0) + (again ? AGAIN_COST : 0);
+    return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);
 }
 
 // among the `count` best so far; one for each pair of last strokes

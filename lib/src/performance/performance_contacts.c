@@ -21,6 +21,7 @@
 #include "drum/contact.h"
 
 #include "body/dynamics.h"
+#include "base/format.h"
 #include "base/head_frame.h"
 #include "control/grip.h"
 
@@ -325,6 +326,20 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.velocity = bounded(himc_vec3_dot(n, b->state.tip_velocity[hand]), FASTEST_TIP);
 }
 
+// once: a stroke of a score, or a hit, lands beside its place
+static void tell_aside(const contact_scene *s, const himc_strike *strike, double off)
+{
+    char name[64];
+    if (off <= PLAYED_PLACE || s->motion->track || himc_statistics_aside(s->statistics) > 0)
+        return;
+    if (isfinite(strike->beat))
+        himc_format(name, sizeof name, "stroke at beat %g", strike->beat);
+    else
+        himc_format(name, sizeof name, "hit");
+    himc_events_note(s->events, "%s %s: landed at %.3g %.3g, %.2g m from its place", name,
+                     himc_hand_name(strike->hand), strike->x, strike->y, off);
+}
+
 static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double time,
                          double velocity)
 {
@@ -361,6 +376,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     himc_motion_answer(s->motion, hand, next.time);
     himc_statistics_strokes(s->statistics, 1, played);
     himc_statistics_yields(s->statistics, next.yields);
+    tell_aside(s, &c->strike, off);
 }
 
 // adds the forces of a step's `n` samples to the strike; returns the impulse (N s)

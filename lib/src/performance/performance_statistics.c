@@ -87,6 +87,11 @@ void himc_statistics_yields(performance_statistics *s, double yields)
     s->moved_most = fmax(s->moved_most, yields);
 }
 
+long himc_statistics_aside(performance_statistics *s)
+{
+    return s->aside++;
+}
+
 void himc_statistics_hit(performance_statistics *s, double latency)
 {
     s->hit_latency = latency;

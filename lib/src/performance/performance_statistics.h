@@ -19,6 +19,7 @@ typedef struct performance_statistics {
     int strokes, played, hits;
     int moved;         ///< strokes that were moved aside, as the hands would have met ...
     double moved_most; ///< ... by so much at most (m)
+    long aside;        ///< landed beside their place
     double hit_latency, longest_latency; ///< from a hit's command to its planned contact (s)
     double peak_force;                   ///< (N)
     int unplanned;                       ///< contacts
@@ -58,6 +59,8 @@ HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double 
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
 /// Adds a stroke that was struck so far from where it was asked for (m).
 HIMC_RT void himc_statistics_yields(performance_statistics *statistics, double yields);
+/// Counts a stroke that has landed beside its place; returns how many there were before.
+HIMC_RT long himc_statistics_aside(performance_statistics *statistics);
 /// Adds a hit, with the time from its command to its planned contact (s).
 HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double latency);
 /// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.

@@ -228,7 +228,8 @@ HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand
 
 /// The current stroke of a hand at `t`, its drum and the planned time of contact: the stroke to be
 /// played next, until 50 ms after its time or half way to the one after it. The spot of a varied
-/// stroke is where it will be played; `stroke` may be NULL. False if there is none.
+/// stroke is where it will be played, the beat of a hit NaN; `stroke` may be NULL. False if there
+/// is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
 /// How far the spot of that stroke is moved aside, as the hands would have met (m); usually 0.
@@ -251,8 +252,9 @@ HIMC_RT int himc_planner_given_up(himc_planner *planner);
 /// Takes the oldest stroke of score or hit that is given up; false if there is none. It is told as
 /// soon as it is known, before its time. The latest 256 are kept.
 HIMC_RT bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss);
-/// The score is over: the tips come to rest as planned, play begins at the top. Adds a note with the count
-/// of strokes since the last `play` that were not played as written, if there is more than one.
+/// The score is over: the tips come to rest as planned, play begins at the top. Adds a note with
+/// the count of strokes since the last `play` that were not played as written, if there is more
+/// than one.
 HIMC_RT void himc_planner_finish(himc_planner *planner);
 /// Takes the oldest note; false if there is none. 32 are kept; the last one counts those that are
 /// lost.

@@ -86,8 +86,8 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
     double asked_x = x, asked_y = y;
     if (keep_inside(head, &x, &y))
         himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
-                         "%s hand: %.3g %.3g is beyond the rim, struck inside it",
-                         himc_hand_name(stroke->hand), asked_x, asked_y);
+                         "%.3g %.3g is beyond the rim at %.3g m: struck at %.3g %.3g", asked_x,
+                         asked_y, head->radius, x, y);
     return (himc_goal){.time = t,
                        .spot = himc_planner_tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),

@@ -8,9 +8,10 @@
 ///
 /// The hand asked for plays it, if it has LEAST_PREPARATION after its stroke before, can get there,
 /// and leaves as much to its stroke after; else the other hand. Where the performer chooses, the
-/// cheaper hand plays: far, short and crossed ways cost, a hand that has just struck costs, so in a
-/// run on one key the hands alternate. Where no hand has time, one without other strokes to come
-/// plays late, by as little as its way there needs; else the hit is given up. Both are counted.
+/// cheaper hand plays: far, short and crossed ways cost, a hand that has just struck costs, so on
+/// one drum between both hands they alternate. Where no hand has time, one without other strokes to
+/// come plays late, by as little as its way there needs; else the hit is given up. Both are
+/// counted.
 /// Choosing changes nothing; only the plan of the hand that plays is cut.
 ///
 /// A tip is led, by live targets or to lie on a head, while no stroke is near.
@@ -37,6 +38,9 @@
 #define LARGEST_DRIFT 0.001  // ... and a larger one is a disturbance
 
 #define ON_SPOT 0.03 // chosen: so short a way is none: a spot scatters as much (m)
+// chosen: a way on the drum over which the hand waits costs so much of another, so that the hands
+// take turns all over it
+#define OVER_DRUM 0.25
 
 // a hand that is led
 #define LIFT_TIME 0.5 // of a hand that has lain on a head, to its rest (s); chosen: without haste
@@ -82,6 +86,7 @@ typedef struct chance {
     bool reaches;
     neighbours near;
     bool idle;      ///< no stroke of the hand is under way or to come before the hit
+    bool over;      ///< its last stroke was on that drum
     himc_vec3 from; ///< where the tip comes from (m)
 } chance;
 
@@ -128,6 +133,7 @@ static chance chance_of(himc_planner *planner, himc_hand hand, double t, const h
     chance c = {.goal = himc_planner_goal(planner, &own, hit->drum, hit->at)};
     c.near = neighbours_at(planner, hand, hit->at);
     c.idle = himc_goal_end(&c.near.before) < t;
+    c.over = h->drum == hit->drum;
     c.from = c.idle ? himc_hand_at(&h->plan, t).x : c.near.before.spot;
     c.reaches = himc_planner_reaches(planner, hand, &c.goal);
     find_time(h, t, &c);
@@ -140,10 +146,14 @@ static double cost_of(himc_hand hand, const chance *c, const chance *other)
     himc_vec3 to = himc_vec3_sub(c->goal.spot, c->from), n = c->goal.normal;
     double way = himc_vec3_length(himc_vec3_madd(to, -himc_vec3_dot(to, n), n)); // along the head
     double aside = c->goal.spot.y - other->from.y; // the left hand is towards +y
-    himc_sticking s = {.gap = c->goal.time - c->near.before.time,
-                       .way = way < ON_SPOT ? 0 : way,
-                       .inwards = hand == HIMC_LEFT ? -aside : aside,
-                       .other_gap = other->goal.time - other->near.before.time};
+    himc_sticking s = {
+        .gap = c->goal.time - c->near.before.time,
+        .way = way < ON_SPOT ? 0
+               : c->over     ? OVER_DRUM * way
+                             : way,
+        .same_spot = himc_vec3_length(himc_vec3_sub(c->goal.spot, c->near.before.spot)) < ON_SPOT,
+        .inwards = hand == HIMC_LEFT ? -aside : aside,
+        .other_gap = other->goal.time - other->near.before.time};
     return himc_sticking_cost(&s);
 }
 

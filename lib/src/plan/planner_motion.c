@@ -824,6 +824,8 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
 static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
 {
     *stroke = s->stroke;
+    if (s->index < 0 && !s->reassigned) // a hit
+        stroke->beat = NAN;
     if (!s->varied)
         return;
     himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
