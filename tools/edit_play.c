@@ -56,8 +56,8 @@ struct edit_play {
     bool holds;
 };
 
-// A process that plays holds no end of another one's pipes: whoever reads or writes there has to see
-// when the process that gives orders has gone.
+// A process that plays holds no end of another one's pipes: whoever reads or writes there has to
+// see when the process that gives orders has gone.
 static edit_play *all;
 
 /// A process that plays.

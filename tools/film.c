@@ -24,11 +24,11 @@ static const cli_option options[] = {
 };
 
 /// The arguments.
-typedef struct job {
+typedef struct film_job {
     const char *scene, *out, *kind, *camera;
     int width, height, fps;
     double from, to, speed, at;
-} job;
+} film_job;
 
 static bool read_number(const char *name, const char *text, double low, double high, double *out,
                         himc_error *error)
@@ -59,20 +59,20 @@ static bool is_word(const char *word, const char *list)
     return at && (at == list || at[-1] == ' ') && (at[length] == ' ' || !at[length]);
 }
 
-static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
+static bool read_job(const cli_arguments *arguments, film_job *out, himc_error *error)
 {
     static const char kinds[] = "webm png glb", cameras[] = "stage front side top eye hands head";
     const char *const *value = arguments->value,
                       *dot = value[OUT] ? strrchr(value[OUT], '.') : NULL;
-    *out = (job){.scene = cli_input(arguments->operand, error),
-                 .out = value[OUT],
-                 .kind = dot ? dot + 1 : "",
-                 .camera = value[CAMERA] ? value[CAMERA] : "stage",
-                 .width = 1280,
-                 .height = 720,
-                 .fps = 30,
-                 .to = 1e6,
-                 .speed = 1};
+    *out = (film_job){.scene = cli_input(arguments->operand, error),
+                      .out = value[OUT],
+                      .kind = dot ? dot + 1 : "",
+                      .camera = value[CAMERA] ? value[CAMERA] : "stage",
+                      .width = 1280,
+                      .height = 720,
+                      .fps = 30,
+                      .to = 1e6,
+                      .speed = 1};
     if (!out->scene)
         return false;
     if (!out->out)
@@ -96,6 +96,7 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
 }
 
 #if defined HIMC_SHARE && !defined _WIN32
+#include "base/file.h"
 #include "browser.h"
 #include "recording.h"
 #include "share.h"
@@ -110,9 +111,8 @@ static bool write_page(const browser *b, const char *scene, size_t size, const c
                        char path[PAGE], himc_error *error)
 {
     snprintf(path, PAGE, "%s/page.html", browser_home(b));
-    FILE *page = fopen(path, "wb"); // the folder is this user's alone
-    bool good = page ? share_write(page, scene, size, source, error)
-                     : himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
+    FILE *page = himc_file_write(path, HIMC_FILE_REPLACE, error);
+    bool good = page && share_write(page, scene, size, source, error);
     if (page && fclose(page) && good)
         good = himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
     return good;
@@ -176,7 +176,7 @@ static bool take_pieces(browser *b, FILE *out, himc_error *error)
     }
 }
 
-static bool film(browser *b, const char *page, const job *j, FILE *out, himc_error *error)
+static bool film(browser *b, const char *page, const film_job *j, FILE *out, himc_error *error)
 {
     char text[512];
     snprintf(text, sizeof text, "file://%s#held", page);
@@ -199,7 +199,7 @@ static bool film(browser *b, const char *page, const job *j, FILE *out, himc_err
     return browser_run(b, text, error) && wait_for_it(b, error) && take_pieces(b, out, error);
 }
 
-static bool make(const job *j, himc_error *error)
+static bool make(const film_job *j, himc_error *error)
 {
     char page[PAGE];
     cli_file out = {0};
@@ -217,7 +217,7 @@ static bool make(const job *j, himc_error *error)
     return good;
 }
 #else
-static bool make(const job *j, himc_error *error)
+static bool make(const film_job *j, himc_error *error)
 {
     return himc_error_set(error,
                           "%s to %s: this himc was built without three.js (Debian: libjs-three), "
@@ -229,7 +229,7 @@ static bool make(const job *j, himc_error *error)
 static int run(const cli_arguments *arguments)
 {
     himc_error error;
-    job wanted;
+    film_job wanted;
     return read_job(arguments, &wanted, &error) && make(&wanted, &error)
                ? cli_finish(&cli_film)
                : cli_fail(&cli_film, "%s", error.text);
