@@ -1238,6 +1238,75 @@ def test_a_field_changes_its_own_word_and_a_paused_piece_stays_paused():
         assert saved_score() == written
 
 
+THREE = (
+    "drum kettle 26; tempo 120; stroke 1 right legato mf; stroke 2 left legato mf; stroke 3 right legato mf;"
+    "at 2.5 push left-forearm 100 0 0 0.1;"
+)
+UNDO = "document.getElementById('e-undo').click();"
+# a stroke's, and a push's
+QUICK = (
+    [SET % f for f in (("hand", "left"), ("nuance", "staccato"), ("beat", "1.5"))],
+    [SET % f for f in (("hand", "left"), ("x", "-0.1"), ("dynamic", "0.9"), ("y", "0.1"))],
+    [SET % f for f in (("words", "stroke 1.25 left accent f rim"), ("x", "-0.1"), ("nuance", "tenuto"))],
+    [SET % ("words", "stroke 1 rihgt legato mf"), SET % ("hand", "left"), SET % ("beat", "1.25")],
+    [SET % ("hand", "left"), UNDO, SET % ("nuance", "staccato")],
+    [SET % f for f in (("fx", "50"), ("segment", "head"), ("seconds", "0.05"))],
+)
+
+
+def settled(script):
+    """It is done, and answered, and all of it is played."""
+    browser.run("viewer.answers = viewer.editor.piece.answers;" + script)
+    assert browser.wait("return viewer.editor.piece.answers > viewer.answers && viewer.editor.piece.over"), script
+
+
+def test_fields_set_without_waiting_are_as_if_set_one_by_one():
+    with tempfile.TemporaryDirectory() as home:
+        source = os.path.join(home, "three.txt")
+        with open(source, "w") as file:
+            file.write(THREE)
+        with editing(source):
+            # each line has an answer
+            browser.run(
+                "const { piece } = viewer.editor, { text, trouble } = piece.on; piece.answers = 0;"
+                "piece.on.text = e => (text(e), e.begun || piece.answers++);"
+                "piece.on.trouble = (...t) => (trouble(...t), piece.answers++);"
+            )
+            pick = (
+                "viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => s.beat === 1));",
+                "viewer.actions.pick(viewer.actions.marks[0]);",
+            )
+            state = "const { undo, redo } = viewer.editor.piece.text; return [undo, redo, viewer.editor.chosen.statement.words]"
+            for changes in QUICK:
+                ends = []
+                for quick in (False, True):
+                    browser.run(pick["fx" in changes[0]])
+                    if quick:
+                        browser.run("viewer.answers = viewer.editor.piece.answers;" + "".join(f"{{{c}}}" for c in changes))
+                        # what was sent is shown at once, and marked
+                        if all("words" not in c and c != UNDO for c in changes):
+                            shown = browser.run("return ['e-words', 'e-sent'].map(id => document.getElementById(id)).map(e => e?.value ?? e?.textContent)")
+                            assert shown == [ends[0][1][2], "…"], (changes, shown, ends)
+                        assert browser.wait(
+                            f"return viewer.editor.piece.answers >= viewer.answers + {len(changes)} && viewer.editor.piece.over"
+                        )
+                    else:
+                        for c in changes:
+                            settled(c)
+                    words = browser.run("return document.getElementById('e-words').value")
+                    ends.append((saved_score(), browser.run(state)))
+                    assert ends[-1][1][2] == words and not browser.run("return document.getElementById('e-sent')?.textContent")
+                    undo_all()
+                assert ends[0] == ends[1] and ends[0][0] != THREE, (changes, ends)
+            # two pushes: the second takes no place of the first
+            for _ in range(2):
+                browser.run("document.getElementById('e-add').onclick()")
+            assert browser.wait("return viewer.editor.piece.text.undo === 2 && viewer.editor.piece.over")
+            assert saved_score().count("push") == 3
+            # a score that has changed is not lost: answers of before mean nothing
+            assert browser.run("return viewer.editor.risky") is False
+
+
 def type_in(field, value):
     """What the page says then, and the field's value."""
     browser.run("viewer.panel.note('')")
