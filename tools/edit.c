@@ -12,6 +12,7 @@
 #include "edit_play.h"
 #include "edit_text.h"
 #include "midi/import.h"
+#include "performance/performance_body.h"
 #include "performance/performance_drums.h"
 #include "plan/score.h"
 #include "scene.h"
@@ -181,6 +182,18 @@ static bool has_drums(const session *s, const himc_score *score, himc_error *err
     return true;
 }
 
+// true if the pushes are on segments that can be pushed
+static bool has_segments(const session *s, const himc_score *score, himc_error *error)
+{
+    planned_push unused;
+    for (int i = 0; i < score->change_count; i++) {
+        const himc_score_line *l = &score->changes[i];
+        if (!l->drum[0] && !himc_body_read_push(&l->command, &unused, error))
+            return himc_error_prefix(error, "%s:%d", s->name, l->line);
+    }
+    return true;
+}
+
 // the score of a text; NULL with the reason, also if it may not name the files that it names
 static himc_score *parse(const session *s, const edit_text *t, himc_error *error)
 {
@@ -201,7 +214,7 @@ static himc_score *parse(const session *s, const edit_text *t, himc_error *error
 static bool check(const session *s, const edit_text *t, himc_error *error)
 {
     himc_score *score = parse(s, t, error);
-    bool good = score && has_drums(s, score, error);
+    bool good = score && has_drums(s, score, error) && has_segments(s, score, error);
     himc_score_free(score);
     return good;
 }
