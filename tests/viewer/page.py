@@ -1307,6 +1307,44 @@ def test_fields_set_without_waiting_are_as_if_set_one_by_one():
             assert browser.run("return viewer.editor.risky") is False
 
 
+ORNAMENTS = (
+    "drum kettle 26; tempo 120; stroke 0 left legato mf; flam 3 right legato f; roll 4 1 double p f; drag 7 left legato f;"
+    "stroke 9 left legato mf;"
+)
+
+
+def test_each_stroke_of_an_ornament_chooses_its_whole_statement():
+    """Grace notes, bounces and a roll's strokes; its words and its time are changed, and delete takes it whole."""
+    with tempfile.TemporaryDirectory() as home:
+        source = os.path.join(home, "ornaments.txt")
+        with open(source, "w") as file:
+            file.write(ORNAMENTS)
+        with editing(source):
+            strikes = "return viewer.editor.piece.scene.strikes.map(s => [s.time, s.beat])"
+            count = len(browser.run(strikes))
+            chosen = [
+                browser.run(f"viewer.actions.pick(viewer.editor.piece.scene.strikes[{i}]); {WORDS}?.split(' ')[0]")
+                for i in range(count)
+            ]
+            rolled = chosen.count("roll")
+            assert rolled > 4 and None in [beat for _, beat in browser.run(strikes)], chosen
+            assert chosen == ["stroke"] + ["flam"] * 2 + ["roll"] * rolled + ["drag"] * 3 + ["stroke"], chosen
+            assert not browser.run("return document.getElementById('note').textContent")
+            # a bounce of the drag: louder words, later, and all of it away
+            browser.run(f"viewer.actions.pick(viewer.editor.piece.scene.strikes[{count - 3}])")
+            assert browser.run("return [viewer.editor.top.visible, document.getElementById('e-stroke').hidden]") == [False, True]
+            assert change(SET % ("words", "drag 7 left legato p")) == "drag 7 left legato p"
+            was = browser.run("return viewer.editor.chosen.time")
+            browser.run("viewer.editor.when.move(viewer.editor.chosen.time + 0.25)")
+            assert change("viewer.editor.when.drop()") == "drag 7.5 left legato p"
+            assert abs(browser.run("return viewer.editor.chosen.time") - was - 0.25) < 0.1
+            browser.run("document.getElementById('e-delete').click()")
+            assert browser.wait("return viewer.editor.piece.text.undo === 3 && !viewer.editor.chosen")
+            assert browser.wait(f"return viewer.editor.piece.over && viewer.editor.piece.scene.strikes.length === {count - 3}")
+            undo_all()
+            assert saved_score() == ORNAMENTS
+
+
 def type_in(field, value):
     """What the page says then, and the field's value."""
     browser.run("viewer.panel.note('')")

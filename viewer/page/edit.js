@@ -21,6 +21,7 @@ const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger 
     INSIDE = 0.95, // of a head's radius: nothing is struck further out
     RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
     DYNAMICS = ["ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"], // of 0 .. 1, as the library
+    BOUNCE = 0.25, // a bounce is no further from its ornament (beats)
     NEAR = 0.01, // of a dynamic, which then is that word
     AGAIN = 1000, // before the channel is opened again (ms)
     PUSHED = "#9cf29c", // the path of a segment that is pushed
@@ -373,14 +374,24 @@ export class Editor {
             this.chosen = what;
             if (what.index !== undefined) what.statement = this.statements.find(s => s.index === what.index);
         } else if (what) {
-            const near = this.statements.filter(s => Math.abs(s.beat - what.beat) < 1e-4),
-                own = near.find(s => s.hand === what.hand) ?? (near.length === 1 ? near[0] : undefined); // or the other hand had no time
+            const near = this.statements.filter(s => what.beat !== null && Math.abs(s.beat - what.beat) < 1e-4),
+                one = near.length === 1 ? near[0] : undefined, // the other hand had no time
+                own = near.find(s => s.hand === what.hand) ?? this.ornament(what) ?? one;
             this.chosen = { strike: what, hand: what.hand, time: what.time, statement: own };
-            if (!own) this.on.note("This stroke is not written by itself: it is part of an ornament, or of a take.");
+            if (!own) this.on.note("No words of the score stand for this stroke.");
         }
         draw(this.ghost, []);
         this.show();
         if (this.chosen && scene) this.trace();
+    }
+
+    // the roll, flam, drag or ruff that a strike is of, whose beat it has; a bounce has none
+    ornament(strike) {
+        const beat = strike.beat ?? this.pushes.beatAt(strike.time),
+            most = strike.beat === null ? BOUNCE : 1e-4,
+            off = s => Math.max(0, s.at - beat, beat - s.at - s.length),
+            near = this.statements.filter(s => s.length !== undefined && off(s) < most);
+        return near.sort((a, b) => off(a) - off(b))[0];
     }
 
     // a click of the timeline, on a strike, a nudge or a push
@@ -425,7 +436,7 @@ export class Editor {
             this.top.position.copy(rise.reduce((a, p) => (p.z > a.z ? p : a), nearest));
         }
         this.spot.visible = !c.push;
-        this.top.visible = !c.take && !c.push && !!c.statement;
+        this.top.visible = !c.take && !c.push && c.statement?.beat !== undefined;
     }
 
     hide() {
@@ -472,7 +483,7 @@ export class Editor {
         const c = this.chosen,
             pushes = this.pushes.press(e),
             handle = !pushes && this.grabbed([this.spot, this.top], e);
-        if (pushes || (handle && (c.take || c.statement))) {
+        if (pushes || (handle && (c.take || c.statement?.beat !== undefined))) {
             this.drag = !pushes && { handle, begun: handle.position.clone() };
             if (!pushes) draw(this.ghost, c.points);
             $("stage").setPointerCapture(e.pointerId);
@@ -646,8 +657,14 @@ export class Editor {
             { scene } = this.piece;
         if (!c) return;
         if (!c.take && !c.push) {
-            const wanted = c.statement?.beat === undefined ? c.strike : c.statement,
-                there = [...scene.strikes, ...scene.missed].filter(s => Math.abs(s.beat - wanted.beat) < 1e-3),
+            const { statement } = c,
+                wanted = statement?.beat === undefined ? c.strike : statement,
+                all = [...scene.strikes, ...scene.missed],
+                off = s => Math.abs(s.time - to),
+                there =
+                    statement?.length === undefined
+                        ? all.filter(s => Math.abs(s.beat - wanted.beat) < 1e-3)
+                        : all.filter(s => this.ornament(s) === statement).sort((a, b) => off(a) - off(b)),
                 found = there.find(s => s.hand === wanted.hand) ?? there[0];
             if (!found) return;
             if (found.why) this.on.note(`Not played: ${found.why}`);
