@@ -358,8 +358,9 @@ static void restore(session *s, const char *text, bool sent)
     int count = edit_text_changes(s->text);
     himc_error_set(&s->restored,
                    "%d change%s from before %s here again. \"file's text\" goes back to "
-                   "the file, redo brings them again",
-                   count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
+                   "the file, redo brings %s again",
+                   count, count == 1 ? "" : "s", count == 1 ? "is" : "are",
+                   count == 1 ? "it" : "them");
     if (count == 0)
         himc_error_set(&s->restored, "The file's text; redo brings the changes from before again");
 }

@@ -465,7 +465,8 @@ def test_changes_survive_kill_9():
         with Piece(HIMC, path) as piece:
             piece.say("hello")
             event = piece.until("restored")
-            assert (piece.text["undo"], piece.text["redo"]) == (1, 1) and "1 change" in event["text"]
+            assert (piece.text["undo"], piece.text["redo"]) == (1, 1) and "1 change from before is here again" in event["text"]
+            assert "brings it again" in event["text"], event
             assert piece.score() == edited
             for line, wanted in (("undo", text), ("redo", edited), ("revert", text), ("redo", edited)):
                 piece.say(line)

@@ -585,6 +585,9 @@ def control_faults():
 def test_controls_have_names_sizes_and_contrast():
     faults = control_faults()
     assert not faults, faults
+    # the sheet of keys lies over other writing, which does not show through
+    sheet = browser.run("const s = getComputedStyle(document.getElementById('keys')); return [s.backgroundColor, s.opacity]")
+    assert sheet[0].startswith("rgb(") and sheet[1] == "1", sheet
 
 
 def test_playback_shows_a_scene_as_the_library_does():
@@ -1354,6 +1357,12 @@ def type_in(field, value):
     )
 
 
+def type_in_after(field, value):
+    """What is left on the page of a line of before."""
+    browser.run(SET % (field, value))
+    return browser.run("return document.getElementById('note').textContent")
+
+
 def test_a_stroke_out_of_reach_is_shown_and_wrong_numbers_are_refused():
     with tempfile.TemporaryDirectory() as home:
         source = os.path.join(home, "far.txt")
@@ -1384,6 +1393,18 @@ def test_a_stroke_out_of_reach_is_shown_and_wrong_numbers_are_refused():
             browser.run(SET % ("beat", "2"))
             assert saved_score() == written
             assert browser.run("return [viewer.editor.piece.text.undo, viewer.editor.piece.cuts - viewer.cuts]") == [0, 0]
+            # a good change clears at once what was refused
+            said, _ = type_in("beat", "-3")
+            assert "expected 0 or more" in said and type_in_after("beat", "2.25") == ""
+            assert browser.wait("return viewer.editor.piece.text.undo === 1")
+            undo_all()
+            # one of two strikes is taken away
+            browser.run("viewer.actions.pick(viewer.playback.scene.strikes[1]); document.getElementById('e-delete').click()")
+            assert browser.wait("return viewer.editor.piece.text.undo === 1 && viewer.editor.piece.over")
+            assert browser.wait("return document.getElementById('said').textContent === '1 strike'")
+            undo_all()
+            assert browser.wait("return document.getElementById('said').textContent === '2 strikes'")
+            browser.run("viewer.actions.pick(viewer.playback.scene.missed[0])")
             # within reach it is played, and the mark has gone; undo brings it back
             assert change(SET % ("words", "stroke 2 left legato mf normal kettle")).endswith("kettle")
             assert browser.run(missed) == [] and browser.run(why) == ""
