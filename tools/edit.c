@@ -14,6 +14,7 @@
 #include "midi/import.h"
 #include "midi/score_file.h"
 #include "midi/smf.h"
+#include "performance/performance_body.h"
 #include "performance/performance_drums.h"
 #include "plan/score.h"
 #include "scene.h"
@@ -68,24 +69,34 @@ static void put(const char *kind, const void *bytes, size_t size)
     fwrite(bytes, 1, size, stdout);
 }
 
-// a line of JSON about the edit
-static void tell(const char *event, const char *key, const char *text)
+// the line that an event answers, if any
+static void print_answered(const char *line, FILE *to)
+{
+    if (!line)
+        return;
+    fputs(",\"line\":", to);
+    cli_put_json_text(to, line);
+}
+
+// a line of JSON about the edit; `line` is what it answers, or NULL
+static void tell(const char *event, const char *text, const char *line)
 {
     char *json = NULL;
     size_t size;
     FILE *to = open_memstream(&json, &size);
     if (!to)
         return;
-    fprintf(to, "{\"event\":\"%s\",\"%s\":", event, key);
+    fprintf(to, "{\"event\":\"%s\",\"text\":", event);
     cli_put_json_text(to, text);
+    print_answered(line, to);
     fputc('}', to);
     fclose(to);
     put("edit", json, size);
     free(json);
 }
 
-// `begun`: all that was told before is of no value
-static void tell_text(const session *s, bool begun)
+// `begun`: all that was told before is of no value; `line` is what it answers, or NULL
+static void tell_text(const session *s, bool begun, const char *line)
 {
     char *json = NULL;
     size_t size;
@@ -98,6 +109,7 @@ static void tell_text(const session *s, bool begun)
     cli_put_json_text(to, s->name);
     fputc(',', to);
     edit_text_print(s->text, to);
+    print_answered(line, to);
     fputc('}', to);
     fclose(to);
     put("edit", json, size);
@@ -179,6 +191,18 @@ static bool has_drums(const session *s, const himc_score *score, himc_error *err
     return true;
 }
 
+// true if the pushes are on segments that can be pushed
+static bool has_segments(const session *s, const himc_score *score, himc_error *error)
+{
+    planned_push unused;
+    for (int i = 0; i < score->change_count; i++) {
+        const himc_score_line *l = &score->changes[i];
+        if (!l->drum[0] && !himc_body_read_push(&l->command, &unused, error))
+            return himc_error_prefix(error, "%s:%d", s->name, l->line);
+    }
+    return true;
+}
+
 // the score of a text; NULL with the reason, also if it may not name the files that it names
 static himc_score *parse(const session *s, const edit_text *t, himc_error *error)
 {
@@ -199,7 +223,7 @@ static himc_score *parse(const session *s, const edit_text *t, himc_error *error
 static bool check(const session *s, const edit_text *t, himc_error *error)
 {
     himc_score *score = parse(s, t, error);
-    bool good = score && has_drums(s, score, error);
+    bool good = score && has_drums(s, score, error) && has_segments(s, score, error);
     himc_score_free(score);
     return good;
 }
@@ -343,8 +367,9 @@ static void restore(session *s, const char *text, bool sent)
     int count = edit_text_changes(s->text);
     himc_error_set(&s->restored,
                    "%d change%s from before %s here again. \"file's text\" goes back to "
-                   "the file, redo brings them again",
-                   count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
+                   "the file, redo brings %s again",
+                   count, count == 1 ? "" : "s", count == 1 ? "is" : "are",
+                   count == 1 ? "it" : "them");
     if (count == 0)
         himc_error_set(&s->restored, "The file's text; redo brings the changes from before again");
 }
@@ -414,13 +439,13 @@ static bool save_score(const session *s)
 // tells the page how the piece stands when it comes
 static void greet(session *s)
 {
-    tell_text(s, true);
+    tell_text(s, true, NULL);
     if (s->unkept.text[0])
-        tell("unkept", "text", s->unkept.text);
+        tell("unkept", s->unkept.text, NULL);
     if (s->restored.text[0])
-        tell("restored", "text", s->restored.text);
+        tell("restored", s->restored.text, NULL);
     if (s->held.text[0])
-        tell("held", "text", s->held.text);
+        tell("held", s->held.text, NULL);
 }
 
 static void keep(session *s, const char *line)
@@ -429,7 +454,7 @@ static void keep(session *s, const char *line)
     if (s->unkept.text[0] || edit_journal_add(&s->journal, line, &error))
         return;
     unkept(s, &error);
-    tell("unkept", "text", s->unkept.text);
+    tell("unkept", s->unkept.text, NULL);
 }
 
 // one line; false with the reason, and *fatal if nothing can be played any more
@@ -450,7 +475,7 @@ static bool obey(session *s, const char *line, bool *fatal, himc_error *error)
         bool changed = edit_text_is_open(s->text);
         if (changed)
             keep(s, line);
-        tell_text(s, false);
+        tell_text(s, false, line);
         if (!changed)
             return true;
     }
@@ -475,9 +500,9 @@ static bool take_back(session *s, const edit_frame *frame, himc_error *error)
     s->unproved = false;
     if (undone) {
         keep(s, all ? "revert" : TAKEN_BACK);
-        tell_text(s, false);
+        tell_text(s, false, NULL);
     }
-    tell(undone ? "undone" : "failed", "text", failure.text);
+    tell(undone ? "undone" : "failed", failure.text, NULL);
     if (!undone)
         return true;
     return replay(s, first, error);
@@ -523,13 +548,13 @@ static bool read_lines(session *s, bool *fatal, himc_error *error)
         if (*fatal || !obey(s, begin, fatal, error)) {
             if (*fatal)
                 return false;
-            tell("refused", "text", error->text);
+            tell("refused", error->text, begin);
         }
     }
     s->used -= (size_t)(begin - s->line);
     memmove(s->line, begin, s->used);
     if (s->used == sizeof s->line) {
-        tell("refused", "text", "a line is too long");
+        tell("refused", "a line is too long", NULL);
         s->used = 0;
     }
     return true;
@@ -548,7 +573,7 @@ static void take_saved(session *s)
     if (bytes && size)
         put_file(s->wanted, bytes, size);
     else
-        tell("refused", "text", "the take could not be saved");
+        tell("refused", "the take could not be saved", NULL);
     free(bytes);
     stop_saving(s);
 }
@@ -595,7 +620,7 @@ static int run(const cli_arguments *arguments)
     good = s.play && serve(&s, &error);
     if (!good) {
         name_source(&s, &error);
-        tell("failed", "text", error.text);
+        tell("failed", error.text, NULL);
         fflush(stdout);
     }
     edit_play_free(s.play);

@@ -418,7 +418,8 @@ static void print_statement(FILE *to, int index, const char *bytes, const himc_c
                 s->beat, himc_hand_name(s->hand), himc_nuance_name(s->nuance), s->dynamic);
         cli_put_json_text(to, s->drum);
         print_spot(to, s);
-    }
+    } else if (is_stroke(c))
+        fprintf(to, ",\"at\":%.17g,\"length\":%.17g", s->beat, s->length);
 }
 
 static void print_push(FILE *to, const himc_command *c, double at)

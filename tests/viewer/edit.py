@@ -297,6 +297,22 @@ def test_what_is_no_change_is_refused_in_a_line():
         assert piece.score() == before
 
 
+def test_a_segment_that_nobody_has_is_refused_at_once():
+    """As any other misspelt word: nothing is played again, and the journal has nothing of it."""
+    path = made("two.txt", "stroke 0 left legato f;\nstroke 1 right legato f;\n")
+    with Piece(HIMC, path) as piece:
+        assert piece.play("hello") is None
+        before = piece.score()
+        for line in ("at 1 push rihgt-hand 50 0 0 0.1", "at 1 push pelvis 50 0 0 0.1 0.1", "stroke 1 rihgt legato f"):
+            event = piece.play(f"set {piece.text['count'] - 1} {line}")
+            assert event["event"] == "refused" and line.split()[3 if "push" in line else 2] in event["text"], event
+            assert event["line"].endswith(line) and "undone" not in piece.said, event
+        assert piece.score() == before
+        assert not os.path.exists(os.path.join(os.path.dirname(path), ".two.txt.himc-edit"))
+        assert piece.play(f"set {piece.text['count'] - 1} at 1 push right-hand 50 0 0 0.1") is None
+        assert piece.text["line"].endswith("at 1 push right-hand 50 0 0 0.1")
+
+
 def test_a_score_that_names_files_is_refused_when_confined():
     """However it is written: the score is asked as it will be played."""
     victim = made("victim.bvh", "PRECIOUS")
@@ -496,7 +512,8 @@ def test_changes_survive_kill_9():
         with Piece(HIMC, path) as piece:
             piece.say("hello")
             event = piece.until("restored")
-            assert (piece.text["undo"], piece.text["redo"]) == (1, 1) and "1 change" in event["text"]
+            assert (piece.text["undo"], piece.text["redo"]) == (1, 1) and "1 change from before is here again" in event["text"]
+            assert "brings it again" in event["text"], event
             assert piece.score() == edited
             for line, wanted in (("undo", text), ("redo", edited), ("revert", text), ("redo", edited)):
                 piece.say(line)

@@ -585,6 +585,9 @@ def control_faults():
 def test_controls_have_names_sizes_and_contrast():
     faults = control_faults()
     assert not faults, faults
+    # the sheet of keys lies over other writing, which does not show through
+    sheet = browser.run("const s = getComputedStyle(document.getElementById('keys')); return [s.backgroundColor, s.opacity]")
+    assert sheet[0].startswith("rgb(") and sheet[1] == "1", sheet
 
 
 def test_playback_shows_a_scene_as_the_library_does():
@@ -1266,6 +1269,113 @@ def test_a_field_changes_its_own_word_and_a_paused_piece_stays_paused():
         assert saved_score() == written
 
 
+THREE = (
+    "drum kettle 26; tempo 120; stroke 1 right legato mf; stroke 2 left legato mf; stroke 3 right legato mf;"
+    "at 2.5 push left-forearm 100 0 0 0.1;"
+)
+UNDO = "document.getElementById('e-undo').click();"
+# a stroke's, and a push's
+QUICK = (
+    [SET % f for f in (("hand", "left"), ("nuance", "staccato"), ("beat", "1.5"))],
+    [SET % f for f in (("hand", "left"), ("x", "-0.1"), ("dynamic", "0.9"), ("y", "0.1"))],
+    [SET % f for f in (("words", "stroke 1.25 left accent f rim"), ("x", "-0.1"), ("nuance", "tenuto"))],
+    [SET % ("words", "stroke 1 rihgt legato mf"), SET % ("hand", "left"), SET % ("beat", "1.25")],
+    [SET % ("hand", "left"), UNDO, SET % ("nuance", "staccato")],
+    [SET % f for f in (("fx", "50"), ("segment", "head"), ("seconds", "0.05"))],
+)
+
+
+def settled(script):
+    """It is done, and answered, and all of it is played."""
+    browser.run("viewer.answers = viewer.editor.piece.answers;" + script)
+    assert browser.wait("return viewer.editor.piece.answers > viewer.answers && viewer.editor.piece.over"), script
+
+
+def test_fields_set_without_waiting_are_as_if_set_one_by_one():
+    with tempfile.TemporaryDirectory() as home:
+        source = os.path.join(home, "three.txt")
+        with open(source, "w") as file:
+            file.write(THREE)
+        with editing(source):
+            # each line has an answer
+            browser.run(
+                "const { piece } = viewer.editor, { text, trouble } = piece.on; piece.answers = 0;"
+                "piece.on.text = e => (text(e), e.begun || piece.answers++);"
+                "piece.on.trouble = (...t) => (trouble(...t), piece.answers++);"
+            )
+            pick = (
+                "viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => s.beat === 1));",
+                "viewer.actions.pick(viewer.actions.marks[0]);",
+            )
+            state = "const { undo, redo } = viewer.editor.piece.text; return [undo, redo, viewer.editor.chosen.statement.words]"
+            for changes in QUICK:
+                ends = []
+                for quick in (False, True):
+                    browser.run(pick["fx" in changes[0]])
+                    if quick:
+                        browser.run("viewer.answers = viewer.editor.piece.answers;" + "".join(f"{{{c}}}" for c in changes))
+                        # what was sent is shown at once, and marked
+                        if all("words" not in c and c != UNDO for c in changes):
+                            shown = browser.run("return ['e-words', 'e-sent'].map(id => document.getElementById(id)).map(e => e?.value ?? e?.textContent)")
+                            assert shown == [ends[0][1][2], "…"], (changes, shown, ends)
+                        assert browser.wait(
+                            f"return viewer.editor.piece.answers >= viewer.answers + {len(changes)} && viewer.editor.piece.over"
+                        )
+                    else:
+                        for c in changes:
+                            settled(c)
+                    words = browser.run("return document.getElementById('e-words').value")
+                    ends.append((saved_score(), browser.run(state)))
+                    assert ends[-1][1][2] == words and not browser.run("return document.getElementById('e-sent')?.textContent")
+                    undo_all()
+                assert ends[0] == ends[1] and ends[0][0] != THREE, (changes, ends)
+            # two pushes: the second takes no place of the first
+            for _ in range(2):
+                browser.run("document.getElementById('e-add').onclick()")
+            assert browser.wait("return viewer.editor.piece.text.undo === 2 && viewer.editor.piece.over")
+            assert saved_score().count("push") == 3
+            # a score that has changed is not lost: answers of before mean nothing
+            assert browser.run("return viewer.editor.risky") is False
+
+
+ORNAMENTS = (
+    "drum kettle 26; tempo 120; stroke 0 left legato mf; flam 3 right legato f; roll 4 1 double p f; drag 7 left legato f;"
+    "stroke 9 left legato mf;"
+)
+
+
+def test_each_stroke_of_an_ornament_chooses_its_whole_statement():
+    """Grace notes, bounces and a roll's strokes; its words and its time are changed, and delete takes it whole."""
+    with tempfile.TemporaryDirectory() as home:
+        source = os.path.join(home, "ornaments.txt")
+        with open(source, "w") as file:
+            file.write(ORNAMENTS)
+        with editing(source):
+            strikes = "return viewer.editor.piece.scene.strikes.map(s => [s.time, s.beat])"
+            count = len(browser.run(strikes))
+            chosen = [
+                browser.run(f"viewer.actions.pick(viewer.editor.piece.scene.strikes[{i}]); {WORDS}?.split(' ')[0]")
+                for i in range(count)
+            ]
+            rolled = chosen.count("roll")
+            assert rolled > 4 and None in [beat for _, beat in browser.run(strikes)], chosen
+            assert chosen == ["stroke"] + ["flam"] * 2 + ["roll"] * rolled + ["drag"] * 3 + ["stroke"], chosen
+            assert not browser.run("return document.getElementById('note').textContent")
+            # a bounce of the drag: louder words, later, and all of it away
+            browser.run(f"viewer.actions.pick(viewer.editor.piece.scene.strikes[{count - 3}])")
+            assert browser.run("return [viewer.editor.top.visible, document.getElementById('e-stroke').hidden]") == [False, True]
+            assert change(SET % ("words", "drag 7 left legato p")) == "drag 7 left legato p"
+            was = browser.run("return viewer.editor.chosen.time")
+            browser.run("viewer.editor.when.move(viewer.editor.chosen.time + 0.25)")
+            assert change("viewer.editor.when.drop()") == "drag 7.5 left legato p"
+            assert abs(browser.run("return viewer.editor.chosen.time") - was - 0.25) < 0.1
+            browser.run("document.getElementById('e-delete').click()")
+            assert browser.wait("return viewer.editor.piece.text.undo === 3 && !viewer.editor.chosen")
+            assert browser.wait(f"return viewer.editor.piece.over && viewer.editor.piece.scene.strikes.length === {count - 3}")
+            undo_all()
+            assert saved_score() == ORNAMENTS
+
+
 def type_in(field, value):
     """What the page says then, and the field's value."""
     browser.run("viewer.panel.note('')")
@@ -1273,6 +1383,12 @@ def type_in(field, value):
     return browser.run(
         "return [document.getElementById('note').textContent, document.getElementById(arguments[0]).value]", f"e-{field}"
     )
+
+
+def type_in_after(field, value):
+    """What is left on the page of a line of before."""
+    browser.run(SET % (field, value))
+    return browser.run("return document.getElementById('note').textContent")
 
 
 def test_a_stroke_out_of_reach_is_shown_and_wrong_numbers_are_refused():
@@ -1305,6 +1421,18 @@ def test_a_stroke_out_of_reach_is_shown_and_wrong_numbers_are_refused():
             browser.run(SET % ("beat", "2"))
             assert saved_score() == written
             assert browser.run("return [viewer.editor.piece.text.undo, viewer.editor.piece.cuts - viewer.cuts]") == [0, 0]
+            # a good change clears at once what was refused
+            said, _ = type_in("beat", "-3")
+            assert "expected 0 or more" in said and type_in_after("beat", "2.25") == ""
+            assert browser.wait("return viewer.editor.piece.text.undo === 1")
+            undo_all()
+            # one of two strikes is taken away
+            browser.run("viewer.actions.pick(viewer.playback.scene.strikes[1]); document.getElementById('e-delete').click()")
+            assert browser.wait("return viewer.editor.piece.text.undo === 1 && viewer.editor.piece.over")
+            assert browser.wait("return document.getElementById('said').textContent === '1 strike'")
+            undo_all()
+            assert browser.wait("return document.getElementById('said').textContent === '2 strikes'")
+            browser.run("viewer.actions.pick(viewer.playback.scene.missed[0])")
             # within reach it is played, and the mark has gone; undo brings it back
             assert change(SET % ("words", "stroke 2 left legato mf normal kettle")).endswith("kettle")
             assert browser.run(missed) == [] and browser.run(why) == ""

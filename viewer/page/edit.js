@@ -21,6 +21,7 @@ const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger 
     INSIDE = 0.95, // of a head's radius: nothing is struck further out
     RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
     DYNAMICS = ["ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"], // of 0 .. 1, as the library
+    BOUNCE = 0.25, // a bounce is no further from its ornament (beats)
     NEAR = 0.01, // of a dynamic, which then is that word
     AGAIN = 1000, // before the channel is opened again (ms)
     PUSHED = "#9cf29c", // the path of a segment that is pushed
@@ -66,13 +67,16 @@ export class Editor {
     // drum(name), its tilted group
     constructor(key, sound, view, stage, on) {
         Object.assign(this, { view, on, chosen: null, drag: null, waiting: null, heard: [] });
+        // lines that are not answered yet, { line, statement as it will be, exact if all of it is known };
+        // changes that wait for their answers; the field that is being typed in
+        ((this.sent = []), (this.later = []), (this.typing = null));
         this.piece = new Piece(key, sound, {
             begun: piece => this.begun(piece),
             cut: (piece, time) => this.cut(piece, time),
             grown: piece => this.grown(piece),
             over: piece => this.over(piece),
             text: event => this.written(event),
-            trouble: text => this.refused(text),
+            trouble: (text, line) => this.refused(text, line),
             restored: text => this.state(text),
             unkept: text => this.state(text),
             ended: why => this.ended(why),
@@ -103,7 +107,7 @@ export class Editor {
     // true if changes would be lost with the page: not written anywhere, or on their way
     get risky() {
         const { text } = this.piece;
-        return this.unsure || (!!text?.undo && !text.kept);
+        return !!this.sent.length || (!!text?.undo && !text.kept);
     }
 
     // a line that stays until another takes its place; `ended` if nothing can be changed any more
@@ -116,7 +120,7 @@ export class Editor {
 
     ended(why) {
         if (why === "refused" && !this.reachable) why = "lost";
-        ((this.waiting = null), (this.ends = why), this.state(ENDED[why], why));
+        ((this.waiting = null), (this.later = []), (this.ends = why), this.state(ENDED[why], why));
         this.choose(null);
         if (why === "lost") setTimeout(() => this.reachable && this.again(), AGAIN);
     }
@@ -139,11 +143,57 @@ export class Editor {
         if (this.piece.socket.readyState >= WebSocket.CLOSING) this.piece.open();
     }
 
-    // a line that changed nothing: the fields are as they were, and what played plays on
-    refused(text) {
+    // the line changed nothing: the fields are as the text has it, and what played plays on
+    refused(text, line) {
         const { waiting } = this;
-        ((this.unsure = false), (this.waiting = null), this.on.note(text), this.show());
+        (this.answered(line), this.on.note(line?.startsWith("set ") ? `Not changed: ${text}` : text), this.agree());
+        if (this.sent.length) return;
+        this.waiting = null;
         if (waiting?.plays) this.on.playback()?.play(true);
+    }
+
+    // a line, and those before it
+    answered(line) {
+        this.sent.splice(0, this.sent.findIndex(s => s.line === line) + 1);
+    }
+
+    // the statements as they are once all that was sent has been taken
+    get statements() {
+        const all = new Map(this.piece.text.statements.map(s => [s.index, s]));
+        for (const { statement } of this.sent) if (statement) all.set(statement.index, statement);
+        return [...all.values()];
+    }
+
+    // the number of a statement to be added
+    get next() {
+        return Math.max(this.piece.text.count, ...this.sent.map(s => 1 + (s.statement?.index ?? -1)));
+    }
+
+    // what is chosen, and beside the stage, as the text is now
+    agree() {
+        const c = this.chosen,
+            index = c?.index ?? c?.statement?.index;
+        if (index !== undefined) c.statement = this.statements.find(s => s.index === index);
+        if (index !== undefined && !c.statement) this.choose(null);
+        else this.show();
+        if (this.exact) for (const change of this.later.splice(0)) change();
+    }
+
+    // true if undo finds a change
+    get changed() {
+        return !!this.piece.text?.undo || this.sent.some(s => s.statement);
+    }
+
+    get exact() {
+        return this.sent.every(s => s.exact);
+    }
+
+    // does a change of what is chosen, which builds on what was sent: after an undo, or words that
+    // were typed, once the text has them
+    build(change) {
+        const c = this.chosen;
+        if (this.exact) change();
+        else this.later.push(() => this.chosen === c && change());
     }
 
     // another piece, or this one from its start: then the cursor comes back to where it was
@@ -192,7 +242,7 @@ export class Editor {
         $("e-words").onchange = () => {
             const words = $("e-words").value.trim().replace(/\s+/g, " ");
             if (words) this.send(this.chosen?.statement?.index, words);
-            else this.refused("An empty line: \"delete\" takes the stroke away.");
+            else this.wrong("An empty line: \"delete\" takes the stroke away.");
         };
         $("e-delete").onclick = () => this.send(this.chosen?.statement?.index, "");
         $("e-undo").onclick = () => this.step("undo");
@@ -202,6 +252,8 @@ export class Editor {
         $("e-save").onclick = () => this.able() && this.piece.say("save");
         for (const ending of ["bvh", "trc", "c3d"])
             $(`e-${ending}`).onclick = () => this.able() && (this.piece.say(`take ${this.piece.stem}.${ending}`), this.on.note("The take is being played and saved …"));
+        $("edit").addEventListener("input", e => (this.typing = e.target));
+        for (const name of ["change", "focusout"]) $("edit").addEventListener(name, () => (this.typing = null), { capture: true });
         addEventListener("keydown", e => {
             if (!(e.ctrlKey || e.metaKey) || e.target.tagName === "INPUT") return;
             const name = e.key === "z" && !e.shiftKey ? "undo" : e.key === "y" || (e.key === "Z" && e.shiftKey) ? "redo" : null;
@@ -212,9 +264,19 @@ export class Editor {
     step(name) {
         if (!this.able()) return;
         const { text, before, after } = this.piece,
-            other = name === "undo" && !text.undo && before ? "back" : name === "redo" && !text.redo && after ? "forth" : "";
-        this.unsure = !other;
+            other = name === "undo" && !this.changed && before ? "back" : name === "redo" && !text.redo && after ? "forth" : "";
+        if (!other) this.sent.push({ line: name });
         this.piece.say(other || name);
+    }
+
+    // what was typed is not sent, and the fields are as they were
+    wrong(text) {
+        (this.on.note(text), this.show());
+    }
+
+    // a field that nobody types in gets its value
+    put(id, value) {
+        if ($(id) !== this.typing) $(id).value = value;
     }
 
     // does `use` with the number in a field; one that is none, or out of its limits, is refused
@@ -225,24 +287,18 @@ export class Editor {
         if (!Number.isNaN(field.valueAsNumber) && !rangeUnderflow && !rangeOverflow) return use(field.valueAsNumber);
         const said = field.value === "" ? "no number" : field.value;
         field.value = field.defaultValue; // where nothing is chosen
-        this.refused(`${name}: ${said}, expected ${field.min}${field.max ? ` to ${field.max}` : " or more"}`);
+        this.wrong(`${name}: ${said}, expected ${field.min}${field.max ? ` to ${field.max}` : " or more"}`);
     }
 
     written(event) {
-        this.unsure = false;
+        if (event.begun) ((this.ends = ""), (this.sent = []), (this.later = []));
+        else this.answered(event.line);
         if (!event.begun || event.source !== this.named) this.on.note(""); // of what was refused before
-        if (event.begun) this.ends = "";
+        if (this.waiting && !this.sent.length) this.waiting.cuts = this.piece.cuts;
         if (event.begun || event.kept) this.state(""); // what was said of the changes from before
         document.body.classList.add("editing");
         document.body.classList.toggle("take", event.take);
-        $("e-undo").disabled = !event.undo && !this.piece.before;
-        $("e-redo").disabled = !event.redo && !this.piece.after;
-        $("e-revert").disabled = !event.undo;
-        const c = this.chosen,
-            index = c?.index ?? c?.statement?.index;
-        if (index !== undefined) c.statement = event.statements.find(s => s.index === index);
-        if (index !== undefined && !c.statement) this.choose(null);
-        else this.show();
+        this.agree();
     }
 
     // of a drum (m); NaN before it has come
@@ -283,23 +339,27 @@ export class Editor {
         const c = this.chosen,
             s = c?.statement;
         document.body.classList.toggle("chosen", !!c);
+        $("e-undo").disabled = !this.changed && !this.piece.before;
+        $("e-redo").disabled = !this.piece.text?.redo && !this.piece.after;
+        $("e-revert").disabled = !this.changed;
         $("e-none").hidden = !!c;
         $("e-chosen").hidden = !c;
         $("e-missed").hidden = !c?.strike?.why;
         $("e-missed").textContent = c?.strike?.why ? `Not played: ${c.strike.why}` : "";
         this.pushes.show();
         if (!c) return;
-        $("e-words").value = s?.words ?? "";
+        this.put("e-words", s?.words ?? "");
+        $("e-sent").textContent = this.sent.some(({ statement }) => statement && statement.index === s?.index) ? "…" : "";
         $("e-words").parentElement.hidden = !s;
         $("e-stroke").hidden = s?.beat === undefined || c.take;
         $("e-way").hidden = !c.take || c.push;
-        if (c.take && s) $("e-span").value = s.words.split(" ")[3];
+        if (c.take && s?.words) this.put("e-span", s.words.split(" ")[3]);
         if (s?.beat === undefined) return;
         const [x, y] = this.aim(s);
-        ($("e-hand").value = s.hand), ($("e-nuance").value = s.nuance);
-        ($("e-beat").value = round(s.beat)), ($("e-dynamic").value = s.dynamic);
-        $("e-loud").textContent = s.dynamic.toFixed(2);
-        ($("e-x").value = round(x, 3)), ($("e-y").value = round(y, 3));
+        (this.put("e-hand", s.hand), this.put("e-nuance", s.nuance));
+        (this.put("e-beat", round(s.beat)), this.put("e-dynamic", s.dynamic));
+        $("e-loud").textContent = Number($("e-dynamic").value).toFixed(2);
+        (this.put("e-x", round(x, 3)), this.put("e-y", round(y, 3)));
     }
 
     // --- choosing
@@ -307,19 +367,31 @@ export class Editor {
     // a strike of the scene; a point of a path: { take, hand, time }; a push: { push, segment, along,
     // time, index, statement }
     choose(what) {
-        const { scene, text } = this.piece;
-        ((this.chosen = null), (this.drag = null), (this.late = false));
+        const { scene } = this.piece;
+        ((this.chosen = null), (this.drag = null), (this.late = false), (this.typing = null));
         this.when.stay();
-        if (what?.take || what?.push) this.chosen = what;
-        else if (what) {
-            const near = text.statements.filter(s => Math.abs(s.beat - what.beat) < 1e-4),
-                own = near.find(s => s.hand === what.hand) ?? (near.length === 1 ? near[0] : undefined); // or the other hand had no time
+        if (what?.take || what?.push) {
+            this.chosen = what;
+            if (what.index !== undefined) what.statement = this.statements.find(s => s.index === what.index);
+        } else if (what) {
+            const near = this.statements.filter(s => what.beat !== null && Math.abs(s.beat - what.beat) < 1e-4),
+                one = near.length === 1 ? near[0] : undefined, // the other hand had no time
+                own = near.find(s => s.hand === what.hand) ?? this.ornament(what) ?? one;
             this.chosen = { strike: what, hand: what.hand, time: what.time, statement: own };
-            if (!own) this.on.note("This stroke is not written by itself: it is part of an ornament, or of a take.");
+            if (!own) this.on.note("No words of the score stand for this stroke.");
         }
         draw(this.ghost, []);
         this.show();
         if (this.chosen && scene) this.trace();
+    }
+
+    // the roll, flam, drag or ruff that a strike is of, whose beat it has; a bounce has none
+    ornament(strike) {
+        const beat = strike.beat ?? this.pushes.beatAt(strike.time),
+            most = strike.beat === null ? BOUNCE : 1e-4,
+            off = s => Math.max(0, s.at - beat, beat - s.at - s.length),
+            near = this.statements.filter(s => s.length !== undefined && off(s) < most);
+        return near.sort((a, b) => off(a) - off(b))[0];
     }
 
     // a click of the timeline, on a strike, a nudge or a push
@@ -364,7 +436,7 @@ export class Editor {
             this.top.position.copy(rise.reduce((a, p) => (p.z > a.z ? p : a), nearest));
         }
         this.spot.visible = !c.push;
-        this.top.visible = !c.take && !c.push && !!c.statement;
+        this.top.visible = !c.take && !c.push && c.statement?.beat !== undefined;
     }
 
     hide() {
@@ -411,7 +483,7 @@ export class Editor {
         const c = this.chosen,
             pushes = this.pushes.press(e),
             handle = !pushes && this.grabbed([this.spot, this.top], e);
-        if (pushes || (handle && (c.take || c.statement))) {
+        if (pushes || (handle && (c.take || c.statement?.beat !== undefined))) {
             this.drag = !pushes && { handle, begun: handle.position.clone() };
             if (!pushes) draw(this.ghost, c.points);
             $("stage").setPointerCapture(e.pointerId);
@@ -491,29 +563,38 @@ export class Editor {
         const s = c.statement;
         if (handle === this.top) return this.commit({ dynamic: Math.min(1, Math.max(0, s.dynamic + way.z / RANGE)) });
         // what is played differs from what is written as a player's strokes do, and so it stays
-        const at = this.head(c.strike.drum).worldToLocal(this.spot.position.clone()),
-            [x, y] = this.aim(s).map((v, i) => v + (i ? at.y - c.strike.y : at.x - c.strike.x)),
+        const [from, to] = [begun, this.spot.position].map(v => this.head(c.strike.drum).worldToLocal(v.clone())),
+            [x, y] = this.aim(s).map((v, i) => v + (i ? to.y - from.y : to.x - from.x)),
             out = Math.max(1, Math.hypot(x, y) / (INSIDE * this.radius(c.strike.drum)));
         this.commit({ x: x / out, y: y / out });
     }
 
     // --- changes
 
+    // a stroke's fields
     commit(changes) {
-        const c = this.chosen,
-            s = c?.statement;
-        if (s?.beat === undefined || c.take) return;
-        if (!this.ghost.visible) draw(this.ghost, c.points);
-        this.send(s.index, this.rewritten(s, changes), { beat: changes.beat ?? s.beat, hand: changes.hand ?? s.hand });
+        if (this.chosen?.statement?.beat === undefined || this.chosen.take) return;
+        this.build(() => {
+            const c = this.chosen,
+                s = c.statement,
+                [x, y] = this.aim(s),
+                whole = { ...changes };
+            if ("x" in changes || "y" in changes) ((whole.x = changes.x ?? x), (whole.y = changes.y ?? y));
+            if ((changes.hand ?? s.hand) !== s.hand && s.spot) whole.spot = s.spot.map(([x, y]) => [x, -y]); // each hand has its side
+            if (!this.ghost.visible) draw(this.ghost, c.points);
+            this.send(s.index, this.rewritten(s, changes), whole);
+        });
     }
 
     // another word at that place of the chosen statement, "" for none
     word(place, word) {
-        const s = this.chosen?.statement;
-        if (!s) return;
-        const all = s.words.split(" ");
-        all.splice(place, 1, ...(word === "" ? [] : [word]));
-        this.send(s.index, all.join(" "));
+        if (!this.chosen?.statement) return;
+        this.build(() => {
+            const s = this.chosen.statement,
+                all = s.words.split(" ");
+            all.splice(place, 1, ...(word === "" ? [] : [word]));
+            this.send(s.index, all.join(" "), {});
+        });
     }
 
     nudge(way) {
@@ -522,22 +603,28 @@ export class Editor {
                 ? [c.statement.words.split(" ").slice(0, 4).join(" "), c.statement.words.split(" ").slice(4).map(Number)]
                 : [`nudge ${c.hand} ${round(Piece.takeTime(c.time), 3)} ${$("e-span").value}`, [0, 0, 0]],
             whole = way.toArray().map((v, i) => round(Math.min(0.5, Math.max(-0.5, v + was[i]))));
-        c.index = c.statement?.index ?? this.piece.text.count; // more drags change the same one
-        this.send(c.index, `${begin} ${whole.join(" ")}`);
+        c.index = c.statement?.index ?? this.next; // more drags change the same one
+        this.send(c.index, `${begin} ${whole.join(" ")}`, {});
     }
 
-    // `to` is its new time (s)
-    send(index, words, moved = null, to = this.chosen?.time) {
-        const c = this.chosen;
+    // `fields` are those of the words that differ, null if they are not known; `to` is the new time (s)
+    send(index, words, fields = null, to = this.chosen?.time) {
+        const c = this.chosen,
+            { waiting } = this,
+            line = `set ${index} ${words}`;
         if (!c || index === undefined) return;
         if (!this.able()) return this.show();
+        this.on.note("");
         if (words === c.statement?.words) return this.same();
-        const plays = this.played || !!this.on.playback()?.playing,
-            times = [c.time, to].sort((a, b) => a - b);
+        const plays = this.played || !!this.on.playback()?.playing || !!waiting?.plays,
+            times = [c.time, to, ...(waiting?.times ?? [])].sort((a, b) => a - b);
         if (c.push && !this.ghost.visible) draw(this.ghost, c.points);
-        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, times, to, moved, plays };
-        ((this.unsure = true), (this.played = false));
-        this.piece.say(`set ${index} ${words}`);
+        this.waiting = { begun: performance.now(), cuts: this.piece.cuts, times: [times[0], times.pop()], to, plays };
+        this.played = false;
+        c.statement = { ...c.statement, ...(c.push && words ? this.pushes.read(words) : fields), index, words };
+        this.sent.push({ line, statement: c.statement, exact: !!fields });
+        this.piece.say(line);
+        this.show();
     }
 
     // nothing has changed: what was dragged goes back, and what played plays on
@@ -557,35 +644,39 @@ export class Editor {
         this.on.changed(piece);
         this.comeBack(p);
         const w = this.waiting;
-        if (!w || piece.cuts === w.cuts || (piece.sound.arrived < w.times[1] + SOON && !piece.over)) return;
+        if (!w || this.sent.length || piece.cuts === w.cuts || (piece.sound.arrived < w.times[1] + SOON && !piece.over)) return;
         this.waiting = null;
         if (w.plays) (p.seek(1000 * Math.max(0, w.times[0] - BEFORE)), p.play(true));
         this.heard.push(performance.now() - w.begun);
-        this.follow(w);
+        this.follow(w.to);
     }
 
-    // the chosen stroke as it is played now
-    follow({ to, moved }) {
+    // what is chosen as it is played now, near that time (s)
+    follow(to = this.chosen?.time) {
         const c = this.chosen,
             { scene } = this.piece;
         if (!c) return;
         if (!c.take && !c.push) {
-            const wanted = moved ?? c.strike,
-                there = [...scene.strikes, ...scene.missed].filter(s => Math.abs(s.beat - wanted.beat) < 1e-3),
+            const { statement } = c,
+                wanted = statement?.beat === undefined ? c.strike : statement,
+                all = [...scene.strikes, ...scene.missed],
+                off = s => Math.abs(s.time - to),
+                there =
+                    statement?.length === undefined
+                        ? all.filter(s => Math.abs(s.beat - wanted.beat) < 1e-3)
+                        : all.filter(s => this.ornament(s) === statement).sort((a, b) => off(a) - off(b)),
                 found = there.find(s => s.hand === wanted.hand) ?? there[0];
             if (!found) return;
             if (found.why) this.on.note(`Not played: ${found.why}`);
             Object.assign(c, { strike: found, hand: found.hand, time: found.time });
-        } else c.time = to;
+        } else c.time = this.marks.find(n => n.index === c.statement?.index)?.time ?? c.time;
         this.trace();
         this.show();
     }
 
     // the chosen statement as it is written now, after an undo too
     refresh() {
-        const s = this.chosen?.statement,
-            mark = this.marks.find(n => n.statement.index === s?.index);
-        if (s && !this.waiting && (mark || s.beat !== undefined)) this.follow({ moved: s, to: mark?.time });
+        if (this.chosen?.statement && !this.waiting) this.follow();
     }
 
     over(piece) {

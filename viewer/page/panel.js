@@ -6,6 +6,7 @@ import { before } from "./scene.js";
 
 const $ = id => document.getElementById(id);
 const short = value => (typeof value === "number" ? +value.toPrecision(4) : value);
+const strikes = count => (count === 1 ? "1 strike" : `${count} strikes`);
 const STATUS_SHOWN = ["load", "sound", "physics", "task", "strokes", "played", "recoveries"];
 const STATUS_KEPT = 16; // as many performers as himc-viewer keeps
 const SPAN = 8000; // of the running score (ms); chosen: two bars at 60 beats a minute
@@ -255,7 +256,7 @@ export class Panel {
     live() {
         $("beat").textContent = this.beat === null ? "" : `beat ${this.beat}`;
         $("force").textContent = this.count ? `${this.peak.toFixed(0)} N` : "";
-        $("said").textContent = this.count === 1 ? "1 strike" : `${this.count} strikes`;
+        $("said").textContent = strikes(this.count);
     }
 
     diagnosis(numbers) {
@@ -290,7 +291,7 @@ export class Panel {
             last = scene.strikes[before(scene.strikes, time, s => s.time)];
         $("beat").textContent = beat === null ? "" : `beat ${Math.floor(beat + 1e-6)}`;
         $("force").textContent = last && time - last.time < 2 ? `${last.force.toFixed(0)} N` : "";
-        $("said").textContent = `${scene.strikes.length} strikes`;
+        $("said").textContent = strikes(scene.strikes.length);
         $("pause").textContent = p.playing ? "❚❚" : "▶";
         $("pause").setAttribute("aria-label", p.playing ? "pause" : "play");
         $("clock").textContent = `${time.toFixed(2)} / ${scene.end.toFixed(1)} s`;

@@ -119,8 +119,8 @@ class PieceSound {
     }
 }
 
-// `on` is told: begun(piece), cut(piece, time), grown(piece), over(piece), text(event), trouble(line),
-// restored(line), unkept(line), saved(name, bytes), ended(why), which is "taken", "refused" or "lost"
+// `on` is told: begun(piece), cut(piece, time), grown(piece), over(piece), text(event), trouble(text, the
+// line that it answers, if any), restored(line), unkept(line), saved(name, bytes), ended(why), which is "taken", "refused" or "lost"
 export class Piece {
     constructor(key, sound, on) {
         ((this.on = on), (this.device = sound), (this.rest = new Uint8Array()));
@@ -223,7 +223,7 @@ export class Piece {
             this.on.text((this.text = event));
         } else if (event.event === "restored") this.on.restored(event.text);
         else if (event.event === "unkept") this.on.unkept(event.text);
-        else this.on.trouble(event.text);
+        else this.on.trouble(event.text, event.line);
     }
 
     cut(time) {
@@ -264,7 +264,7 @@ export class Piece {
         const all = this.text?.take ? this.text.statements.filter(s => s.words.startsWith("nudge ")) : [];
         return all.map(statement => {
             const [, hand, time] = statement.words.split(" ");
-            return { take: true, hand, time: Number(time) + APPROACH, statement };
+            return { take: true, hand, time: Number(time) + APPROACH, statement, index: statement.index };
         });
     }
 }

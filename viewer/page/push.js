@@ -90,14 +90,22 @@ export class Pushes {
         return `at ${at} push ${name} ${force.map(f => round(f, 0)).join(" ")} ${Number($("e-seconds").value)} ${along ?? ""}`.trim();
     }
 
+    // the fields of such words
+    read(words) {
+        const [, at, , push, ...numbers] = words.split(" "),
+            [x, y, z, seconds, along] = numbers.map(Number);
+        return { at: Number(at), push, force: [x, y, z], seconds, along };
+    }
+
     // at the moment that is shown
     add(name, force, along) {
         const { editor } = this;
         if (!editor.able()) return;
         const time = editor.on.playback().at / 1000,
             at = round(Math.max(0, this.beatAt(time)), 4);
-        editor.choose({ push: true, time, segment: bone(name), along, index: editor.piece.text.count });
-        editor.send(editor.piece.text.count, this.words(at, name, force, along));
+        const index = editor.next;
+        editor.choose({ push: true, time, segment: bone(name), along, index });
+        editor.send(index, this.words(at, name, force, along), {});
     }
 
     // a push as what can be chosen
@@ -120,9 +128,11 @@ export class Pushes {
         $("e-pushes").replaceChildren(new Option(`${list.length} in the piece`, ""), ...list.map(s => new Option(`at ${round(s.at, 2)} ${s.push}`, s.index)));
         $("e-pushes").hidden = !list.length;
         if (!chosen?.push) return;
-        ($("e-pushes").value = chosen.index), ($("e-segment").value = chosen.push);
-        ["e-fx", "e-fy", "e-fz"].forEach((id, i) => ($(id).value = round(chosen.force[i], 1)));
-        ($("e-seconds").value = round(chosen.seconds, 3)), ($("e-along").value = chosen.along === undefined ? "" : round(chosen.along, 3));
+        const put = (id, value) => this.editor.put(id, value);
+        ($("e-pushes").value = chosen.index), put("e-segment", chosen.push);
+        ["e-fx", "e-fy", "e-fz"].forEach((id, i) => put(id, round(chosen.force[i], 1)));
+        put("e-seconds", round(chosen.seconds, 3));
+        put("e-along", chosen.along === undefined ? "" : round(chosen.along, 3));
         $("e-push").open = true;
     }
 

@@ -33,15 +33,15 @@ export class When {
         return { time: 1000 * (this.to ?? c.time), from: 1000 * c.time, moves: this.to !== null, hand: c.hand, name };
     }
 
-    // the beat, or the second of the take
-    value() {
+    // the beat, or the second of the take, with the mark at `to` (s)
+    value(to = this.to) {
         const { chosen, pushes } = this.editor,
             s = chosen.statement,
             from = pushes.beatAt(chosen.time),
             was = s.beat ?? s.at ?? from,
             steps = this.take ? FINE : GRID;
-        if (this.to === null) return was;
-        return Math.max(0, Math.round((was + pushes.beatAt(this.to) - from) * steps) / steps);
+        if (to === null) return was;
+        return Math.max(0, Math.round((was + pushes.beatAt(to) - from) * steps) / steps);
     }
 
     // shows the mark there (s)
@@ -58,14 +58,15 @@ export class When {
     // says so to the program
     drop() {
         const { chosen } = this.editor,
-            s = chosen?.statement;
-        if (this.to === null || !s) return;
-        const value = +this.value().toFixed(4),
-            to = this.to;
+            { to } = this;
+        if (to === null || !chosen?.statement) return;
         this.to = null;
         if (Math.abs(to - chosen.time) < 1e-3) return void (this.editor.played = false);
-        const moved = s.beat === undefined ? null : { beat: value, hand: s.hand };
-        this.editor.send(s.index, retimed(s.words, value), moved, to);
+        this.editor.build(() => {
+            const s = chosen.statement,
+                value = +this.value(to).toFixed(4);
+            this.editor.send(s.index, retimed(s.words, value), s.beat === undefined ? { at: value } : { beat: value }, to);
+        });
     }
 
     key(e) {
