@@ -170,6 +170,16 @@ function differences(gain, law,    n, text, d) {
     }
     return text
 }
+# trials of each number of table t: of a gain and law, or all lines; a range where they differ
+function trials_of(t, gain, law,    i, n, lo, hi) {
+    for (i = 1; i <= count[t]; i++)
+        if (!law || value[t, i, "gain"] == gain && value[t, i, "law"] == law) {
+            n = value[t, i, "trials"] + 0
+            lo = !hi || n < lo ? n : lo
+            hi = n > hi ? n : hi
+        }
+    return (lo == hi ? lo : lo " to " hi) " trials each"
+}
 function smaller_in() { return ahead ? "smaller in " ahead " of 5 nuances, by " num(most_ahead, 2) " % at most" : "" }
 # whether each sequence of a nuance was played twice or more: a deviation from fewer trials is chance
 function repeated(    i, enough) {
@@ -239,7 +249,7 @@ END {
         wrong[i] = find("measures", "gain law error_percent", law " 2", "id_percent")
         right[i] = find("measures", "gain law error_percent", law " 0", "id_percent")
     }
-    row("CASA 4", "ID adds and amplifies the errors of the joints", "error of `id` with limbs 2 % wrong and with limbs right: computed torque " num(wrong[2], 2) " and " num(right[2], 2) " % of amplitude, printed law " num(wrong[1], 2) " and " num(right[1], 2) " %; `himc`, computed torque: " num(find("measures", "law error_percent", "computed-torque 2", "himc_percent"), 2) " and " num(find("measures", "law error_percent", "computed-torque 0", "himc_percent"), 2) " %", wrong[1] > 2 * right[1], "make build/figures/measures.png", wrong[2] > 2 * right[2] ? "by computed torque, a law that the papers do not have; by theirs " num(wrong[1] / right[1], 1) " times, not 2" : "")
+    row("CASA 4", "ID adds and amplifies the errors of the joints", trials_of("measures") ", error of `id` with limbs 2 % wrong and with limbs right: computed torque " num(wrong[2], 2) " and " num(right[2], 2) " % of amplitude, printed law " num(wrong[1], 2) " and " num(right[1], 2) " %; `himc`, computed torque: " num(find("measures", "law error_percent", "computed-torque 2", "himc_percent"), 2) " and " num(find("measures", "law error_percent", "computed-torque 0", "himc_percent"), 2) " %", wrong[1] > 2 * right[1], "make build/figures/measures.png", wrong[2] > 2 * right[2] ? "by computed torque, a law that the papers do not have; by theirs " num(wrong[1] / right[1], 1) " times, not 2" : "")
     row("CASA 4, preprint, 2012 section 3.3.1", "the IK in every simulation step costs computing time", num(cost("take_s"), 0) " s of a take: " num(cost("himc_s"), 2) " s by `himc`, " num(cost("id_s"), 2) " s by `id`, " num(100 * (cost("himc_s") / cost("id_s") - 1), 0) " % more", cost("himc_s") > cost("id_s") && cost("himc_s") < cost("take_s"), "make build/trials/costs.csv")
 
     # preprint
@@ -307,20 +317,20 @@ END {
     print_row("2012 figure 6a, depth", "accent the smallest, vertical accent and staccato much greater", "legato to staccato " list_d " cm", "accent the smallest: " (least == 3 ? "agrees" : "does not agree") "; vertical accent: " (depth[4] > 1.3 * depth[3] && depth[4] > depth[1] ? "agrees" : "does not agree") "; staccato: " (depth[5] > 1.3 * depth[3] && depth[5] > depth[1] ? "agrees" : "does not agree"), "make build/figures/phases.png")
     row("2012 figure 6a, height", "accent the highest", "legato to staccato " list_h " cm", tall == 3, "make build/figures/phases.png")
     evaluation = "make build/figures/evaluation.png"
-    order = "ID minus HIMC, legato to staccato: "
-    t = differences(1, "printed"); row("2012 figure 6b, error, player's servos", "HIMC smaller by about 2 % of amplitude", order t, about_2 == 5, evaluation, smaller_in())
-    t = differences(3, "printed"); row("2012 figure 6b, error, default servos", "the same", order t, about_2 == 5, evaluation, smaller_in())
-    t = differences(3, "feedforward"); row("2012 figure 6b, velocity and gravity fed forward", "the same", order t, about_2 == 5, evaluation, smaller_in())
-    t = differences(3, "computed-torque"); row("2012 figure 6b, computed torque", "the same", order t, about_2 == 5, evaluation, smaller_in())
-    row("2012 section 3.3.2, what reaches 2 %: limbs", "about 2 % of amplitude", "limbs 1.5 and 2 % wrong, computed torque: " num(find("measures", "law error_percent", "computed-torque 1.5", "difference"), 2) " and " num(find("measures", "law error_percent", "computed-torque 2", "difference"), 2) "; fed forward: " num(find("measures", "law error_percent", "feedforward 1.5", "difference"), 2) " and " num(find("measures", "law error_percent", "feedforward 2", "difference"), 2), find("measures", "gain law error_percent", "3 printed 2", "difference") > 1.5, "make build/figures/measures.png", find("measures", "law error_percent", "computed-torque 2", "difference") > 1.5 && find("measures", "law error_percent", "feedforward 2", "difference") > 1.5 ? "by laws that the papers do not have; by theirs " num(find("measures", "gain law error_percent", "3 printed 2", "difference"), 2) : "")
+    order = ", ID minus HIMC, legato to staccato: "
+    t = differences(1, "printed"); row("2012 figure 6b, error, player's servos", "HIMC smaller by about 2 % of amplitude", trials_of("spread", 1, "printed") order t, about_2 == 5, evaluation, smaller_in())
+    t = differences(3, "printed"); row("2012 figure 6b, error, default servos", "the same", trials_of("spread", 3, "printed") order t, about_2 == 5, evaluation, smaller_in())
+    t = differences(3, "feedforward"); row("2012 figure 6b, velocity and gravity fed forward", "the same", trials_of("spread", 3, "feedforward") order t, about_2 == 5, evaluation, smaller_in())
+    t = differences(3, "computed-torque"); row("2012 figure 6b, computed torque", "the same", trials_of("spread", 3, "computed-torque") order t, about_2 == 5, evaluation, smaller_in())
+    row("2012 section 3.3.2, what reaches 2 %: limbs", "about 2 % of amplitude", trials_of("measures") ", limbs 1.5 and 2 % wrong, computed torque: " num(find("measures", "law error_percent", "computed-torque 1.5", "difference"), 2) " and " num(find("measures", "law error_percent", "computed-torque 2", "difference"), 2) "; fed forward: " num(find("measures", "law error_percent", "feedforward 1.5", "difference"), 2) " and " num(find("measures", "law error_percent", "feedforward 2", "difference"), 2), find("measures", "gain law error_percent", "3 printed 2", "difference") > 1.5, "make build/figures/measures.png", find("measures", "law error_percent", "computed-torque 2", "difference") > 1.5 && find("measures", "law error_percent", "feedforward 2", "difference") > 1.5 ? "by laws that the papers do not have; by theirs " num(find("measures", "gain law error_percent", "3 printed 2", "difference"), 2) : "")
     off = find("claim", "gain limits strokes_per_s", "1 off 1", "difference"); on = find("claim", "gain limits strokes_per_s", "1 on 1", "difference"); quick = find("claim", "gain limits strokes_per_s", "1 on 3", "difference")
-    row("2012 section 3.3.2, what reaches 2 %: slow strokes", "about 2 % of amplitude", "printed law, one stroke a second: " num(off, 2) " without limits, " num(on, 2) " with; three a second: " num(quick, 2), on > 1.5 && on < 2.5, "make build/figures/claim.png", off > 1.5 && off < 2.5 ? "without joint limits, which the papers have; with them not" : "")
+    row("2012 section 3.3.2, what reaches 2 %: slow strokes", "about 2 % of amplitude", trials_of("claim") ", printed law, one stroke a second: " num(off, 2) " without limits, " num(on, 2) " with; three a second: " num(quick, 2), on > 1.5 && on < 2.5, "make build/figures/claim.png", off > 1.5 && off < 2.5 ? "without joint limits, which the papers have; with them not" : "")
     for (i = 1; i <= 4; i++)
         own[i] = steadier(i == 1 ? 1 : 3, i < 3 ? "printed" : i == 3 ? "feedforward" : "computed-torque", "sequence_sd")
     if (!repeated())
         stated("2012 figure 6b, deviation", "smaller for HIMC", "too few trials of one sequence in these tables", "not measured", evaluation)
     else
-        row("2012 figure 6b, deviation", "smaller for HIMC", "in how many of 5 nuances, trials of one sequence: " own[1] " (player's servos), " own[2] ", " own[3] ", " own[4] "; all trials: " steadier(1, "printed", "sd") ", " steadier(3, "printed", "sd") ", " steadier(3, "feedforward", "sd") ", " steadier(3, "computed-torque", "sd"), own[1] + own[2] == 10, evaluation, own[2] == 5 ? "of trials of one sequence, not by the player's servos (" own[1] " of 5)" : own[3] + own[4] == 10 ? "of trials of one sequence, by laws that the papers do not have; by theirs in " own[1] + own[2] " of 10" : "")
+        row("2012 figure 6b, deviation", "smaller for HIMC", trials_of("spread", 1, "printed") " by the player's servos, then " trials_of("spread", 3, "printed") ", in how many of 5 nuances, trials of one sequence: " own[1] " (player's servos), " own[2] ", " own[3] ", " own[4] "; all trials: " steadier(1, "printed", "sd") ", " steadier(3, "printed", "sd") ", " steadier(3, "feedforward", "sd") ", " steadier(3, "computed-torque", "sd"), own[1] + own[2] == 10, evaluation, own[2] == 5 ? "of trials of one sequence, not by the player's servos (" own[1] " of 5)" : own[3] + own[4] == 10 ? "of trials of one sequence, by laws that the papers do not have; by theirs in " own[1] + own[2] " of 10" : "")
     own_law = landed_percent("himc printed") > landed_percent("id printed")
     others = landed_percent("himc computed-torque") > landed_percent("id computed-torque") && landed_percent("himc feedforward") > landed_percent("id feedforward")
     print_row("2012 section 3.3.2, at the impact", "2 % change the sound drastically, since contacts are decided there", "strokes that land within 5 ms and 2 cm, default servos: printed law, " landings("printed") "; fed forward, " landings("feedforward") "; computed torque, " landings("computed-torque"), (own_law ? "landings agree" : others ? "landings agree by laws that the papers do not have; by theirs " (landed_percent("himc printed") < landed_percent("id printed") ? "the opposite" : "not") : "does not agree") "; the change of the sound is not measured", "make build/trials/landed.csv")
