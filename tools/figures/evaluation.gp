@@ -21,7 +21,8 @@ eval legend(2, 0.640, 0.945, himc, "HIMC")
 eval legend(3, 0.725, 0.945, captured, "standard deviation of all trials;")
 set label 14 "thick: of one sequence disturbed" at screen 0.752,0.895 font ",13" textcolor rgb ink
 set label 1 "Error of the tip, joint space control and HIMC" at screen 0.105,0.945 font bold textcolor rgb ink
-set label 2 sprintf("%g trials of each nuance; joint limits on", TRIALS_max) at screen 0.105,0.885 font ",13" textcolor rgb soft
+number = TRIALS_min == TRIALS_max ? sprintf("%g", TRIALS_max) : sprintf("%g to %g", TRIALS_min, TRIALS_max)
+set label 2 sprintf("%s trials of each nuance; joint limits on", number) at screen 0.105,0.885 font ",13" textcolor rgb soft
 set yrange [0.4:5.6]
 set ytics ("legato" 5, "tenuto" 4, "accent" 3, "vertical accent" 2, "staccato" 1) font ",13"
 unset grid

@@ -124,7 +124,7 @@ $(TRIED)/nuances.csv: $(CLAIM)
 
 $(TRIED)/spread.csv: $(TRIED)/nuances.csv $(TRIED)/evaluation.csv tools/figures/spread.awk
 	$(call play,cat $<)
-	$(Q)awk -f tools/figures/spread.awk $(TRIED)/log.csv >>$@
+	$(Q)awk -v trials=$(TRIALS) -f tools/figures/spread.awk $(TRIED)/log.csv >>$@
 
 $(TRIED)/claim.csv: $(CLAIM)
 	$(call play,$< rates $(RATES))
@@ -149,7 +149,7 @@ $(TRIED)/database.csv: $(BUILD)/tools/figures/database
 
 # of the trials above: strokes that land, by control; trial 1 of each row, which a test plays again
 $(TRIED)/landed.csv: $(TRIED)/evaluation.csv tools/figures/landed.awk
-	$(Q)awk -f tools/figures/landed.awk $(TRIED)/log.csv >$@
+	$(Q)awk -v trials=$(TRIALS) -f tools/figures/landed.awk $(TRIED)/log.csv >$@
 
 $(TRIED)/first.csv: $(TRIED)/evaluation.csv
 	$(Q)awk -F , 'FNR == 1; $$4 == 1 && !seen[$$0]++' $(TRIED)/log.csv >$@
@@ -163,5 +163,6 @@ $(TRIED)/costs.csv: $(BUILD)/tools/papers/measure $(PROGRAM)
 TABLES := evaluation spread claim measures strokes strokes-default phases database landed first costs
 check-trials: $(patsubst %,$(TRIED)/%.csv,$(TABLES))
 	at=$$(git describe --always --dirty=' with changes' --abbrev=40 --exclude '*') && cp $^ $(RESULTS) && \
-	    echo "commit $$at, $$(date -u +%F), $(TRIALS) trials" >$(RESULTS)/trials.txt
+	    echo "commit $$at, $$(date -u +%F), trials: $$(awk -F , 'NR > 1 && !n[$$1, $$5]++ { printf "%sgain %s %s", c, $$1, $$5; c = ", " }' \
+	        $(RESULTS)/spread.csv)" >$(RESULTS)/trials.txt
 .PHONY: trials check-trials

@@ -1,8 +1,9 @@
 # spread.awk: spread of the trials' errors from the log of himc evaluate, with the columns of `claim nuances`: gain over the
 # stiffness of a player (3, the default), nuance, controller, law, trials, mean RMS error (% of amplitude), standard
-# deviation of all trials, deviation within a sequence (trials whose numbers differ by nine; NaN if there are no two).
+# deviation of all trials, deviation within a sequence (trials whose numbers differ by nine; NaN if there are no two). Trials above `trials` are
+# left out, as `himc evaluate --trials` does: a log may have more of some rows than of others.
 BEGIN { FS = ","; SEQUENCES = 9 }
-$4 !~ /^[0-9]+$/ || $2 == "ik" || seen[$0]++ { next }
+$4 !~ /^[0-9]+$/ || $4 > trials + 0 || $2 == "ik" || seen[$0]++ { next }
 {
     row = $1 "," $2 "," $3
     if (!(row in n)) order[++rows] = row

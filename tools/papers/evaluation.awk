@@ -3,10 +3,20 @@
 # Three rows of the requirements are of database.csv. The first table with a row for each nuance is that of the printed law (gain 1 and 3), the second that of the two other laws.
 BEGIN { FS = "," }
 FNR == 1 { file++ }
-file == 1 { mean[$1, $2, $3, $4] = $6; sd[$1, $2, $3, $4] = $7; own[$1, $2, $3, $4] = $8; next }
+file == 1 { mean[$1, $2, $3, $4] = $6; sd[$1, $2, $3, $4] = $7; count($1 SUBSEP $4, $5 + 0); own[$1, $2, $3, $4] = $8; next }
 file == 2 {
     if ($2 == "all") { outside[$1] = $3; all[$1] = $4; angles[$1] = sprintf("%.2f°, %.2f°, %.2f°", $7, $8, $9); most[$1] = $7 > $8 ? ($7 > $9 ? $7 : $9) : ($8 > $9 ? $8 : $9); landed[$1] = sprintf("%d of %d strokes landed", $10, $11) }
     line[$1, $2] = sprintf("| %s | %s | %s | %s | %s .. %s | %s, %s, %s | %d of %d |", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
+    next
+}
+# trials of each number of a gain and law, least and most
+function count(k, n) {
+    if (!(k in least) || n < least[k]) least[k] = n
+    if (n > most_of[k]) most_of[k] = n
+}
+function trials(gain, law,    k) { k = gain SUBSEP law; return least[k] == most_of[k] ? least[k] : least[k] " to " most_of[k] }
+/^Trials of each number: / {
+    print "Trials of each number: printed law, gain × 1, " trials(1, "printed") "; gain × 3, " trials(3, "printed") "; fed forward " trials(3, "feedforward") "; computed torque " trials(3, "computed-torque") "."
     next
 }
 # the deviation in one sequence only where a sequence was played twice

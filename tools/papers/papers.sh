@@ -13,7 +13,11 @@ trap 'rm -rf "$work"' EXIT
 "$himc" render tools/figures/blows.txt --channels 1 -o "$work/blows.wav" --strokes "$work/blows.csv" --motion "$work/blows-motion.csv" \
     --columns tips --quiet >/dev/null
 "$himc" render tools/figures/blows.txt -o /dev/null --motion "$work/blows-ode.csv" --columns tips --set 'engine ode' --quiet >/dev/null
-"$himc" render tools/figures/blows.txt -o /dev/null --strokes "$work/one-way.csv" --set 'coupling one-way' --quiet >/dev/null
+"$himc" render tools/figures/blows.txt --channels 1 -o "$work/one-way.wav" --strokes "$work/one-way.csv" --set 'coupling one-way' \
+    --quiet >/dev/null
+for coupling in two-way one-way; do
+    "$himc" render tools/figures/equal-blows.txt -o /dev/null --strokes "$work/equal-$coupling.csv" --set "coupling $coupling" --quiet >/dev/null
+done
 "$himc" render tools/figures/legato-accent.txt -o /dev/null --strokes "$work/beats.csv" --motion "$work/motion.csv" \
     --columns tips,joints --quiet >/dev/null
 "$himc" render patches/improvisation.txt -o /dev/null --motion "$work/improvisation.csv" --columns energy,work --quiet |
@@ -22,16 +26,18 @@ trap 'rm -rf "$work"' EXIT
 head -n 1 "$work/motion.csv" | tr ',' '\n' | awk '/_x_rad$/ { joints++ } /_rad$/ { freedoms++ }
     END { print "joints,freedoms"; print joints "," freedoms }' >"$work/body.csv"
 "$himc" modes tools/figures/blows.txt >"$work/modes.csv"
-# RMS of the sound in the half second after each stroke, or up to the next one
-{
+# loud NAME: RMS of the sound of NAME.wav in the half second after each stroke of NAME.csv, or up to the next one
+loud() {
     echo rms
-    tail -n +2 "$work/blows.csv" | cut -d , -f 1 >"$work/times"
-    od -An -v -t f4 -w4 -j 80 "$work/blows.wav" | awk -v rate=48000 '
+    tail -n +2 "$work/$1.csv" | cut -d , -f 1 >"$work/times"
+    od -An -v -t f4 -w4 -j 80 "$work/$1.wav" | awk -v rate=48000 '
         NR == FNR { at[++count] = int($1 * rate); next }
         { now = FNR - 1; while (first < count && now >= at[first + 1]) first++
           if (first && now < at[first] + rate / 2) sum[first] += $1 * $1 }
         END { for (i = 1; i <= count; i++) { n = rate / 2; if (i < count && at[i + 1] - at[i] < n) n = at[i + 1] - at[i]; print sqrt(sum[i] / n) } }' "$work/times" -
-} >"$work/loud.csv"
+}
+loud blows >"$work/loud.csv"
+loud one-way >"$work/loud-one-way.csv"
 # words of a command's grammar: WORDS,row
 sed -n 's/.*HIMC_COMMAND_ROW([A-Z_]*, *\([a-z]*\), [^"]*, "\([^"]*\)".*/\1,\2/p' lib/himc/command_rows.h |
     sed '1i name,grammar' >"$work/commands.csv"
