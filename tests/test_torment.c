@@ -153,14 +153,17 @@ static void remember(const spoken *s, int drum, int delay)
 static double loudest[HIMC_DRUMS][HIMC_PICKUPS];
 static bool thrown; // since the round began
 
-// what a drum has had: energy in its head (J), level of its sound
+static double highest[HIMC_DRUMS]; // level of a drum's sound since the round began
+
+// what a drum has had: energy in its head (J), level of its sound, which a delay may still hold
 typedef struct past {
     double energy, level;
 } past;
 
-static past past_of(const himc_drum *d)
+static past past_of(const himc_drum *d, int slot)
 {
-    return (past){drum_energy(d), d->level};
+    highest[slot] = fmax(highest[slot], d->level);
+    return (past){drum_energy(d), highest[slot]};
 }
 
 // `before` is of before its setting changed. Made slacker or heavier, or with a lighter mallet, it
@@ -201,7 +204,7 @@ static void say_one(pair *of, random_seed *seed)
     if (s.receiver == HIMC_DRUM && drum < 0)
         return;
     bool parsed = himc_command_parse(&c, s.receiver, s.name, s.atom, s.count, &answer);
-    past before = drum < 0 ? (past){0} : past_of(himc_performance_drum(of->p, drum));
+    past before = drum < 0 ? (past){0} : past_of(himc_performance_drum(of->p, drum), drum);
     bool done = parsed && carry_out(of->p, &c, s.receiver, drum, delay, &answer);
     seen.accepted += done;
     seen.refused += !done;
@@ -301,7 +304,7 @@ static void play_on(pair *of, random_seed *seed)
     double *ours[] = {force[0][0], force[0][1]}, *theirs[] = {force[1][0], force[1][1]};
     int n = any_of(seed, LONGEST_BLOCK), count = of->p->drums.count;
     for (int i = 0; i < count; i++)
-        before[i] = past_of(of->p->drums.slot[i].drum);
+        before[i] = past_of(of->p->drums.slot[i].drum, i);
     himc_performance_process(of->p, n, ours);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (himc_vec3_length(of->p->body->state.tip_velocity[hand]) > THROWN)
@@ -403,6 +406,7 @@ static void test_hostile_commands_leave_a_performance_finite_bounded_and_as_good
         write_files();
         TEST_ASSERT_TRUE(finite_watch_begin(&of.watch, of.p));
         memset(loudest, 0, sizeof loudest);
+        memset(highest, 0, sizeof highest);
         thrown = false;
         for (int i = 0; i < ROUND; i++) {
             say_one(&of, &seed);

@@ -139,7 +139,9 @@ bool himc_file_draft_open(himc_file_draft *draft, const char *path, himc_error *
         return draft->stream != NULL;
     }
     char *real = exists ? himc_system_real_path(path) : himc_system_target(path);
-    int length = snprintf(draft->path, sizeof draft->path, "%s", real ? real : path);
+    if (!real)
+        return cannot_write(path, error);
+    int length = snprintf(draft->path, sizeof draft->path, "%s", real);
     free(real);
     if (length >= (int)sizeof draft->path)
         return himc_error_set(error, "%.64s...: the name is too long, allowed %zu bytes", path,
