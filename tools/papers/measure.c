@@ -19,8 +19,8 @@
 #define RUNS 5              // chosen: odd, for a median
 #define TRUNK_OF_TABLE 46.0 // 2012 paper, table 1 (%)
 #define STICKS_OF_TABLE 0.5
-#define FAR 3.0             // chosen: so many times as far from the mean as captured
-#define STRONG 1e4          // chosen: above what any joint has (N m)
+#define FAR 3.0    // chosen: so many times as far from the mean as captured
+#define STRONG 1e4 // chosen: above what any joint has (N m)
 #define METRES_PER_INCH 0.0254
 #define HEAD_SCORE "score tools/figures/blows.txt"
 
