@@ -545,12 +545,22 @@ static void membrane_saved(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
     membrane_changed(x, good ? NULL : error.text);
 }
 
-/* The drum's name may stand before a command, as in a message to [himc~]. */
+/* True if a message begins with the drum's name, as one to [himc~], and not with a command: a drum
+may be called kettle. */
+static bool membrane_is_named(const t_membrane *x, t_symbol *s, int argc, const t_atom *argv)
+{
+    if (argc == 0 || argv->a_type != A_SYMBOL ||
+        strcmp(s->s_name, himc_drum_name(x->x_link.l_drum)) != 0)
+        return false;
+    const char *word = argv->a_w.w_symbol->s_name;
+    return !himc_command_find(HIMC_DRUM, s->s_name) || himc_command_find(HIMC_DRUM, word) ||
+           strcmp(word, "save") == 0;
+}
+
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
 {
     himc_error error;
-    if (argc > 0 && argv->a_type == A_SYMBOL &&
-        strcmp(s->s_name, himc_drum_name(x->x_link.l_drum)) == 0) {
+    if (membrane_is_named(x, s, argc, argv)) {
         s = argv->a_w.w_symbol;
         argc--;
         argv++;

@@ -60,6 +60,14 @@ refuses test_a_range_backwards_is_refused "--range: 2-1" --trials 2 --range 2-1
 refuses test_an_unknown_word_is_refused "--only: legatto, allowed: a nuance" --trials 2 --only legatto
 refuses test_no_jobs_are_refused "--jobs" --jobs 0
 refuses test_one_file_for_both_tables_is_refused "x.csv: named twice" --trials 1 --log x.csv --csv x.csv
+# another program's log, or one that a hand has changed: the last row of each part is played again
+awk -F , -v OFS=, 'NR == 3 { $5 = 999 } { print }' whole.log >other.log
+cp other.log kept.log
+refuses test_a_log_of_another_program_is_refused_with_its_line "other.log:3: rms_mm: 999, expected" --trials 2 --only legato,himc,computed-torque --log other.log
+check test_a_log_of_another_program_stays_as_it_is cmp other.log kept.log
+cat other.log second.log >parts.log
+refuses test_each_part_of_a_joined_log_is_looked_at "parts.log:3: rms_mm: 999, expected" --trials 2 --only legato,himc,computed-torque --log parts.log
+check test_a_single_trial_has_no_deviation [ "$(row first.csv 6)" = nan ]
 sed '2s/legato/legatto/' whole.log >foreign.log
 refuses test_a_foreign_row_is_refused_with_its_line "foreign.log:2: not a row of trials" --trials 2 --log foreign.log
 sed '3s/[^,]*$/nan/' whole.log >nan.log

@@ -21,7 +21,7 @@ static const cli_option options[] = {
     {"range", 0, "A-B", "only these of them, to spread over machines"},
     {"only", 0, "WORD[,WORD]", "only rows of this nuance, this controller, this law"},
     {"csv", 0, "F.csv", "writes the table to this file (standard output)"},
-    {"log", 0, "F.csv", "stores each trial when it ends; trials in it are not repeated"},
+    {"log", 0, "F.csv", "stores each trial when it ends; continues a log of this program"},
     {"jobs", 0, "N", "parallel trials, 1 .. 256 (the number of cores)"},
     {"take", 0, "FILE...", "own captures instead, each under every controller and law"},
     {"json", 0, NULL, "with --take: the rows as one JSON array of objects"},
@@ -137,12 +137,17 @@ static void show_progress(const evaluation *e)
         fputs("\r\033[K", stderr);
 }
 
+static bool play(const evaluation *e, int index, trial_result *result, himc_error *error)
+{
+    trial_kind kind = trial_kind_of(&e->table, index);
+    trial_config config = trial_default(&kind, trial_number_of(&e->table, index));
+    return trial_run(&config, result, error);
+}
+
 static bool work(void *user, int item, void *result, himc_error *error)
 {
     const evaluation *e = user;
-    trial_kind kind = trial_kind_of(&e->table, e->todo[item]);
-    trial_config config = trial_default(&kind, trial_number_of(&e->table, e->todo[item]));
-    return trial_run(&config, result, error);
+    return play(e, e->todo[item], result, error);
 }
 
 static bool done(void *user, int item, const void *result, himc_error *error)
@@ -156,9 +161,29 @@ static bool done(void *user, int item, const void *result, himc_error *error)
     return evaluate_log_add(&e->log, &e->table, index, error);
 }
 
+static bool work_sample(void *user, int item, void *result, himc_error *error)
+{
+    const evaluation *e = user;
+    return play(e, e->log.sample[item].index, result, error);
+}
+
+static bool done_sample(void *user, int item, const void *result, himc_error *error)
+{
+    const evaluation *e = user;
+    return evaluate_log_check(&e->log, item, result, error);
+}
+
+/// Plays a trial of each part of the log again: means over two programs would be of neither.
+static bool check_log(evaluation *e, himc_error *error)
+{
+    pool workers = {e->log.samples, e->jobs, sizeof(trial_result), work_sample, done_sample, e};
+    return pool_run(&workers, error);
+}
+
 static bool evaluate(evaluation *e, const char *log, himc_error *error)
 {
-    if (!evaluate_log_open(&e->log, log, &e->table, error) || !list_todo(e, error))
+    if (!evaluate_log_open(&e->log, log, &e->table, error) || !check_log(e, error) ||
+        !list_todo(e, error))
         return false;
     pool workers = {e->todo_count, e->jobs, sizeof(trial_result), work, done, e};
     e->start = cli_now();
@@ -238,10 +263,11 @@ const cli_call cli_evaluate = {
     "compares ik, id and himc over many trials, as published",
     "Each row plays disturbed takes of the motion database: nuance,controller,law,trials,rms_mm,\n"
     "rms_sd_mm,amplitude_mm,rms_percent,elbow_range_ratio. RMS is the distance of captured and\n"
-    "simulated tips, impacts included, SD its deviation over the trials. docs/scaling.md: how to\n"
-    "run it on several machines. With --take the captures are one's own: take,controller,law,\n"
-    "strokes,played,rms_mm,max_mm,amplitude_mm,rms_percent,elbow_range_ratio; --left-tip A,B names\n"
-    "alternatives, of which each take has one.",
+    "simulated tips, impacts included, SD its deviation over the trials (nan of one). Of a log one\n"
+    "trial is played again: a log of another program is refused. docs/scaling.md: how to run it on\n"
+    "several machines. With --take the captures are one's own: take,controller,law,strokes,played,\n"
+    "rms_mm,max_mm,amplitude_mm,rms_percent,elbow_range_ratio; --left-tip A,B names alternatives,\n"
+    "of which each take has one.",
     options,
     run,
 };

@@ -36,6 +36,7 @@ static const column columns[] = {
 #define COLUMNS ((int)(sizeof columns / sizeof *columns))
 #define KEY "nuance,controller,law,trial"
 #define FIELDS (4 + COLUMNS)
+#define SAME 1e-6 // relative; of one program on another processor, as in tests/test_docs.sh
 
 static double *field(trial_result *result, size_t at)
 {
@@ -97,7 +98,7 @@ static statistics statistics_of(const trial_table *table, int kind, size_t at)
         s.mean += (value - before) / ++s.count; // Welford 1962
         squares += (value - before) * (value - s.mean);
     }
-    s.deviation = s.count > 1 ? sqrt(squares / (s.count - 1)) : 0;
+    s.deviation = s.count > 1 ? sqrt(squares / (s.count - 1)) : NAN;
     return s;
 }
 
@@ -159,7 +160,8 @@ static bool read_number(const char *text, double *out)
     return end != text && !*end && isfinite(*out);
 }
 
-static bool read_row(trial_table *table, char *row, himc_error *error)
+// `*index` is -1 of a trial beyond the table
+static bool read_row(trial_table *table, char *row, int *index, himc_error *error)
 {
     char *fields[FIELDS];
     double number, value;
@@ -169,15 +171,34 @@ static bool read_row(trial_table *table, char *row, himc_error *error)
                               COLUMNS);
     if (!read_number(fields[3], &number) || number != floor(number) || number < 1)
         return himc_error_set(error, "trial: %s, allowed 1 .. %d", fields[3], TRIALS_MAX);
-    if (number > table->trials)
+    *index = number > table->trials ? -1 : trial_index(table, kind, (int)number);
+    if (*index < 0)
         return true;
-    int index = trial_index(table, kind, (int)number);
     for (int i = 0; i < COLUMNS; i++) {
         if (!read_number(fields[4 + i], &value))
             return himc_error_set(error, "%s: %s is not a number", columns[i].name, fields[4 + i]);
-        *field(&table->result[index], columns[i].at) = value / columns[i].scale;
+        *field(&table->result[*index], columns[i].at) = value / columns[i].scale;
     }
-    return table->known[index] = true;
+    return table->known[*index] = true;
+}
+
+// a row with forces is the better sample: `ik` stays the same when a law or the contact changes
+static bool keep_sample(evaluate_log *log, const trial_table *table, int line, int index,
+                        bool *begun, himc_error *error)
+{
+    bool forces = trial_kind_of(table, index).controller != HIMC_PIPELINE_IK;
+    evaluate_sample row = {line, index, table->result[index]};
+    if (!*begun) {
+        size_t size = (size_t)(log->samples + 1) * sizeof *log->sample;
+        evaluate_sample *grown = realloc(log->sample, size);
+        if (!grown)
+            return himc_error_set(error, "out of memory");
+        log->sample = grown;
+        log->sample[log->samples++] = row;
+    } else if (forces) {
+        log->sample[log->samples - 1] = row;
+    }
+    return *begun = true;
 }
 
 // the header line, without its newline
@@ -190,32 +211,52 @@ static void name_columns(char *text, size_t size)
 
 // reads all complete rows; `*end` is the end of the last one. A file that is not a log is refused
 // and stays unchanged
-static bool read_rows(FILE *stream, trial_table *table, const char *path, off_t *end,
-                      himc_error *error)
+static bool read_rows(evaluate_log *log, trial_table *table, off_t *end, himc_error *error)
 {
     char *row = NULL, header[256];
     size_t room = 0;
     ssize_t length;
-    bool good = true;
+    int index = -1;
+    bool good = true, begun = false;
     *end = 0;
     name_columns(header, sizeof header);
-    for (int line = 1; good && (length = getline(&row, &room, stream)) > 0; line++) {
+    for (int line = 1; good && (length = getline(&row, &room, log->stream)) > 0; line++) {
         bool whole = row[length - 1] == '\n';
         if (!whole && (line > 1 || !strncmp(row, header, (size_t)length)))
             break; // an interrupted write: this trial will be repeated
         row[length - whole] = '\0';
         *end += length;
-        if (strcmp(row, header) == 0)
-            continue; // logs joined by cat have several
-        good = line > 1 ? read_row(table, row, error)
+        if (strcmp(row, header) == 0) {
+            begun = false; // logs joined by cat have several
+            continue;
+        }
+        good = line > 1 ? read_row(table, row, &index, error)
                         : himc_error_set(error,
                                          "not a log of trials, allowed: a file that begins with %s",
                                          header);
+        good = good && (index < 0 || keep_sample(log, table, line, index, &begun, error));
         if (!good)
-            himc_error_prefix(error, "%s:%d", path, line);
+            himc_error_prefix(error, "%s:%d", log->path, line);
     }
     free(row);
     return good;
+}
+
+bool evaluate_log_check(const evaluate_log *log, int sample, const trial_result *now,
+                        himc_error *error)
+{
+    const evaluate_sample *s = &log->sample[sample];
+    trial_result old = s->result, new = *now;
+    for (int i = 0; i < COLUMNS; i++) {
+        double then = *field(&old, columns[i].at), is = *field(&new, columns[i].at);
+        if (!(fabs(then - is) <= SAME * fabs(is)))
+            return himc_error_set(error,
+                                  "%s:%d: %s: %.9g, expected %.9g: a log of another program, or a "
+                                  "row that was changed; expected a new log",
+                                  log->path, s->line, columns[i].name, then * columns[i].scale,
+                                  is * columns[i].scale);
+    }
+    return true;
 }
 
 static bool begin(evaluate_log *log, himc_error *error)
@@ -234,7 +275,7 @@ bool evaluate_log_open(evaluate_log *log, const char *path, trial_table *table, 
         return true;
     snprintf(log->path, sizeof log->path, "%s", path);
     log->stream = himc_file_write(path, HIMC_FILE_CONTINUE, error);
-    if (!log->stream || !read_rows(log->stream, table, path, &end, error))
+    if (!log->stream || !read_rows(log, table, &end, error))
         return false;
     if (ftruncate(fileno(log->stream), end) || fseek(log->stream, 0, SEEK_END))
         return himc_error_set(error, "%s: cannot be continued: %s", path, strerror(errno));
@@ -260,4 +301,7 @@ void evaluate_log_close(evaluate_log *log)
     if (log->stream)
         fclose(log->stream);
     log->stream = NULL;
+    free(log->sample);
+    log->sample = NULL;
+    log->samples = 0;
 }

@@ -267,7 +267,7 @@ membrane~: save: 2 is one atom too many, allowed save SWITCH
 membrane~: save: SWITCH missing, allowed save SWITCH
 membrane~: info: x is one atom too many, allowed info
 membrane~: strike: X Y, from the centre: 0.424264 m, allowed
-membrane~: tuen: unknown command, did you mean tune?
+membrane~: kettle: tuen, allowed usual or 0.0001
 himc~: kettle: info: x is one atom too many, allowed info
 himc~: score: /tmp: a folder, allowed a regular file")"
 not_numbers=$(grep -c 'nan is not a finite number, allowed' "$work/log")

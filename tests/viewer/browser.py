@@ -12,7 +12,7 @@ import urllib.request
 
 
 class Browser:
-    def __init__(self, width=1280, height=720):
+    def __init__(self, width=1280, height=720, more=()):
         self.home = tempfile.mkdtemp(prefix="himc-chromium-")
         self.driver = subprocess.Popen(
             ["chromedriver", "--port=0"],
@@ -34,6 +34,7 @@ class Browser:
             f"--user-data-dir={self.home}",
             "--hide-scrollbars",
             "--autoplay-policy=no-user-gesture-required",
+            *more,
         ]
         answer = self.call(
             "POST",

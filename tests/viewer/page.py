@@ -1736,6 +1736,22 @@ def test_a_shared_page_plays_from_the_disk():
     return f"{said}, sound {off:.1f} ms off, {size * 60 / seconds / 1e6:.2f} MB a minute"
 
 
+def test_a_browser_without_webgl_is_told_so():
+    """The shared page says what is missing; it does not ask for a performer."""
+    html = os.path.join(MADE, "shared.html")
+    if not os.path.exists(html):
+        raise report.Ignored("no page was shared")
+    plain = Browser(480, 480, ["--disable-3d-apis"])
+    try:
+        plain.open("file://" + os.path.abspath(html))
+        said = plain.wait("return document.getElementById('lost').innerText", 30)
+        assert "WebGL" in said, said
+        shown = "return getComputedStyle(document.getElementById(arguments[0])).display"
+        assert plain.run(shown, "wait") == "none" and plain.run(shown, "lost") != "none"
+    finally:
+        plain.close()
+
+
 # A sine of which a loop has whole periods, as the audio thread meets it: the largest step between two
 # samples, how many there were, and where the page says that the loop is (samples)
 LOOP_WITHOUT_A_GAP = """

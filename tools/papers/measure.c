@@ -19,8 +19,8 @@
 #define RUNS 5              // chosen: odd, for a median
 #define TRUNK_OF_TABLE 46.0 // 2012 paper, table 1 (%)
 #define STICKS_OF_TABLE 0.5
-#define FAR 3.0             // chosen: so many times as far from the mean as captured
-#define STRONG 1e4          // chosen: above what any joint has (N m)
+#define FAR 3.0    // chosen: so many times as far from the mean as captured
+#define STRONG 1e4 // chosen: above what any joint has (N m)
 #define METRES_PER_INCH 0.0254
 #define HEAD_SCORE "score tools/figures/blows.txt"
 
@@ -182,6 +182,8 @@ static void measure_strength(void)
 static void measure_database(void)
 {
     himc_mocap_config c = himc_mocap_default();
+    himc_mocap_statistics strokes[HIMC_NUANCES] = {0};
+    char name[64];
     int sequences = 0, least = 1000, all = 0;
     for (c.player = 0; c.player < HIMC_MOCAP_PLAYERS; c.player++)
         for (int n = 0; n < HIMC_NUANCES; n++)
@@ -195,12 +197,21 @@ static void measure_database(void)
                 least = strikes < least ? strikes : least;
                 all += strikes;
                 sequences++;
+                himc_mocap_measure(mocap, &strokes[n]);
                 himc_mocap_free(mocap);
             }
     fact("players", HIMC_MOCAP_PLAYERS);
     fact("sequences", sequences);
     fact("least_strikes", least);
     fact("strikes", all);
+    for (int n = 0; n < HIMC_NUANCES; n++) {
+        snprintf(name, sizeof name, "depth_%s", himc_nuance_name((himc_nuance)n));
+        fact(name, 1e3 * himc_mocap_mean(&strokes[n], HIMC_MOCAP_DEPTH));
+        snprintf(name, sizeof name, "depth_sd_%s", himc_nuance_name((himc_nuance)n));
+        fact(name, 1e3 * himc_mocap_deviation(&strokes[n], HIMC_MOCAP_DEPTH));
+        snprintf(name, sizeof name, "height_%s", himc_nuance_name((himc_nuance)n));
+        fact(name, 1e3 * himc_mocap_mean(&strokes[n], HIMC_MOCAP_TIP_HEIGHT));
+    }
 }
 
 static void measure_drum(void)

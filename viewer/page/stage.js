@@ -145,14 +145,22 @@ function curtain() {
     );
 }
 
+// without WebGL nothing can be shown, and the page says so
+function makeRenderer(canvas) {
+    try {
+        return new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: false });
+    } catch (error) {
+        document.body.classList.add("lost");
+        document.getElementById("lost").textContent =
+            "This browser has no WebGL, which the picture needs: turn its hardware acceleration on, or use another browser.";
+        throw error;
+    }
+}
+
 export class Stage {
     constructor(canvas) {
         THREE.Object3D.DefaultUp.set(0, 0, 1);
-        const renderer = (this.renderer = new THREE.WebGLRenderer({
-            canvas,
-            antialias: true,
-            preserveDrawingBuffer: false,
-        }));
+        const renderer = (this.renderer = makeRenderer(canvas));
         renderer.shadowMap.enabled = true;
         renderer.shadowMap.type = THREE.PCFSoftShadowMap;
         renderer.gammaOutput = true;
