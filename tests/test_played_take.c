@@ -5,6 +5,7 @@
 #include "session.h"
 
 #include "capture/take.h"
+#include "himc/membrane.h"
 
 #define SECONDS 2.5
 #define FILE_NAME "build/played.bvh"
@@ -195,6 +196,44 @@ static void test_a_take_that_is_refused_changes_nothing(void)
     himc_performance_free(p);
 }
 
+// plays the take with a head that is damped so long after its first frame; the time at which the
+// head is damped (s), and at which the piece is over
+static double damped_at(double seconds, double *over)
+{
+    enum { TICK = 192 };
+    char text[200];
+    heard h = {0};
+    double damped = -1;
+    snprintf(text, sizeof text, "drum low 26; take build/played.bvh; at %g low damp 1;", seconds);
+    himc_performance *p = session_new();
+    session_score(p, "build/damped-take.txt", text);
+    session_do(p, "play");
+    for (int i = 0; i < 10 * 250 && h.dones == 0; i++) {
+        session_play(p, TICK / 48000.0, &h);
+        const himc_membrane *head = himc_drum_membrane(himc_performance_drum(p, 0));
+        if (damped < 0 && himc_membrane_head(head)->damp > 0)
+            damped = (double)himc_performance_time(p) / 48000;
+    }
+    *over = h.dones == 1 ? (double)himc_performance_time(p) / 48000 : -1;
+    heard_free(&h);
+    himc_performance_free(p);
+    return damped;
+}
+
+static void test_a_head_changes_at_its_time_in_a_take(void)
+{
+    double over[3], soon, later, last;
+    save_take(250);
+    soon = damped_at(0.5, &over[0]);
+    later = damped_at(1.5, &over[1]);
+    last = damped_at(SECONDS + 2, &over[2]); // the piece waits for it
+    TEST_ASSERT_TRUE(soon > 0.4);
+    TEST_ASSERT_DOUBLE_WITHIN(0.005, soon + 1, later);
+    TEST_ASSERT_DOUBLE_WITHIN(0.005, soon + SECONDS + 1.5, last);
+    TEST_ASSERT_DOUBLE_WITHIN(0.005, over[0], over[1]);
+    TEST_ASSERT_TRUE(over[2] >= last && over[2] < last + 0.5);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -206,5 +245,6 @@ int main(void)
     RUN_TEST(test_a_drum_in_another_place_is_moved_under_the_strikes_and_struck);
     RUN_TEST(test_another_take_and_a_score_follow_a_take);
     RUN_TEST(test_a_take_that_is_refused_changes_nothing);
+    RUN_TEST(test_a_head_changes_at_its_time_in_a_take);
     return UNITY_END();
 }

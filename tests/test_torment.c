@@ -174,8 +174,8 @@ static void hear_loudest(const himc_drum *d, int slot, past before)
     seen.measured++;
     TEST_ASSERT_TRUE(loudest_stroke(d, before.level, now, &struck));
     for (int k = 0; k < HIMC_PICKUPS; k++)
-        loudest[slot][k] =
-            fmax(loudest[slot][k], now[k] * (struck > 0 ? fmax(1, sqrt(before.energy / struck)) : 1));
+        loudest[slot][k] = fmax(loudest[slot][k],
+                                now[k] * (struck > 0 ? fmax(1, sqrt(before.energy / struck)) : 1));
 }
 
 static const himc_command_id of_tempo[10] = {
@@ -264,7 +264,8 @@ static void check_sound(const himc_drum *d, int slot, int pickup, int n, past be
 static void check_drum(const himc_drum *d, int slot, int n, past before)
 {
     int pickups;
-    double after = drum_energy(d), most = before.energy + 2 * LOUDEST_ARM + HEAVIEST_BLOW * HIMC_STICKS;
+    double after = drum_energy(d),
+           most = before.energy + 2 * LOUDEST_ARM + HEAVIEST_BLOW * HIMC_STICKS;
     himc_membrane_pickups(d->membrane, &pickups);
     seen.energy = fmax(seen.energy, after);
     if (!(after <= most))

@@ -104,8 +104,7 @@ FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *e
 
 static bool cannot_write(const char *path, himc_error *error)
 {
-    return himc_error_set(error, "%s: cannot be written: %s", path,
-                          strerror(errno ? errno : EIO));
+    return himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno ? errno : EIO));
 }
 
 // a new file, with the permissions of the one that it is to replace; -1 with errno
@@ -113,13 +112,14 @@ static int open_beside(himc_file_draft *draft, const struct stat *old)
 {
     static atomic_uint made;
     int file = -1;
-    for (int tries = 0; file < 0 && tries < MOST_TRIES && (tries == 0 || errno == EEXIST); tries++) {
+    for (int tries = 0; file < 0 && tries < MOST_TRIES && (tries == 0 || errno == EEXIST);
+         tries++) {
         int length = snprintf(draft->temp, sizeof draft->temp, "%s.%06x", draft->path,
                               ((unsigned)getpid() * 0x9e37u + made++) & 0xffffffu);
         errno = ENAMETOOLONG;
         if (length < (int)sizeof draft->temp)
-            file = himc_system_open(draft->temp,
-                                    O_CREAT | O_EXCL | O_WRONLY | O_BINARY | O_CLOEXEC);
+            file =
+                himc_system_open(draft->temp, O_CREAT | O_EXCL | O_WRONLY | O_BINARY | O_CLOEXEC);
     }
     if (file < 0)
         draft->temp[0] = '\0';

@@ -139,8 +139,9 @@ static void watch(himc_performance *p, double t)
 // what the score has at a beat
 static void keep_to_score(himc_performance *p, double t)
 {
-    himc_drums_turn_heads(&p->drums, himc_planner_beat(p->motion->planner, t), &p->events);
-    himc_body_begin_pushes(p->body, himc_motion_score_beat(p->motion, t),
+    double beat = himc_motion_score_beat(p->motion, t);
+    himc_drums_turn_heads(&p->drums, beat, &p->events);
+    himc_body_begin_pushes(p->body, beat,
                            himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
 }
 

@@ -374,7 +374,7 @@ static void damp(performance_motion *m, const performance_drums *drums, double t
 {
     himc_free_hand hand[HIMC_HANDS];
     himc_damped_head head[HIMC_DRUMS];
-    double soon = himc_planner_beat(m->planner, t + HIMC_DAMPING_FORESIGHT);
+    double soon = himc_motion_score_beat(m, t + HIMC_DAMPING_FORESIGHT);
     for (int i = 0; i < HIMC_HANDS; i++)
         hand[i] = free_hand(m, drums, (himc_hand)i, t);
     for (int i = 0; i < drums->count; i++)
@@ -796,7 +796,8 @@ static bool begins_beat(const performance_motion *m, double t)
 
 static bool is_over(const performance_motion *m, double t)
 {
-    double end = m->track ? take_end(m) : himc_planner_end(m->planner) + LATE_CONTACT;
+    double end = m->track ? fmax(take_end(m), m->track_start + himc_planner_until(m->planner))
+                          : himc_planner_end(m->planner) + LATE_CONTACT;
     return m->playing && t >= end;
 }
 

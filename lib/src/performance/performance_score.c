@@ -567,7 +567,7 @@ static void copy_performance(score_job *j)
 static himc_job_state install_changes(score_job *j, himc_error *error)
 {
     performance_drums *drums = &j->performance->drums;
-    double now = himc_planner_beat(j->performance->motion->planner, step_time(j->performance));
+    double now = himc_motion_score_beat(j->performance->motion, step_time(j->performance));
     if (j->score->change_count > 0 && !j->asked) {
         copy_performance(j);
         j->asked = true;

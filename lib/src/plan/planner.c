@@ -409,6 +409,11 @@ void himc_planner_last_until(himc_planner *planner, double beat)
         himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
+double himc_planner_until(const himc_planner *planner)
+{
+    return planner->score.until;
+}
+
 /// Begins at score->beat; the hands have been cut. If the music was `running`, listeners miss the
 /// time that the first stroke needs.
 static void start(himc_planner *planner, double t, bool running)
