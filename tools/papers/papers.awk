@@ -292,7 +292,7 @@ END {
     angle[1] = "wrist"; angle[2] = "elbow"; angle[3] = "shoulder"
     for (i = 1; i <= 3; i++) {
         a = "captured_" angle[i] "_deg"
-        text[i] = "RMS `ik` " num(apart(s, a, "ik_" angle[i] "_deg"), 1) ", IK from the tip " num(apart(s, a, "reach_" angle[i] "_deg"), 1) ", `id` " num(apart(s, a, "id_" angle[i] "_deg"), 1) ", `himc` " num(apart(s, a, "himc_" angle[i] "_deg"), 1) "°; by computed torque `himc` " num(apart("strokes-default", a, "himc_" angle[i] "_deg"), 1) "°, which never saw the joints"
+        text[i] = "RMS `ik` " num(apart(s, a, "ik_" angle[i] "_deg"), 1) ", IK from the tip " num(apart(s, a, "reach_" angle[i] "_deg"), 1) ", `id` " num(apart(s, a, "id_" angle[i] "_deg"), 1) ", `himc` " num(apart(s, a, "himc_" angle[i] "_deg"), 1) "°; by computed torque `himc` " num(apart("strokes-default", a, "himc_" angle[i] "_deg"), 1) "°, whose null-space posture is learned from the other two players' joints"
     }
     print_row("2012 figure 5a, wrist flexion", "IK consistent; HIMC nearer than ID", text[1], "IK " (consistent("wrist") ? "agrees" : "does not agree") "; HIMC " nearer(apart(s, "captured_wrist_deg", "himc_wrist_deg"), apart(s, "captured_wrist_deg", "id_wrist_deg"), apart("strokes-default", "captured_wrist_deg", "himc_wrist_deg"), apart("strokes-default", "captured_wrist_deg", "id_wrist_deg")), follow)
     print_row("2012 figure 5b, elbow flexion", "IK consistent; HIMC nearer than ID", text[2], "IK " (consistent("elbow") ? "agrees" : "does not agree") "; HIMC " nearer(apart(s, "captured_elbow_deg", "himc_elbow_deg"), apart(s, "captured_elbow_deg", "id_elbow_deg"), apart("strokes-default", "captured_elbow_deg", "himc_elbow_deg"), apart("strokes-default", "captured_elbow_deg", "id_elbow_deg")), follow)
