@@ -329,7 +329,7 @@ keys=$(tail -n 1 out | grep -o '"[a-z0-9_]*":' | tr -d '":' | tr '\n' ' ')
 check test_last_line_has_the_keys_of_the_contract [ "$keys" = \
     "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor \
 unplanned_contacts longest_contact_s moved moved_max_mm captured_rms_mm captured_rms_percent captured_max_mm \
-captured_max_percent peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint " ]
+captured_max_percent captured_speed_ratio peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint " ]
 check test_measures_of_a_clean_score [ "$(number unplanned_contacts) $(number captured_rms_mm)" = "0 null" ]
 check test_a_stroke_touches_shortly \
     true_that "$(number longest_contact_s) > 0.002 && $(number longest_contact_s) < 0.03"

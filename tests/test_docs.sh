@@ -116,6 +116,14 @@ if [ -n "${HIMC_LONG-}" ]; then
         check test_each_public_name_has_its_comment doxygen docs/Doxyfile
     fi
     check test_numbers_of_the_papers_are_those_of_today cmp "$work/documented" "$work/table"
+    # the table of own captures, where these are
+    mocap=${HIMC_SHARED:-../shared}/mocap
+    if [ -d "$mocap" ]; then
+        sed -n '/^## Your own captures/,$p' docs/evaluation.md | sed -n '/himc evaluate --take drum/,/--left-tip/p' | sed 's/.*himc //; s/\\$//' |
+            (himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc && cd "$mocap" && xargs "$himc") >"$work/own.csv" 2>"$work/said"
+        awk -F , 'FNR > 1 && $3 != "feedforward" { n[$1]++; line[$1] = line[$1] sprintf(" | %.3g mm", $6); if (n[$1] == 5) print line[$1] " |" }' "$work/own.csv" >"$work/own"
+        check test_the_table_of_own_captures_is_of_this_program [ "$(wc -l <"$work/own") $(grep -cF -f "$work/own" docs/evaluation.md)" = "3 3" ]
+    fi
     # strokes and phases played again; what takes hours is read
     strokes=$HIMC_BUILD/tools/figures/strokes
     cp docs/figures/*.csv "$work"

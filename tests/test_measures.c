@@ -26,6 +26,7 @@ static void test_strokes_are_planned_and_leave_the_head_at_once(void)
     TEST_ASSERT_EQUAL_INT(0, s.unplanned_contacts);
     TEST_ASSERT_TRUE(s.longest_contact > 0.003 && s.longest_contact < 0.015);
     TEST_ASSERT_TRUE(isnan(s.captured_rms) && isnan(s.captured_most_percent));
+    TEST_ASSERT_TRUE(isnan(s.captured_speed_ratio));
     himc_performance_free(p);
 }
 

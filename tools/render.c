@@ -558,7 +558,7 @@ const cli_call cli_render = {
     "SOURCE - is the standard input. The last line on standard output (standard error, if a file is\n"
     "-) is one JSON object, unless it is a terminal: seconds strokes played missed tip_rms_mm tip_rms_percent\n"
     " peak_force_n realtime_factor unplanned_contacts longest_contact_s moved moved_max_mm\n"
-    "captured_rms_mm captured_rms_percent captured_max_mm captured_max_percent\n"
+    "captured_rms_mm captured_rms_percent captured_max_mm captured_max_percent captured_speed_ratio\n"
     "peak_rate_rad_s peak_rate_joint peak_torque_n_m peak_torque_joint. A score that makes no drum is played on\n"
     "\"kettle\", 26 inches.",
     options,

@@ -58,6 +58,7 @@ static void put_measures(FILE *out, const himc_performance_stats *s)
     put_json(out, "captured_rms_percent", s->captured_rms_percent, ", ");
     put_json(out, "captured_max_mm", 1e3 * s->captured_most, ", ");
     put_json(out, "captured_max_percent", s->captured_most_percent, ", ");
+    put_json(out, "captured_speed_ratio", s->captured_speed_ratio, ", ");
     put_json(out, "peak_rate_rad_s", s->peak_rate, ", ");
     fprintf(out, "\"peak_rate_joint\": \"%s\", ", himc_joint_name(s->peak_rate_joint));
     put_json(out, "peak_torque_n_m", s->peak_torque, ", ");
@@ -76,6 +77,9 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
     if (stats->strokes && isfinite(stats->tip_rms_percent))
         cli_say("accuracy  sticks %.3g mm RMS off their targets, %.2g %% of the strokes' height\n",
                 rms_mm, stats->tip_rms_percent);
+    if (isfinite(stats->captured_speed_ratio))
+        cli_say("capture   sticks %.3g mm RMS off the take, strikes at %.0f %% of its speeds\n",
+                1e3 * stats->captured_rms, 100 * stats->captured_speed_ratio);
     cli_say("force     up to %.1f N\n", stats->peak_force);
     cli_say("speed     %.1f s played, %.1f x real time\n", seconds, realtime_factor);
     if (stats->recoveries)

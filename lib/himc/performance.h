@@ -241,6 +241,7 @@ typedef struct himc_performance_stats {
     double captured_most;         ///< the largest such distance (m)
     double captured_rms_percent;  ///< captured_rms / stroke_height (%)
     double captured_most_percent; ///< captured_most / stroke_height (%)
+    double captured_speed_ratio;  ///< mean speed of a take's strikes, played / captured, or NaN
     double peak_rate;             ///< largest rate of a joint, of its axes together (rad/s) ...
     int peak_rate_joint;          ///< ... and the joint
     double peak_torque;           ///< largest torque of a joint (N m), 0 in `ik` ...

@@ -63,7 +63,7 @@ typedef struct {
     double tip_rms, stroke_height, tip_rms_percent, peak_force;
     int unplanned_contacts;
     double longest_contact, captured_rms, captured_most, captured_rms_percent,
-        captured_most_percent;
+        captured_most_percent, captured_speed_ratio;
     double peak_rate;
     int peak_rate_joint;
     double peak_torque;

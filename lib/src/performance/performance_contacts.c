@@ -375,6 +375,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
     himc_motion_answer(s->motion, hand, next.time);
     himc_statistics_strokes(s->statistics, 1, played);
+    if (isfinite(next.speed))
+        himc_statistics_impact(s->statistics, -velocity, next.speed);
     himc_statistics_yields(s->statistics, next.yields);
     tell_aside(s, &c->strike, off);
 }

@@ -279,12 +279,13 @@ planned_contact himc_motion_next(const performance_motion *m, const performance_
 planned_stroke himc_motion_stroke(const performance_motion *m, const performance_drums *drums,
                                   himc_hand hand, double t)
 {
-    planned_stroke next = {.any = false, .drum = 0};
+    planned_stroke next = {.any = false, .drum = 0, .speed = NAN};
     himc_stroke stroke;
     if (himc_motion_tracks(m, hand)) {
         next.any =
             himc_track_current(m->track, hand, t - m->track_start, &next.time, &next.x, &next.y);
         next.time += m->track_start;
+        next.speed = himc_track_captured_speed(m->track, hand, t - m->track_start);
         next.beat = NAN;
         strcpy(next.nuance, "none");
     } else if (himc_planner_current(m->planner, hand, t, &stroke, &next.drum, &next.time)) {

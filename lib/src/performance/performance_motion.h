@@ -41,6 +41,7 @@ typedef struct planned_stroke {
     double x, y;   ///< on the head (m)
     double yields; ///< so far from where it was asked for, as the hands would have met (m)
     double beat;   ///< in the score, NaN of a take
+    double speed;  ///< captured, NaN of a score (m/s)
     char nuance[HIMC_NAME_SIZE];
     int bounces;        ///< of a stroke that bounces (himc_stroke)
     double bounce_time; ///< (s)

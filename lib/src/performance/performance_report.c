@@ -505,9 +505,9 @@ static void describe_peaks(const himc_performance *p, himc_line_sink to)
         return;
     snprintf(text, sizeof text,
              "capture: tips %.2f mm RMS off it, at most %.1f mm; %.2f %% and %.1f %% of the "
-             "strokes' height",
+             "strokes' height; strikes at %.3f of its speeds",
              1e3 * s.captured_rms, 1e3 * s.captured_most, s.captured_rms_percent,
-             s.captured_most_percent);
+             s.captured_most_percent, s.captured_speed_ratio);
     to.line(to.user, text);
 }
 

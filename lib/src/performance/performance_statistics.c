@@ -81,6 +81,12 @@ void himc_statistics_strokes(performance_statistics *s, int strokes, int played)
     s->played += played;
 }
 
+void himc_statistics_impact(performance_statistics *s, double played, double captured)
+{
+    s->impact_sum += played;
+    s->captured_impact_sum += captured;
+}
+
 void himc_statistics_yields(performance_statistics *s, double yields)
 {
     s->moved += yields > 0;
@@ -125,6 +131,8 @@ static void read_capture(const performance_statistics *s, himc_performance_stats
     out->captured_most = s->captured_count ? sqrt(s->captured_most) : NAN;
     out->captured_rms_percent = percent * out->captured_rms;
     out->captured_most_percent = percent * out->captured_most;
+    out->captured_speed_ratio =
+        s->captured_impact_sum > 0 ? s->impact_sum / s->captured_impact_sum : NAN;
 }
 
 void himc_statistics_read(const performance_statistics *s, himc_performance_stats *out)

@@ -26,10 +26,11 @@ typedef struct performance_statistics {
     double longest_contact;              ///< (s)
     double captured_sum;                 ///< of squared distances from tip to capture (m^2)
     long captured_count;
-    double captured_most;       ///< the largest of them (m^2)
-    double rate[HIMC_JOINTS];   ///< largest squared rate of each joint (rad^2/s^2)
-    bool told_fast;             ///< himc_statistics_too_fast has been true
-    double torque[HIMC_JOINTS]; ///< largest squared torque (N^2 m^2)
+    double captured_most;                   ///< the largest of them (m^2)
+    double impact_sum, captured_impact_sum; ///< of the same impacts, played and captured (m/s)
+    double rate[HIMC_JOINTS];               ///< largest squared rate of each joint (rad^2/s^2)
+    bool told_fast;                         ///< himc_statistics_too_fast has been true
+    double torque[HIMC_JOINTS];             ///< largest squared torque (N^2 m^2)
     long recoveries;
     double given; ///< by sticks to heads (J)
     double
@@ -57,6 +58,9 @@ HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
 HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double duration);
 /// Adds finished strokes of the score; `played` of them landed on time and place.
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
+/// Adds the speed of a take's strike as it was played and as it was captured (m/s).
+HIMC_RT void himc_statistics_impact(performance_statistics *statistics, double played,
+                                    double captured);
 /// Adds a stroke that was struck so far from where it was asked for (m).
 HIMC_RT void himc_statistics_yields(performance_statistics *statistics, double yields);
 /// Counts a stroke that has landed beside its place; returns how many there were before.

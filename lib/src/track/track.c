@@ -129,6 +129,7 @@ static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
         bridge *b = &h->built[h->bridge_count++];
         b->last = frame - cut;
         b->next = frame + cut;
+        b->speed = strikes[i].velocity;
         fit_stretch(h, x, start, b->last, track);
         start = b->next;
     }
@@ -368,8 +369,8 @@ bool himc_track_captured(const himc_track *track, himc_hand hand, double t, himc
     return true;
 }
 
-bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
-                        double *x, double *y)
+// the present or next strike; NULL if there is none
+static const bridge *current(const himc_track *track, himc_hand hand, double t)
 {
     const hand_track *h = &track->hand[hand];
     double at[3];
@@ -377,15 +378,28 @@ bool himc_track_current(const himc_track *track, himc_hand hand, double t, doubl
     int i = h->present ? bridge_at(h->bridges, h->bridge_count, at[0]) : 0;
     if (i < h->bridge_count && h->bridges[i].restart > h->bridges[i].from)
         i++; // already struck
-    if (!h->present || i >= h->bridge_count)
+    return h->present && i < h->bridge_count ? &h->bridges[i] : NULL;
+}
+
+bool himc_track_current(const himc_track *track, himc_hand hand, double t, double *contact_time,
+                        double *x, double *y)
+{
+    const bridge *b = current(track, hand, t);
+    if (!b)
         return false;
-    *contact_time = himc_track_unwarp(himc_track_take_length(track), h->bridges[i].contact);
+    *contact_time = himc_track_unwarp(himc_track_take_length(track), b->contact);
     if (fmax(t, *contact_time) >= track->stop)
         return false;
-    himc_vec3 aside = aside_at(track, hand, h->bridges[i].contact).x;
-    *x = h->bridges[i].spot.x + aside.x;
-    *y = h->bridges[i].spot.y + aside.y;
+    himc_vec3 aside = aside_at(track, hand, b->contact).x;
+    *x = b->spot.x + aside.x;
+    *y = b->spot.y + aside.y;
     return true;
+}
+
+double himc_track_captured_speed(const himc_track *track, himc_hand hand, double t)
+{
+    const bridge *b = current(track, hand, t);
+    return b ? b->speed : NAN;
 }
 
 // `t`, or if the capture is then below the level of a contact the time at which it is well above: a

@@ -74,6 +74,8 @@ HIMC_RT void himc_track_posture(const himc_track *track, const himc_skeleton *sk
 /// there is none.
 HIMC_RT bool himc_track_current(const himc_track *track, himc_hand hand, double t,
                                 double *contact_time, double *x, double *y);
+/// Speed of that strike in the capture itself (m/s); NaN if there is none.
+HIMC_RT double himc_track_captured_speed(const himc_track *track, himc_hand hand, double t);
 /// The tip left the head at `t` in this state: a quintic of 20 ms, or a longer one from far off,
 /// leads back to the capture.
 HIMC_RT void himc_track_separated(himc_track *track, himc_hand hand, double t,

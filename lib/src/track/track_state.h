@@ -22,6 +22,7 @@ typedef struct bridge {
     int last, next;           ///< frames between which the capture is cut out
     double contact, from, to; ///< time of contact; replaces the capture in [from, to) (s)
     himc_vec3 spot;           ///< of the contact, in the head's frame (m)
+    double speed;             ///< of the captured strike, as `himc info` has it (m/s)
     himc_quintic approach;    ///< from `from` to `contact`
     himc_quintic path;        ///< from `contact`, or once struck from `restart`, to `to`
     double restart;           ///< when the tip left the head (s); `from` until then
