@@ -229,14 +229,6 @@ static inline himc_vec3 himc_mat3_apply_transposed(const himc_mat3 *a, himc_vec3
     return result;
 }
 
-/// R diag(d) R' v: scales v by d.x, d.y, d.z along the columns of the rotation matrix R.
-static inline himc_vec3 himc_mat3_scale_along(const himc_mat3 *r, himc_vec3 d, himc_vec3 v)
-{
-    himc_vec3 local = himc_mat3_apply_transposed(r, v);
-    himc_vec3 scaled = {d.x * local.x, d.y * local.y, d.z * local.z};
-    return himc_mat3_apply(r, scaled);
-}
-
 /// The product a b.
 static inline himc_mat3 himc_mat3_mul(const himc_mat3 *a, const himc_mat3 *b)
 {

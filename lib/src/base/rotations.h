@@ -1,4 +1,4 @@
-/// rotations.h: the mean of rotations; private.
+/// rotations.h: the mean of rotations, and a tensor that is diagonal in a rotated frame; private.
 ///
 /// The mean of unit quaternions q_i is the unit quaternion q that maximises q' S q, S = sum q_i
 /// q_i': the eigenvector of the largest eigenvalue of S. It minimises the sum of squared
@@ -37,6 +37,14 @@ static inline himc_quat himc_rotations_mean(const himc_rotations *r)
     himc_quat q =
         himc_quat_unit((himc_quat){v[largest], v[4 + largest], v[8 + largest], v[12 + largest]});
     return q.w < 0 ? himc_quat_scale(q, -1) : q;
+}
+
+/// R diag(d) R' v: scales v by d.x, d.y, d.z along the columns of the rotation matrix R.
+static inline himc_vec3 himc_mat3_scale_along(const himc_mat3 *r, himc_vec3 d, himc_vec3 v)
+{
+    himc_vec3 local = himc_mat3_apply_transposed(r, v);
+    himc_vec3 scaled = {d.x * local.x, d.y * local.y, d.z * local.z};
+    return himc_mat3_apply(r, scaled);
 }
 
 #endif

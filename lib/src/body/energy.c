@@ -17,6 +17,8 @@
 /// The moments' equation is not used, so the balance tests it.
 #include "body/energy.h"
 
+#include "base/rotations.h"
+
 #include <string.h>
 
 typedef struct step {

@@ -18,6 +18,7 @@
 /// which holds at any gain and, as h goes to 0, is equation 2.
 #include "control/controller.h"
 
+#include "base/rotations.h"
 #include "body/dynamics.h"
 #include "control/ik.h"
 #include "control/limit_torque.h"

@@ -22,6 +22,7 @@
 /// target.
 #include "control/limit_torque.h"
 
+#include "base/rotations.h"
 #include "body/dynamics.h"
 #include "body/limits.h"
 #include "control/tracking_error.h"
