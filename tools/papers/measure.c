@@ -5,6 +5,7 @@
 /// program. `measure costs`: processor time of one trial by `himc` and by `id` (s), each the median
 /// of five; `make trials` keeps it, since it depends on the machine.
 #define _POSIX_C_SOURCE 200809L
+#include "../../mocap/parts.h"
 #include "../trial.h"
 #include "control/strength.h"
 #include "drum/drum_performer.h"
@@ -200,6 +201,8 @@ static void measure_database(void)
                 himc_mocap_measure(mocap, &strokes[n]);
                 himc_mocap_free(mocap);
             }
+    trial_config shown = trial_default(&(trial_kind){.nuance = HIMC_LEGATO}, 1); // by strokes.c
+    fact("grip", himc_mocap_player[trial_sequence(&shown).player].french);
     fact("players", HIMC_MOCAP_PLAYERS);
     fact("sequences", sequences);
     fact("least_strikes", least);
