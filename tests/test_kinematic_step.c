@@ -1,5 +1,5 @@
-/// test_show.c: the pipeline `ik`: a posture from the solver, step by step, that has the tips where
-/// they are asked to be and else follows the joint targets.
+/// test_kinematic_step.c: the pipeline `ik`: a posture from the solver, step by step, that has the
+/// tips where they are asked to be and else follows the joint targets.
 #include "bodies.h"
 
 #include "control/controller.h"

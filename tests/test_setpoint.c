@@ -1,4 +1,4 @@
-/// test_task.c: between ticks tips move on quintics and joints on unit quaternions, C2 at the
+/// test_setpoint.c: between ticks tips move on quintics and joints on unit quaternions, C2 at the
 /// ticks; and the contract of all that runs in a physics step: nothing is allocated.
 #include "allocations.h"
 #include "body/character.h"

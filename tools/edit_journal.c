@@ -25,7 +25,7 @@
 #define SCORES 100                  // kept beside a journal; chosen
 enum { OURS_ONLY = 0700 };
 
-static uint64_t hash(uint64_t sum, const void *bytes, size_t size)
+uint64_t edit_hash(uint64_t sum, const void *bytes, size_t size)
 {
     const unsigned char *b = bytes;
     for (size_t i = 0; i < size; i++)
@@ -39,7 +39,7 @@ static bool hash_file(const char *path, uint64_t *sum, himc_error *error)
     FILE *file = himc_file_read(path, error);
     *sum = UINT64_C(0xcbf29ce484222325);
     for (size_t got; file && (got = fread(bytes, 1, sizeof bytes, file)) > 0;)
-        *sum = hash(*sum, bytes, got);
+        *sum = edit_hash(*sum, bytes, got);
     return file && fclose(file) == 0;
 }
 
@@ -85,7 +85,8 @@ static bool choose_path(edit_journal *j, const char *source, const char *name, b
         if (!beside)
             good = path_in_states(
                 j, sent ? name : slash + 1,
-                sent ? j->hash : hash(UINT64_C(0xcbf29ce484222325), real, strlen(real)), error);
+                sent ? j->hash : edit_hash(UINT64_C(0xcbf29ce484222325), real, strlen(real)),
+                error);
     }
     free(real);
     return good;

@@ -8,6 +8,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
+/// A sum (FNV-1a) that goes on over more bytes; begins with UINT64_C(0xcbf29ce484222325).
+uint64_t edit_hash(uint64_t sum, const void *bytes, size_t size);
+
 /// A journal. All zero: none.
 typedef struct edit_journal {
     char path[4096]; ///< its file; "": changes are not kept

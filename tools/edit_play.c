@@ -12,6 +12,7 @@
 #define _GNU_SOURCE // MAP_ANONYMOUS
 #include "edit_play.h"
 #include "cli.h"
+#include "edit_journal.h"
 #include "performance/research.h"
 #include "plan/score.h"
 #include "scene_record.h"
@@ -92,14 +93,6 @@ static void leave(player *p, const char *kind, const char *text)
     _exit(0);
 }
 
-static uint64_t hash(uint64_t sum, const void *bytes, size_t size)
-{
-    const unsigned char *b = bytes;
-    for (size_t i = 0; i < size; i++)
-        sum = (sum ^ b[i]) * UINT64_C(0x100000001b3); // FNV-1a
-    return sum;
-}
-
 static void take_events(player *p)
 {
     himc_event event;
@@ -125,7 +118,7 @@ static void play_cell(player *p)
         p->ending.samples += BLOCK;
         take_events(p);
         scene_record_block(p->record, NULL, BLOCK);
-        sum = hash(sum, out, sizeof out);
+        sum = edit_hash(sum, out, sizeof out);
         for (int i = 0; i < EARS * BLOCK; i++)
             sound.sample[EARS * at + i] = (int16_t)lrint(32767 * fmax(-1, fmin(1, out[i])));
     }

@@ -21,9 +21,10 @@
 #define NEAR_ARM 0.06 // D of the two arms (m); chosen: uncrossed ones are 80 mm apart and more
 #define SEEN 0.1 // the arms' gaps are told below this (m); chosen: more than rehearsal.c asks for
 #define NEAR_BODY 0.02 // D of arm and body (m); chosen: usual forearms pass the trunk at 39 mm
-// wrist from shoulder (m); chosen: nearer, small ways of the wrist swing the elbow ...
+// wrist from shoulder (m), pushed apart from NEAR_ARM more; chosen: nearer, small ways of the wrist
+// swing the elbow ...
 #define FOLDED 0.20          // ... of arms that avoid something
-#define FOLDED_FREE 0.14     // ... and of free ones, by 60 rad/s
+#define FOLDED_FREE 0.14     // ... and of free ones, which then turn with up to 60 rad/s
 #define LARGEST_LACK (-0.08) // of crossed parts in the wrong order (m); chosen: all is pushed alike
 #define LEVEL 0.5            // of the vertical: parts beside each other are in no order
 #define DESCENT 40.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second

@@ -1,6 +1,6 @@
 /// part.h: a percussionist's part made of a MIDI file: heads, strokes, pedals, hands.
 ///
-/// himc_midi_part fills it with the notes to be played, himc_midi_tune and himc_midi_kit give each
+/// himc_midi_join fills it with the notes to be played, himc_midi_tune and himc_midi_kit give each
 /// its head, himc_midi_stick its hand. A note that is not played keeps the reason.
 #ifndef HIMC_MIDI_PART_H
 #define HIMC_MIDI_PART_H

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
-/// That any hit needs from rest (s): measured, an accent at ff.
+/// That a hit needs from rest (s): measured, an accent at ff; vertical accents need more from f on.
 #define LONGEST_PREPARATION 0.33
 
 static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)

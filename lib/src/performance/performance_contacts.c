@@ -32,8 +32,8 @@
 #define PLAYED_PLACE 0.02 // ... and within this of its place (m)
 // chosen: a step at 30 m/s is 3 mm, and resting sticks hang over the rim
 #define NEAR_HEAD 0.02       // above the head at rest: sticks below this are simulated (m)
+#define HIGHEST_BOUNCE 0.35  // ... and below this when they bounce (m)
 #define DEEPEST_CONTACT 0.10 // a stick deeper than this is under the head (m) ...
-#define HIGHEST_BOUNCE 0.35  // above it: a stick that bounces is simulated below this (m)
 #define DEEPEST_ARRIVAL 0.03 // ... and a stick not from above is if deeper than this (m)
 // No arm moves a stick faster. A body that is thrown about by gains or a rate that cannot hold it
 // does, up to 100 m/s; the head then feels a blow as of the fastest free mallet, in each step.

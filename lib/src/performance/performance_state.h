@@ -11,6 +11,7 @@
 ///     performance_change.c        what a score has at beats: pedals, hands, pushes
 ///     performance_play.c, _take.c, _score.c     playing strokes, takes and scores
 ///     performance_command.c       the commands
+///     performance_dump.c          the settings as commands, for `dump` and saved states
 ///     performance.c               the step
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H

@@ -285,7 +285,8 @@ static void leave(himc_hand_plan *plan, double next)
     plan->end += T;
 }
 
-/// The same of one of its splines, at SOUND_SAMPLES places of each segment.
+/// True if a spline is finite from then on and no faster than a tip can be, at SOUND_SAMPLES places
+/// of each segment.
 static bool is_sound(const himc_spline *spline, double from)
 {
     for (const himc_spline_segment *s = spline->segment; s < spline->segment + spline->count; s++)

@@ -17,7 +17,7 @@
 /// Strokes that wait for a hand; chosen: as many as can be planned, so that all can be put back.
 #define PLANNER_WAITING 16
 #define PLANNER_PLANNED 16 ///< strokes planned ahead; chosen: never reached at 40 ms a stroke
-/// Motion is planned so far beyond the last advance at least (s); chosen: twice PLANNER_COMMIT.
+/// Motion is planned so far beyond the last advance at least (s); chosen: a full stroke.
 #define PLANNER_HORIZON 0.45
 /// Calls that carry no time change the plan from this long after the last advance (s); chosen: more
 /// than the longest period of advance, 10 ms.
