@@ -99,6 +99,7 @@ check test_tables_of_the_trials_name_their_commit grep -qE '^commit [0-9a-f]{40}
 exists() {
     case $1 in
     make\ *) ! make -n ${1#make } 2>&1 | grep 'No rule to make' ;;
+    himc\ help\ *) "$HIMC_BUILD/bin/himc" help "${1##* }" ;;
     himc\ *) "$HIMC_BUILD/bin/himc" "$(echo "$1" | cut -d ' ' -f 2)" --help ;;
     build/tools/*) ! make -n ${1%% *} 2>&1 | grep 'No rule to make' ;;
     build/*) [ -x "$HIMC_BUILD/${1#build/}" ] ;;
