@@ -2,6 +2,7 @@
 #include "session.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define MISSES 256
 
@@ -134,6 +135,25 @@ static void test_a_roll_that_is_past_is_given_up_in_one_line(void)
     himc_performance_free(p);
 }
 
+// limits throw the arms about: a stick may lie on the head when its stroke is due
+static void test_each_stroke_counts_where_sticks_come_to_lie_on_the_head(void)
+{
+    if (!getenv("HIMC_LONG"))
+        TEST_IGNORE_MESSAGE("takes 15 s: HIMC_LONG=1");
+    int strokes[2];
+    for (int limits = 0; limits < 2; limits++) {
+        himc_performance *p = session_new();
+        himc_performance_make_drums(p, true);
+        session_do(p, "score patches/improvisation.txt");
+        session_do(p, limits ? "limits ellipsoid" : "limits off");
+        session_do(p, "play");
+        himc_performance_process(p, 23 * 48000, NULL);
+        strokes[limits] = himc_performance_measure(p).strokes;
+        himc_performance_free(p);
+    }
+    TEST_ASSERT_EQUAL_INT(strokes[0], strokes[1]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -142,5 +162,6 @@ int main(void)
     RUN_TEST(test_hits_without_latency_that_find_no_room_are_missed);
     RUN_TEST(test_hits_that_come_late_all_the_time_are_told_of_meanwhile);
     RUN_TEST(test_a_roll_that_is_past_is_given_up_in_one_line);
+    RUN_TEST(test_each_stroke_counts_where_sticks_come_to_lie_on_the_head);
     return UNITY_END();
 }

@@ -229,8 +229,9 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
     bool due = next.any && t >= next.time && !is_free(c);
     // nothing would stop a stick that is let go beside all heads; the take goes on by itself
     bool beside = due && himc_motion_tracks(s->motion, hand) && head_under(c, s, hand) < 0;
-    if (due && (beside || t >= next.time + LATEST_CONTACT)) {
-        give_up(c, s, hand, t, &next, beside);
+    bool pressed = next.any && c->touching && c->pressed; // it lies there, and does not fall
+    if ((due || pressed) && (beside || t >= next.time + LATEST_CONTACT)) {
+        give_up(c, s, hand, t, &next, beside || pressed);
         due = false;
     }
     int drum = is_free(c) ? c->drum : next.drum;
