@@ -29,6 +29,7 @@ static inline bool loudest_stroke(const himc_drum *drum, double level, double pe
         return false;
     bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
     copy->gain = fmax(sounds ? drum->gain * drum->fader : 0, fmax(drum->level, level));
+    copy->fader = 1; // it is in the gain
     copy->technique = HIMC_TECHNIQUE_MODAL;
     copy->mute = false;
     for (int i = 0; i < 2; i++) {
