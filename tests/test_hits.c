@@ -413,6 +413,66 @@ static void test_a_hit_elsewhere_than_asked_is_told(void)
     TEST_ASSERT_TRUE(aside >= 8); // those beyond the rim, at least
 }
 
+/// A hit by either hand at a time of the session.
+typedef struct timed_hit {
+    double at; // (s)
+    const char *drum;
+} timed_hit;
+
+/// A performer with four drums, where they stand by themselves or in an arc in front.
+static himc_performance *with_four(bool arc)
+{
+    static const char *const drum[] = {"second 29", "third 26", "low 32", "high 23"},
+                             *const place[] = {
+                                 "second place 0.832 0.287 0.85", "third place 0.763 -0.439 0.85",
+                                 "low place 0.251 0.843 0.85", "high place 0.251 -0.843 0.85"};
+    himc_performance *p = session_new();
+    for (int i = 0; i < 4; i++) {
+        session_do(p, "drum %s", drum[i]);
+        if (arc)
+            session_do(p, "%s", place[i]);
+    }
+    return p;
+}
+
+/// Plays hits up to the first without a drum, and a second more.
+static void play_hits(himc_performance *p, const timed_hit *hit, heard *h)
+{
+    for (; hit->drum; hit++) {
+        session_play(p, hit->at - himc_performance_measure(p).seconds, h);
+        session_do(p, "hit any legato mf %s", hit->drum);
+    }
+    session_play(p, 1, h);
+}
+
+// drums on both sides of the player, one a little behind: the trunk turns to none of them alone, so
+// no arm is folded up on its way
+static void test_no_arm_whips_from_drum_to_drum_where_they_stand_by_themselves(void)
+{
+    static const timed_hit hits[][9] = {
+        {{0.5, "second"}, {1, "third"}, {4, "low"}, {4.5, "high"}, {5, "low"}, {6.2, "second"}},
+        {{0.5, "second"},
+         {1, "third"},
+         {4, "low"},
+         {4.5, "high"},
+         {5, "low"},
+         {5.4, "third"},
+         {5.8, "high"},
+         {6.2, "second"}},
+        {{0.5, "second"}, {1, "third"}, {2.5, "low"}, {3, "high"}, {3.5, "high"}, {3.9, "second"}}};
+    for (int i = 0; i < 3; i++) {
+        heard h = {.strikes = 0};
+        himc_performance *p = with_four(false);
+        play_hits(p, hits[i], &h);
+        himc_performance_stats m = himc_performance_measure(p);
+        printf("%d strikes, %.0f rad/s\n", h.strikes, m.peak_rate);
+        TEST_ASSERT_EQUAL_INT(i == 1 ? 8 : 6, heard_asked(&h));
+        TEST_ASSERT_TRUE(m.peak_rate < 80); // half of what a person can
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -431,5 +491,6 @@ int main(void)
     RUN_TEST(test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds);
     RUN_TEST(test_a_hit_moves_no_stroke_of_the_playing_score_aside);
     RUN_TEST(test_a_hit_elsewhere_than_asked_is_told);
+    RUN_TEST(test_no_arm_whips_from_drum_to_drum_where_they_stand_by_themselves);
     return UNITY_END();
 }

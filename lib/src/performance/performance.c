@@ -98,15 +98,13 @@ static void step_kinematics(himc_performance *p, int n, double t, double h, bool
     himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, NULL);
 }
 
-// targets or pushes that no body can follow, once
+// a joint faster than any person's, whatever the cause; once
 static void tell_too_fast(himc_performance *p, double t)
 {
     int joint;
     double rate;
     if (himc_statistics_too_fast(&p->statistics, &joint, &rate))
-        himc_events_note(&p->events,
-                         "at %.2f s %s turns at %.0f rad/s, a person's at %.0f at most: no arms "
-                         "follow such targets or pushes",
+        himc_events_note(&p->events, "at %.2f s %s turns at %.0f rad/s, a person's at %.0f at most",
                          t, himc_joint_name(joint), rate, HIMC_FASTEST_JOINT);
 }
 
