@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+// two timpani side by side
+#define NEIGHBOURS "drum a 29", "drum b 26", "a place 0.832 0.287 0.85", "b place 0.763 -0.439 0.85"
+
 static int by_time(const void *a, const void *b)
 {
     const himc_strike *s = a, *r = b;
@@ -104,6 +107,33 @@ static void test_a_roll_ends_in_grace_notes_as_they_are_without_it(void)
         TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(grace->velocity / like[-1].velocity));
         TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(own->velocity / like->velocity));
         TEST_ASSERT_TRUE(before < 1.35 * rolls);
+        heard_free(&h);
+        heard_free(&plain);
+    }
+}
+
+// both hands go to the other drum: one of them leads, the other one must not meet it
+static void test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it(void)
+{
+    static const char *const kind[] = {"single", "double", "press"},
+                             *const end[] = {"flam", "drag", "ruff"}, *const drum[] = {"a", "b"},
+                             *const hand[] = {"left", "right"};
+    for (int k = 0; k < 36; k++) {
+        char roll[64], ornament[64];
+        snprintf(roll, sizeof roll, "roll 1 1 %s mf normal %s", kind[k % 3], drum[k / 9 % 2]);
+        snprintf(ornament, sizeof ornament, "%s 2 %s legato f normal %s", end[k / 3 % 3],
+                 hand[k / 18], drum[1 - k / 9 % 2]);
+        const char *rolled[] = {NEIGHBOURS, "tempo 60", roll, ornament, NULL};
+        const char *alone[] = {NEIGHBOURS, "tempo 60", ornament, NULL};
+        heard h = play_new(4, rolled), plain = play_new(4, alone);
+        const himc_strike *own = last_of(&h), *like = last_of(&plain);
+        printf("%s, %s: %.2f and %.2f m/s of %.2f and %.2f\n", roll, ornament, own[-1].velocity,
+               own->velocity, like[-1].velocity, like->velocity);
+        for (int i = -1; i <= 0; i++) {
+            TEST_ASSERT_EQUAL_INT(like[i].hand, own[i].hand);
+            TEST_ASSERT_EQUAL_STRING(like[i].drum, own[i].drum);
+            TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(own[i].velocity / like[i].velocity));
+        }
         heard_free(&h);
         heard_free(&plain);
     }
@@ -281,6 +311,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes);
     RUN_TEST(test_a_roll_ends_in_grace_notes_as_they_are_without_it);
+    RUN_TEST(test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it);
     RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
     RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
     RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);

@@ -17,7 +17,9 @@
 ///     x = max(0, need_h - (t_h - t_first) - i_h s - s),   i_h = 0 for the last hand, else 1
 ///
 /// over both hands h, t_h the next touch of h and need_h the time that it takes after one of the
-/// roll. Of both n the one with the smaller x is taken. Invariant: a place (roll, number) means the
+/// roll. Where both go to another drum, the hand that the other one has to follow goes first: the
+/// last stroke is of the other hand (else i_h = -1). Of both n the one with the smaller x is taken.
+/// Invariant: a place (roll, number) means the
 /// same stroke as long as the tempo, the score and the places of the drums stay.
 ///
 /// The strokes of a player are not quite even. Those of a machine would make a roll up to 10 dB
@@ -51,6 +53,7 @@
 #define LEAST_STEP 0.9     // of the mean: interval of a short roll
 #define JOIN_GAIN 1e-6     // a roll that would end earlier by less does not (s)
 #define GRACE_ROOM 0.1     // before a grace note: it is soft (s)
+#define BOTH_HANDS 0.2     // strokes of both hands so near are not for one of them (s)
 #define MOST_HELD_BACK 0.5 // of an interval: so much a roll ends earlier for a stroke's strength
 #define MOST_JOIN 0.5      // of the roll: where a leap takes more it fails
 #define ANCHOR_BEND 0.25   // a changed interval differs by this share at most, for the last hand
@@ -112,6 +115,7 @@ typedef struct roll_next {
     double leap; ///< time that it needs after a touch of the roll (s)
     double calm; ///< time with which it is as strong as after a pause (intervals); 0: any
     bool grace;  ///< it is a grace note
+    bool trails; ///< on that way it goes after the other hand
 } roll_next;
 
 static himc_vec3 spot_of(const planner_score *score, const himc_stroke *stroke, int drum)
@@ -176,25 +180,39 @@ static double leap_time(const planner_roll *from, himc_vec3 way)
     return length > 0 ? himc_hand_leap_time(length) / (1 - share) : 0;
 }
 
-/// The first stroke of a list after the roll; a hand that would have to cross the other one leaves
-/// it to that one.
+/// The first stroke of a list after the roll, and its time; NULL if there is none soon.
+static const planner_stroke *listed_after(const planner_score *score, int i, int hand, double *time)
+{
+    double end = himc_planner_roll_end(score, i);
+    const planner_part *part = &score->part[hand];
+    int at = himc_planner_part_after(part, end - BEAT_ROUNDING, true);
+    const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
+    *time = s ? seconds_to(score, s->beat) - s->early : HUGE_VAL;
+    return *time <= seconds_to(score, end) + JOINED_TIME ? &part->list[at] : NULL;
+}
+
+/// The same as what follows; a hand that would have to cross the other one leaves it to that one,
+/// unless that one has a stroke of its own then.
 static void listed_next(const planner_score *score, int i, roll_next next[HIMC_HANDS])
 {
-    double end = himc_planner_roll_end(score, i), latest = seconds_to(score, end) + JOINED_TIME;
+    double time[HIMC_HANDS];
+    const planner_stroke *listed[HIMC_HANDS];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        listed[hand] = listed_after(score, i, hand, &time[hand]);
+    bool both = fabs(time[HIMC_LEFT] - time[HIMC_RIGHT]) < BOTH_HANDS;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_part *part = &score->part[hand];
-        int at = himc_planner_part_after(part, end - BEAT_ROUNDING, true);
-        const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
-        double time = s ? seconds_to(score, s->beat) - s->early : HUGE_VAL;
-        if (time > latest)
+        if (!listed[hand])
             continue;
         himc_hand by = (himc_hand)hand;
-        int drum = part->list[at].drum;
-        if (crosses(by, way_to(score, roll_of(score, i, by), s, drum)))
+        const himc_stroke *s = &listed[hand]->stroke;
+        int drum = listed[hand]->drum;
+        bool trails = crosses(by, way_to(score, roll_of(score, i, by), s, drum));
+        if (trails && !both)
             by = other_hand(by);
         const planner_roll *r = roll_of(score, i, by);
-        if (time < next[by].time)
-            next[by] = (roll_next){time, leap_time(r, way_to(score, r, s, drum)), 2, s->early > 0};
+        if (time[hand] < next[by].time)
+            next[by] = (roll_next){time[hand], leap_time(r, way_to(score, r, s, drum)), 2,
+                                   s->early > 0, trails && both};
     }
 }
 
@@ -223,7 +241,8 @@ static double join_of(const roll_next next[HIMC_HANDS], double first, double ste
     double extra = 0, calm = 0;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const roll_next *n = &next[hand];
-        double has = n->time - first + (hand == last ? 1 : 2) * step;
+        int steps = hand == last ? 1 : n->trails ? 0 : 2;
+        double has = n->time - first + steps * step;
         double wanted = n->grace ? fmin(GRACE_ROOM, n->calm * step) : n->calm * step;
         if (n->leap > 0)
             extra = fmax(extra, n->leap + UNEVENNESS * step - has);
