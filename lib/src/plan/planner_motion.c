@@ -391,6 +391,14 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
     return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
 }
 
+void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke)
+{
+    himc_planner_say(
+        &planner->notes, PLANNER_NEXT_ROUND,
+        "stroke at beat %g %s: no time to prepare it, it sounds from the next round on",
+        stroke->beat, himc_hand_name(stroke->hand));
+}
+
 /// No hand can play it: a line says so. One that the other hand has no time for is played all the
 /// same; where the hands then meet, the search leaves it out.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
@@ -402,6 +410,12 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
     planner->hand[s->stroke.hand].way.other = false;
     if (result == MEETS && plan_stroke(planner, &anyway) == PLANNED)
         return;
+    if (result == NO_TIME && s->index >= 0 && !s->roll &&
+        planner->hand[s->stroke.hand].added == s->index + 1) {
+        settle(planner, s);
+        himc_planner_tell_next_round(planner, &s->stroke);
+        return;
+    }
     if (s->index >= 0 || s->reassigned)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     reason_of(planner, s, result, miss.why);

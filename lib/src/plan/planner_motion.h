@@ -68,6 +68,7 @@ typedef struct planner_hand {
     timed_stroke planned[PLANNER_PLANNED]; ///< and the last one that is past
     int planned_count;
     int drum;      ///< of its last stroke
+    int added;     ///< 1 + index of a stroke that a loop has just got; 0: none
     bool struck;   ///< has had a stroke since the score was cleared
     bool targeted; ///< it rests at its last live target, not over a drum
     himc_stream stream;
@@ -208,6 +209,8 @@ HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
 HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 /// Makes the round of the loop at `t` round 0, before its length changes.
 HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
+/// A line: this stroke of a loop is left out of the round under way.
+HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke);
 /// A stroke has been put into the hand's score at `index`: later ones move up by one.
 HIMC_RT void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index);
 /// A roll has been put into the score at that index.
