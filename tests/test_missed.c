@@ -206,6 +206,45 @@ static void test_a_stroke_added_late_in_a_round_of_a_loop_is_played_or_told_of(v
     TEST_ASSERT_TRUE(told_of > 0);
 }
 
+static told of_two_drums(const char *more)
+{
+    himc_performance *p = session_new();
+    told t = {.misses = 0};
+    char text[512];
+    snprintf(text, sizeof text,
+             "drum low 32; drum high 23; tempo 120; stroke 0 right legato mf low; "
+             "stroke 1 right legato f low; stroke 1.1 left legato f low; "
+             "stroke 4 right legato mf low; %s",
+             more);
+    session_score(p, "build/missed-neighbours.txt", text);
+    session_do(p, "play");
+    listen_to(p, 3, &t);
+    himc_performance_free(p);
+    return t;
+}
+
+// what is not played makes no haste
+static void test_strokes_that_are_given_up_do_not_weaken_their_neighbours(void)
+{
+    static const char *const more[] = {
+        "stroke 1.2 right legato f high; stroke 1.3 left accent f high;",
+        "stroke 1.2 right legato f high; stroke 1.3 right legato f high;",
+        "drum far; far place 4 0 0.85; stroke 1.3 right legato f far;",
+    };
+    told plain = of_two_drums("");
+    TEST_ASSERT_EQUAL_INT(4, plain.h.strikes);
+    for (int k = 0; k < 3; k++) {
+        told t = of_two_drums(more[k]);
+        TEST_ASSERT_EQUAL_INT(k < 2 ? 2 : 1, t.misses);
+        TEST_ASSERT_EQUAL_INT(4, t.h.strikes);
+        for (int i = 0; i < 4; i++)
+            TEST_ASSERT_DOUBLE_WITHIN(0.01 * plain.h.strike[i].velocity, plain.h.strike[i].velocity,
+                                      t.h.strike[i].velocity);
+        heard_free(&t.h);
+    }
+    heard_free(&plain.h);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -216,5 +255,6 @@ int main(void)
     RUN_TEST(test_a_roll_that_is_past_is_given_up_in_one_line);
     RUN_TEST(test_a_stroke_for_a_hand_that_has_not_struck_in_a_loop_was_not_missed_before);
     RUN_TEST(test_a_stroke_added_late_in_a_round_of_a_loop_is_played_or_told_of);
+    RUN_TEST(test_strokes_that_are_given_up_do_not_weaken_their_neighbours);
     return UNITY_END();
 }

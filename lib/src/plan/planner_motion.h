@@ -39,6 +39,7 @@ typedef struct timed_stroke {
     int index;       ///< in the hand's part of the score, -1 for a hit or a reassigned stroke
     int roll;        ///< 1 + the roll in which `index` is its number; 0: it is of none
     int round;       ///< of the loop
+    bool gives_way;  ///< it is softer for the stroke after it
     bool reassigned; ///< it is from the other hand's part of the score
     bool separated;  ///< the tip has left the head again
     double asked;    ///< speed of impact that was asked for (m/s)
