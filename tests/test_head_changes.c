@@ -424,10 +424,47 @@ static void test_a_dump_with_changes_and_a_changed_drum_plays_the_same(void)
     TEST_ASSERT_TRUE(fabs(first[48000 + 5000]) > 1e-6); // it rang
 }
 
+static void dump_of(himc_performance *p, char *text, size_t size)
+{
+    session_do(p, "dump " DUMP);
+    FILE *file = fopen(DUMP, "r");
+    TEST_ASSERT_NOT_NULL(file);
+    text[fread(text, 1, size - 1, file)] = '\0';
+    fclose(file);
+}
+
+// the changes are in the score: the head they gave is not told once more as the drum's own
+static void test_a_piece_is_the_same_in_a_dump_after_it_was_played(void)
+{
+    static char before[8192], after[8192];
+    himc_performance *p = with_score(DRUM "at 0 low damp 1; at 1 low tune D3; at 3 low damp 0.5; "
+                                          "at 4 low tune C3; " STROKES);
+    for (int edits = 0; edits < 2; edits++) { // what is set by hand meanwhile is told
+        if (edits)
+            session_drum(p, 0, "decay 0.5");
+        dump_of(p, before, sizeof before);
+        session_do(p, "play");
+        for (int k = 0; k < 5; k++) {
+            session_play(p, 1.1, NULL);
+            dump_of(p, after, sizeof after);
+            TEST_ASSERT_EQUAL_STRING(before, after);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, 130.813, pitch(p)); // it was moved
+    }
+    session_drum(p, 0, "glide 0.2");
+    dump_of(p, after, sizeof after);
+    TEST_ASSERT_NOT_NULL(strstr(after, "low glide 0.2;"));
+    session_do(p, "clear"); // without its score the drum stays as it is
+    dump_of(p, after, sizeof after);
+    TEST_ASSERT_NOT_NULL(strstr(after, "low damp 0.5;"));
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_changes_after_the_last_stroke_act_and_end_the_piece);
+    RUN_TEST(test_a_piece_is_the_same_in_a_dump_after_it_was_played);
     RUN_TEST(test_at_as_a_message_makes_the_score_that_a_file_makes);
     RUN_TEST(test_at_is_given_up_when_its_beat_is_past);
     RUN_TEST(test_at_as_a_message_is_refused_as_in_a_file);

@@ -154,6 +154,117 @@ static void test_each_stroke_counts_where_sticks_come_to_lie_on_the_head(void)
     TEST_ASSERT_EQUAL_INT(strokes[0], strokes[1]);
 }
 
+static himc_performance *looping(const char *first)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "tempo 120");
+    session_do(p, "loop 1");
+    for (int beat = 0; beat < 4; beat++)
+        session_do(p, "stroke %d %s legato p", beat, beat % 2 ? first : "right");
+    session_do(p, "play");
+    return p;
+}
+
+// strikes of that stroke from `since` on
+static int strikes_of(const told *t, double beat, double since)
+{
+    int count = 0;
+    for (int i = 0; i < t->h.strikes; i++)
+        count += t->h.strike[i].beat == beat && t->h.strike[i].time > since;
+    return count;
+}
+
+// a round is 2 s, beat b of it about 0.4 s + 0.5 b after its beginning
+static void test_a_stroke_for_a_hand_that_has_not_struck_in_a_loop_was_not_missed_before(void)
+{
+    for (int past = 0; past < 2; past++) { // in the round under way, too
+        himc_performance *p = looping("right");
+        told t = {.misses = 0};
+        listen_to(p, 4.9, &t);
+        session_do(p, "stroke %s left legato mf", past ? "0.5" : "3.5");
+        listen_to(p, 6, &t);
+        TEST_ASSERT_EQUAL_INT(0, t.misses);
+        TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
+        TEST_ASSERT_NULL_MESSAGE(strstr(t.h.all, "given up"), t.h.all);
+        TEST_ASSERT_EQUAL_INT(3, strikes_of(&t, past ? 0.5 : 3.5, 0));
+        heard_free(&t.h);
+        himc_performance_free(p);
+    }
+}
+
+// played in the round under way if there is time, else a line tells that it is not
+static void test_a_stroke_added_late_in_a_round_of_a_loop_is_played_or_told_of(void)
+{
+    static const double leads[] = {0.04, 0.12, 0.3, 0.6};
+    int told_of = 0;
+    for (int hand = 0; hand < 4; hand++)
+        for (int k = 0; k < 4; k++) {
+            himc_performance *p = looping(hand < 2 ? "right" : "left");
+            told t = {.misses = 0};
+            double lead = leads[k], at;
+            listen_to(p, 3, &t);
+            TEST_ASSERT_EQUAL_DOUBLE(0, t.h.strike[0].beat);
+            at = t.h.strike[0].time + 3.75; // of beat 3.5 in the second round
+            listen_to(p, at - lead - 3, &t);
+            session_do(p, "stroke 3.5 %s legato mf", hand % 2 ? "left" : "right");
+            listen_to(p, lead + 0.1, &t);
+            bool played = strikes_of(&t, 3.5, at - 0.1) == 1;
+            told_of += !played;
+            TEST_ASSERT_EQUAL_INT_MESSAGE(played ? 0 : 1, t.h.notes, t.h.all);
+            if (!played) {
+                TEST_ASSERT_NOT_NULL_MESSAGE(strstr(t.h.note, "sounds from the next round"),
+                                             t.h.note);
+            }
+            TEST_ASSERT_TRUE(played || lead < 0.3);
+            listen_to(p, 2.1, &t);
+            TEST_ASSERT_EQUAL_INT(played + 1, strikes_of(&t, 3.5, 0));
+            TEST_ASSERT_EQUAL_INT(0, t.misses);
+            heard_free(&t.h);
+            himc_performance_free(p);
+        }
+    TEST_ASSERT_TRUE(told_of > 0);
+}
+
+static told of_two_drums(const char *more)
+{
+    himc_performance *p = session_new();
+    told t = {.misses = 0};
+    char text[512];
+    snprintf(text, sizeof text,
+             "drum low 32; drum high 23; tempo 120; stroke 0 right legato mf low; "
+             "stroke 1 right legato f low; stroke 1.1 left legato f low; "
+             "stroke 4 right legato mf low; %s",
+             more);
+    session_score(p, "build/missed-neighbours.txt", text);
+    session_do(p, "play");
+    listen_to(p, 3, &t);
+    himc_performance_free(p);
+    return t;
+}
+
+// what is not played makes no haste
+static void test_strokes_that_are_given_up_do_not_weaken_their_neighbours(void)
+{
+    static const char *const more[] = {
+        "stroke 1.2 right legato f high; stroke 1.3 left accent f high;",
+        "stroke 1.2 right legato f high; stroke 1.3 right legato f high;",
+        "drum far; far place 4 0 0.85; stroke 1.3 right legato f far;",
+    };
+    told plain = of_two_drums("");
+    TEST_ASSERT_EQUAL_INT(4, plain.h.strikes);
+    for (int k = 0; k < 3; k++) {
+        told t = of_two_drums(more[k]);
+        TEST_ASSERT_EQUAL_INT(k < 2 ? 2 : 1, t.misses);
+        TEST_ASSERT_EQUAL_INT(4, t.h.strikes);
+        for (int i = 0; i < 4; i++)
+            TEST_ASSERT_DOUBLE_WITHIN(0.01 * plain.h.strike[i].velocity, plain.h.strike[i].velocity,
+                                      t.h.strike[i].velocity);
+        heard_free(&t.h);
+    }
+    heard_free(&plain.h);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -163,5 +274,8 @@ int main(void)
     RUN_TEST(test_hits_that_come_late_all_the_time_are_told_of_meanwhile);
     RUN_TEST(test_a_roll_that_is_past_is_given_up_in_one_line);
     RUN_TEST(test_each_stroke_counts_where_sticks_come_to_lie_on_the_head);
+    RUN_TEST(test_a_stroke_for_a_hand_that_has_not_struck_in_a_loop_was_not_missed_before);
+    RUN_TEST(test_a_stroke_added_late_in_a_round_of_a_loop_is_played_or_told_of);
+    RUN_TEST(test_strokes_that_are_given_up_do_not_weaken_their_neighbours);
     return UNITY_END();
 }

@@ -55,7 +55,8 @@
 #define LEAN_BEGINS 0.60        // strike points farther than this make the trunk lean more (m) ...
 #define LEAN_SLOPE 1.4          // ... by this (rad/m) ...
 #define LEAN_LIMIT 0.55         // ... up to this (rad)
-#define TURN_SHARE 0.85         // of the strike points' mean azimuth; the arms do the rest
+#define TURN_SHARE 0.85         // of the azimuth of the strike points; the arms do the rest
+#define BOTH_SIDES 0.5          // cosine of the angle from which two places are on both sides
 #define TURN_LIMIT 1.05         // (rad)
 #define ARM_POSTURE_RATE 40.0   // chosen: a quarter of a second for elbow and wrist (rad/s)
 #define TRUNK_POSTURE_RATE 11.0 // chosen: half a second from drum to drum (rad/s)
@@ -116,20 +117,31 @@ double himc_posture_seat(const himc_skeleton_config *body, double lowest, double
     return fmax(fmin(seat, lowest - LOWEST_IMPACT), LOWEST_STOOL);
 }
 
-// The middle of two directions, not of two places: that of a place on each side may lie behind the
-// player. What is behind counts as beside.
+// as far as the trunk turns
+static double azimuth(himc_vec3 a)
+{
+    double most = TURN_LIMIT / TURN_SHARE;
+    return fmin(fmax(atan2(a.y, a.x), -most), most);
+}
+
+// The azimuth of the middle of two places; of places on both sides, whose middle may lie behind the
+// player, the middle of their directions.
+static double mean_azimuth(himc_vec3 a, himc_vec3 b)
+{
+    himc_vec3 both = himc_vec3_add(a, b);
+    if (a.x * b.x + a.y * b.y < BOTH_SIDES * hypot(a.x, a.y) * hypot(b.x, b.y))
+        return 0.5 * (azimuth(a) + azimuth(b));
+    return both.x * both.x + both.y * both.y > 1e-6 ? atan2(both.y, both.x) : 0;
+}
+
 himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip)
 {
-    double turn = 0, far = 0, most = TURN_LIMIT / TURN_SHARE;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        double way = hypot(strike[hand].x, strike[hand].y);
-        double azimuth = way > 1e-3 ? atan2(strike[hand].y, strike[hand].x) : 0;
-        turn += TURN_SHARE / HIMC_HANDS * fmin(fmax(azimuth, -most), most);
-        far = fmax(far, way);
-    }
+    double turn = TURN_SHARE * mean_azimuth(strike[HIMC_LEFT], strike[HIMC_RIGHT]);
+    double far = fmax(hypot(strike[HIMC_LEFT].x, strike[HIMC_LEFT].y),
+                      hypot(strike[HIMC_RIGHT].x, strike[HIMC_RIGHT].y));
     double more = fmin(LEAN_SLOPE * fmax(far - LEAN_BEGINS, 0), LEAN_LIMIT - TRUNK_LEAN);
     himc_trunk_posture b = {{0}, {0}, {0}};
-    b.value[HIMC_TRUNK_POSTURE_TURN] = turn;
+    b.value[HIMC_TRUNK_POSTURE_TURN] = fmin(fmax(turn, -TURN_LIMIT), TURN_LIMIT);
     b.value[HIMC_TRUNK_POSTURE_LEAN] = TRUNK_LEAN + more;
     b.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP] = grip == HIMC_GRIP_FRENCH;
     return b;

@@ -59,8 +59,8 @@ HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skele
 /// or as much higher or lower as its arms need; also the usual one if `lowest` is above `highest`.
 HIMC_RT double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest);
 
-/// The trunk posture for strokes at these points (m), one for each hand: turned to the middle of
-/// their directions, leaning forward as far as the farther one requires. At rest.
+/// The trunk posture for strokes at these points (m), one for each hand: turned towards their
+/// middle, leaning forward as far as the farther one requires. At rest.
 HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip);
 
 /// The trunk posture `dt` seconds (up to 0.02) after `now` on its way to `goal`: critically damped

@@ -467,7 +467,7 @@ static void dump_outline(const himc_drum *drum, const himc_line_sink *to)
 
 static void dump_head(const himc_drum *drum, const himc_line_sink *to)
 {
-    const himc_head *head = himc_membrane_head(drum->membrane);
+    const himc_head own = himc_drum_base_head(drum), *head = &own;
     himc_state_line seeded = himc_state_begin("uniformity"), modes = himc_state_begin("modes");
     himc_state_tell(to, "kettle", "usual", 0, NULL);
     himc_state_tell(to, "radius", NULL, 1, (double[]){head->radius});

@@ -31,6 +31,7 @@ typedef struct head_change {
 struct himc_drum_heads {
     himc_drum *copy;     ///< owned; the commands act on it
     himc_head first;     ///< before the first change
+    himc_head base;      ///< before that of all that `before` has ever held: what a dump tells
     himc_head known;     ///< of the drum, when it was last looked at; of the latest heads only
     bool edited;         ///< the drum was changed by hand: the heads of changes are out of date
     himc_drum_form form; ///< owned
@@ -57,7 +58,7 @@ himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *err
         return NULL;
     }
     heads->form = himc_drum_form_of(heads->copy);
-    heads->first = heads->known = *himc_membrane_head(heads->copy->membrane);
+    heads->first = heads->base = heads->known = *himc_membrane_head(heads->copy->membrane);
     heads->now = -2;
     return heads;
 }
@@ -204,8 +205,18 @@ void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum)
     heads->known = *now;
     for (; heads; heads = heads->before) {
         keep_edits(&heads->first, &was, now);
+        keep_edits(&heads->base, &was, now);
         heads->edited = true;
     }
+}
+
+himc_head himc_drum_base_head(const himc_drum *drum)
+{
+    const himc_head *now = himc_membrane_head(drum->membrane);
+    himc_head base = drum->heads ? drum->heads->base : *now;
+    if (drum->heads)
+        keep_edits(&base, &drum->heads->known, now);
+    return base;
 }
 
 /// From the present change on, the drum's head stays but for the changes from here on.
@@ -293,8 +304,10 @@ himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads 
 {
     heads->before = before;
     heads->from = from;
-    if (before)
+    if (before) {
         heads->known = before->known;
+        heads->base = before->base;
+    }
     himc_drum_heads *present = before;
     while (present && present->before && now < present->from)
         present = present->before;
@@ -446,7 +459,9 @@ bool himc_head_insertion_install(himc_head_insertion *j, himc_drum_heads **heads
         return false;
     if (!to) {
         to = *heads = j->fresh;
-        *to = (himc_drum_heads){.first = j->first, .known = j->first, .form = j->form, .now = -1};
+        *to = (himc_drum_heads){
+            .first = j->first, .base = j->first, .known = j->first, .form = j->form, .now = -1};
+        j->drum->heads = to;
         j->fresh = NULL;
         j->form = (himc_drum_form){.name = ""};
     }

@@ -42,7 +42,8 @@ struct himc_drum {
     himc_head usual;       ///< its head when it was made
     himc_word mallet_name; ///< "medium", or "own" when given by numbers
     himc_head_frame place;
-    bool placed; ///< by the command `place`
+    bool placed;                  ///< by the command `place`
+    const himc_drum_heads *heads; ///< borrowed; its changes in a score, NULL for none
     unsigned revision;
     himc_drum_driver driver;
     double rate;
@@ -77,6 +78,9 @@ void himc_drum_set_manner(himc_drum *drum, const himc_drum_manner *manner);
 
 /// Carries out a checked command that is no job.
 bool himc_drum_act(himc_drum *drum, const himc_command *checked, himc_error *error);
+
+/// The head without the changes of a score: the drum's own, which a state tells.
+himc_head himc_drum_base_head(const himc_drum *drum);
 
 /// The head after a checked command of one that a score may have at a beat, or of `radius` or
 /// `density`. False with the reason if the drum refuses it.

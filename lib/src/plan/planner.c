@@ -141,26 +141,61 @@ void himc_planner_set_human(himc_planner *planner, himc_human human)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
-/// While playing, a stroke before the planned ones is fitted in, or given up if its beat is past.
-static void fit_in(himc_planner *planner, himc_hand hand, int at)
+static double time_of(const planner_score *score, const planner_stroke *s, int round)
+{
+    return himc_planner_score_time(score, round, s->stroke.beat) - s->stroke.early;
+}
+
+/// A stroke added to a loop is the next one in the first round in which the hand is free by then,
+/// if it comes before the present next one. Planned strokes of a later round are put back already.
+static void fit_in_loop(himc_planner *planner, himc_hand hand, int at, bool first)
 {
     planner_score *score = &planner->score;
     const planner_part *part = &score->part[hand];
+    const planner_stroke *added = &part->list[at];
+    int round = 0;
+    while (time_of(score, added, round) <= planner->hand[hand].plan.end)
+        round++;
+    if (round > 0 && time_of(score, added, 0) > planner->now)
+        himc_planner_tell_next_round(planner, &added->stroke);
+    if (first || round < part->round || (round == part->round && at < part->next))
+        himc_planner_score_go(score, hand, at, round);
+    else if (round > part->round && at == part->next)
+        himc_planner_score_go(score, hand, at + 1, part->round);
+}
+
+/// The same without a loop; given up if its beat is past.
+static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
+{
+    planner_score *score = &planner->score;
+    const planner_part *part = &score->part[hand];
+    const planner_stroke *added = &part->list[at];
+    double time = time_of(score, added, part->round);
+    if (at >= part->next)
+        return;
+    if (time > planner->hand[hand].plan.end) {
+        himc_planner_score_go(score, hand, at, part->round);
+        return;
+    }
+    himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
+    himc_planner_notes_miss(&planner->notes,
+                            &(himc_planner_miss){added->stroke, added->drum, false, time, PAST});
+    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, %s",
+                     added->stroke.beat, himc_hand_name(hand), PAST);
+}
+
+/// While playing, a stroke before the planned ones is fitted in.
+static void fit_in(himc_planner *planner, himc_hand hand, int at, bool first)
+{
     double t = planner->now + PLANNER_AHEAD;
     himc_planner_cut(planner, hand, t);
-    double beat = part->list[at].stroke.beat,
-           time = himc_planner_score_time(score, part->round, beat) - part->list[at].stroke.early;
-    if (at < part->next && time > planner->hand[hand].plan.end) {
-        himc_planner_score_go(score, hand, at, part->round);
-    } else if (at < part->next && !score->loop) {
-        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
-        himc_planner_notes_miss(
-            &planner->notes,
-            &(himc_planner_miss){part->list[at].stroke, part->list[at].drum, false, time, PAST});
-        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, %s",
-                         beat, himc_hand_name(hand), PAST);
-    }
+    if (planner->score.loop)
+        fit_in_loop(planner, hand, at, first);
+    else
+        fit_in_once(planner, hand, at);
+    planner->hand[hand].added = planner->score.loop ? at + 1 : 0;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
+    planner->hand[hand].added = 0;
 }
 
 bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int drum,
@@ -186,13 +221,14 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     if (running)
         himc_planner_rebase(planner, planner->now);
     double anchor = running ? before_change(planner, t) : 0;
+    bool first = score->part[stroke->hand].count == 0;
     himc_planner_score_insert(score, at, stroke, drum);
     himc_planner_inserted(planner, stroke->hand, at);
     himc_planner_rest_again(planner);
     if (!running)
         return true;
     himc_planner_score_keep(score, anchor);
-    fit_in(planner, stroke->hand, at);
+    fit_in(planner, stroke->hand, at, first);
     if (score->roll_count > 0)
         himc_planner_replan(planner, t);
     return true;

@@ -67,26 +67,48 @@ double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke
                          : s->goal.time;
 }
 
-/// Bounces leave time for the hand's next stroke; none with the servo grip.
-static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t)
+static planner_roll_place place_of(const timed_stroke *s)
+{
+    return (planner_roll_place){s->roll - 1, s->index, s->round};
+}
+
+static bool is_settled(const himc_planner *planner, const timed_stroke *s)
+{
+    planner_roll_place place = place_of(s);
+    return s->index >= 0 && himc_planner_score_is_settled(&planner->score, s->stroke.hand, &place);
+}
+
+static bool is_settled_due(const himc_planner *planner, himc_hand hand, const planner_due *due)
+{
+    planner_roll_place place = {due->roll - 1, due->index, due->round};
+    return himc_planner_score_is_settled(&planner->score, hand, &place);
+}
+
+/// Bounces leave time for the hand's next stroke; none with the servo grip. The stroke is so many
+/// `ahead` in the score.
+static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t, int ahead)
 {
     planner_due after;
     himc_stroke *stroke = &s->stroke;
     if (planner->servo)
         stroke->bounces = 0;
-    if (stroke->bounces == 0 || s->index < 0 ||
-        !himc_planner_score_next(&planner->score, stroke->hand, 1, &after))
+    if (stroke->bounces == 0 || s->index < 0)
         return;
+    do {
+        if (!himc_planner_score_next(&planner->score, stroke->hand, ++ahead, &after))
+            return;
+    } while (is_settled_due(planner, stroke->hand, &after) && ahead < MOST_TRIES);
     double share = himc_planner_bounce_share(stroke->bounces);
     stroke->bounce_time = fmin(stroke->bounce_time, share * fmax(after.time - t, 0));
 }
 
-/// The next stroke of a hand, of the score or waiting, as written; false if there is none.
-static bool next_written(himc_planner *planner, himc_hand hand, timed_stroke *next)
+/// The next stroke of a hand, waiting or of the score and there so many `ahead`, as written; false
+/// if there is none.
+static bool written_at(himc_planner *planner, himc_hand hand, int ahead, timed_stroke *next)
 {
     const planner_hand *h = &planner->hand[hand];
     planner_due due;
-    bool scored = himc_planner_score_next(&planner->score, hand, 0, &due);
+    bool scored = himc_planner_score_next(&planner->score, hand, ahead, &due);
     double t = scored ? due.time : HUGE_VAL;
     if (h->waiting_count > 0 && himc_planner_waiting_time(planner, &h->waiting[0]) < t) {
         *next = h->waiting[0];
@@ -100,25 +122,29 @@ static bool next_written(himc_planner *planner, himc_hand hand, timed_stroke *ne
     } else {
         return false;
     }
-    fit_bounces(planner, next, t);
+    fit_bounces(planner, next, t, ahead);
     next->written = himc_planner_goal(planner, &next->stroke, next->drum, t);
     next->goal = next->written;
     next->varied = false;
     return true;
 }
 
+/// The next stroke of a hand that is not given up or reassigned already.
+static bool next_written(himc_planner *planner, himc_hand hand, timed_stroke *next)
+{
+    for (int ahead = 0; ahead < MOST_TRIES && written_at(planner, hand, ahead, next); ahead++)
+        if (!is_settled(planner, next))
+            return true;
+    return false;
+}
+
 /// The same as a human plays it.
 static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *next)
 {
-    bool more = next_written(planner, hand, next);
+    bool more = written_at(planner, hand, 0, next);
     if (more && planner->human.amount > 0)
         himc_planner_vary(planner, next);
     return more;
-}
-
-static planner_roll_place place_of(const timed_stroke *s)
-{
-    return (planner_roll_place){s->roll - 1, s->index, s->round};
 }
 
 /// The next stroke of the score is that one, or the one of its hand after it.
@@ -178,12 +204,6 @@ void himc_planner_queue(himc_planner *planner, const timed_stroke *s)
     for (; i > 0 && h->waiting[i - 1].goal.time > s->goal.time; i--)
         h->waiting[i] = h->waiting[i - 1];
     h->waiting[i] = *s;
-}
-
-static bool is_settled(const himc_planner *planner, const timed_stroke *s)
-{
-    planner_roll_place place = place_of(s);
-    return s->index >= 0 && himc_planner_score_is_settled(&planner->score, s->stroke.hand, &place);
 }
 
 static void settle(himc_planner *planner, const timed_stroke *s)
@@ -251,11 +271,12 @@ static double time_for(const planner_hand *h, const timed_stroke *s)
 /// The goal's gesture as strong as the time before it allows, by the law of haste (gesture.c). The
 /// first stroke of a fast run is one of it: a stroke gives way to the next one by as much as that
 /// one, or this one if it is softer, loses by the time between them.
-static himc_gesture in_haste(himc_planner *planner, const timed_stroke *s)
+static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
 {
     const planner_hand *h = &planner->hand[s->stroke.hand];
     himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, HIMC_HURRY * time_for(h, s));
     timed_stroke after;
+    s->gives_way = false;
     if (!next_written(planner, s->stroke.hand, &after))
         return g;
     double time = after.written.time - s->goal.time - s->goal.hold;
@@ -263,7 +284,8 @@ static himc_gesture in_haste(himc_planner *planner, const timed_stroke *s)
         return g;
     himc_gesture other = after.written.gesture, softer = own.speed < other.speed ? own : other;
     double share = himc_gesture_bend(softer, HIMC_HURRY * time).speed / softer.speed;
-    return share * own.speed < g.speed ? himc_gesture_scale(own, share) : g;
+    s->gives_way = share * own.speed < g.speed;
+    return s->gives_way ? himc_gesture_scale(own, share) : g;
 }
 
 /// Counts a stroke that was struck softer than asked for, and says so once; a plan may still change
@@ -356,8 +378,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 /// the other hand still has time to play it.
 static plan_result check_following(himc_planner *planner, himc_hand hand, timed_stroke *following)
 {
-    if (!next_written(planner, hand, following) || following->index < 0 ||
-        is_settled(planner, following))
+    if (!next_written(planner, hand, following) || following->index < 0)
         return PLANNED;
     if (!himc_planner_reaches(planner, hand, &following->written))
         return TOO_FAR;
@@ -365,7 +386,8 @@ static plan_result check_following(himc_planner *planner, himc_hand hand, timed_
 }
 
 /// Plans a hand's next stroke, or a wait before it. If the result is not PLANNED, `refused` is the
-/// stroke that cannot be played: that one or the one after it.
+/// stroke that cannot be played: that one, or the one after it. The stroke before that one is put
+/// back if it has given way to it, to be planned without it.
 static plan_result plan_next(himc_planner *planner, himc_hand hand, double until,
                              timed_stroke *refused)
 {
@@ -381,14 +403,30 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     take(planner, &next);
     if (is_settled(planner, &next))
         return PLANNED;
+    himc_hand_plan before = h->plan;
     plan_result result = plan_stroke(planner, &next);
     *refused = next;
-    return result == PLANNED ? check_following(planner, hand, refused) : result;
+    if (result != PLANNED)
+        return result;
+    result = check_following(planner, hand, refused);
+    if (result != PLANNED && next.gives_way && !planner->clear.planning) {
+        h->plan = before;
+        put_back(planner, hand, &h->planned[--h->planned_count]);
+    }
+    return result;
 }
 
 static bool has_to_plan(const planner_hand *h, double until, int tries)
 {
     return tries < MOST_TRIES && h->plan.end < until && himc_hand_room(&h->plan);
+}
+
+void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke)
+{
+    himc_planner_say(
+        &planner->notes, PLANNER_NEXT_ROUND,
+        "stroke at beat %g %s: no time to prepare it, it sounds from the next round on",
+        stroke->beat, himc_hand_name(stroke->hand));
 }
 
 /// No hand can play it: a line says so. One that the other hand has no time for is played all the
@@ -402,6 +440,12 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
     planner->hand[s->stroke.hand].way.other = false;
     if (result == MEETS && plan_stroke(planner, &anyway) == PLANNED)
         return;
+    if (result == NO_TIME && s->index >= 0 && !s->roll &&
+        planner->hand[s->stroke.hand].added == s->index + 1) {
+        settle(planner, s);
+        himc_planner_tell_next_round(planner, &s->stroke);
+        return;
+    }
     if (s->index >= 0 || s->reassigned)
         himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     reason_of(planner, s, result, miss.why);
@@ -491,7 +535,7 @@ bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *
             planner_due due;
             if (!himc_planner_score_next(&planner->score, hand, i, &due) || due.time > *t + HIT_GAP)
                 break;
-            if (due.time > *t - HIT_GAP)
+            if (due.time > *t - HIT_GAP && !is_settled_due(planner, hand, &due))
                 clash = fmax(clash, due.time);
         }
         if (clash == -HUGE_VAL)
@@ -508,8 +552,7 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     for (int i = 0; i < MOST_TRIES && due.time <= goal->time; i++) {
         if (!himc_planner_score_next(&planner->score, hand, i, &due))
             break;
-        planner_roll_place place = {due.roll - 1, due.index, due.round};
-        if (himc_planner_score_is_settled(&planner->score, hand, &place))
+        if (is_settled_due(planner, hand, &due))
             continue;
         himc_goal own = himc_planner_goal(planner, &due.stroke, due.drum, due.time);
         bool first = due.time <= goal->time;

@@ -39,6 +39,7 @@ typedef struct timed_stroke {
     int index;       ///< in the hand's part of the score, -1 for a hit or a reassigned stroke
     int roll;        ///< 1 + the roll in which `index` is its number; 0: it is of none
     int round;       ///< of the loop
+    bool gives_way;  ///< it is softer for the stroke after it
     bool reassigned; ///< it is from the other hand's part of the score
     bool separated;  ///< the tip has left the head again
     double asked;    ///< speed of impact that was asked for (m/s)
@@ -68,6 +69,7 @@ typedef struct planner_hand {
     timed_stroke planned[PLANNER_PLANNED]; ///< and the last one that is past
     int planned_count;
     int drum;      ///< of its last stroke
+    int added;     ///< 1 + index of a stroke that a loop has just got; 0: none
     bool struck;   ///< has had a stroke since the score was cleared
     bool targeted; ///< it rests at its last live target, not over a drum
     himc_stream stream;
@@ -208,6 +210,8 @@ HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
 HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 /// Makes the round of the loop at `t` round 0, before its length changes.
 HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
+/// A line: this stroke of a loop is left out of the round under way.
+HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke);
 /// A stroke has been put into the hand's score at `index`: later ones move up by one.
 HIMC_RT void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index);
 /// A roll has been put into the score at that index.

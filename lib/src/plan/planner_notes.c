@@ -1,9 +1,9 @@
 /// planner_notes.c: lines for the user, in a ring that does not grow.
 ///
 /// Each kind is said once per play, so that a fast passage does not say the same thing a hundred
-/// times; the counts tell the rest at the end. Only a stroke that is given up has a line of its
-/// own, unless there are many: LINES at once and one more each second. What finds no room is
-/// counted in the last line.
+/// times; the counts tell the rest at the end. Only a stroke that is given up, or left to the next
+/// round of a loop, has a line of its own; of those given up, unless there are many: LINES at once
+/// and one more each second. What finds no room is counted in the last line.
 #include "plan/planner_notes.h"
 #include "base/format.h"
 
@@ -37,7 +37,7 @@ static bool may_say(planner_notes *notes, planner_kind kind)
         return false;
     notes->said[kind] = true;
     if (kind != PLANNER_GIVEN_UP)
-        return first;
+        return first || kind == PLANNER_NEXT_ROUND;
     if (notes->spent <= LINES - 1) {
         notes->spent++;
         return true;

@@ -19,6 +19,7 @@ typedef enum planner_kind {
     PLANNER_DROPPED,
     PLANNER_OTHER_HAND,
     PLANNER_OVERLAP,
+    PLANNER_NEXT_ROUND,
     PLANNER_KINDS
 } planner_kind;
 

@@ -107,6 +107,8 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
 {
     planner_part *part = &score->part[stroke->hand];
     planner_stroke *at = part->list + index;
+    if (part->count == 0)
+        part->round = 0; // its rounds begin with the one under way
     memmove(at + 1, at, (size_t)(part->count - index) * sizeof *at);
     *at = (planner_stroke){*stroke, drum, 0};
     part->count++;
