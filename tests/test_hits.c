@@ -473,6 +473,56 @@ static void test_no_arm_whips_from_drum_to_drum_where_they_stand_by_themselves(v
     }
 }
 
+// along four drums in an arc: each hit by the hand of its side or the one that comes from next to
+// it, and no later than that hand would be if it were asked for
+static void test_any_hand_along_an_arc_of_drums_crosses_nothing_and_is_as_early_as_can_be(void)
+{
+    static const char *const drum[] = {"low", "second", "third", "high"};
+    static const double interval[] = {0.4, 0.3, 0.25};
+    for (int k = 0; k < 3; k++) {
+        timed_hit hit[9] = {{0}};
+        heard h = {.strikes = 0};
+        himc_performance *p = with_four(true);
+        for (int i = 0; i < 8; i++)
+            hit[i] = (timed_hit){0.5 + interval[k] * i, drum[i < 4 ? i : 7 - i]};
+        play_hits(p, hit, &h);
+        TEST_ASSERT_EQUAL_INT(8, h.strikes);
+        for (int i = 0; i < 8; i++) {
+            double late = h.strike[i].time - hit[i].at - LATENCY;
+            printf("%s %s %.0f ms late\n", himc_hand_name(h.strike[i].hand), hit[i].drum,
+                   1e3 * late);
+            TEST_ASSERT_EQUAL_STRING(hit[i].drum, h.strike[i].drum);
+            TEST_ASSERT_TRUE(late < 0.015);
+            if (strcmp(hit[i].drum, "low") == 0)
+                TEST_ASSERT_EQUAL_INT(HIMC_LEFT, h.strike[i].hand);
+            if (strcmp(hit[i].drum, "high") == 0)
+                TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, h.strike[i].hand);
+        }
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
+// the other hand is over the neighbour at first: from the third stroke on they take turns
+static void test_any_hand_takes_turns_on_a_drum_after_strokes_on_its_neighbour(void)
+{
+    static const timed_hit hit[] = {{0.5, "second"}, {0.5, "third"}, {1.5, "third"},
+                                    {1.6, "third"},  {1.7, "third"}, {1.8, "third"},
+                                    {1.9, "third"},  {2, "third"},   {0, NULL}};
+    heard h = {.strikes = 0};
+    himc_performance *p = with_four(false);
+    play_hits(p, hit, &h);
+    TEST_ASSERT_EQUAL_INT(8, h.strikes);
+    for (int i = 2; i < 8; i++) {
+        printf("%s %.2f m/s %.0f ms late\n", himc_hand_name(h.strike[i].hand), h.strike[i].velocity,
+               1e3 * (h.strike[i].time - hit[i].at - LATENCY));
+        TEST_ASSERT_DOUBLE_WITHIN(0.0005, hit[i].at + LATENCY, h.strike[i].time);
+        TEST_ASSERT_TRUE(i < 4 || h.strike[i].hand != h.strike[i - 1].hand);
+    }
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -492,5 +542,7 @@ int main(void)
     RUN_TEST(test_a_hit_moves_no_stroke_of_the_playing_score_aside);
     RUN_TEST(test_a_hit_elsewhere_than_asked_is_told);
     RUN_TEST(test_no_arm_whips_from_drum_to_drum_where_they_stand_by_themselves);
+    RUN_TEST(test_any_hand_along_an_arc_of_drums_crosses_nothing_and_is_as_early_as_can_be);
+    RUN_TEST(test_any_hand_takes_turns_on_a_drum_after_strokes_on_its_neighbour);
     return UNITY_END();
 }

@@ -41,6 +41,8 @@
 // chosen: a way on the drum over which the hand waits costs so much of another, so that the hands
 // take turns all over it
 #define OVER_DRUM 0.25
+// chosen: 10 ms sooner is worth 0.7 m of way, 6 ms the other side of the other hand
+#define LATE_COST 100.0 // (1/s)
 
 // a hand that is led
 #define LIFT_TIME 0.5 // of a hand that has lain on a head, to its rest (s); chosen: without haste
@@ -148,13 +150,14 @@ static double cost_of(himc_hand hand, const chance *c, const chance *other)
     double aside = c->goal.spot.y - other->from.y; // the left hand is towards +y
     himc_sticking s = {
         .gap = c->goal.time - c->near.before.time,
+        .waits = c->idle,
         .way = way < ON_SPOT ? 0
                : c->over     ? OVER_DRUM * way
                              : way,
         .same_spot = himc_vec3_length(himc_vec3_sub(c->goal.spot, c->near.before.spot)) < ON_SPOT,
         .inwards = hand == HIMC_LEFT ? -aside : aside,
         .other_gap = other->goal.time - other->near.before.time};
-    return himc_sticking_cost(&s);
+    return himc_sticking_cost(&s) + LATE_COST * c->late;
 }
 
 /// The hand that plays a hit: the one asked for if it is on time, else the other if that one is, or

@@ -6,9 +6,10 @@
 ///     + .2 if it strikes the same spot again, after less than 2 s, and was the last to strike
 ///
 /// with `gap` the time since the hand's last stroke, D the way from there, and need = .10 + .1
-/// log2(2 D/.1 + 1) s (Fitts 1954, MacKay's form; .09 s on the spot). The weights are chosen: one
-/// drum is played hand by hand, two drums in the middle by sides, outer drums by the hand of their
-/// side.
+/// log2(2 D/.1 + 1) s (Fitts 1954, MacKay's form; .09 s on the spot). A hand that has waited until a
+/// live hit was asked for had no time before for its way: the first two terms are left out, and
+/// whoever asks counts how late it comes. The weights are chosen: one drum is played hand by hand,
+/// two drums in the middle by sides, outer drums by the hand of their side.
 #ifndef HIMC_STICKING_H
 #define HIMC_STICKING_H
 
@@ -25,6 +26,7 @@
 /// A hand on its way to a stroke.
 typedef struct himc_sticking {
     double gap;       ///< time since its last stroke, above 0 (s)
+    bool waits;       ///< and has begun its way only now
     double way;       ///< from where it comes (m)
     bool same_spot;   ///< its last stroke was there, too
     double inwards;   ///< of the stroke, past the other hand (m)
@@ -34,8 +36,9 @@ typedef struct himc_sticking {
 static inline double himc_sticking_cost(const himc_sticking *s)
 {
     double need = s->way > 0 ? 0.10 + 0.1 * log2(2 * s->way / 0.1 + 1) : 0.09;
-    double cost = 40 * fmax(0, need - s->gap) / need + pow(0.3 * need / s->gap, 2) + 1.5 * s->way +
-                  2 * fmax(0, 0.22 / s->gap - 1);
+    double cost = 1.5 * s->way + 2 * fmax(0, 0.22 / s->gap - 1);
+    if (!s->waits)
+        cost += 40 * fmax(0, need - s->gap) / need + pow(0.3 * need / s->gap, 2);
     if (s->inwards > HIMC_STICKING_CROSS)
         cost += s->other_gap < 0.15 ? 3.6 : 0.6;
     bool again = s->same_spot && s->gap < s->other_gap && s->gap < HIMC_STICKING_ANEW;
