@@ -2,7 +2,9 @@
 # ignored test and ends where the browser is missing.
 : "${HIMC_BUILD:=build}" "${CC:=gcc}"
 export HIMC_BUILD
-dir=$HIMC_BUILD/tests/viewer
+HIMC_MADE=$HIMC_BUILD/tests/viewer/$(basename "$0" .sh) # of its own: such tests run side by side
+export HIMC_MADE
+dir=$HIMC_MADE
 for need in python3 chromedriver; do
     if [ ! -x "$HIMC_BUILD/bin/himc-viewer" ] || ! command -v $need >/dev/null; then
         echo "$0:0:$(basename "$0" .sh):IGNORE: needs what tools/deps-viewer.txt and tools/deps-browser.txt list"
