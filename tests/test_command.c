@@ -535,7 +535,9 @@ static void test_unknown_commands_are_answered_with_the_nearest_name(void)
     refused(perform("paly"), "paly: unknown command, did you mean play?");
     refused(perform("x"), "x: unknown command, `himc help commands` lists them");
     refused(perform("xylophone"), "xylophone: unknown command, `himc help commands` lists them");
-    refused(perform("tune 110"), "tune: a command for a drum, not for the performer");
+    refused(
+        perform("tune 110"),
+        "tune: a command for a drum, not for the performer: its name comes before it (`kettle tune`)");
     refused(drum("play"), "play: a command for the performer, not for a drum");
     TEST_ASSERT_FALSE(perform("a\001b"));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "a?b"));

@@ -142,8 +142,12 @@ static void test_errors_name_file_and_line(void)
         "s.txt:2: stroke: NUANCE: legatto, allowed legato tenuto accent vertical-accent staccato");
     refused("kettle tun 110;", "s.txt:1: kettle: tun: unknown command, did you mean tune?");
     refused("kettle play;", "s.txt:1: kettle: play: a command for the performer, not for a drum");
-    refused("tune 110;", "s.txt:1: tune: a command for a drum, not for the performer");
-    refused("tune A2;", "s.txt:1: tune: a command for a drum, not for the performer");
+    refused(
+        "tune 110;",
+        "s.txt:1: tune: a command for a drum, not for the performer: its name comes before it (`kettle tune`)");
+    refused(
+        "tune A2;",
+        "s.txt:1: tune: a command for a drum, not for the performer: its name comes before it (`kettle tune`)");
     refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, allowed tune HZ | NOTE");
     refused("drum kettle;\n\nkettle radius 0;",
             "s.txt:3: kettle: radius: RADIUS: 0, allowed 0.05 .. 1 m");

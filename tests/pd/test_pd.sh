@@ -229,7 +229,7 @@ membrane~: 4 arguments, allowed: [-save] NAME [INCHES [CHANNELS]]
 membrane~: argument 3: loud, allowed: a number of channels
 membrane~: channels: 9, allowed 1 .. 8
 membrane~: channels: 1.5, allowed a whole number
-membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, allowed a drum's name: up to 31 letters and digits, no spot, no command of the performer
+membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, allowed a drum's name: up to 31 letters and digits, no number, no spot, no command of the performer
 himc~: drum: NAME: rim, allowed a drum's name
 membrane~: drum: NAME: centre, allowed a drum's name
 himc~: drum tempo: the name of a command, expected another name

@@ -228,9 +228,10 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     switch (argument->kind) {
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", words); break;
     case HIMC_ARGUMENT_NAME:
-        snprintf(text, size,
-                 "a drum's name: up to %d letters and digits, no spot, no command of the performer",
-                 HIMC_NAME_SIZE - 1);
+        snprintf(
+            text, size,
+            "a drum's name: up to %d letters and digits, no number, no spot, no command of the performer",
+            HIMC_NAME_SIZE - 1);
         break;
     case HIMC_ARGUMENT_TEXT:
         snprintf(text, size, "a word of up to %g characters", argument->high);

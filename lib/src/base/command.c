@@ -277,9 +277,13 @@ static bool refuse_name(himc_receiver receiver, const char *name, himc_error *er
         if (row->receiver == receiver)
             himc_nearest_try(&nearest, row->name);
         else if (strcmp(row->name, name) == 0)
-            return himc_error_set(error, "%s: a command for %s", word,
-                                  receiver == HIMC_DRUM ? "the performer, not for a drum"
-                                                        : "a drum, not for the performer");
+            return receiver == HIMC_DRUM
+                       ? himc_error_set(error, "%s: a command for the performer, not for a drum",
+                                        word)
+                       : himc_error_set(error,
+                                        "%s: a command for a drum, not for the performer: its name "
+                                        "comes before it (`kettle %s`)",
+                                        word, word);
     if (nearest.name)
         return himc_error_set(error, "%s: unknown command, did you mean %s?", word, nearest.name);
     return himc_error_set(error, "%s: unknown command, `himc help commands` lists them", word);

@@ -31,8 +31,7 @@ typedef struct head_change {
 struct himc_drum_heads {
     himc_drum *copy;     ///< owned; the commands act on it
     himc_head first;     ///< before the first change
-    himc_head base;      ///< before that of all that `before` has ever held: what a dump tells
-    himc_head known;     ///< of the drum, when it was last looked at; of the latest heads only
+    drum_told_head told; ///< known: of the latest heads only
     bool edited;         ///< the drum was changed by hand: the heads of changes are out of date
     himc_drum_form form; ///< owned
     head_change *change; ///< owned, in the order of beats
@@ -58,7 +57,8 @@ himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *err
         return NULL;
     }
     heads->form = himc_drum_form_of(heads->copy);
-    heads->first = heads->base = heads->known = *himc_membrane_head(heads->copy->membrane);
+    heads->first = heads->told.base = heads->told.known =
+        *himc_membrane_head(heads->copy->membrane);
     heads->now = -2;
     return heads;
 }
@@ -177,46 +177,23 @@ bool himc_drum_heads_due(const himc_drum_heads *heads, double beat)
                    : wanted_at(heads, beat) != heads->now;
 }
 
-/// Sets in `head` what differs between `was` and `now`.
-static void keep_edits(himc_head *head, const himc_head *was, const himc_head *now)
-{
-#define KEEP(field) head->field = now->field != was->field ? now->field : head->field
-    KEEP(radius);
-    KEEP(tension);
-    KEEP(density);
-    KEEP(decay_constant);
-    KEEP(decay_square);
-    KEEP(modes);
-    KEEP(air);
-    KEEP(kettle);
-    KEEP(glide);
-    KEEP(damp);
-    KEEP(uniformity);
-    KEEP(uniformity_seed);
-#undef KEEP
-}
-
 void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum)
 {
     const himc_head *now = himc_membrane_head(drum->membrane);
-    if (himc_head_equal(&heads->known, now))
+    if (himc_head_equal(&heads->told.known, now))
         return;
-    himc_head was = heads->known;
-    heads->known = *now;
+    himc_head was = heads->told.known;
+    heads->told.known = *now;
     for (; heads; heads = heads->before) {
-        keep_edits(&heads->first, &was, now);
-        keep_edits(&heads->base, &was, now);
+        himc_drum_keep_edits(&heads->first, &was, now);
+        himc_drum_keep_edits(&heads->told.base, &was, now);
         heads->edited = true;
     }
 }
 
-himc_head himc_drum_base_head(const himc_drum *drum)
+void himc_drum_set_heads(himc_drum *drum, const himc_drum_heads *heads)
 {
-    const himc_head *now = himc_membrane_head(drum->membrane);
-    himc_head base = drum->heads ? drum->heads->base : *now;
-    if (drum->heads)
-        keep_edits(&base, &drum->heads->known, now);
-    return base;
+    drum->told = heads ? &heads->told : NULL;
 }
 
 /// From the present change on, the drum's head stays but for the changes from here on.
@@ -227,7 +204,7 @@ static int first_to_act(const himc_drum_heads *heads, int change)
 
 double himc_drum_heads_damp(const himc_drum_heads *heads, double beat)
 {
-    double present = heads->known.damp;
+    double present = heads->told.known.damp;
     while (heads->before && beat < heads->from)
         heads = heads->before;
     int change = wanted_at(heads, beat), from = first_to_act(heads, change);
@@ -295,7 +272,7 @@ bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, 
     heads->since = 0;
     bool good = give_head(heads, drum, change, error);
     heads->now = change;
-    latest->known = *himc_membrane_head(drum->membrane);
+    latest->told.known = *himc_membrane_head(drum->membrane);
     return good;
 }
 
@@ -305,8 +282,7 @@ himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads 
     heads->before = before;
     heads->from = from;
     if (before) {
-        heads->known = before->known;
-        heads->base = before->base;
+        heads->told = before->told;
     }
     himc_drum_heads *present = before;
     while (present && present->before && now < present->from)
@@ -460,8 +436,8 @@ bool himc_head_insertion_install(himc_head_insertion *j, himc_drum_heads **heads
     if (!to) {
         to = *heads = j->fresh;
         *to = (himc_drum_heads){
-            .first = j->first, .base = j->first, .known = j->first, .form = j->form, .now = -1};
-        j->drum->heads = to;
+            .first = j->first, .told = {j->first, j->first}, .form = j->form, .now = -1};
+        himc_drum_set_heads(j->drum, to);
         j->fresh = NULL;
         j->form = (himc_drum_form){.name = ""};
     }

@@ -121,6 +121,8 @@ HIMC_RT void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *dru
 /// now on. Returns those that are over at beat `now`, to be freed, or NULL.
 himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads *before,
                                         double from, double now);
+/// From now on these are the drum's (NULL: none): its state is told without their changes.
+HIMC_RT void himc_drum_set_heads(himc_drum *drum, const himc_drum_heads *heads);
 /// Frees them, and those before. NULL is allowed.
 void himc_drum_heads_free(himc_drum_heads *heads);
 

@@ -34,6 +34,12 @@ typedef struct drum_queue {
     int first, count;
 } drum_queue;
 
+/// The head of a drum that a score changes.
+typedef struct drum_told_head {
+    himc_head base;  ///< without the changes
+    himc_head known; ///< of the drum, when it was last looked at
+} drum_told_head;
+
 struct himc_drum {
     char name[HIMC_NAME_SIZE];
     int references;
@@ -42,8 +48,8 @@ struct himc_drum {
     himc_head usual;       ///< its head when it was made
     himc_word mallet_name; ///< "medium", or "own" when given by numbers
     himc_head_frame place;
-    bool placed;                  ///< by the command `place`
-    const himc_drum_heads *heads; ///< borrowed; its changes in a score, NULL for none
+    bool placed;                ///< by the command `place`
+    const drum_told_head *told; ///< borrowed; of its changes in a score, NULL for none
     unsigned revision;
     himc_drum_driver driver;
     double rate;
@@ -81,6 +87,8 @@ bool himc_drum_act(himc_drum *drum, const himc_command *checked, himc_error *err
 
 /// The head without the changes of a score: the drum's own, which a state tells.
 himc_head himc_drum_base_head(const himc_drum *drum);
+/// Sets in `head` what differs between `was` and `now`.
+HIMC_RT void himc_drum_keep_edits(himc_head *head, const himc_head *was, const himc_head *now);
 
 /// The head after a checked command of one that a score may have at a beat, or of `radius` or
 /// `density`. False with the reason if the drum refuses it.

@@ -145,7 +145,7 @@ static void release(performance_drums *d, himc_drum *drum)
     himc_drum_listen(drum, &(himc_listener){.on = false});
     himc_drum_enclose(drum, &HIMC_WALLS_USUAL);
     himc_drum_fade(drum, 1);
-    drum->heads = NULL;
+    himc_drum_set_heads(drum, NULL);
     himc_drum_release(drum);
 }
 
@@ -251,7 +251,7 @@ void himc_drums_put_back(performance_drums *d)
             release(d, drum);
             continue;
         }
-        drum->heads = NULL;
+        himc_drum_set_heads(drum, NULL);
         if (is_where_put(&old[i]))
             himc_drum_stand(drum, old[i].found);
         himc_drum_rest(drum);
@@ -263,7 +263,7 @@ himc_drum_heads *himc_drums_set_heads(performance_drums *d, int index, himc_drum
 {
     himc_drum_heads *before = d->slot[index].heads;
     d->slot[index].heads = heads;
-    d->slot[index].drum->heads = heads;
+    himc_drum_set_heads(d->slot[index].drum, heads);
     return before;
 }
 

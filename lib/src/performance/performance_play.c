@@ -291,7 +291,7 @@ static bool cut_units(himc_job *job, himc_error *error)
         if (c->count > 2 && c->choice[2] >= 0)
             j->unit[i].spot = (himc_spot)c->choice[2];
     }
-    return j->count >= 0;
+    return j->count >= 0 || himc_error_prefix(error, "units");
 }
 
 static himc_job_state add_units(himc_job *job, himc_error *error)
