@@ -178,6 +178,15 @@ static void hear_loudest(const himc_drum *d, int slot, past before)
                                 now[k] * (struck > 0 ? fmax(1, sqrt(before.energy / struck)) : 1));
 }
 
+// a channel that is new hears at first what the others do, of the settings before it
+static double scale_of(int slot, int channel)
+{
+    double most = 0;
+    for (int k = 0; k < HIMC_PICKUPS; k++)
+        most = fmax(most, loudest[slot][k]);
+    return fmax(loudest[slot][channel] > 0 ? loudest[slot][channel] : most, INAUDIBLE);
+}
+
 static const himc_command_id of_tempo[10] = {
     HIMC_COMMAND_TEMPO, HIMC_COMMAND_TEMPO, HIMC_COMMAND_TEMPO, HIMC_COMMAND_TEMPO,
     HIMC_COMMAND_ROLL,  HIMC_COMMAND_ROLL,  HIMC_COMMAND_FLAM,  HIMC_COMMAND_DRAG,
@@ -249,13 +258,14 @@ static void check_sound(const himc_drum *d, int slot, int pickup, int n, past be
         most = fmax(most, fabs(sound[i]));
         sum += sound[i];
     }
-    double *scale = &loudest[slot][pickup], louder = thrown ? THROWN_LOUDER : LOUDER;
-    if (most > louder * fmax(*scale, INAUDIBLE)) // the head may have changed by itself
+    double louder = thrown ? THROWN_LOUDER : LOUDER;
+    if (most > louder * scale_of(slot, pickup)) // the head may have changed by itself
         hear_loudest(d, slot, before);
+    double scale = scale_of(slot, pickup);
     seen.loudest = fmax(seen.loudest, most);
-    seen.share = fmax(seen.share, most / fmax(*scale, INAUDIBLE));
-    if (!isfinite(sum) || most > louder * fmax(*scale, INAUDIBLE)) {
-        printf("%s, channel %d: %g, the loudest stroke %g\n", d->name, pickup, most, *scale);
+    seen.share = fmax(seen.share, most / scale);
+    if (!isfinite(sum) || most > louder * scale) {
+        printf("%s, channel %d: %g, the loudest stroke %g\n", d->name, pickup, most, scale);
         fail(thrown ? "a sample 40 dB above the loudest real stroke, after an arm was thrown"
                     : "a sample 20 dB above the loudest real stroke");
     }

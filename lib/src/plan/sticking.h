@@ -6,8 +6,8 @@
 ///     + .2 if it strikes the same spot again, after less than 2 s, and was the last to strike
 ///
 /// with `gap` the time since the hand's last stroke, D the way from there, and need = .10 + .1
-/// log2(2 D/.1 + 1) s (Fitts 1954, MacKay's form; .09 s on the spot). A hand that has waited until a
-/// live hit was asked for had no time before for its way: the first two terms are left out, and
+/// log2(2 D/.1 + 1) s (Fitts 1954, MacKay's form; .09 s on the spot). A hand that has waited until
+/// a live hit was asked for had no time before for its way: the first two terms are left out, and
 /// whoever asks counts how late it comes. The weights are chosen: one drum is played hand by hand,
 /// two drums in the middle by sides, outer drums by the hand of their side.
 #ifndef HIMC_STICKING_H
