@@ -56,7 +56,7 @@
 #define LEAN_SLOPE 1.4          // ... by this (rad/m) ...
 #define LEAN_LIMIT 0.55         // ... up to this (rad)
 #define TURN_SHARE 0.85         // of the azimuth of the strike points; the arms do the rest
-#define BOTH_SIDES 0.5          // cosine of the angle from which two places are on both sides
+#define BOTH_SIDES (-0.5)       // cosine of the angle from which two places are on both sides
 #define TURN_LIMIT 1.05         // (rad)
 #define ARM_POSTURE_RATE 40.0   // chosen: a quarter of a second for elbow and wrist (rad/s)
 #define TRUNK_POSTURE_RATE 11.0 // chosen: half a second from drum to drum (rad/s)
