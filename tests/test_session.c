@@ -244,7 +244,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
         {"gain nose 1 1;", ":5: gain: JOINT: nose, allowed waist"},
         {"strength nose 1;", ":5: strength: JOINT: nose, allowed waist"},
         {"listen 9000;", ":5: listen: allowed as a message"},
-        {"units /no/such/take.bvh legato;", ":5: /no/such/take.bvh"},
+        {"units /no/such/take.bvh legato;", ":5: units: /no/such/take.bvh"},
         {"take /no/such/take.c3d;", ":5: /no/such/take.c3d"},
         {"kettle shape /no/such/grid.txt;", ":5: kettle: shape: /no/such/grid.txt"},
         {"kettle shape triangle;",
