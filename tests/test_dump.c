@@ -420,6 +420,13 @@ static void test_presets_are_what_a_dump_has_written_all_or_nothing(void)
     TEST_ASSERT_FALSE(himc_drum_command(second, &c, &error));
     TEST_ASSERT_EQUAL_STRING("preset: bad.txt:3: noise: AMOUNT: 7, allowed 0 .. 1", error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of_drum(second));
+    FILE *zero = fopen("zero.txt", "wb"); // what follows the zero would be lost without a word
+    fwrite("tune 150;\n\0mallet wood;\n", 1, 24, zero);
+    fclose(zero);
+    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, "preset zero", &error));
+    TEST_ASSERT_FALSE(himc_drum_command(second, &c, &error));
+    TEST_ASSERT_EQUAL_STRING("preset: zero.txt:2: a zero byte, expected text", error.text);
+    TEST_ASSERT_EQUAL_STRING(state, state_of_drum(second));
     free(state);
     himc_performance_free(p);
     himc_performance_free(other);

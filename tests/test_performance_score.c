@@ -246,6 +246,36 @@ static void test_a_score_that_is_refused_names_its_line_and_changes_nothing(void
     }
 }
 
+// a score may come from anybody; what the user types may replace any take
+static void test_a_score_records_over_a_recording_and_over_no_other_file(void)
+{
+    static const char *const files[] = {BVH, TRC, "build/score-take.c3d"};
+    char text[200], why[200];
+    for (int i = 0; i < 3; i++) {
+        himc_performance *p = session_new();
+        heard h = {0};
+        save(made_take(i == 0 ? BVH : TRC), files[i]);
+        snprintf(text, sizeof text, "drum kettle;\nrecord %s;\nstroke 1 left legato mf;\n",
+                 files[i]);
+        snprintf(why, sizeof why,
+                 SCORE ":2: record: %s: not a recording, and a score overwrites no other file; "
+                       "expected another name",
+                 files[i]);
+        write_text(text);
+        TEST_ASSERT_FALSE(session_try(p, "score " SCORE));
+        TEST_ASSERT_EQUAL_STRING(why, error.text);
+        session_do(p, "drum kettle");
+        session_do(p, "record %s", files[i]);
+        session_play(p, 0.1, &h);
+        heard_free(&h);
+        session_do(p, "record stop");
+        session_do(p, "score " SCORE);
+        session_do(p, "record stop");
+        himc_performance_free(p);
+        remove(files[i]);
+    }
+}
+
 // what happens once is no reason to refuse a score
 static void test_a_hit_that_a_score_cannot_have_is_left_out_with_a_note(void)
 {
@@ -428,6 +458,7 @@ int main(void)
     RUN_TEST(test_units_of_a_take_without_strokes_and_too_many_units_are_refused);
     RUN_TEST(test_a_take_with_left_and_right_exchanged_is_refused);
     RUN_TEST(test_a_score_that_is_refused_names_its_line_and_changes_nothing);
+    RUN_TEST(test_a_score_records_over_a_recording_and_over_no_other_file);
     RUN_TEST(test_a_hit_that_a_score_cannot_have_is_left_out_with_a_note);
     RUN_TEST(test_a_score_follows_a_stroke_just_before_its_first_beat);
     RUN_TEST(test_strokes_as_close_as_allowed_may_follow_at_any_beat);

@@ -359,7 +359,7 @@ static void take_row(void *user, const himc_motion_row *row)
 
 static void play_block(rendering *r, int n)
 {
-    float out[HEARD_BY_TWO * BLOCK_MAX];
+    static float out[HEARD_BY_TWO * BLOCK_MAX]; // too large for a small stack
     himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
     r->ending.cell_peak =
         fmax(r->ending.cell_peak, cli_mix(r->performance, r->ending.samples, n, r->channels, out));

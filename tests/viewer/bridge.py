@@ -819,6 +819,24 @@ def test_connections_without_a_request_are_bounded_in_number_and_time():
         assert Stream(v).status == 101 and v.get("/")[0] == 200
 
 
+def test_connections_without_progress_give_way_to_a_page():
+    """At any time, not only when the idle ones are closed; a stream never gives way."""
+    with Viewer() as v:
+        stream = listen(v)
+        waiting = [v.connect() for _ in range(300)]
+        assert v.get("/icon.svg")[0] == 200
+        unread = [v.connect(4096) for _ in range(300)]
+        for s in unread:
+            with contextlib.suppress(ConnectionError):  # one that has given way to the next
+                s.sendall(f"GET /three.js HTTP/1.1\r\nHost: 127.0.0.1:{v.http}\r\n\r\n".encode())
+            assert v.descriptors() < 276
+        assert v.get("/three.js")[0] == 200
+        for _ in range(20):
+            waiting += [v.connect() for _ in range(50)]
+            assert v.get("/icon.svg")[0] == 200 and Stream(v).status == 101
+        stream.until_mark(v)
+
+
 def test_a_stream_that_takes_nothing_ends():
     if not os.environ.get("HIMC_LONG"):
         raise report.Ignored("waits for the 20 s that such a stream has: HIMC_LONG=1")

@@ -409,7 +409,8 @@ function forget() {
 
 // `others` are scenes of the same piece, to compare
 async function play(bytes, name, others = []) {
-    const scene = await readScene(bytes, name);
+    const progress = (what, part) => panel.loading(`${what} ${name} … ${Math.round(100 * part)} %`),
+        scene = await readScene(bytes, name, progress);
     scene.ghosts.push(...others);
     close();
     playback = new Playback(scene, sound);

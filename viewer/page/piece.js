@@ -4,7 +4,7 @@
 import { Scene, inflate } from "./scene.js";
 
 const EARS = 2,
-    TAKEN = 4001, // status of the channel's end when another page edits, as in viewer/web.c
+    TAKEN = 4001, // status of the channel's end when another page edits, as in viewer/channel.c
     NAME = 59, // of a saved file, without its ending (bytes), as the channel takes
     AHEAD = 0.6, // of sound that is handed to the device at a time (s); chosen: some frames
     MOST = 64 << 20; // of a file that is sent (bytes), as himc-viewer takes

@@ -10,6 +10,8 @@ const MAGIC = "himcscn",
 const LARGEST = 64 << 20, // of an unpacked chunk (bytes); chosen: a second of a scene is 200 kB
     MOST = 2 ** 32, // of all of a scene (bytes); chosen: some hours
     ITEMS = 2 ** 23; // rows, frames of heads and values of events; chosen: 5 hours
+const SLICE = 30, // of work, then the page draws itself (ms); chosen: it answers at once
+    PART = 1024; // rows between two looks at the clock; chosen: some ms
 
 // A few bytes may stand for a thousand times as many, so no more than `most` are unpacked.
 export async function inflate(bytes, most = LARGEST) {
@@ -92,7 +94,10 @@ export class Scene {
     }
 
     drum(number, event) {
-        if (!this.drums.has(number)) this.drums.set(number, { changes: [], modes: [], frames: [] });
+        if (!this.drums.has(number)) {
+            if (this.drums.size === DRUMS) throw new Error(`${this.name}: more than ${DRUMS} drums`);
+            this.drums.set(number, { changes: [], modes: [], frames: [] });
+        }
         return Object.assign(this.drums.get(number), event && { name: event.name });
     }
 
@@ -144,7 +149,7 @@ export class Scene {
     cut(time) {
         const past = e => e.time < time - 1e-9;
         this.times.length = before(this.times, time - 1e-6) + 1;
-        this.blocks = this.blocks.filter(b => b.first < this.times.length);
+        ((this.blocks = this.blocks.filter(b => b.first < this.times.length)), (this.near = null));
         for (const name of ["bodies", "strikes", "beats", "notes"]) this[name] = this[name].filter(past);
         this.missed = this.missed.filter(e => past({ time: e.told }));
         for (const drum of this.drums.values())
@@ -166,8 +171,12 @@ export class Scene {
         for (const body of this.bodies)
             body.origin = Float64Array.from(body.segments.flatMap(s => s.origin));
         this.strikes.sort((a, b) => a.time - b.time);
-        for (const drum of this.drums.values())
-            drum.blows = this.strikes.filter(s => s.drum === drum.name);
+        const blows = new Map();
+        for (const strike of this.strikes) {
+            if (!blows.has(strike.drum)) blows.set(strike.drum, []);
+            blows.get(strike.drum).push(strike);
+        }
+        for (const drum of this.drums.values()) drum.blows = blows.get(drum.name) ?? [];
         this.joints = segments.map(s => this.column.get(`${s.joint}_x_rad`));
         if (this.joints.some(c => c + 2 >= this.head.columns.length)) throw new Error(`${this.name}: faulty columns`);
     }
@@ -180,8 +189,11 @@ export class Scene {
         return [i, b > a ? Math.min(1, Math.max(0, (time - a) / (b - a))) : 0];
     }
 
+    // that of the row before, nearly always
     block(row) {
-        return this.blocks[before(this.blocks, row, b => b.first)];
+        const near = this.near;
+        if (near && row >= near.first && row < near.first + near.columns[0].length) return near;
+        return (this.near = this.blocks[before(this.blocks, row, b => b.first)]);
     }
 
     value(row, name) {
@@ -238,20 +250,27 @@ export class Scene {
 
     // the heights of both tips in each row (m), once
     heights() {
-        if (this.tipHeights) return this.tipHeights;
+        if (!this.tipHeights) for (const part of this.measure()) void part;
+        return this.tipHeights;
+    }
+
+    // computes them, in parts: yields how much is done (0 .. 1)
+    *measure() {
         const out = HANDS.map(() => new Float32Array(this.times.length)),
             pose = new Float64Array(7 * segments.length),
             at = new Float64Array(3),
             sticks = HANDS.map(hand => 7 * bone(`${hand}-stick`));
-        this.times.forEach((time, i) => {
+        for (let i = 0; i < this.times.length; i++) {
+            if (i % PART === 0) yield i / this.times.length;
+            const time = this.times[i],
+                tips = this.body(time).tips;
             this.pose(time, pose);
-            const tips = this.body(time).tips;
             sticks.forEach((s, hand) => {
                 place(pose, s + 3, ...tips[hand], pose, s, at, 0);
                 out[hand][i] = at[2];
             });
-        });
-        return (this.tipHeights = out);
+        }
+        this.tipHeights = out;
     }
 
     // the beat at `time`, between the whole ones in proportion; null without any
@@ -264,10 +283,24 @@ export class Scene {
     }
 }
 
-// what may still come of a file, the scenes in it included
-class Budget {
-    constructor() {
-        ((this.bytes = MOST), (this.items = ITEMS));
+// What may still come of a file, the scenes in it included; and the pauses in which the page draws
+// itself. `tell` is told what is done and how much of it (0 .. 1).
+class Reading {
+    constructor(tell) {
+        ((this.bytes = MOST), (this.items = ITEMS), (this.tell = tell));
+        this.begun = performance.now();
+    }
+
+    async pause(what, part) {
+        if (performance.now() - this.begun < SLICE) return;
+        this.tell?.(what, part);
+        // a timer would wait for a second in a page that is not seen
+        await new Promise(go => {
+            const { port1, port2 } = new MessageChannel();
+            port1.onmessage = () => (port1.close(), go());
+            port2.postMessage(0);
+        });
+        this.begun = performance.now();
     }
 
     async unpack(packed) {
@@ -298,8 +331,8 @@ function values(text) {
 
 const u32 = (bytes, at) => new DataView(bytes.buffer, bytes.byteOffset, bytes.length).getUint32(at, true);
 
-// a scene within a scene has its `budget`, and none in itself
-export async function readScene(bytes, name, budget) {
+// a scene within a scene belongs to its `reading`, and has none in itself
+export async function readScene(bytes, name, tell, reading) {
     const scene = new Scene(name),
         view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length),
         text = new TextDecoder();
@@ -309,11 +342,11 @@ export async function readScene(bytes, name, budget) {
         );
     if (bytes[7] !== VERSION)
         throw new Error(`${name}: version ${bytes[7]} of scenes, this page reads ${VERSION}`);
-    const outer = !budget;
-    budget ??= new Budget();
+    const outer = !reading;
+    reading ??= new Reading(tell);
     const unpack = async (body, items) => {
-        const out = await budget.unpack(body);
-        budget.count(items(out));
+        const out = await reading.unpack(body);
+        reading.count(items(out));
         return out;
     };
     try {
@@ -328,9 +361,11 @@ export async function readScene(bytes, name, budget) {
             else if (kind === "ring") scene.heads(await unpack(body, out => u32(out, 0)));
             else if (kind === "snd ") scene.sounds.push(body);
             else if (kind === "more" && outer)
-                scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, budget));
+                scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, null, reading));
+            if (outer) await reading.pause("reading", at / bytes.length);
         }
         scene.finish();
+        if (outer) for (const part of scene.measure()) await reading.pause("measuring", part);
     } catch (error) {
         throw error.message.startsWith(name) ? error : new Error(`${name}: faulty (${error.message})`);
     }

@@ -109,6 +109,15 @@ static void add_word(himc_text_statement *statement, const char *word)
     statement->count++;
 }
 
+bool himc_text_check(const char *text, size_t size, const char *name, himc_error *error)
+{
+    const char *zero = memchr(text, 0, size);
+    int line = 1;
+    for (const char *at = text; zero && at < zero; at++)
+        line += *at == '\n';
+    return !zero || himc_error_set(error, "%s:%d: a zero byte, expected text", name, line);
+}
+
 bool himc_text_next(const char **text, int *line, himc_text_statement *statement)
 {
     size_t used = 0;

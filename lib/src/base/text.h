@@ -9,6 +9,9 @@
 /// words. The decimal point is a point in every locale.
 bool himc_text_number(const char *word, double *number);
 
+/// False with the line, from 1, of a zero byte, which would end the text before its end.
+bool himc_text_check(const char *text, size_t size, const char *name, himc_error *error);
+
 /// One statement of a text file.
 typedef struct himc_text_statement {
     himc_atom *atom; ///< room for `capacity`; symbols point into `storage`

@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
@@ -60,6 +61,27 @@ static bool check_path(const char *path, himc_error *error)
     if (good)
         himc_file_draft_drop(&draft);
     return good;
+}
+
+static bool is_recording(const himc_take *take)
+{
+    bool same = take && take->points == (take->parents ? POINTS : MARKERS);
+    for (int i = 0; same && i < POINTS; i++)
+        same = himc_take_find(take, names[i]) >= 0;
+    return same;
+}
+
+bool himc_recording_may_replace(const char *path, himc_error *error)
+{
+    if (access(path, F_OK) != 0)
+        return true;
+    himc_take *there = himc_take_load(path, NULL, NULL);
+    bool good = is_recording(there);
+    himc_take_free(there);
+    return good || himc_error_set(error,
+                                  "%s: not a recording, and a score overwrites no other file; "
+                                  "expected another name",
+                                  path);
 }
 
 himc_recording *himc_recording_new(const char *path, const himc_skeleton *skeleton, double rate,

@@ -138,7 +138,8 @@ static bool run_preset(himc_drum *drum, const char *name, himc_error *error)
     size_t size;
     snprintf(path, sizeof path, "%s.txt", name);
     char *text = himc_file_load(path, LONGEST_PRESET, &size, error);
-    bool good = text && run_lines(drum, text, path, error);
+    bool good =
+        text && himc_text_check(text, size, path, error) && run_lines(drum, text, path, error);
     free(text);
     return good || himc_error_prefix(error, "preset");
 }

@@ -55,10 +55,10 @@ static bool open_text(reader *r, const char *path, himc_error *error)
     size_t size = 0;
     *r = (reader){.path = path, .error = error, .text = himc_file_load(path, TEXT, &size, error)};
     r->next = r->text;
-    if (!r->text || !memchr(r->text, 0, size))
+    if (!r->text || himc_text_check(r->text, size, path, error))
         return r->text;
     free(r->text);
-    return himc_error_set(error, "%s: not a text file", path);
+    return false;
 }
 
 static bool next_line(reader *r)

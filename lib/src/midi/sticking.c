@@ -7,17 +7,16 @@
 /// out costs more than any that is played, and the more the louder it is. The WIDTH best states are
 /// kept after each stroke.
 #include "midi/part.h"
+#include "plan/hand.h"
 #include "plan/sticking.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define WIDTH 64
-#define LEAST_GAP 0.055    // of one hand on a spot (s); the planner refuses 0.04
-#define HARDEST_MOVE 250.0 // of the planner: peak acceleration along the heads (m/s^2) ...
-#define MOVE_MARGIN 1.45   // ... and its margin of time for a stroke's swing, and a little more
-#define QUINTIC_PEAK 5.77  // peak acceleration of a quintic from rest to rest (way/time^2)
-#define NORMAL_SPOT 0.75   // radii from the centre, towards the player
+#define LEAST_GAP 0.055  // of one hand on a spot (s); the planner refuses 0.04
+#define MOVE_MARGIN 1.45 // the planner's (hand.c) for a stroke's swing, and a little more
+#define NORMAL_SPOT 0.75 // radii from the centre, towards the player
 #define OMIT_COST 45.0
 #define OMIT_LOUD_COST 20.0 // at fff
 
@@ -49,7 +48,7 @@ static hand_state place_of(const midi_part *part, const midi_stroke *s)
 
 static double least_gap(double way)
 {
-    return fmax(LEAST_GAP, MOVE_MARGIN * sqrt(QUINTIC_PEAK * way / HARDEST_MOVE));
+    return fmax(LEAST_GAP, MOVE_MARGIN * himc_move_time(way, HIMC_HARDEST_MOVE));
 }
 
 // of a stroke by that hand; infinite if it is not possible

@@ -156,7 +156,8 @@ static bool rehearse_record(const score_job *j, const himc_command *c, score_sta
     himc_recording *trial =
         himc_recording_new(c->atom[0].symbol, &j->skeleton, j->task_rate, TRIAL_RECORDING, error);
     himc_recording_free(trial);
-    return trial || himc_error_prefix(error, "record");
+    return (trial && himc_recording_may_replace(c->atom[0].symbol, error)) ||
+           himc_error_prefix(error, "record");
 }
 
 static bool rehearse_units(const score_job *j, const himc_command *c, score_state *state,

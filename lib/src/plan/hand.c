@@ -18,7 +18,6 @@
 // (impacts of up to 10 m/s), so that only the impossible is refused
 #define LEAST_STROKE_TIME 0.02 // from the plan's end to the touch (s)
 #define FASTEST_FALL 9.0       // mean speed of a fall (m/s)
-#define HARDEST_MOVE 250.0     // peak acceleration along the head (m/s^2)
 
 #define SOUND_SAMPLES \
     4 // intervals of a quintic where its speed is looked at; chosen: it turns 4 times
@@ -341,12 +340,12 @@ static bool is_possible(const stroke_plan *s, const himc_goal *goal)
     if (!(T >= LEAST_STROKE_TIME && goal->gesture.speed > HIMC_SLOWEST_GESTURE) ||
         s->height.h / T > FASTEST_FALL)
         return false;
-    return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HARDEST_MOVE) <= T;
+    return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HIMC_HARDEST_MOVE) <= T;
 }
 
 double himc_hand_leap_time(double way)
 {
-    double T = MOVE_MARGIN * himc_move_time(way, HARDEST_MOVE);
+    double T = MOVE_MARGIN * himc_move_time(way, HIMC_HARDEST_MOVE);
     return HIMC_CONTACT_TIME + T + absorb_time(T);
 }
 

@@ -37,6 +37,10 @@ static inline double himc_goal_end(const himc_goal *goal)
     return goal->time + HIMC_CONTACT_TIME + goal->hold;
 }
 
+/// Peak acceleration along the head (m/s^2), at most: a stroke that needs more is refused. Chosen:
+/// well beyond captured strokes, so that only the impossible is refused.
+#define HIMC_HARDEST_MOVE 250.0
+
 /// Peak acceleration of a lift, at most (m/s^2). Chosen: an arm that is in a hurry.
 #define HIMC_HARDEST_LIFT 80.0
 
