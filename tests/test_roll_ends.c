@@ -112,6 +112,24 @@ static void test_a_roll_ends_in_grace_notes_as_they_are_without_it(void)
     }
 }
 
+// the hand with the grace notes has no time for a double before them
+static void test_a_double_roll_is_even_up_to_a_drag(void)
+{
+    static const char *const end[] = {"drag", "ruff"}, *const hand[] = {"left", "right"};
+    for (int k = 0; k < 4; k++) {
+        char ornament[64];
+        snprintf(ornament, sizeof ornament, "%s 2 %s legato f", end[k % 2], hand[k / 2]);
+        const char *lines[] = {"drum a 26", "tempo 60", "roll 1 1 double mf", ornament, NULL};
+        heard h = play_new(4, lines);
+        const himc_strike *own = last_of(&h), *last = own - 2;
+        printf("%s: the last double %.2f m/s, of %.2f\n", ornament, last->velocity,
+               h.strike[2].velocity);
+        TEST_ASSERT_TRUE(last->hand != own[-1].hand);
+        TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(last->velocity / h.strike[2].velocity));
+        heard_free(&h);
+    }
+}
+
 // both hands go to the other drum: one of them leads, the other one must not meet it
 static void test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it(void)
 {
@@ -164,6 +182,36 @@ static void test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_
                last_of(&plain)->velocity, least);
         TEST_ASSERT_TRUE(20 * log10(last_of(&plain)->velocity / least) < 0.5);
         heard_free(&plain);
+    }
+}
+
+// a tempo so near a roll's end that few of its strokes are left to plan: they give way
+static void test_a_stroke_after_a_roll_is_as_strong_when_the_tempo_changes_just_before_it(void)
+{
+    static const char *const hand[] = {"left", "right"};
+    for (int k = 0; k < 12; k++) {
+        char end[64];
+        bool faster = k / 2 % 2;
+        double before = faster ? 0.26 + 0.04 * (k / 4) : 0.18 + 0.03 * (k / 4);
+        snprintf(end, sizeof end, "stroke 2 %s legato f", hand[k % 2]);
+        const char *lines[] = {"drum a 29", "tempo 60", "roll 1 1 single mf", end, NULL};
+        heard plain = play_new(4, lines);
+        himc_performance *p = session_new();
+        heard h = play(p, 2 - before, lines);
+        session_do(p, "tempo %d", faster ? 90 : 45);
+        session_play(p, 2, &h);
+        TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
+        keep_asked(&h);
+        const himc_strike *own = last_of(&h), *like = last_of(&plain);
+        printf("%s, tempo %d %.0f ms before: %.2f m/s of %.2f\n", end, faster ? 90 : 45,
+               1e3 * before, own->velocity, like->velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(2, own->beat);
+        TEST_ASSERT_EQUAL_INT(like->hand, own->hand);
+        TEST_ASSERT_TRUE(own[-1].hand != own->hand);
+        TEST_ASSERT_TRUE(20 * log10(like->velocity / own->velocity) < 0.5);
+        heard_free(&h);
+        heard_free(&plain);
+        himc_performance_free(p);
     }
 }
 
@@ -311,8 +359,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes);
     RUN_TEST(test_a_roll_ends_in_grace_notes_as_they_are_without_it);
+    RUN_TEST(test_a_double_roll_is_even_up_to_a_drag);
     RUN_TEST(test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it);
     RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
+    RUN_TEST(test_a_stroke_after_a_roll_is_as_strong_when_the_tempo_changes_just_before_it);
     RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
     RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);
     RUN_TEST(test_notes_that_are_left_out_are_named_as_they_are_written);

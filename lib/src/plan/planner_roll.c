@@ -114,7 +114,7 @@ typedef struct roll_next {
     double time; ///< of its touch, from the round's beginning (s); infinite: nothing soon
     double leap; ///< time that it needs after a touch of the roll (s)
     double calm; ///< time with which it is as strong as after a pause (intervals); 0: any
-    bool grace;  ///< it is a grace note
+    double room; ///< more it does not need (s)
     bool trails; ///< on that way it goes after the other hand
 } roll_next;
 
@@ -180,6 +180,13 @@ static double leap_time(const planner_roll *from, himc_vec3 way)
     return length > 0 ? himc_hand_leap_time(length) / (1 - share) : 0;
 }
 
+/// What a grace note needs after a stroke of a roll and its bounce; it may end a buzz (s).
+static double grace_room(const planner_roll *from)
+{
+    int bounces = from->stroke.bounces == HIMC_BUZZ ? 0 : from->stroke.bounces;
+    return GRACE_ROOM / (1 - himc_planner_bounce_share(bounces));
+}
+
 /// The first stroke of a list after the roll, and its time; NULL if there is none soon.
 static const planner_stroke *listed_after(const planner_score *score, int i, int hand, double *time)
 {
@@ -212,7 +219,7 @@ static void listed_next(const planner_score *score, int i, roll_next next[HIMC_H
         const planner_roll *r = roll_of(score, i, by);
         if (time[hand] < next[by].time)
             next[by] = (roll_next){time[hand], leap_time(r, way_to(score, r, s, drum)), 2,
-                                   s->early > 0, trails && both};
+                                   s->early > 0 ? grace_room(r) : HUGE_VAL, trails && both};
     }
 }
 
@@ -243,7 +250,7 @@ static double join_of(const roll_next next[HIMC_HANDS], double first, double ste
         const roll_next *n = &next[hand];
         int steps = hand == last ? 1 : n->trails ? 0 : 2;
         double has = n->time - first + steps * step;
-        double wanted = n->grace ? fmin(GRACE_ROOM, n->calm * step) : n->calm * step;
+        double wanted = fmin(n->room, n->calm * step);
         if (n->leap > 0)
             extra = fmax(extra, n->leap + UNEVENNESS * step - has);
         calm = fmax(calm, wanted - has);
@@ -271,6 +278,10 @@ static double end_with(roll_grid *g, const roll_next next[HIMC_HANDS], double fi
         n = i ? n : count_for(rate * (span - extra), g, last);
     }
     g->step = (span - extra) / n;
+    if (g->first > 0 && n > 2 && g->step * rate < 1 - ANCHOR_BEND) { // rather two strokes less
+        n -= 2;
+        g->step = (span - extra) / n;
+    }
     g->count = g->first + (int)n;
     return extra;
 }
@@ -279,6 +290,19 @@ static double end_with(roll_grid *g, const roll_next next[HIMC_HANDS], double fi
 static double bend_of(const roll_grid *g, double rate)
 {
     return fabs(log(g->step * rate));
+}
+
+/// How much less time than they want strokes of a list have after the touch of their hand before
+/// them (intervals).
+static double lack_of(const roll_grid *g, const roll_next next[HIMC_HANDS], double rate, int last)
+{
+    double lack = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int number = g->count - (hand == last ? 1 : 2);
+        double has = next[hand].time - g->begin - (number - g->first) * g->step;
+        lack = fmax(lack, next[hand].calm - has * rate);
+    }
+    return lack;
 }
 
 static roll_grid grid_of(const planner_score *score, int i, int in_round)
@@ -306,6 +330,10 @@ static roll_grid grid_of(const planner_score *score, int i, int in_round)
            other = end_with(&right, next, first, rate, HIMC_RIGHT);
     double bent = bend_of(&left, rate), other_bent = bend_of(&right, rate);
     bool too_bent = anchored && fmax(bent, other_bent) > ANCHOR_BEND;
+    double lacks = lack_of(&left, next, rate, HIMC_LEFT),
+           other_lacks = lack_of(&right, next, rate, HIMC_RIGHT);
+    if (too_bent && fabs(lacks - other_lacks) > ANCHOR_BEND)
+        return other_lacks < lacks ? right : left;
     if (rate * (first - g.begin) < 1 || too_bent)
         return other_bent < bent ? right : left;
     return other < extra ? right : left;
