@@ -47,10 +47,10 @@ HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
 const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int roll);
 /// The drum on which a hand plays a roll: two rolls together have a hand each.
 HIMC_RT int himc_planner_roll_drum(const planner_score *score, int roll, himc_hand hand);
-/// Beats of the strokes of a hand (HIMC_HAND_ANY: of both) next to a beat and not on it;
+/// Beats of the strokes of a hand (HIMC_HAND_ANY: of both) next to a beat of a round and not on it;
 /// -HUGE_VAL and HUGE_VAL if there is none.
-HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat,
-                                    double *before, double *after);
+HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, int round,
+                                    double beat, double *before, double *after);
 /// Beat of the last stroke of a roll before a beat; of a roll that ends there, which makes room for
 /// grace notes, its first one. Below 0: there is none.
 HIMC_RT double himc_planner_roll_since(const planner_score *score, double beat);

@@ -232,11 +232,24 @@ bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change
     return true;
 }
 
-void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
+/// The number of changes up to a beat.
+static int changes_to(const planner_score *score, double beat)
 {
     int past = 1;
     while (past < score->tempo_count && score->tempi[past].beat <= beat)
         past++;
+    return past;
+}
+
+bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm)
+{
+    int past = changes_to(score, beat);
+    return score->playing && (score->loop || past == 1) && score->tempi[past - 1].bpm == bpm;
+}
+
+void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
+{
+    int past = changes_to(score, beat);
     if (score->playing && score->loop) {
         score->tempi[past - 1].bpm = bpm;
         return;
@@ -510,10 +523,10 @@ static double list_gap(const planner_score *score, himc_hand hand, double beat)
     return fmin(to, from);
 }
 
-double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat)
+double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round, double beat)
 {
     double least = list_gap(score, hand, beat), before, after;
-    himc_planner_roll_near(score, hand, beat, &before, &after);
+    himc_planner_roll_near(score, hand, round, beat, &before, &after);
     if (before >= 0)
         least = fmin(least, gap(score, before, beat));
     return isfinite(after) ? fmin(least, gap(score, beat, after)) : least;
