@@ -19,10 +19,9 @@
 /// over both hands h, t_h the next touch of h and need_h the time that it takes after one of the
 /// roll. Where both go to another drum, the hand that the other one has to follow goes first: the
 /// last stroke is of the other hand (else i_h = -1). Of both n the one with the smaller x is taken.
-/// In a loop the next round follows: its rolls are as if it were written once more. Only the length
-/// of a round is found without that (NO_ROUND), as the rest depends on it. Invariant: a place (roll,
-/// number) means the same stroke as long as the tempo, the score, the loop and the places of the
-/// drums stay.
+/// In a loop what follows may be in the next round; only the length of a round, on which that
+/// depends, is found without it (NO_ROUND). Invariant: a place (roll, number) means the same stroke
+/// as long as the tempo, the score, the loop and the places of the drums stay.
 ///
 /// The strokes of a player are not quite even. Those of a machine would make a roll up to 10 dB
 /// louder where a mode has whole periods between two strokes than where it has half a period more,
@@ -115,6 +114,12 @@ const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int i)
     return cut ? &score->roll[roll_after(score, i)] : NULL;
 }
 
+/// Length of a round of the loop (s).
+static double round_length(const planner_score *score)
+{
+    return seconds_to(score, himc_planner_roll_length(score));
+}
+
 /// True if another round follows, or comes before.
 static bool goes_on(const planner_score *score, int in_round)
 {
@@ -201,7 +206,7 @@ static const planner_stroke *listed_after(const planner_score *score, int i, int
     int at = himc_planner_part_after(part, end - END_ROUNDING, true);
     if (at == part->count && goes_on(score, in_round)) {
         at = 0;
-        turned = himc_planner_score_round_length(score);
+        turned = round_length(score);
     }
     const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
     *time = s ? turned + seconds_to(score, s->beat) - s->early : HUGE_VAL;
@@ -303,8 +308,8 @@ static double rate_of(const planner_score *score, int i)
 }
 
 /// The better of both ends of a grid: with the one or the other hand last. Where neither ends
-/// earlier, the hands take turns with what follows at once, else a short roll is as near to its rate
-/// as it can be.
+/// earlier, the hands take turns with what follows at once; else a short roll takes the end that is
+/// nearer to its rate.
 static roll_grid ended(roll_grid g, const roll_next next[HIMC_HANDS], double first, double rate,
                        double *early)
 {
@@ -334,7 +339,7 @@ static int joined_before(const planner_score *score, int i, int in_round)
     int before = i - 1;
     if (before < 0 && has_begun(score, in_round)) {
         before = score->roll_count - 1;
-        begin += himc_planner_score_round_length(score);
+        begin += round_length(score);
     }
     if (before < 0)
         return -1;
@@ -351,7 +356,7 @@ static double listed_since(const planner_score *score, int i, int in_round, himc
     int at = himc_planner_part_after(part, beat, true);
     if (at == 0 && has_begun(score, in_round)) {
         at = part->count;
-        turned = himc_planner_score_round_length(score);
+        turned = round_length(score);
     }
     return at == 0 ? HUGE_VAL
                    : turned + seconds_to(score, beat) -
@@ -393,7 +398,7 @@ static void rolled_next(const planner_score *score, int i, int in_round, roll_ne
     if (after >= score->roll_count && goes_on(score, in_round)) {
         after = 0;
         in_round++;
-        turned = himc_planner_score_round_length(score);
+        turned = round_length(score);
     }
     if (after >= score->roll_count)
         return;
@@ -487,8 +492,7 @@ static bool is_left_out(const planner_score *score, int in_round, const himc_str
     if (part->count > 0 && (goes_on(score, in_round) || has_begun(score, in_round))) {
         const himc_stroke *first = &part->list[0].stroke,
                           *last = &part->list[part->count - 1].stroke;
-        double own = seconds_to(score, stroke->beat),
-               turned = himc_planner_score_round_length(score);
+        double own = seconds_to(score, stroke->beat), turned = round_length(score);
         if (goes_on(score, in_round))
             room = fmin(room, turned + seconds_to(score, first->beat) - first->early - own);
         if (has_begun(score, in_round))
@@ -637,12 +641,23 @@ void himc_planner_roll_anchor(planner_score *score)
 
 double himc_planner_roll_last_beat(const planner_score *score)
 {
+    double beat = -1;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_part *part = &score->part[hand];
+        if (part->count > 0)
+            beat = fmax(beat, part->list[part->count - 1].stroke.beat);
+    }
     for (int i = score->roll_count - 1; i >= 0; i--) {
         roll_grid g = grid_of(score, i, NO_ROUND);
         if (g.count > 0)
-            return beat_of(score, i, &g, g.count - 1);
+            return fmax(beat, beat_of(score, i, &g, g.count - 1));
     }
-    return -1;
+    return beat;
+}
+
+double himc_planner_roll_length(const planner_score *score)
+{
+    return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
 }
 
 /// The last roll that begins at or before a beat, -1 if there is none.

@@ -38,8 +38,10 @@ HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int ro
 /// The tempo is about to change: of a roll that has begun the strokes that are not planned yet are
 /// counted anew, from the last one that is.
 HIMC_RT void himc_planner_roll_anchor(planner_score *score);
-/// Beat of the last stroke of all rolls, -1 without any.
+/// Beat of the last stroke of the score, of a roll or a list, -1 without any.
 HIMC_RT double himc_planner_roll_last_beat(const planner_score *score);
+/// himc_planner_score_length, on which the rolls depend in a loop.
+HIMC_RT double himc_planner_roll_length(const planner_score *score);
 /// Beat at which a roll ends: where it is written to, or where the next one begins.
 HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
 /// The roll that takes the place of another one from its beginning or within it; NULL if there is

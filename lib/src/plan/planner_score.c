@@ -447,31 +447,19 @@ bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
     return settled;
 }
 
-/// -1 without strokes.
-static double last_stroke(const planner_score *score)
-{
-    double beat = himc_planner_roll_last_beat(score);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_part *part = &score->part[hand];
-        if (part->count > 0)
-            beat = fmax(beat, part->list[part->count - 1].stroke.beat);
-    }
-    return beat;
-}
-
 double himc_planner_score_last_beat(const planner_score *score)
 {
-    return fmax(last_stroke(score), score->until);
+    return fmax(himc_planner_roll_last_beat(score), score->until);
 }
 
 double himc_planner_score_length(const planner_score *score)
 {
-    return fmax(floor(last_stroke(score)) + 1, ceil(score->until));
+    return himc_planner_roll_length(score);
 }
 
 double himc_planner_score_free_from(const planner_score *score)
 {
-    double last = last_stroke(score), next = himc_planner_score_length(score);
+    double last = himc_planner_roll_last_beat(score), next = himc_planner_score_length(score);
     return next + (last >= 0 && gap(score, last, next) < CLOSEST_STROKES ? 1 : 0);
 }
 
