@@ -438,11 +438,15 @@ void himc_planner_last_until(himc_planner *planner, double beat)
     planner_score *score = &planner->score;
     if (score->until == beat)
         return;
+    double t = planner->now + PLANNER_AHEAD;
     if (score->playing)
         himc_planner_rebase(planner, planner->now);
+    double anchor = score->loop ? before_change(planner, t) : 0;
     score->until = beat;
-    if (score->playing && score->loop)
-        himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
+    if (!score->playing || !score->loop)
+        return;
+    himc_planner_score_keep(score, anchor);
+    himc_planner_replan(planner, t);
 }
 
 double himc_planner_until(const himc_planner *planner)
@@ -514,11 +518,13 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
     if (!isfinite(t) || score->loop == on)
         return;
     himc_planner_cut_both(planner, t);
+    double anchor = before_change(planner, t); // the last roll goes on to another stroke
     int rounds = on || !score->playing ? 0 : himc_planner_score_round_at(score, t);
     // a stroke of the next round that can no longer be taken back brings that round with it
     if (!on)
         rounds = himc_planner_last_round(planner, rounds);
     himc_planner_score_loop(score, on, rounds);
+    himc_planner_score_keep(score, anchor);
     himc_planner_replan(planner, t);
 }
 
@@ -528,6 +534,8 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
     double beat = himc_planner_score_beat_at(score, t);
+    if (himc_planner_score_has_tempo(score, beat, bpm))
+        return;
     himc_planner_rebase(planner, t);
     double anchor = before_change(planner, t);
     himc_planner_score_set_tempo(score, score->playing ? beat : score->beat, bpm);

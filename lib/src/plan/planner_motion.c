@@ -16,7 +16,6 @@
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_motion.h"
 #include "plan/bounce.h"
-#include "plan/planner_roll.h"
 #include "base/format.h"
 
 #include <string.h>
@@ -86,7 +85,7 @@ static bool is_settled_due(const himc_planner *planner, himc_hand hand, const pl
 
 /// Bounces leave time for the hand's next stroke; none with the servo grip. The stroke is so many
 /// `ahead` in the score.
-static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t, int ahead)
+static void fit_bounces(himc_planner *planner, timed_stroke *s, double t, int ahead)
 {
     planner_due after;
     himc_stroke *stroke = &s->stroke;
@@ -98,8 +97,8 @@ static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t, 
         if (!himc_planner_score_next(&planner->score, stroke->hand, ++ahead, &after))
             return;
     } while (is_settled_due(planner, stroke->hand, &after) && ahead < MOST_TRIES);
-    double share = himc_planner_bounce_share(stroke->bounces);
-    stroke->bounce_time = fmin(stroke->bounce_time, share * fmax(after.time - t, 0));
+    double most = himc_planner_bounce_most(planner, stroke->bounces, t, &after);
+    stroke->bounce_time = fmin(stroke->bounce_time, most);
 }
 
 /// The next stroke of a hand, waiting or of the score and there so many `ahead`, as written; false
@@ -305,7 +304,7 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
     if (speed >= SOFTER_SHARE * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
         return;
-    himc_planner_say(&planner->notes, PLANNER_HURRIED,
+    himc_planner_say(&planner->notes, struck->roll ? PLANNER_HURRIED_ROLL : PLANNER_HURRIED,
                      "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,
                      speed);
 }

@@ -169,6 +169,10 @@ HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// planner_goal.c: where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
+/// Time that bounces from t on take at most before the hand's next stroke (s): they leave to one
+/// that is written the time that it needs.
+HIMC_RT double himc_planner_bounce_most(himc_planner *planner, int bounces, double t,
+                                        const planner_due *after);
 /// Speed of impact that a stroke has with all the time that its bounces need (m/s).
 HIMC_RT double himc_planner_asked(const himc_planner *planner, const timed_stroke *stroke);
 /// Lets the goal differ from the written one as a player's would.

@@ -9,6 +9,7 @@
 
 typedef enum planner_kind {
     PLANNER_HURRIED,
+    PLANNER_HURRIED_ROLL,
     PLANNER_GIVEN_UP,
     PLANNER_REASSIGNED,
     PLANNER_LATE,

@@ -29,6 +29,7 @@ typedef struct planner_roll_place {
 /// From here on the strokes of a roll have been counted anew.
 typedef struct planner_anchor {
     bool any;
+    himc_hand lead;          ///< hand of the roll's first stroke
     int roll, round, number; ///< the last stroke that stays ...
     double time;             ///< ... so long after the beginning of its round (s)
 } planner_anchor;
@@ -137,6 +138,8 @@ bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change
 /// One tempo up to the first change after `beat`; in a loop that plays, only in place of the one
 /// valid at `beat`: the others are for later rounds.
 HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
+/// True if that would change nothing while playing.
+HIMC_RT bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm);
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
 
@@ -195,9 +198,10 @@ HIMC_RT int himc_planner_score_round_at(const planner_score *score, double t);
 HIMC_RT double himc_planner_score_total_beat(const planner_score *score, int round, double beat);
 /// Time of the beat before `beat` (s).
 HIMC_RT double himc_planner_score_period(const planner_score *score, double beat);
-/// Time between a beat and the hand's nearest stroke on another beat, as in a loop (s); infinite
-/// without strokes.
-HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat);
+/// Time between a beat of a round and the hand's nearest stroke on another beat, as in a loop (s);
+/// infinite without strokes.
+HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round,
+                                      double beat);
 /// Time from a stroke to the nearest one of its hand (s); infinite without one.
 HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
 /// Time since the last stroke of either hand before a beat (s), or since the beginning of a roll
