@@ -447,7 +447,7 @@ static void test_notes_that_are_left_out_are_named_as_they_are_written(void)
                                                 "stroke 2.04 left legato mf", "roll 1 3 single mf",
                                                 NULL};
     TEST_ASSERT_EQUAL_INT(
-        1, notes_of(near, "drag at beat 2: no grace notes, the left hand has another"));
+        1, notes_of(near, "drag at beat 2 right a: no grace notes, the left hand has"));
     TEST_ASSERT_EQUAL_INT(1,
                           notes_of(within, "roll at beat 1: 1 of its strokes left out, too near"));
 }

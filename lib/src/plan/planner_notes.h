@@ -21,6 +21,7 @@ typedef enum planner_kind {
     PLANNER_OTHER_HAND,
     PLANNER_OVERLAP,
     PLANNER_NEXT_ROUND,
+    PLANNER_NEXT_PLAY,
     PLANNER_KINDS
 } planner_kind;
 

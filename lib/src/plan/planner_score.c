@@ -286,7 +286,7 @@ void himc_planner_score_keep(planner_score *score, double anchor)
 void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
-    score->over = score->empties = false;
+    score->over = score->goes_on = score->empties = false;
     score->count = NAN;
     score->starts++;
     score->rounds = score->past = 0;
@@ -298,6 +298,13 @@ void himc_planner_score_start(planner_score *score, double t)
         himc_planner_score_go(score, (himc_hand)hand, next, 0);
         himc_planner_roll_from(score, (himc_hand)hand, 0, begin);
     }
+}
+
+void himc_planner_score_go_on(planner_score *score, double t)
+{
+    score->beat = himc_planner_score_beat_at(score, t);
+    himc_planner_score_start(score, t);
+    score->goes_on = true;
 }
 
 void himc_planner_score_delay(planner_score *score, double late)
@@ -313,7 +320,7 @@ void himc_planner_score_empty(planner_score *score)
 void himc_planner_score_stop(planner_score *score, double beat)
 {
     score->beat = score->empties ? 0 : beat;
-    score->playing = score->over = score->empties = false;
+    score->playing = score->over = score->goes_on = score->empties = false;
 }
 
 void himc_planner_score_finish(planner_score *score)

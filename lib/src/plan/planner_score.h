@@ -62,6 +62,7 @@ typedef struct planner_score {
     int tempo_count;
     bool playing;
     bool over;     ///< played to its end: its beats go on, and play begins at the top
+    bool goes_on;  ///< it plays after its end, what was added; play begins at the top
     double origin; ///< time of beat 0 while playing or over (s)
     double beat;   ///< where play begins or began
     bool loop;
@@ -152,6 +153,8 @@ HIMC_RT double himc_planner_score_anchor(planner_score *score);
 HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
+/// After the end, plays on from the beat at `t`.
+HIMC_RT void himc_planner_score_go_on(planner_score *score, double t);
 /// All beats are `late` seconds later.
 HIMC_RT void himc_planner_score_delay(planner_score *score, double late);
 /// Plays on without strokes: they have been dropped in a loop that turns.
