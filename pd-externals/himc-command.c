@@ -158,9 +158,11 @@ static bool himc_tilde_perform_command(t_himc *x, himc_drum *drum, const himc_co
                 : himc_performance_command(x->x_performance, command, delay, error);
 }
 
+/* A drum of the performer, or any [membrane~ NAME]. */
 static bool himc_tilde_has_drum(const t_himc *x, const char *name)
 {
-    bool has = false;
+    himc_error none;
+    bool has = !himc_command_find(HIMC_PERFORMER, name) && drum_link_find(name, &none);
     for (int i = 0; i < x->x_count; i++)
         has = has || strcmp(x->x_drum[i].d_name, name) == 0;
     return has;

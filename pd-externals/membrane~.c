@@ -53,6 +53,7 @@ typedef struct t_membrane {
     bool x_fits_soon;     /* that clock runs */
 
     t_stream x_stream;
+    double x_before; /* what it has played before Pd last built its graph (s) */
     t_sample *x_in[3];
     t_sample *x_out[LAYER_OUTS];
     bool x_watched; /* the displacement's outlet is connected */
@@ -268,6 +269,8 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
             x->x_in[k] = sp[k]->s_vec;
         for (int k = 0; k <= x->x_channels; k++)
             x->x_out[k] = sp[3 + k]->s_vec;
+        if (x->x_stream.s_count > 0)
+            x->x_before += (double)x->x_stream.s_count / x->x_stream.s_rate;
         stream_restart(&x->x_stream, sp[0]);
         if (!driven) {
             x->x_link.l_rate = sp[0]->s_sr;
@@ -295,7 +298,7 @@ static void membrane_send(t_membrane *x, const char *selector, const double valu
 
 static void membrane_send_strike(t_membrane *x, const himc_contact_report *r)
 {
-    const double value[] = {r->time, r->x, r->y, r->velocity, r->force, r->duration};
+    const double value[] = {x->x_before + r->time, r->x, r->y, r->velocity, r->force, r->duration};
     membrane_send(x, "strike", value);
 }
 
@@ -303,7 +306,7 @@ static void membrane_send_strike(t_membrane *x, const himc_contact_report *r)
 static void membrane_touch_tick(t_membrane *x)
 {
     const himc_contact_onset t = x->x_touch;
-    const double time = (double)t.at / himc_drum_rate(x->x_link.l_drum);
+    const double time = x->x_before + (double)t.at / himc_drum_rate(x->x_link.l_drum);
     const double value[] = {time, t.x, t.y, t.velocity, t.distance, t.pitch};
     x->x_touching = false;
     membrane_await_touch(x);

@@ -159,6 +159,87 @@ static void test_at_after_stop_or_clear_waits_for_play(void)
     }
 }
 
+/// Strikes of a stroke on that beat.
+static int strikes_on(const heard *h, double beat)
+{
+    int count = 0;
+    for (int i = 0; i < h->strikes; i++)
+        count += h->strike[i].beat == beat;
+    return count;
+}
+
+static void test_a_stroke_after_done_sounds_on_its_beat_and_the_piece_is_done_again(void)
+{
+    heard h = {.strikes = 0};
+    himc_performance *p = performer("play;");
+    TEST_ASSERT_TRUE(play_out(p, &h));
+    int beats = h.beats;
+    session_play(p, 0.4, &h);
+    session_do(p, "stroke 6 left legato f");
+    session_do(p, "flam 7 right legato f");
+    session_do(p, "roll 8 2 single p");
+    TEST_ASSERT_TRUE(play_out(p, &h));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, h.notes, h.all);
+    TEST_ASSERT_EQUAL_INT(1, strikes_on(&h, 6));
+    TEST_ASSERT_EQUAL_INT(2, strikes_on(&h, 7));
+    TEST_ASSERT_TRUE(h.strikes > 10);
+    TEST_ASSERT_INT_WITHIN(1, beats + 6, h.beats); // of beats 4 to 10
+    for (int i = 1; i < h.strikes; i++)
+        if (h.strike[i].beat == 6)
+            TEST_ASSERT_DOUBLE_WITHIN(0.005, 2.5, h.strike[i].time - h.strike[0].time);
+    session_play(p, 1, &h);
+    TEST_ASSERT_EQUAL_INT(2, h.dones);
+    session_do(p, "play"); // all of it
+    TEST_ASSERT_TRUE(play_out(p, &h));
+    TEST_ASSERT_EQUAL_INT(2, strikes_on(&h, 1));
+    TEST_ASSERT_EQUAL_INT(2, strikes_on(&h, 6));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, h.notes, h.all);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_play_while_a_late_stroke_is_still_to_come_begins_at_the_top(void)
+{
+    heard h = {.strikes = 0};
+    himc_performance *p = performer("play;");
+    TEST_ASSERT_TRUE(play_out(p, &h));
+    session_do(p, "stroke 12 left legato f");
+    session_play(p, 0.5, &h);
+    session_do(p, "play");
+    session_play(p, END + 0.5, &h);
+    TEST_ASSERT_EQUAL_INT(2, strikes_on(&h, 1));
+    TEST_ASSERT_EQUAL_INT(2, strikes_on(&h, 3));
+    TEST_ASSERT_EQUAL_INT(0, strikes_on(&h, 12));
+    TEST_ASSERT_TRUE(play_out(p, &h));
+    TEST_ASSERT_EQUAL_INT(1, strikes_on(&h, 12));
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+// one line for a whole phrase
+static void test_strokes_after_done_for_past_beats_are_told_once_and_kept_for_the_next_play(void)
+{
+    heard h = {.strikes = 0};
+    himc_performance *p = performer("play;");
+    TEST_ASSERT_TRUE(play_out(p, &h));
+    session_play(p, 2, &h);
+    session_do(p, "stroke 2.5 left legato f");
+    session_do(p, "stroke 3.5 left legato f");
+    session_do(p, "roll 4 1 single p");
+    session_play(p, 1, &h);
+    TEST_ASSERT_EQUAL_STRING(
+        "stroke at beat 2.5 left low: that beat is past, the next play has it\n", h.all);
+    TEST_ASSERT_EQUAL_INT(3, h.strikes);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
+    session_do(p, "play");
+    TEST_ASSERT_TRUE(play_out(p, &h));
+    TEST_ASSERT_EQUAL_INT(1, strikes_on(&h, 2.5));
+    TEST_ASSERT_EQUAL_INT(1, strikes_on(&h, 3.5));
+    TEST_ASSERT_TRUE(h.strikes > 10);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -166,5 +247,8 @@ int main(void)
     RUN_TEST(test_at_after_done_acts_on_its_beat);
     RUN_TEST(test_at_after_done_for_a_past_beat_is_told_and_acts_in_the_next_play);
     RUN_TEST(test_at_after_stop_or_clear_waits_for_play);
+    RUN_TEST(test_a_stroke_after_done_sounds_on_its_beat_and_the_piece_is_done_again);
+    RUN_TEST(test_play_while_a_late_stroke_is_still_to_come_begins_at_the_top);
+    RUN_TEST(test_strokes_after_done_for_past_beats_are_told_once_and_kept_for_the_next_play);
     return UNITY_END();
 }

@@ -1,6 +1,8 @@
 /// test_beats.c: beats and the end are told in the step in which they come, whatever the host does.
 #include "session.h"
 
+#include "himc/body.h"
+
 #define CHUNK 6000 // samples between two places where the host gives commands
 #define CHUNKS 32
 #define MOST 64
@@ -139,11 +141,51 @@ static void test_a_loop_of_one_beat_reports_it_in_each_round(void)
     himc_performance_free(p);
 }
 
+typedef struct pushes {
+    bool pushed;
+    int count;
+    double time[MOST];
+} pushes;
+
+static void count_pushes(void *user, const himc_motion_row *row)
+{
+    pushes *p = user;
+    bool pushed = row->push[HIMC_HEAD].x > 0;
+    if (pushed && !p->pushed && p->count < MOST)
+        p->time[p->count++] = row->time;
+    p->pushed = pushed;
+}
+
+// on beat 4, where a loop of four beats begins again, as on any other
+static void test_a_push_acts_once_in_each_round_of_a_loop_on_its_last_beat_too(void)
+{
+    static const double beats[] = {0, 1.5, 4};
+    for (int i = 0; i < 3; i++) {
+        himc_performance *p = session_new();
+        pushes all = {.count = 0};
+        session_do(p, "drum kettle 26");
+        session_do(p, "tempo 120");
+        session_do(p, "stroke 1 right legato mf");
+        session_do(p, "stroke 3.5 left legato mf");
+        session_do(p, "at %g push head 5 0 0 0.1", beats[i]);
+        session_do(p, "loop 1");
+        himc_performance_on_motion(p, count_pushes, &all);
+        session_do(p, "play");
+        session_play(p, 8.5, NULL); // four rounds of 2 s, and a beat
+        TEST_ASSERT_EQUAL_INT(beats[i] == 0 ? 5 : 4, all.count);
+        for (int k = 1; k < all.count; k++)
+            TEST_ASSERT_DOUBLE_WITHIN(0.009, 2, all.time[k] - all.time[k - 1]);
+        TEST_ASSERT_DOUBLE_WITHIN(0.009, 0.5 * beats[i], all.time[0]);
+        himc_performance_free(p);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_beats_and_the_end_come_in_the_same_steps_at_any_block_size);
     RUN_TEST(test_tempo_in_a_loop_keeps_the_tempi_of_other_parts_in_later_rounds);
     RUN_TEST(test_a_loop_of_one_beat_reports_it_in_each_round);
+    RUN_TEST(test_a_push_acts_once_in_each_round_of_a_loop_on_its_last_beat_too);
     return UNITY_END();
 }

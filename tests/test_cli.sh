@@ -304,6 +304,11 @@ refuses test_what_comes_is_no_scene_for_a_film "-: not a scene" film - -o x.glb
 "$himc" render piece.txt -o /dev/null --strokes link.csv >out 2>err
 check test_a_link_to_nothing_stays_a_link [ "$?$(readlink link.csv)$(head -c 6 target.csv)" = 0target.csvtime_s ]
 
+# a stroke that is not played is known before those that touch earlier
+printf 'drum kettle; drum far; far place 4 0 0.85; tempo 60; stroke 2 right legato mf far; stroke 1 left legato mf; stroke 1.5 right legato mf; stroke 2.5 left legato mf;' >lost.txt
+"$himc" render lost.txt -o /dev/null --strokes lost.csv >out 2>err
+check test_rows_of_strokes_are_in_the_order_of_time [ "$(sed 1d lost.csv | cut -d, -f 3 | tr '\n' ' ')$(sed 1d lost.csv | sort -n -c 2>&1)" = "kettle kettle far kettle " ]
+
 # a comment without its ;
 printf 'comment hello\nstroke 1 right legato mf;\nstroke 2 right legato mf;\n' >open.txt
 "$himc" render open.txt -o /dev/null >out 2>err

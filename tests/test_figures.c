@@ -67,7 +67,8 @@ static void test_stroke_without_contact_is_given_up_15_ms_after_its_time(void)
     himc_performance_stats s = himc_performance_measure(p);
     TEST_ASSERT_EQUAL_INT(1, s.strokes);
     TEST_ASSERT_EQUAL_INT(1, s.missed);
-    TEST_ASSERT_EQUAL_STRING("left stick missed drum kettle at 2.000 s", h.note);
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 2 left kettle: the stick missed the head at 2.000 s",
+                             h.note);
     heard_free(&h);
     himc_performance_free(p);
 }

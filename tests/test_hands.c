@@ -39,7 +39,7 @@ static void test_stroke_without_time_is_reassigned_to_the_other_hand(void)
     session_do(p, "stroke 3 right legato f");
     session_do(p, "play");
     TEST_ASSERT_TRUE(was_said(
-        p, 6, &h, "stroke at beat 2.06 left: no time to prepare it, the right hand plays it"));
+        p, 6, &h, "stroke at beat 2.06 left side: no time to prepare it, the right hand plays it"));
     TEST_ASSERT_EQUAL_INT(3, h.strikes);
     TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, h.strike[1].hand);
     TEST_ASSERT_EQUAL_STRING("side", h.strike[1].drum);
@@ -61,7 +61,7 @@ static void test_stroke_that_neither_hand_can_play_is_given_up_and_missed(void)
     session_do(p, "stroke 3 right legato f");
     session_do(p, "play");
     TEST_ASSERT_TRUE(
-        was_said(p, 6, &h, "stroke at beat 2.06 left: given up, no time to prepare it"));
+        was_said(p, 6, &h, "stroke at beat 2.06 left side: given up, no time to prepare it"));
     himc_performance_stats s = himc_performance_measure(p);
     TEST_ASSERT_EQUAL_INT(3, h.strikes);
     TEST_ASSERT_EQUAL_INT(4, s.strokes);
@@ -120,7 +120,7 @@ static void test_stroke_out_of_reach_of_both_is_missed_and_a_note_says_by_how_mu
     session_play(p, 7, &h);
     TEST_ASSERT_EQUAL_INT(2, h.notes); // of the drum, and of the stroke
     TEST_ASSERT_NOT_NULL_MESSAGE(
-        strstr(h.note, "stroke at beat 3 left: given up, out of reach by 1.8"), h.note);
+        strstr(h.note, "stroke at beat 3 left side: given up, out of reach by 1.8"), h.note);
     himc_performance_stats s = himc_performance_measure(p);
     TEST_ASSERT_EQUAL_INT(2, s.played);
     TEST_ASSERT_EQUAL_INT(1, s.missed);

@@ -404,6 +404,40 @@ static void test_a_loop_keeps_what_was_set_by_hand(void)
     himc_performance_free(p);
 }
 
+// on that beat the next round begins: it acts there, up to a line that sets the same
+static void test_a_change_where_a_loop_begins_again_acts_in_each_later_round(void)
+{
+    for (int again = 0; again < 2; again++) { // also on beat 0, which comes after it
+        himc_performance *p =
+            with_score(again ? DRUM "at 0 low tune A2; at 2 low damp 1; at 3 low damp 0; "
+                                    "at 4 low tune C3; at 6 low tune D3; " STROKES "loop 1; play;"
+                             : DRUM "at 2 low damp 1; at 3 low damp 0; at 4 low tune C3; "
+                                    "at 6 low tune D3; " STROKES "loop 1; play;");
+        for (int play = 0; play < 2; play++) {
+            for (int round = 0; round < 3; round++) {
+                double first = round == 0 || again ? A2 : D3;
+                session_play(p, 0.25, NULL); // beat 0.5
+                TEST_ASSERT_DOUBLE_WITHIN(0.01, first, pitch(p));
+                TEST_ASSERT_EQUAL_DOUBLE(0, damping(p));
+                session_play(p, 1, NULL); // 2.5
+                TEST_ASSERT_DOUBLE_WITHIN(0.01, first, pitch(p));
+                TEST_ASSERT_EQUAL_DOUBLE(1, damping(p));
+                session_play(p, 1, NULL); // 4.5
+                TEST_ASSERT_DOUBLE_WITHIN(0.01, 130.813, pitch(p));
+                TEST_ASSERT_EQUAL_DOUBLE(0, damping(p));
+                watch_allocations();
+                session_play(p, 0.75, NULL);
+                TEST_ASSERT_EQUAL_INT(0, allocations_seen());
+            }
+            session_do(p, "stop");
+            session_do(p, "seek 0");
+            session_play(p, 1, NULL);
+            session_do(p, "play");
+        }
+        himc_performance_free(p);
+    }
+}
+
 static void test_a_dump_with_changes_and_a_changed_drum_plays_the_same(void)
 {
     enum { LENGTH = 5 * 48000 };
@@ -481,6 +515,7 @@ int main(void)
     RUN_TEST(test_a_change_is_tuned_on_the_head_as_it_was_changed);
     RUN_TEST(test_a_note_that_a_changed_head_cannot_have_is_left_out_and_told);
     RUN_TEST(test_a_loop_keeps_what_was_set_by_hand);
+    RUN_TEST(test_a_change_where_a_loop_begins_again_acts_in_each_later_round);
     RUN_TEST(test_a_dump_with_changes_and_a_changed_drum_plays_the_same);
     return UNITY_END();
 }

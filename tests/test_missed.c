@@ -265,6 +265,61 @@ static void test_strokes_that_are_given_up_do_not_weaken_their_neighbours(void)
     heard_free(&plain.h);
 }
 
+// who wrote a flam looks for it, not for a stroke of the other hand
+static void test_a_grace_note_that_is_lost_is_named_after_its_stroke(void)
+{
+    static const char *const ornaments[] = {"flam", "drag", "ruff"};
+    for (int k = 0; k < 3; k++)
+        for (int hand = 0; hand < 2; hand++) {
+            const char *own = hand ? "left" : "right", *other = hand ? "right" : "left";
+            himc_performance *p = session_new();
+            told t = {.misses = 0};
+            char text[128];
+            session_do(p, "drum low 26");
+            session_do(p, "drum high 26");
+            session_drum(p, 0, hand ? "place 0.5 -0.5 0.85" : "place 0.5 0.5 0.85");
+            session_drum(p, 1, hand ? "place 0.5 0.5 0.85" : "place 0.5 -0.5 0.85");
+            session_do(p, "tempo 60");
+            session_do(p, "stroke 1 %s legato mf low", other);
+            session_do(p, "%s 1.16 %s legato f high", ornaments[k], own);
+            session_do(p, "play");
+            listen_to(p, 4, &t);
+            snprintf(text, sizeof text, "grace note %s of the %s at beat 1.16 %s high: given up, ",
+                     other, ornaments[k], own);
+            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(t.h.all, text), t.h.all);
+            TEST_ASSERT_EQUAL_INT(1, t.misses);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.16, t.missed[0].beat);
+            TEST_ASSERT_EQUAL_INT(hand ? HIMC_RIGHT : HIMC_LEFT, t.missed[0].hand);
+            TEST_ASSERT_EQUAL_STRING("high", t.missed[0].drum);
+            heard_free(&t.h);
+            himc_performance_free(p);
+        }
+}
+
+// the beat alone comes again in each round
+static void test_a_line_about_a_stroke_in_a_loop_names_its_round(void)
+{
+    himc_performance *p = with_far_drum();
+    told t = {.misses = 0};
+    session_do(p, "tempo 120");
+    session_do(p, "stroke 0 right legato mf");
+    session_do(p, "stroke 3 left legato mf far");
+    session_do(p, "loop 1");
+    session_do(p, "play");
+    listen_to(p, 4.4, &t);
+    session_do(p, "stroke 3.5 right legato mf"); // begins to count rounds inside anew
+    listen_to(p, 3.6, &t);
+    for (int round = 1; round <= 3; round++) {
+        char text[96], *at;
+        snprintf(text, sizeof text, "stroke at beat 3 left far, round %d: given up, out of", round);
+        at = strstr(t.h.all, text);
+        TEST_ASSERT_NOT_NULL_MESSAGE(at, t.h.all);
+        TEST_ASSERT_NULL_MESSAGE(strstr(at + 1, text), t.h.all);
+    }
+    heard_free(&t.h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -277,5 +332,7 @@ int main(void)
     RUN_TEST(test_a_stroke_for_a_hand_that_has_not_struck_in_a_loop_was_not_missed_before);
     RUN_TEST(test_a_stroke_added_late_in_a_round_of_a_loop_is_played_or_told_of);
     RUN_TEST(test_strokes_that_are_given_up_do_not_weaken_their_neighbours);
+    RUN_TEST(test_a_grace_note_that_is_lost_is_named_after_its_stroke);
+    RUN_TEST(test_a_line_about_a_stroke_in_a_loop_names_its_round);
     return UNITY_END();
 }

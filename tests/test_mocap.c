@@ -4,6 +4,7 @@
 
 #include "../mocap/parts.h"
 #include "capture/take.h"
+#include "track/track.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -264,6 +265,46 @@ static void test_each_stroke_is_found_in_each_of_the_45_files(void)
     expect_found(&worst);
 }
 
+// mean speed at which the take's motion meets the head, over the mean captured one
+static double share_of_the_speed(himc_take *take, const himc_head_frame *head)
+{
+    double played = 0, captured = 0;
+    himc_take_options options = himc_take_default();
+    himc_track *track = himc_track_new(take, &options, head, 0.02, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        double before = 0, t, x, y;
+        for (double now = 0; now < himc_track_length(track); now += 0.002)
+            if (himc_track_current(track, hand, now, &t, &x, &y) && t > before) {
+                before = t;
+                played -= himc_track_target(track, hand, t - 1e-6).v.z;
+                captured += himc_track_captured_speed(track, hand, now);
+            }
+    }
+    himc_track_free(track);
+    return played / captured;
+}
+
+static void test_each_of_the_45_files_is_played_at_the_speed_captured(void)
+{
+    himc_head_frame head = {{0.5, 0, 0.85}, 0, 0.3};
+    double least = 2, most = 0, sum = 0;
+    for (int i = 0; i < MOCAP_SEQUENCES; i++) {
+        himc_mocap *m = sequence(i);
+        himc_take *take = write_and_read(m, "c3d");
+        double share = share_of_the_speed(take, &head);
+        least = fmin(least, share);
+        most = fmax(most, share);
+        sum += share;
+        himc_take_free(take);
+        himc_mocap_free(m);
+    }
+    printf("speed %.3f of the captured, %.3f .. %.3f\n", sum / MOCAP_SEQUENCES, least, most);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 1, sum / MOCAP_SEQUENCES);
+    TEST_ASSERT_DOUBLE_WITHIN(0.12, 1, least);
+    TEST_ASSERT_DOUBLE_WITHIN(0.12, 1, most);
+}
+
 static int found(const himc_take *take, const char *name)
 {
     int point = himc_take_find(take, name);
@@ -395,6 +436,7 @@ int main(void)
     RUN_TEST(test_equal_seeds_give_equal_motions_and_others_differ);
     RUN_TEST(test_impossible_configs_are_refused_in_a_line);
     RUN_TEST(test_each_stroke_is_found_in_each_of_the_45_files);
+    RUN_TEST(test_each_of_the_45_files_is_played_at_the_speed_captured);
     RUN_TEST(test_a_bvh_reads_back_rotation_by_rotation);
     RUN_TEST(test_a_c3d_reads_back_marker_by_marker);
     RUN_TEST(test_mocap_pace_scales_time_and_nothing_else);

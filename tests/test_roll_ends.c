@@ -112,6 +112,44 @@ static void test_a_roll_ends_in_grace_notes_as_they_are_without_it(void)
     }
 }
 
+// the hand with the grace notes has no time for a double before them
+static void test_a_double_roll_is_even_up_to_a_drag(void)
+{
+    static const char *const end[] = {"drag", "ruff"}, *const hand[] = {"left", "right"};
+    for (int k = 0; k < 4; k++) {
+        char ornament[64];
+        snprintf(ornament, sizeof ornament, "%s 2 %s legato f", end[k % 2], hand[k / 2]);
+        const char *lines[] = {"drum a 26", "tempo 60", "roll 1 1 double mf", ornament, NULL};
+        heard h = play_new(4, lines);
+        const himc_strike *own = last_of(&h), *last = own - 2;
+        printf("%s: the last double %.2f m/s, of %.2f\n", ornament, last->velocity,
+               h.strike[2].velocity);
+        TEST_ASSERT_TRUE(last->hand != own[-1].hand);
+        TEST_ASSERT_DOUBLE_WITHIN(1, 0, 20 * log10(last->velocity / h.strike[2].velocity));
+        heard_free(&h);
+    }
+}
+
+// contacts and bounces are as near to each other up to the grace note
+static void test_a_double_roll_leaves_no_hole_before_a_flam(void)
+{
+    static const char *const end[] = {"flam 2 left legato f", "flam 2 right legato f"};
+    for (int k = 0; k < 2; k++) {
+        const char *lines[] = {"drum a 26", "tempo 60", "roll 1 1 double mf", end[k], NULL};
+        himc_performance *p = session_new();
+        heard h = play(p, 4, lines);
+        qsort(h.strike, (size_t)h.strikes, sizeof *h.strike, by_time);
+        const himc_strike *main = last_of(&h);
+        double most = 0, before = main[-1].time - main[-2].time;
+        for (int i = 1; i < h.strikes - 2; i++)
+            most = fmax(most, h.strike[i].time - h.strike[i - 1].time);
+        printf("%s: intervals up to %.0f ms, then %.0f ms\n", end[k], 1e3 * most, 1e3 * before);
+        TEST_ASSERT_TRUE(before < 1.35 * most);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 // both hands go to the other drum: one of them leads, the other one must not meet it
 static void test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it(void)
 {
@@ -163,6 +201,176 @@ static void test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_
         printf("%s: %.2f m/s, after a change of tempo %.2f and more\n", kind[k],
                last_of(&plain)->velocity, least);
         TEST_ASSERT_TRUE(20 * log10(last_of(&plain)->velocity / least) < 0.5);
+        heard_free(&plain);
+    }
+}
+
+// a tempo so near a roll's end that few of its strokes are left to plan: they give way
+static void test_a_stroke_after_a_roll_is_as_strong_when_the_tempo_changes_just_before_it(void)
+{
+    static const char *const hand[] = {"left", "right"};
+    for (int k = 0; k < 12; k++) {
+        char end[64];
+        bool faster = k / 2 % 2;
+        double before = faster ? 0.26 + 0.04 * (k / 4) : 0.18 + 0.03 * (k / 4);
+        snprintf(end, sizeof end, "stroke 2 %s legato f", hand[k % 2]);
+        const char *lines[] = {"drum a 29", "tempo 60", "roll 1 1 single mf", end, NULL};
+        heard plain = play_new(4, lines);
+        himc_performance *p = session_new();
+        heard h = play(p, 2 - before, lines);
+        session_do(p, "tempo %d", faster ? 90 : 45);
+        session_play(p, 2, &h);
+        TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).missed);
+        keep_asked(&h);
+        const himc_strike *own = last_of(&h), *like = last_of(&plain);
+        printf("%s, tempo %d %.0f ms before: %.2f m/s of %.2f\n", end, faster ? 90 : 45,
+               1e3 * before, own->velocity, like->velocity);
+        TEST_ASSERT_EQUAL_DOUBLE(2, own->beat);
+        TEST_ASSERT_EQUAL_INT(like->hand, own->hand);
+        TEST_ASSERT_TRUE(own[-1].hand != own->hand);
+        TEST_ASSERT_TRUE(20 * log10(like->velocity / own->velocity) < 0.5);
+        heard_free(&h);
+        heard_free(&plain);
+        himc_performance_free(p);
+    }
+}
+
+// the same tempo again, at any moment of a roll
+static void test_a_tempo_that_is_already_so_changes_nothing(void)
+{
+    static const char *const kind[] = {"single", "double", "press"};
+    for (int k = 0; k < 9; k++) {
+        char roll[64];
+        snprintf(roll, sizeof roll, "roll 1 1 %s p f", kind[k % 3]);
+        const char *lines[] = {"drum a 29", "tempo 60", roll, "stroke 2 right accent f", NULL};
+        heard plain = play_new(4, lines);
+        himc_performance *p = session_new();
+        heard h = play(p, 1.2 + 0.2 * (k / 3) + 0.21 * (k % 3), lines);
+        session_do(p, "tempo 60");
+        session_play(p, 2.8, &h);
+        keep_asked(&h);
+        TEST_ASSERT_EQUAL_INT(plain.strikes, h.strikes);
+        for (int i = 0; i < h.strikes; i++) {
+            const himc_strike *own = &h.strike[i], *like = &plain.strike[i];
+            TEST_ASSERT_EQUAL_DOUBLE(like->planned_time, own->planned_time);
+            TEST_ASSERT_DOUBLE_WITHIN(0.1, 0, 20 * log10(own->velocity / like->velocity));
+        }
+        heard_free(&h);
+        heard_free(&plain);
+        himc_performance_free(p);
+    }
+}
+
+/// A line of a round: a command, its beat, and the rest.
+typedef struct round_line {
+    const char *command;
+    double beat;
+    const char *rest;
+} round_line;
+
+/// Strokes of rounds of four beats, looped or written one after the other.
+static heard play_rounds(const round_line *line, int rounds, double seconds)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    static const char *const begin[] = {NEIGHBOURS, "tempo 60"};
+    for (int i = 0; i < 5; i++)
+        session_do(p, "%s", begin[i]);
+    for (int k = 0; k < rounds; k++)
+        for (const round_line *l = line; l->command; l++)
+            session_do(p, "%s %g %s", l->command, l->beat + 4 * k, l->rest);
+    session_do(p, "loop %d", rounds == 1);
+    session_do(p, "play");
+    session_play(p, seconds, &h);
+    keep_asked(&h);
+    himc_performance_free(p);
+    return h;
+}
+
+// a roll at a loop's end looks into the next round: its drum, its hand, its grace notes
+static void test_a_looped_score_is_as_the_same_written_again_and_again(void)
+{
+    static const round_line piece[][5] = {
+        {{"stroke", 0, "right legato f normal a"}, {"roll", 1, "3 single mf normal b"}},
+        {{"stroke", 0, "left accent f normal b"}, {"roll", 1, "3 double f normal b"}},
+        {{"flam", 0, "right legato f normal b"}, {"roll", 1, "3 single mf normal b"}},
+        {{"flam", 0, "left legato f normal a"}, {"roll", 2, "2 press mf normal a"}},
+        {{"drag", 0, "left legato f normal b"}, {"roll", 1, "3 double mf normal b"}},
+        {{"roll", 0, "2 single mf normal a"}, {"roll", 2, "2 single p f normal b"}},
+        {{"roll", 0, "2 press mf normal b"}, {"roll", 2, "2 single mf normal a"}},
+        {{"roll", 0.5, "3.5 single mf normal b"}, {"stroke", 0, "right legato f normal b"}},
+        {{"stroke", 0.5, "right legato f normal a"}, {"roll", 3.7, "0.3 single mf normal a"}},
+        {{"roll", 0, "4 single p ff normal a"}},
+    };
+    for (int k = 0; k < (int)(sizeof piece / sizeof *piece); k++) {
+        heard loop = play_rounds(piece[k], 1, 12.5), h = play_rounds(piece[k], 3, 12.5);
+        double begin = h.strike[0].time, off = 0, far = 0;
+        int n = 0;
+        for (; n < h.strikes && h.strike[n].time < begin + 8.2; n++) {
+            const himc_strike *own = &loop.strike[n], *like = &h.strike[n];
+            TEST_ASSERT_TRUE(n < loop.strikes);
+            TEST_ASSERT_EQUAL_INT(like->hand, own->hand);
+            TEST_ASSERT_EQUAL_STRING(like->drum, own->drum);
+            off = fmax(off, fabs(20 * log10(own->velocity / like->velocity)));
+            far = fmax(far, fabs(own->planned_time - like->planned_time));
+        }
+        printf("loop %d: %d strokes, off by %.3f dB and %.2g s\n", k, n, off, far);
+        TEST_ASSERT_TRUE(off < 0.3 && far < 1e-6);
+        heard_free(&loop);
+        heard_free(&h);
+    }
+}
+
+/// Strokes of a roll at beat 1; and how fast the last one is, which may be a stroke at its end.
+static int count_of_roll(const char *kind, double length, const char *end, double *speed)
+{
+    char roll[64], stroke[64];
+    snprintf(roll, sizeof roll, "roll 1 %g %s mf", length, kind);
+    snprintf(stroke, sizeof stroke, "stroke %g %s legato mf", 1 + length, end);
+    const char *lines[] = {"drum a 29", "tempo 60", roll, end[0] ? stroke : NULL, NULL};
+    heard h = play_new(1.6 + length, lines);
+    int count = h.strikes - (end[0] != 0);
+    *speed = last_of(&h)->velocity;
+    heard_free(&h);
+    return count;
+}
+
+// a few strokes, as many as the time has at the rate of a long roll, with or without an end
+static void test_short_rolls_have_the_rate_of_long_ones(void)
+{
+    static const char *const kind[] = {"single", "double", "press"}, *const end[] = {"", "left",
+                                                                                     "right"};
+    for (int k = 0; k < 9; k++) {
+        double speed, alone, rate = count_of_roll(kind[k / 3], 8, "", &alone) / 8.0;
+        for (double length = 0.15; length < 0.5; length += 0.06) {
+            int count = count_of_roll(kind[k / 3], length, end[k % 3], &speed);
+            printf("%s %.2f s %s: %.2f strokes asked, %d, the end %.2f m/s of %.2f\n", kind[k / 3],
+                   length, end[k % 3], rate * length, count, speed, alone);
+            TEST_ASSERT_DOUBLE_WITHIN(0.6, rate * length, count);
+            TEST_ASSERT_TRUE(20 * log10(alone / speed) < 1);
+        }
+    }
+}
+
+// the hand's last buzz gives way to it; what is still too strong for the time is told
+static void test_an_accent_after_a_buzz_is_as_strong_as_alone_or_a_line_tells(void)
+{
+    static const char *const hand[] = {"left", "right"}, *const loud[] = {"mf", "ff"};
+    static const char *const accent[] = {"legato f", "accent f", "accent fff",
+                                         "vertical-accent fff"};
+    for (int k = 0; k < 16; k++) {
+        char roll[64], end[64], told[64];
+        snprintf(roll, sizeof roll, "roll 1 1 press %s", loud[k / 2 % 2]);
+        snprintf(end, sizeof end, "stroke 2 %s %s", hand[k % 2], accent[k / 4]);
+        snprintf(told, sizeof told, "stroke at beat 2 %s: too little time", hand[k % 2]);
+        const char *lines[] = {"drum a 29", "tempo 60", roll, end, NULL},
+                   *alone[] = {"drum a 29", "tempo 60", end, NULL};
+        heard h = play_new(2.6, lines), plain = play_new(2.6, alone);
+        double loss = 20 * log10(last_of(&plain)->velocity / last_of(&h)->velocity);
+        printf("%s, %s: %.2f dB softer\n", roll, end, loss);
+        TEST_ASSERT_TRUE(loss < 0.6 || strstr(h.all, told));
+        TEST_ASSERT_TRUE(loss < 0.6 || k >= 8);
+        heard_free(&h);
         heard_free(&plain);
     }
 }
@@ -239,7 +447,7 @@ static void test_notes_that_are_left_out_are_named_as_they_are_written(void)
                                                 "stroke 2.04 left legato mf", "roll 1 3 single mf",
                                                 NULL};
     TEST_ASSERT_EQUAL_INT(
-        1, notes_of(near, "drag at beat 2: no grace notes, the left hand has another"));
+        1, notes_of(near, "drag at beat 2 right a: no grace notes, the left hand has"));
     TEST_ASSERT_EQUAL_INT(1,
                           notes_of(within, "roll at beat 1: 1 of its strokes left out, too near"));
 }
@@ -311,8 +519,15 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes);
     RUN_TEST(test_a_roll_ends_in_grace_notes_as_they_are_without_it);
+    RUN_TEST(test_a_double_roll_is_even_up_to_a_drag);
+    RUN_TEST(test_a_double_roll_leaves_no_hole_before_a_flam);
     RUN_TEST(test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it);
     RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
+    RUN_TEST(test_a_stroke_after_a_roll_is_as_strong_when_the_tempo_changes_just_before_it);
+    RUN_TEST(test_a_tempo_that_is_already_so_changes_nothing);
+    RUN_TEST(test_a_looped_score_is_as_the_same_written_again_and_again);
+    RUN_TEST(test_short_rolls_have_the_rate_of_long_ones);
+    RUN_TEST(test_an_accent_after_a_buzz_is_as_strong_as_alone_or_a_line_tells);
     RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
     RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);
     RUN_TEST(test_notes_that_are_left_out_are_named_as_they_are_written);

@@ -172,6 +172,7 @@ static int finish(void)
 static int help(const char *what)
 {
     const cli_call *call = what ? find_call(what) : NULL;
+    bool known = call;
     if (call)
         cli_help(call);
     if (call && (himc_command_find(HIMC_PERFORMER, what) || himc_command_find(HIMC_DRUM, what)))
@@ -180,8 +181,12 @@ static int help(const char *what)
         print_help();
     else if (!strcmp(what, "commands"))
         print_commands();
-    else if (!(print_command(what) | print_message(what)) && !call)
-        return refuse("no help for", what, true);
+    else {
+        known |= print_command(what);
+        known |= print_message(what);
+        if (!known)
+            return refuse("no help for", what, true);
+    }
     return finish();
 }
 

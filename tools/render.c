@@ -85,6 +85,7 @@ typedef struct job {
 typedef struct rendering {
     himc_performance *performance;
     cli_file wav, strokes, motion, scene;
+    render_strokes struck;
     motion_table *rows;   ///< NULL without --motion
     scene_record *record; ///< NULL without --scene
     SNDFILE *sound;
@@ -338,7 +339,7 @@ static void take_events(rendering *r)
             scene_record_event(r->record, &event);
         bool row = event.kind == HIMC_EVENT_STRIKE || event.kind == HIMC_EVENT_MISSED;
         if (row && r->strokes.stream)
-            render_stroke_row(r->strokes.stream, &event.strike);
+            render_strokes_add(&r->struck, &event.strike);
         else if (event.kind == HIMC_EVENT_NOTE) {
             clear_progress();
             if (r->sound)
@@ -404,6 +405,10 @@ static bool keep_files(rendering *r, const job *wanted, himc_error *error)
     r->sound = NULL;
     if (!closed)
         return himc_error_set(error, "%s: cannot be written to its end", path);
+    if (r->struck.full)
+        return himc_error_set(error, "%s: out of memory for its rows", r->strokes.path);
+    if (r->strokes.stream)
+        render_strokes_write(&r->struck, r->strokes.stream);
     if (r->rows && !motion_table_end(r->rows, error))
         return false;
     bool recorded = scene_record_end(r->record, error);
@@ -423,6 +428,7 @@ static void close_all(rendering *r)
     cli_file_drop(&r->strokes);
     cli_file_drop(&r->motion);
     cli_file_drop(&r->scene);
+    free(r->struck.row);
     motion_table_free(r->rows);
     himc_performance_free(r->performance);
 }
@@ -503,8 +509,6 @@ static bool open_all(rendering *r, job *wanted, const char *const *value, himc_e
     if (r->scene.stream && !open_record(r, wanted, r->scene.stream, value[MODE],
                                         compare && lists(compare, others[CAPTURED]), error))
         return false;
-    if (r->strokes.stream)
-        render_stroke_header(r->strokes.stream);
     if (r->motion.stream) {
         r->rows = motion_table_new(r->motion.stream, motion_table_is_numpy(value[MOTION]),
                                    value[COLUMNS], error);

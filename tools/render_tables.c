@@ -5,6 +5,7 @@
 #include "himc/body.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /// A name in a table: in quotes, quotes doubled, if it would break the row (RFC 4180).
@@ -23,13 +24,26 @@ static void put_name(FILE *stream, const char *name)
     fputc('"', stream);
 }
 
-void render_stroke_header(FILE *stream)
+// a stroke is known when its contact ends, or as soon as it will not be played: a row finds its
+// place near the end
+void render_strokes_add(render_strokes *s, const himc_strike *strike)
 {
-    fputs("time_s,hand,drum,nuance,x_m,y_m,velocity_m_s,peak_force_n,impulse_n_s,duration_s\n",
-          stream);
+    if (s->count == s->room) {
+        int room = s->room ? 2 * s->room : 256;
+        himc_strike *row = realloc(s->row, (size_t)room * sizeof *row);
+        s->full = s->full || !row;
+        if (!row)
+            return;
+        s->row = row;
+        s->room = room;
+    }
+    int at = s->count++;
+    for (; at > 0 && s->row[at - 1].time > strike->time; at--)
+        s->row[at] = s->row[at - 1];
+    s->row[at] = *strike;
 }
 
-void render_stroke_row(FILE *stream, const himc_strike *strike)
+static void put_stroke(FILE *stream, const himc_strike *strike)
 {
     fprintf(stream, "%.6f,%s,", strike->time, himc_hand_name(strike->hand));
     put_name(stream, strike->drum);
@@ -37,6 +51,16 @@ void render_stroke_row(FILE *stream, const himc_strike *strike)
     put_name(stream, strike->nuance);
     fprintf(stream, ",%.6f,%.6f,%.5f,%.4f,%.7f,%.6f\n", strike->x, strike->y, strike->velocity,
             strike->force, strike->impulse, strike->duration);
+}
+
+void render_strokes_write(render_strokes *s, FILE *stream)
+{
+    fputs("time_s,hand,drum,nuance,x_m,y_m,velocity_m_s,peak_force_n,impulse_n_s,duration_s\n",
+          stream);
+    for (int i = 0; i < s->count; i++)
+        put_stroke(stream, &s->row[i]);
+    free(s->row);
+    *s = (render_strokes){.count = 0};
 }
 
 static void put_json(FILE *out, const char *key, double value, const char *after)

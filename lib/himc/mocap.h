@@ -118,6 +118,7 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
 typedef struct himc_take_strike {
     himc_hand hand;  ///< the hand that struck
     int frame;       ///< of the lowest position, counted from 0
+    int clear;       ///< the last frame in which the fall is undisturbed by the head
     int head;        ///< of the drumheads of the take, 0 the most struck
     double time;     ///< of the touch, between frames, from the first frame (s)
     himc_vec3 x;     ///< position of the tip at the touch (m)

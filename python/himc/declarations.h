@@ -87,6 +87,7 @@ const char *himc_version(void);
 typedef struct {
     int hand;
     int frame;
+    int clear;
     int head;
     double time;
     himc_vec3 x;

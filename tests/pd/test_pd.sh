@@ -134,8 +134,19 @@ report taps_are_the_same_in_blocks_of_1024 "$(taps | cmp - "$work/taps" 2>&1)"
 play_pd missed.pd
 report strokes_and_hits_that_are_not_played_are_missed "$(lines "himc: missed 1 right far
 himc: missed -1 left far
-himc~: stroke at beat 1 right: given up
+himc~: stroke at beat 1 right far: given up
 himc: strike")"
+
+play_pd second.pd
+report any_membrane_is_known_by_its_name_before_a_stroke_names_it "$(lines "himc: info third: radius
+himc~: third: a drum, expected a command behind its name, as in third damp 1
+himc~: fourth: no drum (second third)
+principal mode 150 Hz")$(grep -c '^error' "$work/log" | grep -vx 2)"
+report both_objects_count_the_time_that_they_have_played "$(awk '
+    /^himc: strike/ { strike[++n] = $3 }
+    /^third: / { touch[++m] = $2 }
+    END { if (n != 2 || m != 2) print n + 0 " strikes, " m + 0 " touches"
+          for (i = 1; i <= n; i++) if ((strike[i] - touch[i]) ^ 2 > 1e-8) print strike[i] " and " touch[i] "; " }' "$work/log")"
 
 play_pd signals.pd
 level() { awk -v name="$1:" '$1 == name { print $2 }' "$work/log"; }

@@ -313,6 +313,7 @@ static himc_take_strike measure(const track *t, const candidate *s, himc_hand ha
     double down = -(before.b + 2 * before.c * u) * t->rate;
     return (himc_take_strike){.hand = hand,
                               .frame = low,
+                              .clear = end,
                               .time = touch / t->rate,
                               .x = place_between(t, touch, height),
                               .velocity = fmin(fmax(down, SLOWER * s->down), FASTER * s->down),

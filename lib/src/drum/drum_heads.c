@@ -239,23 +239,29 @@ static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int cha
     return good;
 }
 
-/// Gives the drum the head of a change.
-static bool give_head(himc_drum_heads *heads, himc_drum *drum, int change, himc_error *error)
+/// Gives the drum that head.
+static bool give(himc_drum_heads *heads, himc_drum *drum, const himc_head *head, himc_error *error)
 {
     bool good = true;
     himc_membrane *membrane = drum->membrane;
     himc_membrane_form form = himc_membrane_form_of(membrane);
-    form.head = *head_of(heads, change);
-    if (heads->edited)
-        good = overlay(heads, drum, change, &form.head, error);
+    form.head = *head;
     bool same = himc_membrane_has_form(membrane, &form);
     himc_membrane *spare = same ? NULL : find_spare(heads, &form);
     if (spare)
         himc_membrane_exchange(membrane, spare);
     else if (!same)
-        good = himc_membrane_set_head(membrane, &form.head, error) && good;
+        good = himc_membrane_set_head(membrane, &form.head, error);
     himc_membrane_form_free(&form);
     return good;
+}
+
+/// Gives the drum the head of a change.
+static bool give_head(himc_drum_heads *heads, himc_drum *drum, int change, himc_error *error)
+{
+    himc_head head = *head_of(heads, change);
+    bool good = !heads->edited || overlay(heads, drum, change, &head, error);
+    return give(heads, drum, &head, error) && good;
 }
 
 bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, himc_error *error)
@@ -274,6 +280,34 @@ bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, 
     heads->now = change;
     latest->told.known = *himc_membrane_head(drum->membrane);
     return good;
+}
+
+bool himc_drum_heads_begin_again(himc_drum_heads *heads, himc_drum *drum, double end,
+                                 himc_error *error)
+{
+    int from = heads->count;
+    while (from > 0 && heads->change[from - 1].beat >= end)
+        from--;
+    if (from == heads->count || heads->before)
+        return true;
+    himc_drum_heads_notice(heads, drum);
+    himc_head head = heads->first;
+    bool good = true;
+    for (int i = from; i < heads->count; i++) {
+        himc_command command = command_of(&heads->change[i]);
+        good = himc_drum_find_head(drum, &command, &head, error) && good;
+    }
+    good = give(heads, drum, &head, error) && good;
+    heads->edited = true; // the next changes act on this head
+    heads->now = -1;
+    heads->since = 0;
+    heads->told.known = *himc_membrane_head(drum->membrane);
+    return good;
+}
+
+void himc_drum_heads_begin_anew(himc_drum_heads *heads)
+{
+    heads->now = -2;
 }
 
 himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads *before,

@@ -115,6 +115,12 @@ HIMC_RT double himc_drum_heads_damp(const himc_drum_heads *heads, double beat);
 /// computed now. Between two samples. False with the reason if a change cannot act on the drum as
 /// it is by now; the others do.
 bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, himc_error *error);
+/// A loop begins again at beat `end`: of the changes there, where no beat of a round is, the drum
+/// has the head at the beginning of this round. False as of himc_drum_heads_turn.
+bool himc_drum_heads_begin_again(himc_drum_heads *heads, himc_drum *drum, double end,
+                                 himc_error *error);
+/// Play has begun anew: nothing is left of that.
+HIMC_RT void himc_drum_heads_begin_anew(himc_drum_heads *heads);
 /// Notices what commands have changed on the drum: it stays until a change sets the same.
 HIMC_RT void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum);
 /// Before beat `from` the drum has the heads of `before` (NULL: none), which are `heads`' own from

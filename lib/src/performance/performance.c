@@ -138,7 +138,9 @@ static void watch(himc_performance *p, double t)
 static void keep_to_score(himc_performance *p, double t)
 {
     double beat = himc_motion_score_beat(p->motion, t);
-    himc_drums_turn_heads(&p->drums, beat, &p->events);
+    himc_planner *planner = p->motion->planner;
+    himc_drums_turn_heads(&p->drums, beat, p->motion->track ? 0 : himc_planner_round(planner, t),
+                          himc_planner_length(planner), &p->events);
     himc_body_begin_pushes(p->body, beat,
                            himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
 }

@@ -207,10 +207,11 @@ void himc_body_begin_pushes(performance_body *b, double now, double next, double
     // after a jump from the tick before on, in which it was
     double from = fabs(b->pushed_to - now) < SAME_COURSE ? b->pushed_to : now - fmax(next - now, 0);
     bool round = next < now; // a loop ends on a whole beat
-    double to = round ? floor(now) + 1 : next;
+    double end = floor(now) + 1, to = round ? end : next;
     for (int i = 0; i < b->planned_count; i++) {
         const planned_push *push = &b->planned[i];
-        if ((push->beat >= from && push->beat < to) || (round && push->beat < next))
+        if ((push->beat >= from && push->beat < to) ||
+            (round && (push->beat == end || push->beat < next)))
             himc_body_push(b, push, t);
     }
     b->pushed_to = next;

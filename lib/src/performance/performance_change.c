@@ -139,7 +139,10 @@ himc_job *himc_performance_change_job(himc_performance *p, const himc_command *c
     }
     j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
-    if (himc_score_read_change(command->atom, command->count, &j->line, error) && begin(j, error))
+    bool read = himc_score_read_change(command->atom, command->count, &j->line, error);
+    if (read && j->line.drum[0])
+        himc_performance_find_drum(p, j->line.drum); // the host may have it
+    if (read && begin(j, error))
         return &j->job;
     free_job(&j->job);
     return NULL;

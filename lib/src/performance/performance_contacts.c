@@ -21,7 +21,6 @@
 #include "drum/contact.h"
 
 #include "body/dynamics.h"
-#include "base/format.h"
 #include "base/head_frame.h"
 #include "control/grip.h"
 
@@ -175,11 +174,20 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
     }
 }
 
+// the stroke that is due, as a line names it; false if none is, or it is a take's
+static bool name_stroke(const contact_scene *s, himc_hand hand, double t,
+                        char name[HIMC_PLANNER_NAME])
+{
+    return !himc_motion_tracks(s->motion, hand) &&
+           himc_planner_name_current(s->motion->planner, hand, t, name);
+}
+
 // gives up a planned contact that has not come; the plan continues from the stick, or `beside` all
 // heads as it was
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
                     const planned_contact *next, bool beside)
 {
+    char name[HIMC_PLANNER_NAME];
     bool known = next->drum < s->drums->count;
     const char *drum = known ? himc_drum_name(s->drums->slot[next->drum].drum) : "drum";
     planned_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
@@ -192,8 +200,11 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
     memcpy(missed.nuance, stroke.nuance, sizeof missed.nuance);
     himc_motion_answer(s->motion, hand, next->time);
     himc_statistics_strokes(s->statistics, 1, 0);
-    himc_events_note(s->events, "%s stick missed %s%s at %.3f s", himc_hand_name(hand),
-                     known ? "drum " : "its ", drum, next->time);
+    if (name_stroke(s, hand, t, name))
+        himc_events_note(s->events, "%s: the stick missed the head at %.3f s", name, next->time);
+    else
+        himc_events_note(s->events, "%s stick missed %s%s at %.3f s", himc_hand_name(hand),
+                         known ? "drum " : "its ", drum, next->time);
     himc_events_missed(s->events, &missed, drum, "the stick missed the head");
     if (!beside)
         go_on_from_here(c, s, hand, t);
@@ -330,15 +341,11 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
 // once: a stroke of a score, or a hit, lands beside its place
 static void tell_aside(const contact_scene *s, const himc_strike *strike, double off)
 {
-    char name[64];
-    if (off <= PLAYED_PLACE || s->motion->track || himc_statistics_aside(s->statistics) > 0)
-        return;
-    if (isfinite(strike->beat))
-        himc_format(name, sizeof name, "stroke at beat %g", strike->beat);
-    else
-        himc_format(name, sizeof name, "hit");
-    himc_events_note(s->events, "%s %s: landed at %.3g %.3g, %.2g m from its place", name,
-                     himc_hand_name(strike->hand), strike->x, strike->y, off);
+    char name[HIMC_PLANNER_NAME];
+    if (off > PLAYED_PLACE && !s->motion->track && himc_statistics_aside(s->statistics) == 0 &&
+        name_stroke(s, strike->hand, strike->time, name))
+        himc_events_note(s->events, "%s: landed at %.3g %.3g, %.2g m from its place", name,
+                         strike->x, strike->y, off);
 }
 
 static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double time,

@@ -273,19 +273,37 @@ void himc_drums_drop_heads(performance_drums *d)
         himc_drum_heads_free(himc_drums_set_heads(d, i, NULL));
 }
 
-void himc_drums_turn_heads(performance_drums *d, double beat, performance_events *events)
+// the heads of a round that begins, or of another `play`
+static void begin_round(performance_drums *d, int index, long round, double end, himc_error *why)
+{
+    drum_slot *slot = &d->slot[index];
+    himc_drums_catch_up_one(d, index);
+    if (round > d->round)
+        himc_drum_heads_begin_again(slot->heads, slot->drum, end, why);
+    else
+        himc_drum_heads_begin_anew(slot->heads);
+}
+
+void himc_drums_turn_heads(performance_drums *d, double beat, long round, double end,
+                           performance_events *events)
 {
     for (int i = 0; i < d->count; i++) {
         drum_slot *slot = &d->slot[i];
         himc_error why = {""};
         if (slot->heads)
             himc_drum_heads_notice(slot->heads, slot->drum);
-        if (!slot->heads || beat < 0 || !himc_drum_heads_due(slot->heads, beat))
+        if (!slot->heads || beat < 0)
             continue;
-        himc_drums_catch_up_one(d, i);
-        if (!himc_drum_heads_turn(slot->heads, slot->drum, beat, &why))
+        if (round != d->round)
+            begin_round(d, i, round, end, &why);
+        if (himc_drum_heads_due(slot->heads, beat)) {
+            himc_drums_catch_up_one(d, i);
+            himc_drum_heads_turn(slot->heads, slot->drum, beat, &why);
+        }
+        if (why.text[0])
             himc_events_note(events, "at: %s %s", himc_drum_name(slot->drum), why.text);
     }
+    d->round = beat < 0 ? d->round : round;
 }
 
 bool himc_drums_damped(const performance_drums *d, int index)

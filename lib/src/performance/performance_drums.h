@@ -40,6 +40,7 @@ typedef struct performance_drums {
     himc_walls walls;
     double gain; ///< of their sound (factor)
     bool mute;
+    long round;           ///< of a loop, at the last himc_drums_turn_heads
     himc_air_between air; ///< between those that are near
 } performance_drums;
 
@@ -89,9 +90,10 @@ void himc_drums_release(performance_drums *drums);
 himc_drum_heads *himc_drums_set_heads(performance_drums *drums, int index, himc_drum_heads *heads);
 /// Drops the changes of all heads.
 void himc_drums_drop_heads(performance_drums *drums);
-/// Gives the drums the heads that they have at that beat; nothing if it is negative. Notes a change
+/// Gives the drums the heads that they have at that beat of a round; nothing if it is negative. A
+/// loop begins again at beat `end`: what changes there acts with the next round. Notes a change
 /// that cannot act.
-HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat,
+HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat, long round, double end,
                                    performance_events *events);
 
 /// True if the head of a drum is damped.

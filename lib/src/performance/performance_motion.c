@@ -715,6 +715,15 @@ void himc_motion_play(performance_motion *m, double t)
     m->replan = true;
 }
 
+void himc_motion_go_on(performance_motion *m, double t)
+{
+    if (!m->over || m->track || !himc_planner_goes_on(m->planner))
+        return;
+    m->playing = true;
+    m->over = false;
+    himc_motion_beat(m, t); // the beat under way has begun before
+}
+
 void himc_motion_stop(performance_motion *m, double t)
 {
     if (m->track)

@@ -174,6 +174,8 @@ HIMC_RT void himc_motion_set_regression(performance_motion *motion,
                                         const performance_settings *settings,
                                         const himc_posture_regression *regression, bool of_take);
 
+/// A stroke was added: after the end the score may play on for it.
+HIMC_RT void himc_motion_go_on(performance_motion *motion, double t);
 /// `play` and `stop`.
 HIMC_RT void himc_motion_play(performance_motion *motion, double t);
 HIMC_RT void himc_motion_stop(performance_motion *motion, double t);

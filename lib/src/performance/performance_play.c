@@ -50,6 +50,13 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
            check_bounces(s, error);
 }
 
+void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, int drum)
+{
+    if (drum >= 0 && stroke->ornament < HIMC_ROLL_SINGLE)
+        himc_format(stroke->drum, sizeof stroke->drum, "%s",
+                    himc_drum_name(p->drums.slot[drum].drum));
+}
+
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
     wanted_drum drum;
@@ -68,9 +75,11 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke,
     himc_motion_replan(p->motion);
     himc_stroke plain = *stroke;
     plain.ornament = HIMC_PLAIN;
+    himc_performance_name_drum(p, &plain, drum.index);
     if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum.index, error))
         return false;
     himc_performance_add_ornament(p, stroke, drum.index);
+    himc_motion_go_on(p->motion, step_time(p));
     return true;
 }
 
@@ -84,14 +93,13 @@ bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke,
     return true;
 }
 
-static const char *const grace_name[] = {
-    [HIMC_FLAM] = "flam", [HIMC_DRAG] = "drag", [HIMC_RUFF] = "ruff"};
-
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum)
 {
+    himc_stroke own = *stroke;
     if (stroke->ornament == HIMC_PLAIN)
         return;
-    int left_out = himc_planner_add_ornament(p->motion->planner, stroke, drum,
+    himc_performance_name_drum(p, &own, drum);
+    int left_out = himc_planner_add_ornament(p->motion->planner, &own, drum,
                                              himc_drum_pitch(p->drums.slot[drum].drum));
     if (left_out == 0)
         return;
@@ -100,10 +108,10 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
                          "roll at beat %g: %d of its strokes left out, too near to others",
                          stroke->beat, left_out);
     else
-        himc_events_note(&p->events,
-                         "%s at beat %g: no grace notes, the %s hand has another stroke there",
-                         grace_name[stroke->ornament], stroke->beat,
-                         himc_hand_name(stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT));
+        himc_events_note(
+            &p->events, "%s at beat %g %s %s: no grace notes, the %s hand has another stroke there",
+            himc_grace_name(own.ornament), own.beat, himc_hand_name(own.hand), own.drum,
+            himc_hand_name(own.hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT));
 }
 
 /// The time for which a command was meant that acts in this step (s): its sample's, up to a step
@@ -192,6 +200,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
     if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
         return false;
+    himc_performance_name_drum(p, &own, asked.drum);
     tell_places(p);
     double latency = hit(p, &asked);
     himc_performance_tell_misses(p);

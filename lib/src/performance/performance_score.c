@@ -291,10 +291,11 @@ static bool plan_pushes(score_job *j, himc_error *error)
                                  j->queued ? PUSHES_AFTER : PUSHES_ANEW, error);
 }
 
-static bool has_changes(const score_job *j, const char *drum)
+// of the head of that drum, NULL: of any
+static bool has_changes(const himc_score *score, const char *drum)
 {
-    for (int i = 0; i < j->score->change_count; i++)
-        if (strcmp(j->score->changes[i].drum, drum) == 0)
+    for (int i = 0; i < score->change_count; i++)
+        if (drum ? strcmp(score->changes[i].drum, drum) == 0 : score->changes[i].drum[0])
             return true;
     return false;
 }
@@ -310,7 +311,7 @@ static bool rehearse_changes(score_job *j, himc_error *error)
             return himc_error_prefix(error, "%s:%d", j->path, j->score->changes[i].line);
     bool good = pushes_of(j->score, j->path, 0, list, &count, error);
     for (int i = 0; i < j->drums && good; i++) {
-        if (!has_changes(j, himc_drum_name(j->drum[i].trial)))
+        if (!has_changes(j->score, himc_drum_name(j->drum[i].trial)))
             continue;
         himc_drum_form form = himc_drum_form_of(j->drum[i].trial);
         himc_drum_heads *heads = heads_of(j, &form, error);
@@ -407,7 +408,7 @@ static bool ask_host(score_job *j, himc_error *error)
 static bool prepare_changes(score_job *j, himc_error *error)
 {
     for (int i = 0; i < j->forms; i++) {
-        if (!has_changes(j, j->form[i].name))
+        if (!has_changes(j->score, j->form[i].name))
             continue;
         j->heads[i] = heads_of(j, &j->form[i], error);
         if (!j->heads[i] || !himc_drum_heads_prepare(j->heads[i], error))
@@ -803,14 +804,6 @@ bool himc_performance_load_text(himc_performance *p, const char *text, const cha
     return himc_job_carry_out(&j->job, error);
 }
 
-static bool changes_heads(const himc_score *score)
-{
-    for (int i = 0; i < score->change_count; i++)
-        if (score->changes[i].drum[0])
-            return true;
-    return false;
-}
-
 // the strokes of a score that is not installed, in the order of add_strokes(); a drum that there is
 // not yet leaves the reason empty
 static bool plan_aside(himc_performance *p, himc_planner *aside, const himc_score *score,
@@ -821,7 +814,8 @@ static bool plan_aside(himc_performance *p, himc_planner *aside, const himc_scor
         himc_stroke stroke = score->strokes[i % score->stroke_count];
         int drum = stroke.drum[0] ? himc_drums_find(&p->drums, stroke.drum) : 0;
         bool own = i < score->stroke_count, rolls = stroke.ornament >= HIMC_ROLL_SINGLE;
-        if (drum < 0 || (rolls && changes_heads(score))) // a roll depends on the first pitch
+        himc_performance_name_drum(p, &stroke, drum);
+        if (drum < 0 || (rolls && has_changes(score, NULL))) // a roll depends on the first pitch
             good = false;
         else if (!own && stroke.ornament != HIMC_PLAIN)
             himc_planner_add_ornament(aside, &stroke, drum,

@@ -201,10 +201,11 @@ himc_variation himc_human_stroke(const himc_human *human, const planner_score *s
     double late = clock_error(human, onset, count, himc_planner_score_period(score, beat)) +
                   MOTOR_DELAY * normal(human, MOTOR, hand, at) +
                   HAND_BIAS * (2 * share(human, BIAS, hand) - 1);
-    double most = MOST_OF_GAP * himc_planner_score_gap(score, hand, beat);
+    double most = MOST_OF_GAP * himc_planner_score_gap(score, hand, round, beat);
     v.late = fmax(fmin(human->amount * late, most), -most);
     himc_hand other = (himc_hand)(HIMC_HANDS - 1 - hand);
-    v.together = onset[0].strikes[other] || himc_planner_score_gap(score, other, beat) < TOGETHER;
+    v.together =
+        onset[0].strikes[other] || himc_planner_score_gap(score, other, round, beat) < TOGETHER;
     return v;
 }
 

@@ -76,7 +76,6 @@ static void move_beside(const himc_head_frame *head, himc_stroke *grace)
 static void add_grace(addition *to, const himc_stroke *stroke, double early, double bounce_time)
 {
     himc_stroke grace = *stroke;
-    grace.ornament = HIMC_PLAIN;
     grace.hand = stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
     move_beside(&to->planner->drum[to->drum], &grace);
     double speed = GRACE_SPEED * himc_gesture_of(stroke->nuance, stroke->dynamic).speed;

@@ -177,11 +177,13 @@ static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
         himc_planner_score_go(score, hand, at, part->round);
         return;
     }
+    char name[HIMC_PLANNER_NAME];
+    timed_stroke past = {.stroke = added->stroke, .round = -1};
     himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     himc_planner_notes_miss(&planner->notes,
                             &(himc_planner_miss){added->stroke, added->drum, false, time, PAST});
-    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "stroke at beat %g %s: given up, %s",
-                     added->stroke.beat, himc_hand_name(hand), PAST);
+    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s",
+                     himc_planner_name(planner, &past, name), PAST);
 }
 
 /// While playing, a stroke before the planned ones is fitted in.
@@ -196,6 +198,28 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at, bool first)
     planner->hand[hand].added = planner->score.loop ? at + 1 : 0;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
     planner->hand[hand].added = 0;
+}
+
+/// After the end of the score the beats go on: for a stroke or a roll whose beat, or end, is still
+/// to come it goes on, too; else a line says what plays it.
+static void go_on(himc_planner *planner, const himc_stroke *stroke, double end)
+{
+    char name[HIMC_PLANNER_NAME];
+    planner_score *score = &planner->score;
+    timed_stroke late = {.stroke = *stroke, .round = -1};
+    if (!score->over)
+        return;
+    himc_planner_rebase(planner, planner->now);
+    if (himc_planner_score_time(score, 0, end) - stroke->early > planner->now + PLANNER_AHEAD)
+        himc_planner_score_go_on(score, planner->now);
+    else
+        himc_planner_say(&planner->notes, PLANNER_NEXT_PLAY, "%s: " PAST ", the next play has it",
+                         himc_planner_name(planner, &late, name));
+}
+
+bool himc_planner_goes_on(const himc_planner *planner)
+{
+    return planner->score.goes_on;
 }
 
 bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int drum,
@@ -216,6 +240,7 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     int at = himc_planner_score_place(score, stroke, drum, error);
     if (at < 0)
         return false;
+    go_on(planner, stroke, stroke->beat);
     bool running = score->playing && !score->empties;
     double t = planner->now + PLANNER_AHEAD;
     if (running)
@@ -257,6 +282,7 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
                           himc_error *error)
 {
     planner_score *score = &planner->score;
+    go_on(planner, roll, roll->beat + roll->length);
     bool running = score->playing && !score->empties;
     if (running)
         himc_planner_rebase(planner, planner->now);
@@ -438,11 +464,15 @@ void himc_planner_last_until(himc_planner *planner, double beat)
     planner_score *score = &planner->score;
     if (score->until == beat)
         return;
+    double t = planner->now + PLANNER_AHEAD;
     if (score->playing)
         himc_planner_rebase(planner, planner->now);
+    double anchor = score->loop ? before_change(planner, t) : 0;
     score->until = beat;
-    if (score->playing && score->loop)
-        himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
+    if (!score->playing || !score->loop)
+        return;
+    himc_planner_score_keep(score, anchor);
+    himc_planner_replan(planner, t);
 }
 
 double himc_planner_until(const himc_planner *planner)
@@ -468,7 +498,7 @@ static void start(himc_planner *planner, double t, bool running)
 void himc_planner_play(himc_planner *planner, double t)
 {
     planner_score *score = &planner->score;
-    bool plays = score->playing && !score->empties;
+    bool plays = score->playing && !score->empties && !score->goes_on;
     if (!isfinite(t) || (plays && t < himc_planner_end(planner)))
         return;
     if (score->playing || score->beat > himc_planner_score_last_beat(score))
@@ -514,11 +544,13 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
     if (!isfinite(t) || score->loop == on)
         return;
     himc_planner_cut_both(planner, t);
+    double anchor = before_change(planner, t); // the last roll goes on to another stroke
     int rounds = on || !score->playing ? 0 : himc_planner_score_round_at(score, t);
     // a stroke of the next round that can no longer be taken back brings that round with it
     if (!on)
         rounds = himc_planner_last_round(planner, rounds);
     himc_planner_score_loop(score, on, rounds);
+    himc_planner_score_keep(score, anchor);
     himc_planner_replan(planner, t);
 }
 
@@ -528,6 +560,8 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
     double beat = himc_planner_score_beat_at(score, t);
+    if (himc_planner_score_has_tempo(score, beat, bpm))
+        return;
     himc_planner_rebase(planner, t);
     double anchor = before_change(planner, t);
     himc_planner_score_set_tempo(score, score->playing ? beat : score->beat, bpm);

@@ -60,7 +60,7 @@ typedef struct himc_hit {
 
 /// A line for the user.
 typedef struct himc_planner_note {
-    char text[160];
+    char text[192];
     bool minor; ///< all strokes are played
 } himc_planner_note;
 
@@ -105,11 +105,15 @@ HIMC_RT void himc_planner_set_servo(himc_planner *planner, bool servo);
 /// Strokes that can still be changed vary so from now on; hits are counted from 0 again.
 HIMC_RT void himc_planner_set_human(himc_planner *planner, himc_human human);
 
+/// True if a stroke that was added after the end has the score play on: the next `play` begins at
+/// the top all the same.
+HIMC_RT bool himc_planner_goes_on(const himc_planner *planner);
 /// Checks a stroke as himc_planner_add does, and allocates for it, so that it can be added.
 bool himc_planner_accepts(himc_planner *planner, const himc_stroke *stroke, int drum,
                           himc_error *error);
 /// Adds a stroke of the score at its beat, for drum `index`; may allocate. Strokes may come in any
-/// order; two strokes of one hand closer than 40 ms are refused.
+/// order; two strokes of one hand closer than 40 ms are refused. After the end, whose beats go on,
+/// the score plays on for it if its beat is to come.
 bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum,
                       himc_error *error);
 /// Adds a roll of so many strokes a second; `roll` has its kind, first beat, length and dynamics.
@@ -234,6 +238,12 @@ HIMC_RT void himc_planner_resume(himc_planner *planner, double t, himc_hand hand
 /// is none.
 HIMC_RT bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                                   himc_stroke *stroke, int *drum, double *contact_time);
+#define HIMC_PLANNER_NAME 112 ///< of a stroke as a line names it, with its final 0 (bytes)
+/// Names that stroke as a line for the user does; false if none is planned.
+HIMC_RT bool himc_planner_name_current(const himc_planner *planner, himc_hand hand, double t,
+                                       char text[HIMC_PLANNER_NAME]);
+/// Its word for an ornament of grace notes.
+HIMC_RT const char *himc_grace_name(himc_ornament ornament);
 /// How far the spot of that stroke is moved aside, as the hands would have met (m); usually 0.
 HIMC_RT double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t);
 

@@ -258,10 +258,10 @@ static void say_meet(himc_planner *planner)
     himc_hand later = later_hand(planner, n);
     int k = next_planned(&planner->hand[later], n->from - AT_TOUCH);
     const timed_stroke *s = &planner->hand[later].planned[k];
+    char name[HIMC_PLANNER_NAME];
     if (k < planner->hand[later].planned_count)
-        himc_planner_say(&planner->notes, PLANNER_MEET,
-                         "stroke at beat %g %s: the hands come too near on the way", s->stroke.beat,
-                         himc_hand_name(later));
+        himc_planner_say(&planner->notes, PLANNER_MEET, "%s: the hands come too near on the way",
+                         himc_planner_name(planner, s, name));
     else
         himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
 }

@@ -6,11 +6,17 @@
 /// no faster than fingers can turn the stick for its bounces, and varied as a player's.
 #include "plan/planner_motion.h"
 #include "plan/bounce.h"
+#include "plan/planner_roll.h"
 
 // the goal; chosen: a unit of another spot further off than any of another speed, of another grip
 // further still
 #define OTHER_SPOT 10 // as a difference of log speed
 #define OTHER_GRIP 20 // as a difference of log speed
+
+// the last bounces of a hand before a written stroke
+#define FULL_HURRY 0.97       // of an arm's greatest speed: so fast a stroke is within 0.5 dB
+#define LEAST_BUZZ_SHARE 0.25 // of the time to that stroke; chosen: still a buzz ...
+#define MOST_DOUBLE_SHARE 0.5 // ... and a double as even as within the roll, before a grace note
 
 // where a tip rests (m); chosen: near enough to look at rest, too high to touch a ringing head; at
 // the height of the usual strike point, the hands as far apart as the shoulders
@@ -59,6 +65,19 @@ static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *s
                          "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
                          stroke->bounce_time, most);
     return himc_gesture_scale(g, most / g.speed);
+}
+
+double himc_planner_bounce_most(himc_planner *planner, int bounces, double t,
+                                const planner_due *after)
+{
+    double time = fmax(after->time - t, 0), share = himc_planner_bounce_share(bounces);
+    if (after->roll)
+        return share * time;
+    himc_goal goal = himc_planner_goal(planner, &after->stroke, after->drum, after->time);
+    double left = time - goal.gesture.speed / (FULL_HURRY * HIMC_HURRY);
+    if (bounces == HIMC_BUZZ)
+        return fmin(share * time, fmax(left, LEAST_BUZZ_SHARE * time));
+    return fmax(share * time, fmin(left, MOST_DOUBLE_SHARE * time));
 }
 
 double himc_planner_asked(const himc_planner *planner, const timed_stroke *s)

@@ -218,8 +218,9 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     hit.goal = himc_planner_goal(planner, &hit.stroke, drum, t);
     double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal) + hit.variation.late;
     if (h->waiting_count >= QUEUED_HITS || !himc_planner_find_gap(planner, hand, &touch)) {
-        himc_planner_say(&planner->notes, PLANNER_CROWDED, "hit %s: given up, others are waiting",
-                         himc_hand_name(hand));
+        char name[HIMC_PLANNER_NAME];
+        himc_planner_say(&planner->notes, PLANNER_CROWDED, "%s: given up, others are waiting",
+                         himc_planner_name(planner, &hit, name));
         himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){hit.stroke, drum, true, touch,
                                                                       "others are waiting"});
         touch = HUGE_VAL;

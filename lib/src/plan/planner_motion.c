@@ -16,7 +16,6 @@
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_motion.h"
 #include "plan/bounce.h"
-#include "plan/planner_roll.h"
 #include "base/format.h"
 
 #include <string.h>
@@ -86,7 +85,7 @@ static bool is_settled_due(const himc_planner *planner, himc_hand hand, const pl
 
 /// Bounces leave time for the hand's next stroke; none with the servo grip. The stroke is so many
 /// `ahead` in the score.
-static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t, int ahead)
+static void fit_bounces(himc_planner *planner, timed_stroke *s, double t, int ahead)
 {
     planner_due after;
     himc_stroke *stroke = &s->stroke;
@@ -98,8 +97,8 @@ static void fit_bounces(const himc_planner *planner, timed_stroke *s, double t, 
         if (!himc_planner_score_next(&planner->score, stroke->hand, ++ahead, &after))
             return;
     } while (is_settled_due(planner, stroke->hand, &after) && ahead < MOST_TRIES);
-    double share = himc_planner_bounce_share(stroke->bounces);
-    stroke->bounce_time = fmin(stroke->bounce_time, share * fmax(after.time - t, 0));
+    double most = himc_planner_bounce_most(planner, stroke->bounces, t, &after);
+    stroke->bounce_time = fmin(stroke->bounce_time, most);
 }
 
 /// The next stroke of a hand, waiting or of the score and there so many `ahead`, as written; false
@@ -232,17 +231,6 @@ void himc_planner_rest_again(himc_planner *planner)
     }
 }
 
-/// "stroke at beat 3 left" or "hit left"
-static const char *name_of(const timed_stroke *s, char text[64])
-{
-    const char *hand = himc_hand_name(s->stroke.hand);
-    if (s->index < 0 && !s->reassigned)
-        himc_format(text, 64, "hit %s", hand);
-    else
-        himc_format(text, 64, "stroke at beat %g %s", s->stroke.beat, hand);
-    return text;
-}
-
 static const char *reason_of(const himc_planner *planner, const timed_stroke *s, plan_result result,
                              char text[48])
 {
@@ -292,11 +280,11 @@ static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
 /// before. That fingers have no time for its bounces has been said already.
 static void tell_haste(himc_planner *planner, const timed_stroke *struck)
 {
-    char text[64];
+    char text[HIMC_PLANNER_NAME];
     double speed = struck->goal.gesture.speed;
     if (speed >= SOFTER_SHARE * struck->asked)
         return;
-    const char *name = name_of(struck, text);
+    const char *name = himc_planner_name(planner, struck, text);
     if (struck->roll) {
         himc_format(text, sizeof text, "roll at beat %g",
                     planner->score.roll[struck->roll - 1].stroke.beat);
@@ -305,7 +293,7 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
     if (speed >= SOFTER_SHARE * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
         return;
-    himc_planner_say(&planner->notes, PLANNER_HURRIED,
+    himc_planner_say(&planner->notes, struck->roll ? PLANNER_HURRIED_ROLL : PLANNER_HURRIED,
                      "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,
                      speed);
 }
@@ -423,17 +411,18 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
 
 void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke)
 {
-    himc_planner_say(
-        &planner->notes, PLANNER_NEXT_ROUND,
-        "stroke at beat %g %s: no time to prepare it, it sounds from the next round on",
-        stroke->beat, himc_hand_name(stroke->hand));
+    char name[HIMC_PLANNER_NAME];
+    timed_stroke s = {.stroke = *stroke, .round = -1};
+    himc_planner_say(&planner->notes, PLANNER_NEXT_ROUND,
+                     "%s: no time to prepare it, it sounds from the next round on",
+                     himc_planner_name(planner, &s, name));
 }
 
 /// No hand can play it: a line says so. One that the other hand has no time for is played all the
 /// same; where the hands then meet, the search leaves it out.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
-    char name[64];
+    char name[HIMC_PLANNER_NAME];
     timed_stroke anyway = *s;
     himc_planner_miss miss = {s->stroke, s->drum, s->index < 0 && !s->reassigned, s->written.time,
                               ""};
@@ -451,8 +440,8 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
     reason_of(planner, s, result, miss.why);
     himc_planner_notes_miss(&planner->notes, &miss);
     settle(planner, s);
-    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s", name_of(s, name),
-                     miss.why);
+    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s",
+                     himc_planner_name(planner, s, name), miss.why);
 }
 
 /// Drops the plan from where it has been checked on, with its strokes: no body could follow it. The
@@ -601,7 +590,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
 
 static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
 {
-    char name[64], reason[48];
+    char name[HIMC_PLANNER_NAME], reason[48];
     if (result == LEFT_OUT || !reassign(planner, s, result == MEETS)) {
         give_up(planner, s, result);
         return;
@@ -609,7 +598,7 @@ static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, pl
     himc_planner_notes_count(&planner->notes, PLANNER_REASSIGNED);
     settle(planner, s);
     himc_planner_say(&planner->notes, PLANNER_REASSIGNED, "%s: %s, the %s hand plays it",
-                     name_of(s, name), reason_of(planner, s, result, reason),
+                     himc_planner_name(planner, s, name), reason_of(planner, s, result, reason),
                      himc_hand_name(other_hand(s->stroke.hand)));
 }
 

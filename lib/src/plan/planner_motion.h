@@ -169,6 +169,10 @@ HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// planner_goal.c: where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
+/// Time that bounces from t on take at most before the hand's next stroke (s): they leave to one
+/// that is written the time that it needs.
+HIMC_RT double himc_planner_bounce_most(himc_planner *planner, int bounces, double t,
+                                        const planner_due *after);
 /// Speed of impact that a stroke has with all the time that its bounces need (m/s).
 HIMC_RT double himc_planner_asked(const himc_planner *planner, const timed_stroke *stroke);
 /// Lets the goal differ from the written one as a player's would.
@@ -210,6 +214,10 @@ HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
 HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
 /// Makes the round of the loop at `t` round 0, before its length changes.
 HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
+/// planner_notes.c: "stroke at beat 3 left kettle", as a line for the user names it; in a loop with
+/// its round, unless that is below 0. Returns `text`.
+HIMC_RT const char *himc_planner_name(const himc_planner *planner, const timed_stroke *stroke,
+                                      char text[HIMC_PLANNER_NAME]);
 /// A line: this stroke of a loop is left out of the round under way.
 HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke);
 /// A stroke has been put into the hand's score at `index`: later ones move up by one.

@@ -4,8 +4,13 @@
 /// times; the counts tell the rest at the end. Only a stroke that is given up, or left to the next
 /// round of a loop, has a line of its own; of those given up, unless there are many: LINES at once
 /// and one more each second. What finds no room is counted in the last line.
+///
+/// A line names a stroke as it is written, with beat, hand and drum. Grace notes and the strokes of
+/// a roll are not written: they are named after the stroke, or the roll, that they belong to. In a
+/// loop the round is named, too, from 1 on.
 #include "plan/planner_notes.h"
 #include "base/format.h"
+#include "plan/planner_motion.h"
 
 #include "base/line.h"
 
@@ -55,7 +60,8 @@ void himc_planner_say(planner_notes *notes, planner_kind kind, const char *forma
     va_start(args, format);
     bool minor = kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE &&
                  kind != PLANNER_DROPPED && kind != PLANNER_OTHER_HAND && kind != PLANNER_HURRIED &&
-                 kind != PLANNER_OVERLAP;
+                 kind != PLANNER_HURRIED_ROLL && kind != PLANNER_OVERLAP &&
+                 kind != PLANNER_NEXT_ROUND && kind != PLANNER_NEXT_PLAY;
     put(notes, minor, format, args);
     va_end(args);
 }
@@ -173,4 +179,48 @@ int himc_planner_notes_given_up(planner_notes *notes)
     int count = notes->given_up;
     notes->given_up = 0;
     return count;
+}
+
+const char *himc_grace_name(himc_ornament ornament)
+{
+    return ornament == HIMC_FLAM ? "flam" : ornament == HIMC_DRAG ? "drag" : "ruff";
+}
+
+/// The written stroke of a grace note is by the other hand; a reassigned one has changed hands.
+static himc_hand main_hand(const timed_stroke *grace)
+{
+    return grace->reassigned == (grace->stroke.hand == HIMC_LEFT) ? HIMC_LEFT : HIMC_RIGHT;
+}
+
+const char *himc_planner_name(const himc_planner *planner, const timed_stroke *s,
+                              char text[HIMC_PLANNER_NAME])
+{
+    const himc_stroke *stroke = &s->stroke;
+    const planner_score *score = &planner->score;
+    const char *hand = himc_hand_name(stroke->hand), *drum = stroke->drum, *on = drum[0] ? " " : "";
+    bool hit = s->index < 0 && !s->reassigned, grace = stroke->early > 0 && stroke->ornament;
+    size_t size = HIMC_PLANNER_NAME, used;
+    if (hit)
+        used = himc_format(text, size, "hit %s%s%s", hand, on, drum);
+    else if (s->roll)
+        used = himc_format(text, size, "stroke %s of the roll at beat %g%s%s", hand,
+                           score->roll[s->roll - 1].stroke.beat, on, drum);
+    else if (stroke->ornament >= HIMC_ROLL_SINGLE)
+        used = himc_format(text, size, "roll at beat %g%s%s", stroke->beat, on, drum);
+    else if (grace)
+        used = himc_format(text, size, "grace note %s of the %s at beat %g %s%s%s", hand,
+                           himc_grace_name(stroke->ornament), stroke->beat,
+                           himc_hand_name(main_hand(s)), on, drum);
+    else
+        used = himc_format(text, size, "stroke at beat %g %s%s%s", stroke->beat, hand, on, drum);
+    if (!hit && s->round >= 0 && (score->loop || score->rounds > 0))
+        himc_format(text + used, size - used, ", round %ld", (long)score->past + s->round + 1);
+    return text;
+}
+
+bool himc_planner_name_current(const himc_planner *planner, himc_hand hand, double t,
+                               char text[HIMC_PLANNER_NAME])
+{
+    const timed_stroke *s = himc_planner_current_planned(&planner->hand[hand], t);
+    return s && himc_planner_name(planner, s, text);
 }

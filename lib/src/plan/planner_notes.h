@@ -9,6 +9,7 @@
 
 typedef enum planner_kind {
     PLANNER_HURRIED,
+    PLANNER_HURRIED_ROLL,
     PLANNER_GIVEN_UP,
     PLANNER_REASSIGNED,
     PLANNER_LATE,
@@ -20,6 +21,7 @@ typedef enum planner_kind {
     PLANNER_OTHER_HAND,
     PLANNER_OVERLAP,
     PLANNER_NEXT_ROUND,
+    PLANNER_NEXT_PLAY,
     PLANNER_KINDS
 } planner_kind;
 

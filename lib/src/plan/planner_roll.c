@@ -19,8 +19,9 @@
 /// over both hands h, t_h the next touch of h and need_h the time that it takes after one of the
 /// roll. Where both go to another drum, the hand that the other one has to follow goes first: the
 /// last stroke is of the other hand (else i_h = -1). Of both n the one with the smaller x is taken.
-/// Invariant: a place (roll, number) means the
-/// same stroke as long as the tempo, the score and the places of the drums stay.
+/// In a loop what follows may be in the next round; only the length of a round, on which that
+/// depends, is found without it (NO_ROUND). Invariant: a place (roll, number) means the same stroke
+/// as long as the tempo, the score, the loop and the places of the drums stay.
 ///
 /// The strokes of a player are not quite even. Those of a machine would make a roll up to 10 dB
 /// louder where a mode has whole periods between two strokes than where it has half a period more,
@@ -49,14 +50,18 @@
 #define NO_ROUND INT_MIN                // in which no roll is anchored
 
 // the join to what follows; chosen
+#define END_ROUNDING 1e-3  // of a written beat and length, which are floats (beats)
 #define JOINED_TIME 1.0    // what comes later after a roll's end does not hurry (s)
 #define LEAST_STEP 0.9     // of the mean: interval of a short roll
 #define JOIN_GAIN 1e-6     // a roll that would end earlier by less does not (s)
 #define GRACE_ROOM 0.1     // before a grace note: it is soft (s)
+#define BOUNCED_ROOM 0.07  // after a bounce half an interval later (s)
 #define BOTH_HANDS 0.2     // strokes of both hands so near are not for one of them (s)
 #define MOST_HELD_BACK 0.5 // of an interval: so much a roll ends earlier for a stroke's strength
 #define MOST_JOIN 0.5      // of the roll: where a leap takes more it fails
 #define ANCHOR_BEND 0.25   // a changed interval differs by this share at most, for the last hand
+#define SHORT_ROLL 8       // with fewer strokes either hand is last, for the rate's sake ...
+#define RATE_GAIN 0.02     // ... or first, where the rate is nearer by more than this share
 #define JOIN_ROUNDS 3      // of step and x, which depend on each other
 
 /// The strokes of a roll in a round, in time from the round's beginning.
@@ -105,8 +110,25 @@ const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int i)
 {
     const planner_roll *r = &score->roll[i];
     double end = r->stroke.beat + r->stroke.length;
-    bool cut = !is_second(score, i) && himc_planner_roll_end(score, i) < end - BEAT_ROUNDING;
+    bool cut = !is_second(score, i) && himc_planner_roll_end(score, i) < end - END_ROUNDING;
     return cut ? &score->roll[roll_after(score, i)] : NULL;
+}
+
+/// Length of a round of the loop (s).
+static double round_length(const planner_score *score)
+{
+    return seconds_to(score, himc_planner_roll_length(score));
+}
+
+/// True if another round follows, or comes before.
+static bool goes_on(const planner_score *score, int in_round)
+{
+    return in_round != NO_ROUND && (score->loop || in_round < score->rounds);
+}
+
+static bool has_begun(const planner_score *score, int in_round)
+{
+    return in_round != NO_ROUND && score->past + in_round > 0;
 }
 
 /// What a hand has to play after a roll.
@@ -114,7 +136,7 @@ typedef struct roll_next {
     double time; ///< of its touch, from the round's beginning (s); infinite: nothing soon
     double leap; ///< time that it needs after a touch of the roll (s)
     double calm; ///< time with which it is as strong as after a pause (intervals); 0: any
-    bool grace;  ///< it is a grace note
+    double room; ///< more it does not need (s)
     bool trails; ///< on that way it goes after the other hand
 } roll_next;
 
@@ -161,18 +183,6 @@ static bool crosses(himc_hand hand, himc_vec3 way)
     return hand == HIMC_LEFT ? way.y < -HIMC_STICKING_CROSS : way.y > HIMC_STICKING_CROSS;
 }
 
-/// The right hand begins, but not where a roll goes on from there on a drum to the left.
-static himc_hand lead_of(const planner_score *score, int i)
-{
-    const planner_roll *r = &score->roll[i];
-    int before = i > 0 && is_second(score, i - 1) ? i - 2 : i - 1;
-    if (before < 0 || seconds_to(score, r->stroke.beat) >
-                          seconds_to(score, himc_planner_roll_end(score, before)) + JOINED_TIME)
-        return HIMC_RIGHT;
-    himc_vec3 way = way_to(score, roll_of(score, before, HIMC_RIGHT), &r->stroke, r->drum);
-    return crosses(HIMC_RIGHT, way) ? HIMC_LEFT : HIMC_RIGHT;
-}
-
 /// The time of a leap from a roll (s).
 static double leap_time(const planner_roll *from, himc_vec3 way)
 {
@@ -180,25 +190,37 @@ static double leap_time(const planner_roll *from, himc_vec3 way)
     return length > 0 ? himc_hand_leap_time(length) / (1 - share) : 0;
 }
 
-/// The first stroke of a list after the roll, and its time; NULL if there is none soon.
-static const planner_stroke *listed_after(const planner_score *score, int i, int hand, double *time)
+/// What a grace note needs after a stroke of a roll and its bounce; it may end a buzz (s).
+static double grace_room(const planner_roll *from)
 {
-    double end = himc_planner_roll_end(score, i);
+    return from->stroke.bounces == 1 ? BOUNCED_ROOM + 0.5 / from->rate : GRACE_ROOM;
+}
+
+/// The first stroke of a list after the roll, maybe of the next round, and its time; NULL if there
+/// is none soon.
+static const planner_stroke *listed_after(const planner_score *score, int i, int in_round, int hand,
+                                          double *time)
+{
+    double end = himc_planner_roll_end(score, i), turned = 0;
     const planner_part *part = &score->part[hand];
-    int at = himc_planner_part_after(part, end - BEAT_ROUNDING, true);
+    int at = himc_planner_part_after(part, end - END_ROUNDING, true);
+    if (at == part->count && goes_on(score, in_round)) {
+        at = 0;
+        turned = round_length(score);
+    }
     const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
-    *time = s ? seconds_to(score, s->beat) - s->early : HUGE_VAL;
+    *time = s ? turned + seconds_to(score, s->beat) - s->early : HUGE_VAL;
     return *time <= seconds_to(score, end) + JOINED_TIME ? &part->list[at] : NULL;
 }
 
 /// The same as what follows; a hand that would have to cross the other one leaves it to that one,
 /// unless that one has a stroke of its own then.
-static void listed_next(const planner_score *score, int i, roll_next next[HIMC_HANDS])
+static void listed_next(const planner_score *score, int i, int in_round, roll_next next[HIMC_HANDS])
 {
     double time[HIMC_HANDS];
     const planner_stroke *listed[HIMC_HANDS];
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        listed[hand] = listed_after(score, i, hand, &time[hand]);
+        listed[hand] = listed_after(score, i, in_round, hand, &time[hand]);
     bool both = fabs(time[HIMC_LEFT] - time[HIMC_RIGHT]) < BOTH_HANDS;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         if (!listed[hand])
@@ -212,26 +234,7 @@ static void listed_next(const planner_score *score, int i, roll_next next[HIMC_H
         const planner_roll *r = roll_of(score, i, by);
         if (time[hand] < next[by].time)
             next[by] = (roll_next){time[hand], leap_time(r, way_to(score, r, s, drum)), 2,
-                                   s->early > 0, trails && both};
-    }
-}
-
-/// The same of the next roll.
-static void rolled_next(const planner_score *score, int i, roll_next next[HIMC_HANDS])
-{
-    int after = roll_after(score, i);
-    if (after >= score->roll_count)
-        return;
-    double first = seconds_to(score, score->roll[after].stroke.beat),
-           latest = seconds_to(score, himc_planner_roll_end(score, i)) + JOINED_TIME;
-    himc_hand lead = lead_of(score, after);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_roll *from = roll_of(score, i, (himc_hand)hand),
-                           *to = roll_of(score, after, (himc_hand)hand);
-        double time = first + ((himc_hand)hand == lead ? 0 : LEAST_STEP / to->rate);
-        if (time <= latest && time < next[hand].time)
-            next[hand] = (roll_next){
-                .time = time, .leap = leap_time(from, way_to(score, from, &to->stroke, to->drum))};
+                                   s->early > 0 ? grace_room(r) : HUGE_VAL, trails && both};
     }
 }
 
@@ -243,7 +246,7 @@ static double join_of(const roll_next next[HIMC_HANDS], double first, double ste
         const roll_next *n = &next[hand];
         int steps = hand == last ? 1 : n->trails ? 0 : 2;
         double has = n->time - first + steps * step;
-        double wanted = n->grace ? fmin(GRACE_ROOM, n->calm * step) : n->calm * step;
+        double wanted = fmin(n->room, n->calm * step);
         if (n->leap > 0)
             extra = fmax(extra, n->leap + UNEVENNESS * step - has);
         calm = fmax(calm, wanted - has);
@@ -271,6 +274,10 @@ static double end_with(roll_grid *g, const roll_next next[HIMC_HANDS], double fi
         n = i ? n : count_for(rate * (span - extra), g, last);
     }
     g->step = (span - extra) / n;
+    if (g->first > 0 && n > 2 && g->step * rate < 1 - ANCHOR_BEND) { // rather two strokes less
+        n -= 2;
+        g->step = (span - extra) / n;
+    }
     g->count = g->first + (int)n;
     return extra;
 }
@@ -281,34 +288,150 @@ static double bend_of(const roll_grid *g, double rate)
     return fabs(log(g->step * rate));
 }
 
-static roll_grid grid_of(const planner_score *score, int i, int in_round)
+/// How much less time than they want strokes of a list have after the touch of their hand before
+/// them (intervals).
+static double lack_of(const roll_grid *g, const roll_next next[HIMC_HANDS], double rate, int last)
+{
+    double lack = 0;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int number = g->count - (hand == last ? 1 : 2);
+        double has = next[hand].time - g->begin - (number - g->first) * g->step;
+        lack = fmax(lack, next[hand].calm - has * rate);
+    }
+    return lack;
+}
+
+static double rate_of(const planner_score *score, int i)
 {
     const planner_roll *r = &score->roll[i];
-    const planner_anchor *a = &score->anchor;
-    double rate = is_pair(score, i) ? fmax(r->rate, r[1].rate) : r->rate;
-    double first = seconds_to(score, himc_planner_roll_end(score, i));
-    roll_grid g = {.lead = lead_of(score, i), .begin = seconds_to(score, r->stroke.beat)};
-    roll_next next[HIMC_HANDS] = {{.time = HUGE_VAL}, {.time = HUGE_VAL}};
-    bool anchored = a->any && a->roll == i && a->round == in_round;
-    if (anchored) {
-        g.first = a->number;
-        g.begin = a->time;
-    }
-    listed_next(score, i, next);
-    rolled_next(score, i, next);
-    first = fmin(first, fmin(next[HIMC_LEFT].time, next[HIMC_RIGHT].time));
-    if (is_second(score, i))
-        return (roll_grid){.begin = g.begin, .step = 1};
-    if (!(first > g.begin))
-        return (roll_grid){g.lead, g.first, g.begin, 1, anchored ? g.first + 1 : 0};
+    return is_pair(score, i) ? fmax(r->rate, r[1].rate) : r->rate;
+}
+
+/// The better of both ends of a grid: with the one or the other hand last. Where neither ends
+/// earlier, the hands take turns with what follows at once; else a short roll takes the end that is
+/// nearer to its rate.
+static roll_grid ended(roll_grid g, const roll_next next[HIMC_HANDS], double first, double rate,
+                       double *early)
+{
     roll_grid left = g, right = g;
     double extra = end_with(&left, next, first, rate, HIMC_LEFT),
-           other = end_with(&right, next, first, rate, HIMC_RIGHT);
-    double bent = bend_of(&left, rate), other_bent = bend_of(&right, rate);
-    bool too_bent = anchored && fmax(bent, other_bent) > ANCHOR_BEND;
-    if (rate * (first - g.begin) < 1 || too_bent)
-        return other_bent < bent ? right : left;
-    return other < extra ? right : left;
+           other = end_with(&right, next, first, rate, HIMC_RIGHT), bent = bend_of(&left, rate),
+           other_bent = bend_of(&right, rate), lacks = lack_of(&left, next, rate, HIMC_LEFT),
+           other_lacks = lack_of(&right, next, rate, HIMC_RIGHT);
+    bool too_bent = g.first > 0 && fmax(bent, other_bent) > ANCHOR_BEND, better = other < extra;
+    double to_left = next[HIMC_LEFT].time, to_right = next[HIMC_RIGHT].time;
+    bool at_once = to_left != to_right && fmin(to_left, to_right) < first + 1 / rate;
+    bool is_short = rate * (first - g.begin) < SHORT_ROLL;
+    if (too_bent && fabs(lacks - other_lacks) > ANCHOR_BEND)
+        better = other_lacks < lacks;
+    else if (rate * (first - g.begin) < 1 || too_bent)
+        better = other_bent < bent;
+    else if (fabs(other - extra) < JOIN_GAIN)
+        better = at_once ? to_left < to_right : is_short && other_bent < bent;
+    *early = better ? other : extra;
+    return better ? right : left;
+}
+
+/// The roll before one, maybe of the round before; -1 if there is none soon before it.
+static int joined_before(const planner_score *score, int i, int in_round)
+{
+    double begin = seconds_to(score, score->roll[i].stroke.beat);
+    int before = i - 1;
+    if (before < 0 && has_begun(score, in_round)) {
+        before = score->roll_count - 1;
+        begin += round_length(score);
+    }
+    if (before < 0)
+        return -1;
+    before -= is_second(score, before);
+    double end = seconds_to(score, himc_planner_roll_end(score, before));
+    return begin > end + JOINED_TIME ? -1 : before;
+}
+
+/// Time from the last stroke of a hand's list before a roll (s).
+static double listed_since(const planner_score *score, int i, int in_round, himc_hand hand)
+{
+    const planner_part *part = &score->part[hand];
+    double beat = score->roll[i].stroke.beat, turned = 0;
+    int at = himc_planner_part_after(part, beat, true);
+    if (at == 0 && has_begun(score, in_round)) {
+        at = part->count;
+        turned = round_length(score);
+    }
+    return at == 0 ? HUGE_VAL
+                   : turned + seconds_to(score, beat) -
+                         seconds_to(score, part->list[at - 1].stroke.beat);
+}
+
+/// The right hand begins, but not where a roll goes on from there on a drum to the left, nor where
+/// only with the other one a short roll comes to the stroke after it at its rate.
+static himc_hand lead_of(const planner_score *score, int i, int in_round)
+{
+    const planner_roll *r = &score->roll[i];
+    int before = joined_before(score, i, in_round);
+    if (before >= 0) {
+        himc_vec3 way = way_to(score, roll_of(score, before, HIMC_RIGHT), &r->stroke, r->drum);
+        return crosses(HIMC_RIGHT, way) ? HIMC_LEFT : HIMC_RIGHT;
+    }
+    double rate = rate_of(score, i), begin = seconds_to(score, r->stroke.beat),
+           first = seconds_to(score, himc_planner_roll_end(score, i)), early, other_early;
+    if (rate * (first - begin) >= SHORT_ROLL ||
+        listed_since(score, i, in_round, HIMC_LEFT) < 2 / rate)
+        return HIMC_RIGHT;
+    roll_next next[HIMC_HANDS] = {{.time = HUGE_VAL}, {.time = HUGE_VAL}};
+    listed_next(score, i, in_round, next);
+    first = fmin(first, fmin(next[HIMC_LEFT].time, next[HIMC_RIGHT].time));
+    if (!(first > begin))
+        return HIMC_RIGHT;
+    roll_grid g = ended((roll_grid){.lead = HIMC_RIGHT, .begin = begin}, next, first, rate, &early),
+              h = ended((roll_grid){.lead = HIMC_LEFT, .begin = begin}, next, first, rate,
+                        &other_early);
+    bool better = bend_of(&h, rate) < bend_of(&g, rate) - RATE_GAIN;
+    return better && other_early < early + JOIN_GAIN ? HIMC_LEFT : HIMC_RIGHT;
+}
+
+/// The same as listed_next of the next roll.
+static void rolled_next(const planner_score *score, int i, int in_round, roll_next next[HIMC_HANDS])
+{
+    int after = roll_after(score, i);
+    double turned = 0;
+    if (after >= score->roll_count && goes_on(score, in_round)) {
+        after = 0;
+        in_round++;
+        turned = round_length(score);
+    }
+    if (after >= score->roll_count)
+        return;
+    double first = turned + seconds_to(score, score->roll[after].stroke.beat),
+           latest = seconds_to(score, himc_planner_roll_end(score, i)) + JOINED_TIME;
+    himc_hand lead = lead_of(score, after, in_round);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_roll *from = roll_of(score, i, (himc_hand)hand),
+                           *to = roll_of(score, after, (himc_hand)hand);
+        double time = first + ((himc_hand)hand == lead ? 0 : LEAST_STEP / to->rate);
+        if (time <= latest && time < next[hand].time)
+            next[hand] = (roll_next){
+                .time = time, .leap = leap_time(from, way_to(score, from, &to->stroke, to->drum))};
+    }
+}
+
+static roll_grid grid_of(const planner_score *score, int i, int in_round)
+{
+    const planner_anchor *a = &score->anchor;
+    double first = seconds_to(score, himc_planner_roll_end(score, i)), early;
+    roll_grid g = {.begin = seconds_to(score, score->roll[i].stroke.beat), .step = 1};
+    roll_next next[HIMC_HANDS] = {{.time = HUGE_VAL}, {.time = HUGE_VAL}};
+    bool anchored = a->any && a->roll == i && a->round == in_round;
+    if (is_second(score, i))
+        return g;
+    if (anchored)
+        g = (roll_grid){a->lead, a->number, a->time, 1, a->number + 1};
+    else
+        g.lead = lead_of(score, i, in_round);
+    listed_next(score, i, in_round, next);
+    rolled_next(score, i, in_round, next);
+    first = fmin(first, fmin(next[HIMC_LEFT].time, next[HIMC_RIGHT].time));
+    return first > g.begin ? ended(g, next, first, rate_of(score, i), &early) : g;
 }
 
 static himc_hand hand_of(const roll_grid *g, int number)
@@ -362,9 +485,20 @@ static himc_stroke stroke_at(const planner_score *score, int i, const roll_grid 
     return s;
 }
 
-static bool is_left_out(const planner_score *score, const himc_stroke *stroke)
+static bool is_left_out(const planner_score *score, int in_round, const himc_stroke *stroke)
 {
-    return himc_planner_score_room(score, stroke) < LEAST_ROOM;
+    const planner_part *part = &score->part[stroke->hand];
+    double room = himc_planner_score_room(score, stroke);
+    if (part->count > 0 && (goes_on(score, in_round) || has_begun(score, in_round))) {
+        const himc_stroke *first = &part->list[0].stroke,
+                          *last = &part->list[part->count - 1].stroke;
+        double own = seconds_to(score, stroke->beat), turned = round_length(score);
+        if (goes_on(score, in_round))
+            room = fmin(room, turned + seconds_to(score, first->beat) - first->early - own);
+        if (has_begun(score, in_round))
+            room = fmin(room, turned + own - seconds_to(score, last->beat) + last->early);
+    }
+    return room < LEAST_ROOM;
 }
 
 int himc_planner_roll_left_out(const planner_score *score, int i)
@@ -373,7 +507,7 @@ int himc_planner_roll_left_out(const planner_score *score, int i)
     int out = 0;
     for (int k = 0; k < g.count; k++) {
         himc_stroke s = stroke_at(score, i, &g, k);
-        out += is_left_out(score, &s);
+        out += is_left_out(score, NO_ROUND, &s);
     }
     return out;
 }
@@ -441,7 +575,7 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_r
             at->number = own_number(&g, hand, at->number);
             for (; at->number < g.count; at->number += 2) {
                 due->stroke = stroke_at(score, at->roll, &g, at->number);
-                if (is_left_out(score, &due->stroke))
+                if (is_left_out(score, at->round, &due->stroke))
                     continue;
                 due->drum = himc_planner_roll_drum(score, at->roll, due->stroke.hand);
                 due->roll = at->roll + 1;
@@ -498,6 +632,7 @@ void himc_planner_roll_anchor(planner_score *score)
     if (planned < 0)
         return;
     score->anchor = (planner_anchor){.any = true,
+                                     .lead = g.lead,
                                      .roll = at.roll,
                                      .round = at.round,
                                      .number = planned,
@@ -506,12 +641,23 @@ void himc_planner_roll_anchor(planner_score *score)
 
 double himc_planner_roll_last_beat(const planner_score *score)
 {
+    double beat = -1;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_part *part = &score->part[hand];
+        if (part->count > 0)
+            beat = fmax(beat, part->list[part->count - 1].stroke.beat);
+    }
     for (int i = score->roll_count - 1; i >= 0; i--) {
         roll_grid g = grid_of(score, i, NO_ROUND);
         if (g.count > 0)
-            return beat_of(score, i, &g, g.count - 1);
+            return fmax(beat, beat_of(score, i, &g, g.count - 1));
     }
-    return -1;
+    return beat;
+}
+
+double himc_planner_roll_length(const planner_score *score)
+{
+    return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
 }
 
 /// The last roll that begins at or before a beat, -1 if there is none.
@@ -532,8 +678,8 @@ double himc_planner_roll_since(const planner_score *score, double beat)
 {
     double before, after;
     int begun = last_begun(score, beat - BEAT_ROUNDING);
-    himc_planner_roll_near(score, HIMC_HAND_ANY, beat, &before, &after);
-    bool over = begun >= 0 && himc_planner_roll_end(score, begun) <= beat + BEAT_ROUNDING;
+    himc_planner_roll_near(score, HIMC_HAND_ANY, NO_ROUND, beat, &before, &after);
+    bool over = begun >= 0 && himc_planner_roll_end(score, begun) <= beat + END_ROUNDING;
     return over ? fmin(before, score->roll[begun].stroke.beat) : before;
 }
 
@@ -547,13 +693,13 @@ bool himc_planner_roll_same_places(const planner_score *a, const planner_score *
     return same;
 }
 
-void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat, double *before,
-                            double *after)
+void himc_planner_roll_near(const planner_score *score, himc_hand hand, int in_round, double beat,
+                            double *before, double *after)
 {
     int begun = last_begun(score, beat), first = begun > 1 ? begun - 2 : 0;
     *before = -HUGE_VAL, *after = HUGE_VAL;
     for (int i = first; i < score->roll_count && i <= begun + 1; i++) {
-        roll_grid g = grid_of(score, i, NO_ROUND);
+        roll_grid g = grid_of(score, i, in_round);
         int at = number_after(&g, seconds_to(score, beat)), from = at < 4 ? 0 : at - 4;
         for (int k = own_number(&g, hand, from); k < g.count && k < at + 4;
              k += hand == HIMC_HAND_ANY ? 1 : 2) {

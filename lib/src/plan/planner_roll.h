@@ -38,8 +38,10 @@ HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int ro
 /// The tempo is about to change: of a roll that has begun the strokes that are not planned yet are
 /// counted anew, from the last one that is.
 HIMC_RT void himc_planner_roll_anchor(planner_score *score);
-/// Beat of the last stroke of all rolls, -1 without any.
+/// Beat of the last stroke of the score, of a roll or a list, -1 without any.
 HIMC_RT double himc_planner_roll_last_beat(const planner_score *score);
+/// himc_planner_score_length, on which the rolls depend in a loop.
+HIMC_RT double himc_planner_roll_length(const planner_score *score);
 /// Beat at which a roll ends: where it is written to, or where the next one begins.
 HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
 /// The roll that takes the place of another one from its beginning or within it; NULL if there is
@@ -47,10 +49,10 @@ HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
 const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int roll);
 /// The drum on which a hand plays a roll: two rolls together have a hand each.
 HIMC_RT int himc_planner_roll_drum(const planner_score *score, int roll, himc_hand hand);
-/// Beats of the strokes of a hand (HIMC_HAND_ANY: of both) next to a beat and not on it;
+/// Beats of the strokes of a hand (HIMC_HAND_ANY: of both) next to a beat of a round and not on it;
 /// -HUGE_VAL and HUGE_VAL if there is none.
-HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, double beat,
-                                    double *before, double *after);
+HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, int round,
+                                    double beat, double *before, double *after);
 /// Beat of the last stroke of a roll before a beat; of a roll that ends there, which makes room for
 /// grace notes, its first one. Below 0: there is none.
 HIMC_RT double himc_planner_roll_since(const planner_score *score, double beat);

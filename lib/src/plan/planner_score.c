@@ -232,11 +232,24 @@ bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change
     return true;
 }
 
-void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
+/// The number of changes up to a beat.
+static int changes_to(const planner_score *score, double beat)
 {
     int past = 1;
     while (past < score->tempo_count && score->tempi[past].beat <= beat)
         past++;
+    return past;
+}
+
+bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm)
+{
+    int past = changes_to(score, beat);
+    return score->playing && (score->loop || past == 1) && score->tempi[past - 1].bpm == bpm;
+}
+
+void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
+{
+    int past = changes_to(score, beat);
     if (score->playing && score->loop) {
         score->tempi[past - 1].bpm = bpm;
         return;
@@ -273,7 +286,7 @@ void himc_planner_score_keep(planner_score *score, double anchor)
 void himc_planner_score_start(planner_score *score, double t)
 {
     score->playing = true;
-    score->over = score->empties = false;
+    score->over = score->goes_on = score->empties = false;
     score->count = NAN;
     score->starts++;
     score->rounds = score->past = 0;
@@ -285,6 +298,13 @@ void himc_planner_score_start(planner_score *score, double t)
         himc_planner_score_go(score, (himc_hand)hand, next, 0);
         himc_planner_roll_from(score, (himc_hand)hand, 0, begin);
     }
+}
+
+void himc_planner_score_go_on(planner_score *score, double t)
+{
+    score->beat = himc_planner_score_beat_at(score, t);
+    himc_planner_score_start(score, t);
+    score->goes_on = true;
 }
 
 void himc_planner_score_delay(planner_score *score, double late)
@@ -300,7 +320,7 @@ void himc_planner_score_empty(planner_score *score)
 void himc_planner_score_stop(planner_score *score, double beat)
 {
     score->beat = score->empties ? 0 : beat;
-    score->playing = score->over = score->empties = false;
+    score->playing = score->over = score->goes_on = score->empties = false;
 }
 
 void himc_planner_score_finish(planner_score *score)
@@ -434,31 +454,19 @@ bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
     return settled;
 }
 
-/// -1 without strokes.
-static double last_stroke(const planner_score *score)
-{
-    double beat = himc_planner_roll_last_beat(score);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_part *part = &score->part[hand];
-        if (part->count > 0)
-            beat = fmax(beat, part->list[part->count - 1].stroke.beat);
-    }
-    return beat;
-}
-
 double himc_planner_score_last_beat(const planner_score *score)
 {
-    return fmax(last_stroke(score), score->until);
+    return fmax(himc_planner_roll_last_beat(score), score->until);
 }
 
 double himc_planner_score_length(const planner_score *score)
 {
-    return fmax(floor(last_stroke(score)) + 1, ceil(score->until));
+    return himc_planner_roll_length(score);
 }
 
 double himc_planner_score_free_from(const planner_score *score)
 {
-    double last = last_stroke(score), next = himc_planner_score_length(score);
+    double last = himc_planner_roll_last_beat(score), next = himc_planner_score_length(score);
     return next + (last >= 0 && gap(score, last, next) < CLOSEST_STROKES ? 1 : 0);
 }
 
@@ -510,10 +518,10 @@ static double list_gap(const planner_score *score, himc_hand hand, double beat)
     return fmin(to, from);
 }
 
-double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat)
+double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round, double beat)
 {
     double least = list_gap(score, hand, beat), before, after;
-    himc_planner_roll_near(score, hand, beat, &before, &after);
+    himc_planner_roll_near(score, hand, round, beat, &before, &after);
     if (before >= 0)
         least = fmin(least, gap(score, before, beat));
     return isfinite(after) ? fmin(least, gap(score, beat, after)) : least;

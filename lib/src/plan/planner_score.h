@@ -29,6 +29,7 @@ typedef struct planner_roll_place {
 /// From here on the strokes of a roll have been counted anew.
 typedef struct planner_anchor {
     bool any;
+    himc_hand lead;          ///< hand of the roll's first stroke
     int roll, round, number; ///< the last stroke that stays ...
     double time;             ///< ... so long after the beginning of its round (s)
 } planner_anchor;
@@ -61,6 +62,7 @@ typedef struct planner_score {
     int tempo_count;
     bool playing;
     bool over;     ///< played to its end: its beats go on, and play begins at the top
+    bool goes_on;  ///< it plays after its end, what was added; play begins at the top
     double origin; ///< time of beat 0 while playing or over (s)
     double beat;   ///< where play begins or began
     bool loop;
@@ -137,6 +139,8 @@ bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change
 /// One tempo up to the first change after `beat`; in a loop that plays, only in place of the one
 /// valid at `beat`: the others are for later rounds.
 HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
+/// True if that would change nothing while playing.
+HIMC_RT bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm);
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
 
@@ -149,6 +153,8 @@ HIMC_RT double himc_planner_score_anchor(planner_score *score);
 HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
+/// After the end, plays on from the beat at `t`.
+HIMC_RT void himc_planner_score_go_on(planner_score *score, double t);
 /// All beats are `late` seconds later.
 HIMC_RT void himc_planner_score_delay(planner_score *score, double late);
 /// Plays on without strokes: they have been dropped in a loop that turns.
@@ -195,9 +201,10 @@ HIMC_RT int himc_planner_score_round_at(const planner_score *score, double t);
 HIMC_RT double himc_planner_score_total_beat(const planner_score *score, int round, double beat);
 /// Time of the beat before `beat` (s).
 HIMC_RT double himc_planner_score_period(const planner_score *score, double beat);
-/// Time between a beat and the hand's nearest stroke on another beat, as in a loop (s); infinite
-/// without strokes.
-HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, double beat);
+/// Time between a beat of a round and the hand's nearest stroke on another beat, as in a loop (s);
+/// infinite without strokes.
+HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round,
+                                      double beat);
 /// Time from a stroke to the nearest one of its hand (s); infinite without one.
 HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
 /// Time since the last stroke of either hand before a beat (s), or since the beginning of a roll

@@ -1,8 +1,8 @@
 /// track.c: the tips of a take: local fits (track_fit.c) give each frame a state, quintics join the
 /// frames.
 ///
-/// A fit uses only frames on the same side of every strike; the frames within CUT_TIME of its
-/// lowest point are dropped. A bridge replaces them. It begins with the approach: from the last
+/// A fit uses only frames on the same side of every strike; frames that the head disturbs are
+/// dropped: from the last one clear of it to CUT_TIME after the lowest. A bridge replaces them. It begins with the approach: from the last
 /// good frame to the head's plane, with an acceleration that fades to zero there; this gives the
 /// time of contact. Then a quintic leads back to the capture; at separation another one, from the
 /// measured state, replaces it.
@@ -17,7 +17,7 @@
 #include <string.h>
 
 // the cut around a strike; chosen: a contact of 7 ms and a frame at 250 Hz on both sides
-#define CUT_TIME 0.0125       // of the capture on each side of the strike's lowest point (s)
+#define CUT_TIME 0.0125       // after a strike's lowest point, and at most before it (s)
 #define LONGEST_APPROACH 0.03 // the approach is carried on at most so long (s)
 #define AIRBORNE_HEIGHT 0.05  // no strike is so high above the head (m)
 #define LEAST_BRIDGE 0.02     // from contact to the end of its bridge (s)
@@ -122,12 +122,12 @@ static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
     hand_track *h = &track->hand[hand];
     int start = 0, cut = (int)ceil(CUT_TIME * track->rate);
     for (int i = 0; i < count; i++) {
-        int frame = strikes[i].frame;
+        int frame = strikes[i].frame, clear = strikes[i].clear;
         if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
             is_in_the_air(track, &strikes[i]))
             continue;
         bridge *b = &h->built[h->bridge_count++];
-        b->last = frame - cut;
+        b->last = clear < frame && clear > frame - cut ? clear : frame - cut;
         b->next = frame + cut;
         b->speed = strikes[i].velocity;
         fit_stretch(h, x, start, b->last, track);
