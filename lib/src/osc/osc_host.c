@@ -4,6 +4,8 @@
 /// of the samples and the wall clock W are joined by an offset W - t. It is followed slowly (a
 /// second or so), because a host computes blocks in bursts and the sound is steady; it jumps when
 /// the two are 0.1 s apart (the sound was off).
+#define _POSIX_C_SOURCE 200809L // strnlen
+
 #include "drum/drum_performer.h"
 #include "drum/membrane_probe.h"
 #include "head/modes.h"
