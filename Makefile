@@ -544,7 +544,7 @@ $(FUZZ): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(if $(LIBFUZZER),,$(BUILD)/tests/
 $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
 
 # what of the viewer needs neither a socket nor a package of its own, for its tests
-VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,main.o pages.o receive.o share.o web.o),$(VIEWER_O))
+VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,channel.o main.o pages.o receive.o share.o web.o),$(VIEWER_O))
 VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
 $(VIEWER_TESTS): $(VIEWER_PARTS)
 $(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h
