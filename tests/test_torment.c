@@ -153,17 +153,21 @@ static void remember(const spoken *s, int drum, int delay)
 static double loudest[HIMC_DRUMS][HIMC_PICKUPS];
 static bool thrown; // since the round began
 
-static double highest[HIMC_DRUMS]; // level of a drum's sound since the round began
-
-// what a drum has had: energy in its head (J), level of its sound, which a delay may still hold
+// what a drum has had: energy in its head (J), now and at most since the round began; level of its
+// sound since then. What was most, delays and the room may still hold.
 typedef struct past {
-    double energy, level;
+    double energy, most, level;
 } past;
+
+static past highest[HIMC_DRUMS]; // since the round began
 
 static past past_of(const himc_drum *d, int slot)
 {
-    highest[slot] = fmax(highest[slot], d->level);
-    return (past){drum_energy(d), highest[slot]};
+    past *h = &highest[slot];
+    h->energy = drum_energy(d);
+    h->most = fmax(h->most, h->energy);
+    h->level = fmax(h->level, d->level);
+    return *h;
 }
 
 // `before` is of before its setting changed. Made slacker or heavier, or with a lighter mallet, it
@@ -174,8 +178,8 @@ static void hear_loudest(const himc_drum *d, int slot, past before)
     seen.measured++;
     TEST_ASSERT_TRUE(loudest_stroke(d, before.level, now, &struck));
     for (int k = 0; k < HIMC_PICKUPS; k++)
-        loudest[slot][k] = fmax(loudest[slot][k],
-                                now[k] * (struck > 0 ? fmax(1, sqrt(before.energy / struck)) : 1));
+        loudest[slot][k] =
+            fmax(loudest[slot][k], now[k] * (struck > 0 ? fmax(1, sqrt(before.most / struck)) : 1));
 }
 
 // a channel that is new hears at first what the others do, of the settings before it

@@ -2,10 +2,10 @@
 /// frames.
 ///
 /// A fit uses only frames on the same side of every strike; frames that the head disturbs are
-/// dropped: from the last one clear of it to CUT_TIME after the lowest. A bridge replaces them. It begins with the approach: from the last
-/// good frame to the head's plane, with an acceleration that fades to zero there; this gives the
-/// time of contact. Then a quintic leads back to the capture; at separation another one, from the
-/// measured state, replaces it.
+/// dropped: from the last one clear of it to CUT_TIME after the lowest. A bridge replaces them. It
+/// begins with the approach: from the last good frame to the head's plane, with an acceleration
+/// that fades to zero there; this gives the time of contact. Then a quintic leads back to the
+/// capture; at separation another one, from the measured state, replaces it.
 #include "track/track_state.h"
 #include "track/track_time.h"
 
