@@ -8,7 +8,7 @@ import { Performer } from "./performer.js";
 import { Drum } from "./drum.js";
 import { MARK_TIME, Marks } from "./strike.js";
 import { Playback, SPEEDS } from "./playback.js";
-import { readScene } from "./scene.js";
+import { DRUMS, readScene } from "./scene.js";
 import { LiveSound, Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
@@ -27,7 +27,6 @@ const performers = new Map(),
     liveSound = new LiveSound(sound),
     recorder = new Recorder(canvas, sound);
 const PERFORMERS = 16, // as many as himc-viewer keeps
-    DRUMS = 32,
     ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
     LIFT = 0.08, // of the picture over the timeline, of the window's height
     TALL = 0.17, // with all lanes

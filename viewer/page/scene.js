@@ -10,6 +10,7 @@ const MAGIC = "himcscn",
 const LARGEST = 64 << 20, // of an unpacked chunk (bytes); chosen: a second of a scene is 200 kB
     MOST = 2 ** 32, // of all of a scene (bytes); chosen: some hours
     ITEMS = 2 ** 23; // rows, frames of heads and values of events; chosen: 5 hours
+export const DRUMS = 32; // as many as himc-viewer keeps
 const SLICE = 30, // of work, then the page draws itself (ms); chosen: it answers at once
     PART = 1024; // rows between two looks at the clock; chosen: some ms
 
