@@ -7,6 +7,7 @@
 #include "himc/drum.h"
 #include "himc/mocap.h"
 #include "plan/score.h"
+#include "system/files.h"
 #include "take_files.h"
 
 #include <fcntl.h>
@@ -254,6 +255,22 @@ static void test_a_file_may_be_descriptor_0(void)
     close(input);
 }
 
+// a chain of links in the folder, relative and absolute, each with a shorter target than the one before
+static void test_links_are_followed_to_a_file_that_does_not_exist_yet(void)
+{
+    char target[200];
+    snprintf(target, sizeof target, "%s/new", folder);
+    TEST_ASSERT_EQUAL_INT(0, symlink("a-link-with-a-long-name", at("first")));
+    TEST_ASSERT_EQUAL_INT(0, symlink("shorter", at("a-link-with-a-long-name")));
+    TEST_ASSERT_EQUAL_INT(0, symlink("new", at("shorter")));
+    TEST_ASSERT_EQUAL_INT(0, symlink(target, at("whole")));
+    for (int whole = 0; whole < 2; whole++) {
+        char *end = himc_system_target(at(whole ? "whole" : "first"));
+        TEST_ASSERT_EQUAL_STRING(target, end);
+        free(end);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -269,5 +286,6 @@ int main(void)
     RUN_TEST(test_null_device_may_be_written);
     RUN_TEST(test_recording_leaves_an_existing_file_as_it_is_and_makes_none);
     RUN_TEST(test_file_is_loaded_whole_or_refused);
+    RUN_TEST(test_links_are_followed_to_a_file_that_does_not_exist_yet);
     return UNITY_END();
 }
