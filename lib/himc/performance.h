@@ -251,7 +251,7 @@ typedef struct himc_performance_stats {
     double longest_latency;       ///< of all hits (s)
     long recoveries;     ///< times a non-finite state was met and the last good one restored
     long limit_hits;     ///< times a joint came to its bounds
-    long events_lost;    ///< events dropped because the host did not take them
+    long events_lost;    ///< events dropped since the reset because the host did not take them
     double sample_rate;  ///< in force (Hz)
     double physics_rate; ///< in force (Hz)
     double task_rate;    ///< in force (Hz)

@@ -1,4 +1,4 @@
-/// performance_events.c: events in a ring. It is the host's mailbox: `reset` leaves it as it is.
+/// performance_events.c: events in a ring. `reset` leaves the host's waiting events.
 #include "performance/performance_events.h"
 
 #include "base/format.h"

@@ -130,6 +130,7 @@ static void begin(himc_performance *p, const performance_settings *s, const made
     p->body = parts->body;
     himc_body_account(p->body, p->events.on_motion != NULL);
     himc_statistics_clear(&p->statistics);
+    p->events.lost = 0;
     himc_queue_clear(&p->queue);
     himc_contacts_clear(&p->contacts);
     himc_clock_restart(&p->clock);
