@@ -170,8 +170,22 @@ static past past_of(const himc_drum *d, int slot)
     return *h;
 }
 
-// `before` is of before its setting changed. Made slacker or heavier, or with a lighter mallet, it
-// is louder with that energy than by a stroke of today, as the root of it.
+// the sound of a pickup with that energy in the mode that is loudest there
+static double loudest_ringing(const himc_drum *d, int pickup, double energy)
+{
+    const himc_membrane *m = d->membrane;
+    const himc_readout *r = &m->core.outputs[pickup].readout;
+    double most = 0;
+    if (m->core.stale || !himc_membrane_wants(m, pickup))
+        return 0;
+    for (int i = 0; i < himc_membrane_audible(m); i++)
+        most = fmax(most, hypot(r->p[i], r->s[i]) / sqrt(m->core.oscillators[i].mass));
+    return d->gain * sqrt(2 * energy) * most;
+}
+
+// `before` is of before its setting changed. Made slacker, heavier or much lighter, or with a lighter
+// mallet, it is louder with that energy than by a stroke of today: as the root of it, or as the
+// energy may be in other modes than those of a stroke.
 static void hear_loudest(const himc_drum *d, int slot, past before)
 {
     double now[HIMC_PICKUPS], struck;
@@ -180,6 +194,10 @@ static void hear_loudest(const himc_drum *d, int slot, past before)
     for (int k = 0; k < HIMC_PICKUPS; k++)
         loudest[slot][k] =
             fmax(loudest[slot][k], now[k] * (struck > 0 ? fmax(1, sqrt(before.most / struck)) : 1));
+    int pickups;
+    himc_membrane_pickups(d->membrane, &pickups);
+    for (int k = 0; k < pickups; k++)
+        loudest[slot][k] = fmax(loudest[slot][k], loudest_ringing(d, k, before.most));
 }
 
 // a channel that is new hears at first what the others do, of the settings before it
