@@ -116,6 +116,37 @@ static void expect_hit_as_new(himc_performance *p)
     himc_performance_free(fresh);
 }
 
+// from a walk: of the roll in the next round one stroke is left, later than those that were counted
+static void test_a_roll_stays_within_its_dynamics_when_the_tempo_changes_near_its_end(void)
+{
+    static const char *const said[] = {"human 0",
+                                       "loop 1",
+                                       "grip french",
+                                       "tempo 347.783",
+                                       "stroke 0 left tenuto 0",
+                                       "roll 1.01854 0.185575 single 0.739441 0.16212",
+                                       "roll 3.70724 1.03575 single 0.251584 0.20377",
+                                       "roll 5.92752 3.29916 double 0.799875 0.910187",
+                                       "drag 7.00913 right tenuto 0.596348",
+                                       "play"};
+    static const double tempo[] = {233.284, 446.007, 306.522, 57.4985, 34.2374, 35.272},
+                        after[] = {0.04, 0.008, 0.028, 0.08, 0.036, 1};
+    int dropped = 0;
+    finite_watch w;
+    himc_performance *p = performer(1000);
+    TEST_ASSERT_TRUE(finite_watch_begin(&w, p));
+    for (size_t i = 0; i < sizeof said / sizeof *said; i++)
+        session_do(p, "%s", said[i]);
+    for (int i = 0; i < 6; i++) {
+        session_do(p, "tempo %g", tempo[i]);
+        play_on(&w, after[i] - 1e-6, &dropped, NULL);
+    }
+    TEST_ASSERT_NULL_MESSAGE(w.bad, w.bad);
+    TEST_ASSERT_EQUAL_INT(0, dropped);
+    finite_watch_end(&w);
+    himc_performance_free(p);
+}
+
 static void test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays_on(void)
 {
     long changes = from_environment("HIMC_CHANGES", getenv("HIMC_LONG") ? 100000 : 600);
@@ -201,6 +232,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_faster_tempo_under_a_bouncing_roll_leaves_the_performer_alive);
     RUN_TEST(test_a_bouncing_roll_without_time_before_the_first_block_ends_no_process);
+    RUN_TEST(test_a_roll_stays_within_its_dynamics_when_the_tempo_changes_near_its_end);
     RUN_TEST(test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays_on);
     return UNITY_END();
 }

@@ -480,7 +480,8 @@ static himc_stroke stroke_at(const planner_score *score, int i, const roll_grid 
     s.beat = beat_of(score, i, g, number);
     if (g->first > 0) // numbers are no longer even over the roll
         share = (s.beat - roll->beat) / (beat_of(score, i, g, g->count - 1) - roll->beat);
-    s.dynamic = roll->dynamic + fmin(share, 1) * (roll->last_dynamic - roll->dynamic);
+    share = fmin(fmax(share, 0), 1); // an anchored roll may begin late, or have one stroke left
+    s.dynamic = roll->dynamic + share * (roll->last_dynamic - roll->dynamic);
     s.bounce_time = bounce_time(g, number, s.bounces);
     return s;
 }
