@@ -265,6 +265,10 @@ check-coverage: units $(PROGRAM)
 	@gcovr -j $(JOBS) --root . --filter lib/ --exclude-unreachable-branches --txt $(BUILD)/coverage.txt \
 	    --print-summary --fail-under-line 97 $(BUILD)/lib
 
+golden: deps ## write the bits of the sessions in tests/golden, where a change is to change them: tests/golden/bits.txt
+	@$(MAKE) $(BUILD)/tests/test_golden
+	$(BUILD)/tests/test_golden $(patsubst tests/golden/%.txt,%,$(filter-out %/bits.txt,$(wildcard tests/golden/*.txt)))
+
 # how long each target runs (s)
 FUZZ_SECONDS ?= 60
 fuzz: deps ## arbitrary bytes to all readers by clang's libFuzzer, FUZZ_SECONDS=60 each; FUZZ_TARGETS="bvh osc" only these
@@ -403,7 +407,7 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here linux linux-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
+.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here linux linux-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage golden fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
         reference FORCE figures check-figures papers air-table manual lint format help
 
 # one rule per kind; V=1 shows the whole commands
@@ -509,7 +513,7 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
-$(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/regression/table: $(MOCAP_O)
+$(BUILD)/tests/test_golden $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/regression/table: $(MOCAP_O)
 
 $(addprefix $(BUILD)/tools/,figures/strokes figures/claim figures/database papers/measure): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
 
