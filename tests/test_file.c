@@ -255,7 +255,7 @@ static void test_a_file_may_be_descriptor_0(void)
     close(input);
 }
 
-// a chain of links in the folder, relative and absolute, each with a shorter target than the one before
+// links to links, each with a shorter name than the one before; the last one is absolute
 static void test_links_are_followed_to_a_file_that_does_not_exist_yet(void)
 {
     char target[200];

@@ -4,7 +4,7 @@
 /// is the simulated impact. HIMC_LONG=1 draws ten times as many.
 #include "session.h"
 
-#define EQUAL 0.5        // of equal strokes, at most (dB): below what is heard
+#define EQUAL 0.5 // of equal strokes, at most (dB): below what is heard
 // of what is the same but for the time at which the ticks of 4 ms fall, up or down (dB)
 #define SAME 0.05
 #define SAME_TIME 0.0002 // two steps of the physics (s)

@@ -151,7 +151,8 @@ static void remember(const spoken *s, int drum, int delay)
 // The loudest real stroke of each channel, of all settings of a drum since the round began: a head
 // that is set to be softer still rings as it did.
 static double loudest[HIMC_DRUMS][HIMC_PICKUPS];
-static bool thrown; // since the round began
+static bool thrown;  // since the round began
+static double swung; // since the round began: fastest `strike`, of the loudest stroke's speed
 
 // what a drum has had: energy in its head (J), now and at most since the round began; level of its
 // sound since then. What was most, delays and the room may still hold.
@@ -183,9 +184,9 @@ static double loudest_ringing(const himc_drum *d, int pickup, double energy)
     return d->gain * sqrt(2 * energy) * most;
 }
 
-// `before` is of before its setting changed. Made slacker, heavier or much lighter, or with a lighter
-// mallet, it is louder with that energy than by a stroke of today: as the root of it, or as the
-// energy may be in other modes than those of a stroke.
+// `before` is of before its setting changed. Made slacker, heavier or much lighter, or with a
+// lighter mallet, it is louder with that energy than by a stroke of today: as the root of it, or as
+// the energy may be in other modes than those of a stroke.
 static void hear_loudest(const himc_drum *d, int slot, past before)
 {
     double now[HIMC_PICKUPS], struck;
@@ -206,7 +207,8 @@ static double scale_of(int slot, int channel)
     double most = 0;
     for (int k = 0; k < HIMC_PICKUPS; k++)
         most = fmax(most, loudest[slot][k]);
-    return fmax(loudest[slot][channel] > 0 ? loudest[slot][channel] : most, INAUDIBLE);
+    return fmax(1, swung) *
+           fmax(loudest[slot][channel] > 0 ? loudest[slot][channel] : most, INAUDIBLE);
 }
 
 static const himc_command_id of_tempo[10] = {
@@ -236,6 +238,8 @@ static void say_one(pair *of, random_seed *seed)
         return;
     bool parsed = himc_command_parse(&c, s.receiver, s.name, s.atom, s.count, &answer);
     past before = drum < 0 ? (past){0} : past_of(himc_performance_drum(of->p, drum), drum);
+    if (parsed && c.id == HIMC_COMMAND_STRIKE)
+        swung = fmax(swung, s.atom[2].number / himc_gesture_of(HIMC_VERTICAL_ACCENT, 1).speed);
     bool done = parsed && carry_out(of->p, &c, s.receiver, drum, delay, &answer);
     seen.accepted += done;
     seen.refused += !done;
@@ -441,6 +445,7 @@ static void test_hostile_commands_leave_a_performance_finite_bounded_and_as_good
         memset(loudest, 0, sizeof loudest);
         memset(highest, 0, sizeof highest);
         thrown = false;
+        swung = 0;
         for (int i = 0; i < ROUND; i++) {
             say_one(&of, &seed);
             play_on(&of, &seed);
