@@ -442,7 +442,7 @@ static bool left_of_tips(const himc_take *take, const himc_take_options *options
             mean_difference(take, i, l >= 0 ? l : r, &d)) {
             d = himc_mat3_apply(upright, d);
             *left = himc_vec3_make(-d.y, d.x, 0);
-            *reason = "rotated so that the tip is in front of the shoulder";
+            *reason = "rotated by quarter turns so that the tip is before the shoulder";
             return is_long_enough(*left);
         }
     return false;
