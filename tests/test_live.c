@@ -2,6 +2,7 @@
 #include "session.h"
 #include "base/head_frame.h"
 #include "body/posture.h"
+#include "performance/performance_state.h"
 
 static himc_performance *with_kettle(void)
 {
@@ -87,6 +88,24 @@ static void test_streams_from_10_Hz_to_1_kHz_are_followed_one_period_late_and_en
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, f->z[f->count - 2], f->z[f->count - 1]);
         himc_performance_free(p);
         free(f);
+    }
+}
+
+static void test_two_targets_that_jump_end_at_the_second_one(void)
+{
+    static const double gaps[] = {0.004, 0.04, 0.1, 0.25};
+    for (int i = 0; i < 4; i++) {
+        himc_performance *p = session_new();
+        himc_vec3 last = {0.6, 0.2, 1.1};
+        session_do(p, "drum kettle");
+        session_play(p, 0.3, NULL);
+        session_do(p, "target left 0.4 0.2 0.9");
+        session_play(p, gaps[i], NULL);
+        session_do(p, "target left %g %g %g", last.x, last.y, last.z);
+        session_play(p, 1.5, NULL);
+        himc_vec3 off = himc_vec3_sub(p->body->state.tip[HIMC_LEFT], last);
+        TEST_ASSERT_TRUE(himc_vec3_length(off) < 0.001);
+        himc_performance_free(p);
     }
 }
 
@@ -403,6 +422,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_hit_without_latency_touches_within_250_ms_from_rest_and_120_ms_raised);
     RUN_TEST(test_streams_from_10_Hz_to_1_kHz_are_followed_one_period_late_and_end_at_rest);
+    RUN_TEST(test_two_targets_that_jump_end_at_the_second_one);
     RUN_TEST(test_one_hand_is_live_while_the_other_plays_its_score);
     RUN_TEST(test_four_timpani_are_reached_by_turning);
     RUN_TEST(test_drums_without_a_place_stand_beside_each_other_in_reach);

@@ -177,6 +177,42 @@ static void test_louder_is_louder_at_any_interval(void)
     }
 }
 
+// loud and soft in turn, at any interval and latency, by one hand or two
+static void test_a_hit_is_never_louder_than_the_same_alone(void)
+{
+    unsigned seed = 2811;
+    for (int k = draws(6); k > 0; k--) {
+        run alone = draw(&seed);
+        double soft = 0.5 * chance(&seed), loud = soft + (1 - soft) * chance(&seed);
+        alone.hits = true;
+        alone.latency = choose(&seed, 2) ? 0.15 : 0.015 + 0.1 * chance(&seed);
+        alone.interval = 0.09 + 0.3 * chance(&seed);
+        run turns = alone;
+        alone.latency = 0.33;
+        alone.count = 1;
+        alone.dynamic = soft;
+        played x = play(&alone), y = {.h = {0}};
+        himc_performance *p = at_one_drum();
+        session_do(p, "latency %.9g", 1e3 * turns.latency);
+        session_play(p, 0.6, NULL);
+        for (int i = 0; i < 8; i++) {
+            session_do(p, "hit %s %s %.9g", hand_of(&turns, i), nuances[turns.nuance],
+                       i % 2 ? soft : loud);
+            session_play(p, turns.interval, &y.h);
+        }
+        session_play(p, 0.5, &y.h);
+        turns.dynamic = loud;
+        describe(&y, &turns);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(8, y.h.strikes, y.what);
+        for (int i = 1; i < 8; i += 2)
+            TEST_ASSERT_TRUE_MESSAGE(
+                decibels(y.h.strike[i].velocity, x.h.strike[0].velocity) < 2 * EQUAL, y.what);
+        heard_free(&x.h);
+        heard_free(&y.h);
+        himc_performance_free(p);
+    }
+}
+
 static void test_slower_is_not_softer_and_with_time_enough_it_is_the_same(void)
 {
     unsigned seed = 2803;
@@ -367,6 +403,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_equal_strokes_are_equal_from_the_first_on);
     RUN_TEST(test_louder_is_louder_at_any_interval);
+    RUN_TEST(test_a_hit_is_never_louder_than_the_same_alone);
     RUN_TEST(test_slower_is_not_softer_and_with_time_enough_it_is_the_same);
     RUN_TEST(test_another_tempo_has_the_same_dynamics_where_there_is_time);
     RUN_TEST(test_left_and_right_are_mirror_images);

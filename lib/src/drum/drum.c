@@ -9,6 +9,7 @@
 
 #include "base/line.h"
 #include "drum/contact.h"
+#include "drum/membrane_state.h"
 #include "drum/strike_point.h"
 
 #include <math.h>
@@ -538,7 +539,7 @@ void himc_drum_set_external_sound(himc_drum *drum, bool external)
     drum->external_sound = external;
 }
 
-bool himc_drum_has_external_sound(const himc_drum *drum)
+bool himc_drum_is_touched(const himc_drum *drum)
 {
-    return drum->external_sound;
+    return drum->membrane->applied_count > 0;
 }

@@ -52,8 +52,8 @@ HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
 /// Frequency of the head's principal mode (Hz).
 HIMC_RT double himc_drum_pitch(const himc_drum *drum);
 
-/// What himc_drum_set_external_sound has set.
-HIMC_RT bool himc_drum_has_external_sound(const himc_drum *drum);
+/// True if a force acted on the head in its last sample.
+HIMC_RT bool himc_drum_is_touched(const himc_drum *drum);
 
 // Commands that compute a drum's head anew, carried out on a copy of the drum (drum_job.c).
 

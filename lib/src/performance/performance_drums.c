@@ -13,7 +13,8 @@
 #include <string.h>
 
 // chosen: as timpani are set up, rims a finger apart and all within a turn of the trunk
-#define RIM_GAP 0.02        // least, between two rims (m)
+#define LONGEST_WAIT 12 // of a change of the head for a stick to leave it (ticks); chosen: 50 ms
+#define RIM_GAP 0.02    // least, between two rims (m)
 #define ARC_ANGLE_STEP 0.02 // between two angles that are tried (rad)
 #define ARC_END 1.9         // largest turn of a player (rad)
 #define ARC_STEP 0.1        // from one arc to the next (m)
@@ -284,6 +285,18 @@ static void begin_round(performance_drums *d, int index, long round, double end,
         himc_drum_heads_begin_anew(slot->heads);
 }
 
+// A change of a head under a stick would pluck it: it waits until the stick has left, some ticks.
+static bool is_due(performance_drums *d, int index, double beat)
+{
+    drum_slot *slot = &d->slot[index];
+    bool due = himc_drum_heads_due(slot->heads, beat);
+    if (due)
+        himc_drums_catch_up_one(d, index);
+    bool waits = due && slot->waited < LONGEST_WAIT && himc_drum_is_touched(slot->drum);
+    slot->waited = waits ? slot->waited + 1 : 0;
+    return due && !waits;
+}
+
 void himc_drums_turn_heads(performance_drums *d, double beat, long round, double end,
                            performance_events *events)
 {
@@ -296,10 +309,8 @@ void himc_drums_turn_heads(performance_drums *d, double beat, long round, double
             continue;
         if (round != d->round)
             begin_round(d, i, round, end, &why);
-        if (himc_drum_heads_due(slot->heads, beat)) {
-            himc_drums_catch_up_one(d, i);
+        if (is_due(d, i, beat))
             himc_drum_heads_turn(slot->heads, slot->drum, beat, &why);
-        }
         if (why.text[0])
             himc_events_note(events, "at: %s %s", himc_drum_name(slot->drum), why.text);
     }

@@ -12,7 +12,7 @@
 /// behind steady acceleration). The noise that is left in the acceleration is sigma_a^2 = 0.187
 /// sigma^2 T / tau^5; tau is chosen so that sigma_a is NOISE_ACCELERATION. A target after a pause
 /// is a place to go to. When no more targets come, the tip goes on for half a period and comes to
-/// rest. Invariant: position, velocity and acceleration are continuous.
+/// rest at the last one. Invariant: position, velocity and acceleration are continuous.
 #include "plan/follow.h"
 
 // the stream; chosen: steady for a mouse (60 Hz) and a tracker (1 kHz) alike, see tests/test_live.c
@@ -30,20 +30,21 @@
 #define HARDEST_MEETING 250.0 // peak acceleration to meet a target (m/s^2)
 #define BRAKING 20.0          // mean acceleration of the halt (m/s^2)
 #define SHORTEST_HALT 0.15    // (s)
+#define FASTEST_STREAM 10.0 // (m/s) as captured sticks; faster targets jump, and are not carried on
 
 /// Within `blend` seconds the tip is in the state `aim`, goes on so for `hold` seconds and comes to
-/// rest.
+/// rest at x.
 static void follow_aim(himc_hand_plan *plan, double t, const himc_target *aim, double blend,
-                       double hold)
+                       double hold, himc_vec3 x)
 {
     himc_hand_cut(plan, t);
     t = fmax(t, plan->end);
-    himc_target from = himc_hand_at(plan, t), nothing = {0}, held = *aim, rest = {0};
+    himc_target from = himc_hand_at(plan, t), nothing = {0}, held = *aim,
+                rest = himc_target_at_rest(x);
     double halt = fmax(SHORTEST_HALT, himc_vec3_length(aim->v) / BRAKING);
     double coast = himc_vec3_length(himc_vec3_sub(aim->x, himc_vec3_madd(from.x, blend, from.v)));
     blend = fmax(blend, himc_move_time(coast, HARDEST_MEETING));
     held.x = himc_vec3_madd(aim->x, hold, aim->v);
-    rest.x = himc_vec3_madd(held.x, 0.5 * halt, held.v);
     plan->end = t + blend + hold + halt;
     himc_spline_add(&plan->tangential_path, t, &from, t + blend, aim);
     himc_spline_add(&plan->tangential_path, t + blend, aim, t + blend + hold, &held);
@@ -118,9 +119,11 @@ static bool shakes(const himc_stream *s)
 /// The last target, carried on for `ahead` (s).
 static himc_target aim_at(const himc_stream *s, double ahead)
 {
-    if (!shakes(s))
-        return (himc_target){himc_vec3_madd(s->x, ahead, s->v), s->v, {0, 0, 0}};
-    return himc_target_after(&s->filtered, ahead);
+    himc_target last = shakes(s) ? s->filtered : (himc_target){s->x, s->v, {0, 0, 0}};
+    double speed = himc_vec3_length(last.v);
+    if (speed > FASTEST_STREAM)
+        last = (himc_target){last.x, himc_vec3_scale(last.v, FASTEST_STREAM / speed), {0, 0, 0}};
+    return himc_target_after(&last, ahead);
 }
 
 void himc_stream_follow(const himc_stream *s, himc_hand_plan *plan, double t)
@@ -128,5 +131,5 @@ void himc_stream_follow(const himc_stream *s, himc_hand_plan *plan, double t)
     double blend =
         fmax(fmax(s->period, SHORTEST_BLEND), shakes(s) ? BLEND_MEMORIES * s->memory : 0);
     himc_target aim = aim_at(s, blend - s->period);
-    follow_aim(plan, t, &aim, blend, 0.5 * s->period);
+    follow_aim(plan, t, &aim, blend, 0.5 * s->period, aim_at(s, 0).x);
 }

@@ -349,6 +349,12 @@ double himc_hand_leap_time(double way)
     return HIMC_CONTACT_TIME + T + absorb_time(T);
 }
 
+double himc_hand_least_speed(const himc_hand_plan *plan, double t, const himc_goal *goal)
+{
+    stroke_plan s = frame_at(plan, t, goal->spot, goal->normal);
+    return himc_height_profile_least_landing(fmax(s.height.h, 0), goal->time - t);
+}
+
 bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
 {
     stroke_plan s = frame_at(plan, t, goal->spot, goal->normal);

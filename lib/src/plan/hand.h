@@ -82,6 +82,8 @@ HIMC_RT bool himc_hand_is_sound(const himc_hand_plan *plan, double from);
 /// gesture is not too slow.
 HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal);
 
+/// Impact speed at the goal of a fall at once from the plan's state at t, at least (m/s).
+HIMC_RT double himc_hand_least_speed(const himc_hand_plan *plan, double t, const himc_goal *goal);
 /// True if the tip could do so if its plan were cut at t.
 HIMC_RT bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal);
 

@@ -198,8 +198,7 @@ static bool sinks_first(const stroke_plan *s, double T, const himc_gesture *g)
     return HIMC_MOVE_PEAK * (s->height.h - low.height) <= SINK_PEAK * time * time;
 }
 
-/// Impact speed of a fall at once, at least (m/s): no tip is braked harder than an arm can.
-static double least_landing(double h, double T)
+double himc_height_profile_least_landing(double h, double T)
 {
     double peak = HIMC_MOVE_PEAK * h / (T * T);
     double share = (peak - BRAKED_PEAK) / (BRAKED_LIMIT - BRAKED_PEAK);
@@ -214,7 +213,7 @@ bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g)
     if (h <= LEAST_FALL_HEIGHT || T > fmax(longest, LEAST_FALL_TIME) ||
         (g->speed * T < HIMC_LEAST_LANDING * h && sinks_first(s, T, g)))
         return false;
-    double speed = fmax(g->speed, least_landing(h, T));
+    double speed = fmax(g->speed, himc_height_profile_least_landing(h, T));
     if (T <= LEAST_FALL_TIME)
         speed = fmin(speed, HIMC_STEEPEST_QUINTIC * h / T);
     if (!himc_height_profile_stays(s, t, (height_state){0, -speed, 0}, -1e-6,

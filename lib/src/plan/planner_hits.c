@@ -32,6 +32,9 @@
 /// the first one has more.
 #define GIVES_WAY 0.024
 
+#define LOUDER \
+    1.06 // a tip that is too high and has no time may strike so much harder; chosen: 0.5 dB
+
 // a tip that has drifted from its plan; chosen: what a tenth of the time left can make good
 #define CORRECTION_TIME 0.01 // before the touch (s)
 #define LEAST_DRIFT 0.00005  // a smaller one is not heard (s at the speed of the touch) ...
@@ -100,14 +103,27 @@ static bool can_follow(const himc_goal *first, const himc_goal *second)
     return himc_hand_can_follow(&settled, second);
 }
 
+/// Whether a fall at once from where the tip is at t would not be louder than the gesture.
+static bool lands_softly(const planner_hand *h, double t, const himc_goal *goal, double speed)
+{
+    return himc_hand_least_speed(&h->plan, t, goal) <= LOUDER * speed;
+}
+
+/// A waiting tip can strike, no louder than the time before the hit allows: else it comes later.
+static bool strikes_from(const planner_hand *h, double t, const himc_goal *goal)
+{
+    double time = fmax(goal->time - t - GIVES_WAY, GIVES_WAY);
+    return himc_hand_can_strike_from(&h->plan, t, goal) &&
+           lands_softly(h, t, goal, himc_gesture_bend(goal->gesture, HIMC_HURRY * time).speed);
+}
+
 /// Whether the hand has time for the hit before and after it.
 static bool has_time(const planner_hand *h, double t, double least, const chance *c)
 {
     double at = c->goal.time, free = fmax(t, himc_goal_end(&c->near.before));
     if (at - free < least || c->near.after.time - at < least + HIMC_CONTACT_TIME)
         return false;
-    return (c->idle ? himc_hand_can_strike_from(&h->plan, t, &c->goal)
-                    : can_follow(&c->near.before, &c->goal)) &&
+    return (c->idle ? strikes_from(h, t, &c->goal) : can_follow(&c->near.before, &c->goal)) &&
            (isinf(c->near.after.time) || can_follow(&c->goal, &c->near.after));
 }
 
@@ -232,6 +248,15 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     return touch;
 }
 
+/// How long before its touch the last planned stroke may still change (s): one that falls already,
+/// and planned anew would be louder, not at all.
+static double gives_way_until(const planner_hand *h, double t)
+{
+    const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
+    bool soft = !last || lands_softly(h, t, &last->goal, last->goal.gesture.speed);
+    return soft ? GIVES_WAY : last->goal.time - t;
+}
+
 double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
 {
     chance chosen;
@@ -252,7 +277,7 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
     s.exact = true;
     s.goal.time += s.variation.late;
     s.latency = fmax(s.goal.time - t - GIVES_WAY, GIVES_WAY);
-    himc_planner_unplan(planner, hand, t, GIVES_WAY);
+    himc_planner_unplan(planner, hand, t, gives_way_until(&planner->hand[hand], t));
     himc_planner_cut(planner, hand, t);
     himc_planner_queue(planner, &s);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
