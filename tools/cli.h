@@ -100,6 +100,10 @@ bool cli_same_file(const char *a, const char *b);
 /// False with the reason if `name` is one of the `count` files; entries and name may be NULL.
 bool cli_apart(const char *name, const char *const *files, int count, himc_error *error);
 
+/// False with the reason if a file that is written has another ending; `name` may be NULL, or have
+/// none.
+bool cli_ending_is(const char *option, const char *name, const char *ending, himc_error *error);
+
 /// The drum of a score that makes none.
 #define CLI_DRUM "kettle"
 #define CLI_INCHES HIMC_INCHES_USUAL

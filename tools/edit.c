@@ -54,6 +54,7 @@ typedef struct session {
     char wanted[FILE_NAME];      ///< and the name under which it is wanted
     char line[LINE];
     size_t used;
+    bool cut;      ///< the rest of a line that was too long is to come
     bool played;   ///< once, at least a part
     bool unproved; ///< the text has not been played yet, nor failed; its last change is open
     bool over;     ///< no more lines
@@ -544,6 +545,12 @@ static bool read_lines(session *s, bool *fatal, himc_error *error)
     s->used += got > 0 ? (size_t)got : 0;
     for (; (end = memchr(begin, '\n', s->used - (size_t)(begin - s->line))); begin = end + 1) {
         *end = 0;
+        if (s->cut || memchr(begin, 0, (size_t)(end - begin))) {
+            if (!s->cut)
+                tell("refused", "a line with a zero byte", NULL);
+            s->cut = false;
+            continue;
+        }
         *fatal = !prove(s, error);
         if (*fatal || !obey(s, begin, fatal, error)) {
             if (*fatal)
@@ -554,7 +561,9 @@ static bool read_lines(session *s, bool *fatal, himc_error *error)
     s->used -= (size_t)(begin - s->line);
     memmove(s->line, begin, s->used);
     if (s->used == sizeof s->line) {
-        tell("refused", "a line is too long", NULL);
+        if (!s->cut)
+            tell("refused", "a line is too long", NULL);
+        s->cut = true;
         s->used = 0;
     }
     return true;

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #ifndef SIGHUP // Windows has no terminal that hangs up
@@ -139,6 +140,14 @@ bool cli_same_file(const char *a, const char *b)
     free(target[0]);
     free(target[1]);
     return same;
+}
+
+bool cli_ending_is(const char *option, const char *name, const char *ending, himc_error *error)
+{
+    const char *slash = name ? strrchr(name, '/') : NULL;
+    const char *dot = name ? strrchr(slash ? slash : name, '.') : NULL;
+    return !dot || !strcasecmp(dot, ending) ||
+           himc_error_set(error, "%s: %s, expected a name that ends with %s", option, name, ending);
 }
 
 bool cli_apart(const char *name, const char *const *files, int count, himc_error *error)

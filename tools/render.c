@@ -503,6 +503,7 @@ static bool open_all(rendering *r, job *wanted, const char *const *value, himc_e
     if (!open_performance(r, wanted, error) || !open_sound(r, value[OUT], wanted, error) ||
         !cli_file_open(&r->strokes, value[STROKES], error) ||
         !cli_file_open(&r->motion, value[MOTION], error) ||
+        !cli_ending_is("--scene", value[SCENE], ".himc", error) ||
         !cli_file_open(&r->scene, value[SCENE], error))
         return false;
     const char *compare = value[COMPARE];

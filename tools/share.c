@@ -46,7 +46,8 @@ static int run(const cli_arguments *arguments)
     if (!out)
         return cli_fail(&cli_share, "no -o PAGE.html given (himc share --help)");
     const char *scene = cli_input(arguments->operand, &error);
-    bool good = scene && cli_apart(out, &scene, 1, &error) && share(scene, out, &error);
+    bool good = scene && cli_ending_is("-o", out, ".html", &error) &&
+                cli_apart(out, &scene, 1, &error) && share(scene, out, &error);
     return good ? cli_finish(&cli_share) : cli_fail(&cli_share, "%s", error.text);
 }
 

@@ -297,6 +297,8 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
         p.command(text, word)
     if channels == 1:
         p.command("listener off")
+    if not take:
+        p.command("loop 0")  # one round
     p.command("play")
     return _play_to_the_end(p)
 

@@ -119,6 +119,17 @@ static bool session_drum_command(session *s, const char *name, const char *text,
 
 static bool session_add_drum(session *s, const char *name, double inches, himc_error *error)
 {
+    himc_atom atom = {.kind = HIMC_ATOM_SYMBOL, .symbol = name};
+    himc_command c;
+    himc_drum *other;
+    char line[HIMC_NAME_SIZE + 8];
+    snprintf(line, sizeof line, "drum %s", name);
+    if (!himc_command_parse(&c, HIMC_PERFORMER, "drum", &atom, 1, error) ||
+        !himc_command_parse_text(&c, HIMC_PERFORMER, line, error))
+        return false; // a name that scores cannot have: no word, or a number
+    for (int i = 0; (other = himc_performance_drum(s->performance, i)); i++)
+        if (strcmp(himc_drum_name(other), name) == 0)
+            return himc_error_set(error, "drum: %s: there is one of that name", name);
     double rate = himc_performance_measure(s->performance).sample_rate;
     himc_drum *drum = himc_drum_new(name, inches != 0 ? inches : HIMC_INCHES_USUAL, rate, error);
     bool good = drum && himc_performance_add_drum(s->performance, drum, error);

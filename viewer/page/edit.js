@@ -127,8 +127,18 @@ export class Editor {
 
     // whether a change can be made now; else the page says why not
     able() {
+        if (this.elsewhere) {
+            this.on.note("Another scene is shown: reload the page to edit the piece again.");
+            return false;
+        }
         if (!this.piece.live) this.on.note(ENDED[this.ends] ?? "himc-viewer is asked for the piece; nothing can be changed yet.");
         return this.piece.live;
+    }
+
+    // a scene was dropped, and is shown in the piece's place
+    get elsewhere() {
+        const p = this.on.playback();
+        return !!p && !!this.piece.scene && p.scene !== this.piece.scene;
     }
 
     // the program can be reached, or not; its channel may not have noticed
@@ -692,6 +702,7 @@ export class Editor {
         const p = this.on.playback(),
             here = p && p.scene === this.piece.scene;
         this.group.visible = !!here && !p.playing && this.piece.live;
+        document.body.classList.toggle("elsewhere", this.elsewhere);
         this.pushes.update();
         if (this.late) this.trace();
         if (!this.group.visible || this.piece.text?.take) return;

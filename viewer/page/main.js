@@ -42,6 +42,7 @@ const latencies = [],
     frames = []; // when they were drawn (ms)
 let exaggeration = 8, // of a head's motion; chosen: seen from the stage, and no wilder than a film's
     playback = null,
+    readings = 0, // of scenes, begun
     stream = null,
     editor = null, // on a page that knows the key
     waiting = [];
@@ -408,8 +409,10 @@ function forget() {
 
 // `others` are scenes of the same piece, to compare
 async function play(bytes, name, others = []) {
-    const progress = (what, part) => panel.loading(`${what} ${name} … ${Math.round(100 * part)} %`),
+    const turn = ++readings,
+        progress = (what, part) => turn === readings && panel.loading(`${what} ${name} … ${Math.round(100 * part)} %`),
         scene = await readScene(bytes, name, progress);
+    if (turn !== readings) return; // another one was dropped meanwhile
     scene.ghosts.push(...others);
     close();
     playback = new Playback(scene, sound);
@@ -561,9 +564,9 @@ function edit(key) {
         playback: () => playback,
         performer: () => [...performers.values()].find(p => p.group.visible && !p.ghostly),
         note: (text, stays) => panel.note(text, stays),
-        cut: time => panel.timeline.cut(time),
-        changed: () => panel.timeline.grown(),
-        finished: piece => panel.timeline.heard(piece.sound.whole()),
+        cut: time => editor.elsewhere || panel.timeline.cut(time),
+        changed: () => editor.elsewhere || panel.timeline.grown(),
+        finished: piece => editor.elsewhere || panel.timeline.heard(piece.sound.whole()),
         drum: name => [...drums.values()].find(d => d.name === name && d.group.visible)?.tilted,
     });
 }

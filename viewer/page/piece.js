@@ -83,9 +83,6 @@ class PieceSound {
         }
     }
 
-    // the playback goes back at a loop's end
-    setLoop() {}
-
     stop() {
         for (const source of this.sources.splice(0)) ((source.onended = null), source.stop());
         ((this.on = false), (this.waits = false), (this.next = 0));
