@@ -42,7 +42,7 @@ static bool may_say(planner_notes *notes, planner_kind kind)
         return false;
     notes->said[kind] = true;
     if (kind != PLANNER_GIVEN_UP)
-        return first || kind == PLANNER_NEXT_ROUND || kind == PLANNER_NEXT_PLAY;
+        return first || kind == PLANNER_NEXT_ROUND;
     if (notes->spent <= LINES - 1) {
         notes->spent++;
         return true;
