@@ -54,8 +54,8 @@ HIMC_RT void himc_height_profile_rebound(stroke_plan *s, double top, double next
 /// rise (s).
 HIMC_RT double himc_height_profile_rise(stroke_plan *s, double top, const himc_gesture *g);
 
-/// Impact speed of a fall from height h in the time T at once, at least (m/s): no tip is braked harder
-/// than an arm can.
+/// Impact speed of a fall at once from height h in the time T, at least (m/s): no tip is braked
+/// harder than an arm can.
 HIMC_RT double himc_height_profile_least_landing(double h, double T);
 
 /// True if the tip can fall from its present height and touch at t; `g` then has the height and the
