@@ -1,6 +1,6 @@
 # What the controls of a patch say: for each message box that leads to [s $0-himc] or [s $0-drum],
 # lines `performer TEXT` or `drum TEXT`, one for either end of what its number may be. $1 of a box
-# right behind [r $0-NAME], or behind a [sel] of it, is between the ends of NAME's slider or number
+# right behind [r $0-NAME], or behind a [sel] or [int] of it, is between the ends of NAME's slider or number
 # box; others are given here. Lines of score boxes too.
 function words(from,   i, text) {
     for (i = from; i <= NF; i++)
@@ -19,7 +19,7 @@ function close_canvas(   i, k, from, to, text, name) {
         split(link[depth, i], from, " ")
         if (kind[depth, from[1]] == "r")
             source[depth, from[3]] = content[depth, from[1]]
-        else if (kind[depth, from[1]] == "sel") # what it does not select
+        else if (kind[depth, from[1]] ~ /^(sel|int)$/) # what it does not select, or the whole part
             source[depth, from[3]] = source[depth, from[1]]
     }
     for (i = 0; i < links[depth]; i++) {
