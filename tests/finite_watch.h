@@ -8,6 +8,7 @@
 #include "himc/osc.h"
 #include "osc/stepped.h"
 #include "performance/performance_state.h"
+#include "plan/planner_motion.h"
 
 #include <arpa/inet.h>
 #include <math.h>
@@ -140,6 +141,9 @@ static inline void finite_watch_plans(finite_watch *w)
         if (!himc_target_finite(&s))
             w->bad = "a planned target";
     }
+    for (int i = 0; !w->bad && !w->p->motion->track && i < HIMC_HANDS; i++)
+        if (w->p->motion->planner->hand[i].plan.end < t)
+            w->bad = "the end of a plan";
 }
 
 /// After `seconds` have been played; `bad` then says what was not finite, if anything.

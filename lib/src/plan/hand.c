@@ -338,7 +338,8 @@ static bool is_possible(const stroke_plan *s, const himc_goal *goal)
 {
     double T = goal->time - s->height_end;
     if (!(T >= LEAST_STROKE_TIME && goal->gesture.speed > HIMC_SLOWEST_GESTURE) ||
-        s->height.h / T > FASTEST_FALL)
+        s->height.h / T > FASTEST_FALL ||
+        himc_height_profile_plunges(s->height.h, T, goal->gesture.speed))
         return false;
     return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HIMC_HARDEST_MOVE) <= T;
 }

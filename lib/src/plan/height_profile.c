@@ -55,6 +55,10 @@
 #define FALLING_SPEED 0.2          // a tip faster downwards has begun to fall (m/s)
 #define BRAKED_PEAK 150.0          // acceleration of a high tip that falls to a soft touch ...
 #define BRAKED_LIMIT 400.0         // ... and with so much it is not braked at all (m/s^2)
+#define PLUNGE 2.1                 // mean speed of a fall with a higher peak, over the touch's ...
+#define HARDEST_FALL 300.0         // ... and with so much, where a body lags behind (m/s^2)
+#define HARDEST_PLUNGE 1.25        // ... a tip that needs more is too late
+#define LOUDEST 1.5                // speed of a touch that has no time, over the one asked for
 #define SINK_PEAK 80.0             // of one that sinks before a soft stroke, at most (m/s^2)
 #define FALL_STEEPNESS 2.5         // v T/h of a fall from rest, at most ...
 #define FALLING_STEEPNESS 3.5      // ... and of one that has begun
@@ -203,6 +207,14 @@ double himc_height_profile_least_landing(double h, double T)
     double peak = HIMC_MOVE_PEAK * h / (T * T);
     double share = (peak - BRAKED_PEAK) / (BRAKED_LIMIT - BRAKED_PEAK);
     return fmin(fmax(share, 0), 1) * HIMC_LEAST_LANDING * h / T;
+}
+
+bool himc_height_profile_plunges(double h, double T, double speed)
+{
+    double mean = h / T, peak = HIMC_MOVE_PEAK * mean / T;
+    double most = peak > HARDEST_FALL ? HARDEST_PLUNGE : PLUNGE;
+    return (peak > BRAKED_PEAK && mean > most * speed) ||
+           himc_height_profile_least_landing(fmax(h, 0), T) > LOUDEST * speed;
 }
 
 bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g)

@@ -61,6 +61,21 @@ void himc_planner_free(himc_planner *planner)
     free(planner);
 }
 
+/// The last time at which a stroke is written that a hand has planned or has taken over (s).
+static double last_written(const himc_planner *planner)
+{
+    double last = -HUGE_VAL;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_hand *h = &planner->hand[hand];
+        for (int i = 0; i < h->waiting_count; i++)
+            if (h->waiting[i].reassigned)
+                last = fmax(last, himc_planner_waiting_time(planner, &h->waiting[i]));
+        if (h->planned_count > 0)
+            last = fmax(last, h->planned[h->planned_count - 1].written.time);
+    }
+    return last;
+}
+
 /// Rolls are about to change at t, with the tempo or what follows them: what of a roll is not
 /// planned yet is counted anew. Returns what himc_planner_score_keep needs.
 static double before_change(himc_planner *planner, double t)
@@ -68,7 +83,7 @@ static double before_change(himc_planner *planner, double t)
     if (!planner->score.playing || planner->score.roll_count == 0)
         return 0;
     himc_planner_cut_both(planner, t);
-    return himc_planner_score_anchor(&planner->score);
+    return himc_planner_score_anchor(&planner->score, fmax(t, last_written(planner)));
 }
 
 bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place)

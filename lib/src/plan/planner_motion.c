@@ -381,7 +381,9 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
 {
     planner_hand *h = &planner->hand[hand];
     timed_stroke next;
-    bool more = next_stroke(planner, hand, &next);
+    bool more;
+    while ((more = next_stroke(planner, hand, &next)) && is_settled(planner, &next))
+        take(planner, &next);
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
         if (!more)
             renew_home(planner, hand);
@@ -389,8 +391,6 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
         return PLANNED;
     }
     take(planner, &next);
-    if (is_settled(planner, &next))
-        return PLANNED;
     himc_hand_plan before = h->plan;
     plan_result result = plan_stroke(planner, &next);
     *refused = next;
@@ -475,17 +475,22 @@ static void check_plan(himc_planner *planner, himc_hand hand)
     h->checked = h->plan.end;
 }
 
-/// Plans a hand to `until` while the other one wants to reassign a stroke to it: strokes that it
-/// cannot play are given up.
-static void extend_alone(himc_planner *planner, himc_hand hand, double until)
+typedef void planner_refuse(himc_planner *planner, const timed_stroke *s, plan_result result);
+
+/// Plans a hand to `until`. Where so many strokes are refused that the tries do not get there, the
+/// tip waits: no plan may end before it is played.
+static void extend(himc_planner *planner, himc_hand hand, double until, planner_refuse *refuse)
 {
+    planner_hand *h = &planner->hand[hand];
     timed_stroke refused;
     check_plan(planner, hand);
-    for (int i = 0; has_to_plan(&planner->hand[hand], until, i); i++) {
+    for (int i = 0; has_to_plan(h, until, i); i++) {
         plan_result result = plan_next(planner, hand, until, &refused);
         if (result != PLANNED)
-            give_up(planner, &refused, result);
+            refuse(planner, &refused, result);
     }
+    if (has_to_plan(h, until, 0))
+        himc_hand_wait(&h->plan, until, true);
     check_plan(planner, hand);
 }
 
@@ -574,7 +579,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
     if (s->reassigned || s->index < 0)
         return false;
     if (h->plan.end < from)
-        extend_alone(planner, other, from);
+        extend(planner, other, from, give_up);
     cut_plan(planner, other, from);
     taken.index = -1;
     taken.roll = 0;
@@ -584,7 +589,7 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
     bool can = can_take(planner, other, &taken, hurries);
     if (can)
         himc_planner_queue(planner, &taken);
-    extend_alone(planner, other, from + PLANNER_HORIZON);
+    extend(planner, other, from + PLANNER_HORIZON, give_up);
     return can;
 }
 
@@ -604,14 +609,7 @@ static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, pl
 
 void himc_planner_extend(himc_planner *planner, himc_hand hand, double until)
 {
-    timed_stroke refused;
-    check_plan(planner, hand);
-    for (int i = 0; has_to_plan(&planner->hand[hand], until, i); i++) {
-        plan_result result = plan_next(planner, hand, until, &refused);
-        if (result != PLANNED)
-            reassign_or_give_up(planner, &refused, result);
-    }
-    check_plan(planner, hand);
+    extend(planner, hand, until, reassign_or_give_up);
 }
 
 void himc_planner_cut(himc_planner *planner, himc_hand hand, double t)

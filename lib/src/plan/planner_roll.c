@@ -51,6 +51,7 @@
 
 // the join to what follows; chosen
 #define END_ROUNDING 1e-3  // of a written beat and length, which are floats (beats)
+#define TIME_ROUNDING 1e-4 // of a stroke's time that has been a beat (s)
 #define JOINED_TIME 1.0    // what comes later after a roll's end does not hurry (s)
 #define LEAST_STEP 0.9     // of the mean: interval of a short roll
 #define JOIN_GAIN 1e-6     // a roll that would end earlier by less does not (s)
@@ -613,7 +614,19 @@ void himc_planner_roll_from(planner_score *score, himc_hand hand, int in_round, 
     *at = (planner_roll_place){score->roll_count, 0, in_round};
 }
 
-void himc_planner_roll_anchor(planner_score *score)
+/// What was given up of a roll after that number is to be played again.
+static void take_back(planner_score *score, const roll_grid *g, const planner_roll_place *last)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planner_roll_place next = *last;
+        next.number = own_number(g, (himc_hand)hand, last->number + 1);
+        if (next.number < g->count)
+            score->part[hand].rolls = next;
+        himc_planner_score_unsettle(score, (himc_hand)hand, &next);
+    }
+}
+
+void himc_planner_roll_anchor(planner_score *score, double t)
 {
     planner_roll_place *left = &score->part[HIMC_LEFT].rolls,
                        *right = &score->part[HIMC_RIGHT].rolls;
@@ -629,6 +642,14 @@ void himc_planner_roll_anchor(planner_score *score)
         bool within = own->roll == at.roll && own->round == at.round;
         int next = own_number(&g, (himc_hand)hand, within ? own->number : g.count);
         planned = next - 2 > planned ? next - 2 : planned;
+    }
+    t += TIME_ROUNDING - himc_planner_score_time(score, at.round, 0);
+    if (planned >= g.first && time_of(&g, planned) > t) {
+        planned = number_after(&g, t) - 1;
+        if (g.first > 0 && planned < g.first)
+            planned = g.first;
+        at.number = planned;
+        take_back(score, &g, &at);
     }
     if (planned < 0)
         return;

@@ -271,9 +271,9 @@ void himc_planner_score_seat(planner_score *score, himc_hand hand, double t)
     himc_planner_roll_from(score, hand, round, t - himc_planner_score_time(score, round, 0));
 }
 
-double himc_planner_score_anchor(planner_score *score)
+double himc_planner_score_anchor(planner_score *score, double t)
 {
-    himc_planner_roll_anchor(score);
+    himc_planner_roll_anchor(score, t);
     return score->anchor.time + himc_planner_score_time(score, score->anchor.round, 0);
 }
 
@@ -440,6 +440,16 @@ void himc_planner_score_settle(planner_score *score, himc_hand hand,
         part->mark[part->marks++ % PLANNER_MARKS] =
             (planner_mark){name, place->roll, place->number};
     part->marks %= PLANNER_MARKS;
+}
+
+void himc_planner_score_unsettle(planner_score *score, himc_hand hand,
+                                 const planner_roll_place *place)
+{
+    planner_part *part = &score->part[hand];
+    for (int i = 0; i < PLANNER_MARKS; i++)
+        if (part->mark[i].name == round_name(score, place->round) &&
+            part->mark[i].roll == place->roll && part->mark[i].number >= place->number)
+            part->mark[i].name = 0;
 }
 
 bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,

@@ -147,8 +147,8 @@ HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat
 /// The hand's next stroke of a roll is the first one after `t` (s).
 HIMC_RT void himc_planner_score_seat(planner_score *score, himc_hand hand, double t);
 /// Before the tempo changes: of a roll that has begun the strokes that are not planned yet will be
-/// counted anew. Returns the time of the last one that is (s) ...
-HIMC_RT double himc_planner_score_anchor(planner_score *score);
+/// counted anew; all of them come after `t`. Returns the time of the last one that is (s) ...
+HIMC_RT double himc_planner_score_anchor(planner_score *score, double t);
 /// ... which it keeps after the change.
 HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
 /// Begins to play at score->beat at `t`.
@@ -185,6 +185,9 @@ HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
                                        const planner_roll_place *place);
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
                                            const planner_roll_place *place);
+/// The hand's strokes of the roll from `place` on are planned again after all.
+HIMC_RT void himc_planner_score_unsettle(planner_score *score, himc_hand hand,
+                                         const planner_roll_place *place);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
