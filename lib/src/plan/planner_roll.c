@@ -614,7 +614,7 @@ void himc_planner_roll_from(planner_score *score, himc_hand hand, int in_round, 
     *at = (planner_roll_place){score->roll_count, 0, in_round};
 }
 
-/// What was given up of a roll after that number is to be played again.
+/// The strokes of a roll after that one are to be played again.
 static void take_back(planner_score *score, const roll_grid *g, const planner_roll_place *last)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -622,11 +622,10 @@ static void take_back(planner_score *score, const roll_grid *g, const planner_ro
         next.number = own_number(g, (himc_hand)hand, last->number + 1);
         if (next.number < g->count)
             score->part[hand].rolls = next;
-        himc_planner_score_unsettle(score, (himc_hand)hand, &next);
     }
 }
 
-void himc_planner_roll_anchor(planner_score *score, double t)
+bool himc_planner_roll_anchor(planner_score *score, double t)
 {
     planner_roll_place *left = &score->part[HIMC_LEFT].rolls,
                        *right = &score->part[HIMC_RIGHT].rolls;
@@ -634,7 +633,7 @@ void himc_planner_roll_anchor(planner_score *score, double t)
         left->round != right->round ? left->round > right->round : left->roll > right->roll;
     planner_roll_place at = ahead ? *right : *left;
     if (at.roll >= score->roll_count)
-        return;
+        return false;
     roll_grid g = grid_of(score, at.roll, at.round);
     int planned = -1; // the last one
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -643,8 +642,10 @@ void himc_planner_roll_anchor(planner_score *score, double t)
         int next = own_number(&g, (himc_hand)hand, within ? own->number : g.count);
         planned = next - 2 > planned ? next - 2 : planned;
     }
-    t += TIME_ROUNDING - himc_planner_score_time(score, at.round, 0);
-    if (planned >= g.first && time_of(&g, planned) > t) {
+    t += TIME_ROUNDING - score->origin;
+    t -= at.round ? at.round * round_length(score) : 0;
+    bool early = planned >= g.first && time_of(&g, planned) > t;
+    if (early) {
         planned = number_after(&g, t) - 1;
         if (g.first > 0 && planned < g.first)
             planned = g.first;
@@ -652,13 +653,14 @@ void himc_planner_roll_anchor(planner_score *score, double t)
         take_back(score, &g, &at);
     }
     if (planned < 0)
-        return;
+        return early;
     score->anchor = (planner_anchor){.any = true,
                                      .lead = g.lead,
                                      .roll = at.roll,
                                      .round = at.round,
                                      .number = planned,
                                      .time = g.begin + (planned - g.first) * g.step};
+    return early;
 }
 
 double himc_planner_roll_last_beat(const planner_score *score)

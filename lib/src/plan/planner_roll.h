@@ -37,8 +37,8 @@ HIMC_RT bool himc_planner_roll_due(const planner_score *score, himc_hand hand,
 HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int round, double t);
 /// The tempo is about to change: of a roll that has begun the strokes that are not planned yet are
 /// counted anew, from the last one that is and comes no later than `t` (s): what was given up ahead
-/// of its time may be played at the new tempo.
-HIMC_RT void himc_planner_roll_anchor(planner_score *score, double t);
+/// of its time may be played at the new tempo. True if there was such a one.
+HIMC_RT bool himc_planner_roll_anchor(planner_score *score, double t);
 /// Beat of the last stroke of the score, of a roll or a list, -1 without any.
 HIMC_RT double himc_planner_roll_last_beat(const planner_score *score);
 /// himc_planner_score_length, on which the rolls depend in a loop.

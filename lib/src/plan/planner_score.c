@@ -271,9 +271,27 @@ void himc_planner_score_seat(planner_score *score, himc_hand hand, double t)
     himc_planner_roll_from(score, hand, round, t - himc_planner_score_time(score, round, 0));
 }
 
+/// Names a round of the loop, through all starts of the transport; never 0.
+static long round_name(const planner_score *score, int round)
+{
+    return 1 + round + (score->starts & 0xffffL) * 0x100000000L;
+}
+
+/// The hand's strokes of the roll from `place` on are planned again after all.
+static void unsettle(planner_score *score, himc_hand hand, const planner_roll_place *place)
+{
+    planner_part *part = &score->part[hand];
+    for (int i = 0; i < PLANNER_MARKS; i++)
+        if (part->mark[i].name == round_name(score, place->round) &&
+            part->mark[i].roll == place->roll && part->mark[i].number >= place->number)
+            part->mark[i].name = 0;
+}
+
 double himc_planner_score_anchor(planner_score *score, double t)
 {
-    himc_planner_roll_anchor(score, t);
+    if (himc_planner_roll_anchor(score, t))
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            unsettle(score, (himc_hand)hand, &score->part[hand].rolls);
     return score->anchor.time + himc_planner_score_time(score, score->anchor.round, 0);
 }
 
@@ -423,12 +441,6 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
     return false;
 }
 
-/// Names a round of the loop, through all starts of the transport; never 0.
-static long round_name(const planner_score *score, int round)
-{
-    return 1 + round + (score->starts & 0xffffL) * 0x100000000L;
-}
-
 void himc_planner_score_settle(planner_score *score, himc_hand hand,
                                const planner_roll_place *place)
 {
@@ -440,16 +452,6 @@ void himc_planner_score_settle(planner_score *score, himc_hand hand,
         part->mark[part->marks++ % PLANNER_MARKS] =
             (planner_mark){name, place->roll, place->number};
     part->marks %= PLANNER_MARKS;
-}
-
-void himc_planner_score_unsettle(planner_score *score, himc_hand hand,
-                                 const planner_roll_place *place)
-{
-    planner_part *part = &score->part[hand];
-    for (int i = 0; i < PLANNER_MARKS; i++)
-        if (part->mark[i].name == round_name(score, place->round) &&
-            part->mark[i].roll == place->roll && part->mark[i].number >= place->number)
-            part->mark[i].name = 0;
 }
 
 bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,

@@ -185,9 +185,6 @@ HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
                                        const planner_roll_place *place);
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
                                            const planner_roll_place *place);
-/// The hand's strokes of the roll from `place` on are planned again after all.
-HIMC_RT void himc_planner_score_unsettle(planner_score *score, himc_hand hand,
-                                         const planner_roll_place *place);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
