@@ -185,8 +185,10 @@ static double struck_at(double other)
     TEST_ASSERT_TRUE_MESSAGE(himc_performance_set_rate(p, RATE, &error), error.text);
     session_play(p, 3, &h);
     TEST_ASSERT_EQUAL_INT(1, h.strikes);
+    double time = h.strike[0].time;
+    heard_free(&h);
     himc_performance_free(p);
-    return h.strike[0].time;
+    return time;
 }
 
 static void test_time_goes_on_when_the_sample_rate_changes(void)

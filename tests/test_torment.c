@@ -51,6 +51,8 @@ typedef struct counts {
 } counts;
 
 static counts seen;
+static random_seed begun; // seed and number with which the round began: with them it comes again
+static int round_begun;
 #define RECENT 12
 static char recent[RECENT][600]; // the last commands with their answers, for a failure
 static heard_piece expected, played;
@@ -115,6 +117,7 @@ static void fail(const char *what)
     char text[1200];
     for (long back = RECENT - 1; back >= 0; back--)
         printf("%s\n", story(back));
+    printf("again: HIMC_SEED=%llu HIMC_ROUND=%d\n", begun, round_begun);
     snprintf(text, sizeof text, "%.600s: %s", story(0), what);
     TEST_FAIL_MESSAGE(text);
 }
@@ -431,10 +434,13 @@ static long from_environment(const char *name, long usual)
 static void test_hostile_commands_leave_a_performance_finite_bounded_and_as_good_as_new(void)
 {
     long commands = from_environment("HIMC_TORMENT", 4000);
-    random_seed seed = (random_seed)from_environment("HIMC_SEED", 1);
+    const char *first = getenv("HIMC_SEED");
+    random_seed seed = first ? strtoull(first, NULL, 10) : 1;
     pair of = {.p = performer(himc_drum_new("kettle", 23, RATE, &error))};
     printf("seed %llu\n", seed);
-    for (int round = 0; seen.said < commands; round++) {
+    for (int round = (int)from_environment("HIMC_ROUND", 0); seen.said < commands; round++) {
+        begun = seed;
+        round_begun = round;
         himc_performance *fresh = reset_and_compare(of.p);
         if (round % TWINS == 0)
             of.twin = fresh;
