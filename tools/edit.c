@@ -144,12 +144,18 @@ static char *text_of_midi(const char *bytes, size_t size, const char *name, himc
     return text;
 }
 
+static himc_state_line take_line(const char *file)
+{
+    himc_state_line line = himc_state_begin("take");
+    himc_state_word(&line, file);
+    return line;
+}
+
 static char *text_of(const char *source, const char *name, himc_error *error)
 {
     size_t size;
     if (cli_is_take(source)) {
-        himc_state_line line = himc_state_begin("take");
-        himc_state_word(&line, source);
+        himc_state_line line = take_line(source);
         char *text = malloc(line.used + 3);
         if (text)
             sprintf(text, "%.*s;\n", (int)line.used, line.text);
@@ -421,6 +427,20 @@ static void put_file(const char *name, const char *bytes, size_t size)
     free(all);
 }
 
+// the score, in which a take that a page has sent has the name under which it was sent
+static void put_score(const session *s, const char *file, const char *text)
+{
+    himc_state_line own = take_line(s->source), sent = take_line(s->name);
+    const char *at = s->name != s->source ? strstr(text, own.text) : NULL;
+    char *renamed = at ? malloc(strlen(text) + sent.used + 1) : NULL;
+    if (renamed)
+        sprintf(renamed, "%.*s%.*s%s", (int)(at - text), text, (int)sent.used, sent.text,
+                at + own.used);
+    const char *all = renamed ? renamed : text;
+    put_file(file, all, strlen(all));
+    free(renamed);
+}
+
 static bool save_score(const session *s)
 {
     const char *slash = strrchr(s->name, '/'), *name = slash ? slash + 1 : s->name,
@@ -431,7 +451,7 @@ static bool save_score(const session *s)
         ; // whole characters
     snprintf(file, sizeof file, "%.*s.txt", length, name);
     if (text)
-        put_file(file, text, strlen(text));
+        put_score(s, file, text);
     bool good = text != NULL;
     free(text);
     return good;

@@ -1,5 +1,6 @@
 """`himc edit`: random changes of a score, also with pushes, and of a take; 300 with HIMC_LONG."""
 
+import contextlib
 import json
 import math
 import os
@@ -236,6 +237,14 @@ def made_take():
         piece.say("take take.bvh")
         piece.until("file")
     return made("take.bvh", piece.files["take.bvh"])
+
+
+def test_a_saved_score_names_a_sent_take_as_it_was_sent():
+    with Piece(HIMC, made_take(), "--confined", "--name", "my take.bvh") as piece:
+        assert piece.play("hello") is None
+        piece.say("save")
+        piece.until("file")
+        assert piece.files == {"my take.txt": b"take my\\ take.bvh;\n"}, piece.files
 
 
 def test_takes_changed_at_random_play_as_if_written_so():
@@ -768,8 +777,11 @@ def test_what_a_page_has_sent_is_told_by_its_name_alone():
         path = made(f"piece.0.{ending}", b"MThd\0\0\0\6junk" if ending == "mid" else b"junk")
         for options, name in ((["--confined", "--name", f"my.{ending}"], f"my.{ending}"), ([], path)):
             pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-            with subprocess.Popen([HIMC, "edit", path, *options], **pipes) as process:
-                out, why = process.communicate(b"hello\n")
+            # not buffered: nothing is left to write when it has ended
+            with subprocess.Popen([HIMC, "edit", path, *options], bufsize=0, **pipes) as process:
+                with contextlib.suppress(BrokenPipeError):
+                    process.stdin.write(b"hello\n")
+                out, why = process.stdout.read(), process.stderr.read()
             for text in (out[out.index(b'{"event":"failed"') :].decode(), why.decode()):
                 assert process.returncode == 1 and text.count(name) == 1, text
                 assert options == [] or "piece.0" not in text, text
