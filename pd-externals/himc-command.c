@@ -14,7 +14,6 @@ the patch. */
 #define NETWORK_PERIOD \
     2.0 /* between two looks for commands from the network (ms); chosen: shorter
                                  than a block of 128 samples */
-#define SILENCE_PATIENCE 20.0 /* from a message to the line that DSP is off (ms); chosen */
 #define NETWORK_COMMANDS 8    /* most of them at one look; chosen: none makes a block late */
 
 /* A search for a file. */
@@ -260,27 +259,21 @@ void himc_tilde_restore(t_himc *x)
     free(state);
 }
 
-/* While DSP is off nothing plays: that is told once, unless the message that switches it on comes
-behind in the same moment. A score begins when it is on; a hit, which is for now, is left out. */
+/* True if a hit is left out, since DSP is off; that is one stroke that is missed. */
 static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 {
-    bool hit = command->id == HIMC_COMMAND_HIT;
-    if ((!hit && command->id != HIMC_COMMAND_PLAY) || pd_getdspstate())
+    const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke : NULL;
+    bool plays = hit || command->id == HIMC_COMMAND_PLAY || command->id == HIMC_COMMAND_TARGET ||
+                 command->id == HIMC_COMMAND_PUSH;
+    if (!plays || !silence_holds(&x->x_silence, hit ? "hit" : NULL) || !hit)
         return false;
-    if (!x->x_dsp_told)
-        clock_delay(x->x_silence, SILENCE_PATIENCE);
-    x->x_dsp_told = true;
-    x->x_hits_lost += hit;
-    return hit;
-}
-
-void himc_tilde_silence(t_himc *x)
-{
-    if (!pd_getdspstate())
-        logpost(x, PD_NORMAL, "himc~: DSP is off: nothing plays");
-    else if (x->x_hits_lost > 0)
-        logpost(x, PD_NORMAL, "himc~: hit: left out, it came before DSP was on");
-    x->x_hits_lost = 0;
+    himc_drum *drum = himc_performance_drum(x->x_performance, 0);
+    t_atom atom[3];
+    SETFLOAT(atom, -1);
+    SETSYMBOL(atom + 1, gensym(command->atom[0].symbol));
+    SETSYMBOL(atom + 2, gensym(hit->drum[0] || !drum ? hit->drum : himc_drum_name(drum)));
+    outlet_anything(x->x_messages, gensym("missed"), 3, atom);
+    return true;
 }
 
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)

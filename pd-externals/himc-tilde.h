@@ -5,6 +5,7 @@ graph), himc-drums.c (the drums it finds by name), himc-command.c (its commands)
 
 #include "drum-link.h"
 #include "himc/osc.h"
+#include "silence.h"
 
 #define FORCE_RING HIMC_DRUM_RING
 #define COORDINATES 6 /* of both tips: left x y z, right x y z */
@@ -40,10 +41,7 @@ typedef struct t_himc {
 
     himc_osc *x_osc;    /* NULL until `subscribe` or `listen` */
     t_clock *x_network; /* looks for commands from there */
-
-    t_clock *x_silence; /* tells that DSP is off */
-    bool x_dsp_told;    /* since it is off */
-    int x_hits_lost;    /* by that, and not told */
+    t_silence x_silence;
 
     bool x_saves;   /* its state in the patch */
     char *x_state;  /* from there, to be restored when all drums of the patch are made; or NULL */
@@ -75,8 +73,6 @@ void himc_tilde_saved(t_himc *x, t_symbol *s, int argc, t_atom *argv);
 void himc_tilde_restore(t_himc *x);
 /* Installs what has been loaded. */
 void himc_tilde_load(t_himc *x);
-/* Says why nothing is heard. */
-void himc_tilde_silence(t_himc *x);
 /* Carries out commands from OSC, in Pd's own time, also while DSP is off. */
 void himc_tilde_network(t_himc *x);
 

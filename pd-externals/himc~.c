@@ -74,7 +74,8 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         stream_restart(&x->x_stream, sp[0]);
         himc_tilde_restore(x);
         himc_tilde_resolve(x, true);
-        x->x_spoilt = x->x_told = x->x_dsp_told = false;
+        x->x_spoilt = x->x_told = false;
+        silence_over(&x->x_silence);
         himc_performance_realign(x->x_performance);
         x->x_player.p_time = 0;
         dsp_add(himc_tilde_perform, 1, x);
@@ -171,7 +172,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     x->x_clock = clock_new(x, (t_method)himc_tilde_tick);
     x->x_network = clock_new(x, (t_method)himc_tilde_network);
     x->x_load = clock_new(x, (t_method)himc_tilde_load);
-    x->x_silence = clock_new(x, (t_method)himc_tilde_silence);
+    silence_init(&x->x_silence, &x->x_obj);
     saved_bind(&x->x_obj.ob_pd);
     himc_performance_config config = himc_performance_default();
     config.sample_rate = sys_getsr();
@@ -213,7 +214,7 @@ static void himc_tilde_free(t_himc *x)
     himc_performance_free(x->x_performance);
     clock_free(x->x_network);
     clock_free(x->x_load);
-    clock_free(x->x_silence);
+    silence_free(&x->x_silence);
     clock_free(x->x_clock);
 }
 

@@ -23,6 +23,7 @@ take the same commands and are heard with it. */
 #include "drum-link.h"
 #include "layer.h"
 #include "saved-state.h"
+#include "silence.h"
 
 #include "m_imp.h" /* obj_starttraverseoutlet */
 #include <float.h>
@@ -67,6 +68,7 @@ typedef struct t_membrane {
     long x_refused;             /* samples of force or place that were not taken as they are */
     bool x_apart;               /* runs at another sample rate than its performer */
     bool x_told;                /* the user, of either, since the graph was built */
+    t_silence x_silence;
 } t_membrane;
 
 _Static_assert(offsetof(t_membrane, x_link) == sizeof(t_object), "[himc~] looks for it there");
@@ -280,6 +282,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
             if (!membrane_guest(x, i))
                 himc_drum_realign(x->x_guest[i], 0);
         x->x_told = false;
+        silence_over(&x->x_silence);
         membrane_fit_heads(x);
         dsp_add(membrane_perform, 1, x);
         return;
@@ -435,6 +438,8 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
         return true;
     if (!pd_in_real_time())
         himc_loader_finish(x->x_loader);
+    if (command.id == HIMC_COMMAND_STRIKE && silence_holds(&x->x_silence, "strike"))
+        return true;
     if (command.id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader)) {
         int delay = stream_delay(&x->x_stream, himc_drum_time(drum));
         return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
@@ -719,6 +724,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     x->x_clock = clock_new(x, (t_method)membrane_tick);
     x->x_fit_clock = clock_new(x, (t_method)membrane_fit_heads);
     x->x_touch_clock = clock_new(x, (t_method)membrane_touch_tick);
+    silence_init(&x->x_silence, &x->x_obj);
     himc_stroke normal = {.spot = HIMC_SPOT_NORMAL};
     double spot_x, spot_y;
     himc_stroke_spot(&normal, himc_drum_head_frame(drum)->radius, &spot_x, &spot_y);
@@ -746,6 +752,7 @@ static void membrane_free(t_membrane *x)
     clock_free(x->x_fit_clock);
     clock_free(x->x_load);
     clock_free(x->x_touch_clock);
+    silence_free(&x->x_silence);
 }
 
 EXPORTED void membrane_tilde_setup(void);

@@ -292,7 +292,10 @@ strikes() { # strikes HAND DRUM
 }
 report sound_that_is_off_is_told_once_each_time \
     "$([ "$(grep -c 'himc~: DSP is off: nothing plays' "$work/log")" = 2 ] || grep -n DSP "$work/log" || echo 'not told')"
-report hits_while_dsp_is_off_do_not_pile_up "$([ "$(strikes left kettle)" = 0 ] || echo "$(strikes left kettle) strikes")"
+report hits_while_dsp_is_off_do_not_pile_up_and_are_missed \
+    "$([ "$(strikes left kettle)" = 0 ] && [ "$(grep -c 'himc: missed -1 left kettle' "$work/log")" = 5 ] || grep 'left kettle' "$work/log" || echo none)"
+report strikes_while_dsp_is_off_do_not_pile_up \
+    "$([ "$(grep -c 'membrane~: DSP is off: nothing plays' "$work/log")" = 1 ] && ! grep '^membrane: strike' "$work/log" || echo 'not told')"
 report bang_plays_and_a_drum_beside_the_arguments_is_found \
     "$([ "$(strikes right kettle)" = 1 ] && [ "$(strikes right other)" = 2 ] || cat "$work/log")"
 report a_drum_that_comes_later_takes_the_place_of_a_silent_one \
