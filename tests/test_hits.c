@@ -523,6 +523,25 @@ static void test_any_hand_takes_turns_on_a_drum_after_strokes_on_its_neighbour(v
     himc_performance_free(p);
 }
 
+// a stranger's first message: the trunk has to bend for it, and the stick missed the head
+static void test_a_hit_beyond_the_centre_comes_when_the_body_can_be_there(void)
+{
+    static const char *const hit[] = {"hit left tenuto mf 0.24 0", "hit right tenuto mf 0.24 0",
+                                      "hit left legato mf 0.18 -0.23"};
+    for (int i = 0; i < 6; i++) {
+        heard h = {.strikes = 0};
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        session_do(p, "latency %d", i % 2 ? 150 : 60);
+        session_do(p, "%s", hit[i / 2]);
+        session_play(p, 1, &h);
+        TEST_ASSERT_EQUAL_INT(1, h.strikes);
+        TEST_ASSERT_DOUBLE_WITHIN(0.005, i < 4 ? 0.24 : 0.18, h.strike[0].x);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -544,5 +563,6 @@ int main(void)
     RUN_TEST(test_no_arm_whips_from_drum_to_drum_where_they_stand_by_themselves);
     RUN_TEST(test_any_hand_along_an_arc_of_drums_crosses_nothing_and_is_as_early_as_can_be);
     RUN_TEST(test_any_hand_takes_turns_on_a_drum_after_strokes_on_its_neighbour);
+    RUN_TEST(test_a_hit_beyond_the_centre_comes_when_the_body_can_be_there);
     return UNITY_END();
 }
