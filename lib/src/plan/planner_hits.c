@@ -32,11 +32,6 @@
 /// the first one has more.
 #define GIVES_WAY 0.024
 
-/// Mean speed of a tip away from the player, on the way to a hit (m/s). Measured: at 2.9 over 0.45 m,
-/// for which the trunk must bend, wrists turn twice as fast as a person's and the stick misses.
-#define FASTEST_REACH 2.6
-#define ASIDE 0.5 // a way to the side is so much of one; chosen: an arm swings
-
 #define LOUDER \
     1.06 // a tip that is too high and has no time may strike so much harder; chosen: 0.5 dB
 
@@ -114,38 +109,55 @@ static bool lands_softly(const planner_hand *h, double t, const himc_goal *goal,
     return himc_hand_least_speed(&h->plan, t, goal) <= LOUDER * speed;
 }
 
-/// A waiting tip can strike, no louder than the time before the hit allows, and without a reach that
-/// no body follows: else it comes later.
+/// A waiting tip can strike, no louder than the time before the hit allows: else it comes later.
 static bool strikes_from(const planner_hand *h, double t, const himc_goal *goal)
 {
     double time = fmax(goal->time - t - GIVES_WAY, GIVES_WAY);
-    himc_vec3 way = himc_vec3_sub(goal->spot, himc_hand_at(&h->plan, t).x);
-    double out = -himc_vec3_dot(way, goal->back),
-           aside = himc_vec3_length(himc_vec3_madd(way, out, goal->back));
-    return hypot(fmax(out, 0), ASIDE * aside) <= FASTEST_REACH * (goal->time - t) &&
-           himc_hand_can_strike_from(&h->plan, t, goal) &&
+    return himc_hand_can_strike_from(&h->plan, t, goal) &&
            lands_softly(h, t, goal, himc_gesture_bend(goal->gesture, HIMC_HURRY * time).speed);
 }
 
-/// Whether the hand has time for the hit before and after it.
-static bool has_time(const planner_hand *h, double t, double least, const chance *c)
+/// Whether the trunk, from where it is at t, bends far enough until then.
+static bool bends_to(const himc_planner *planner, himc_hand hand, double t, const himc_goal *goal)
 {
+    const himc_planner_config *c = &planner->config;
+    himc_rehearsed rehearsed = {{0}};
+    himc_moment m = {.time = t, .after = -1};
+    if (!c->rehearse)
+        return true;
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = himc_hand_at(&planner->hand[i].plan, t).x;
+    m.place[hand] = goal->spot;
+    c->rehearse(c->motion, &m, &rehearsed);
+    m.time = goal->time;
+    m.after = goal->time - t;
+    m.tip[hand] = goal->spot;
+    return c->rehearse(c->motion, &m, &rehearsed).beyond <= PLANNER_UNREACHED;
+}
+
+/// Whether the hand has time for the hit before and after it.
+static bool has_time(const himc_planner *planner, himc_hand hand, double t, double least,
+                     const chance *c)
+{
+    const planner_hand *h = &planner->hand[hand];
     double at = c->goal.time, free = fmax(t, himc_goal_end(&c->near.before));
     if (at - free < least || c->near.after.time - at < least + HIMC_CONTACT_TIME)
         return false;
-    return (c->idle ? strikes_from(h, t, &c->goal) : can_follow(&c->near.before, &c->goal)) &&
-           (isinf(c->near.after.time) || can_follow(&c->goal, &c->near.after));
+    bool gets_there = c->idle ? strikes_from(h, t, &c->goal) && bends_to(planner, hand, t, &c->goal)
+                              : can_follow(&c->near.before, &c->goal);
+    return gets_there && (isinf(c->near.after.time) || can_follow(&c->goal, &c->near.after));
 }
 
 /// Delays the hit to the first time at which the hand can play it; for one with strokes to come
 /// that is the time asked for, or none.
-static void find_time(const planner_hand *h, double t, chance *c)
+static void find_time(const himc_planner *planner, himc_hand hand, double t, chance *c)
 {
+    const planner_hand *h = &planner->hand[hand];
     double asked = c->goal.time, least = fmin(LEAST_PREPARATION, asked - t);
     bool room = h->waiting_count + h->planned_count < PLANNER_WAITING;
     for (c->late = 0; c->reaches && room && c->late < LATEST; c->late += LATER) {
         c->goal.time = asked + c->late;
-        if (has_time(h, t, least, c))
+        if (has_time(planner, hand, t, least, c))
             return;
         if (!c->idle)
             break;
@@ -164,7 +176,7 @@ static chance chance_of(himc_planner *planner, himc_hand hand, double t, const h
     c.over = h->drum == hit->drum;
     c.from = c.idle ? himc_hand_at(&h->plan, t).x : c.near.before.spot;
     c.reaches = himc_planner_reaches(planner, hand, &c.goal);
-    find_time(h, t, &c);
+    find_time(planner, hand, t, &c);
     return c;
 }
 
