@@ -149,6 +149,8 @@ static void test_errors_name_file_and_line(void)
         "tune A2;",
         "s.txt:1: tune: a command for a drum, not for the performer: its name comes before it (`kettle tune`)");
     refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, allowed tune HZ | NOTE");
+    refused("drum kettle 26;\ndrum kettle;\ndrum kettle 32;",
+            "s.txt:3: drum: kettle is made with 26 inches on line 1 already");
     refused("drum kettle;\n\nkettle radius 0;",
             "s.txt:3: kettle: radius: RADIUS: 0, allowed 0.05 .. 1 m");
     refused("play;\n# loud\nstroke 1 left legato f;",

@@ -783,6 +783,17 @@ def test_a_film_has_all_its_pictures_and_the_sound_in_step():
     return f"sound {1000 * (said['heard'] - loud):.1f} ms off"
 
 
+def test_a_film_beyond_the_end_is_refused():
+    for option in "--at", "--from":
+        out = os.path.join(MADE, "beyond.png")
+        command = [HIMC, "film", FOUR, "-o", out, "--size", "96x64", option, "999"]
+        said = subprocess.run(command, capture_output=True, text=True)
+        if "without three.js" in said.stderr:
+            raise report.Ignored("himc was built without three.js")
+        assert said.returncode == 1 and f"{option} 999: the scene ends at " in said.stderr, said
+        assert not os.path.exists(out)
+
+
 def test_an_interrupted_film_leaves_nothing():
     made_by_film("png", "--at", "1")
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):

@@ -69,6 +69,9 @@ export class Exporter {
 
     start(kind, options) {
         ((this.blob = null), (this.failed = ""));
+        for (const name of ["from", "at"])
+            if (options[name] > this.viewer.playback.length)
+                return (this.failed = `--${name} ${options[name] / 1000}: the scene ends at ${this.viewer.playback.length / 1000} s`);
         this.make(kind, options).then(
             blob => (this.blob = blob),
             error => (this.failed = error.message || String(error)),
