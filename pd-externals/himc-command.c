@@ -12,9 +12,9 @@ the patch. */
 #include <sys/stat.h>
 
 #define NETWORK_PERIOD \
-    2.0 /* between two looks for commands from the network (ms); chosen: shorter
+    2.0                    /* between two looks for commands from the network (ms); chosen: shorter
                                  than a block of 128 samples */
-#define NETWORK_COMMANDS 8    /* most of them at one look; chosen: none makes a block late */
+#define NETWORK_COMMANDS 8 /* most of them at one look; chosen: none makes a block late */
 
 /* A search for a file. */
 typedef struct _search {

@@ -438,10 +438,10 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
         return true;
     if (!pd_in_real_time())
         himc_loader_finish(x->x_loader);
-    if (command.id == HIMC_COMMAND_STRIKE && silence_holds(&x->x_silence, "strike"))
-        return true;
     if (command.id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader)) {
-        int delay = stream_delay(&x->x_stream, himc_drum_time(drum));
+        int delay = silence_holds(&x->x_silence, "strike")
+                        ? HIMC_STRIKE_NEVER
+                        : stream_delay(&x->x_stream, himc_drum_time(drum));
         return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
                                    command.atom[2].number, error);
     }

@@ -163,11 +163,11 @@ static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
 {
     for (int i = 0; i < shells->count; i++)
         for (int part = HIMC_LEFT_FOREARM; part <= HIMC_RIGHT_HAND; part++) {
-            himc_vec3 away = himc_vec3_sub(ball[part].middle, shells->head[i]->center);
-            double reach = shells->head[i]->radius + ball[part].radius + NEAR_BODY;
+            himc_vec3 away = himc_vec3_sub(ball[part].middle, shells->head[i].center);
+            double reach = shells->head[i].radius + ball[part].radius + NEAR_BODY;
             if (away.x * away.x + away.y * away.y > reach * reach || away.z > reach)
                 continue;
-            himc_capsule_near near = himc_capsule_shell(&capsule[part], shells->head[i]);
+            himc_capsule_near near = himc_capsule_shell(&capsule[part], &shells->head[i]);
             if (part >= HIMC_LEFT_HAND && near.n.z > LEVEL)
                 continue;
             push_apart(f, (himc_capsule_pair){(unsigned char)part, HIMC_PELVIS}, &near, NEAR_BODY);

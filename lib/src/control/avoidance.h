@@ -22,7 +22,7 @@ typedef struct himc_foreseen {
 
 /// The drums.
 typedef struct himc_shells {
-    const himc_head_frame *head[HIMC_DRUMS];
+    himc_head_frame head[HIMC_DRUMS];
     int count;
 } himc_shells;
 

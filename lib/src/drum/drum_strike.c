@@ -22,13 +22,16 @@
 bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                          himc_error *error)
 {
-    if (!himc_check_range("strike: X", x, -drum->place.radius, drum->place.radius, "m", error) ||
-        !himc_check_range("strike: Y", y, -drum->place.radius, drum->place.radius, "m", error) ||
-        !himc_check_range("strike: X Y, from the centre", hypot(x, y), 0, drum->place.radius, "m",
-                          error) ||
+    double radius = drum->place.radius;
+    if (!himc_check_range("strike: X", x, -radius, radius, "m", error) ||
+        !himc_check_range("strike: Y", y, -radius, radius, "m", error) ||
+        !himc_check_range("strike: X Y, from the centre", hypot(x, y), 0, radius, "m", error) ||
         !himc_check_range("strike: VELOCITY", velocity, LEAST_VELOCITY, HIMC_STRIKE_VELOCITY_MAX,
-                          "m/s", error) ||
-        !himc_check_range("strike: delay", delay, 0, DRUM_MAX_DELAY, "samples", error))
+                          "m/s", error))
+        return false;
+    if (delay == HIMC_STRIKE_NEVER)
+        return true;
+    if (!himc_check_range("strike: delay", delay, 0, DRUM_MAX_DELAY, "samples", error))
         return false;
     if (drum->waiting_count == DRUM_WAITING)
         return himc_error_set(error, "strike: %d wait already, allowed up to %d", DRUM_WAITING,

@@ -536,7 +536,7 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
     m->grip = s->grip;
     m->shells.count = drums->count;
     for (int i = 0; i < drums->count; i++)
-        m->shells.head[i] = himc_drums_frame(drums, i);
+        m->shells.head[i] = *himc_drums_frame(drums, i);
     himc_planner_advance(m->planner, t);
     himc_motion_stir(m);
     if (s->alive && !m->track)
