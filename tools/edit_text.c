@@ -36,10 +36,12 @@ static bool grow(void *array, int count, int *room, size_t size)
 {
     void **slot = array, *bigger = *slot;
     if (count == *room)
-        bigger = realloc(bigger, size * (size_t)(*room = 2 * *room + 64));
-    if (bigger)
-        *slot = bigger;
-    return bigger;
+        bigger = realloc(bigger, size * (size_t)(2 * *room + 64));
+    if (!bigger)
+        return false;
+    *room = count == *room ? 2 * *room + 64 : *room;
+    *slot = bigger;
+    return true;
 }
 
 static bool append(edit_text *t, char *bytes)

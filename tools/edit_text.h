@@ -42,8 +42,8 @@ int edit_text_changes(const edit_text *text);
 /// What the last of these calls has changed begins here: a beat, or a time of the take (s).
 double edit_text_changed_from(const edit_text *text);
 
-/// Prints, as JSON fields: can_undo, can_redo, count, and the list `statements` of those that can
-/// be edited.
+/// Prints, as JSON fields: how many changes can be undone (`undo`) and made again (`redo`),
+/// `count`, and the list `statements` of those that can be edited.
 void edit_text_print(const edit_text *text, FILE *to);
 
 #endif

@@ -20,7 +20,7 @@
 enum {
     PASSED = 65536, // of what `himc edit` tells in one message (bytes)
     NOTE = 1024,    // of a line for the page (bytes)
-    TAKEN = 4001    // status of a close, for the page (edit.js)
+    TAKEN = 4001    // status of a close, for the page (piece.js)
 };
 
 /// What a program has told, and nobody has taken.

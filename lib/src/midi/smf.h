@@ -9,7 +9,7 @@
 
 /// A note of any track, from its note-on to its note-off.
 typedef struct midi_note {
-    double beat;      ///< of the note-on (quarter notes from the beginning), see himc_midi_file
+    double beat;      ///< of the note-on (quarter notes from the beginning), see midi_file
     double seconds;   ///< of the note-on, through the tempo map (s)
     double off;       ///< of the note-off (s); the end of the file if there is none
     int track;        ///< from 0

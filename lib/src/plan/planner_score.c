@@ -8,12 +8,12 @@
 /// strictly, so every time has one beat.
 #include "plan/planner_part.h"
 #include "plan/planner_roll.h"
+#include "plan/score.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define CLOSEST_STROKES 0.04 // of one hand (s); chosen: faster than any roll of one hand
 // Beats far from 0 are rounded: so much less is no less. Chosen: up to beat 1e10 at 1 beat a
 // minute.
 #define BEAT_ROUNDED 1e-4        // (s)
@@ -74,11 +74,11 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
     if (!check_count(part->count, error))
         return false;
     double least = himc_planner_score_room(score, stroke);
-    if (least < CLOSEST_STROKES - BEAT_ROUNDED)
+    if (least < HIMC_CLOSEST_STROKES - BEAT_ROUNDED)
         return himc_error_set(
             error,
             "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, allowed %g s or more",
-            stroke->beat, least, himc_hand_name(stroke->hand), CLOSEST_STROKES);
+            stroke->beat, least, himc_hand_name(stroke->hand), HIMC_CLOSEST_STROKES);
     return true;
 }
 
@@ -479,7 +479,7 @@ double himc_planner_score_length(const planner_score *score)
 double himc_planner_score_free_from(const planner_score *score)
 {
     double last = himc_planner_roll_last_beat(score), next = himc_planner_score_length(score);
-    return next + (last >= 0 && gap(score, last, next) < CLOSEST_STROKES ? 1 : 0);
+    return next + (last >= 0 && gap(score, last, next) < HIMC_CLOSEST_STROKES ? 1 : 0);
 }
 
 double himc_planner_score_round_length(const planner_score *score)

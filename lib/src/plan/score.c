@@ -23,8 +23,6 @@
 #define SCORE_LINES_MAX 10000
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 #define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 16 a second
-#define STROKE_INTERVAL_MIN \
-    0.04 // of one hand (s); chosen: 25 strokes a second, faster than players
 
 /// A score being read.
 typedef struct reader {
@@ -515,13 +513,13 @@ static bool check_playable(reader *r)
                 return false;
             continue;
         }
-        if (seconds - last[stroke->hand] < STROKE_INTERVAL_MIN)
+        if (seconds - last[stroke->hand] < HIMC_CLOSEST_STROKES)
             return himc_error_set(
                 r->error,
                 "stroke: BEAT: %g is %.3g s after the last stroke of the %s hand, allowed %g s "
                 "or more",
                 stroke->beat, seconds - last[stroke->hand], himc_hand_name(stroke->hand),
-                STROKE_INTERVAL_MIN);
+                HIMC_CLOSEST_STROKES);
         last[stroke->hand] = seconds;
     }
     return true;

@@ -4,6 +4,9 @@
 
 #include "himc/score.h"
 
+/// From one stroke of a hand to its next, at least (s). Chosen: 25 a second, faster than players.
+#define HIMC_CLOSEST_STROKES 0.04
+
 /// The score in a string, as himc_score_load reads it from a file; `name` stands for the file in
 /// errors. Free with himc_score_free.
 himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
