@@ -48,13 +48,17 @@ bool cli_shows_progress(void)
 void cli_put_json_text(FILE *stream, const char *text)
 {
     fputc('"', stream);
-    for (; *text; text++)
+    for (size_t bytes; *text; text += bytes ? bytes : 1) {
+        bytes = himc_line_character(text);
         if (*text == '"' || *text == '\\')
             fprintf(stream, "\\%c", *text);
         else if ((unsigned char)*text < ' ')
             fprintf(stream, "\\u%04x", *text);
+        else if (bytes)
+            fwrite(text, 1, bytes, stream);
         else
-            fputc(*text, stream);
+            fputs("\\ufffd", stream); // not UTF-8
+    }
     fputc('"', stream);
 }
 

@@ -306,6 +306,13 @@ def test_what_is_no_change_is_refused_in_a_line():
         assert piece.score() == before
 
 
+def test_the_answer_to_bytes_that_are_no_text_is_json():
+    path = made("one.txt", "stroke 0 left legato mf;")
+    said = subprocess.run([HIMC, "edit", path], input=b"set 0 stroke \xe9 1\n", capture_output=True).stdout
+    start = said.index(b'{"event":"refused"')
+    assert json.loads(said[start : said.index(b"\n", start)])["line"] == "set 0 stroke \ufffd 1"
+
+
 def test_a_segment_that_nobody_has_is_refused_at_once():
     """As any other misspelt word: nothing is played again, and the journal has nothing of it."""
     path = made("two.txt", "stroke 0 left legato f;\nstroke 1 right legato f;\n")

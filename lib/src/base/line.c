@@ -27,6 +27,12 @@ static size_t decode(const unsigned char *s, uint32_t *code)
     return *code < least[n] || *code > 0x10FFFF || surrogate ? 0 : n;
 }
 
+size_t himc_line_character(const char *text)
+{
+    uint32_t code;
+    return decode((const unsigned char *)text, &code);
+}
+
 static bool is_plain(uint32_t code)
 {
     return code >= 0x20 && !(code >= 0x7F && code <= 0x9F) && !(code >= 0x2028 && code <= 0x202E) &&

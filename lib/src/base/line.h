@@ -13,6 +13,9 @@ void himc_line_clean(char *line);
 /// True if himc_line_clean leaves the text as it is.
 bool himc_line_is_clean(const char *text);
 
+/// Bytes of the character of UTF-8 at `text`, 0 if there is none.
+size_t himc_line_character(const char *text);
+
 /// Prints a clean line (conversions of base/format.h) into `out` of `size` bytes, its final 0
 /// included; what does not fit is cut off.
 void himc_line_print(char *out, size_t size, const char *format, va_list args)
