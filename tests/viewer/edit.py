@@ -309,8 +309,8 @@ def test_what_is_no_change_is_refused_in_a_line():
 def test_the_answer_to_bytes_that_are_no_text_is_json():
     path = made("one.txt", "stroke 0 left legato mf;")
     said = subprocess.run([HIMC, "edit", path], input=b"set 0 stroke \xe9 1\n", capture_output=True).stdout
-    start = said.index(b'{"event":"refused"')
-    assert json.loads(said[start : said.index(b"\n", start)])["line"] == "set 0 stroke \ufffd 1"
+    event = json.JSONDecoder().raw_decode(said[said.index(b"{") :].decode())[0]
+    assert event["event"] == "refused" and event["line"] == "set 0 stroke \ufffd 1", event
 
 
 def test_a_segment_that_nobody_has_is_refused_at_once():
