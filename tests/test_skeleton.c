@@ -135,6 +135,30 @@ static void test_arm_has_the_masses_and_inertias_of_de_leva(void)
     }
 }
 
+// masses (of the body's), centres and radii of gyration (of the length), de Leva 1996; his foot is
+// parted into foot and toes, which keep its mass
+static void test_legs_have_the_masses_centres_and_radii_of_de_leva(void)
+{
+    static const struct {
+        int segment;
+        double mass, center, radius[3];
+    } known[] = {{HIMC_LEFT_UPPER_LEG, 0.1416, 0.4095, {0.329, 0.329, 0.149}},
+                 {HIMC_LEFT_LOWER_LEG, 0.0433, 0.4459, {0.255, 0.249, 0.103}},
+                 {HIMC_LEFT_FOOT, 0.85 * 0.0137, 0.33, {0.124, 0.257, 0.245}},
+                 {HIMC_LEFT_TOES, 0.15 * 0.0137, 0.5, {0.3, 0.35, 0.35}}};
+    build();
+    for (int k = 0; k < 8; k++) {
+        const himc_segment *s = &skeleton.segment[known[k / 2].segment + k % 2];
+        const double *radius = known[k / 2].radius, size = s->mass * s->length * s->length;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, known[k / 2].mass * 75, s->mass);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, known[k / 2].center * s->length,
+                                  himc_vec3_length(s->center));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, radius[0] * radius[0] * size, s->inertia.x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, radius[1] * radius[1] * size, s->inertia.y);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, radius[2] * radius[2] * size, s->inertia.z);
+    }
+}
+
 // upper and middle trunk as two bodies above the waist, at de Leva's own height
 static void test_trunk_is_two_parts_merged_by_parallel_axes(void)
 {
@@ -338,6 +362,7 @@ int main(void)
     RUN_TEST(test_masses_sum_to_the_performer_in_both_anthropometries);
     RUN_TEST(test_a_row_of_table_1_is_both_limbs_of_a_pair);
     RUN_TEST(test_arm_has_the_masses_and_inertias_of_de_leva);
+    RUN_TEST(test_legs_have_the_masses_centres_and_radii_of_de_leva);
     RUN_TEST(test_trunk_is_two_parts_merged_by_parallel_axes);
     RUN_TEST(test_default_mallet_has_the_expected_centre_and_inertias);
     RUN_TEST(test_mallet_inertia_is_that_of_a_rod_and_a_ball_in_slices);
