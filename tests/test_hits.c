@@ -381,6 +381,33 @@ static void test_a_hit_moves_no_stroke_of_the_playing_score_aside(void)
     }
 }
 
+/// Nor softer: a hand that has no time for both leaves the hit to the other one.
+static void test_a_hit_makes_no_stroke_of_the_playing_score_softer(void)
+{
+    for (int gap = 60; gap <= 200; gap += 35) { // ms before the third stroke
+        heard h = {0};
+        himc_performance *p = session_new();
+        session_do(p, "drum kettle");
+        session_do(p, "tempo 60");
+        for (int beat = 0; beat < 4; beat++)
+            session_do(p, "stroke %d right legato f", beat);
+        session_do(p, "play");
+        session_play(p, 1, &h);
+        double third = h.strike[0].time + 2;
+        session_play(p, third - 0.15 - 1e-3 * gap - himc_performance_measure(p).seconds, &h);
+        session_do(p, "latency 150");
+        session_do(p, "hit right legato f");
+        session_play(p, 2, &h);
+        TEST_ASSERT_EQUAL_INT(5, h.strikes);
+        for (int k = 1; k < h.strikes; k++)
+            if (h.strike[k].beat >= 0)
+                TEST_ASSERT_DOUBLE_WITHIN(0.03 * h.strike[0].velocity, h.strike[0].velocity,
+                                          h.strike[k].velocity);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 // anywhere on the head and beyond it: what lands more than 2 cm beside the place of a point on the
 // head, or is not played, has a line
 static void test_a_hit_elsewhere_than_asked_is_told(void)
@@ -559,6 +586,7 @@ int main(void)
     RUN_TEST(test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may);
     RUN_TEST(test_play_prepares_the_first_stroke_without_a_line_and_tells_beat_0_when_it_sounds);
     RUN_TEST(test_a_hit_moves_no_stroke_of_the_playing_score_aside);
+    RUN_TEST(test_a_hit_makes_no_stroke_of_the_playing_score_softer);
     RUN_TEST(test_a_hit_elsewhere_than_asked_is_told);
     RUN_TEST(test_no_arm_whips_from_drum_to_drum_where_they_stand_by_themselves);
     RUN_TEST(test_any_hand_along_an_arc_of_drums_crosses_nothing_and_is_as_early_as_can_be);

@@ -32,6 +32,7 @@
 /// the first one has more.
 #define GIVES_WAY 0.024
 
+#define AS_STRONG 0.944 // share of the speed: 0.5 dB, the spread that equal strokes may have
 #define LOUDER \
     1.06 // a tip that is too high and has no time may strike so much harder; chosen: 0.5 dB
 
@@ -54,32 +55,38 @@
 /// Strokes of a hand next to a time; their times are infinite if there are none.
 typedef struct neighbours {
     himc_goal before, after;
+    bool scored; ///< the one after is of the score
 } neighbours;
 
-static void keep_nearer(neighbours *n, double at, const himc_goal *goal, double time)
+static void keep_nearer(neighbours *n, double at, const himc_goal *goal, double time, bool scored)
 {
     himc_goal *side = time <= at ? &n->before : &n->after;
     if (time <= at ? time < side->time : time > side->time)
         return;
     *side = *goal;
     side->time = time;
+    if (time > at)
+        n->scored = scored;
 }
 
 static neighbours neighbours_at(himc_planner *planner, himc_hand hand, double at)
 {
     const planner_hand *h = &planner->hand[hand];
-    neighbours n = {{.time = -HUGE_VAL}, {.time = HUGE_VAL}};
+    neighbours n = {{.time = -HUGE_VAL}, {.time = HUGE_VAL}, false};
     planner_due due = {.time = -HUGE_VAL};
-    for (int i = 0; i < h->planned_count; i++)
-        keep_nearer(&n, at, &h->planned[i].goal, h->planned[i].goal.time);
+    for (int i = 0; i < h->planned_count; i++) {
+        himc_goal goal = h->planned[i].goal;
+        goal.gesture = h->planned[i].written.gesture; // not as haste has bent it
+        keep_nearer(&n, at, &goal, goal.time, h->planned[i].index >= 0);
+    }
     for (int i = 0; i < h->waiting_count; i++)
-        keep_nearer(&n, at, &h->waiting[i].goal,
-                    himc_planner_waiting_time(planner, &h->waiting[i]));
+        keep_nearer(&n, at, &h->waiting[i].goal, himc_planner_waiting_time(planner, &h->waiting[i]),
+                    h->waiting[i].reassigned);
     for (int i = 0; due.time <= at; i++) {
         if (!himc_planner_score_next(&planner->score, hand, i, &due))
             break;
         himc_goal goal = himc_planner_goal(planner, &due.stroke, due.drum, due.time);
-        keep_nearer(&n, at, &goal, due.time);
+        keep_nearer(&n, at, &goal, due.time, true);
     }
     return n;
 }
@@ -135,6 +142,16 @@ static bool bends_to(const himc_planner *planner, himc_hand hand, double t, cons
     return c->rehearse(c->motion, &m, &rehearsed).beyond <= PLANNER_UNREACHED;
 }
 
+/// Whether a stroke of the score after the hit stays as strong as it would be without it.
+static bool leaves_strength(const chance *c)
+{
+    const himc_gesture *g = &c->near.after.gesture;
+    double before = c->near.after.time - himc_goal_end(&c->near.before),
+           left = c->near.after.time - himc_goal_end(&c->goal);
+    return !c->near.scored || himc_gesture_bend(*g, HIMC_HURRY * left).speed >=
+                                  AS_STRONG * himc_gesture_bend(*g, HIMC_HURRY * before).speed;
+}
+
 /// Whether the hand has time for the hit before and after it.
 static bool has_time(const himc_planner *planner, himc_hand hand, double t, double least,
                      const chance *c)
@@ -145,7 +162,8 @@ static bool has_time(const himc_planner *planner, himc_hand hand, double t, doub
         return false;
     bool gets_there = c->idle ? strikes_from(h, t, &c->goal) && bends_to(planner, hand, t, &c->goal)
                               : can_follow(&c->near.before, &c->goal);
-    return gets_there && (isinf(c->near.after.time) || can_follow(&c->goal, &c->near.after));
+    return gets_there && (isinf(c->near.after.time) ||
+                          (can_follow(&c->goal, &c->near.after) && leaves_strength(c)));
 }
 
 /// Delays the hit to the first time at which the hand can play it; for one with strokes to come
