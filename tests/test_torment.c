@@ -1,7 +1,7 @@
 /// test_torment.c: random commands of the whole vocabulary, half of them spoilt, to a performance
 /// that plays: sound, strikes, targets, tips, joints, rows and packets are finite, no sample is
-/// 20 dB above the loudest real stroke (40 dB once gains have thrown an arm), a refused command is
-/// answered by one line and without effect, and `reset` is as good as new.
+/// 20 dB above the loudest real stroke (40 dB once gains or a push have thrown an arm), a refused
+/// command is answered by one line and without effect, and `reset` is as good as new.
 ///
 /// `make torment` sends a million: HIMC_TORMENT is their number, HIMC_SEED the first seed. Rounds
 /// of 500 commands begin with a `reset` and the fixed piece of test_reset.c, compared bit by bit
@@ -27,6 +27,7 @@
 #define THROWN 15.0 // (m/s) a tip that has been so fast was thrown: gains that hold no arm ...
 // of full scale: what the noise of a blow leaves in a channel that is made after it
 #define INAUDIBLE 1e-5
+#define PUSHED 500.0        // (N) ... or by a push: a player's own shoulder gives 200 N to the hand
 #define THROWN_LOUDER 100.0 // ... and the weight of that arm is behind its blows
 #define OF_TEMPO 0.2        // share of commands that change the tempo, or what depends on it
 #define HEAVIEST_BLOW 450   // (J) a mallet of 1 kg, the heaviest, at 30 m/s
@@ -347,8 +348,10 @@ static void play_on(pair *of, random_seed *seed)
         before[i] = past_of(of->p->drums.slot[i].drum, i);
     himc_performance_process(of->p, n, ours);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (himc_vec3_length(of->p->body->state.tip_velocity[hand]) > THROWN)
-            thrown = true;
+        thrown |= himc_vec3_length(of->p->body->state.tip_velocity[hand]) > THROWN;
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        thrown |= himc_clock_time(&of->p->clock) < of->p->body->push[i].until + n / (double)RATE &&
+                  himc_vec3_length(of->p->body->push[i].force) > PUSHED;
     for (int i = 0; i < count && n > 0; i++)
         check_drum(of->p->drums.slot[i].drum, i, n, before[i]);
     for (int i = 0; i < n; i++)
