@@ -16,9 +16,10 @@ typedef enum himc_pipeline {
 
 /// In the order of the words of `law`.
 typedef enum himc_law {
-    HIMC_LAW_PRINTED,        ///< tau = ks (qt - q) - kd q' (2012 paper, equation 2)
-    HIMC_LAW_FEEDFORWARD,    ///< gravity added, and kd (qt' - q') in place of -kd q'
-    HIMC_LAW_COMPUTED_TORQUE ///< desired accelerations, torques by inverse dynamics; the default
+    HIMC_LAW_PRINTED,         ///< tau = ks (qt - q) - kd q' (2012 paper, equation 2)
+    HIMC_LAW_FEEDFORWARD,     ///< gravity added, and kd (qt' - q') in place of -kd q'
+    HIMC_LAW_COMPUTED_TORQUE, ///< desired accelerations, torques by inverse dynamics; the default
+    HIMC_LAWS                 ///< number of laws
 } himc_law;
 
 /// Stiffness and damping of a joint's servo about the child's axes x, y, z.

@@ -1,15 +1,13 @@
 /// ik.h: inverse kinematics of an arm, the parts that only the controller uses: the forward map,
-/// the solvers' inverse, the elbow as a second task, the release of the contact normal; private.
+/// the elbow as a second task, the release of the contact normal; private.
 #ifndef HIMC_IK_H
 #define HIMC_IK_H
 
 #include "himc/body.h"
 
-/// The solver's approximation of (J W J')^-1 for a tip error (m). The joint rotations for a demand
-/// d (an error, a velocity or an acceleration of the tip) are W J' inverse d. For small errors
-/// TRANSPOSE and SDLS are less than the true inverse, since they take shorter steps.
-HIMC_RT himc_mat3 himc_ik_inverse(const himc_arm_jacobian *jacobian, himc_solver solver,
-                                  double damping, himc_vec3 error);
+/// Added to J W J' (m^2). Chosen: (1 um)^2, six orders below the smallest useful damping, only
+/// keeps the inverse finite.
+#define HIMC_NULL_FLOOR 1e-12
 
 /// J x: the displacement of the tip (m) by these joint rotations (rad), or its velocity (m/s) by
 /// their rates (rad/s).

@@ -6,7 +6,7 @@
 
 #include "body/dynamics.h"
 #include "body/stretch.h"
-#include "control/ik.h"
+#include "control/solvers.h"
 
 // chosen: the Jacobian is true within a fraction of the arm's length
 #define LARGEST_TIP_STEP 0.20 // of the tip, one step of inverse kinematics (m)
@@ -55,7 +55,7 @@ static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 mi
     const himc_controller_config *c = &tasks->controller->config;
     int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
     himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
-    tasks->inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, missing);
+    tasks->inverse = himc_solvers[c->solver].inverse(tasks->jacobian, c->damping, missing);
     if (c->elbow)
         himc_elbow_task_init(&tasks->elbow, tasks->jacobian, upper_arm, c->damping);
 }
@@ -71,8 +71,8 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
     himc_arm_gather(all, tasks->hand, posture);
     for (int k = 0; c->null_space_off && k < HIMC_ARM_JOINTS; k++)
         posture[k] = himc_vec3_make(0, 0, 0);
-    if (c->solver == HIMC_SOLVER_TRANSPOSE) // its step length is each demand's own
-        inverse = himc_ik_inverse(tasks->jacobian, c->solver, c->damping, demand);
+    if (himc_solvers[c->solver].own_step)
+        inverse = himc_solvers[c->solver].inverse(tasks->jacobian, c->damping, demand);
     himc_vec3 moved = himc_ik_forward(tasks->jacobian, posture);
     himc_vec3 f = himc_vec3_sub(himc_mat3_apply(&inverse, demand),
                                 himc_mat3_apply(&tasks->jacobian->inverse, moved));

@@ -5,6 +5,7 @@
 /// natural posture or, as null-space target of `himc`, a player's posture regression; from one
 /// source to another they cross-fade (posture_crossfade.h).
 #include "performance/performance_motion.h"
+#include "control/law.h"
 
 #include "control/alive.h"
 
@@ -310,7 +311,7 @@ void himc_motion_answer(performance_motion *m, himc_hand hand, double planned_ti
 void himc_motion_correct(performance_motion *m, const performance_settings *s, himc_hand hand,
                          double t, const himc_target *measured)
 {
-    if (s->control.law == HIMC_LAW_COMPUTED_TORQUE && !himc_motion_tracks(m, hand) &&
+    if (himc_laws[s->control.law].lands_exactly && !himc_motion_tracks(m, hand) &&
         himc_planner_correct(m->planner, hand, t, measured))
         m->replan = true;
 }

@@ -4,7 +4,7 @@
 #define HIMC_PERFORMANCE_MOTION_H
 
 #include "plan/planner.h"
-#include "control/avoidance.h"
+#include "body/avoidance.h"
 #include "control/damping.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"

@@ -13,7 +13,7 @@
 ///
 /// Of two crossed arms the one that is above when they first cross stays above until they are
 /// uncrossed: the gaps of crossed parts are counted along the vertical, in that order.
-#include "control/avoidance.h"
+#include "body/avoidance.h"
 
 #include <math.h>
 #include <string.h>

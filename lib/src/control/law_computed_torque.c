@@ -1,0 +1,89 @@
+/// law_computed_torque.c: the law `computed-torque`: alpha = q''_t + 2 w (q'_t - q') + w^2 dq,
+/// torques by inverse dynamics.
+///
+/// The engine moves with the velocity at a step's end, so its velocities are those of half a step
+/// before their positions: computed torque wants q'_t - h/2 q''_t. Without it a tip lags by
+/// h a / w, 0.01 mm in a roll.
+#include "base/rotations.h"
+#include "body/dynamics.h"
+#include "control/ik.h"
+#include "control/law.h"
+#include "control/limit_torque.h"
+#include "control/still_legs.h"
+
+static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
+                    himc_vec3 normal, double remain)
+{
+    himc_vec3 arm[HIMC_ARM_JOINTS];
+    himc_arm_gather(all, hand, arm);
+    himc_ik_release(jacobian, normal, remain, arm);
+    himc_arm_scatter(arm, hand, all);
+}
+
+// in contact the tip has the hand's acceleration along the normal, for any gains of the joints
+static void release_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
+                                 const himc_reference *reference, const himc_arm_jacobian *jacobian,
+                                 himc_vec3 wanted[HIMC_JOINTS])
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (reference->released[hand]) {
+            himc_vec3 n = reference->normal[hand], a = himc_vec3_scale(n, reference->yield[hand]);
+            himc_vec3 left = himc_acceleration_left(skeleton, s, (himc_hand)hand, wanted, a);
+            release(wanted, (himc_hand)hand, &jacobian[hand], n, himc_vec3_dot(n, left));
+        }
+}
+
+// stiffness and damping over inertia of one axis, as far as an implicit step lets them act
+static void implicit_rates(double ks, double kd, double step, double rate[2])
+{
+    double all = 1 + step * kd + step * step * ks;
+    rate[0] = ks / all;
+    rate[1] = (kd + step * ks) / all;
+}
+
+// w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
+// the inertia; the bandwidth is always slow compared with the step, gains need not be
+static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
+                          const tracking_error *e)
+{
+    double w = 2 * HIMC_PI * c->config.bandwidth, x[2], y[2], z[2];
+    if (!c->config.gain_set[j])
+        return himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
+    himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
+    const himc_mat3 *r = &s->rotation[j + 1];
+    implicit_rates(ks.x / i.x, kd.x / i.x, c->step, x);
+    implicit_rates(ks.y / i.y, kd.y / i.y, c->step, y);
+    implicit_rates(ks.z / i.z, kd.z / i.z, c->step, z);
+    return himc_vec3_add(himc_mat3_scale_along(r, himc_vec3_make(x[0], y[0], z[0]), e->angle[j]),
+                         himc_mat3_scale_along(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
+}
+
+// the accelerations of computed torque: q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq
+static void wanted_accelerations(const himc_controller *c, const himc_body_state *s,
+                                 tracking_error *e, himc_vec3 wanted[HIMC_JOINTS])
+{
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        e->rate[j] = himc_vec3_madd(e->rate[j], -0.5 * c->step, e->acceleration[j]);
+        wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
+    }
+}
+
+static void wanted_torques(const himc_controller *c, const himc_skeleton *skeleton,
+                           const himc_body_state *s, const himc_vec3 *wanted,
+                           himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_inverse_dynamics_of(skeleton, s, c->legs ? c->articulation : NULL, wanted, 1,
+                             c->legs ? HIMC_LEGS : HIMC_SEGMENTS, torque);
+    if (c->legs)
+        himc_still_legs_torques(c->legs, skeleton, s, wanted, torque);
+}
+
+void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS])
+{
+    const himc_controller *c = in->controller;
+    himc_vec3 wanted[HIMC_JOINTS];
+    wanted_accelerations(c, in->state, in->error, wanted);
+    release_acceleration(in->skeleton, in->state, in->reference, in->jacobian, wanted);
+    himc_limits_compliance(c, in->skeleton, in->state, in->jacobian, wanted);
+    wanted_torques(c, in->skeleton, in->state, wanted, torque);
+}
