@@ -281,6 +281,17 @@ refuses test_score_is_not_overwritten_by_its_dump "piece.txt: named twice" \
 cp piece.txt own.bvh # by its name alone
 echo "take own.bvh; record own.bvh;" >over.txt
 refuses test_score_does_not_record_over_its_take "own.bvh: named twice" render over.txt -o x.wav
+cp piece.txt own.csv
+echo "take own.csv;" >reads.txt
+refuses test_a_take_of_the_score_is_not_overwritten_by_a_table "own.csv: named twice" \
+    render reads.txt -o x.wav --strokes own.csv
+refuses test_a_take_of_a_setting_is_not_overwritten_by_a_table "own.csv: named twice" \
+    render piece.txt -o x.wav --set "take own.csv" --motion own.csv
+refuses test_a_take_of_a_setting_is_not_recorded_over "own.bvh: named twice" \
+    render piece.txt -o x.wav --set "units own.bvh legato" --set "record own.bvh"
+ln piece.txt piece.himc
+refuses test_serve_does_not_record_over_its_score "piece.himc: named twice" \
+    serve piece.txt --scene piece.himc
 refuses test_take_is_not_overwritten_by_its_table "own.bvh: named twice" evaluate --take own.bvh --csv own.bvh
 check test_nothing_is_left_of_what_was_refused [ -z "$(ls | grep '^x')" ]
 echo old >kept.wav

@@ -3,6 +3,9 @@
 ///
 /// Bounds of tracking stand some 30 % above what was measured (computed torque: twice), the figure
 /// beside each.
+#include "control/law.h"
+#include "control/solvers.h"
+#include "himc/command.h"
 #include "body/character.h"
 #include "body/dynamics.h"
 #include "control/controller.h"
@@ -426,6 +429,18 @@ static void test_set_gain_sets_flexion_and_spares_the_length_axis(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.36 * i.z / i.y, controller.gain[j].damping.z);
 }
 
+// the choice of a command is the index of a row
+static void test_laws_and_solvers_have_the_words_of_their_commands(void)
+{
+    for (int k = 0; k < HIMC_LAWS; k++)
+        TEST_ASSERT_EQUAL_STRING(himc_command_word(HIMC_COMMAND_LAW, 0, k).text, himc_laws[k].word);
+    for (int k = 0; k < HIMC_SOLVERS; k++)
+        TEST_ASSERT_EQUAL_STRING(himc_command_word(HIMC_COMMAND_SOLVER, 0, k).text,
+                                 himc_solvers[k].word);
+    TEST_ASSERT_EQUAL_STRING("", himc_command_word(HIMC_COMMAND_LAW, 0, HIMC_LAWS).text);
+    TEST_ASSERT_EQUAL_STRING("", himc_command_word(HIMC_COMMAND_SOLVER, 0, HIMC_SOLVERS).text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -446,5 +461,6 @@ int main(void)
     RUN_TEST(test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm);
     RUN_TEST(test_default_gains_are_critically_damped_at_the_frequencies_of_the_table);
     RUN_TEST(test_set_gain_sets_flexion_and_spares_the_length_axis);
+    RUN_TEST(test_laws_and_solvers_have_the_words_of_their_commands);
     return UNITY_END();
 }

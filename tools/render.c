@@ -126,14 +126,6 @@ static bool check_compare(const char *list, const char *scene, const char *sourc
            himc_error_set(error, "--compare captured: %s is no take", source);
 }
 
-// What a command writes is none of the files named beside it.
-static bool writes_apart(const himc_command *c, const char *const *files, himc_error *error)
-{
-    int atom;
-    return himc_command_file(c, &atom) != HIMC_FILE_WRITE ||
-           cli_apart(c->atom[atom].symbol, files, FILES, error);
-}
-
 // The ending of a table's name says its format; a name without one is a CSV.
 static bool check_table(const char *option, const char *path, bool npz, himc_error *error)
 {
@@ -169,12 +161,6 @@ static bool read_job(const cli_arguments *arguments, job *out, himc_error *error
     for (int i = 1; i < FILES; i++)
         if (!cli_apart(files[i], files, i, error))
             return false;
-    for (int i = 0; i < arguments->repeats; i++) {
-        himc_command c;
-        if (himc_command_parse_text(&c, HIMC_PERFORMER, arguments->repeated[i], NULL) &&
-            !writes_apart(&c, files, error))
-            return himc_error_prefix(error, "--set");
-    }
     return cli_count("--rate", value[RATE], 8000, 192000, "Hz", &out->rate, error) &&
            cli_count("--block", value[BLOCK], 1, BLOCK_MAX, "samples", &out->block, error) &&
            cli_count("--channels", value[CHANNELS], 1, 2, "", &out->channels, error) &&
@@ -198,19 +184,42 @@ static double room(const job *wanted)
     return sound_file_room(wanted->arguments->value[OUT], wanted->channels);
 }
 
-// No line of the score reads what line `at` writes.
-static bool reads_apart(const himc_score *score, int at, himc_error *error)
+// The commands of the score (or NULL), then those of --set; NULL for one that is none.
+static const himc_command *command_at(const himc_score *score, const cli_arguments *arguments,
+                                      int index, himc_command *parsed)
+{
+    int lines = score ? score->line_count : 0;
+    if (index < lines)
+        return &score->lines[index].command;
+    const char *text = arguments->repeated[index - lines];
+    return himc_command_parse_text(parsed, HIMC_PERFORMER, text, NULL) ? parsed : NULL;
+}
+
+// The file that a command reads or writes, if it does that; else NULL.
+static const char *file_of(const himc_command *c, himc_file_use use)
 {
     int atom;
-    const himc_command *c = &score->lines[at].command;
-    if (himc_command_file(c, &atom) != HIMC_FILE_WRITE)
-        return true;
-    const char *written = c->atom[atom].symbol;
-    for (int i = 0; i < score->line_count; i++) {
-        const himc_command *read = &score->lines[i].command;
-        if (himc_command_file(read, &atom) == HIMC_FILE_READ &&
-            !cli_apart(written, &read->atom[atom].symbol, 1, error))
-            return false;
+    return c && himc_command_file(c, &atom) == use ? c->atom[atom].symbol : NULL;
+}
+
+// No file of the command line and of the commands is written and read, or written twice.
+static bool check_apart(const job *wanted, const himc_score *score, himc_error *error)
+{
+    int lines = score ? score->line_count : 0, count = lines + wanted->arguments->repeats;
+    himc_command parsed, other;
+    for (int i = 0; i < count; i++) {
+        const himc_command *c = command_at(score, wanted->arguments, i, &parsed);
+        const char *read = file_of(c, HIMC_FILE_READ), *written = file_of(c, HIMC_FILE_WRITE);
+        bool good = !written || cli_apart(written, wanted->files, FILES, error);
+        for (int k = 1; k < FILES && good; k++)
+            good = !read || cli_apart(wanted->files[k], &read, 1, error);
+        for (int j = 0; j < count && written && good; j++) {
+            const char *from =
+                file_of(command_at(score, wanted->arguments, j, &other), HIMC_FILE_READ);
+            good = !from || cli_apart(written, &from, 1, error);
+        }
+        if (!good)
+            return himc_error_prefix(error, "%s", i < lines ? wanted->source : "--set");
     }
     return true;
 }
@@ -223,17 +232,16 @@ static bool inspect_score(job *wanted, bool *makes_drums, bool *loops, himc_erro
     if (!score)
         return false;
     *makes_drums = cli_first_drum(score) != NULL;
-    bool good = true;
     for (int i = 0; i < score->line_count; i++) {
         const himc_command *c = &score->lines[i].command;
         if (c->id == HIMC_COMMAND_LOOP)
             *loops = c->atom[0].number != 0;
-        good = good && writes_apart(c, wanted->files, error) && reads_apart(score, i, error);
     }
+    bool good = check_apart(wanted, score, error);
     wanted->length = score_seconds(score);
     himc_score_free(score);
     if (!good)
-        return himc_error_prefix(error, "%s", wanted->source);
+        return false;
     if (wanted->length + CLI_TAIL > room(wanted) / wanted->rate)
         return himc_error_set(error,
                               "%s: lasts %.0f s, allowed in this file at %d Hz: %.0f s (.w64 and "
@@ -281,6 +289,8 @@ static bool prepare(himc_performance *performance, job *wanted, himc_error *erro
     bool take = cli_is_take(wanted->source), makes_drums = false, loops = false;
     himc_performance_make_drums(performance, true);
     himc_performance_take_options(performance, &wanted->take);
+    if (take && !check_apart(wanted, NULL, error))
+        return false;
     if (take)
         inspect_take(wanted);
     else if (!inspect_score(wanted, &makes_drums, &loops, error))

@@ -103,7 +103,8 @@ static void play_block(server *s)
 
 static bool begin_record(server *s, const char *path, const char *source, himc_error *error)
 {
-    if (!cli_file_open(&s->file, path, error))
+    if (!cli_ending_is("--scene", path, ".himc", error) || !cli_apart(path, &source, 1, error) ||
+        !cli_file_open(&s->file, path, error))
         return false;
     scene_record_config config = {.performance = s->performance,
                                   .stream = s->file.stream,

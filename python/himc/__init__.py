@@ -167,24 +167,29 @@ class Performance:
         if channels == 2:
             self.command(_LISTENER)
 
-    def command(self, text: str, word: Union[None, str, Path] = None) -> None:
+    def command(self, text: str, word: Union[None, str, Path] = None) -> list[str]:
         """Carries out a command of the manual: ``"tempo 90"``, or a name and one word that may have spaces: ``("take", path)``.
 
-        After ``"reset"``, time is 0, and rows and strikes are those since.
+        Returns the lines that ``info`` and ``dump`` answer, which are in ``notes``, too. After ``"reset"``, time is 0, and rows and
+        strikes are those since.
         """
+        before = len(self.notes)
         error = ffi.new("himc_error *")
         name = ffi.NULL if word is None else ffi.new("char[]", _text(word))
         _check(lib.session_command(self._session, _text(text), name, error), error)
+        return self.notes[before:]
 
     def add_drum(self, name: str = "kettle", inches: float = 0) -> None:
         """Adds a drum of that diameter (0: 26 inches)."""
         error = ffi.new("himc_error *")
         _check(lib.session_add_drum(self._session, _text(name), _finite("inches", inches), error), error)
 
-    def drum_command(self, drum: str, text: str) -> None:
-        """Carries out a command to a drum: ``drum_command("kettle", "tune A2")``."""
+    def drum_command(self, drum: str, text: str) -> list[str]:
+        """Carries out a command to a drum: ``drum_command("kettle", "tune A2")``. Returns as ``command``."""
+        before = len(self.notes)
         error = ffi.new("himc_error *")
         _check(lib.session_drum_command(self._session, _text(drum), _text(text), error), error)
+        return self.notes[before:]
 
     def take_options(self, left_tip: Optional[str] = None, right_tip: Optional[str] = None, up: Optional[str] = None) -> None:
         """Names of the tips and the upward axis ("y", "z") of takes to come."""
@@ -243,7 +248,7 @@ class Performance:
         return {name: getattr(s, name) for name, _ in ffi.typeof("himc_performance_stats").fields}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rendering:
     """What a piece sounds and looks like.
 
@@ -316,7 +321,9 @@ def _play_to_the_end(p: Performance) -> Rendering:
             if (quiet <= _SILENCE * peak and since >= _REST) or since >= _TAIL:
                 break
     s = p._session
-    return Rendering(np.concatenate(cells), p.rate, _array(s, s.rows, s.row_count, _ROW),
+    sound = np.concatenate(cells)
+    sound.flags.writeable = False
+    return Rendering(sound, p.rate, _array(s, s.rows, s.row_count, _ROW),
                      _array(s, s.strikes, s.strike_count, _STRIKE), p.stats, p.notes)
 
 

@@ -91,6 +91,25 @@ static void begin_again(session *s)
     s->done = false;
 }
 
+static void keep_note(session *s, const char *text)
+{
+    size_t length = strlen(text);
+    char *notes = realloc(s->notes, s->notes_size + length + 2);
+    if (!notes) {
+        s->failed = true;
+        return;
+    }
+    s->notes = notes;
+    memcpy(notes + s->notes_size, text, length);
+    memcpy(notes + s->notes_size + length, "\n", 2);
+    s->notes_size += length + 1;
+}
+
+static void answer(void *user, const char *line)
+{
+    keep_note(user, line);
+}
+
 // a command with its atoms in `text`, or with one that may have spaces, `word`
 static bool session_command(session *s, const char *text, const char *word, himc_error *error)
 {
@@ -103,6 +122,10 @@ static bool session_command(session *s, const char *text, const char *word, himc
     s->done = s->done && !good;
     if (himc_performance_measure(s->performance).seconds < before)
         begin_again(s);
+    if (good && command.id == HIMC_COMMAND_INFO)
+        himc_performance_describe(s->performance, HIMC_DESCRIBE_INFO, answer, s);
+    if (good && command.id == HIMC_COMMAND_DUMP && command.count == 0)
+        himc_performance_describe(s->performance, HIMC_DESCRIBE_STATE, answer, s);
     return good;
 }
 
@@ -112,9 +135,17 @@ static bool session_drum_command(session *s, const char *name, const char *text,
     himc_drum *drum;
     for (int i = 0; (drum = himc_performance_drum(s->performance, i)); i++)
         if (!strcmp(himc_drum_name(drum), name))
-            return himc_command_parse_text(&command, HIMC_DRUM, text, error) &&
-                   himc_drum_command(drum, &command, error);
-    return himc_error_set(error, "no drum of that name: %s", name);
+            break;
+    if (!drum)
+        return himc_error_set(error, "no drum of that name: %s", name);
+    if (!himc_command_parse_text(&command, HIMC_DRUM, text, error) ||
+        !himc_drum_command(drum, &command, error))
+        return false;
+    if (command.id == HIMC_COMMAND_DRUM_INFO)
+        himc_drum_describe(drum, HIMC_DESCRIBE_INFO, answer, s);
+    if (command.id == HIMC_COMMAND_DRUM_DUMP && command.count == 0)
+        himc_drum_describe(drum, HIMC_DESCRIBE_STATE, answer, s);
+    return true;
 }
 
 static bool session_add_drum(session *s, const char *name, double inches, himc_error *error)
@@ -177,20 +208,6 @@ static void session_keep_rows(session *s, bool keep)
     if (keep != s->keeps_rows)
         himc_performance_on_motion(s->performance, keep ? keep_row : NULL, s);
     s->keeps_rows = keep;
-}
-
-static void keep_note(session *s, const char *text)
-{
-    size_t length = strlen(text);
-    char *notes = realloc(s->notes, s->notes_size + length + 2);
-    if (!notes) {
-        s->failed = true;
-        return;
-    }
-    s->notes = notes;
-    memcpy(notes + s->notes_size, text, length);
-    memcpy(notes + s->notes_size + length, "\n", 2);
-    s->notes_size += length + 1;
 }
 
 static void take_events(session *s)

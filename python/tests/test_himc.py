@@ -69,6 +69,20 @@ class Package(unittest.TestCase):
         del r  # the arrays keep their memory
         self.assertTrue(np.isfinite(tips).all())
 
+    def test_a_rendering_is_read_only_and_equals_itself(self):
+        r = himc.render("stroke 0 left legato mf;")
+        self.assertFalse(r.sound.flags.writeable or r.motion.flags.writeable or r.strikes.flags.writeable)
+        self.assertEqual(r, r)
+
+    def test_info_and_dump_are_answered(self):
+        p = himc.Performance()
+        p.add_drum("kettle")
+        self.assertIn("57 degrees of freedom", p.command("info")[0])
+        self.assertIn("tempo 100", p.command("dump"))
+        self.assertTrue(p.drum_command("kettle", "info")[0].startswith("kettle: radius"))
+        self.assertIn("mallet medium", p.drum_command("kettle", "dump"))
+        self.assertEqual(p.command("tempo 90"), [])
+
     def test_the_energy_balance_closes(self):
         e = himc.render(PIECE).motion["energy"]
         held = e["kinetic"] + e["potential"]
