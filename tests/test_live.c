@@ -109,6 +109,47 @@ static void test_two_targets_that_jump_end_at_the_second_one(void)
     }
 }
 
+// plays in steps of a tick; the largest way of the hand's target in one (m)
+static double largest_step(himc_performance *p, himc_hand hand, int ticks, heard *h)
+{
+    double most = 0;
+    for (int i = 0; i < ticks; i++) {
+        double t = himc_performance_measure(p).seconds;
+        himc_vec3 before = himc_motion_planned(p->motion, hand, t).x;
+        session_play(p, 0.004, h);
+        himc_vec3 now = himc_motion_planned(p->motion, hand, t + 0.004).x;
+        most = fmax(most, himc_vec3_length(himc_vec3_sub(now, before)));
+    }
+    return most;
+}
+
+// from an attacker's hour: the speed of two targets carried the tip a metre on, through the drum
+static void test_targets_that_come_close_together_neither_jump_nor_throw_the_arm(void)
+{
+    static const char *const after[] = {"", "play", "clear", "hit left legato ppp", "stop"};
+    unsigned seed = 11;
+    for (int i = 0; i < 60; i++) {
+        heard h = {0};
+        double x = 0.3 + 0.3 * chance(&seed), y = 0.1 + 0.2 * chance(&seed), most = 0;
+        int count = 2 + choose(&seed, 5);
+        himc_performance *p = with_kettle();
+        for (int k = 0; k < count; k++) {
+            session_do(p, "target left %.3f %.3f %.3f", x, y, 0.93 + 0.2 * chance(&seed));
+            most = fmax(most, largest_step(p, HIMC_LEFT, 1 + choose(&seed, i % 2 ? 4 : 25), &h));
+            x = fmin(fmax(x + 0.2 * chance(&seed) - 0.1, 0.3), 0.6);
+            y = fmin(fmax(y + 0.2 * chance(&seed) - 0.1, 0.05), 0.3);
+        }
+        if (after[i % 5][0])
+            session_do(p, "%s", after[i % 5]);
+        most = fmax(most, largest_step(p, HIMC_LEFT, 150, &h));
+        TEST_ASSERT_TRUE_MESSAGE(most < 0.004 * 15, after[i % 5]); // 15 m/s: a fast stroke
+        for (int k = 0; k < h.strikes; k++)
+            TEST_ASSERT_TRUE(h.strike[k].velocity < 5);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 static void test_one_hand_is_live_while_the_other_plays_its_score(void)
 {
     himc_performance *p = with_kettle();
@@ -423,6 +464,7 @@ int main(void)
     RUN_TEST(test_hit_without_latency_touches_within_250_ms_from_rest_and_120_ms_raised);
     RUN_TEST(test_streams_from_10_Hz_to_1_kHz_are_followed_one_period_late_and_end_at_rest);
     RUN_TEST(test_two_targets_that_jump_end_at_the_second_one);
+    RUN_TEST(test_targets_that_come_close_together_neither_jump_nor_throw_the_arm);
     RUN_TEST(test_one_hand_is_live_while_the_other_plays_its_score);
     RUN_TEST(test_four_timpani_are_reached_by_turning);
     RUN_TEST(test_drums_without_a_place_stand_beside_each_other_in_reach);

@@ -19,6 +19,8 @@
 #define STREAM_PAUSE 0.3       // a target later than this after the last begins anew (s)
 #define PERIOD_SHARE 0.25      // of a new period in the estimate
 #define VELOCITY_TIME 0.010    // smooths the velocity (s)
+#define BURST_SHARE 0.5        // of the period: targets nearer than that have come in a burst
+#define FIRST_GAP 0.03         // the first two say nothing about a rate (s)
 #define SHORTEST_BLEND 0.010   // quintic to meet a target on (s)
 #define NOISE_ACCELERATION 1.0 // that noise may cause (m/s^2)
 #define LONGEST_MEMORY 0.04    // of the filter (s)
@@ -28,8 +30,12 @@
 
 // the tip; chosen: within the limits of an arm, and a halt without a jerk
 #define HARDEST_MEETING 250.0 // peak acceleration to meet a target (m/s^2)
-#define BRAKING 20.0          // mean acceleration of the halt (m/s^2)
-#define SHORTEST_HALT 0.15    // (s)
+#define BRAKING 60.0          // mean acceleration of the halt (m/s^2)
+// A tip that is farther than this from where the stream is does not follow it yet: the target is a
+// place rather than a motion.
+#define FOLLOWED 0.05              // (m) chosen: 250 Hz of a stroke at 10 m/s
+#define FOLLOWED_ACCELERATION 30.0 // (m/s^2) of a hand with a mouse; chosen
+#define SHORTEST_HALT 0.15         // (s)
 #define FASTEST_STREAM 10.0 // (m/s) as captured sticks; faster targets jump, and are not carried on
 
 /// Within `blend` seconds the tip is in the state `aim`, goes on so for `hold` seconds and comes to
@@ -39,15 +45,22 @@ static void follow_aim(himc_hand_plan *plan, double t, const himc_target *aim, d
 {
     himc_hand_cut(plan, t);
     t = fmax(t, plan->end);
-    himc_target from = himc_hand_at(plan, t), nothing = {0}, held = *aim,
-                rest = himc_target_at_rest(x);
-    double halt = fmax(SHORTEST_HALT, himc_vec3_length(aim->v) / BRAKING);
+    himc_target from = himc_hand_at(plan, t), nothing = {0}, held, rest = himc_target_at_rest(x);
     double coast = himc_vec3_length(himc_vec3_sub(aim->x, himc_vec3_madd(from.x, blend, from.v)));
+    double near = FOLLOWED + 0.5 * FOLLOWED_ACCELERATION * blend * blend;
+    himc_target met = *aim;
+    if (coast > near) {
+        met.v = himc_vec3_scale(aim->v, near / coast);
+        met.x = himc_vec3_madd(x, near / coast, himc_vec3_sub(aim->x, x));
+    }
+    plan->lift.count = 0; // `from` contains it
+    double halt = fmax(SHORTEST_HALT, himc_vec3_length(met.v) / BRAKING);
     blend = fmax(blend, himc_move_time(coast, HARDEST_MEETING));
-    held.x = himc_vec3_madd(aim->x, hold, aim->v);
+    held = met;
+    held.x = himc_vec3_madd(met.x, hold, met.v);
     plan->end = t + blend + hold + halt;
-    himc_spline_add(&plan->tangential_path, t, &from, t + blend, aim);
-    himc_spline_add(&plan->tangential_path, t + blend, aim, t + blend + hold, &held);
+    himc_spline_add(&plan->tangential_path, t, &from, t + blend, &met);
+    himc_spline_add(&plan->tangential_path, t + blend, &met, t + blend + hold, &held);
     himc_spline_add(&plan->tangential_path, t + blend + hold, &held, plan->end, &rest);
     himc_spline_add(&plan->height_profile, t, &nothing, plan->end, &nothing);
     plan->home = rest.x;
@@ -99,7 +112,8 @@ bool himc_stream_add(himc_stream *s, double t, himc_vec3 x)
     if (on && gap > 0) {
         learn_noise(s, gap, x);
         filter(s, gap, x);
-        himc_vec3 v = himc_vec3_scale(himc_vec3_sub(x, s->x), 1 / gap);
+        double least = s->period > 0 ? BURST_SHARE * s->period : FIRST_GAP;
+        himc_vec3 v = himc_vec3_scale(himc_vec3_sub(x, s->x), 1 / fmax(gap, least));
         s->period = s->period > 0 ? s->period + PERIOD_SHARE * (gap - s->period) : gap;
         double share = s->moving ? gap / (gap + VELOCITY_TIME) : 1;
         s->v = himc_vec3_madd(himc_vec3_scale(s->v, 1 - share), share, v);
