@@ -12,7 +12,8 @@
 #define PIECE 20   // changes of tempo; then another piece
 #define SLOWEST 5.0
 #define FASTEST 600.0
-#define LOUDER 1.6 // than asked for: with little time from high up, and for rounding
+#define LOUDER 1.6   // than asked for: with little time from high up, and for rounding
+#define SWINGING 0.3 // (m/s) of a ringing head that comes to meet the stick
 
 static char take_file[64]; // its own, so that two walks may run at once
 
@@ -98,7 +99,7 @@ static void play_on(finite_watch *w, double seconds, int *dropped, heard *h)
         while (himc_performance_event(w->p, &event)) {
             finite_watch_event(w, &event);
             if (event.kind == HIMC_EVENT_STRIKE &&
-                event.strike.velocity > LOUDER * asked_of(w->p, &event.strike))
+                event.strike.velocity > LOUDER * asked_of(w->p, &event.strike) + SWINGING)
                 w->bad = "the speed of a stroke";
             *dropped += event.kind == HIMC_EVENT_NOTE && strstr(event.text, "no body");
             if (h)
@@ -188,6 +189,37 @@ static void test_a_roll_to_come_is_not_begun_by_what_was_given_up_of_it(void)
     himc_performance_free(p);
 }
 
+// from a timpanist's hour: a stick that is up strikes, a little late if it must, and no louder
+static void test_a_jump_to_a_faster_tempo_loses_no_stroke(void)
+{
+    static const double faster[] = {75, 90, 133, 240};
+    static const char *const before[] = {"stroke 3 left legato mf", "roll 1 2.9 single mf"};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 2; k++)
+            for (double gap = 0.02; gap < (i < 3 ? 0.4 : 0.15); gap += 0.03) {
+                heard h = {0};
+                himc_performance *p = performer(1000);
+                bool found = false;
+                session_do(p, "tempo 60");
+                session_do(p, "%s", before[k]);
+                session_do(p, "stroke 4 right legato mf");
+                session_do(p, "stroke 6 left legato mf");
+                session_do(p, "play");
+                session_play(p, (4 - gap) * RATE / 48000, NULL); // session_play counts 48 kHz
+                session_do(p, "tempo %g", faster[i]);
+                session_play(p, 3.0 * RATE / 48000, &h);
+                for (int j = 0; j < h.strikes; j++)
+                    if (h.strike[j].beat == 4) {
+                        found = true;
+                        TEST_ASSERT_TRUE(h.strike[j].velocity < 3.4);
+                        TEST_ASSERT_TRUE(h.strike[j].time < 4.1);
+                    }
+                TEST_ASSERT_TRUE(found);
+                heard_free(&h);
+                himc_performance_free(p);
+            }
+}
+
 static void test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays_on(void)
 {
     long changes = from_environment("HIMC_CHANGES", getenv("HIMC_LONG") ? 100000 : 600);
@@ -275,6 +307,7 @@ int main(void)
     RUN_TEST(test_a_bouncing_roll_without_time_before_the_first_block_ends_no_process);
     RUN_TEST(test_a_roll_stays_within_its_dynamics_when_the_tempo_changes_near_its_end);
     RUN_TEST(test_a_roll_to_come_is_not_begun_by_what_was_given_up_of_it);
+    RUN_TEST(test_a_jump_to_a_faster_tempo_loses_no_stroke);
     RUN_TEST(test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays_on);
     return UNITY_END();
 }

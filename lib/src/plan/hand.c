@@ -338,8 +338,7 @@ static bool is_possible(const stroke_plan *s, const himc_goal *goal)
 {
     double T = goal->time - s->height_end;
     if (!(T >= LEAST_STROKE_TIME && goal->gesture.speed > HIMC_SLOWEST_GESTURE) ||
-        s->height.h / T > FASTEST_FALL ||
-        himc_height_profile_plunges(s->height.h, T, goal->gesture.speed))
+        s->height.h / T > FASTEST_FALL)
         return false;
     return MOVE_MARGIN * himc_move_time(distance_to(s, goal), HIMC_HARDEST_MOVE) <= T;
 }
@@ -356,13 +355,28 @@ double himc_hand_least_speed(const himc_hand_plan *plan, double t, const himc_go
     return himc_height_profile_least_landing(fmax(s.height.h, 0), goal->time - t);
 }
 
-bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
+/// The stroke begins so at t; where the plan ends with a contact, when the tip has left.
+static stroke_plan begin_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
 {
     stroke_plan s = frame_at(plan, t, goal->spot, goal->normal);
     double T = t == plan->end ? leaving_time(plan, goal->time) : 0;
     s.height_end += T;
     s.height.h += T * s.height.v;
-    return is_possible(&s, goal);
+    return s;
+}
+
+/// Possible, and not much louder than the goal asks for.
+static bool can_play(const stroke_plan *s, const himc_goal *goal)
+{
+    double T = goal->time - s->height_end;
+    return is_possible(s, goal) &&
+           !himc_height_profile_plunges(s->height.h, T, goal->gesture.speed);
+}
+
+bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
+{
+    stroke_plan s = begin_from(plan, t, goal);
+    return can_play(&s, goal);
 }
 
 bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal)
@@ -377,7 +391,7 @@ bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second)
     s.height_end += absorb_time(second->time - s.height_end);
     s.height.h = himc_vec3_dot(second->normal, way);
     s.path.x = himc_vec3_madd(first->spot, -s.height.h, second->normal);
-    return is_possible(&s, second);
+    return can_play(&s, second);
 }
 
 /// A strong rebound with little time left is followed: the stroke goes as high as the rebound takes
@@ -453,10 +467,11 @@ void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *measured,
 
 bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
 {
-    if (!himc_hand_can_strike(plan, goal))
+    stroke_plan s = begin_from(plan, plan->end, goal);
+    if (!is_possible(&s, goal))
         return false;
     leave(plan, goal->time);
-    stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
+    s = plan_begin(plan, goal->spot, goal->normal);
     himc_gesture g = in_time(&s, goal);
     double begin = s.height_end;
     s.approach = fmax(LEAST_APPROACH_TIME, himc_move_time(distance_to(&s, goal), GENTLE_MOVE));

@@ -12,6 +12,7 @@
 #include <string.h>
 
 // allowed; chosen: no mallet and no drum is larger
+#define HASTENED 0.3 // a new tempo leaves strokes that are farther away their time (s); chosen
 #define MOST_MALLET_RADIUS 0.1 // (m)
 #define MOST_HEAD_RADIUS 10.0  // (m)
 
@@ -338,6 +339,7 @@ static void after_tempo(himc_planner *planner, double t, double beat, double anc
     if (!score->playing)
         return;
     himc_planner_score_keep(score, anchor);
+    planner->hastened = t + HASTENED;
     himc_planner_replan(planner, t);
 }
 

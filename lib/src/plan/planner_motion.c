@@ -25,6 +25,8 @@
 #define COMMIT_TIME 0.08    // a stroke so near is not changed any more (s)
 #define PREPARED_AHEAD 3.0  // a stroke further away is not prepared yet (s)
 #define PREPARED_MARGIN 0.5 // by which a human may play it early, and more; chosen (s)
+#define LATEST 0.1          // a stroke of the score is not played later than so much (s); chosen
+#define LATE_STEP 0.005     // it is tried so much later again (s)
 #define MOST_TRIES 32       // of one search; chosen: twice the strokes that can be planned
 
 // the measured touch against the planned one; chosen: a tip bounces once within 0.12 s, and strokes
@@ -351,7 +353,8 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         return NO_TIME;
     himc_goal goal = s->goal;
     goal.gesture = in_haste(planner, s);
-    himc_hand_strike(&h->plan, &goal);
+    if (!himc_hand_strike(&h->plan, &goal))
+        return NO_TIME;
     timed_stroke *planned = &h->planned[h->planned_count++];
     *planned = *s;
     planned->goal = h->plan.last;
@@ -418,6 +421,34 @@ void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stro
                      himc_planner_name(planner, &s, name));
 }
 
+/// Plays a stroke of the score as soon as its hand can, after a new tempo that has left it no time:
+/// a stick that is up strikes. False where it would be much later, or has no time before the next
+/// one.
+static bool play_late(himc_planner *planner, const timed_stroke *s)
+{
+    const planner_hand *h = &planner->hand[s->stroke.hand];
+    char name[HIMC_PLANNER_NAME];
+    timed_stroke late = *s, after;
+    if (s->index < 0 || s->roll || planner->clear.planning || s->written.time > planner->hastened)
+        return false;
+    go_to(planner, s, 1);
+    bool more = next_written(planner, s->stroke.hand, &after);
+    late.varied = false;
+    for (double d = LATE_STEP; d < LATEST; d += LATE_STEP) {
+        late.goal = s->written;
+        late.goal.time += d;
+        if (more && !himc_hand_can_follow(&late.goal, &after.written))
+            return false;
+        if (!himc_hand_can_strike(&h->plan, &late.goal) || plan_stroke(planner, &late) != PLANNED)
+            continue;
+        himc_planner_say(&planner->notes, PLANNER_DELAYED,
+                         "%s: %.0f ms late, no time to prepare it",
+                         himc_planner_name(planner, s, name), 1e3 * d);
+        return true;
+    }
+    return false;
+}
+
 /// No hand can play it: a line says so. One that the other hand has no time for is played all the
 /// same; where the hands then meet, the search leaves it out.
 static void give_up(himc_planner *planner, const timed_stroke *s, plan_result result)
@@ -427,7 +458,8 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
     himc_planner_miss miss = {s->stroke, s->drum, s->index < 0 && !s->reassigned, s->written.time,
                               ""};
     planner->hand[s->stroke.hand].way.other = false;
-    if (result == MEETS && plan_stroke(planner, &anyway) == PLANNED)
+    if ((result == MEETS && plan_stroke(planner, &anyway) == PLANNED) ||
+        (result == NO_TIME && play_late(planner, s)))
         return;
     if (result == NO_TIME && s->index >= 0 && !s->roll &&
         planner->hand[s->stroke.hand].added == s->index + 1) {

@@ -110,9 +110,10 @@ struct himc_planner {
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
     planner_clear clear;
-    int hits;   ///< since the last `clear` or change of `human`
-    double now; ///< of the last advance (s)
-    bool begun; ///< it has been advanced: the tips cannot be put elsewhere any more
+    int hits;        ///< since the last `clear` or change of `human`
+    double now;      ///< of the last advance (s)
+    double hastened; ///< strokes up to here may have lost their time to a new tempo (s)
+    bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
 /// The planned stroke that is the current one at t, as himc_planner_current has it, or NULL.

@@ -60,8 +60,8 @@ void himc_planner_say(planner_notes *notes, planner_kind kind, const char *forma
     va_start(args, format);
     bool minor = kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE &&
                  kind != PLANNER_DROPPED && kind != PLANNER_OTHER_HAND && kind != PLANNER_HURRIED &&
-                 kind != PLANNER_HURRIED_ROLL && kind != PLANNER_OVERLAP &&
-                 kind != PLANNER_NEXT_ROUND && kind != PLANNER_NEXT_PLAY;
+                 kind != PLANNER_DELAYED && kind != PLANNER_HURRIED_ROLL &&
+                 kind != PLANNER_OVERLAP && kind != PLANNER_NEXT_ROUND && kind != PLANNER_NEXT_PLAY;
     put(notes, minor, format, args);
     va_end(args);
 }
