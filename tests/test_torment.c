@@ -244,6 +244,9 @@ static void say_one(pair *of, random_seed *seed)
     past before = drum < 0 ? (past){0} : past_of(himc_performance_drum(of->p, drum), drum);
     if (parsed && c.id == HIMC_COMMAND_STRIKE)
         swung = fmax(swung, s.atom[2].number / himc_gesture_of(HIMC_VERTICAL_ACCENT, 1).speed);
+    // ears that move away still hear what was near, and what a room holds
+    for (int i = 0; parsed && c.id == HIMC_COMMAND_LISTENER && i < of->p->drums.count; i++)
+        hear_loudest(of->p->drums.slot[i].drum, i, past_of(of->p->drums.slot[i].drum, i));
     bool done = parsed && carry_out(of->p, &c, s.receiver, drum, delay, &answer);
     seen.accepted += done;
     seen.refused += !done;
