@@ -156,6 +156,16 @@ static void test_time_tag_is_ntp_time(void)
                              himc_osc_time_tag(1.5));
 }
 
+static void test_a_hit_that_no_hand_plays_is_missed_at_beat_minus_1(void)
+{
+    subscribe("strikes");
+    for (int i = 0; i < 40; i++)
+        say("/himc/hit", "left legato f");
+    play(2);
+    TEST_ASSERT_TRUE(count("/himc/missed") > 0);
+    TEST_ASSERT_EQUAL_FLOAT(-1, number(lo_message_get_argv(last("/himc/missed")->message)[0]));
+}
+
 // along the bones from the root, as a receiver does, to the left hand
 static void test_vmc_bones_lead_to_the_wrist_mirrored(void)
 {
@@ -163,7 +173,7 @@ static void test_vmc_bones_lead_to_the_wrist_mirrored(void)
     play(0.3);
     static const char *const chain[] = {"Hips",         "Spine",        "Chest",   "LeftShoulder",
                                         "LeftUpperArm", "LeftLowerArm", "LeftHand"};
-    himc_vec3 x = {0, 0, 0};
+    himc_vec3 x = {0, 0, 0}, step[7] = {{0}};
     himc_quat q = himc_quat_identity();
     for (int k = 0; k < 7; k++)
         for (int i = heard_count - 1; i >= 0; i--) {
@@ -171,12 +181,15 @@ static void test_vmc_bones_lead_to_the_wrist_mirrored(void)
             if (strcmp(heard[i].path, "/VMC/Ext/Bone/Pos") != 0 ||
                 strcmp(word(a[0]), chain[k]) != 0)
                 continue;
-            x = himc_vec3_add(
-                x, himc_quat_rotate(q, (himc_vec3){number(a[1]), number(a[2]), number(a[3])}));
+            step[k] = himc_quat_rotate(q, (himc_vec3){number(a[1]), number(a[2]), number(a[3])});
+            x = himc_vec3_add(x, step[k]);
             q = himc_quat_mul(q,
                               (himc_quat){number(a[7]), number(a[4]), number(a[5]), number(a[6])});
             break;
         }
+    // the shoulder lies before the arm's joint, on the way to it
+    TEST_ASSERT_TRUE(himc_vec3_dot(step[3], step[4]) > 0);
+    TEST_ASSERT_TRUE(himc_vec3_length(step[4]) < himc_vec3_length(step[3]));
     subscribe("pose");
     play(0.1);
     for (int i = heard_count - 1; i >= 0; i--) {
@@ -268,6 +281,7 @@ int main(void)
     RUN_TEST(test_packets_off_loopback_stay_below_1400_bytes);
     RUN_TEST(test_a_push_begins_when_it_arrives_and_ends);
     RUN_TEST(test_time_tag_is_ntp_time);
+    RUN_TEST(test_a_hit_that_no_hand_plays_is_missed_at_beat_minus_1);
     RUN_TEST(test_vmc_bones_lead_to_the_wrist_mirrored);
     RUN_TEST(test_a_taken_port_gives_one_clear_line);
     RUN_TEST(test_a_socket_may_be_descriptor_0);
