@@ -364,6 +364,21 @@ static void test_a_pitch_that_no_pedal_reaches_in_time_is_reported(void)
     reported("no drum could be tuned to");
 }
 
+// 0.7 of the time to the next one, whenever in the file that is
+static void test_a_note_that_ends_well_before_the_next_is_damped(void)
+{
+    static const int keys[12] = {45, 45, 45, 45, 45, 45, 45, 45, 45, 45, 45, 45};
+    builder b;
+    timpani(&b, keys, 12, 384, 307); // 0.8
+    import(&b, NULL);
+    TEST_ASSERT_NULL(strstr(made.report, "damped"));
+    himc_midi_score_free(&made);
+    himc_score_free(score);
+    timpani(&b, keys, 12, 384, 230); // 0.6
+    import(&b, NULL);
+    reported("11 notes are damped at their end");
+}
+
 static void test_pitches_outside_the_timpani_are_moved_by_octaves(void)
 {
     builder b;
@@ -565,6 +580,7 @@ int main(void)
     RUN_TEST(test_five_pitches_are_played_on_four_drums_by_a_pedal);
     RUN_TEST(test_a_pedal_passes_the_semitone_between_two_pitches);
     RUN_TEST(test_a_pitch_that_no_pedal_reaches_in_time_is_reported);
+    RUN_TEST(test_a_note_that_ends_well_before_the_next_is_damped);
     RUN_TEST(test_pitches_outside_the_timpani_are_moved_by_octaves);
     RUN_TEST(test_one_drum_is_played_hand_by_hand);
     RUN_TEST(test_fast_repeats_of_a_timpano_are_rolls);
