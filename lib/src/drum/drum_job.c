@@ -48,7 +48,9 @@ void himc_drum_exchange(himc_drum *drum, himc_drum *made)
         himc_membrane_shape(drum->membrane)->kind != himc_membrane_shape(made->membrane)->kind;
     if (himc_membrane_rate(made->membrane) != drum->rate)
         himc_membrane_set_rate(made->membrane, drum->rate, NULL);
+    bool shares = himc_membrane_shares(drum->membrane);
     himc_membrane_exchange(drum->membrane, made->membrane);
+    himc_membrane_share(drum->membrane, shares); // `made` stood alone
     drum->place.radius = made->place.radius;
     drum->revision += grown;
     himc_drum_find_ways(drum);

@@ -593,6 +593,11 @@ void himc_membrane_share(himc_membrane *m, bool shares)
     declick_from(m, &before, 0, HIMC_OUTPUTS);
 }
 
+bool himc_membrane_shares(const himc_membrane *membrane)
+{
+    return membrane->shares;
+}
+
 const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count)
 {
     *count = membrane->shared_count;
