@@ -23,7 +23,8 @@
     4 // intervals of a quintic where its speed is looked at; chosen: it turns 4 times
 
 // over the other hand; chosen: as a wrist lifts a stick in a hurry, and sooner than any new touch
-#define LIFT_FADE 0.1 // of a lift that is broken off (s)
+#define LIFT_FADE 0.1  // of a lift that is broken off (s) ...
+#define LIFT_SHARE 0.8 // ... but no more than this share of the time to a touch
 
 // habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
 #define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
@@ -212,6 +213,18 @@ static void cut_lift(himc_hand_plan *plan, double t)
     himc_spline_add(lift, t, &now, t + LIFT_FADE, &nothing);
 }
 
+/// A lift that is broken off is over before a touch.
+static void end_lift(himc_hand_plan *plan, double t, double touch)
+{
+    himc_spline *lift = &plan->lift;
+    himc_target nothing = {0}, now = himc_spline_at(lift, t);
+    double end = t + LIFT_SHARE * (touch - t);
+    if (lift->count == 0 || lift->segment[lift->count - 1].t1 <= end)
+        return;
+    himc_spline_cut(lift, t);
+    himc_spline_add(lift, t, &now, end, &nothing);
+}
+
 bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, double end,
                     himc_vec3 way)
 {
@@ -362,6 +375,7 @@ static stroke_plan begin_from(const himc_hand_plan *plan, double t, const himc_g
     double T = t == plan->end ? leaving_time(plan, goal->time) : 0;
     s.height_end += T;
     s.height.h += T * s.height.v;
+    s.lift = himc_vec3_dot(goal->normal, himc_spline_at(&plan->lift, t).x);
     return s;
 }
 
@@ -370,7 +384,7 @@ static bool can_play(const stroke_plan *s, const himc_goal *goal)
 {
     double T = goal->time - s->height_end;
     return is_possible(s, goal) &&
-           !himc_height_profile_plunges(s->height.h, T, goal->gesture.speed);
+           !himc_height_profile_plunges(s->height.h + s->lift, T, goal->gesture.speed);
 }
 
 bool himc_hand_can_strike_from(const himc_hand_plan *plan, double t, const himc_goal *goal)
@@ -470,6 +484,7 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     stroke_plan s = begin_from(plan, plan->end, goal);
     if (!is_possible(&s, goal))
         return false;
+    end_lift(plan, plan->end, goal->time);
     leave(plan, goal->time);
     s = plan_begin(plan, goal->spot, goal->normal);
     himc_gesture g = in_time(&s, goal);

@@ -34,6 +34,7 @@ typedef struct stroke_plan {
     double path_end;     ///< the tangential path is planned to here (s) ...
     himc_target path;    ///< ... and has this state there
     double approach;     ///< time to come from far away (s)
+    double lift;         ///< the tip is so much higher, over the other hand (m)
 } stroke_plan;
 
 /// Appends a quintic to the height `to` at t; nothing if t is not after the profile's end.
