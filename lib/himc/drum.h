@@ -48,7 +48,7 @@ bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error);
 /// Strikes the drum `delay` samples from now (0 .. 8192), exact to the sample, with a free mallet
 /// at (x, y) on the head and a downward velocity of 0.001 .. 30 m/s. At most 64 strikes wait. A
 /// delay of HIMC_STRIKE_NEVER only checks the rest.
-#define HIMC_STRIKE_NEVER (-1)
+#define HIMC_STRIKE_NEVER (-2147483647 - 1)
 HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                                  himc_error *error);
 

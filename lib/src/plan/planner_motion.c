@@ -429,7 +429,10 @@ static bool play_late(himc_planner *planner, const timed_stroke *s)
     const planner_hand *h = &planner->hand[s->stroke.hand];
     char name[HIMC_PLANNER_NAME];
     timed_stroke late = *s, after;
-    if (s->index < 0 || s->roll || planner->clear.planning || s->written.time > planner->hastened)
+    const planner_part *part = &planner->score.part[s->stroke.hand];
+    bool is_next = s->index >= 0 && !s->roll && part->round == s->round &&
+                   (part->next == s->index || part->next == s->index + 1);
+    if (!is_next || planner->clear.planning || s->written.time > planner->hastened)
         return false;
     go_to(planner, s, 1);
     bool more = next_written(planner, s->stroke.hand, &after);
