@@ -175,8 +175,9 @@ static past past_of(const himc_drum *d, int slot)
     return *h;
 }
 
-// the sound of a pickup with that energy in the mode that is loudest there
-static double loudest_ringing(const himc_drum *d, int pickup, double energy)
+// the sound of a pickup with the most energy that the head has had in the mode that is loudest
+// there, at the highest level that it has had: what ears hear late is of before
+static double loudest_ringing(const himc_drum *d, int pickup, past before)
 {
     const himc_membrane *m = d->membrane;
     const himc_readout *r = &m->core.outputs[pickup].readout;
@@ -185,7 +186,7 @@ static double loudest_ringing(const himc_drum *d, int pickup, double energy)
         return 0;
     for (int i = 0; i < himc_membrane_audible(m); i++)
         most = fmax(most, hypot(r->p[i], r->s[i]) / sqrt(m->core.oscillators[i].mass));
-    return d->gain * sqrt(2 * energy) * most;
+    return fmax(d->gain, before.level) * sqrt(2 * before.most) * most;
 }
 
 // `before` is of before its setting changed. Made slacker, heavier or much lighter, or with a
@@ -202,7 +203,7 @@ static void hear_loudest(const himc_drum *d, int slot, past before)
     int pickups;
     himc_membrane_pickups(d->membrane, &pickups);
     for (int k = 0; k < pickups; k++)
-        loudest[slot][k] = fmax(loudest[slot][k], loudest_ringing(d, k, before.most));
+        loudest[slot][k] = fmax(loudest[slot][k], loudest_ringing(d, k, before));
 }
 
 // a channel that is new hears at first what the others do, of the settings before it
