@@ -12,8 +12,8 @@ the patch. */
 #include <sys/stat.h>
 
 #define NETWORK_PERIOD \
-    2.0                    /* between two looks for commands from the network (ms); chosen: shorter
-                                 than a block of 128 samples */
+    2.0 /* between two looks for commands from the network (ms); chosen: shorter than a block of
+           128 samples */
 #define NETWORK_COMMANDS 8 /* most of them at one look; chosen: none makes a block late */
 
 /* A search for a file. */
@@ -259,7 +259,7 @@ void himc_tilde_restore(t_himc *x)
     free(state);
 }
 
-/* True if a hit is left out, since DSP is off; that is one stroke that is missed. */
+/* Reports that nothing plays while DSP is off. True for a hit: it is left out, and sent as `missed`. */
 static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 {
     const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke : NULL;

@@ -189,6 +189,33 @@ static void test_a_roll_to_come_is_not_begun_by_what_was_given_up_of_it(void)
     himc_performance_free(p);
 }
 
+// from an attacker's hour: the lift over the other hand, broken off by `stop`, was still fading at
+// the touch, so that the stick fell on and came 10 ms late with 2.2 m/s
+static void test_a_lift_that_is_broken_off_is_over_before_the_touch(void)
+{
+    heard h = {0};
+    himc_performance *p = performer(10000);
+    session_do(p, "drag 0.4 right legato ppp");
+    session_do(p, "stroke 1 right legato p");
+    session_do(p, "tempo 1000");
+    session_do(p, "play");
+    session_play(p, 0.06 * RATE / 48000, &h); // session_play counts 48 kHz
+    session_do(p, "tempo 680.5");
+    session_play(p, 0.17 * RATE / 48000, &h);
+    session_do(p, "tempo 1");
+    session_do(p, "stop");
+    session_do(p, "play");
+    session_do(p, "tempo 860.6");
+    session_play(p, 0.5 * RATE / 48000, &h);
+    TEST_ASSERT_TRUE(h.strikes > 0);
+    for (int i = 0; i < h.strikes; i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(0.002, h.strike[i].planned_time, h.strike[i].time);
+        TEST_ASSERT_TRUE(h.strike[i].velocity < 1.4); // p has 1.3
+    }
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 // from a timpanist's hour: a stick that is up strikes, a little late if it must, and no louder
 static void test_a_jump_to_a_faster_tempo_loses_no_stroke(void)
 {
@@ -307,6 +334,7 @@ int main(void)
     RUN_TEST(test_a_bouncing_roll_without_time_before_the_first_block_ends_no_process);
     RUN_TEST(test_a_roll_stays_within_its_dynamics_when_the_tempo_changes_near_its_end);
     RUN_TEST(test_a_roll_to_come_is_not_begun_by_what_was_given_up_of_it);
+    RUN_TEST(test_a_lift_that_is_broken_off_is_over_before_the_touch);
     RUN_TEST(test_a_jump_to_a_faster_tempo_loses_no_stroke);
     RUN_TEST(test_any_walk_of_the_tempo_leaves_all_finite_and_the_performer_plays_on);
     return UNITY_END();

@@ -52,7 +52,9 @@ typedef struct counts {
 } counts;
 
 static counts seen;
-static random_seed begun; // seed and number with which the round began: with them it comes again
+// seed and number with which the round began; with them it comes again, unless the drums that earlier
+// rounds have made matter
+static random_seed begun;
 static int round_begun;
 #define RECENT 12
 static char recent[RECENT][600]; // the last commands with their answers, for a failure

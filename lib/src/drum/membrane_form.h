@@ -45,6 +45,7 @@ HIMC_RT const himc_pickup *himc_membrane_rays(const himc_membrane *membrane);
 /// Whether the air between this head and others takes what its shared modes radiate; they decay by
 /// so much less.
 HIMC_RT void himc_membrane_share(himc_membrane *membrane, bool shares);
+/// Whether it does.
 HIMC_RT bool himc_membrane_shares(const himc_membrane *membrane);
 /// The shared modes (*count), none if it does not share. Borrowed.
 HIMC_RT const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count);

@@ -10,8 +10,11 @@
 /// cannot hurry. Targets that shake are replaced by a parabola fitted to all, with weights that
 /// fade with a memory tau (Morrison 1969, the critically damped g-h-k filter; it does not lag
 /// behind steady acceleration). The noise that is left in the acceleration is sigma_a^2 = 0.187
-/// sigma^2 T / tau^5; tau is chosen so that sigma_a is NOISE_ACCELERATION. A target after a pause
-/// is a place to go to. When no more targets come, the tip goes on for half a period and comes to
+/// sigma^2 T / tau^5; tau is chosen so that sigma_a is NOISE_ACCELERATION.
+///
+/// A target after a pause is a place to go to. So is one from which the tip is still far away: its
+/// velocity is scaled down. The first two targets, and targets that arrive in a burst after a delay
+/// of the network, do not tell the velocity: it is at most what half of the period allows. When no more targets come, the tip goes on for half a period and comes to
 /// rest at the last one. Invariant: position, velocity and acceleration are continuous.
 #include "plan/follow.h"
 
@@ -19,8 +22,8 @@
 #define STREAM_PAUSE 0.3       // a target later than this after the last begins anew (s)
 #define PERIOD_SHARE 0.25      // of a new period in the estimate
 #define VELOCITY_TIME 0.010    // smooths the velocity (s)
-#define BURST_SHARE 0.5        // of the period: targets nearer than that have come in a burst
-#define FIRST_GAP 0.03         // the first two say nothing about a rate (s)
+#define BURST_SHARE 0.5        // of the period: a shorter gap is a burst and counts as this; chosen
+#define FIRST_GAP 0.03         // the gap of the first two counts as this at least (s); chosen
 #define SHORTEST_BLEND 0.010   // quintic to meet a target on (s)
 #define NOISE_ACCELERATION 1.0 // that noise may cause (m/s^2)
 #define LONGEST_MEMORY 0.04    // of the filter (s)
@@ -31,10 +34,9 @@
 // the tip; chosen: within the limits of an arm, and a halt without a jerk
 #define HARDEST_MEETING 250.0 // peak acceleration to meet a target (m/s^2)
 #define BRAKING 60.0          // mean acceleration of the halt (m/s^2)
-// A tip that is farther than this from where the stream is does not follow it yet: the target is a
-// place rather than a motion.
-#define FOLLOWED 0.05              // (m) chosen: 250 Hz of a stroke at 10 m/s
-#define FOLLOWED_ACCELERATION 30.0 // (m/s^2) of a hand with a mouse; chosen
+// A tip follows the stream if its own velocity brings it so near to the next meeting.
+#define FOLLOWED 0.05              // (m) chosen: one target at 250 Hz in a stroke of 10 m/s
+#define FOLLOWED_ACCELERATION 30.0 // ... and what this changes meanwhile (m/s^2); chosen: a mouse
 #define SHORTEST_HALT 0.15         // (s)
 #define FASTEST_STREAM 10.0 // (m/s) as captured sticks; faster targets jump, and are not carried on
 

@@ -55,15 +55,17 @@
 #define FALLING_SPEED 0.2          // a tip faster downwards has begun to fall (m/s)
 #define BRAKED_PEAK 150.0          // acceleration of a high tip that falls to a soft touch ...
 #define BRAKED_LIMIT 400.0         // ... and with so much it is not braked at all (m/s^2)
-#define PLUNGE 1.6                 // mean speed of a fall with a higher peak, over the touch's ...
-#define HARDEST_FALL 300.0         // ... and with so much, where a body lags behind (m/s^2)
-#define HARDEST_PLUNGE 1.25        // ... a tip that needs more is too late
-#define LOUDEST 1.5                // speed of a touch that has no time, over the one asked for
 #define SINK_PEAK 80.0             // of one that sinks before a soft stroke, at most (m/s^2)
 #define FALL_STEEPNESS 2.5         // v T/h of a fall from rest, at most ...
 #define FALLING_STEEPNESS 3.5      // ... and of one that has begun
 #define FALL_OVERSHOOT 1.1         // of the height ...
 #define FALL_OVERSHOOT_MARGIN 0.02 // ... and so much more (m)
+
+// a fall that comes too late; chosen by walks of the tempo (tests/test_tempo_walk.c)
+#define PLUNGE 1.6          // mean speed over the touch's, at most, with a peak above BRAKED_PEAK
+#define HARDEST_FALL 300.0  // a body follows a higher peak late (m/s^2) ...
+#define HARDEST_PLUNGE 1.25 // ... so the mean speed over the touch's is at most this
+#define LOUDEST 1.5         // speed of the touch over the one asked for, at most
 
 static himc_target along_normal(const stroke_plan *s, height_state at)
 {

@@ -12,10 +12,10 @@
 #include <string.h>
 
 // allowed; chosen: no mallet and no drum is larger
-#define HASTENED 0.3 // a new tempo leaves strokes that are farther away their time (s); chosen
 #define MOST_MALLET_RADIUS 0.1 // (m)
 #define MOST_HEAD_RADIUS 10.0  // (m)
 
+#define HASTENED 0.3         // a new tempo may take the time of strokes so near (s); chosen
 #define PREPARATION_TIME 1.0 // of a late score; chosen (s)
 // no variation depends on a neighbour further away: a fifth of it is more than any lateness; chosen
 // (s)

@@ -32,7 +32,6 @@
 /// the first one has more.
 #define GIVES_WAY 0.024
 
-#define AS_STRONG 0.944 // share of the speed: 0.5 dB, the spread that equal strokes may have
 #define LOUDER \
     1.06 // a tip that is too high and has no time may strike so much harder; chosen: 0.5 dB
 
@@ -148,8 +147,9 @@ static bool leaves_strength(const chance *c)
     const himc_gesture *g = &c->near.after.gesture;
     double before = c->near.after.time - himc_goal_end(&c->near.before),
            left = c->near.after.time - himc_goal_end(&c->goal);
-    return !c->near.scored || himc_gesture_bend(*g, HIMC_HURRY * left).speed >=
-                                  AS_STRONG * himc_gesture_bend(*g, HIMC_HURRY * before).speed;
+    return !c->near.scored ||
+           himc_gesture_bend(*g, HIMC_HURRY * left).speed >=
+               PLANNER_AS_STRONG * himc_gesture_bend(*g, HIMC_HURRY * before).speed;
 }
 
 /// Whether the hand has time for the hit before and after it.

@@ -34,9 +34,6 @@
 #define EARLY_TOUCH 0.03 // a touch may come so much before its time (s)
 #define BOUNCE_TIME 0.12 // a rise so soon after a touch is its rebound (s)
 
-// strokes that are reported as softer; chosen: 0.5 dB, the spread that equal strokes may have
-#define SOFTER_SHARE 0.944 // of the written speed
-
 // room for hits and reassigned strokes; chosen: a legato needs 0.115 s at least (hand.c)
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
@@ -284,7 +281,7 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
 {
     char text[HIMC_PLANNER_NAME];
     double speed = struck->goal.gesture.speed;
-    if (speed >= SOFTER_SHARE * struck->asked)
+    if (speed >= PLANNER_AS_STRONG * struck->asked)
         return;
     const char *name = himc_planner_name(planner, struck, text);
     if (struck->roll) {
@@ -293,7 +290,7 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
         name = text;
     }
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
-    if (speed >= SOFTER_SHARE * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
+    if (speed >= PLANNER_AS_STRONG * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
         return;
     himc_planner_say(&planner->notes, struck->roll ? PLANNER_HURRIED_ROLL : PLANNER_HURRIED,
                      "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,

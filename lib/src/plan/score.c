@@ -134,13 +134,12 @@ static bool grow_lines(const line_list *list, himc_error *error)
     return true;
 }
 
-/// The present command, for that drum, in the lines that act at once or at their beats.
 static double inches_of(const himc_command *drum)
 {
     return drum->count > 1 ? drum->atom[1].number : HIMC_INCHES_USUAL;
 }
 
-/// A drum is made once; the same line again says nothing new.
+/// A drum is made once; the same line again is allowed.
 static bool check_made_once(const reader *r)
 {
     for (int i = 0; i < r->score->line_count; i++) {
@@ -155,6 +154,7 @@ static bool check_made_once(const reader *r)
     return true;
 }
 
+/// The present command, for that drum, in the lines that act at once or at their beats.
 static bool add_line(reader *r, const char *drum)
 {
     if (r->command.id == HIMC_COMMAND_MAKE_DRUM && !drum[0] && !check_made_once(r))

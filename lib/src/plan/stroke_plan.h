@@ -59,8 +59,9 @@ HIMC_RT double himc_height_profile_rise(stroke_plan *s, double top, const himc_g
 /// harder than an arm can.
 HIMC_RT double himc_height_profile_least_landing(double h, double T);
 
-/// True if a fall from height h in the time T is not one to a touch of that speed (m/s): it would
-/// be much faster on its way, where a body that lags behind strikes, or at its end.
+/// True if a fall from height h (m) within T (s) cannot end in a touch of that speed (m/s): the tip
+/// would be much faster on its way, or at the touch. A body that lags behind strikes with the speed
+/// of the way.
 HIMC_RT bool himc_height_profile_plunges(double h, double T, double speed);
 
 /// True if the tip can fall from its present height and touch at t; `g` then has the height and the
