@@ -259,7 +259,8 @@ void himc_tilde_restore(t_himc *x)
     free(state);
 }
 
-/* Reports that nothing plays while DSP is off. True for a hit: it is left out, and sent as `missed`. */
+/* Reports that nothing plays while DSP is off. True for a hit: it is left out, and `missed` is
+sent. */
 static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 {
     const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke : NULL;

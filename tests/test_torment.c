@@ -52,8 +52,8 @@ typedef struct counts {
 } counts;
 
 static counts seen;
-// seed and number with which the round began; with them it comes again, unless the drums that earlier
-// rounds have made matter
+// seed and number with which the round began; with them it comes again, unless the drums that
+// earlier rounds have made matter
 static random_seed begun;
 static int round_begun;
 #define RECENT 12

@@ -48,9 +48,9 @@ bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error);
 /// Delay of himc_drum_strike_at that checks the other arguments and strikes nothing.
 #define HIMC_STRIKE_NEVER (-2147483647 - 1)
 
-/// Strikes the drum `delay` samples from now (0 .. 8192, or HIMC_STRIKE_NEVER), exact to the sample,
-/// with a free mallet at (x, y) on the head (m) and a downward velocity of 0.001 .. 30 m/s. At most
-/// 64 strikes wait. False with the reason if an argument is out of range or too many wait.
+/// Strikes the drum `delay` samples from now (0 .. 8192, or HIMC_STRIKE_NEVER), exact to the
+/// sample, with a free mallet at (x, y) on the head (m) and a downward velocity of 0.001 .. 30 m/s.
+/// At most 64 strikes wait. False with the reason if an argument is out of range or too many wait.
 HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                                  himc_error *error);
 

@@ -14,8 +14,9 @@
 ///
 /// A target after a pause is a place to go to. So is one from which the tip is still far away: its
 /// velocity is scaled down. The first two targets, and targets that arrive in a burst after a delay
-/// of the network, do not tell the velocity: it is at most what half of the period allows. When no more targets come, the tip goes on for half a period and comes to
-/// rest at the last one. Invariant: position, velocity and acceleration are continuous.
+/// of the network, do not tell the velocity: it is at most what half of the period allows. When no
+/// more targets come, the tip goes on for half a period and comes to rest at the last one.
+/// Invariant: position, velocity and acceleration are continuous.
 #include "plan/follow.h"
 
 // the stream; chosen: steady for a mouse (60 Hz) and a tracker (1 kHz) alike, see tests/test_live.c

@@ -78,8 +78,8 @@ HIMC_RT double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal 
 /// faster than HIMC_FASTEST_TIP.
 HIMC_RT bool himc_hand_is_sound(const himc_hand_plan *plan, double from);
 
-/// True if a tip can reach the goal in time without superhuman speed or acceleration, its gesture is
-/// not too slow, and the tip is not so high that it would strike much harder.
+/// True if a tip can reach the goal in time without superhuman speed or acceleration, its gesture
+/// is not too slow, and the tip is not so high that it would strike much harder.
 HIMC_RT bool himc_hand_can_strike(const himc_hand_plan *plan, const himc_goal *goal);
 
 /// Impact speed at the goal of a fall at once from the plan's state at t, at least (m/s).
@@ -93,8 +93,9 @@ HIMC_RT double himc_hand_leap_time(double way);
 /// True if the tip can reach the second goal so after it has played the first.
 HIMC_RT bool himc_hand_can_follow(const himc_goal *first, const himc_goal *second);
 
-/// Appends the motion up to the end of that stroke's contact. Its gesture may be softer than the one
-/// asked of himc_hand_can_strike. False, and nothing appended, if no tip can reach the goal in time.
+/// Appends the motion up to the end of that stroke's contact. Its gesture may be softer than the
+/// one asked of himc_hand_can_strike. False, and nothing appended, if no tip can reach the goal in
+/// time.
 HIMC_RT bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal);
 
 /// Goes from a state measured at t to the touch of a stroke that is planned already, and on to the

@@ -62,6 +62,67 @@ void himc_planner_free(himc_planner *planner)
     free(planner);
 }
 
+/// Makes the round of the loop at `t` round 0, before its length changes.
+static void rebase(himc_planner *planner, double t)
+{
+    int round = himc_planner_score_rebase(&planner->score, t);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planner_hand *h = &planner->hand[hand];
+        for (int i = 0; i < h->waiting_count; i++)
+            h->waiting[i].round -= round;
+        for (int i = 0; i < h->planned_count; i++)
+            h->planned[i].round -= round;
+    }
+}
+
+/// A stroke has been put into the hand's score at `index`: later ones move up by one.
+static void inserted(himc_planner *planner, himc_hand hand, int index)
+{
+    planner_hand *h = &planner->hand[hand];
+    for (int i = 0; i < h->planned_count; i++)
+        h->planned[i].index += !h->planned[i].roll && h->planned[i].index >= index;
+}
+
+/// A roll has been put into the score at that index.
+static void roll_inserted(himc_planner *planner, int roll)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < planner->hand[hand].planned_count; i++)
+            planner->hand[hand].planned[i].roll += planner->hand[hand].planned[i].roll > roll;
+}
+
+/// The planned strokes of a hand are no longer in its score.
+static void detach(himc_planner *planner, himc_hand hand)
+{
+    planner_hand *h = &planner->hand[hand];
+    for (int i = 0; i < h->planned_count; i++)
+        h->planned[i].index = -1, h->planned[i].roll = 0;
+}
+
+/// End of the last contact or bounce that waits or is planned (s); -infinity if there is none.
+static double last_contact(const himc_planner *planner)
+{
+    double last = -HUGE_VAL;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_hand *h = &planner->hand[hand];
+        for (int i = 0; i < h->waiting_count; i++)
+            last = fmax(last, himc_goal_end(&h->waiting[i].goal));
+        if (h->planned_count > 0)
+            last = fmax(last, himc_goal_end(&h->planned[h->planned_count - 1].goal));
+    }
+    return last;
+}
+
+/// The last round of a planned stroke, at least `round`.
+static int last_round(const himc_planner *planner, int round)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < planner->hand[hand].planned_count; i++)
+            if (planner->hand[hand].planned[i].round > round)
+                round = planner->hand[hand].planned[i].round;
+    return round;
+}
+
 /// The last time at which a stroke is written that a hand has planned or has taken over (s).
 static double last_written(const himc_planner *planner)
 {
@@ -153,7 +214,7 @@ void himc_planner_set_servo(himc_planner *planner, bool servo)
 void himc_planner_set_human(himc_planner *planner, himc_human human)
 {
     planner->human = human;
-    himc_planner_count_hits(planner);
+    planner->hits = 0;
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
@@ -225,7 +286,7 @@ static void go_on(himc_planner *planner, const himc_stroke *stroke, double end)
     timed_stroke late = {.stroke = *stroke, .round = -1};
     if (!score->over)
         return;
-    himc_planner_rebase(planner, planner->now);
+    rebase(planner, planner->now);
     if (himc_planner_score_time(score, 0, end) - stroke->early > planner->now + PLANNER_AHEAD)
         himc_planner_score_go_on(score, planner->now);
     else
@@ -260,11 +321,11 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     bool running = score->playing && !score->empties;
     double t = planner->now + PLANNER_AHEAD;
     if (running)
-        himc_planner_rebase(planner, planner->now);
+        rebase(planner, planner->now);
     double anchor = running ? before_change(planner, t) : 0;
     bool first = score->part[stroke->hand].count == 0;
     himc_planner_score_insert(score, at, stroke, drum);
-    himc_planner_inserted(planner, stroke->hand, at);
+    inserted(planner, stroke->hand, at);
     himc_planner_rest_again(planner);
     if (!running)
         return true;
@@ -301,11 +362,11 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     go_on(planner, roll, roll->beat + roll->length);
     bool running = score->playing && !score->empties;
     if (running)
-        himc_planner_rebase(planner, planner->now);
+        rebase(planner, planner->now);
     int at = himc_planner_roll_insert(score, roll, drum, rate, error);
     if (at < 0)
         return -1;
-    himc_planner_roll_inserted(planner, at);
+    roll_inserted(planner, at);
     for (int i = at > 1 ? at - 2 : 0; i <= at; i++) {
         const planner_roll *by = himc_planner_roll_cut_by(score, i);
         if (by)
@@ -351,7 +412,7 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     if (!copy)
         return false;
     double t = planner->now + PLANNER_AHEAD, beat = himc_planner_score_beat_at(score, t);
-    himc_planner_rebase(planner, t);
+    rebase(planner, t);
     double anchor = before_change(planner, t);
     himc_planner_score_take_tempi(score, copy, count);
     after_tempo(planner, t, beat, anchor);
@@ -461,13 +522,13 @@ void himc_planner_clear(himc_planner *planner)
         himc_planner_cut(planner, (himc_hand)hand, t);
         himc_planner_score_clear(&planner->score, (himc_hand)hand);
         planner->hand[hand].struck = false;
-        himc_planner_drop_waiting(planner, (himc_hand)hand);
-        himc_planner_detach(planner, (himc_hand)hand);
+        planner->hand[hand].waiting_count = 0;
+        detach(planner, (himc_hand)hand);
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     himc_planner_score_seek(score, 0);
     himc_planner_last_until(planner, -1);
-    himc_planner_count_hits(planner);
+    planner->hits = 0;
     himc_planner_notes_begin(&planner->notes);
     if (!turns)
         return;
@@ -483,7 +544,7 @@ void himc_planner_last_until(himc_planner *planner, double beat)
         return;
     double t = planner->now + PLANNER_AHEAD;
     if (score->playing)
-        himc_planner_rebase(planner, planner->now);
+        rebase(planner, planner->now);
     double anchor = score->loop ? before_change(planner, t) : 0;
     score->until = beat;
     if (!score->playing || !score->loop)
@@ -535,11 +596,11 @@ void himc_planner_stop(himc_planner *planner, double t)
         return;
     himc_planner_score_stop(score, himc_planner_beat(planner, t));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        himc_planner_drop_waiting(planner, (himc_hand)hand);
+        planner->hand[hand].waiting_count = 0;
     himc_planner_cut_both(planner, t);
     // the cut has put planned hits back
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        himc_planner_drop_waiting(planner, (himc_hand)hand);
+        planner->hand[hand].waiting_count = 0;
     himc_planner_replan(planner, t);
 }
 
@@ -565,7 +626,7 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
     int rounds = on || !score->playing ? 0 : himc_planner_score_round_at(score, t);
     // a stroke of the next round that can no longer be taken back brings that round with it
     if (!on)
-        rounds = himc_planner_last_round(planner, rounds);
+        rounds = last_round(planner, rounds);
     himc_planner_score_loop(score, on, rounds);
     himc_planner_score_keep(score, anchor);
     himc_planner_replan(planner, t);
@@ -579,7 +640,7 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     double beat = himc_planner_score_beat_at(score, t);
     if (himc_planner_score_has_tempo(score, beat, bpm))
         return;
-    himc_planner_rebase(planner, t);
+    rebase(planner, t);
     double anchor = before_change(planner, t);
     himc_planner_score_set_tempo(score, score->playing ? beat : score->beat, bpm);
     after_tempo(planner, t, beat, anchor);
@@ -635,7 +696,7 @@ double himc_planner_end(const himc_planner *planner)
     double last = himc_planner_score_last_beat(score);
     if (!score->playing || (score->loop && (last >= 0 || score->empties)))
         return HUGE_VAL;
-    double end = himc_planner_last_contact(planner);
+    double end = last_contact(planner);
     if (last >= 0)
         end = fmax(end, himc_planner_score_time(score, score->rounds, last) + HIMC_CONTACT_TIME);
     return fmax(score->origin, end);

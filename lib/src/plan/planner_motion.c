@@ -702,49 +702,6 @@ long himc_planner_work(const himc_planner *planner)
     return planner->clear.work;
 }
 
-void himc_planner_rebase(himc_planner *planner, double t)
-{
-    int round = himc_planner_score_rebase(&planner->score, t);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        planner_hand *h = &planner->hand[hand];
-        for (int i = 0; i < h->waiting_count; i++)
-            h->waiting[i].round -= round;
-        for (int i = 0; i < h->planned_count; i++)
-            h->planned[i].round -= round;
-    }
-}
-
-void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index)
-{
-    planner_hand *h = &planner->hand[hand];
-    for (int i = 0; i < h->planned_count; i++)
-        h->planned[i].index += !h->planned[i].roll && h->planned[i].index >= index;
-}
-
-void himc_planner_roll_inserted(himc_planner *planner, int roll)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            planner->hand[hand].planned[i].roll += planner->hand[hand].planned[i].roll > roll;
-}
-
-void himc_planner_count_hits(himc_planner *planner)
-{
-    planner->hits = 0;
-}
-
-void himc_planner_drop_waiting(himc_planner *planner, himc_hand hand)
-{
-    planner->hand[hand].waiting_count = 0;
-}
-
-void himc_planner_detach(himc_planner *planner, himc_hand hand)
-{
-    planner_hand *h = &planner->hand[hand];
-    for (int i = 0; i < h->planned_count; i++)
-        h->planned[i].index = -1, h->planned[i].roll = 0;
-}
-
 double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
 {
     *index = planner->score.part[hand].next + 1; // the next stroke and the one that follows it
@@ -764,28 +721,6 @@ double himc_planner_lateness(himc_planner *planner)
             late = fmax(late, plan->end + himc_hand_time(plan, &goal) - due.time);
     }
     return late;
-}
-
-double himc_planner_last_contact(const himc_planner *planner)
-{
-    double last = -HUGE_VAL;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_hand *h = &planner->hand[hand];
-        for (int i = 0; i < h->waiting_count; i++)
-            last = fmax(last, himc_goal_end(&h->waiting[i].goal));
-        if (h->planned_count > 0)
-            last = fmax(last, himc_goal_end(&h->planned[h->planned_count - 1].goal));
-    }
-    return last;
-}
-
-int himc_planner_last_round(const himc_planner *planner, int round)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            if (planner->hand[hand].planned[i].round > round)
-                round = planner->hand[hand].planned[i].round;
-    return round;
 }
 
 /// Drops the strokes that are past but the last, which may still bounce, and the motion before

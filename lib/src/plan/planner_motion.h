@@ -216,32 +216,16 @@ HIMC_RT void himc_planner_extend(himc_planner *planner, himc_hand hand, double u
 HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
 /// ... and plans them again from there.
 HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
-/// Makes the round of the loop at `t` round 0, before its length changes.
-HIMC_RT void himc_planner_rebase(himc_planner *planner, double t);
 /// planner_notes.c: "stroke at beat 3 left kettle", as a line for the user names it; in a loop with
 /// its round, unless that is below 0. Returns `text`.
 HIMC_RT const char *himc_planner_name(const himc_planner *planner, const timed_stroke *stroke,
                                       char text[HIMC_PLANNER_NAME]);
 /// A line: this stroke of a loop is left out of the round under way.
 HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke);
-/// A stroke has been put into the hand's score at `index`: later ones move up by one.
-HIMC_RT void himc_planner_inserted(himc_planner *planner, himc_hand hand, int index);
-/// A roll has been put into the score at that index.
-HIMC_RT void himc_planner_roll_inserted(himc_planner *planner, int roll);
 /// The hand's plan so far rests on no stroke of its part after this time (s); *index is that of the
 /// last one that has been looked at, if it is before that time.
 HIMC_RT double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index);
-/// Hits are counted from 0 again.
-HIMC_RT void himc_planner_count_hits(himc_planner *planner);
-/// Drops the strokes that wait for a hand.
-HIMC_RT void himc_planner_drop_waiting(himc_planner *planner, himc_hand hand);
-/// The planned strokes of a hand are no longer in its score.
-HIMC_RT void himc_planner_detach(himc_planner *planner, himc_hand hand);
 /// How much too late the hands would be for their next strokes (s); 0 if they are not.
 HIMC_RT double himc_planner_lateness(himc_planner *planner);
-/// End of the last contact or bounce that waits or is planned (s); -infinity if there is none.
-HIMC_RT double himc_planner_last_contact(const himc_planner *planner);
-/// The last round of a planned stroke, at least `round`.
-HIMC_RT int himc_planner_last_round(const himc_planner *planner, int round);
 
 #endif
