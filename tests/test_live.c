@@ -150,6 +150,43 @@ static void test_targets_that_come_close_together_neither_jump_nor_throw_the_arm
     }
 }
 
+// a mouse at 10 Hz over the right stick: the left one is lifted, and the lift was counted twice
+static void test_a_target_under_a_lift_does_not_jump(void)
+{
+    static const double at[][3] = {{0.358, 0.033, 1.088}, {0.373, -0.021, 1.042},
+                                   {0.334, 0.100, 1.035}, {0.402, 0.237, 0.967},
+                                   {0.264, 0.137, 1.022}, {0.245, 0.088, 1.136}};
+    double most = 0;
+    himc_performance *p = with_kettle();
+    for (int i = 0; i < 6; i++) {
+        session_do(p, "target left %g %g %g", at[i][0], at[i][1], at[i][2]);
+        most = fmax(most, largest_step(p, HIMC_LEFT, 25, NULL));
+    }
+    TEST_ASSERT_TRUE(most < 0.03);
+    himc_performance_free(p);
+}
+
+// a tracker that stands still and jumps once, and two targets in one packet: places, no motion
+static void test_one_jump_of_a_stream_strikes_nothing(void)
+{
+    for (int i = 0; i < 2; i++) {
+        heard h = {0};
+        himc_performance *p = with_kettle();
+        for (int k = 0; k < (i ? 1 : 40); k++) {
+            session_do(p, "target left 0.5 0.2 %g", i ? 0.96 : 1.05);
+            session_play(p, i ? 0.3 : 0.01, &h);
+        }
+        session_do(p, i ? "target left 0.5 0.2 0.96" : "target left 0.56 0.2 0.97");
+        session_play(p, 0.001, &h);
+        if (i)
+            session_do(p, "target left 0.5 0.2 0.92");
+        session_play(p, 0.8, &h);
+        TEST_ASSERT_EQUAL_INT(0, h.strikes);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 static void test_one_hand_is_live_while_the_other_plays_its_score(void)
 {
     himc_performance *p = with_kettle();
@@ -465,6 +502,8 @@ int main(void)
     RUN_TEST(test_streams_from_10_Hz_to_1_kHz_are_followed_one_period_late_and_end_at_rest);
     RUN_TEST(test_two_targets_that_jump_end_at_the_second_one);
     RUN_TEST(test_targets_that_come_close_together_neither_jump_nor_throw_the_arm);
+    RUN_TEST(test_a_target_under_a_lift_does_not_jump);
+    RUN_TEST(test_one_jump_of_a_stream_strikes_nothing);
     RUN_TEST(test_one_hand_is_live_while_the_other_plays_its_score);
     RUN_TEST(test_four_timpani_are_reached_by_turning);
     RUN_TEST(test_drums_without_a_place_stand_beside_each_other_in_reach);
