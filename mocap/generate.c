@@ -53,10 +53,10 @@ static bool read_number(const char *name, const char *text, uint64_t least, uint
 {
     char *end;
     if (!text || !*text || strspn(text, "0123456789") != strlen(text))
-        return himc_error_set(error, "%s: \"%s\", allowed a whole number", name, text ? text : "");
+        return himc_error_set(error, "%s: \"%s\", expected a whole number", name, text ? text : "");
     *number = strtoull(text, &end, 10);
     if (*number < least || *number > most)
-        return himc_error_set(error, "%s: %s, allowed %llu .. %llu", name, text,
+        return himc_error_set(error, "%s: %s, expected %llu .. %llu", name, text,
                               (unsigned long long)least, (unsigned long long)most);
     return true;
 }
@@ -78,7 +78,7 @@ int main(int argc, char **argv)
             config.strokes = (int)number;
         } else if (argv[i][0] == '-' || folder) {
             ok = himc_error_set(&error,
-                                "%s: not known, allowed --measure --seed N --strokes N "
+                                "%s: not known, expected --measure --seed N --strokes N "
                                 "FOLDER",
                                 argv[i]);
         } else {

@@ -87,7 +87,7 @@ static inline t_drum_link *drum_link_find(const char *name, himc_error *error)
     if (known && strncmp(link->l_build, HIMC_BUILD_ID, DRUM_LINK_ID_SIZE) == 0)
         return link;
     himc_error_set(error,
-                   "[membrane~ %s] is of another build (%.*s, [himc~] is %s), allowed: both from "
+                   "[membrane~ %s] is of another build (%.*s, [himc~] is %s), expected both from "
                    "one build",
                    name, DRUM_LINK_ID_SIZE - 1, known ? link->l_build : "an old one",
                    HIMC_BUILD_ID);
@@ -211,7 +211,7 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
     }
     if (s == &s_list || s == &s_float)
         return himc_error_set(
-            error, "a number: allowed: a message that begins with a word, as [%s(",
+            error, "a number: expected a message that begins with a word, as [%s(",
             receiver == HIMC_PERFORMER ? "hit right legato mf" : "strike 0.1 0 2");
     for (; count < argc && count < 2 * HIMC_COMMAND_ATOMS; count++) {
         const t_atom *a = argv + count;

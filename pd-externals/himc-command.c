@@ -52,7 +52,7 @@ static bool himc_tilde_locate(t_himc *x, const char *name, char *path, size_t si
     else
         canvas_path_iterate(x->x_canvas, search_folder, &search);
     if (!search.found && search.other)
-        return himc_error_set(error, "%s: %s, allowed a regular file", name, search.other);
+        return himc_error_set(error, "%s: %s, expected a regular file", name, search.other);
     return search.found ||
            himc_error_set(error, "%s: no such file beside the patch or in Pd's search path", name);
 }

@@ -61,7 +61,7 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
     himc_error error;
     t_signal **out = sp + (x->x_signals ? COORDINATES : 0);
     if (sp[0]->s_n > FORCE_RING) {
-        pd_error(x, "himc~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n, FORCE_RING);
+        pd_error(x, "himc~: block size: %d samples, expected 1 .. %d", sp[0]->s_n, FORCE_RING);
     } else if (sp[0]->s_sr != x->x_rate &&
                !himc_performance_set_rate(x->x_performance, sp[0]->s_sr, &error)) {
         pd_error(x, "himc~: %s", error.text);
@@ -141,16 +141,16 @@ static void himc_tilde_tick(t_himc *x)
 static bool himc_tilde_arguments(int argc, const t_atom *argv, himc_error *error)
 {
     if (argc > HIMC_DRUMS)
-        return himc_error_set(error, "%d drums, allowed 0 .. %d", argc, HIMC_DRUMS);
+        return himc_error_set(error, "%d drums, expected 0 .. %d", argc, HIMC_DRUMS);
     for (int i = 0; i < argc; i++) {
         char text[80];
         atom_string(argv + i, text, sizeof text);
         if (argv[i].a_type == A_SYMBOL && text[0] == '-')
             return himc_error_set(
-                error, "%s: unknown flag, allowed -signals and -save, before the drums", text);
+                error, "%s: unknown flag, expected -signals and -save, before the drums", text);
         if (argv[i].a_type != A_SYMBOL || strlen(text) >= HIMC_NAME_SIZE)
             return himc_error_set(error,
-                                  "argument %d: %s, allowed: a drum's name of up to %d characters",
+                                  "argument %d: %s, expected a drum's name of up to %d characters",
                                   i + 1, text, HIMC_NAME_SIZE - 1);
         if (!drum_name_check(text, error))
             return false;

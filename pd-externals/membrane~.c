@@ -261,7 +261,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
     membrane_notice_connections(x);
     bool driven = himc_drum_get_driver(x->x_link.l_drum).performer != NULL;
     if (sp[0]->s_n > HIMC_DRUM_RING) {
-        pd_error(x, "membrane~: block size: %d samples, allowed 1 .. %d", sp[0]->s_n,
+        pd_error(x, "membrane~: block size: %d samples, expected 1 .. %d", sp[0]->s_n,
                  HIMC_DRUM_RING);
     } else if (!himc_drum_set_rate(x->x_layer.l_drum, sp[0]->s_sr, &error) ||
                (!driven && !himc_drum_set_rate(x->x_link.l_drum, sp[0]->s_sr, &error))) {
@@ -398,7 +398,7 @@ static bool membrane_file(t_membrane *x, himc_command *command, himc_error *erro
         return true;
     const char *name = command->atom[0].symbol;
     if (preset && strpbrk(name, "/\\"))
-        return himc_error_set(error, "preset: %.80s, allowed a name, without a folder", name);
+        return himc_error_set(error, "preset: %.80s, expected a name, without a folder", name);
     canvas_makefilename(x->x_canvas, name, path, sizeof path);
     if (!himc_command_parse(&found, HIMC_DRUM, himc_command_table((int)command->id)->name,
                             &(himc_atom){HIMC_ATOM_SYMBOL, 0, path}, 1, error))
@@ -593,7 +593,7 @@ static bool membrane_number_argument(int argc, const t_atom *argv, int index, co
         return true;
     atom_string(argv + index - 1, text, sizeof text);
     if (argv[index - 1].a_type != A_FLOAT)
-        return himc_error_set(error, "argument %d: %s, allowed: %s", index, text, what);
+        return himc_error_set(error, "argument %d: %s, expected %s", index, text, what);
     *number = argv[index - 1].a_w.w_float;
     return true;
 }
@@ -604,7 +604,7 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
     if (argc > 0)
         atom_string(argv, text, sizeof text);
     if (argc > 0 && argv[0].a_type != A_SYMBOL)
-        return himc_error_set(error, "argument 1: %s, allowed: a name, as in [membrane~ kettle 26]",
+        return himc_error_set(error, "argument 1: %s, expected a name, as in [membrane~ kettle 26]",
                               text);
     if (argc > 0)
         wish->w_name = argv[0].a_w.w_symbol->s_name;
@@ -616,9 +616,9 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
         !himc_check_range("channels", wish->w_channels, 1, HIMC_PICKUPS, "", error))
         return false;
     if (wish->w_channels != floor(wish->w_channels))
-        return himc_error_set(error, "channels: %g, allowed a whole number", wish->w_channels);
+        return himc_error_set(error, "channels: %g, expected a whole number", wish->w_channels);
     return argc <= 3 ||
-           himc_error_set(error, "%d arguments, allowed: [-save] NAME [INCHES [CHANNELS]]", argc);
+           himc_error_set(error, "%d arguments, expected [-save] NAME [INCHES [CHANNELS]]", argc);
 }
 
 /* A drum with as many pickups as the object has outlets, and the head beside it. */

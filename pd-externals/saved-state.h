@@ -163,11 +163,11 @@ static inline bool saved_switch(bool *on, int argc, const t_atom *argv, himc_err
     if (argc > 0)
         atom_string(argv + (argc > 1), text, sizeof text);
     if (argc == 0)
-        return himc_error_set(error, "save: SWITCH missing, allowed save SWITCH");
+        return himc_error_set(error, "save: SWITCH missing, expected save SWITCH");
     if (argc > 1)
-        return himc_error_set(error, "save: %s is one atom too many, allowed save SWITCH", text);
+        return himc_error_set(error, "save: %s is one atom too many, expected save SWITCH", text);
     if (value != 0 && value != 1)
-        return himc_error_set(error, "save: SWITCH: %s, allowed 0 .. 1, whole", text);
+        return himc_error_set(error, "save: SWITCH: %s, expected 0 .. 1, whole", text);
     *on = value == 1;
     return true;
 }

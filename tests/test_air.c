@@ -388,7 +388,7 @@ static void test_kettle_out_of_range_is_refused_with_its_range(void)
     himc_error error;
     TEST_ASSERT_TRUE(himc_air_check(0.14, A, &error));
     TEST_ASSERT_FALSE(himc_air_check(1.4, A, &error));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "kettle: 1.4 m3, allowed 0.0699929 .. 0.279971 m3"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "kettle: 1.4 m3, expected 0.0699929 .. 0.279971 m3"));
     TEST_ASSERT_FALSE(himc_air_check(NAN, A, &error));
 }
 

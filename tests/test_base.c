@@ -65,14 +65,14 @@ static void test_range_includes_its_ends(void)
 static void test_range_names_field_value_and_allowed_range(void)
 {
     TEST_ASSERT_FALSE(himc_check_range("radius", 0, 0.05, 1, "m", &error));
-    TEST_ASSERT_EQUAL_STRING("radius: 0 m, allowed 0.05 .. 1 m", error.text);
+    TEST_ASSERT_EQUAL_STRING("radius: 0 m, expected 0.05 .. 1 m", error.text);
     TEST_ASSERT_FALSE(himc_check_range("radius", nextafter(1, 2), 0.05, 1, "m", &error));
 }
 
 static void test_range_without_unit_has_no_stray_space(void)
 {
     TEST_ASSERT_FALSE(himc_check_range("modes", 7000, 1, 4000, "", &error));
-    TEST_ASSERT_EQUAL_STRING("modes: 7000, allowed 1 .. 4000", error.text);
+    TEST_ASSERT_EQUAL_STRING("modes: 7000, expected 1 .. 4000", error.text);
 }
 
 static void test_range_refuses_values_that_are_not_finite_even_if_unbounded(void)

@@ -400,7 +400,7 @@ static void test_a_roll_leaves_out_strokes_too_near_to_others_and_says_so(void)
     TEST_ASSERT_EQUAL_INT(1, h.notes);
     TEST_ASSERT_NOT_NULL(strstr(h.note, "1 of its strokes left out"));
     TEST_ASSERT_FALSE(session_try(p, "roll 1 1000 single mf"));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "allowed 180 s"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "expected 180 s"));
     TEST_ASSERT_FALSE(session_try(p, "roll 1 0 single mf"));
     TEST_ASSERT_FALSE(session_try(p, "roll 1 1 triple mf"));
     himc_stroke s = {.beat = 5, .dynamic = 0.5, .bounces = 2, .bounce_time = 0.05};

@@ -243,15 +243,15 @@ static void test_rows_that_do_not_fit_are_refused_with_line_and_joint(void)
                  "arm.bvh: the header says 2 frames, the file has 1 rows");
     refuses_rows(1, "", "arm.bvh: the header says 1 frames, the file has 0 rows");
     refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0\n",
-                 "arm.bvh:24: the row ends before channel 3 of Hand, allowed: rows of 12 numbers");
+                 "arm.bvh:24: the row ends before channel 3 of Hand, expected rows of 12 numbers");
     refuses_rows(1, "0 0 0 0 0 0 0 0 0 0 0 0 0\n",
-                 "arm.bvh:24: after the row's last channel \"0\", allowed a new line");
+                 "arm.bvh:24: after the row's last channel \"0\", expected a new line");
     refuses_rows(1, "0 0 0 0 0 0 nan 0 0 0 0 0\n",
-                 "arm.bvh:24: Arm \"nan\", allowed a number up to 1e8");
+                 "arm.bvh:24: Arm \"nan\", expected a number up to 1e8");
     refuses_rows(1, "0 0 0 0 0 0 0 0 0 1e999 0 0\n",
-                 "arm.bvh:24: Hand \"1e999\", allowed a number up to 1e8");
+                 "arm.bvh:24: Hand \"1e999\", expected a number up to 1e8");
     refuses_rows(1, "0,5 0 0 0 0 0 0 0 0 0 0 0\n",
-                 "arm.bvh:24: Hips \"0,5\", allowed a number up to 1e8");
+                 "arm.bvh:24: Hips \"0,5\", expected a number up to 1e8");
 }
 
 static void refuses(const char *text, const char *reason)
@@ -264,22 +264,22 @@ static void refuses(const char *text, const char *reason)
 static void test_broken_hierarchies_are_refused_with_the_line(void)
 {
     refuses("", "x.bvh: the file is empty");
-    refuses("hello", "x.bvh:1: the first line \"hello\", allowed HIERARCHY");
-    refuses("HIERARCHY\nMOTION\n", "x.bvh:2: before any joint \"MOTION\", allowed ROOT");
+    refuses("hello", "x.bvh:1: the first line \"hello\", expected HIERARCHY");
+    refuses("HIERARCHY\nMOTION\n", "x.bvh:2: before any joint \"MOTION\", expected ROOT");
     refuses("HIERARCHY\nROOT A\n{\n}\n",
-            "x.bvh:4: joint A has no OFFSET, allowed: one for each joint");
+            "x.bvh:4: joint A has no OFFSET, expected one for each joint");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 x 0",
-            "x.bvh:4: OFFSET \"x\", allowed a number up to 1e8");
+            "x.bvh:4: OFFSET \"x\", expected a number up to 1e8");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 2 Xrotation Xrotation\n",
-            "x.bvh:5: channel \"Xrotation\", allowed X, Y, Z position or rotation, each once");
+            "x.bvh:5: channel \"Xrotation\", expected X, Y, Z position or rotation, each once");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 7\n",
-            "x.bvh:5: CHANNELS \"7\", allowed 0 .. 6, once for each joint");
+            "x.bvh:5: CHANNELS \"7\", expected 0 .. 6, once for each joint");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\n"
             "MOTION\nFrames: 0\nFrame Time: 0.01\n",
-            "x.bvh:8: Frames: \"0\", allowed 1 .. 1000000");
+            "x.bvh:8: Frames: \"0\", expected 1 .. 1000000");
     refuses("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n}\n"
             "MOTION\nFrames: 1\nFrame Time: 1\n0\n",
-            "x.bvh:9: Frame Time: 1 s, allowed 0.0001 .. 0.05 s");
+            "x.bvh:9: Frame Time: 1 s, expected 0.0001 .. 0.05 s");
 }
 
 static void test_deep_nesting_is_refused_without_recursion(void)
@@ -290,7 +290,7 @@ static void test_deep_nesting_is_refused_without_recursion(void)
     for (int i = 0; i < 1000; i++)
         size += (size_t)sprintf(text + size, "JOINT B\n{\nOFFSET 0 1 0\n");
     TEST_ASSERT_NULL(himc_take_read(text, size, "deep.bvh", NULL, &error));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "joints are nested too deeply, allowed 256 levels"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "joints are nested too deeply, expected 256 levels"));
     free(text);
 }
 
@@ -330,7 +330,8 @@ static void test_end_sites_of_one_joint_have_names_of_their_own_and_all_are_list
     TEST_ASSERT_NOT_NULL(strstr(described, " " HUB "_end6\n"));
     himc_take_free(take);
     TEST_ASSERT_NULL(read_hub(4096));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ": too many joints, allowed 4096"), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ": too many joints, expected 4096"),
+                                 error.text);
 }
 
 static void test_every_prefix_of_a_file_is_refused_or_read(void)

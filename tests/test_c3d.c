@@ -225,12 +225,12 @@ static void spoil_start(maker *m)
 
 static void test_broken_headers_are_refused_with_the_reason(void)
 {
-    refuses(cut_header, "made.c3d: 100 bytes, allowed: at least a header of 512");
-    refuses(spoil_key, "made.c3d: begins with bytes 2 7, allowed for C3D: 2 .. 255 and 80");
-    refuses(spoil_processor, "made.c3d: processor is 99, allowed 84 (Intel), 85 (DEC), 86 (MIPS)");
+    refuses(cut_header, "made.c3d: 100 bytes, expected at least a header of 512");
+    refuses(spoil_key, "made.c3d: begins with bytes 2 7, expected for C3D: 2 .. 255 and 80");
+    refuses(spoil_processor, "made.c3d: processor is 99, expected 84 (Intel), 85 (DEC), 86 (MIPS)");
     refuses(spoil_points,
-            "made.c3d: the header says 9 points, POINT:USED says 3, allowed: the same number");
-    refuses(spoil_frames, "made.c3d: the header says 0 frames, allowed 1 .. 1000000");
+            "made.c3d: the header says 9 points, POINT:USED says 3, expected the same number");
+    refuses(spoil_frames, "made.c3d: the header says 0 frames, expected 1 .. 1000000");
     refuses(add_frames, "made.c3d: the header says 90 frames of 64 bytes, the file has 5 frames");
     refuses(spoil_start, "made.c3d: the frames begin at block 20486, but the file has 6 blocks");
 }
@@ -241,7 +241,7 @@ static void test_rates_of_1_hz_are_refused_and_2_khz_is_read(void)
     m.rate = 1;
     make(&m);
     TEST_ASSERT_NULL(read_made(&m));
-    TEST_ASSERT_EQUAL_STRING("made.c3d: rate: 1 Hz, allowed 20 .. 10000 Hz", error.text);
+    TEST_ASSERT_EQUAL_STRING("made.c3d: rate: 1 Hz, expected 20 .. 10000 Hz", error.text);
     free(m.bytes);
     m.rate = 2000;
     himc_take *take = read_maker(m);
@@ -276,7 +276,7 @@ static void test_units_in_metres_and_unknown_units(void)
     m.units = "furlong";
     make(&m);
     TEST_ASSERT_NULL(read_made(&m));
-    TEST_ASSERT_EQUAL_STRING("made.c3d: POINT:UNITS is \"furlong\", allowed mm, cm, m, in or ft",
+    TEST_ASSERT_EQUAL_STRING("made.c3d: POINT:UNITS is \"furlong\", expected mm, cm, m, in or ft",
                              error.text);
     free(m.bytes);
 }
@@ -552,7 +552,7 @@ static void test_one_of_several_subjects_is_chosen_by_name(void)
     himc_take_free(take);
     options.subject = "Max";
     TEST_ASSERT_NULL(himc_take_read(text, sizeof text - 1, "a.csv", &options, &error));
-    TEST_ASSERT_EQUAL_STRING("a.csv: no subject Max, allowed Ida Jon", error.text);
+    TEST_ASSERT_EQUAL_STRING("a.csv: no subject Max, expected Ida Jon", error.text);
 }
 
 // a BVH of two roots: the second one's bones keep their parents

@@ -192,7 +192,7 @@ static void test_technique_is_refused_without_an_external_sound(void)
 {
     himc_drum_set_external_sound(drum, false);
     TEST_ASSERT_FALSE(say("technique clip"));
-    TEST_ASSERT_EQUAL_STRING("technique: clip, allowed modal here: signal and clip are patches, "
+    TEST_ASSERT_EQUAL_STRING("technique: clip, expected modal here: signal and clip are patches, "
                              "[technique~ NAME] in Pure Data",
                              error.text);
     TEST_ASSERT_FALSE(say("technique fm"));

@@ -83,7 +83,7 @@ for call in $calls; do
 done
 
 # how it refuses what it is given
-refuses test_no_call_is_refused "allowed: render, evaluate, edit, info, modes, import, share, film, play, serve, bench"
+refuses test_no_call_is_refused "expected render, evaluate, edit, info, modes, import, share, film, play, serve, bench"
 refuses test_unknown_call_is_refused '"drum"' drum
 refuses test_misspelt_call_is_found 'unknown call "rnder", did you mean render?' rnder piece.txt
 refuses test_misspelt_option_is_found 'unknown option --strkes, did you mean --strokes?' render piece.txt --strkes x.csv
@@ -117,8 +117,8 @@ wrong test_a_command_in_capitals_is_named 'PLAY;' '1: PLAY: unknown command, did
 wrong test_a_comment_of_another_language_is_named 'tempo 90;\n# loud;' '2: #: a comment is written comment ...;'
 wrong test_a_line_without_its_end_is_named 'tempo 90\nstroke 1 right accent f;' '1: tempo 90: a ; is missing, before "stroke"'
 wrong test_a_shape_that_is_none_is_named 'kettle shape triangle;' \
-    '1: kettle: shape: triangle, allowed circle, rectangle LENGTH WIDTH, or a file'
-wrong test_the_range_of_this_head_is_told 'kettle tune 900;' '1: kettle: tune: 900 Hz, allowed 7.75676 .. 581.205 Hz'
+    '1: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, or a file'
+wrong test_the_range_of_this_head_is_told 'kettle tune 900;' '1: kettle: tune: 900 Hz, expected 7.75676 .. 581.205 Hz'
 printf 'stroke 1 right accent f centre;\n' >british.txt
 printf 'stroke 1 right accent f center;\n' >american.txt
 "$himc" render british.txt -o british.wav >out 2>&1 && "$himc" render american.txt -o american.wav >out 2>&1
@@ -146,18 +146,18 @@ if command -v script >/dev/null; then
     script -qec "\"$himc\" render american.txt -o y.wav --json" /dev/null >terminal </dev/null
     check test_a_terminal_gets_json_when_asked [ "$(tail -n 1 terminal | head -c 11)" = '{"seconds":' ]
 fi
-refuses test_unknown_option_is_refused "unknown option --speed, allowed: -o --rate" \
+refuses test_unknown_option_is_refused "unknown option --speed, expected -o --rate" \
     render piece.txt -o x.wav --speed 2
-refuses test_film_of_another_kind_is_refused "allowed endings are .webm, .png, .glb" film a.himc -o a.mp4
-refuses test_film_of_an_odd_size_is_refused "allowed 64x64 .. 4096x4096" film a.himc -o a.webm --size 12x
-refuses test_film_from_behind_its_end_is_refused "--to 2: allowed more than 3" film a.himc -o a.webm --from 3 --to 2
-refuses test_camera_that_is_none_is_refused "--camera to: allowed stage front" film a.himc -o a.webm --camera to
+refuses test_film_of_another_kind_is_refused "expected endings are .webm, .png, .glb" film a.himc -o a.mp4
+refuses test_film_of_an_odd_size_is_refused "expected 64x64 .. 4096x4096" film a.himc -o a.webm --size 12x
+refuses test_film_from_behind_its_end_is_refused "--to 2: expected more than 3" film a.himc -o a.webm --from 3 --to 2
+refuses test_camera_that_is_none_is_refused "--camera to: expected stage front" film a.himc -o a.webm --camera to
 refuses test_others_need_a_scene "--compare: no --scene" render piece.txt -o x.wav --compare ik
-refuses test_unknown_others_are_refused "allowed are some of ik,id,himc,captured" \
+refuses test_unknown_others_are_refused "expected some of ik,id,himc,captured" \
     render piece.txt -o x.wav --scene x.himc --compare ik,dk
 refuses test_a_score_has_nothing_captured "piece.txt is no take" \
     render piece.txt -o x.wav --scene x.himc --compare captured
-refuses test_unknown_letter_is_refused "unknown option -q, allowed: -o --rate" render piece.txt -q
+refuses test_unknown_letter_is_refused "unknown option -q, expected -o --rate" render piece.txt -q
 refuses test_option_without_value_is_refused "--rate needs a value" render piece.txt -o x.wav --rate
 red=$(printf '\033[31m')
 refuses test_no_call_reaches_the_terminal 'paint?[31m' "paint$red"
@@ -168,29 +168,29 @@ refuses test_no_name_in_a_score_reaches_the_terminal 'x?[31m.bvh' render red.txt
 refuses test_no_source_is_refused "no SOURCE given" render -o x.wav
 refuses test_two_sources_are_refused '"b.txt" is one too many' render a.txt b.txt -o x.wav
 refuses test_no_output_is_refused "no -o OUT.wav given" render piece.txt
-refuses test_rate_zero_is_refused "--rate: 0 Hz, allowed 8000 .. 192000 Hz" \
+refuses test_rate_zero_is_refused "--rate: 0 Hz, expected 8000 .. 192000 Hz" \
     render piece.txt -o x.wav --rate 0
-refuses test_rate_nan_is_refused "--rate: nan Hz, allowed 8000 .. 192000 Hz" \
+refuses test_rate_nan_is_refused "--rate: nan Hz, expected 8000 .. 192000 Hz" \
     render piece.txt -o x.wav --rate nan
 refuses test_rate_that_is_no_number_is_refused '"fast" is not a whole number' \
     render piece.txt -o x.wav --rate fast
-refuses test_block_zero_is_refused "--block: 0 samples, allowed 1 .. 8192 samples" \
+refuses test_block_zero_is_refused "--block: 0 samples, expected 1 .. 8192 samples" \
     render piece.txt -o x.wav --block 0
 refuses test_broken_block_is_refused '"1.5" is not a whole number' \
     render piece.txt -o x.wav --block 1.5
-refuses test_unknown_mode_is_refused "allowed himc id ik" render piece.txt -o x.wav --mode magic
-refuses test_unknown_limits_are_refused "allowed off ellipsoid euler" render piece.txt -o x.wav --limits sky
-refuses test_unknown_axis_is_refused '"x", allowed y or z' render cut.trc -o x.wav --up x
-refuses test_tip_of_a_score_is_refused "--left-tip: piece.txt is a score, allowed with a take" \
+refuses test_unknown_mode_is_refused "expected himc id ik" render piece.txt -o x.wav --mode magic
+refuses test_unknown_limits_are_refused "expected off ellipsoid euler" render piece.txt -o x.wav --limits sky
+refuses test_unknown_axis_is_refused '"x", expected y or z' render cut.trc -o x.wav --up x
+refuses test_tip_of_a_score_is_refused "--left-tip: piece.txt is a score, expected a take" \
     render piece.txt -o x.wav --left-tip LSTK
 refuses test_missing_score_is_refused "none.txt: cannot be read: No such file" render none.txt -o x.wav
 refuses test_missing_take_is_refused "none.bvh" render none.bvh -o x.wav
-refuses test_folder_is_refused ".: cannot be read: a folder, allowed a regular file" render . -o x.wav
+refuses test_folder_is_refused ".: cannot be read: a folder, expected a regular file" render . -o x.wav
 mkfifo pipe pipe.bvh
-refuses test_fifo_as_a_score_is_refused "pipe: cannot be read: a FIFO, allowed" render pipe -o x.wav
-refuses test_fifo_as_a_take_is_refused "pipe.bvh: cannot be read: a FIFO, allowed" render pipe.bvh -o x.wav
-refuses test_fifo_is_refused_by_info "pipe: cannot be read: a FIFO, allowed" info pipe
-refuses test_fifo_is_refused_by_modes "pipe: cannot be read: a FIFO, allowed" modes pipe
+refuses test_fifo_as_a_score_is_refused "pipe: cannot be read: a FIFO, expected" render pipe -o x.wav
+refuses test_fifo_as_a_take_is_refused "pipe.bvh: cannot be read: a FIFO, expected" render pipe.bvh -o x.wav
+refuses test_fifo_is_refused_by_info "pipe: cannot be read: a FIFO, expected" info pipe
+refuses test_fifo_is_refused_by_modes "pipe: cannot be read: a FIFO, expected" modes pipe
 refuses test_fifo_for_a_sound_is_refused "pipe: cannot be written: a FIFO" render piece.txt -o pipe
 refuses test_fifo_for_strokes_is_refused "pipe: cannot be written: a FIFO" \
     render piece.txt -o x.wav --strokes pipe
@@ -204,17 +204,17 @@ refuses test_fifo_for_a_recording_is_refused "record: pipe.bvh: cannot be writte
 refuses test_folder_for_a_sound_is_refused ".: cannot be written: a folder" render piece.txt -o .
 refuses test_device_for_a_sound_is_refused "/dev/zero: cannot be written: a device" \
     render piece.txt -o /dev/zero
-refuses test_unknown_row_is_refused "--only: magic, allowed: a nuance" evaluate --only legato,magic
-refuses test_a_comma_alone_is_refused "--only: no word, allowed" evaluate --only ,
+refuses test_unknown_row_is_refused "--only: magic, expected a nuance" evaluate --only legato,magic
+refuses test_a_comma_alone_is_refused "--only: no word, expected" evaluate --only ,
 refuses test_words_of_no_row_are_refused "--only: ik,printed: no row has all of these words" \
     evaluate --only ik,printed
-refuses test_no_trials_are_refused "--trials: 0, allowed 1 .. 10000" evaluate --trials 0
-refuses test_range_beyond_the_trials_is_refused "--range: 3-11, allowed A-B within 1-10" \
+refuses test_no_trials_are_refused "--trials: 0, expected 1 .. 10000" evaluate --trials 0
+refuses test_range_beyond_the_trials_is_refused "--range: 3-11, expected A-B within 1-10" \
     evaluate --trials 10 --range 3-11
-refuses test_range_backwards_is_refused "--range: 4-3, allowed" evaluate --trials 10 --range 4-3
+refuses test_range_backwards_is_refused "--range: 4-3, expected" evaluate --trials 10 --range 4-3
 refuses test_one_file_for_table_and_log_is_refused "x.csv: named twice" \
     evaluate --csv x.csv --log ./x.csv
-refuses test_jobs_zero_are_refused "--jobs: 0, allowed 1 .. 256" evaluate --jobs 0
+refuses test_jobs_zero_are_refused "--jobs: 0, expected 1 .. 256" evaluate --jobs 0
 refuses test_evaluation_of_a_file_is_refused '"piece.txt" is one too many' evaluate piece.txt
 refuses test_bench_of_a_file_is_refused '"piece.txt" is one too many' bench piece.txt
 refuses test_truncated_take_is_refused "cut.trc" render cut.trc -o x.wav
@@ -224,7 +224,7 @@ refuses test_typo_is_refused_by_info "typo.txt:2: " info typo.txt
 refuses test_typo_is_refused_by_modes "typo.txt:2: " modes typo.txt
 refuses test_a_device_as_a_shape_is_refused "endless-shape.txt:2: kettle: shape: /dev/zero: cannot be read: a device" \
     render endless-shape.txt -o x.wav
-refuses test_unknown_tip_is_refused_by_info 'left tip: no point "nope", allowed: LTIP, RTIP' \
+refuses test_unknown_tip_is_refused_by_info 'left tip: no point "nope", expected LTIP, RTIP' \
     info still.trc --left-tip nope
 refuses test_score_too_long_for_a_wav_file_is_refused "endless.txt: lasts" \
     render endless.txt -o x.wav
@@ -264,8 +264,8 @@ refuses test_two_links_to_one_file_are_refused "other.csv: named twice" \
 refuses test_a_link_and_its_file_are_refused "link.csv: named twice" render piece.txt -o target.csv --strokes link.csv
 ln -s piece.txt link.txt
 refuses test_score_is_not_overwritten_by_a_link "link.txt: named twice" render piece.txt -o x.wav --strokes link.txt
-refuses test_strokes_are_no_arrays "--strokes: a.npz, allowed endings are .csv" render piece.txt -o x.wav --strokes a.npz
-refuses test_motion_has_two_formats "--motion: a.npy, allowed endings are .csv and .npz" \
+refuses test_strokes_are_no_arrays "--strokes: a.npz, expected endings are .csv" render piece.txt -o x.wav --strokes a.npz
+refuses test_motion_has_two_formats "--motion: a.npy, expected endings are .csv and .npz" \
     render piece.txt -o x.wav --motion a.npy
 for option in "--trials 3" "--range 1-2" "--only legato" "--log x.csv"; do
     refuses "test_$(echo "${option% *}" | tr -d -)_is_not_for_own_captures" "${option% *}: not allowed with --take FILE" \
@@ -525,9 +525,9 @@ check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n
 refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
 refuses test_import_does_not_write_over_its_source "named twice" import roll.mid -o ./roll.mid
 refuses test_import_of_text_is_refused "not a MIDI file" import piece.txt -o x.txt
-refuses test_unknown_curve_is_refused "allowed notation, square, square:DB" import roll.mid --curve cube -o x.txt
-refuses test_curve_out_of_range_is_refused "allowed 1 .. 80 dB" import roll.mid --curve square:99 -o x.txt
-refuses test_unknown_part_is_refused "allowed timpani or drums" import roll.mid --part bass -o x.txt
+refuses test_unknown_curve_is_refused "expected notation, square, square:DB" import roll.mid --curve cube -o x.txt
+refuses test_curve_out_of_range_is_refused "expected 1 .. 80 dB" import roll.mid --curve square:99 -o x.txt
+refuses test_unknown_part_is_refused "expected timpani or drums" import roll.mid --part bass -o x.txt
 refuses test_part_that_is_not_there_is_refused "none of a drum (channel 10)" import roll.mid --part drums -o x.txt
 printf 'MThd junk' >junk.mid
 refuses test_bad_midi_file_is_refused_by_render "junk.mid: not a MIDI file" render junk.mid -o x.wav

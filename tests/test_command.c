@@ -456,46 +456,47 @@ static void test_every_form_of_every_command_is_accepted(void)
 static void test_errors_name_field_value_and_allowed_values(void)
 {
     refused(perform("stroke 1 left legato 1.7"),
-            "stroke: DYNAMIC: 1.7, allowed ppp pp p mp mf f ff fff or 0 .. 1");
+            "stroke: DYNAMIC: 1.7, expected ppp pp p mp mf f ff fff or 0 .. 1");
     refused(perform("stroke 1 left legatto f"),
-            "stroke: NUANCE: legatto, allowed legato tenuto accent vertical-accent staccato");
+            "stroke: NUANCE: legatto, expected legato tenuto accent vertical-accent staccato");
     refused(perform("stroke 1 left"),
-            "stroke: NUANCE missing, allowed stroke BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]");
+            "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]");
     refused(perform("stroke 1 left legato f 0.1"),
-            "stroke: SPOT: 0.1, allowed center normal rim or X Y, both -1 .. 1 m");
-    refused(perform("stroke x left legato f"), "stroke: BEAT: x, allowed 0 .. 1e+06");
-    refused(perform("mode idd"), "mode: idd, allowed himc id ik");
-    refused(perform("tempo 90 1 2"), "tempo: 2 is one atom too many, allowed tempo BPM [BEAT]");
-    refused(perform("play 1"), "play: 1 is one atom too many, allowed play");
-    refused(perform("rate task 5"), "rate: HZ: 5, allowed 50 .. 2000 Hz");
-    refused(drum("radius 0"), "radius: RADIUS: 0, allowed 0.05 .. 1 m");
-    refused(drum("modes 2.5"), "modes: 2.5, allowed 1 .. 2000, whole or auto");
-    refused(drum("tune 0"), "tune: 0, allowed 1 .. 20000 Hz or a note such as A2 or f#3");
-    refused(drum("tune H2"), "tune: H2, allowed 1 .. 20000 Hz or a note such as A2 or f#3");
-    refused(drum("mallet 5"), "mallet: 5, allowed soft medium hard wood");
+            "stroke: SPOT: 0.1, expected center normal rim or X Y, both -1 .. 1 m");
+    refused(perform("stroke x left legato f"), "stroke: BEAT: x, expected 0 .. 1e+06");
+    refused(perform("mode idd"), "mode: idd, expected himc id ik");
+    refused(perform("tempo 90 1 2"), "tempo: 2 is one atom too many, expected tempo BPM [BEAT]");
+    refused(perform("play 1"), "play: 1 is one atom too many, expected play");
+    refused(perform("rate task 5"), "rate: HZ: 5, expected 50 .. 2000 Hz");
+    refused(drum("radius 0"), "radius: RADIUS: 0, expected 0.05 .. 1 m");
+    refused(drum("modes 2.5"), "modes: 2.5, expected 1 .. 2000, whole or auto");
+    refused(drum("tune 0"), "tune: 0, expected 1 .. 20000 Hz or a note such as A2 or f#3");
+    refused(drum("tune H2"), "tune: H2, expected 1 .. 20000 Hz or a note such as A2 or f#3");
+    refused(drum("mallet 5"), "mallet: 5, expected soft medium hard wood");
     refused(drum("mallet 1e6 2.5"),
-            "mallet: MASS missing, allowed mallet soft|medium|hard|wood | K ALPHA MASS");
+            "mallet: MASS missing, expected mallet soft|medium|hard|wood | K ALPHA MASS");
     refused(drum("pickup air 0 0"),
-            "pickup: DISTANCE missing, allowed pickup air AZIMUTH ELEVATION DISTANCE | X Y");
-    refused(drum("kettle"), "kettle: atoms missing, allowed kettle usual | VOLUME");
+            "pickup: DISTANCE missing, expected pickup air AZIMUTH ELEVATION DISTANCE | X Y");
+    refused(drum("kettle"), "kettle: atoms missing, expected kettle usual | VOLUME");
 }
 
 static void test_a_word_that_fits_no_form_is_answered_with_all_forms(void)
 {
-    refused(perform("listener here"), "listener: here, allowed listener off | X Y Z [YAW]");
+    refused(perform("listener here"), "listener: here, expected listener off | X Y Z [YAW]");
     refused(perform("gain loud"),
-            "gain: loud, allowed gain reset | frequency FACTOR | JOINT KS KD | DB");
-    refused(perform("gain 100"), "gain: 100, allowed reset or -60 .. 24 dB");
-    refused(perform("grip american"), "grip: american, allowed german french or servo");
+            "gain: loud, expected gain reset | frequency FACTOR | JOINT KS KD | DB");
+    refused(perform("gain 100"), "gain: 100, expected reset or -60 .. 24 dB");
+    refused(perform("grip american"), "grip: american, expected german french or servo");
 }
 
 static void test_a_change_at_a_beat_without_its_drum_is_answered_with_that(void)
 {
     refused(perform("at 4 tune C3"),
-            "at: DRUM missing before tune, allowed at BEAT DRUM tune HZ | NOTE");
-    refused(perform("at 4 damp"), "at: DRUM missing before damp, allowed at BEAT DRUM damp AMOUNT");
+            "at: DRUM missing before tune, expected at BEAT DRUM tune HZ | NOTE");
+    refused(perform("at 4 damp"),
+            "at: DRUM missing before damp, expected at BEAT DRUM damp AMOUNT");
     refused(perform("at 4 damp 1"),
-            "at: DRUM missing before damp, allowed at BEAT DRUM damp AMOUNT");
+            "at: DRUM missing before damp, expected at BEAT DRUM damp AMOUNT");
     // a drum may have the name of a drum's command
     TEST_ASSERT_TRUE_MESSAGE(perform("at 4 damp tune C3"), error.text);
     TEST_ASSERT_TRUE_MESSAGE(perform("at 4 kettle tune C3"), error.text);
@@ -505,8 +506,8 @@ static void test_a_change_at_a_beat_without_its_drum_is_answered_with_that(void)
 static void test_a_refused_line_for_a_drum_asks_if_drum_was_meant(void)
 {
     refused(perform("drums kettle"),
-            "drums: kettle: atoms missing, allowed kettle usual | VOLUME; or did you mean drum?");
-    refused(perform("low damp 2"), "low: damp: AMOUNT: 2, allowed 0 .. 1");
+            "drums: kettle: atoms missing, expected kettle usual | VOLUME; or did you mean drum?");
+    refused(perform("low damp 2"), "low: damp: AMOUNT: 2, expected 0 .. 1");
 }
 
 static void test_centre_and_center_are_one_spot(void)
@@ -547,7 +548,7 @@ static void test_numbers_that_are_not_finite_are_refused(void)
 {
     himc_atom atom = {HIMC_ATOM_NUMBER, NAN, NULL};
     TEST_ASSERT_FALSE(himc_command_parse(&command, HIMC_PERFORMER, "tempo", &atom, 1, &error));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "nan is not a finite number, allowed 1 .. 1000"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "nan is not a finite number, expected 1 .. 1000"));
     atom.number = HUGE_VAL;
     TEST_ASSERT_FALSE(himc_command_parse(&command, HIMC_PERFORMER, "tempo", &atom, 1, &error));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "inf is not a finite number"));

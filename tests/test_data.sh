@@ -40,7 +40,7 @@ check test_columns_help_lists_groups [ "$?$(grep -c '^  \(tips\*\|torques\|energ
 HIMC_MARKDOWN=1 "$himc" render --columns help >table.md
 sed -n '/^| group |/,/^$/p' "$root/docs/data.md" | sed '/^$/d' >documented.md
 check test_the_documented_columns_are_those_of_the_program cmp documented.md table.md
-refuses test_an_unknown_group_is_refused '--columns: "torque", allowed: all, usual or groups' \
+refuses test_an_unknown_group_is_refused '--columns: "torque", expected all, usual or groups' \
     render piece.txt -o x.wav --motion x.csv --columns torque
 refuses test_columns_need_a_table "--columns: no --motion F given" render piece.txt -o x.wav --columns tips
 

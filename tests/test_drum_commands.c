@@ -154,7 +154,7 @@ static void test_drum_refuses_impossible_values_and_its_sound_does_not_change(vo
 static void test_drum_checks_commands_that_no_parser_has_seen(void)
 {
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_RADIUS, 0, 0, 0, 1));
-    TEST_ASSERT_EQUAL_STRING("radius: RADIUS: 0, allowed 0.05 .. 1 m", error.text);
+    TEST_ASSERT_EQUAL_STRING("radius: RADIUS: 0, expected 0.05 .. 1 m", error.text);
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_RADIUS, NAN, 0, 0, 1));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_TENSION, INFINITY, 0, 0, 1));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_MODES, NAN, 0, 0, 1));
@@ -168,7 +168,7 @@ static void test_drum_checks_commands_that_no_parser_has_seen(void)
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_STRIKE, 0, 0, 1, 0));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_TEMPO, 100, 0, 0, 1));
     TEST_ASSERT_NULL(himc_drum_new("x", 11, RATE, &error));
-    TEST_ASSERT_EQUAL_STRING("inches: 11 in, allowed 12 .. 60 in", error.text);
+    TEST_ASSERT_EQUAL_STRING("inches: 11 in, expected 12 .. 60 in", error.text);
     TEST_ASSERT_NULL(himc_drum_new("x", NAN, RATE, &error));
     TEST_ASSERT_NULL(himc_drum_new("x", 23, 0, &error));
     TEST_ASSERT_NULL(himc_drum_new("a name that is much longer than it may be", 23, RATE, &error));

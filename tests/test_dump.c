@@ -347,13 +347,13 @@ static void test_a_state_is_restored_from_text_all_or_nothing(void)
     TEST_ASSERT_TRUE_MESSAGE(himc_loader_restore(loader, &performer, state, &error), error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of(other));
     TEST_ASSERT_FALSE(himc_loader_restore(loader, &performer, "human 0.7;\nloop 3;\n", &error));
-    TEST_ASSERT_EQUAL_STRING("state:2: loop: SWITCH: 3, allowed 0 .. 1, whole", error.text);
+    TEST_ASSERT_EQUAL_STRING("state:2: loop: SWITCH: 3, expected 0 .. 1, whole", error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of(other));
     free(state);
     himc_load_target drum = {.drum = himc_performance_drum(other, 0)};
     state = copy_of(state_of_drum(drum.drum));
     TEST_ASSERT_FALSE(himc_loader_restore(loader, &drum, "mallet wood;\nnoise 7;\n", &error));
-    TEST_ASSERT_EQUAL_STRING("state:2: noise: AMOUNT: 7, allowed 0 .. 1", error.text);
+    TEST_ASSERT_EQUAL_STRING("state:2: noise: AMOUNT: 7, expected 0 .. 1", error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of_drum(drum.drum));
     TEST_ASSERT_TRUE(himc_loader_restore(loader, &drum, "mallet wood;\nnoise 0.7;\n", &error));
     TEST_ASSERT_NOT_NULL(strstr(state_of_drum(drum.drum), "mallet wood;\nnoise 0.7;\n"));
@@ -418,7 +418,7 @@ static void test_presets_are_what_a_dump_has_written_all_or_nothing(void)
     save("bad.txt", "tune 150;\nmallet soft;\nnoise 7;\n");
     TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, "preset bad", &error));
     TEST_ASSERT_FALSE(himc_drum_command(second, &c, &error));
-    TEST_ASSERT_EQUAL_STRING("preset: bad.txt:3: noise: AMOUNT: 7, allowed 0 .. 1", error.text);
+    TEST_ASSERT_EQUAL_STRING("preset: bad.txt:3: noise: AMOUNT: 7, expected 0 .. 1", error.text);
     TEST_ASSERT_EQUAL_STRING(state, state_of_drum(second));
     FILE *zero = fopen("zero.txt", "wb"); // what follows the zero would be lost without a word
     fwrite("tune 150;\n\0mallet wood;\n", 1, 24, zero);

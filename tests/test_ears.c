@@ -320,10 +320,10 @@ static void perform(void)
 static void test_listener_refuses_what_is_no_place(void)
 {
     perform();
-    refused("listener 16 0 1.2", "listener: X: 16, allowed -15 .. 15 m");
-    refused("listener 0 -15.1 1.2", "listener: Y: -15.1, allowed -15 .. 15 m");
-    refused("listener 0 0 -1", "listener: Z: -1, allowed 0 .. 3 m");
-    refused("listener 0 0 1 7", "listener: YAW: 7, allowed -6.2832 .. 6.2832 rad");
+    refused("listener 16 0 1.2", "listener: X: 16, expected -15 .. 15 m");
+    refused("listener 0 -15.1 1.2", "listener: Y: -15.1, expected -15 .. 15 m");
+    refused("listener 0 0 -1", "listener: Z: -1, expected 0 .. 3 m");
+    refused("listener 0 0 1 7", "listener: YAW: 7, expected -6.2832 .. 6.2832 rad");
     refused("listener 0 0 nan", "listener");
     refused("listener on", "listener");
     TEST_ASSERT_FALSE(drum->listener.on);

@@ -55,9 +55,9 @@ check test_a_cut_off_row_is_done_again cmp cut.csv whole.csv
 check test_a_log_gone_on_with_has_whole_rows [ "$(sort cut.log)" = "$(sort whole.log)" ]
 
 refuses test_no_trials_are_refused "--trials" --trials 0
-refuses test_a_range_beyond_the_trials_is_refused "--range: 2-3, allowed A-B within 1-2" --trials 2 --range 2-3
+refuses test_a_range_beyond_the_trials_is_refused "--range: 2-3, expected A-B within 1-2" --trials 2 --range 2-3
 refuses test_a_range_backwards_is_refused "--range: 2-1" --trials 2 --range 2-1
-refuses test_an_unknown_word_is_refused "--only: legatto, allowed: a nuance" --trials 2 --only legatto
+refuses test_an_unknown_word_is_refused "--only: legatto, expected a nuance" --trials 2 --only legatto
 refuses test_no_jobs_are_refused "--jobs" --jobs 0
 refuses test_one_file_for_both_tables_is_refused "x.csv: named twice" --trials 1 --log x.csv --csv x.csv
 # another program's log, or one that a hand has changed: the last row of each part is played again
@@ -72,7 +72,7 @@ sed '2s/legato/legatto/' whole.log >foreign.log
 refuses test_a_foreign_row_is_refused_with_its_line "foreign.log:2: not a row of trials" --trials 2 --log foreign.log
 sed '3s/[^,]*$/nan/' whole.log >nan.log
 refuses test_a_number_not_finite_is_refused_with_its_line "nan.log:3: played: nan" --trials 2 --log nan.log
-refuses test_a_comma_alone_is_refused "--only: no word, allowed" --trials 2 --only ,
+refuses test_a_comma_alone_is_refused "--only: no word, expected" --trials 2 --only ,
 # before the trials: they would take hours
 two_hours="--trials 10000 --csv /nonexistent/x"
 timeout 60 "$himc" evaluate $two_hours >stdout 2>stderr

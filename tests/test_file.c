@@ -140,7 +140,7 @@ static void test_whatever_is_no_file_is_refused_at_once_by_every_reader_and_writ
         for (int kind = 0; kind < KINDS; kind++) {
             make(kind, users[u].name);
             users[u].use(users[u].name);
-            snprintf(expected, sizeof expected, "%s: cannot be %s: %s, allowed a regular file",
+            snprintf(expected, sizeof expected, "%s: cannot be %s: %s, expected a regular file",
                      path, users[u].writes ? "written" : "read", kinds[kind]);
             const char *said = strstr(error.text, expected);
             TEST_ASSERT_NOT_NULL_MESSAGE(said, error.text);
@@ -215,7 +215,7 @@ static void test_file_is_loaded_whole_or_refused(void)
     text[most] = 'a';
     put("long", text);
     TEST_ASSERT_NULL(himc_file_load(at("long"), most, &size, &error));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "long: too long, allowed 1 MiB"), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "long: too long, expected 1 MiB"), error.text);
     free(text);
     // the kernel says 0 bytes of such a file
     loaded = himc_file_load("/proc/self/status", most, &size, &error);

@@ -201,24 +201,25 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     TEST_ASSERT_TRUE_MESSAGE(shape_of("bad.txt"), error.text);
     TEST_ASSERT_TRUE(say("shape circle"));
     refuses("k", "2 -1\n-0.9 2\n", "stiffness: not symmetric: (1, 2) is -1, (2, 1) is -0.9");
-    refuses("k", "1 2\n2 1\n",
-            "stiffness: negative: its lowest eigenvalue is -1 1/s2, its highest 3, allowed from 0");
-    refuses("k", "0 0\n0 0\n", "stiffness: 0, allowed one that resists bending");
+    refuses(
+        "k", "1 2\n2 1\n",
+        "stiffness: negative: its lowest eigenvalue is -1 1/s2, its highest 3, expected from 0");
+    refuses("k", "0 0\n0 0\n", "stiffness: 0, expected one that resists bending");
     refuses("k", "1 2\n2\n", "k:2: number 2 of 2 is missing or not a number");
     refuses("k", "1 2\n2 x\n", "k:2: number 2 of 2 is missing or not a number");
     refuses("k", "1 2\n2 1 3\n", "k:2: more than 2");
     refuses("k", "1 2\n", "stiffness: 1 rows of 2");
     refuses("k", "%%MatrixMarket matrix coordinate real symmetric\n99999 99999 1\n1 1 1\n",
-            "rows: 99999, allowed 1 .. 800");
+            "rows: 99999, expected 1 .. 800");
     refuses("k", "%%MatrixMarket matrix coordinate real symmetric\n801 801 1\n1 1 1\n",
-            "k:2: rows: 801, allowed 1 .. 800");
-    refuses("k", row_of(801), "k:1: columns: 801, allowed 1 .. 800");
+            "k:2: rows: 801, expected 1 .. 800");
+    refuses("k", row_of(801), "k:1: columns: 801, expected 1 .. 800");
     put("k", "2 -1\n-1 2\n");
-    refuses("p", rows_of(4001), "p:4001: rows: 4001, allowed 1 .. 4000");
+    refuses("p", rows_of(4001), "p:4001: rows: 4001, expected 1 .. 4000");
     put("p", "0 0\n0.2 0\n0 0.2\n");
     refuses("k", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n3 1 1\n",
             "k:4: row or column outside");
-    refuses("k", "%%MatrixMarket matrix coordinate complex general\n", "k:1: allowed");
+    refuses("k", "%%MatrixMarket matrix coordinate complex general\n", "k:1: expected");
     refuses("k", "%%MatrixMarket matrix array real symmetric\n2 1\n1\n1\n",
             "k:2: symmetric, but not square");
     refuses("k", "%%MatrixMarket matrix array real general\n2 2\n1\n1\n1\n",
@@ -230,7 +231,7 @@ static void test_grid_refuses_bad_files_with_the_reason(void)
     refuses("p", "0 0\n", "mass: 2 rows but 1 places");
     put("p", "0 0\n0.2 0\n0 0.2\n");
     refuses("p", "%%MatrixMarket matrix array real general\n1 3\n0\n0\n0\n",
-            "p: rows of 3 numbers, allowed 2");
+            "p: rows of 3 numbers, expected 2");
     put("p", "0 0\n0.2 0\n0 0.2\n");
     refuses("bad.txt", GOOD "mass m\n", "bad.txt:6: mass: named twice");
     refuses("bad.txt", "tension 1000\ndensity 0.3\nplaces p\nstiffness k\n", "mass: missing");
@@ -365,7 +366,7 @@ static void test_rectangle_has_the_modes_of_a_string_in_both_directions(void)
     TEST_ASSERT_TRUE(say("tune 150"));
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, 150, himc_membrane_mode(m, 0).frequency);
     TEST_ASSERT_FALSE(say("air 1"));
-    TEST_ASSERT_EQUAL_STRING("air: 1, allowed 0 on a head that is not round", error.text);
+    TEST_ASSERT_EQUAL_STRING("air: 1, expected 0 on a head that is not round", error.text);
     TEST_ASSERT_FALSE(say("shape rectangle"));
     TEST_ASSERT_FALSE(say("shape rectangle 0.6 nan"));
     TEST_ASSERT_TRUE(say("shape circle"));

@@ -139,13 +139,12 @@ static void test_hits_and_targets_move_the_hands_after_a_take(void)
     heard h = {0};
     playing(1.5);
     TEST_ASSERT_FALSE(session_try(p, "hit right accent f"));
-    TEST_ASSERT_EQUAL_STRING("hit: a take moves the hands, allowed when it is over", error.text);
+    TEST_ASSERT_EQUAL_STRING("hit: not possible while a take is playing", error.text);
     session_do(p, "target right 0.5 -0.1 1.2");
     session_do(p, "target right 0.5 -0.1 1.2");
     session_play(p, 0.01, &h);
     TEST_ASSERT_EQUAL_INT(1, h.notes); // not for each of a stream
-    TEST_ASSERT_EQUAL_STRING("target right: a take moves the hand, allowed when it is over",
-                             h.note);
+    TEST_ASSERT_EQUAL_STRING("target right: not possible while a take is playing", h.note);
     session_play(p, SECONDS + 1, NULL);
     h.strikes = 0;
     session_do(p, "hit right accent f");

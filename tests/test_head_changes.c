@@ -199,17 +199,18 @@ static void refused(const char *text, const char *expected)
 
 static void test_a_wrong_change_is_refused_with_its_line(void)
 {
-    refused("drum low;\nat 2 low mallet hard;",
-            SCORE ":2: at: mallet, allowed what changes a head: tune, tension, damp, decay, glide");
+    refused(
+        "drum low;\nat 2 low mallet hard;", SCORE
+        ":2: at: mallet, expected a command that changes a drumhead: tune, tension, damp, decay, glide");
     refused("drum low;\n\nat 2 low tune;",
-            SCORE ":3: low: tune: HZ missing, allowed tune HZ | NOTE");
-    refused("drum low;\nat -1 low tune A2;", SCORE ":2: at: BEAT: -1, allowed 0 .. 1e+06");
-    refused("drum low;\nat low tune A2;", SCORE ":2: at: BEAT: low, allowed 0 .. 1e+06");
+            SCORE ":3: low: tune: HZ missing, expected tune HZ | NOTE");
+    refused("drum low;\nat -1 low tune A2;", SCORE ":2: at: BEAT: -1, expected 0 .. 1e+06");
+    refused("drum low;\nat low tune A2;", SCORE ":2: at: BEAT: low, expected 0 .. 1e+06");
     refused("drum low;\nat 2 low;",
-            SCORE ":2: at: COMMAND missing, allowed at BEAT DRUM COMMAND [...] | BEAT push "
+            SCORE ":2: at: COMMAND missing, expected at BEAT DRUM COMMAND [...] | BEAT push "
                   "SEGMENT [...]");
     refused("drum low 60;\nat 7 low damp 1; at 8 low tune 2000;",
-            SCORE ":2: low: tune: 2000 Hz, allowed 2.58125 .. 215.288 Hz");
+            SCORE ":2: low: tune: 2000 Hz, expected 2.58125 .. 215.288 Hz");
 }
 
 // a final damping, a final glissando
@@ -290,11 +291,12 @@ static void test_at_as_a_message_is_refused_as_in_a_file(void)
     TEST_ASSERT_EQUAL_STRING("high: no drum (low)", error.text);
     TEST_ASSERT_FALSE(session_try(p, "at 2 low mallet hard"));
     TEST_ASSERT_EQUAL_STRING(
-        "at: mallet, allowed what changes a head: tune, tension, damp, decay, glide", error.text);
+        "at: mallet, expected a command that changes a drumhead: tune, tension, damp, decay, glide",
+        error.text);
     TEST_ASSERT_FALSE(session_try(p, "at 2 low tune"));
-    TEST_ASSERT_EQUAL_STRING("low: tune: HZ missing, allowed tune HZ | NOTE", error.text);
+    TEST_ASSERT_EQUAL_STRING("low: tune: HZ missing, expected tune HZ | NOTE", error.text);
     TEST_ASSERT_FALSE(session_try(p, "at 2 low tune 1900"));
-    TEST_ASSERT_EQUAL_STRING("low: tune: 1900 Hz, allowed 7.75676 .. 581.205 Hz", error.text);
+    TEST_ASSERT_EQUAL_STRING("low: tune: 1900 Hz, expected 7.75676 .. 581.205 Hz", error.text);
     session_do(p, "at 2 low tune D3"); // the refused ones have left nothing
     session_do(p, "play");
     session_play(p, 1.2, NULL);
@@ -407,7 +409,7 @@ static void test_a_note_that_a_changed_head_cannot_have_is_left_out_and_told(voi
     session_play(p, 1.2, &h);
     TEST_ASSERT_EQUAL_DOUBLE(before, pitch(p));
     TEST_ASSERT_EQUAL_DOUBLE(0.5, damping(p));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.note, "at: low tune: 500 Hz, allowed "), h.note);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.note, "at: low tune: 500 Hz, expected "), h.note);
     heard_free(&h);
     himc_performance_free(p);
 }

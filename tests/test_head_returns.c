@@ -151,7 +151,7 @@ static void check_release(const char *damp, double seconds, bool ears)
         released[i] -= held[i];
     double back = level(released, AFTER) / loud, allowed = fmax(1e-5, 3 * sqrt(left / most));
     char text[200];
-    snprintf(text, sizeof text, "%s for %g s, %s: %.1f dB, allowed %.1f", damp, seconds,
+    snprintf(text, sizeof text, "%s for %g s, %s: %.1f dB, expected %.1f", damp, seconds,
              ears ? "two ears" : "one channel", 20 * log10(back), 20 * log10(allowed));
     TEST_ASSERT_TRUE_MESSAGE(back <= allowed, text);
 }

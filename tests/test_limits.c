@@ -186,7 +186,7 @@ static void test_learning_refuses_no_frames_margins_out_of_range_and_non_rotatio
     memset(&limits, 7, sizeof limits);
     before = limits;
     TEST_ASSERT_FALSE(himc_limits_learn(&limits, motion, 0, 0, &error));
-    TEST_ASSERT_EQUAL_STRING("limits: 0 frames, allowed at least 1", error.text);
+    TEST_ASSERT_EQUAL_STRING("limits: 0 frames, expected at least 1", error.text);
     TEST_ASSERT_FALSE(himc_limits_learn(&limits, motion, 2, 1.5, &error));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "margin"));
     motion[0] = motion[1] = himc_pose_zero();

@@ -191,7 +191,7 @@ static void test_a_failed_load_is_told_in_its_line_and_the_next_go_on(void)
     TEST_ASSERT_EQUAL_INT(5, tellings);
     TEST_ASSERT_NOT_NULL(strstr(told[0], "missing.bvh"));
     TEST_ASSERT_NOT_NULL(strstr(told[1], SCORE ":1: missing.bvh"));
-    TEST_ASSERT_EQUAL_STRING("record: stop: nothing is being recorded, allowed FILE", told[2]);
+    TEST_ASSERT_EQUAL_STRING("record: stop: nothing is being recorded, expected FILE", told[2]);
     TEST_ASSERT_EQUAL_STRING("done", told[3]);
     TEST_ASSERT_NOT_NULL(strstr(told[4], "missing.txt"));
     TEST_ASSERT_EQUAL_INT(HIMC_MODES_AUTO, modes_of(p)); // nothing of the score was installed

@@ -116,7 +116,7 @@ static void test_decimal_commas_are_read_where_no_comma_parts_the_cells(void)
     himc_take_free(take);
     refused(
         "a.csv", "time_s;A_x_m;A_y_m;A_z_m\n0;1.250,25;0;1\n0,01;0;0;1\n",
-        "a.csv:2: A X is \"1.250,25\", allowed: a number up to 1e8, or an empty cell for a gap");
+        "a.csv:2: A X is \"1.250,25\", expected a number up to 1e8, or an empty cell for a gap");
 }
 
 #define MOTIVE_FIRST                                                        \
@@ -152,11 +152,11 @@ static void test_motive_is_read_with_the_markers_as_measured(void)
 static void test_motive_without_markers_or_header_is_refused(void)
 {
     refused("a.csv", MOTIVE_FIRST "0,0.0,1,2,3\n",
-            "a.csv:3: no line Frame,Time (Seconds),X,Y,Z,..., allowed: an export with a header");
+            "a.csv:3: no line Frame,Time (Seconds),X,Y,Z,..., expected an export with a header");
     refused("a.csv",
             MOTIVE_FIRST ",,Bone,Bone,Bone\n,,A,A,A\n,,Rotation,Rotation,Rotation\n"
                          "Frame,Time (Seconds),X,Y,Z\n0,0,1,2,3\n",
-            "a.csv:6: no columns Position, allowed: an export with markers, rigid bodies or bones");
+            "a.csv:6: no columns Position, expected an export with markers, rigid bodies or bones");
     refused("a.csv", "Format Version,1.23,Export Frame Rate,fast\n",
             "a.csv:1: Export Frame Rate is no number (Hz)");
 }
@@ -164,28 +164,28 @@ static void test_motive_without_markers_or_header_is_refused(void)
 static void test_wrong_tables_are_refused_where_they_are_wrong(void)
 {
     refused("a.csv", "Devices\n1000\n",
-            "a.csv: no section Trajectories, allowed: an export with trajectories");
-    refused("a.csv", "Trajectories\nfast\n", "a.csv:2: no rate, allowed: frames per second (Hz)");
+            "a.csv: no section Trajectories, expected an export with trajectories");
+    refused("a.csv", "Trajectories\nfast\n", "a.csv:2: no rate, expected frames per second (Hz)");
     refused("a.csv", "Trajectories\n100\n,,,\n",
-            "a.csv:3: no names of markers, allowed: one above each first column");
+            "a.csv:3: no names of markers, expected one above each first column");
     refused("a.csv", "Trajectories\n100\n,,A,B,C\n",
             "a.csv:3: two names less than three columns apart");
     refused("a.csv", NEXUS_HEAD "\n", "a.csv:12: no rows");
     refused(
         "a.csv", NEXUS_HEAD "7,0,1,2,3,soon,2,3\n",
-        "a.csv:13: Ida:RTIP X is \"soon\", allowed: a number up to 1e8, or an empty cell for a gap");
+        "a.csv:13: Ida:RTIP X is \"soon\", expected a number up to 1e8, or an empty cell for a gap");
     refused("a.csv", NEXUS_HEAD "7,0,1,2,3,1,2\n",
-            "a.csv:13: Ida:RTIP has 2 of its 3 coordinates, allowed all or none");
+            "a.csv:13: Ida:RTIP has 2 of its 3 coordinates, expected all or none");
     refused("a.csv", "Trajectories\n100\n,,A,,,B\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n,,mm,mm,mm,m,m,m\n",
-            "a.csv:5: markers in several units, allowed one");
-    refused("a.tsv", TSV_HEAD, "a.tsv:8: no rows, allowed: a TSV with MARKER_NAMES, then numbers");
+            "a.csv:5: markers in several units, expected one");
+    refused("a.tsv", TSV_HEAD, "a.tsv:8: no rows, expected a TSV with MARKER_NAMES, then numbers");
     refused("a.tsv", "NO_OF_FRAMES\t1\n1\t2\t3\n", "a.tsv:1: no MARKER_NAMES before the rows");
     refused("a.csv", "A_x_m,A_y_m,A_z_m\n1,2,3\n", "a.csv:1: no column time (s)");
     refused("a.csv", "time,A_x_m,A_y_m,A_z_m\n0,1,2,3\n", "a.csv:1: one row: no rate");
     refused("a.csv", "time,A_x_m,A_y_m,A_z_m\n0,1,2,3\nx,1,2,3\n",
-            "a.csv:3: the time is \"x\", allowed: a number");
+            "a.csv:3: the time is \"x\", expected a number");
     refused("a.csv", "time,A_x_m,A_y_m,A_z_m,B_x_mm,B_y_mm,B_z_mm\n",
-            "a.csv:1: markers in several units, allowed one");
+            "a.csv:1: markers in several units, expected one");
 }
 
 static void test_captures_that_are_not_read_are_refused_with_the_way_out(void)
@@ -201,7 +201,7 @@ static void test_tables_are_not_written(void)
 {
     himc_take *take = read("a.csv", NEXUS_HEAD NEXUS_ROWS);
     TEST_ASSERT_FALSE(himc_take_save(take, "build/a.csv", &error));
-    TEST_ASSERT_EQUAL_STRING("build/a.csv: a format that is not written, allowed .bvh .c3d .trc",
+    TEST_ASSERT_EQUAL_STRING("build/a.csv: a format that is not written, expected .bvh .c3d .trc",
                              error.text);
     himc_take_free(take);
 }

@@ -448,7 +448,7 @@ static void test_membrane_refuses_bad_values_and_does_not_change(void)
     himc_pickup too_near = himc_pickup_default();
     too_near.distance = 0;
     TEST_ASSERT_FALSE(himc_membrane_set_pickups(membrane, &too_near, 1, &error));
-    TEST_ASSERT_EQUAL_STRING("pickup: DISTANCE: 0 m, allowed 0.3 .. 100 m", error.text);
+    TEST_ASSERT_EQUAL_STRING("pickup: DISTANCE: 0 m, expected 0.3 .. 100 m", error.text);
     TEST_ASSERT_FALSE(himc_membrane_set_rate(membrane, NAN, &error));
     run(1000);
     static double same[1000], same_displacement[1000];

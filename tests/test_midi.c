@@ -244,13 +244,13 @@ static void test_a_bad_file_is_refused_in_one_line(void)
     refused(&b, "track 1: data without a status byte");
     begin(&b);
     b.bytes[9] = 3;
-    refused(&b, "MIDI format 3, allowed 0 .. 2");
+    refused(&b, "MIDI format 3, expected 0 .. 2");
     begin(&b);
     b.bytes[13] = 0;
-    refused(&b, "a division of 0 ticks, allowed 1 or more");
+    refused(&b, "a division of 0 ticks, expected 1 or more");
     begin(&b);
     b.bytes[7] = 200;
-    refused(&b, "a header of 200 bytes, allowed 6 .. 14");
+    refused(&b, "a header of 200 bytes, expected 6 .. 14");
     b.size = 14;
     b.bytes[7] = 6;
     refused(&b, "a MIDI file without a track");

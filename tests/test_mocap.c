@@ -195,14 +195,14 @@ static void test_impossible_configs_are_refused_in_a_line(void)
     himc_mocap_config c = himc_mocap_default();
     c.player = 3;
     TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
-    TEST_ASSERT_EQUAL_STRING("player: 3, allowed 0 .. 2", error.text);
+    TEST_ASSERT_EQUAL_STRING("player: 3, expected 0 .. 2", error.text);
     c = himc_mocap_default();
     c.spot = HIMC_SPOT_XY;
     TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
     c = himc_mocap_default();
     c.strokes = 1;
     TEST_ASSERT_NULL(himc_mocap_new(&c, &error));
-    TEST_ASSERT_EQUAL_STRING("strokes: 1, allowed 2 .. 200", error.text);
+    TEST_ASSERT_EQUAL_STRING("strokes: 1, expected 2 .. 200", error.text);
 }
 
 static himc_take *write_and_read(const himc_mocap *m, const char *suffix)

@@ -198,15 +198,15 @@ static void test_head_refuses_fields_out_of_range_with_the_range(void)
 {
     TEST_ASSERT_TRUE(himc_head_check(&head, &error));
     head.radius = 0;
-    refused("radius: 0 m, allowed 0.05 .. 1 m");
+    refused("radius: 0 m, expected 0.05 .. 1 m");
     head.tension = NAN;
-    refused("tension: nan N/m, allowed 10 .. 100000 N/m");
+    refused("tension: nan N/m, expected 10 .. 100000 N/m");
     head.density = -1;
-    refused("density: -1 kg/m2, allowed 0.001 .. 1000 kg/m2");
+    refused("density: -1 kg/m2, expected 0.001 .. 1000 kg/m2");
     head.modes = -1;
-    refused("modes: -1, allowed 1 .. 4000");
+    refused("modes: -1, expected 1 .. 4000");
     head.decay_square = INFINITY;
-    refused("decay S1: inf s, allowed 0 .. 1 s");
+    refused("decay S1: inf s, expected 0 .. 1 s");
     TEST_ASSERT_NULL(himc_modes_new(&circle, 4001, &error));
 }
 

@@ -147,7 +147,7 @@ static void test_a_push_begins_when_it_arrives_and_ends(void)
     subscribe("errors");
     say("/himc/push", "nobody 0 0 40 0.2");
     play(0.1);
-    TEST_ASSERT_NOT_NULL(strstr(last_error(), "push: SEGMENT: nobody, allowed"));
+    TEST_ASSERT_NOT_NULL(strstr(last_error(), "push: SEGMENT: nobody, expected"));
 }
 
 static void test_time_tag_is_ntp_time(void)

@@ -305,7 +305,7 @@ static void test_errors_name_files_as_the_sender_did(void)
 {
     share_folder();
     write_text("share/wrong.txt", "tempo 100;\ntempo fast;\n");
-    TEST_ASSERT_EQUAL_STRING("wrong.txt:2: tempo: BPM: fast, allowed 1 .. 1000 beats per minute",
+    TEST_ASSERT_EQUAL_STRING("wrong.txt:2: tempo: BPM: fast, expected 1 .. 1000 beats per minute",
                              attempt("/himc/score", "wrong.txt", NULL));
     TEST_ASSERT_EQUAL_STRING("attack.txt:1: record x.bvh: no file is written over the network",
                              attempt_line("record x.bvh"));
@@ -375,7 +375,7 @@ static void test_a_folder_and_a_name_too_long_for_a_command_are_refused(void)
         TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER, name, &error));
         bool fits = length + 1 + sizeof folder <= sizeof command.storage;
         TEST_ASSERT_EQUAL_INT(fits, himc_confine_command(&command, folder, &error));
-        TEST_ASSERT_TRUE(fits || strstr(error.text, "allowed 279"));
+        TEST_ASSERT_TRUE(fits || strstr(error.text, "expected 279"));
         TEST_ASSERT_EQUAL_STRING(name + 5, command.atom[0].symbol);
     }
 }
@@ -411,7 +411,7 @@ static void test_no_file_is_read_over_the_network_without_a_folder(void)
     TEST_ASSERT_NOT_NULL(
         strstr(attempt("/himc/score", "patches/improvisation.txt", NULL), "--files"));
     TEST_ASSERT_NOT_NULL(strstr(attempt("/himc/take", "x.bvh", NULL), "--files"));
-    TEST_ASSERT_EQUAL_STRING("x.txt: no file is read over the network, allowed with --files",
+    TEST_ASSERT_EQUAL_STRING("x.txt: files are read over the network only with --files",
                              attempt("/himc/preset", "x", NULL));
 }
 

@@ -153,7 +153,7 @@ static void test_only_subscriptions_are_the_networks_and_only_as_many_as_have_ro
     int taken = 0;
     TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER, "stop", &error));
     TEST_ASSERT_FALSE(himc_osc_command(osc, &command, &error));
-    TEST_ASSERT_EQUAL_STRING("allowed here: subscribe unsubscribe", error.text);
+    TEST_ASSERT_EQUAL_STRING("expected subscribe or unsubscribe", error.text);
     TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER,
                                              "subscribe 127.0.0.1 9 targets 50", &error));
     while (taken < 100000 && himc_osc_command(osc, &command, &error))
@@ -172,13 +172,13 @@ static void test_bad_settings_are_refused_in_a_line(void)
     himc_osc_config config = himc_osc_default();
     config.port = 65536;
     TEST_ASSERT_NULL(himc_osc_reopen(NULL, &config, &error));
-    TEST_ASSERT_EQUAL_STRING("port: 65536, allowed 0 .. 65535", error.text);
+    TEST_ASSERT_EQUAL_STRING("port: 65536, expected 0 .. 65535", error.text);
     config.port = 0;
     for (int i = 1; i < 33; i++)
         sprintf(hosts + strlen(hosts), ",127.0.0.%d", 1 + i);
     config.allow = hosts;
     TEST_ASSERT_NULL(himc_osc_new(&config, &error));
-    TEST_ASSERT_EQUAL_STRING("allow: 127.0.0.33 is one host too many, allowed 32", error.text);
+    TEST_ASSERT_EQUAL_STRING("allow: 127.0.0.33 is one host too many, expected 32", error.text);
     memset(hosts, 'x', 300);
     hosts[300] = 0;
     TEST_ASSERT_NULL(himc_osc_new(&config, &error));

@@ -617,7 +617,7 @@ static void test_commands_that_are_not_the_performers_or_too_far_ahead_are_refus
     TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_PERFORMER, "stop", &error));
     TEST_ASSERT_TRUE(himc_performance_command(p, &c, 8192, &error));
     TEST_ASSERT_FALSE(himc_performance_command(p, &c, 8193, &error));
-    TEST_ASSERT_EQUAL_STRING("delay: 8193 samples, allowed 0 .. 8192", error.text);
+    TEST_ASSERT_EQUAL_STRING("delay: 8193 samples, expected 0 .. 8192", error.text);
     for (int i = 0; i < 2; i++) {
         c.id = (himc_command_id)(i == 0 ? -3 : HIMC_COMMANDS);
         TEST_ASSERT_FALSE(himc_performance_command(p, &c, 0, &error));
@@ -674,7 +674,7 @@ static void test_weights_out_of_range_name_their_segment(void)
         weight[i] = 1;
     weight[HIMC_LEFT_HAND] = -1;
     TEST_ASSERT_FALSE(himc_performance_set_weights(p, weight, &error));
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, strncmp(error.text, "left-hand: weight: -1, allowed", 30),
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, strncmp(error.text, "left-hand: weight: -1, expected", 30),
                                   error.text);
     himc_performance_free(p);
 }

@@ -172,7 +172,7 @@ static void test_too_little_strength_of_a_joint_is_counted(void)
     TEST_ASSERT_EQUAL_INT(0, strncmp(told_of, "strength left-wrist 0.2 N m: too weak in ", 41));
     session_do(p, "strength off");
     TEST_ASSERT_FALSE(session_try(p, "strength left-ear 3"));
-    TEST_ASSERT_NOT_NULL(strstr(error.text, "strength: JOINT: left-ear, allowed waist neck"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "strength: JOINT: left-ear, expected waist neck"));
     himc_performance_free(p);
 }
 

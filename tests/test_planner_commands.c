@@ -129,7 +129,7 @@ static void test_tempi_out_of_order_or_none_are_refused(void)
     TEST_ASSERT_FALSE(himc_planner_set_tempi(planner, tempi, 3, &error));
     TEST_ASSERT_EQUAL_STRING("tempo: BEAT: 3 is not after the one before", error.text);
     TEST_ASSERT_FALSE(himc_planner_set_tempi(planner, tempi, 0, &error));
-    TEST_ASSERT_EQUAL_STRING("tempo: 0 changes, allowed 1 or more", error.text);
+    TEST_ASSERT_EQUAL_STRING("tempo: 0 changes, expected 1 or more", error.text);
     himc_planner_play(planner, 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2,
                               himc_planner_beat(planner, 2) - himc_planner_beat(planner, 1));
@@ -213,7 +213,7 @@ static void test_strokes_nearer_than_40_ms_or_on_no_drum_are_refused(void)
     add(planner, 1, HIMC_LEFT, HIMC_LEGATO, 0.5);
     TEST_ASSERT_FALSE(himc_planner_add(planner, &s, 0, &error));
     TEST_ASSERT_EQUAL_STRING("stroke: BEAT: 1.05 is 0.025 s from another stroke of the left hand, "
-                             "allowed 0.04 s or more",
+                             "expected 0.04 s or more",
                              error.text);
     s.hand = HIMC_RIGHT;
     TEST_ASSERT_TRUE(himc_planner_add(planner, &s, 0, &error));
@@ -453,7 +453,7 @@ static void test_a_score_has_room_behind_another_up_to_200000_strokes_of_a_hand(
         add(planner, i, HIMC_LEFT, HIMC_LEGATO, 0.5);
     TEST_ASSERT_TRUE(himc_planner_has_room(planner, more, 3, &error));
     TEST_ASSERT_FALSE(himc_planner_has_room(planner, more, 4, &error));
-    TEST_ASSERT_EQUAL_STRING("stroke: one too many, allowed 200000 for a hand", error.text);
+    TEST_ASSERT_EQUAL_STRING("stroke: one too many, expected 200000 for a hand", error.text);
 }
 
 static void test_a_hit_without_a_time_or_a_drum_is_refused_and_changes_nothing(void)

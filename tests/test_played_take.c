@@ -188,8 +188,9 @@ static void test_a_take_that_is_refused_changes_nothing(void)
     session_do(p, "take %s", FILE_NAME);
     himc_performance_take_options(p, &huge);
     TEST_ASSERT_FALSE(session_try(p, "take %s", FILE_NAME));
-    TEST_ASSERT_EQUAL_STRING(FILE_NAME ": player: left-upper-arm of 2.94 m, allowed 0.14 .. 0.45 m:"
-                                       " is the unit right?",
+    TEST_ASSERT_EQUAL_STRING(FILE_NAME
+                             ": player: left-upper-arm of 2.94 m, expected 0.14 .. 0.45 m:"
+                             " is the unit right?",
                              error.text);
     session_do(p, "play");
     himc_performance_process(p, (int)((SECONDS + 2) * 48000), NULL);

@@ -142,7 +142,7 @@ static void test_left_and_right_exchanged_are_refused_with_a_line(void)
     exchange_names("LeftHand", "RightHand");
     TEST_ASSERT_NULL(himc_player_new(take, NULL, &given, &error));
     TEST_ASSERT_EQUAL_STRING("build/player.bvh: player: the left shoulder is over the right hip, "
-                             "allowed over the left one: are left and right exchanged?",
+                             "expected over the left one: are left and right exchanged?",
                              error.text);
 }
 
@@ -169,7 +169,7 @@ static void test_a_player_of_seventeen_metres_is_refused_with_a_line(void)
         take->x[i] = himc_vec3_scale(take->x[i], 10);
     player = himc_player_new(take, NULL, &given, &error);
     TEST_ASSERT_NULL(player);
-    TEST_ASSERT_EQUAL_STRING("build/player.bvh: player: left-upper-arm of 2.83 m, allowed 0.14 .. "
+    TEST_ASSERT_EQUAL_STRING("build/player.bvh: player: left-upper-arm of 2.83 m, expected 0.14 .. "
                              "0.45 m: is the unit right?",
                              error.text);
 }
@@ -220,7 +220,7 @@ static void test_metres_ten_times_too_long_are_refused_with_a_line(void)
     TEST_ASSERT_NULL(himc_player_new(other, NULL, &given, &error));
     himc_take_free(other);
     TEST_ASSERT_EQUAL_STRING(
-        "build/saved-player.bvh: player: height: 0.987778 m, allowed 1.19 .. 2.21 m", error.text);
+        "build/saved-player.bvh: player: height: 0.987778 m, expected 1.19 .. 2.21 m", error.text);
 }
 
 static void test_a_cmu_skeleton_gives_a_player_of_human_size(void)

@@ -79,7 +79,7 @@ static void test_a_long_gap_of_a_marker_leaves_its_joints_natural_with_a_note(vo
     TEST_ASSERT_FALSE(player->known[himc_joint_find("right-elbow")]);
     TEST_ASSERT_TRUE(player->known[himc_joint_find("left-elbow")]);
     TEST_ASSERT_EQUAL_INT(1, player->note_count);
-    TEST_ASSERT_EQUAL_STRING("right elbow: RightForeArm is missing in frames 100 .. 199, allowed: "
+    TEST_ASSERT_EQUAL_STRING("right elbow: RightForeArm is missing in frames 100 .. 199, expected "
                              "gaps up to 0.2 s",
                              player->notes[0]);
 }

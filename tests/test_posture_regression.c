@@ -168,7 +168,7 @@ static void test_a_take_of_the_player_corrects_the_weights_of_others(void)
     himc_posture_regression kept = regression;
     none.frames = 20;
     TEST_ASSERT_FALSE(himc_posture_regression_correct(&regression, &none, NULL, &error));
-    TEST_ASSERT_EQUAL_STRING("posture regression: a take of 20 frames, allowed 36 or more",
+    TEST_ASSERT_EQUAL_STRING("posture regression: a take of 20 frames, expected 36 or more",
                              error.text);
     TEST_ASSERT_EQUAL_MEMORY(&kept, &regression, sizeof regression);
 }
@@ -354,16 +354,16 @@ static void test_takes_that_determine_nothing_are_refused_with_the_reason(void)
     himc_error error;
     himc_posture_regression_take take = captured[0];
     TEST_ASSERT_FALSE(himc_posture_regression_learn(&regression, &take, 0, &error));
-    TEST_ASSERT_EQUAL_STRING("posture regression: no take to learn from, allowed 1 or more",
+    TEST_ASSERT_EQUAL_STRING("posture regression: no take to learn from, expected 1 or more",
                              error.text);
     take.frames = 30;
     TEST_ASSERT_FALSE(himc_posture_regression_learn(&regression, &take, 1, &error));
-    TEST_ASSERT_EQUAL_STRING("posture regression: a take of 30 frames, allowed 36 or more",
+    TEST_ASSERT_EQUAL_STRING("posture regression: a take of 30 frames, expected 36 or more",
                              error.text);
     take = captured[0];
     take.rate = 1;
     TEST_ASSERT_FALSE(himc_posture_regression_learn(&regression, &take, 1, &error));
-    TEST_ASSERT_EQUAL_STRING("posture regression: rate of a take: 1 Hz, allowed 20 .. 10000 Hz",
+    TEST_ASSERT_EQUAL_STRING("posture regression: rate of a take: 1 Hz, expected 20 .. 10000 Hz",
                              error.text);
     himc_pose still[200];
     for (int i = 0; i < 200; i++)

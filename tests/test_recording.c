@@ -252,9 +252,9 @@ static void test_what_a_format_cannot_hold_is_refused_and_leaves_no_file(void)
     himc_take *take = markers_with_a_gap(256);
     TEST_ASSERT_FALSE(himc_take_save(take, "build/unsaved.bvh", &error));
     TEST_ASSERT_EQUAL_STRING(
-        "markers.trc: the take has no skeleton to write as .bvh, allowed .c3d .trc", error.text);
+        "markers.trc: the take has no skeleton to write as .bvh, expected .c3d .trc", error.text);
     TEST_ASSERT_FALSE(himc_take_save(take, "build/unsaved.c3d", &error));
-    TEST_ASSERT_EQUAL_STRING("markers.trc: 256 points, allowed in a .c3d: up to 255", error.text);
+    TEST_ASSERT_EQUAL_STRING("markers.trc: 256 points, expected up to 255 in a .c3d", error.text);
     TEST_ASSERT_FALSE(access("build/unsaved.bvh", F_OK) == 0);
     TEST_ASSERT_FALSE(access("build/unsaved.c3d", F_OK) == 0);
     himc_take_free(take);

@@ -139,7 +139,7 @@ static void test_errors_name_file_and_line(void)
 {
     refused(
         "play;\nstroke 1 left legatto f;",
-        "s.txt:2: stroke: NUANCE: legatto, allowed legato tenuto accent vertical-accent staccato");
+        "s.txt:2: stroke: NUANCE: legatto, expected legato tenuto accent vertical-accent staccato");
     refused("kettle tun 110;", "s.txt:1: kettle: tun: unknown command, did you mean tune?");
     refused("kettle play;", "s.txt:1: kettle: play: a command for the performer, not for a drum");
     refused(
@@ -148,11 +148,11 @@ static void test_errors_name_file_and_line(void)
     refused(
         "tune A2;",
         "s.txt:1: tune: a command for a drum, not for the performer: its name comes before it (`kettle tune`)");
-    refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, allowed tune HZ | NOTE");
+    refused("kettle tune;", "s.txt:1: kettle: tune: HZ missing, expected tune HZ | NOTE");
     refused("drum kettle 26;\ndrum kettle;\ndrum kettle 32;",
             "s.txt:3: drum: kettle is made with 26 inches on line 1 already");
     refused("drum kettle;\n\nkettle radius 0;",
-            "s.txt:3: kettle: radius: RADIUS: 0, allowed 0.05 .. 1 m");
+            "s.txt:3: kettle: radius: RADIUS: 0, expected 0.05 .. 1 m");
     refused("play;\n# loud\nstroke 1 left legato f;",
             "s.txt:2: #: a comment is written comment ...;");
     refused("//loud: f;", "s.txt:1: //loud:: a comment is written comment ...;");
@@ -163,7 +163,7 @@ static void test_errors_name_file_and_line(void)
     refused("score other.txt;", "s.txt:1: score: not allowed in a score");
     refused(
         "stroke 1 left legato f;\nstroke 1.01 left legato f;",
-        "s.txt:2: stroke: BEAT: 1.01 is 0.006 s after the last stroke of the left hand, allowed "
+        "s.txt:2: stroke: BEAT: 1.01 is 0.006 s after the last stroke of the left hand, expected "
         "0.04 s or more");
     TEST_ASSERT_NULL(parse("\nstrok 1 left legato f;"));
     TEST_ASSERT_NOT_NULL(
@@ -178,7 +178,7 @@ static void test_errors_name_file_and_line(void)
     TEST_ASSERT_NOT_NULL(strstr(error.text, "tests: "));
     TEST_ASSERT_NULL(himc_score_load("/proc/self/environ", &error)); // zeros among its letters
     TEST_ASSERT_EQUAL_STRING(
-        "/proc/self/environ: not a text file; allowed: a score, a MIDI file or a take", error.text);
+        "/proc/self/environ: not a text file; expected a score, a MIDI file or a take", error.text);
 }
 
 // room for a path and 256 characters more; a word that long once ended the program
@@ -192,14 +192,14 @@ static void test_a_statement_of_more_than_1280_characters_is_refused_in_one_line
         TEST_ASSERT_NULL(strchr(error.text, '\n'));
         if (length > 1279) {
             TEST_ASSERT_EQUAL_STRING(
-                "s.txt:1: more than 1280 characters without a ;, allowed: a score, commands "
+                "s.txt:1: more than 1280 characters without a ;, expected a score, commands "
                 "that each end with one",
                 error.text);
         }
     }
     for (size_t i = 0; i + 2 < sizeof text; i += 2) // words enough
         memcpy(text + i, "\nx", 3);
-    refused(text, "s.txt:2: more than 1280 characters without a ;, allowed: a score, commands "
+    refused(text, "s.txt:2: more than 1280 characters without a ;, expected a score, commands "
                   "that each end with one");
 }
 
@@ -240,7 +240,7 @@ static void test_long_scores_are_read_and_too_long_ones_refused(void)
     himc_score_free(s);
     free(text);
     text = long_score(200001);
-    refused(text, "s.txt:200001: stroke: one too many, allowed 200000 strokes");
+    refused(text, "s.txt:200001: stroke: one too many, expected 200000 strokes");
     free(text);
 }
 
@@ -249,11 +249,11 @@ static void test_more_than_10000_lines_or_tempi_are_refused(void)
     char *text = malloc(10001 * 24), *s = text;
     for (int i = 0; i < 10001; i++)
         s += sprintf(s, "grip french;\n");
-    refused(text, "s.txt:10001: one line too many, allowed 10000 besides strokes");
+    refused(text, "s.txt:10001: one line too many, expected 10000 besides strokes");
     s = text;
     for (int i = 0; i < 10001; i++)
         s += sprintf(s, "tempo 90 %d;\n", i);
-    refused(text, "s.txt:10001: tempo: one too many, allowed 10000");
+    refused(text, "s.txt:10001: tempo: one too many, expected 10000");
     free(text);
 }
 

@@ -241,21 +241,21 @@ static void keep_line(void *user, const char *line)
 static void test_score_with_an_error_anywhere_changes_nothing(void)
 {
     static const char *const faults[][2] = {
-        {"gain nose 1 1;", ":5: gain: JOINT: nose, allowed waist"},
-        {"strength nose 1;", ":5: strength: JOINT: nose, allowed waist"},
-        {"listen 9000;", ":5: listen: allowed as a message"},
+        {"gain nose 1 1;", ":5: gain: JOINT: nose, expected waist"},
+        {"strength nose 1;", ":5: strength: JOINT: nose, expected waist"},
+        {"listen 9000;", ":5: listen: only as a message"},
         {"units /no/such/take.bvh legato;", ":5: units: /no/such/take.bvh"},
         {"take /no/such/take.c3d;", ":5: /no/such/take.c3d"},
         {"kettle shape /no/such/grid.txt;", ":5: kettle: shape: /no/such/grid.txt"},
         {"kettle shape triangle;",
-         ":5: kettle: shape: triangle, allowed circle, rectangle LENGTH WIDTH, or a file"},
+         ":5: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, or a file"},
         {"stroke 1 left legato f centr;", ":5: centr: no spot (center normal rim), no drum"},
         {"stroke 1 left legato f rim secnd;", ":5: secnd: no drum (kettle second), did you"},
         {"at 1 secnd tune A2;", ":5: secnd: no drum (kettle second), did you mean second?"},
         {"secnd tune A2;", ":5: secnd: no drum (kettle second), did you mean second?"},
         {"record /no/such/folder/x.bvh;", ":5: record: /no/such/folder/x.bvh"},
         {"stroke 1 left legato loud;", ":5: stroke: DYNAMIC: loud"},
-        {"kettle modes 0;", ":5: kettle: modes: 0, allowed 1 .. 2000"}};
+        {"kettle modes 0;", ":5: kettle: modes: 0, expected 1 .. 2000"}};
     himc_performance *p = with_kettle();
     char before[4096] = "", after[4096], text[400];
     session_do(p, "stroke 1 left legato mf");

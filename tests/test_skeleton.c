@@ -310,7 +310,7 @@ static void refused(double *field, double value, const char *name)
     himc_skeleton before = skeleton;
     TEST_ASSERT_FALSE_MESSAGE(himc_skeleton_init(&skeleton, &config, &error), name);
     TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(name, error.text, strlen(name), error.text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "allowed"), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "expected"), error.text);
     TEST_ASSERT_EQUAL_MEMORY(&before, &skeleton, sizeof skeleton);
     *field = good;
 }

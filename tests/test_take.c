@@ -64,7 +64,7 @@ static void test_longer_gap_is_refused_with_marker_frames_and_length(void)
     himc_take_options options = himc_take_default();
     TEST_ASSERT_FALSE(himc_take_tips(take, &options, tips, &error));
     TEST_ASSERT_EQUAL_STRING("motion.trc: right tip RTIP is missing in frames 22 .. 70 (0.245 s), "
-                             "allowed: gaps up to 0.2 s",
+                             "expected gaps up to 0.2 s",
                              error.text);
     options.longest_gap = 0.25;
     TEST_ASSERT_TRUE(himc_take_tips(take, &options, tips, &error));
@@ -115,7 +115,7 @@ static void test_tips_can_be_named_and_a_wrong_name_is_refused(void)
     TEST_ASSERT_EQUAL_STRING("Anna:R_Stick_Tip", tips[HIMC_LEFT].name);
     options.left_tip = "BATON";
     TEST_ASSERT_FALSE(himc_take_tips(take, &options, tips, &error));
-    TEST_ASSERT_EQUAL_STRING("roll.trc: left tip: no point \"BATON\", allowed: Anna:R_Stick_Tip, "
+    TEST_ASSERT_EQUAL_STRING("roll.trc: left tip: no point \"BATON\", expected Anna:R_Stick_Tip, "
                              "Anna:L_Stick_Tip",
                              error.text);
     himc_take_free(take);
@@ -167,7 +167,7 @@ static void test_points_17_m_apart_are_refused(void)
     TEST_ASSERT_NULL(read_text(text, "tall.trc", NULL, &error));
     TEST_ASSERT_EQUAL_STRING(
         "tall.trc: the points are 17 m apart if the unit is m, no metric unit makes "
-        "that a player's size, allowed 0.2 .. 4 m",
+        "that a player's size, expected 0.2 .. 4 m",
         error.text);
 }
 
@@ -188,13 +188,13 @@ static void test_files_of_other_formats_are_refused(void)
     himc_take_options options = himc_take_default();
     TEST_ASSERT_NULL(himc_take_load("score.txt", &options, &error));
     TEST_ASSERT_EQUAL_STRING(
-        "score.txt: not a take by its suffix, allowed .bvh .c3d .trc .csv .tsv", error.text);
+        "score.txt: not a take by its suffix, expected .bvh .c3d .trc .csv .tsv", error.text);
     TEST_ASSERT_NULL(himc_take_load("does/not/exist.bvh", &options, &error));
     TEST_ASSERT_EQUAL_STRING("does/not/exist.bvh: cannot be read: No such file or directory",
                              error.text);
     options.longest_gap = NAN;
     TEST_ASSERT_NULL(himc_take_read("x", 1, "x.trc", &options, &error));
-    TEST_ASSERT_EQUAL_STRING("longest gap: nan s, allowed 0 .. 10 s", error.text);
+    TEST_ASSERT_EQUAL_STRING("longest gap: nan s, expected 0 .. 10 s", error.text);
 }
 
 static char told[8000];

@@ -146,7 +146,7 @@ static void test_one_point_named_as_both_tips_is_refused(void)
     options.right_tip = "rtip";
     himc_take *take = read_two("RTIP", "LTIP");
     TEST_ASSERT_FALSE(himc_take_tips(take, &options, tips, &error));
-    TEST_ASSERT_EQUAL_STRING("two.trc: RTIP is named as both tips, allowed: one point for each tip",
+    TEST_ASSERT_EQUAL_STRING("two.trc: RTIP is named as both tips, expected one point for each tip",
                              error.text);
     himc_take_free(take);
 }

@@ -188,13 +188,13 @@ static void test_headers_that_disagree_with_the_rows_are_refused(void)
     refuses(3, 2, "mm", ROW_1 ROW_2, "a.trc: the header says 3 frames, the file has 2 rows");
     refuses(1, 2, "mm", ROW_1 ROW_2, "a.trc: the header says 1 frames, the file has 2 rows");
     refuses(1, 2, "mm", "", "a.trc: the header says 1 frames, the file has 0 rows");
-    refuses(0, 2, "mm", "", "a.trc:3: NumFrames is \"0\", allowed 1 .. 1000000");
+    refuses(0, 2, "mm", "", "a.trc:3: NumFrames is \"0\", expected 1 .. 1000000");
     refuses(2, 3, "mm", ROW_1 ROW_2, "a.trc:4: the header says 3 markers, the file names 2");
     refuses(2, 1, "mm", ROW_1 ROW_2,
-            "a.trc:4: marker \"B\" is above column 6, allowed: every third column, 3 .. 3");
+            "a.trc:4: marker \"B\" is above column 6, expected every third column, 3 .. 3");
     refuses(2, 9999, "mm", ROW_1 ROW_2,
             "a.trc:3: NumMarkers is 9999, more than the rows have cells for");
-    refuses(2, 2, "ell", ROW_1 ROW_2, "a.trc:3: Units is \"ell\", allowed mm, cm, m, in or ft");
+    refuses(2, 2, "ell", ROW_1 ROW_2, "a.trc:3: Units is \"ell\", expected mm, cm, m, in or ft");
 }
 
 static void test_a_rate_of_1_hz_is_refused(void)
@@ -205,25 +205,25 @@ static void test_a_rate_of_1_hz_is_refused(void)
                   "Frame#\tTime\tA\t\t\n\tX1\tY1\tZ1\n1\t0\t1\t2\t3\n",
                   "a.trc", NULL, &error);
     TEST_ASSERT_NULL(take);
-    TEST_ASSERT_EQUAL_STRING("a.trc: rate: 1 Hz, allowed 20 .. 10000 Hz", error.text);
+    TEST_ASSERT_EQUAL_STRING("a.trc: rate: 1 Hz, expected 20 .. 10000 Hz", error.text);
 }
 
 static void test_bad_cells_are_refused_with_line_and_marker(void)
 {
     refuses(1, 2, "mm", "1\t0\t1\t2\tx\t1\t2\t3\n",
-            "a.trc:7: A Z is \"x\", allowed: a number up to 1e8, or an empty cell for a gap");
+            "a.trc:7: A Z is \"x\", expected a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\tinf\t2\t3\n",
-            "a.trc:7: B X is \"inf\", allowed: a number up to 1e8, or an empty cell for a gap");
+            "a.trc:7: B X is \"inf\", expected a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1e999\t2\t3\n",
-            "a.trc:7: B X is \"1e999\", allowed: a number up to 1e8, or an empty cell for a gap");
+            "a.trc:7: B X is \"1e999\", expected a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t0,5,1\t2\t3\n",
-            "a.trc:7: B X is \"0,5,1\", allowed: a number up to 1e8, or an empty cell for a gap");
+            "a.trc:7: B X is \"0,5,1\", expected a number up to 1e8, or an empty cell for a gap");
     refuses(1, 2, "mm", "1\t0\t1\t\t3\t1\t2\t3\n",
-            "a.trc:7: A has 2 of its 3 coordinates, allowed all or none");
+            "a.trc:7: A has 2 of its 3 coordinates, expected all or none");
     refuses(1, 2, "mm", "1\t0\t1\t2\t3\t1\t2\t3\t4\n",
-            "a.trc:7: the cell after the last marker is \"4\", allowed an empty cell");
+            "a.trc:7: the cell after the last marker is \"4\", expected an empty cell");
     refuses(1, 2, "mm", "x\t0\t1\t2\t3\t1\t2\t3\n",
-            "a.trc:7: Frame# is \"x\", allowed a whole number");
+            "a.trc:7: Frame# is \"x\", expected a whole number");
 }
 
 static void test_every_prefix_of_a_file_is_refused_or_read(void)

@@ -297,12 +297,12 @@ static void test_a_head_that_is_not_round_refuses_uneven_lugs(void)
     says("uniformity 0.5 3");
     says("shape rectangle 0.6 0.4");
     TEST_ASSERT_FALSE(say("uniformity 0.5"));
-    TEST_ASSERT_EQUAL_STRING("uniformity: 0.5, allowed 1 on a head that is not round", error.text);
+    TEST_ASSERT_EQUAL_STRING("uniformity: 0.5, expected 1 on a head that is not round", error.text);
     says("uniformity 1");
     himc_head head = *himc_membrane_head(himc_drum_membrane(drum));
     head.uniformity = -0.1;
     TEST_ASSERT_FALSE(himc_head_check(&head, &error));
-    TEST_ASSERT_EQUAL_STRING("uniformity: -0.1, allowed 0 .. 1", error.text);
+    TEST_ASSERT_EQUAL_STRING("uniformity: -0.1, expected 0 .. 1", error.text);
 }
 
 static void test_drums_of_other_names_have_other_lugs(void)

@@ -62,7 +62,7 @@ check test_standard_input_and_output_are_bytes cmp there.wav piped.wav
 himc render nothing.txt -o x.wav >refused 2>&1
 check test_a_missing_file_is_refused_in_a_line [ "$(grep -c 'nothing.txt: cannot be read: No such file' refused)/$(wc -l <refused)" = 1/1 ]
 himc render . -o x.wav >refused 2>&1
-check test_a_folder_is_refused grep -q 'allowed a regular file\|cannot be read' refused
+check test_a_folder_is_refused grep -q 'expected a regular file\|cannot be read' refused
 himc render score.txt -o ./score.txt >refused 2>&1
 check test_the_score_is_not_overwritten cmp score.txt "Pauken für zwei/Stück.txt"
 

@@ -115,7 +115,7 @@ static bool refuse_option(const cli_option *options, const char *word, himc_erro
     list_options(options, allowed, sizeof allowed);
     if (nearest.name)
         return himc_error_set(error, "unknown option %s, did you mean --%s?", word, nearest.name);
-    return himc_error_set(error, "unknown option %s, allowed: %s", word, allowed);
+    return himc_error_set(error, "unknown option %s, expected %s", word, allowed);
 }
 
 static bool take_value(const cli_option *option, int index, const char *value, cli_arguments *out,
@@ -153,7 +153,7 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
                                   argv[optind - 1], call->name);
         int index = found >= OPTION_BASE ? found - OPTION_BASE : find_letter(call->options, found);
         if (found == '?' && optopt > 0 && optopt < OPTION_QUIET)
-            return himc_error_set(error, "unknown option -%c, allowed: %s", optopt, allowed);
+            return himc_error_set(error, "unknown option -%c, expected %s", optopt, allowed);
         if (found == '?' || index < 0)
             return refuse_option(call->options, argv[optind - 1], error);
         if (!take_value(&call->options[index], index, optarg ? optarg : "", out, error))
@@ -230,7 +230,7 @@ bool cli_count(const char *name, const char *text, int low, int high, const char
     char *end;
     double value = strtod(text, &end);
     if (end == text || *end || (isfinite(value) && value != floor(value)))
-        return himc_error_set(error, "%s: \"%s\" is not a whole number, allowed %d .. %d %s", name,
+        return himc_error_set(error, "%s: \"%s\" is not a whole number, expected %d .. %d %s", name,
                               text, low, high, unit);
     if (!himc_check_range(name, value, low, high, unit, error))
         return false;
@@ -262,13 +262,12 @@ bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES]
     out->subject = value[3];
     for (int i = 0; i < CLI_TAKE_VALUES; i++)
         if (value[i] && !cli_is_take(path))
-            return himc_error_set(error,
-                                  "%s: %s is a score, allowed with a take: " HIMC_TAKE_SUFFIXES,
+            return himc_error_set(error, "%s: %s is a score, expected a take: " HIMC_TAKE_SUFFIXES,
                                   name[i], path);
     if (!up)
         return true;
     if (strcmp(up, "y") && strcmp(up, "z"))
-        return himc_error_set(error, "--up: \"%s\", allowed y or z", up);
+        return himc_error_set(error, "--up: \"%s\", expected y or z", up);
     out->up = up[0] == 'y' ? HIMC_UP_Y : HIMC_UP_Z;
     return true;
 }

@@ -298,7 +298,7 @@ static bool change(edit_text *t, const char *line, himc_error *error)
         return edit_text_revert(t) || himc_error_set(error, "nothing to undo");
     if (!strncmp(line, "set ", 4))
         return set(t, line + 4, error);
-    return himc_error_set(error, "\"%.40s\": allowed hello, set, undo, redo, revert, save, take",
+    return himc_error_set(error, "\"%.40s\": expected hello, set, undo, redo, revert, save, take",
                           line);
 }
 
@@ -396,7 +396,7 @@ static bool save_take(session *s, const char *name, himc_error *error)
 {
     const char *dot = strrchr(name, '.');
     if (!dot || (strcmp(dot, ".bvh") && strcmp(dot, ".c3d") && strcmp(dot, ".trc")))
-        return himc_error_set(error, "%.40s: allowed .bvh .c3d .trc", name);
+        return himc_error_set(error, "%.40s: expected .bvh .c3d .trc", name);
     if (s->saver)
         return himc_error_set(error, "a take is being saved");
     int file = cli_temporary(s->saved, sizeof s->saved, dot);
@@ -635,7 +635,7 @@ static int run(const cli_arguments *arguments)
     const char *sent = arguments->value[NAME];
     session s = {.source = arguments->operand, .name = sent ? sent : arguments->operand};
     bool good = !cli_is_standard(s.source) ||
-                himc_error_set(&error, "-: allowed is a file, lines come from standard input");
+                himc_error_set(&error, "-: expected a file, lines come from standard input");
     good = good && cli_take_options(s.source, arguments->value + TAKE, &s.take, &error);
     char *text = good ? text_of(s.source, s.name, &error) : NULL;
     s.confined = arguments->value[CONFINED] && !cli_is_take(s.source);

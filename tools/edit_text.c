@@ -207,7 +207,8 @@ static bool may_change(const char *bytes, himc_error *error)
     return is_empty(bytes) ||
            (command_of(bytes, &c, &beat, error) &&
             (can_change(&c, beat) ||
-             himc_error_set(error, "allowed in an edit: strokes, ornaments, nudge, at BEAT push")));
+             himc_error_set(error,
+                            "expected, in an edit, strokes, ornaments, nudge, at BEAT push")));
 }
 
 // where a statement begins to act, with its grace notes
@@ -312,7 +313,7 @@ bool edit_text_set(edit_text *t, int index, const char *words, himc_error *error
 {
     bool adds = index == t->count;
     if (index < 0 || index > t->count)
-        return himc_error_set(error, "statement %d, allowed 0 .. %d", index, t->count);
+        return himc_error_set(error, "statement %d, expected 0 .. %d", index, t->count);
     if (strpbrk(words, ";\\\r\n"))
         return himc_error_set(error, "one statement at a time");
     if (!may_change(adds ? "" : t->at[index], error) || !may_change(words, error))

@@ -49,7 +49,7 @@ static bool read_range(const char *text, evaluation *e, himc_error *error)
     if (sscanf(text, "%d-%d%n", &e->first, &e->last, &used) == 2 && !text[used] && e->first >= 1 &&
         e->first <= e->last && e->last <= e->table.trials)
         return true;
-    return himc_error_set(error, "--range: %s, allowed A-B within 1-%d", text, e->table.trials);
+    return himc_error_set(error, "--range: %s, expected A-B within 1-%d", text, e->table.trials);
 }
 
 /// Keeps the rows that contain this word; false if the word is unknown.
@@ -73,12 +73,12 @@ static bool read_only(const char *text, evaluation *e, himc_error *error)
     for (int kind = 0; kind < TRIAL_KINDS; kind++)
         e->wanted[kind] = true;
     if (text && strspn(text, ",") == strlen(text))
-        return himc_error_set(error, "--only: no word, allowed: words of one row");
+        return himc_error_set(error, "--only: no word, expected words of one row");
     snprintf(words, sizeof words, "%s", text ? text : "");
     for (char *word = strtok_r(words, ",", &rest); word; word = strtok_r(NULL, ",", &rest))
         if (!keep_rows(e, word))
             return himc_error_set(error,
-                                  "--only: %s, allowed: a nuance (legato ...), a controller (%s), "
+                                  "--only: %s, expected a nuance (legato ...), a controller (%s), "
                                   "a law (none|%s)",
                                   word, himc_command_table(HIMC_COMMAND_MODE)->atoms,
                                   himc_command_table(HIMC_COMMAND_LAW)->atoms);
@@ -86,7 +86,7 @@ static bool read_only(const char *text, evaluation *e, himc_error *error)
         if (e->wanted[kind])
             return true;
     return himc_error_set(
-        error, "--only: %s: no row has all of these words, allowed: words of one row", text);
+        error, "--only: %s: no row has all of these words, expected words of one row", text);
 }
 
 static bool read_arguments(const cli_arguments *arguments, evaluation *e, himc_error *error)

@@ -169,10 +169,10 @@ static bool read_row(trial_table *table, char *row, int *index, himc_error *erro
     double number, value;
     int count = split(row, fields), kind = count == FIELDS ? find_kind(table, fields) : -1;
     if (kind < 0)
-        return himc_error_set(error, "not a row of trials, allowed: %s and %d numbers", KEY,
+        return himc_error_set(error, "not a row of trials, expected %s and %d numbers", KEY,
                               COLUMNS);
     if (!read_number(fields[3], &number) || number != floor(number) || number < 1)
-        return himc_error_set(error, "trial: %s, allowed 1 .. %d", fields[3], TRIALS_MAX);
+        return himc_error_set(error, "trial: %s, expected 1 .. %d", fields[3], TRIALS_MAX);
     *index = number > table->trials ? -1 : trial_index(table, kind, (int)number);
     if (*index < 0)
         return true;
@@ -234,7 +234,7 @@ static bool read_rows(evaluate_log *log, trial_table *table, off_t *end, himc_er
         }
         good = line > 1 ? read_row(table, row, &index, error)
                         : himc_error_set(error,
-                                         "not a log of trials, allowed: a file that begins with %s",
+                                         "not a log of trials, expected a file that begins with %s",
                                          header);
         good = good && (index < 0 || keep_sample(log, table, line, index, &begun, error));
         if (!good)

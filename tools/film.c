@@ -36,7 +36,7 @@ static bool read_number(const char *name, const char *text, double low, double h
     char *end;
     double value = text ? strtod(text, &end) : *out;
     if (text && (end == text || *end || !(value >= low && value <= high)))
-        return himc_error_set(error, "--%s %s: allowed %g .. %g", name, text, low, high);
+        return himc_error_set(error, "--%s %s: expected %g .. %g", name, text, low, high);
     *out = value;
     return true;
 }
@@ -49,7 +49,7 @@ static bool read_size(const char *text, int *width, int *height, himc_error *err
     if (sscanf(text, "%dx%d%n", width, height, &n) == 2 && !text[n] && *width >= 64 &&
         *width <= 4096 && *height >= 64 && *height <= 4096)
         return true;
-    return himc_error_set(error, "--size %s: allowed 64x64 .. 4096x4096", text);
+    return himc_error_set(error, "--size %s: expected 64x64 .. 4096x4096", text);
 }
 
 static bool is_word(const char *word, const char *list)
@@ -78,9 +78,9 @@ static bool read_job(const cli_arguments *arguments, film_job *out, himc_error *
     if (!out->out)
         return himc_error_set(error, "no -o F.webm given (himc film --help)");
     if (!is_word(out->kind, kinds))
-        return himc_error_set(error, "%s: allowed endings are .webm, .png, .glb", out->out);
+        return himc_error_set(error, "%s: expected endings are .webm, .png, .glb", out->out);
     if (!is_word(out->camera, cameras))
-        return himc_error_set(error, "--camera %s: allowed %s", out->camera, cameras);
+        return himc_error_set(error, "--camera %s: expected %s", out->camera, cameras);
     if (!cli_apart(out->out, &out->scene, 1, error))
         return false;
     if (!read_size(value[SIZE], &out->width, &out->height, error) ||
@@ -91,7 +91,7 @@ static bool read_job(const cli_arguments *arguments, film_job *out, himc_error *
         !read_number("at", value[AT], 0, 1e6, &out->at, error))
         return false;
     return out->to > out->from ||
-           himc_error_set(error, "--to %g: allowed more than %g, where it begins", out->to,
+           himc_error_set(error, "--to %g: expected more than %g, where it begins", out->to,
                           out->from);
 }
 

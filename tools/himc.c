@@ -152,7 +152,7 @@ static int refuse(const char *what, const char *name, bool commands)
     if (nearest.name)
         fprintf(stderr, "did you mean %s?\n", nearest.name);
     else {
-        fprintf(stderr, "allowed: ");
+        fprintf(stderr, "expected ");
         for (size_t i = 0; i < CALLS; i++)
             fprintf(stderr, "%s, ", calls[i]->name);
         fprintf(stderr, "--help, --version, --licences\n");

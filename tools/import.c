@@ -34,7 +34,7 @@ static bool read_curve(const char *word, double *range, himc_error *error)
     if (!strncmp(word, "square:", square + 1))
         *range = strtod(word + square + 1, &end);
     if (!end || end == word + square + 1 || *end)
-        return himc_error_set(error, "--curve: \"%s\", allowed notation, square, square:DB", word);
+        return himc_error_set(error, "--curve: \"%s\", expected notation, square, square:DB", word);
     return himc_check_range("--curve square", *range, 1, 80, "dB", error);
 }
 
@@ -42,7 +42,7 @@ static bool read_part(const char *word, midi_choice *part, himc_error *error)
 {
     *part = !word ? MIDI_ANY : !strcmp(word, "timpani") ? MIDI_TIMPANI : MIDI_DRUMS;
     return !word || *part == MIDI_TIMPANI || !strcmp(word, "drums") ||
-           himc_error_set(error, "--part: \"%s\", allowed timpani or drums", word);
+           himc_error_set(error, "--part: \"%s\", expected timpani or drums", word);
 }
 
 static bool import(const char *path, const char *name, const midi_options *wanted, midi_score *made,
@@ -79,7 +79,7 @@ static bool make(const cli_arguments *arguments, midi_score *made, himc_error *e
         return false;
     const char *dot = strrchr(out, '.');
     if (cli_is_take(out) || (dot && (!strcmp(dot, ".mid") || !strcmp(dot, ".wav"))))
-        return himc_error_set(error, "%s: a score is a text, allowed a name like score.txt", out);
+        return himc_error_set(error, "%s: a score is a text, expected a name like score.txt", out);
     return read_part(arguments->value[PART], &wanted.choice, error) &&
            read_curve(arguments->value[CURVE], &wanted.range, error) &&
            import(path, cli_is_standard(arguments->operand) ? "standard input" : path, &wanted,

@@ -158,7 +158,7 @@ static bool choose(motion_table *t, const char *columns, himc_error *error)
                 t->has[i] = known = true;
         if (!known)
             return himc_error_set(error,
-                                  "--columns: \"%s\", allowed: all, usual or groups of "
+                                  "--columns: \"%s\", expected all, usual or groups of "
                                   "`himc render --columns help`",
                                   word);
         any = true;

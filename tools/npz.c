@@ -100,7 +100,7 @@ bool npz_end(npz *file, himc_error *error)
     uint8_t entry[CENTRAL] = {0}, end[END] = {0};
     uint64_t begin = file->at;
     if (file->too_large)
-        return himc_error_set(error, "the .npz would be too large, allowed 4 GiB");
+        return himc_error_set(error, "the .npz would be too large, expected 4 GiB");
     for (int i = 0; i < file->count; i++) {
         size_t name = strlen(file->array[i].name);
         put_common(put(put(entry, 0x02014b50u, 4), 20, 2), file->array[i].crc, file->array[i].size,

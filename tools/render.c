@@ -119,7 +119,7 @@ static bool check_compare(const char *list, const char *scene, const char *sourc
     for (int i = 0; i < OTHERS; i++)
         known += lists(list, others[i]);
     if (known != words)
-        return himc_error_set(error, "--compare %s: allowed are some of ik,id,himc,captured", list);
+        return himc_error_set(error, "--compare %s: expected some of ik,id,himc,captured", list);
     if (!scene)
         return himc_error_set(error, "--compare: no --scene F.himc given");
     return cli_is_take(source) || !lists(list, others[CAPTURED]) ||
@@ -133,7 +133,7 @@ static bool check_table(const char *option, const char *path, bool npz, himc_err
     const char *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
     return !dot || !strcasecmp(dot, ".csv") || !strcasecmp(dot, ".txt") ||
            (npz && !strcasecmp(dot, ".npz")) ||
-           himc_error_set(error, "--%s: %s, allowed endings are .csv%s", option, path,
+           himc_error_set(error, "--%s: %s, expected endings are .csv%s", option, path,
                           npz ? " and .npz" : "");
 }
 
@@ -243,11 +243,11 @@ static bool inspect_score(job *wanted, bool *makes_drums, bool *loops, himc_erro
     if (!good)
         return false;
     if (wanted->length + CLI_TAIL > room(wanted) / wanted->rate)
-        return himc_error_set(error,
-                              "%s: lasts %.0f s, allowed in this file at %d Hz: %.0f s (.w64 and "
-                              ".flac have no end)",
-                              wanted->source, wanted->length, wanted->rate,
-                              room(wanted) / wanted->rate - CLI_TAIL);
+        return himc_error_set(
+            error,
+            "%s: lasts %.0f s, expected up to %.0f s in this file at %d Hz (.w64 and "
+            ".flac have no end)",
+            wanted->source, wanted->length, room(wanted) / wanted->rate - CLI_TAIL, wanted->rate);
     return true;
 }
 
@@ -409,8 +409,8 @@ static bool keep_files(rendering *r, const job *wanted, himc_error *error)
     if (r->failed)
         return himc_error_set(error, "%s: cannot be written: %s", path, strerror(r->failed));
     if (r->too_long)
-        return himc_error_set(error, "%s: not over when the file is full, allowed %.0f samples",
-                              path, room(wanted));
+        return himc_error_set(error, "%s: longer than this file can hold (%.0f samples)", path,
+                              room(wanted));
     bool closed = !sf_close(r->sound);
     r->sound = NULL;
     if (!closed)

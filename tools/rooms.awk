@@ -86,7 +86,7 @@ END {
         if (f ~ alone)
             for (g in outside)
                 if (g == f || (f, g) in reach)
-                    fault("lib/src/" f ".c: needs " outside[g] " (" g "), allowed libm and the C library")
+                    fault("lib/src/" f ".c: needs " outside[g] " (" g "), expected libm and the C library")
         room = f
         sub(/\/.*/, "", room)
         count[room]++

@@ -31,7 +31,7 @@ FNR == 1 {
     if (library)
         length_of[++functions] = FNR - start - 1
     if (FNR - start - 1 > 60) {
-        print FILENAME ":" start ": " name " has " FNR - start - 1 " lines, allowed 60"
+        print FILENAME ":" start ": " name " has " FNR - start - 1 " lines, expected 60"
         faults += library
     }
     start = 0
@@ -46,7 +46,7 @@ END {
     faults += median > 12 || most > 25
     for (folder in held)
         if (held[folder] > 34) {
-            print folder ": " held[folder] " files, allowed 34"
+            print folder ": " held[folder] " files, expected 34"
             faults++
         }
     exit faults > 0

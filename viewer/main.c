@@ -51,7 +51,7 @@ static bool parse_port(const char *name, const char *text, int *port, himc_error
     char *end;
     long value = strtol(text, &end, 10);
     if (!*text || *end || value < 0 || value > 65535)
-        return himc_error_set(error, "%s %.40s: allowed 0 .. 65535", name, text);
+        return himc_error_set(error, "%s %.40s: expected 0 .. 65535", name, text);
     *port = (int)value;
     return true;
 }
@@ -135,7 +135,7 @@ static void handle_signals(void)
 static bool check_edit(const options *o, himc_error *error)
 {
     if (o->play)
-        return himc_error_set(error, "--play and --edit: allowed is one of them");
+        return himc_error_set(error, "--play and --edit: expected one of them");
     return access(o->edit, R_OK) == 0 ||
            himc_error_set(error, "%.200s: %s", o->edit, strerror(errno));
 }

@@ -49,8 +49,7 @@ int receive_open(const char *address, int port, himc_error *error)
     snprintf(service, sizeof service, "%d", port);
     if (getaddrinfo(address, service, &hints, &found) != 0) {
         himc_error_set(
-            error,
-            "--bind %s: not an address; allowed is a numeric one such as 127.0.0.1 or 0.0.0.0",
+            error, "--bind %s: not an address; expected a numeric one such as 127.0.0.1 or 0.0.0.0",
             address);
         return -1;
     }

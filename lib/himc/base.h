@@ -51,7 +51,7 @@ HIMC_RT const char *himc_version(void);
 
 #define HIMC_PI 3.14159265358979323846 ///< M_PI, which C17 does not have
 
-/// One line with the fault, the value, the allowed values, and in a file `file:line`.
+/// One line with the fault, the value, the expected values, and in a file `file:line`.
 typedef struct himc_error {
     char text[512]; ///< without line end; only written if a function fails
 } himc_error;
@@ -65,7 +65,7 @@ bool himc_error_set(himc_error *error, const char *format, ...)
 bool himc_error_prefix(himc_error *error, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/// False, with an error like "radius: 0 m, allowed 0.05 .. 1 m", if `value` is outside [low, high]
+/// False, with an error like "radius: 0 m, expected 0.05 .. 1 m", if `value` is outside [low, high]
 /// or not finite.
 bool himc_check_range(const char *name, double value, double low, double high, const char *unit,
                       himc_error *error);

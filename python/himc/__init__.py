@@ -63,7 +63,7 @@ def _finite(name: str, value: float, least: float = -math.inf) -> float:
     except (TypeError, ValueError):
         number = math.nan
     if not math.isfinite(number) or number < least:
-        raise Error(f"{name}: {value!r}, allowed a finite number{'' if least < 0 else f', {least:g} or more'}")
+        raise Error(f"{name}: {value!r}, expected a finite number{'' if least < 0 else f', {least:g} or more'}")
     return number
 
 
@@ -72,31 +72,31 @@ def _hand(hand: Union[str, int]) -> int:
         return _HANDS.index(hand)
     if isinstance(hand, (int, np.integer)) and 0 <= hand <= 1:
         return int(hand)
-    raise Error(f"hand: {hand!r}, allowed \"left\", \"right\", 0 or 1")
+    raise Error(f"hand: {hand!r}, expected \"left\", \"right\", 0 or 1")
 
 
 def _channels(channels: int, least: int) -> int:
     if not isinstance(channels, (int, np.integer)) or not least <= channels <= _CHANNELS:
-        raise Error(f"channels: {channels!r}, allowed {least} .. {_CHANNELS}")
+        raise Error(f"channels: {channels!r}, expected {least} .. {_CHANNELS}")
     return int(channels)
 
 
 def _up(up: Optional[str]) -> bytes:
     if up not in (None, "", "y", "z"):
-        raise Error(f"up: {up!r}, allowed \"y\" or \"z\"")
+        raise Error(f"up: {up!r}, expected \"y\" or \"z\"")
     return _text(up)
 
 
 def _tip(side: str, name: Optional[str]) -> bytes:
     text = _text(name)
     if len(text) > 63:
-        raise Error(f"{side}_tip: a name of {len(text)} bytes, allowed are 63")
+        raise Error(f"{side}_tip: a name of {len(text)} bytes, expected 63")
     return text
 
 
 def _filled(out: NDArray, channels: int) -> NDArray[np.float32]:
     """`out` if sound can be written into it."""
-    wanted = f"allowed a writeable float32 array, C order, shape (samples, {channels})"
+    wanted = f"expected a writeable float32 array, C order, shape (samples, {channels})"
     if not isinstance(out, np.ndarray):
         raise Error(f"out: {type(out).__name__}, {wanted}")
     if out.dtype != np.float32 or out.ndim != 2 or out.shape[1] != channels:
@@ -198,7 +198,7 @@ class Performance:
     def target(self, hand: Union[str, int], xyz: Sequence[float]) -> None:
         """A live target of a drumstick's tip (m, world frame), for now."""
         if np.shape(xyz) != (3,):
-            raise Error(f"target: {xyz!r}, allowed three numbers x, y, z (m)")
+            raise Error(f"target: {xyz!r}, expected three numbers x, y, z (m)")
         lib.himc_performance_target(self._session.performance, _hand(hand), [_finite("target", c) for c in xyz])
 
     def process(self, seconds: float, out: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:

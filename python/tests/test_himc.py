@@ -56,7 +56,7 @@ class Package(unittest.TestCase):
     def test_one_command_is_a_score(self):
         r = himc.render("stroke 1 right accent f")
         self.assertEqual(r.stats["played"], 1)
-        with self.assertRaisesRegex(himc.Error, "^score:1: stroke: HAND: rigt, allowed left right$"):
+        with self.assertRaisesRegex(himc.Error, "^score:1: stroke: HAND: rigt, expected left right$"):
             himc.render("stroke 1 rigt accent f")
         with self.assertRaisesRegex(himc.Error, "my piece.txt: cannot be read"):
             himc.render("my piece.txt")
@@ -107,13 +107,13 @@ class Package(unittest.TestCase):
         p.process(0.1)
         before = p.motion["target"][-1]
         for hand in (2, -1, 99, 2**40, "both", None, 0.5):
-            with self.assertRaisesRegex(himc.Error, "hand: .*, allowed"):
+            with self.assertRaisesRegex(himc.Error, "hand: .*, expected"):
                 p.target(hand, (0.45, 0, 1))
         for xyz in ([float("nan"), 0, 1], [0, float("inf"), 1], [0, None, 1], [0, "a", 1]):
-            with self.assertRaisesRegex(himc.Error, "target: .*, allowed a finite number"):
+            with self.assertRaisesRegex(himc.Error, "target: .*, expected a finite number"):
                 p.target("right", xyz)
         for xyz in ([], [1, 2], [1, 2, 3, 4], 1, "xyz", [[1, 2, 3]]):
-            with self.assertRaisesRegex(himc.Error, "target: .*, allowed three numbers"):
+            with self.assertRaisesRegex(himc.Error, "target: .*, expected three numbers"):
                 p.target("right", xyz)
         p.process(0.02)
         np.testing.assert_allclose(p.motion["target"][-1], before, atol=1e-3)
@@ -136,7 +136,7 @@ class Package(unittest.TestCase):
         }
         for why, arrays in refused.items():
             for out in arrays:
-                with self.assertRaisesRegex(himc.Error, f"out: .*({why}).*allowed a writeable float32 array"):
+                with self.assertRaisesRegex(himc.Error, f"out: .*({why}).*expected a writeable float32 array"):
                     p.process(0, out)
         self.assertEqual(p.time, 0)
         self.assertEqual(constant, bytes(512))
@@ -249,7 +249,7 @@ class Package(unittest.TestCase):
         self.assertEqual(take.analog.shape, (11600, 38))
         self.assertEqual((take.analog_rate, take.analog_names[6]), (2000, "Delt_ant.EMG1 (V)"))
         self.assertTrue(0 < np.abs(take.analog[:, 6]).max() < 1)
-        with self.assertRaisesRegex(himc.Error, "no subject bob, allowed boite Daphnee"):
+        with self.assertRaisesRegex(himc.Error, "no subject bob, expected boite Daphnee"):
             himc.Take(path, subject="bob")
 
     @unittest.skipUnless(CAPTURE.exists(), "needs ../shared/mocap")

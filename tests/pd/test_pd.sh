@@ -219,7 +219,7 @@ report technique_clip_in_a_score_sounds_a_performance \
     "$(numbers performed | awk '{ a = $1 < 0 ? -$1 : $1; if (a > m) m = a } END { if (!(m > 0.05 && m < 1)) print "peak " m }')"
 report technique_of_patches_is_refused_where_there_are_none \
     "$("$build/bin/himc" render technique.txt -o "$work/none.wav" >"$work/log" 2>&1 && echo "not refused"
-    lines "himc render: technique.txt:2: kettle: technique: clip, allowed modal here: signal and clip are patches, [technique~ NAME] in Pure Data")"
+    lines "himc render: technique.txt:2: kettle: technique: clip, expected modal here: signal and clip are patches, [technique~ NAME] in Pure Data")"
 
 # --- two performers on one drum
 
@@ -233,20 +233,20 @@ report a_performer_that_stays_alone_plays_on \
 
 play_pd objects.pd
 report objects_with_nonsense_arguments_are_refused_with_a_line \
-    "$(lines "membrane~: inches: 5000 in, allowed 12 .. 60 in
-membrane~: argument 1: 3, allowed: a name, as in [membrane~ kettle 26]
-membrane~: argument 2: large, allowed: a diameter in inches
-membrane~: 4 arguments, allowed: [-save] NAME [INCHES [CHANNELS]]
-membrane~: argument 3: loud, allowed: a number of channels
-membrane~: channels: 9, allowed 1 .. 8
-membrane~: channels: 1.5, allowed a whole number
-membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, allowed a drum's name: up to 31 letters and digits, no number, no spot, no command of the performer
-himc~: drum: NAME: rim, allowed a drum's name
-membrane~: drum: NAME: centre, allowed a drum's name
+    "$(lines "membrane~: inches: 5000 in, expected 12 .. 60 in
+membrane~: argument 1: 3, expected a name, as in [membrane~ kettle 26]
+membrane~: argument 2: large, expected a diameter in inches
+membrane~: 4 arguments, expected [-save] NAME [INCHES [CHANNELS]]
+membrane~: argument 3: loud, expected a number of channels
+membrane~: channels: 9, expected 1 .. 8
+membrane~: channels: 1.5, expected a whole number
+membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, expected a drum's name: up to 31 letters and digits, no number, no spot, no command of the performer
+himc~: drum: NAME: rim, expected a drum's name
+membrane~: drum: NAME: centre, expected a drum's name
 himc~: drum tempo: the name of a command, expected another name
-himc~: argument 1: 3, allowed: a drum's name of up to 31 characters
+himc~: argument 1: 3, expected a drum's name of up to 31 characters
 himc~: argument 2: one is named twice
-himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, allowed: a drum's name of up to 31 characters")"
+himc~: argument 1: a-name-that-is-much-longer-than-any-drum-has, expected a drum's name of up to 31 characters")"
 report second_drum_of_a_name_stays_nameless \
     "$(lines "membrane~: twice: there is one of this name already: [himc~] finds this one when that is gone")"
 # a newer Pd repeats the box that it could not make on a line of its own
@@ -257,31 +257,31 @@ play_pd successor.pd
 report copy_of_a_drum_takes_its_name_when_the_original_is_deleted \
     "$(awk '$1 == "level:" && $2 > most { most = $2 } END { if (!(most > 60)) print "loudest " most + 0 " dB" }' "$work/log"; grep 'no \[membrane' "$work/log")"
 report number_alone_is_told_what_a_message_is \
-    "$(lines "himc~: a number: allowed: a message that begins with a word, as [hit right legato mf(")"
+    "$(lines "himc~: a number: expected a message that begins with a word, as [hit right legato mf(")"
 
 play_pd messages.pd
 said=$(grep -c '^error: ' "$work/log")
 report messages_that_mean_nothing_answer_with_one_line_each \
     "$([ "$said" = 38 ] || echo "$said lines for 38 messages: ")$(lines "himc~: nonsense: unknown command
-himc~: stroke: HAND: middle, allowed left right
+himc~: stroke: HAND: middle, expected left right
 himc~: rmi: no spot (center normal rim), no drum (kettle), did you mean rim?
 himc~: stroke: NUANCE missing
-himc~: tempo: BPM: 0, allowed
+himc~: tempo: BPM: 0, expected
 himc~: score: missing.txt: no such file
-bad.txt:3: stroke: NUANCE: acent, allowed
-himc~: gain: JOINT: nose, allowed
+bad.txt:3: stroke: NUANCE: acent, expected
+himc~: gain: JOINT: nose, expected
 membrane~: nonsense: unknown command
-membrane~: radius: RADIUS: 0, allowed
-membrane~: mallet: silk, allowed
-membrane~: save: SWITCH: 3, allowed 0 .. 1, whole
-membrane~: save: 2 is one atom too many, allowed save SWITCH
-membrane~: save: SWITCH missing, allowed save SWITCH
-membrane~: info: x is one atom too many, allowed info
-membrane~: strike: X Y, from the centre: 0.424264 m, allowed
-membrane~: kettle: tuen, allowed usual or 0.0001
-himc~: kettle: info: x is one atom too many, allowed info
-himc~: score: /tmp: a folder, allowed a regular file")"
-not_numbers=$(grep -c 'nan is not a finite number, allowed' "$work/log")
+membrane~: radius: RADIUS: 0, expected
+membrane~: mallet: silk, expected
+membrane~: save: SWITCH: 3, expected 0 .. 1, whole
+membrane~: save: 2 is one atom too many, expected save SWITCH
+membrane~: save: SWITCH missing, expected save SWITCH
+membrane~: info: x is one atom too many, expected info
+membrane~: strike: X Y, from the centre: 0.424264 m, expected
+membrane~: kettle: tuen, expected usual or 0.0001
+himc~: kettle: info: x is one atom too many, expected info
+himc~: score: /tmp: a folder, expected a regular file")"
+not_numbers=$(grep -c 'nan is not a finite number, expected' "$work/log")
 report numbers_that_are_none_are_refused \
     "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: tune: inf is not a finite number")"
 report refused_messages_change_nothing "$(lines "principal mode 150 Hz")"
@@ -302,10 +302,10 @@ report a_drum_that_comes_later_takes_the_place_of_a_silent_one \
     "$(lines "no drum later: playing on a silent one")$([ "$(strikes left later)" = 1 ] || echo "$(strikes left later) strikes")"
 report a_drum_that_is_nowhere_is_an_error \
     "$(lines "himc~: othr: no spot (center normal rim), no drum (kettle other), did you mean other?")"
-report a_push_refused_on_its_sample_is_an_error "$(lines "error: himc~: push: SEGMENT: nose, allowed trunk neck")"
+report a_push_refused_on_its_sample_is_an_error "$(lines "error: himc~: push: SEGMENT: nose, expected trunk neck")"
 report info_of_a_drum_is_answered_by_the_performer "$(lines "himc: info kettle: radius
 himc: info other: radius")"
-report a_change_at_a_beat_without_a_drum_says_so "$(lines "himc~: at: DRUM missing before tune, allowed at BEAT DRUM tune HZ")"
+report a_change_at_a_beat_without_a_drum_says_so "$(lines "himc~: at: DRUM missing before tune, expected at BEAT DRUM tune HZ")"
 
 mkfifo "$work/fifo.bvh"
 for word in take record; do

@@ -27,7 +27,7 @@ check test_one_build_strikes_the_drum grep -q '^himc: strike' "$work/log"
 check test_one_build_has_no_error [ "$(grep -c 'another build' "$work/log")" = 0 ]
 play "$work/mixed"
 check test_two_builds_end_without_a_crash [ $? = 0 ]
-check test_two_builds_refuse_each_other_in_one_line [ "$(grep -c 'himc~: \[membrane~ kettle\] is of another build (.*), allowed: both from one build: its strokes are silent' "$work/log")" = 1 ]
+check test_two_builds_refuse_each_other_in_one_line [ "$(grep -c 'himc~: \[membrane~ kettle\] is of another build (.*), expected both from one build: its strokes are silent' "$work/log")" = 1 ]
 check test_two_builds_play_on_a_silent_drum grep -q '^himc: strike' "$work/log"
 
 [ $failures = 0 ] || tail -n 5 "$work/log"

@@ -17,7 +17,7 @@ report() { # report NAME WHY: passed if WHY is empty
 
 outside() { # outside VALUE LOW HIGH UNIT: says so
     awk -v x="$1" -v low="$2" -v high="$3" -v unit="$4" \
-        'BEGIN { if (!(x >= low && x <= high)) print x " " unit ", allowed " low " .. " high }'
+        'BEGIN { if (!(x >= low && x <= high)) print x " " unit ", expected " low " .. " high }'
 }
 
 piece() { # piece NAME: the sound in $work/NAME.wav

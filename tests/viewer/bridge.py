@@ -1094,18 +1094,18 @@ def test_trouble_is_one_clear_line():
         assert f"port {v.osc} (UDP, for OSC) is taken" in error_line(
             "--http", "0", "--osc", str(v.osc)
         )
-    assert "allowed 0 .. 65535" in error_line("--osc", "70000")
+    assert "expected 0 .. 65535" in error_line("--osc", "70000")
     assert "wants a value" in error_line("--http")
     assert "unknown option" in error_line("--nonsense", "1")
     assert "not an address" in error_line("--bind", "nowhere")
     assert "cannot be read" in error_line("--play", "/nowhere.himc")
     assert "x?[31m?y.himc: cannot" in error_line("--play", "x\033[31m\ny.himc")
-    assert "a device, allowed a regular file" in error_line("--play", "/dev/zero")
+    assert "a device, expected a regular file" in error_line("--play", "/dev/zero")
     with tempfile.TemporaryDirectory() as folder:
         os.mkfifo(folder + "/fifo.himc")
-        assert "a FIFO, allowed a regular file" in error_line("--play", folder + "/fifo.himc")
+        assert "a FIFO, expected a regular file" in error_line("--play", folder + "/fifo.himc")
     assert "Makefile: not a scene" in error_line("--play", "Makefile")
-    assert "allowed a regular file" in error_line("--play", "viewer")
+    assert "expected a regular file" in error_line("--play", "viewer")
 
 
 def test_it_ends_cleanly_when_told():

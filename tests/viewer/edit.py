@@ -368,7 +368,7 @@ def test_a_file_that_is_no_score_is_refused_as_by_render():
             done = subprocess.run([HIMC, *call], capture_output=True, input=b"hello\n")
             assert done.returncode == 1, (call, done)
             said.add(done.stderr.decode().split(": ", 1)[1])
-        assert len(said) == 1 and "allowed: a score" in (line := said.pop()), said
+        assert len(said) == 1 and "expected a score" in (line := said.pop()), said
         sent = [HIMC, "edit", path, "--confined", "--name", "my.txt"]
         done = subprocess.run(sent, capture_output=True, input=b"hello\n")
         assert done.stderr.decode() == f"himc edit: {line.replace(path, 'my.txt')}", done

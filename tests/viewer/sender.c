@@ -259,7 +259,7 @@ static plan parse(int argc, char **argv)
             die(argv[i]);
     }
     if (p.performers < 1 || p.performers > PERFORMERS)
-        die("--performers: allowed 1 .. 16");
+        die("--performers: expected 1 .. 16");
     return p;
 }
 

@@ -92,7 +92,7 @@ def hear(folder, player='aplay'):
     trials = [(name, first) for name in PAIRS for first in ('recorded', 'computed')]
     trials = [t for t in trials if os.path.exists(os.path.join(folder, t[0] + '-recorded.wav'))]
     if not trials:
-        sys.exit(f'listen: {folder}: no recording, allowed: {", ".join(PAIRS)}, each -recorded.wav')
+        sys.exit(f'listen: {folder}: no recording, expected {", ".join(PAIRS)}, each -recorded.wav')
     random.shuffle(trials)
     right, answers = 0, os.path.join(folder, 'answers.csv')
     with tempfile.TemporaryDirectory() as work, open(answers, 'a', encoding='utf-8') as file:

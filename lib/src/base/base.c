@@ -40,7 +40,7 @@ bool himc_check_range(const char *name, double value, double low, double high, c
     if (isfinite(value) && value >= low && value <= high)
         return true;
     const char *space = unit[0] ? " " : "";
-    return himc_error_set(error, "%s: %g%s%s, allowed %g .. %g%s%s", name, value, space, unit, low,
+    return himc_error_set(error, "%s: %g%s%s, expected %g .. %g%s%s", name, value, space, unit, low,
                           high, space, unit);
 }
 

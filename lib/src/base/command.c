@@ -16,7 +16,7 @@
 #include <string.h>
 
 #define WORD_SIZE 64
-#define ALLOWED_SIZE 256
+#define EXPECTED_SIZE 256
 #define LOUDEST 7.0 // dynamic word k of ppp .. fff is k / 7
 
 /// A command's atoms as the grammar understands them.
@@ -33,7 +33,7 @@ typedef struct attempt {
     int at;    ///< atom that stopped it
     int forms; ///< that came as close
     char name[WORD_SIZE];
-    char allowed[ALLOWED_SIZE];
+    char expected[EXPECTED_SIZE];
 } attempt;
 
 /// The state of following one form.
@@ -108,12 +108,12 @@ static void take_atom(walk *w, const himc_argument *argument, int choice)
 }
 
 /// Takes the next atom if it is one of the words of a token "a|b|c".
-static bool take_word(walk *w, const char *token, char allowed[ALLOWED_SIZE])
+static bool take_word(walk *w, const char *token, char expected[EXPECTED_SIZE])
 {
     const himc_atom *atom = &w->atom[w->at];
     int choice = atom->kind == HIMC_ATOM_SYMBOL ? find_word(token, atom->symbol) : -1;
-    snprintf(allowed, ALLOWED_SIZE, "%s", token);
-    for (char *s = allowed; *s; s++)
+    snprintf(expected, EXPECTED_SIZE, "%s", token);
+    for (char *s = expected; *s; s++)
         *s = *s == '|' ? ' ' : *s;
     if (choice < 0)
         return false;
@@ -124,10 +124,10 @@ static bool take_word(walk *w, const char *token, char allowed[ALLOWED_SIZE])
 }
 
 /// Takes all that is left: words and finite numbers.
-static bool take_rest(walk *w, char allowed[ALLOWED_SIZE])
+static bool take_rest(walk *w, char expected[EXPECTED_SIZE])
 {
     const himc_argument *word = himc_argument_find("COMMAND", NULL);
-    snprintf(allowed, ALLOWED_SIZE, "words and finite numbers");
+    snprintf(expected, EXPECTED_SIZE, "words and finite numbers");
     for (; w->at < w->count && w->at < HIMC_COMMAND_ATOMS; w->at++) {
         const himc_atom *atom = &w->atom[w->at];
         bool number = atom->kind == HIMC_ATOM_NUMBER;
@@ -138,18 +138,18 @@ static bool take_rest(walk *w, char allowed[ALLOWED_SIZE])
     return true;
 }
 
-/// Takes the atoms that fit the token; false, and `allowed` filled, if the next one does not.
-static bool take(walk *w, const char *token, char allowed[ALLOWED_SIZE])
+/// Takes the atoms that fit the token; false, and `expected` filled, if the next one does not.
+static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
 {
     if (strcmp(token, "...") == 0)
-        return take_rest(w, allowed);
+        return take_rest(w, expected);
     if (!is_argument(token))
-        return take_word(w, token, allowed);
+        return take_word(w, token, expected);
     const himc_argument *argument = himc_argument_find(token, w->context);
     bool spot = strcmp(token, "SPOT") == 0;
-    himc_argument_describe(argument, allowed, ALLOWED_SIZE);
+    himc_argument_describe(argument, expected, EXPECTED_SIZE);
     if (spot)
-        strncat(allowed, " or X Y, both -1 .. 1 m", ALLOWED_SIZE - strlen(allowed) - 1);
+        strncat(expected, " or X Y, both -1 .. 1 m", EXPECTED_SIZE - strlen(expected) - 1);
     if (spot && is_place(w)) {
         const himc_argument *x = himc_argument_find("X", "stroke");
         take_atom(w, x, -1);
@@ -165,7 +165,7 @@ static bool take(walk *w, const char *token, char allowed[ALLOWED_SIZE])
 /// Follows one form from `grammar` to its end; returns where the next begins, or NULL.
 static const char *follow(const char *grammar, walk w, attempt *result)
 {
-    char token[WORD_SIZE], allowed[ALLOWED_SIZE];
+    char token[WORD_SIZE], expected[EXPECTED_SIZE];
     int least = 0, most = 0;
     bool optional;
     *result = (attempt){.end = FITS, .forms = 1};
@@ -175,14 +175,14 @@ static const char *follow(const char *grammar, walk w, attempt *result)
         most += 1 + (strcmp(token, "SPOT") == 0);
         if (result->end != FITS || (optional && w.at == w.count))
             continue;
-        bool taken = w.at < w.count && take(&w, token, allowed);
+        bool taken = w.at < w.count && take(&w, token, expected);
         // an optional word may be left out when something else may follow
         bool skip = optional && *grammar && w.at < w.count && w.atom[w.at].kind == HIMC_ATOM_SYMBOL;
         if (taken || skip)
             continue;
         result->end = w.at == w.count ? MISSING : WRONG;
         snprintf(result->name, sizeof result->name, "%s", token);
-        snprintf(result->allowed, sizeof result->allowed, "%s", w.at == w.count ? "" : allowed);
+        snprintf(result->expected, sizeof result->expected, "%s", w.at == w.count ? "" : expected);
     }
     if (result->end == FITS && w.at < w.count)
         result->end = TOO_MANY;
@@ -219,32 +219,32 @@ static bool refuse(const himc_command_row *row, const himc_atom *atoms, const at
     bool named = is_argument(best->name);
     const char *space = row->atoms[0] ? " " : "";
     if (best->end == MISSING)
-        return himc_error_set(error, "%s: %s missing, allowed %s %s", row->name,
+        return himc_error_set(error, "%s: %s missing, expected %s %s", row->name,
                               best->at > 0 || is_argument(best->name) ? best->name : "atoms",
                               row->name, row->atoms);
     if (best->end == WRONG && fits_no_form(row, atoms, best))
-        return himc_error_set(error, "%s: %s, allowed %s %s", row->name, value, row->name,
+        return himc_error_set(error, "%s: %s, expected %s %s", row->name, value, row->name,
                               row->atoms);
     if (best->end == TOO_MANY)
-        return himc_error_set(error, "%s: %s is one atom too many, allowed %s%s%s", row->name,
+        return himc_error_set(error, "%s: %s is one atom too many, expected %s%s%s", row->name,
                               value, row->name, space, row->atoms);
-    return himc_error_set(error, "%s: %s%s%s, allowed %s", row->name, named ? best->name : "",
-                          named ? ": " : "", value, best->allowed);
+    return himc_error_set(error, "%s: %s%s%s, expected %s", row->name, named ? best->name : "",
+                          named ? ": " : "", value, best->expected);
 }
 
-/// Of two failures the closer one; of two equally close wrong atoms, the allowed values of both.
+/// Of two failures the closer one; of two equally close wrong atoms, the expected values of both.
 static void keep_closer(attempt *best, const attempt *other)
 {
     if (other->rank > best->rank || (other->rank == best->rank && best->end == TOO_MANY)) {
         *best = *other;
     } else if (other->rank == best->rank && other->end == WRONG && best->end == WRONG) {
         best->forms++;
-        if (strcmp(other->allowed, best->allowed) == 0)
+        if (strcmp(other->expected, best->expected) == 0)
             return;
-        size_t used = strlen(best->allowed);
-        int room = (int)(sizeof best->allowed - used);
-        snprintf(best->allowed + used, (size_t)room, " or %.*s", room - 5 > 0 ? room - 5 : 0,
-                 other->allowed);
+        size_t used = strlen(best->expected);
+        int room = (int)(sizeof best->expected - used);
+        snprintf(best->expected + used, (size_t)room, " or %.*s", room - 5 > 0 ? room - 5 : 0,
+                 other->expected);
         best->name[0] = '\0';
     }
 }
@@ -436,7 +436,7 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
     if (!row)
         return refuse_name(receiver, name, error);
     if (misses_drum(row, atoms, count))
-        return himc_error_set(error, "at: DRUM missing before %s, allowed at BEAT DRUM %s %s",
+        return himc_error_set(error, "at: DRUM missing before %s, expected at BEAT DRUM %s %s",
                               atoms[1].symbol, atoms[1].symbol,
                               himc_command_find(HIMC_DRUM, atoms[1].symbol)->atoms);
     if (!check(row, atoms, count, &read, error))
@@ -479,7 +479,7 @@ bool himc_command_parse_text(himc_command *out, himc_receiver receiver, const ch
                              .size = sizeof storage};
     int line = 1;
     if (!himc_text_next(&text, &line, &s) || s.count == 0)
-        return himc_error_set(error, "an empty command, allowed a name and its atoms");
+        return himc_error_set(error, "an empty command, expected a name and its atoms");
     if (s.overflow)
         return himc_error_set(error, "a command of more than %zu characters", s.size);
     if (text[strspn(text, " \t\r\n")])

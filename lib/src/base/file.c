@@ -52,7 +52,7 @@ static int open_regular(const char *path, int flags, himc_error *error)
     if (file >= 0)
         close(file);
     if (kind)
-        himc_error_set(error, "%s: %s: %s, allowed a regular file", path, fault, kind);
+        himc_error_set(error, "%s: %s: %s, expected a regular file", path, fault, kind);
     else
         himc_error_set(error, "%s: %s: %s", path, fault, strerror(why));
     return -1;
@@ -144,7 +144,7 @@ bool himc_file_draft_open(himc_file_draft *draft, const char *path, himc_error *
     int length = snprintf(draft->path, sizeof draft->path, "%s", real);
     free(real);
     if (length >= (int)sizeof draft->path)
-        return himc_error_set(error, "%.64s...: the name is too long, allowed %zu bytes", path,
+        return himc_error_set(error, "%.64s...: the name is too long, expected %zu bytes", path,
                               sizeof draft->path - 1);
     if (exists && access(draft->path, W_OK) != 0)
         return cannot_write(path, error);
@@ -237,7 +237,7 @@ char *himc_file_load_in(const char *folder, const char *path, size_t most, size_
     if (bytes && *size <= most)
         return bytes;
     if (bytes)
-        himc_error_set(error, "%s: too long, allowed %zu MiB", path, most >> 20);
+        himc_error_set(error, "%s: too long, expected %zu MiB", path, most >> 20);
     else
         himc_error_set(error, "%s: cannot be read: %s", path, strerror(why));
     free(bytes);
@@ -285,7 +285,7 @@ static bool is_text_name(const char *command, const char *path, himc_error *erro
     size_t length = strlen(path);
     if (himc_line_is_clean(path) && length > 4 && strcmp(path + length - 4, ".txt") == 0)
         return true;
-    return himc_error_set(error, "%s: FILE: %.80s, allowed a name that ends with .txt", command,
+    return himc_error_set(error, "%s: FILE: %.80s, expected a name that ends with .txt", command,
                           path);
 }
 

@@ -353,7 +353,7 @@ static bool poses_valid(const himc_pose *pose, int frames, himc_error *error)
             if (!(fabs(square - 1) < UNIT_TOLERANCE))
                 return himc_error_set(error,
                                       "limits: frame %d: %s: a quaternion of length %g, "
-                                      "allowed 1",
+                                      "expected 1",
                                       f + 1, himc_joint_name(j), sqrt(square));
         }
     return true;
@@ -364,7 +364,7 @@ bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, d
 {
     himc_limits learned = {.kind = HIMC_LIMITS_ELLIPSOID};
     if (frames < 1)
-        return himc_error_set(error, "limits: %d frames, allowed at least 1", frames);
+        return himc_error_set(error, "limits: %d frames, expected at least 1", frames);
     if (!himc_check_range("limits: margin", margin, 0, 1, "", error) ||
         !poses_valid(pose, frames, error))
         return false;

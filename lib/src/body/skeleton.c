@@ -119,7 +119,7 @@ static bool config_valid(const himc_skeleton_config *c, himc_error *error)
     valid = valid && (c->seat == 0 || himc_check_range("seat", c->seat, 0.3, 1.3, "m", error));
     for (int hand = 0; valid && hand < HIMC_HANDS; hand++)
         if (c->length[HIMC_LEFT_STICK + hand] != 0)
-            valid = himc_error_set(error, "%s: a measured length, allowed 0: set the stick length",
+            valid = himc_error_set(error, "%s: a measured length, expected 0: set the stick length",
                                    segment_names[HIMC_LEFT_STICK + hand]);
     for (int i = 0; valid && i < HIMC_SEGMENTS; i++)
         valid = c->length[i] == 0 ||

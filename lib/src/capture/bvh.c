@@ -46,11 +46,11 @@ typedef struct bvh {
     himc_error *error;
 } bvh;
 
-static bool refuse(const bvh *r, const char *what, himc_span found, const char *allowed)
+static bool refuse(const bvh *r, const char *what, himc_span found, const char *expected)
 {
     char text[44];
-    return himc_error_set(r->error, "%s:%d: %s \"%s\", allowed %s", r->take->file, r->text.line,
-                          what, himc_span_text(found, text), allowed);
+    return himc_error_set(r->error, "%s:%d: %s \"%s\", expected %s", r->take->file, r->text.line,
+                          what, himc_span_text(found, text), expected);
 }
 
 static bool refuse_end(const bvh *r, const char *where)
@@ -89,7 +89,7 @@ static bool number(bvh *r, const char *what, double *value)
 static bool add_node(bvh *r, int parent, bool is_end)
 {
     if (r->count >= MOST_NODES)
-        return himc_error_set(r->error, "%s:%d: too many joints, allowed %d", r->take->file,
+        return himc_error_set(r->error, "%s:%d: too many joints, expected %d", r->take->file,
                               r->text.line, MOST_NODES);
     // grown by doubling
     if ((r->count & (r->count - 1)) == 0) {
@@ -179,7 +179,7 @@ static bool close_node(bvh *r, int *current, int *depth)
     node *n = &r->nodes[*current];
     if (!n->has_offset)
         return himc_error_set(r->error,
-                              "%s:%d: joint %s has no OFFSET, allowed: one for each joint",
+                              "%s:%d: joint %s has no OFFSET, expected one for each joint",
                               r->take->file, r->text.line, n->name);
     *current = n->parent;
     --*depth;
@@ -190,7 +190,7 @@ static bool close_node(bvh *r, int *current, int *depth)
 static bool open_node(bvh *r, int *current, int *depth, bool is_end)
 {
     if (++*depth > MOST_DEPTH)
-        return himc_error_set(r->error, "%s:%d: joints are nested too deeply, allowed %d levels",
+        return himc_error_set(r->error, "%s:%d: joints are nested too deeply, expected %d levels",
                               r->take->file, r->text.line, MOST_DEPTH);
     if (is_end ? !read_end_site(r, *current)
                : !add_node(r, *current, false) || !read_name(r, &r->nodes[r->count - 1]))
@@ -256,7 +256,7 @@ static bool read_motion_header(bvh *r, int *frames, double *rate)
     if (!number(r, "Frame Time:", &time))
         return false;
     if (!(time >= LEAST_TIME && time <= MOST_TIME))
-        return himc_error_set(r->error, "%s:%d: Frame Time: %g s, allowed 0.0001 .. 0.05 s",
+        return himc_error_set(r->error, "%s:%d: Frame Time: %g s, expected 0.0001 .. 0.05 s",
                               r->take->file, r->text.line, time);
     int rows = count_rows(r);
     if (rows != count)
@@ -266,7 +266,7 @@ static bool read_motion_header(bvh *r, int *frames, double *rate)
     if (r->channels == 0 || (size_t)(r->text.end - r->text.at) < (size_t)rows * (size_t)r->count)
         return himc_error_set(
             r->error,
-            "%s: %d channels for %d joints, allowed: at least one channel for most joints",
+            "%s: %d channels for %d joints, expected at least one channel for most joints",
             r->take->file, r->channels, r->count);
     *frames = rows;
     *rate = 1 / time;
@@ -290,7 +290,7 @@ static bool read_node(bvh *r, const node *n, himc_quat *rotation, himc_vec3 *pla
         if (!himc_span_word(&r->line, &w))
             return himc_error_set(
                 r->error,
-                "%s:%d: the row ends before channel %d of %s, allowed: rows of %d numbers",
+                "%s:%d: the row ends before channel %d of %s, expected rows of %d numbers",
                 r->take->file, r->text.line, k + 1, n->name, r->channels);
         if (!himc_span_number(w, &v[kind]) || !(fabs(v[kind]) <= TAKE_LARGEST))
             return refuse(r, n->name, w, "a number up to 1e8");
@@ -432,7 +432,7 @@ bool himc_bvh_write(FILE *file, const himc_take *take, himc_error *error)
 {
     if (!take->parents)
         return himc_error_set(
-            error, "%s: the take has no skeleton to write as .bvh, allowed .c3d .trc", take->file);
+            error, "%s: the take has no skeleton to write as .bvh, expected .c3d .trc", take->file);
     fputs("HIERARCHY\n", file);
     put_joint(file, take, 0, 0);
     fprintf(file, "MOTION\nFrames: %d\nFrame Time: ", take->frames);

@@ -58,16 +58,16 @@ static bool read_layout(c3d *r)
         parameter(r, "POINT", "SCALE", 0, himc_c3d_real(r->parameters.processor, r->bytes + 12));
     double used = parameter(r, "POINT", "USED", 0, r->points);
     if (r->points < 1)
-        return himc_error_set(r->error, "%s: the header says 0 points, allowed 1 .. 65535",
+        return himc_error_set(r->error, "%s: the header says 0 points, expected 1 .. 65535",
                               r->take->file);
     if (used != r->points)
         return himc_error_set(
-            r->error, "%s: the header says %d points, POINT:USED says %g, allowed: the same number",
+            r->error, "%s: the header says %d points, POINT:USED says %g, expected the same number",
             r->take->file, r->points, used);
     if (!isfinite(r->scale) || r->scale == 0)
         return himc_error_set(
             r->error,
-            "%s: POINT:SCALE is %g, allowed: a negative number for floats, a positive factor for "
+            "%s: POINT:SCALE is %g, expected a negative number for floats, a positive factor for "
             "integers",
             r->take->file, r->scale);
     r->is_float = r->scale < 0;
@@ -113,7 +113,7 @@ static bool count_frames(const c3d *r, int *frames)
         }
     }
     if (most < 1)
-        return himc_error_set(r->error, "%s: the header says 0 frames, allowed 1 .. 1000000",
+        return himc_error_set(r->error, "%s: the header says 0 frames, expected 1 .. 1000000",
                               r->take->file);
     return himc_error_set(r->error,
                           "%s: the header says %.0f frames of %zu bytes, the file has %.0f frames",
@@ -188,7 +188,7 @@ static bool choose_points(c3d *r, int *count)
             r->points - *count);
     return *count > 0 ||
            himc_error_set(r->error,
-                          "%s: all points are values of a model (angles, forces, ...), allowed: at "
+                          "%s: all points are values of a model (angles, forces, ...), expected at "
                           "least one position",
                           r->take->file);
 }
@@ -235,7 +235,7 @@ static bool read_unit(const c3d *r)
     himc_span span = himc_span_trim((himc_span){at, nul ? (size_t)(nul - at) : length});
     r->take->file_unit = himc_take_unit(himc_span_text(span, text));
     return span.length == 0 || r->take->file_unit > 0 ||
-           himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", allowed mm, cm, m, in or ft",
+           himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", expected mm, cm, m, in or ft",
                           r->take->file, text);
 }
 
@@ -421,11 +421,11 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
     c3d r = {.take = take, .bytes = bytes, .size = size, .error = error};
     take->format_up = himc_vec3_make(0, 0, 1);
     if (size < BLOCK)
-        return himc_error_set(error, "%s: %zu bytes, allowed: at least a header of %d", take->file,
+        return himc_error_set(error, "%s: %zu bytes, expected at least a header of %d", take->file,
                               size, BLOCK);
     if (bytes[1] != 0x50 || bytes[0] < 2)
         return himc_error_set(error,
-                              "%s: begins with bytes %d %d, allowed for C3D: 2 .. 255 and 80",
+                              "%s: begins with bytes %d %d, expected for C3D: 2 .. 255 and 80",
                               take->file, bytes[0], bytes[1]);
     bool ok = read_all(&r);
     free(r.kept);
@@ -587,7 +587,7 @@ static void put_point(bytes *b, himc_vec3 x)
 bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
 {
     if (take->points > MOST_LABELS)
-        return himc_error_set(error, "%s: %d points, allowed in a .c3d: up to %d", take->file,
+        return himc_error_set(error, "%s: %d points, expected up to %d in a .c3d", take->file,
                               take->points, MOST_LABELS);
     int blocks = 2 + (take->points * TAKE_NAME + BLOCK - 1) / BLOCK;
     size_t before = (size_t)(1 + blocks) * BLOCK, row = 16 * (size_t)take->points;

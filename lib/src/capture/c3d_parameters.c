@@ -176,7 +176,7 @@ bool himc_c3d_parameters_read(c3d_parameters *p, const unsigned char *bytes, siz
                               offset, size);
     int processor = bytes[offset + 3];
     if (processor < C3D_INTEL || processor > C3D_MIPS)
-        return himc_error_set(error, "processor is %d, allowed 84 (Intel), 85 (DEC), 86 (MIPS)",
+        return himc_error_set(error, "processor is %d, expected 84 (Intel), 85 (DEC), 86 (MIPS)",
                               processor);
     p->processor = (c3d_processor)processor;
     size_t section = offset + (size_t)C3D_BLOCK * bytes[offset + 2];

@@ -9,7 +9,7 @@ static bool refuse_cell(const marker_row *row, int point, int axis, himc_span ce
     char text[44];
     return himc_error_set(
         row->error,
-        "%s:%d: %s %c is \"%s\", allowed: a number up to 1e8, or an empty cell for a gap",
+        "%s:%d: %s %c is \"%s\", expected a number up to 1e8, or an empty cell for a gap",
         row->take->file, row->line, row->take->names[point], "XYZ"[axis],
         himc_span_text(cell, text));
 }
@@ -46,7 +46,7 @@ bool himc_marker_row_point(const marker_row *row, himc_span *rest, int frame, in
     }
     if (seen != 0 && seen != 3)
         return himc_error_set(row->error,
-                              "%s:%d: %s has %d of its 3 coordinates, allowed all or none",
+                              "%s:%d: %s has %d of its 3 coordinates, expected all or none",
                               row->take->file, row->line, row->take->names[point], seen);
     *himc_take_at(row->take, frame, point) =
         seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();

@@ -103,7 +103,7 @@ static bool nexus_names(plan *p, himc_span line)
             return refuse(p, "two names less than three columns apart");
         add_point(p, cell, column);
     }
-    return p->points > 0 || refuse(p, "no names of markers, allowed: one above each first column");
+    return p->points > 0 || refuse(p, "no names of markers, expected one above each first column");
 }
 
 static bool nexus_units(plan *p, himc_span line)
@@ -114,7 +114,7 @@ static bool nexus_units(plan *p, himc_span line)
         if (unit == 0)
             continue;
         if (p->take->file_unit != 0 && fabs(p->take->file_unit - unit) > SAME_UNIT)
-            return refuse(p, "markers in several units, allowed one");
+            return refuse(p, "markers in several units, expected one");
         p->take->file_unit = unit;
     }
     return true;
@@ -129,16 +129,16 @@ static bool read_nexus(plan *p)
         found = himc_span_is(himc_span_cell(&line, ','), "trajectories");
     if (!found)
         return himc_error_set(p->error,
-                              "%s: no section Trajectories, allowed: an export with trajectories",
+                              "%s: no section Trajectories, expected an export with trajectories",
                               p->take->file);
     if (!himc_text_line(&p->text, &line) || !himc_span_number(himc_span_cell(&line, ','), &p->rate))
-        return refuse(p, "no rate, allowed: frames per second (Hz)");
+        return refuse(p, "no rate, expected frames per second (Hz)");
     if (!himc_text_line(&p->text, &names))
         return refuse(p, "no names of markers");
     if (!nexus_names(p, names))
         return false;
     if (!himc_text_line(&p->text, &heads) || !himc_span_is(himc_span_cell(&heads, ','), "frame"))
-        return refuse(p, "not the line of columns, allowed: Frame,Sub Frame,X,Y,Z,...");
+        return refuse(p, "not the line of columns, expected Frame,Sub Frame,X,Y,Z,...");
     p->frame = 0;
     p->ends_with_blank = true;
     return himc_text_line(&p->text, &line) ? nexus_units(p, line) : refuse(p, "no line of units");
@@ -205,7 +205,7 @@ static bool motive_columns(plan *p, himc_span types, himc_span names, himc_span 
             add_point(p, name, column - 2);
         next = (next + 1) % 3;
     }
-    return p->points > 0 || refuse(p, "no columns Position, allowed: an export with markers, rigid "
+    return p->points > 0 || refuse(p, "no columns Position, expected an export with markers, rigid "
                                       "bodies or bones");
 }
 
@@ -227,7 +227,7 @@ static bool read_motive(plan *p)
         names = row == 1 ? line : names;
         properties = line;
     }
-    return refuse(p, "no line Frame,Time (Seconds),X,Y,Z,..., allowed: an export with a header");
+    return refuse(p, "no line Frame,Time (Seconds),X,Y,Z,..., expected an export with a header");
 }
 
 // Qualisys
@@ -281,7 +281,7 @@ static bool read_qualisys(plan *p)
             return p->points > 0 || refuse(p, "no MARKER_NAMES before the rows");
         }
     }
-    return refuse(p, "no rows, allowed: a TSV with MARKER_NAMES, then numbers");
+    return refuse(p, "no rows, expected a TSV with MARKER_NAMES, then numbers");
 }
 
 // any CSV
@@ -344,7 +344,7 @@ static bool any_columns(plan *p, himc_span line)
         next = (axis + 1) % 3;
         last = name;
         if (unit != 0 && p->take->file_unit != 0 && fabs(unit - p->take->file_unit) > SAME_UNIT)
-            return refuse(p, "markers in several units, allowed one");
+            return refuse(p, "markers in several units, expected one");
         p->take->file_unit = unit != 0 ? unit : p->take->file_unit;
         if (axis == 2)
             add_point(p, name, column - 2);
@@ -365,7 +365,7 @@ static bool read_any(plan *p)
         return false;
     if (p->points == 0)
         return refuse(p,
-                      "no markers, allowed: columns time,NAME_x_m,NAME_y_m,NAME_z_m,... (or _mm, "
+                      "no markers, expected columns time,NAME_x_m,NAME_y_m,NAME_z_m,... (or _mm, "
                       "_cm); Vicon Nexus' or Motive's export; Qualisys' .tsv");
     return p->time != NOT_THERE || refuse(p, "no column time (s)");
 }
@@ -395,7 +395,7 @@ static bool read_number(const plan *p, himc_span cell, const char *column, doubl
 {
     char text[44];
     return (himc_marker_number(cell, p->separator, value) && fabs(*value) <= TAKE_LARGEST) ||
-           himc_error_set(p->error, "%s:%d: %s is \"%s\", allowed: a number", p->take->file,
+           himc_error_set(p->error, "%s:%d: %s is \"%s\", expected a number", p->take->file,
                           p->text.line, column, himc_span_text(cell, text));
 }
 

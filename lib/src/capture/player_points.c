@@ -189,7 +189,7 @@ static bool add_centre(player_points *p, int which, const int *point, int count,
         himc_take_gap gap;
         if (himc_take_fill(p->take, point[i], options->longest_gap, one, &gap) < 0) {
             himc_player_note(player,
-                             "%s: %s is missing in frames %d .. %d, allowed: gaps up to %g s",
+                             "%s: %s is missing in frames %d .. %d, expected gaps up to %g s",
                              point_name(which), himc_take_point_name(p->take, point[i]),
                              himc_take_first_frame(p->take) + gap.begin,
                              himc_take_first_frame(p->take) + gap.end - 1, options->longest_gap);
@@ -346,7 +346,7 @@ static bool check_size(const player_points *p, himc_error *error)
     if (bad <= good)
         return true;
     return himc_error_set(error,
-                          "%s: player: %s of %.3g m, allowed %.2f .. %.2f m: is the unit right?",
+                          "%s: player: %s of %.3g m, expected %.2f .. %.2f m: is the unit right?",
                           p->take->file, himc_segment_name(first->segment + side), length,
                           LEAST_LENGTH * first->usual, MOST_LENGTH * first->usual);
 }
@@ -362,7 +362,7 @@ static bool check_sides(const player_points *p, himc_error *error)
                               himc_vec3_sub(x[POINT_HIP][i], x[POINT_HIP + 1][i]));
     return same >= 0 ||
            himc_error_set(error,
-                          "%s: player: the left shoulder is over the right hip, allowed "
+                          "%s: player: the left shoulder is over the right hip, expected "
                           "over the left one: are left and right exchanged?",
                           p->take->file);
 }

@@ -34,7 +34,7 @@ bool himc_take_allocate(himc_take *take, double rate, int frames, int points, bo
         !himc_check_range("points", points, 1, TAKE_MOST_POINTS, "", error))
         return himc_error_prefix(error, "%s", take->file);
     if ((int64_t)frames * points > TAKE_MOST_POSITIONS)
-        return himc_error_set(error, "%s: %d frames of %d points, allowed %d in all", take->file,
+        return himc_error_set(error, "%s: %d frames of %d points, expected %d in all", take->file,
                               frames, points, TAKE_MOST_POSITIONS);
     size_t count = (size_t)points, all = count * (size_t)frames;
     take->rate = rate;

@@ -84,7 +84,7 @@ static const format *format_of(const char *path, himc_error *error)
                            refused[i].do_this);
             return NULL;
         }
-    himc_error_set(error, "%s: not a take by its suffix, allowed " HIMC_TAKE_SUFFIXES, path);
+    himc_error_set(error, "%s: not a take by its suffix, expected " HIMC_TAKE_SUFFIXES, path);
     return NULL;
 }
 
@@ -100,7 +100,7 @@ bool himc_take_can_save(const char *path, himc_error *error)
 {
     const format *f = find_format(path);
     return (f && f->write) ||
-           himc_error_set(error, "%s: a format that is not written, allowed " WRITTEN, path);
+           himc_error_set(error, "%s: a format that is not written, expected " WRITTEN, path);
 }
 
 #define FILE_ROOM (sizeof((himc_take *)0)->file)

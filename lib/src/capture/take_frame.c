@@ -191,7 +191,7 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
         return himc_error_set(
             error,
             "%s: skeleton: the longest path along its bones is %.4g units, in m, cm, mm, "
-            "CMU units, inches or feet no player's size, allowed %g .. %g m",
+            "CMU units, inches or feet no player's size, expected %g .. %g m",
             take->file, size, legs ? LEAST_SKELETON : LEAST_ARMS, MOST_SKELETON);
     snprintf(take->units_text, sizeof take->units_text,
              "%s, guessed from the skeleton: %.4g units along its bones", unit_name(*unit, text),
@@ -223,7 +223,7 @@ static bool settle_markers(himc_take *take, double *unit, himc_error *error)
     if (*unit == 0)
         return himc_error_set(error,
                               "%s: the points are %.4g m apart if the unit is %s, no metric unit "
-                              "makes that a player's size, allowed %g .. %g m",
+                              "makes that a player's size, expected %g .. %g m",
                               take->file, fmax(s.typical, small ? s.all : 0) * in,
                               unit_name(in, text), LEAST_SPREAD, MOST_SPREAD);
     snprintf(take->units_text, sizeof take->units_text, "%s, %s", unit_name(*unit, text),

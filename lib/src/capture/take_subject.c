@@ -97,6 +97,6 @@ bool himc_take_choose_subject(himc_take *take, const char *wanted, himc_error *e
     if (count > 0)
         keep_points(take, kept, count);
     free(kept);
-    return count > 0 || himc_error_set(error, "%s: no subject %s, allowed%s", take->file, wanted,
+    return count > 0 || himc_error_set(error, "%s: no subject %s, expected%s", take->file, wanted,
                                        subjects ? text : ": none, the file has one player");
 }

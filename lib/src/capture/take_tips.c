@@ -51,7 +51,7 @@ static bool refuse_gap(const himc_take *take, himc_hand hand, int point, himc_ta
 {
     bool never = g.end - g.begin == take->frames;
     return himc_error_set(
-        error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), allowed: gaps up to %g s",
+        error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), expected gaps up to %g s",
         take->file, himc_hand_name(hand), take->names[point], never ? "never seen" : "missing",
         take->first_frame + g.begin, take->first_frame + g.end - 1, (g.end - g.begin) / take->rate,
         longest);
@@ -90,7 +90,7 @@ static bool refuse_name(const himc_take *take, himc_hand hand, const char *name,
 {
     char points[96];
     list_points(take, points, sizeof points);
-    return himc_error_set(error, "%s: %s tip: no point \"%.40s\", allowed: %s", take->file,
+    return himc_error_set(error, "%s: %s tip: no point \"%.40s\", expected %s", take->file,
                           himc_hand_name(hand), name, points);
 }
 
@@ -112,7 +112,7 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
             continue;
         if (found && tips[HIMC_LEFT].point == point)
             return himc_error_set(error,
-                                  "%s: %s is named as both tips, allowed: one point for each tip",
+                                  "%s: %s is named as both tips, expected one point for each tip",
                                   take->file, take->names[point]);
         if (!fill_tip(take, (himc_hand)hand, point, options->longest_gap, &tips[hand], error))
             return false;
@@ -125,6 +125,6 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
     return himc_error_set(
         error,
         "%s: no point has a stick tip's name (RTIP, STICK_L, RightStick_end, bead, ...), name it "
-        "with --left-tip or --right-tip, allowed: %s",
+        "with --left-tip or --right-tip, expected %s",
         take->file, points);
 }

@@ -67,11 +67,11 @@ static himc_span header_value(himc_span keys, himc_span values, char separator, 
     return (himc_span){"", 0};
 }
 
-static bool refuse_value(const trc *r, const char *key, himc_span value, const char *allowed)
+static bool refuse_value(const trc *r, const char *key, himc_span value, const char *expected)
 {
     char text[44];
-    return himc_error_set(r->error, "%s:%d: %s is \"%s\", allowed %s", r->take->file, r->text.line,
-                          key, himc_span_text(value, text), allowed);
+    return himc_error_set(r->error, "%s:%d: %s is \"%s\", expected %s", r->take->file, r->text.line,
+                          key, himc_span_text(value, text), expected);
 }
 
 static bool read_header(trc *r)
@@ -136,7 +136,7 @@ static bool read_names(trc *r)
         if ((column - 2) % 3 != 0 || (column - 2) / 3 >= r->markers)
             return himc_error_set(
                 r->error,
-                "%s:4: marker \"%s\" is above column %ld, allowed: every third column, 3 .. %ld",
+                "%s:4: marker \"%s\" is above column %ld, expected every third column, 3 .. %ld",
                 r->take->file, himc_span_text(cell, text), column + 1, 3 * r->markers);
         himc_take_set_name(r->take, (int)((column - 2) / 3), cell.at, cell.length);
         given++;

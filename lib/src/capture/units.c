@@ -229,7 +229,7 @@ int himc_units_cut(himc_take *take, const himc_take_options *options, himc_unit 
     }
     free(strikes);
     if (count == 0) {
-        himc_error_set(error, "%d strokes, allowed: at least one that is a clear fall from above",
+        himc_error_set(error, "%d strokes, expected at least one that is a clear fall from above",
                        found);
         return -1;
     }

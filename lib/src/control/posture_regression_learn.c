@@ -48,7 +48,7 @@ static bool check_take(const himc_posture_regression_take *take, himc_error *err
         return false;
     if (himc_posture_regression_known_frames(take) < 2 * TERMS)
         return himc_error_set(
-            error, "posture regression: a take of %d frames, allowed %d or more", take->frames,
+            error, "posture regression: a take of %d frames, expected %d or more", take->frames,
             take->frames - himc_posture_regression_known_frames(take) + 2 * TERMS);
     for (int i = 0; i < take->frames; i++)
         for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -147,7 +147,7 @@ bool himc_posture_regression_fit(himc_posture_regression_player *player,
                                  himc_error *error)
 {
     if (count < 1)
-        return himc_error_set(error, "posture regression: no take of a player, allowed 1 or more");
+        return himc_error_set(error, "posture regression: no take of a player, expected 1 or more");
     for (int n = 0; n < count; n++)
         if (!check_take(&take[n], error))
             return false;
@@ -424,7 +424,7 @@ bool himc_posture_regression_learn(himc_posture_regression *regression,
     int rows = 0;
     if (count < 1)
         return himc_error_set(error,
-                              "posture regression: no take to learn from, allowed 1 or more");
+                              "posture regression: no take to learn from, expected 1 or more");
     for (int n = 0; n < count; n++) {
         if (!check_take(&take[n], error))
             return false;

@@ -72,12 +72,12 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
         return NULL;
     }
     if (strlen(name) >= HIMC_NAME_SIZE) {
-        himc_error_set(error, "drum: name %s, allowed up to %d characters", name,
+        himc_error_set(error, "drum: name %s, expected up to %d characters", name,
                        HIMC_NAME_SIZE - 1);
         return NULL;
     }
     if (!himc_line_is_clean(name)) {
-        himc_error_set(error, "drum: name %s, allowed without control characters, in UTF-8", name);
+        himc_error_set(error, "drum: name %s, expected UTF-8 without control characters", name);
         return NULL;
     }
     if (!himc_check_range("inches", inches, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "in", error) ||

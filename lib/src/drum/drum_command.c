@@ -191,7 +191,7 @@ static bool do_uniformity(himc_drum *drum, const himc_command *c, himc_error *er
     if (c->count == 2)
         head.uniformity_seed = (int)number(c, 1);
     if (head.uniformity < 1 && !round)
-        return himc_error_set(error, "uniformity: %.6g, allowed 1 on a head that is not round",
+        return himc_error_set(error, "uniformity: %.6g, expected 1 on a head that is not round",
                               head.uniformity);
     return set_head(drum, &head, error);
 }
@@ -356,7 +356,7 @@ static bool refuse_shape(const char *word, himc_error *error)
 {
     if (strpbrk(word, "./\\"))
         return himc_error_prefix(error, "shape");
-    return himc_error_set(error, "shape: %.80s, allowed circle, rectangle LENGTH WIDTH, or a file",
+    return himc_error_set(error, "shape: %.80s, expected circle, rectangle LENGTH WIDTH, or a file",
                           word);
 }
 
@@ -399,7 +399,7 @@ static bool do_technique(himc_drum *drum, const himc_command *c, himc_error *err
     himc_technique wanted = (himc_technique)c->choice[0];
     if (wanted != HIMC_TECHNIQUE_MODAL && !drum->external_sound)
         return himc_error_set(error,
-                              "technique: %s, allowed modal here: signal and clip are patches, "
+                              "technique: %s, expected modal here: signal and clip are patches, "
                               "[technique~ NAME] in Pure Data",
                               c->atom[0].symbol);
     drum->technique = wanted;

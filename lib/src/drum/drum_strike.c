@@ -34,7 +34,7 @@ bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double 
     if (!himc_check_range("strike: delay", delay, 0, DRUM_MAX_DELAY, "samples", error))
         return false;
     if (drum->waiting_count == DRUM_WAITING)
-        return himc_error_set(error, "strike: %d wait already, allowed up to %d", DRUM_WAITING,
+        return himc_error_set(error, "strike: %d wait already, expected up to %d", DRUM_WAITING,
                               DRUM_WAITING);
     drum->waiting[drum->waiting_count++] =
         (drum_waiting){drum->time + (uint64_t)delay, x, y, velocity};

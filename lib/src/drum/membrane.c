@@ -389,7 +389,7 @@ static bool check_head(const himc_head *head, himc_outline kind, himc_error *err
     if (!himc_head_check(head, error))
         return false;
     if (head->air && kind != HIMC_CIRCLE)
-        return himc_error_set(error, "air: 1, allowed 0 on a head that is not round");
+        return himc_error_set(error, "air: 1, expected 0 on a head that is not round");
     return !head->air || head->kettle == 0 || himc_air_check(head->kettle, head->radius, error);
 }
 

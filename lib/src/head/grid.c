@@ -189,12 +189,12 @@ static bool read_market(reader *r, matrix *m)
     char format[16], field[16], kind[16];
     double rows, columns, entries = 0;
     if (sscanf(r->row, "%%%%MatrixMarket matrix %15s %15s %15s", format, field, kind) != 3)
-        return fault(r, "allowed %%MatrixMarket matrix coordinate|array real general|symmetric");
+        return fault(r, "expected %%MatrixMarket matrix coordinate|array real general|symmetric");
     bool coordinate = strcmp(format, "coordinate") == 0, symmetric = strcmp(kind, "symmetric") == 0;
     if ((!coordinate && strcmp(format, "array") != 0) ||
         (strcmp(field, "real") != 0 && strcmp(field, "integer") != 0) ||
         (!symmetric && strcmp(kind, "general") != 0))
-        return fault(r, "allowed coordinate or array, real or integer, general or symmetric");
+        return fault(r, "expected coordinate or array, real or integer, general or symmetric");
     if (!next_row(r, '%') || !next_number(r, &rows) || !next_number(r, &columns) ||
         (coordinate && !next_number(r, &entries)))
         return fault(r, "the matrix's size is missing");
@@ -226,7 +226,7 @@ static bool load_matrix(matrix *out, const char *path, int most, int columns, hi
         good = read_rows(&r, &m, columns);
     if (good && columns > 0 && m.columns != columns)
         good =
-            himc_error_set(error, "%s: rows of %d numbers, allowed %d", path, m.columns, columns);
+            himc_error_set(error, "%s: rows of %d numbers, expected %d", path, m.columns, columns);
     free(r.text);
     if (!good)
         free(m.value);
@@ -272,13 +272,13 @@ static bool read_item(parts *p, const char *path, const char *key, const char *v
     if (number) {
         *number = strtod(value, &end);
         if (*value == '\0' || *end)
-            return himc_error_set(error, "%s: %.60s, allowed a number", key, value);
+            return himc_error_set(error, "%s: %.60s, expected a number", key, value);
         return himc_check_range(key, *number, 1e-3, 1e5, number == &p->tension ? "N/m" : "kg/m2",
                                 error);
     }
     if (!table)
-        return himc_error_set(error,
-                              "%.60s: unknown, allowed tension density places mass stiffness", key);
+        return himc_error_set(
+            error, "%.60s: unknown, expected tension density places mass stiffness", key);
     if (table->value)
         return himc_error_set(error, "%s: named twice", key);
     bool places = table == &p->places;
@@ -319,7 +319,7 @@ static bool check_matrix(const matrix *a, const char *name, const matrix *places
     if (!a->value)
         return himc_error_set(error, "%s: missing", name);
     if (a->rows != a->columns)
-        return himc_error_set(error, "%s: %d rows of %d numbers, allowed as many as rows", name,
+        return himc_error_set(error, "%s: %d rows of %d numbers, expected a square matrix", name,
                               a->rows, a->columns);
     if (a->rows > places->rows)
         return himc_error_set(error, "%s: %d rows but %d places", name, a->rows, places->rows);
@@ -336,7 +336,7 @@ static bool check_parts(const parts *p, himc_error *error)
         !check_matrix(&p->stiffness, "stiffness", &p->places, error))
         return false;
     return p->mass.rows == p->stiffness.rows ||
-           himc_error_set(error, "mass: %d rows, stiffness: %d, allowed the same", p->mass.rows,
+           himc_error_set(error, "mass: %d rows, stiffness: %d, expected the same", p->mass.rows,
                           p->stiffness.rows);
 }
 
@@ -412,12 +412,12 @@ static bool take_modes(himc_grid *g, himc_error *error)
     if (g->zero[0] < -NEGATIVE * fabs(highest))
         return himc_error_set(error,
                               "stiffness: negative: its lowest eigenvalue is %g 1/s2, its highest "
-                              "%g, allowed from 0",
+                              "%g, expected from 0",
                               g->zero[0], highest);
     while (rigid < g->modes && !(g->zero[rigid] > RIGID * highest))
         rigid++;
     if (rigid == g->modes)
-        return himc_error_set(error, "stiffness: 0, allowed one that resists bending");
+        return himc_error_set(error, "stiffness: 0, expected one that resists bending");
     leave_out(g, rigid);
     for (int k = 0; k < g->modes; k++)
         set_mode(g, k, g->zero[k]);
@@ -436,7 +436,7 @@ static bool solve(himc_grid *g, parts *p, himc_error *error)
     case HIMC_LINEAR_SOLVED: return take_modes(g, error);
     case HIMC_LINEAR_NO_MEMORY: return himc_error_set(error, "no memory for %d places", n);
     case HIMC_LINEAR_NOT_DEFINITE:
-        return himc_error_set(error, "mass: not positive definite, allowed one that gives every "
+        return himc_error_set(error, "mass: not positive definite, expected one that gives every "
                                      "motion kinetic energy");
     default: return himc_error_set(error, "no modes found");
     }

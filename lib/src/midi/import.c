@@ -120,7 +120,7 @@ static bool collect(midi_part *part, const midi_file *file, const midi_options *
             part->fate[timpani || drum ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT]++;
     }
     return part->count <= MOST_STROKES ||
-           himc_error_set(error, "%d notes for drums, allowed %d", part->count, MOST_STROKES);
+           himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
 }
 
 // strokes that are played and damped, as many as a score has lines for

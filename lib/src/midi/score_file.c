@@ -15,7 +15,7 @@ static himc_score *import(const char *bytes, size_t size, const char *path, himc
 {
     midi_score made;
     if (size > HIMC_MIDI_BYTES_MAX) {
-        himc_error_set(error, "%s: too long, allowed %zu MiB of MIDI", path,
+        himc_error_set(error, "%s: too long, expected %zu MiB of MIDI", path,
                        HIMC_MIDI_BYTES_MAX >> 20);
         return NULL;
     }
@@ -65,7 +65,7 @@ bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_e
 {
     const char *kind = other_kind(bytes, size);
     return !kind ||
-           himc_error_set(error, "%s: %s; allowed: a score, a MIDI file or a take", name, kind);
+           himc_error_set(error, "%s: %s; expected a score, a MIDI file or a take", name, kind);
 }
 
 himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
@@ -74,7 +74,7 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
     himc_score *score = NULL;
     if (himc_take_is_capture(path)) {
         himc_error_set(error,
-                       "%s: a take by its suffix, allowed: a score or a MIDI file; a take "
+                       "%s: a take by its suffix, expected a score or a MIDI file; a take "
                        "is loaded by take",
                        path);
         return NULL;

@@ -252,7 +252,7 @@ static bool read_division(tempo_clock *c, const uint8_t *bytes, himc_error *erro
     *c = (tempo_clock){.tempo = USUAL_TEMPO, .quarter = ticks};
     if (frames) // 29 stands for 29.97
         c->per_second = (rate == 29 ? 30000.0 / 1001 : rate) * ticks;
-    return ticks > 0 || himc_error_set(error, "a division of 0 ticks, allowed 1 or more");
+    return ticks > 0 || himc_error_set(error, "a division of 0 ticks, expected 1 or more");
 }
 
 static void take_tempo(midi_file *file, tempo_clock *c, const event *e)
@@ -344,7 +344,7 @@ static bool collect(midi_file *file, reader *r, tempo_clock *clock)
         convert(file);
     const midi_note *last = file->notes + file->note_count - 1;
     return file->note_count == 0 || last->beat <= MOST_BEATS ||
-           himc_error_set(r->error, "a note at beat %.9g, allowed up to %g", last->beat,
+           himc_error_set(r->error, "a note at beat %.9g, expected up to %g", last->beat,
                           MOST_BEATS);
 }
 
@@ -358,9 +358,9 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
     size_t header = number_of(at + 4, 4);
     reader r = {.format = (int)number_of(at + 8, 2), .error = error};
     if (header < 6 || header > size - 8)
-        return himc_error_set(error, "a header of %zu bytes, allowed 6 .. %zu", header, size - 8);
+        return himc_error_set(error, "a header of %zu bytes, expected 6 .. %zu", header, size - 8);
     if (r.format > 2)
-        return himc_error_set(error, "MIDI format %d, allowed 0 .. 2", r.format);
+        return himc_error_set(error, "MIDI format %d, expected 0 .. 2", r.format);
     r.timpani = calloc(UINT16_MAX, sizeof *r.timpani);
     bool good = r.timpani || himc_error_set(error, "out of memory");
     good = good && read_division(&clock, at + 12, error) &&

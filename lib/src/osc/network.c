@@ -138,9 +138,9 @@ bool himc_osc_network_open(osc_network *n, const char *bind_to, int port, osc_co
     if (port < 0)
         return true;
     if (port > 65535)
-        return himc_error_set(error, "port: %d, allowed 0 .. 65535", port);
+        return himc_error_set(error, "port: %d, expected 0 .. 65535", port);
     if (!himc_osc_address_parse(bind_to, port, &address))
-        return himc_error_set(error, "bind: %.80s, allowed a numeric address of this machine",
+        return himc_error_set(error, "bind: %.80s, expected a numeric address of this machine",
                               bind_to);
     n->in_v6 = address.v6;
     n->in_loopback = himc_osc_address_loopback(&address);
@@ -148,7 +148,7 @@ bool himc_osc_network_open(osc_network *n, const char *bind_to, int port, osc_co
     socklen_t size = to_socket(&address, &at);
     if (n->in < 0 || !himc_udp_bind(n->in, &at, size)) {
         if (errno == EADDRINUSE)
-            return himc_error_set(error, "port %d is taken by another program, allowed a free one",
+            return himc_error_set(error, "port %d is taken by another program, expected a free one",
                                   port);
         return himc_error_set(error, "%.80s port %d: %s", bind_to, port, strerror(errno));
     }

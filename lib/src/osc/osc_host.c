@@ -240,7 +240,7 @@ bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *er
     r->kind = RECORD_CHANGE;
     memset(&r->change, 0, sizeof r->change);
     if (!himc_osc_change_from(&r->change, command))
-        return himc_error_set(error, "allowed here: subscribe unsubscribe");
+        return himc_error_set(error, "expected subscribe or unsubscribe");
     r->change.local = true;
     end(osc);
     return true;
@@ -297,7 +297,7 @@ static himc_drum *find_drum(himc_performance *performance, const char *name, him
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, " %s", himc_drum_name(drum));
     }
-    himc_error_set(error, "%s: no drum of that name, allowed:%s", name,
+    himc_error_set(error, "%s: no drum of that name, expected%s", name,
                    names[0] ? names : " none, make one with drum");
     return NULL;
 }

@@ -221,9 +221,9 @@ bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, double n
     if (himc_osc_address_parse(change->host, change->port, &to))
         return is_allowed(s, change, &to)
                    ? make_change(s, change, &to, now, error)
-                   : refuse(change, error, "allowed is your own address, or one given by --allow");
+                   : refuse(change, error, "expected your own address, or one given by --allow");
     if (!change->local)
-        return refuse(change, error, "allowed over the network is a numeric address");
+        return refuse(change, error, "expected a numeric address over the network");
     return look_up(s, change) || refuse(change, error, "too many names are being looked up");
 }
 
@@ -254,7 +254,7 @@ bool himc_osc_allow(osc_subscriptions *s, const char *hosts, himc_error *error)
         size_t n = strcspn(hosts, ",");
         snprintf(host, sizeof host, "%.*s", (int)n, hosts);
         if (s->allowed_count == ALLOWED_HOSTS)
-            return himc_error_set(error, "allow: %s is one host too many, allowed 32", host);
+            return himc_error_set(error, "allow: %s is one host too many, expected 32", host);
         osc_address *a = &s->allowed[s->allowed_count++];
         if (n >= sizeof host ||
             (!himc_osc_address_parse(host, 1, a) && !himc_osc_address_find(host, 1, a)))

@@ -26,11 +26,10 @@ bool himc_confine_command(himc_command *c, const char *folder, himc_error *error
     if (!names_file)
         return true;
     if (!folder) // the parser has made a score of a preset, so the file alone is named
-        return himc_error_set(error,
-                              "%.80s: no file is read over the network, allowed with --files",
+        return himc_error_set(error, "%.80s: files are read over the network only with --files",
                               c->atom[atom].symbol);
     if (size > sizeof c->storage - used)
-        return himc_error_set(error, "%s: a name of %zu characters, allowed %zu in that folder",
+        return himc_error_set(error, "%s: a name of %zu characters, expected %zu in that folder",
                               row->name, used - 1, sizeof c->storage - size - 1);
     c->folder = memcpy(c->storage + used, folder, size);
     return true;

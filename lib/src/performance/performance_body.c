@@ -166,7 +166,7 @@ bool himc_body_make_push_room(performance_body *b, int count, himc_error *error)
     if (b->planned_count + count <= HIMC_PUSHES)
         return true;
     if (b->planned_count - begun + count > HIMC_PUSHES)
-        return himc_error_set(error, "push: one too many, allowed %d", HIMC_PUSHES);
+        return himc_error_set(error, "push: one too many, expected %d", HIMC_PUSHES);
     b->planned_count -= begun;
     memmove(b->planned, b->planned + begun, (size_t)b->planned_count * sizeof *b->planned);
     return true;
@@ -315,7 +315,7 @@ bool himc_body_find_joint(const char *name, const char *command, int *joint, him
     *joint = himc_joint_find(name);
     if (*joint >= 0)
         return true;
-    himc_error_set(error, "%s: JOINT: %s, allowed", command, name);
+    himc_error_set(error, "%s: JOINT: %s, expected", command, name);
     size_t used = error ? strlen(error->text) : 0;
     for (int j = 0; error && j < HIMC_JOINTS; j++)
         used +=
@@ -333,7 +333,7 @@ bool himc_body_read_push(const himc_command *c, planned_push *out, himc_error *e
     for (out->segment = HIMC_PELVIS + 1; out->segment < HIMC_SEGMENTS; out->segment++)
         if (strcmp(name, himc_segment_name(out->segment)) == 0)
             return true;
-    himc_error_set(error, "push: SEGMENT: %s, allowed", name);
+    himc_error_set(error, "push: SEGMENT: %s, expected", name);
     size_t used = error ? strlen(error->text) : 0;
     for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
         used +=

@@ -47,7 +47,7 @@ static bool add_push(change_job *j, himc_error *error)
     planned_push list[HIMC_PUSHES];
     int count = body->planned_count, at = count;
     if (count == HIMC_PUSHES)
-        return himc_error_set(error, "push: one too many, allowed %d", HIMC_PUSHES);
+        return himc_error_set(error, "push: one too many, expected %d", HIMC_PUSHES);
     memcpy(list, body->planned, sizeof *list * (size_t)count);
     for (; at > 0 && list[at - 1].beat > j->line.beat; at--)
         list[at] = list[at - 1];

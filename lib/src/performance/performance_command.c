@@ -486,7 +486,7 @@ static bool leave_to_host(himc_performance *p, const himc_command *c, himc_error
 static bool refuse_network(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)p;
-    return himc_error_set(error, "%s: allowed as a message to [himc~] or over OSC",
+    return himc_error_set(error, "%s: only as a message to [himc~] or over OSC",
                           himc_command_table((int)c->id)->name);
 }
 
@@ -600,7 +600,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE || on_beat)
         return act(p, command, error);
     if (delay > LONGEST_DELAY)
-        return himc_error_set(error, "delay: %d samples, allowed 0 .. %d", delay, LONGEST_DELAY);
+        return himc_error_set(error, "delay: %d samples, expected 0 .. %d", delay, LONGEST_DELAY);
     if (!himc_queue_has_room(&p->queue))
         return himc_queue_drop(&p->queue, error);
     if (!prepare(p, command, error))

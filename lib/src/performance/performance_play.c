@@ -197,7 +197,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     if (!check_stroke(stroke, true, error))
         return false;
     if (!give_to_free_hands(p, &own, &asked.alone))
-        return himc_error_set(error, "hit: a take moves the hands, allowed when it is over");
+        return himc_error_set(error, "hit: not possible while a take is playing");
     if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
         return false;
     himc_performance_name_drum(p, &own, asked.drum);
@@ -259,8 +259,7 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
         return;
     if (!himc_motion_free_hand(p->motion, hand, step_time(p))) {
         if (himc_motion_refuse_target(p->motion, hand))
-            himc_events_note(&p->events,
-                             "target %s: a take moves the hand, allowed when it is over",
+            himc_events_note(&p->events, "target %s: not possible while a take is playing",
                              himc_hand_name(hand));
         return;
     }

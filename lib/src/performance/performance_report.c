@@ -330,13 +330,13 @@ bool himc_performance_allows(bool recording, const himc_command *c, himc_error *
     if (c->id == HIMC_COMMAND_RATE)
         return !recording || c->form == PHYSICS ||
                himc_error_set(error,
-                              "rate task: %g: not while recording, allowed after record stop",
+                              "rate task: %g: not possible while recording, first send record stop",
                               c->atom[1].number);
     if (recording && c->form != STOP)
-        return himc_error_set(error, "record: %s: already recording, allowed stop",
+        return himc_error_set(error, "record: %s: already recording, expected stop",
                               c->atom[0].symbol);
     return recording || c->form != STOP ||
-           himc_error_set(error, "record: stop: nothing is being recorded, allowed FILE");
+           himc_error_set(error, "record: stop: nothing is being recorded, expected FILE");
 }
 
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,

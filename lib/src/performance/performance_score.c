@@ -273,7 +273,7 @@ static bool pushes_of(const himc_score *score, const char *path, double from, pl
         if (line->drum[0])
             continue;
         bool good = *count < HIMC_PUSHES ||
-                    himc_error_set(error, "push: one too many, allowed %d", HIMC_PUSHES);
+                    himc_error_set(error, "push: one too many, expected %d", HIMC_PUSHES);
         if (!good || !himc_body_read_push(&line->command, &list[*count], error))
             return himc_error_prefix(error, "%s:%d", path, line->line);
         list[(*count)++].beat = from + line->beat;
@@ -836,7 +836,7 @@ static bool exchange_nudges(himc_performance *p, const himc_score *score, himc_e
     for (int i = 0; i < score->line_count; i++)
         if (score->lines[i].command.id == HIMC_COMMAND_NUDGE) {
             if (count == HIMC_NUDGES)
-                return himc_error_set(error, "nudge: one too many, allowed %d", HIMC_NUDGES);
+                return himc_error_set(error, "nudge: one too many, expected %d", HIMC_NUDGES);
             list[count++] = himc_performance_nudge(&score->lines[i].command);
         }
     return himc_track_exchange(p->motion->track, list, count, step_time(p) - p->motion->track_start,

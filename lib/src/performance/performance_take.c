@@ -260,7 +260,7 @@ static bool check_side(const himc_player *player, const himc_head_frame *frame, 
     if (!player->placed || player->walks || frame->center.x >= 0)
         return true;
     return himc_error_set(error,
-                          "the sticks strike %.2f m behind the player, allowed before: are left "
+                          "the sticks strike %.2f m behind the player, expected in front: are left "
                           "and right exchanged?",
                           -frame->center.x);
 }
@@ -309,7 +309,7 @@ static bool prepare(himc_job *job, himc_error *error)
         j->player = NULL;
         if (!j->take && !himc_take_is_capture(j->name))
             return himc_error_set(error,
-                                  "take: %s: not a take by its suffix, allowed " HIMC_TAKE_SUFFIXES
+                                  "take: %s: not a take by its suffix, expected " HIMC_TAKE_SUFFIXES
                                   "; a score or a MIDI file is loaded by score",
                                   j->name);
         if (!j->take)

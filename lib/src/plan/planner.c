@@ -173,7 +173,7 @@ void himc_planner_set_body(himc_planner *planner)
 bool himc_planner_check_units(int count, int more, himc_error *error)
 {
     return count + more <= HIMC_UNITS ||
-           himc_error_set(error, "units: %d more, allowed %d in all", more, HIMC_UNITS);
+           himc_error_set(error, "units: %d more, expected %d in all", more, HIMC_UNITS);
 }
 
 int himc_planner_units(const himc_planner *planner)

@@ -517,7 +517,7 @@ int himc_planner_roll_left_out(const planner_score *score, int i)
 static bool grow(planner_score *score, himc_error *error)
 {
     if (score->roll_count == MOST_ROLLS)
-        return himc_error_set(error, "roll: one too many, allowed %d", MOST_ROLLS);
+        return himc_error_set(error, "roll: one too many, expected %d", MOST_ROLLS);
     if (score->roll_count < score->roll_room)
         return true;
     int wanted = score->roll_room ? 2 * score->roll_room : 16;

@@ -51,7 +51,7 @@ static double gap(const planner_score *score, double a, double b)
 static bool check_count(int count, himc_error *error)
 {
     return count < MOST_HAND_STROKES ||
-           himc_error_set(error, "stroke: one too many, allowed %d for a hand", MOST_HAND_STROKES);
+           himc_error_set(error, "stroke: one too many, expected %d for a hand", MOST_HAND_STROKES);
 }
 
 bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *strokes, int count,
@@ -69,7 +69,7 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
 {
     const planner_part *part = &score->part[stroke->hand];
     if (drum < 0 || drum >= HIMC_DRUMS)
-        return himc_error_set(error, "stroke: drum number %d, allowed 0 .. %d", drum,
+        return himc_error_set(error, "stroke: drum number %d, expected 0 .. %d", drum,
                               HIMC_DRUMS - 1);
     if (!check_count(part->count, error))
         return false;
@@ -77,7 +77,7 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
     if (least < HIMC_CLOSEST_STROKES - BEAT_ROUNDED)
         return himc_error_set(
             error,
-            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, allowed %g s or more",
+            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, expected %g s or more",
             stroke->beat, least, himc_hand_name(stroke->hand), HIMC_CLOSEST_STROKES);
     return true;
 }
@@ -182,7 +182,7 @@ himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi,
     }
     himc_tempo_change *copy = count > 0 ? malloc((size_t)count * sizeof *copy) : NULL;
     if (!copy) {
-        himc_error_set(error, "tempo: %d changes, allowed 1 or more", count);
+        himc_error_set(error, "tempo: %d changes, expected 1 or more", count);
         return NULL;
     }
     memcpy(copy, tempi, (size_t)count * sizeof *copy);

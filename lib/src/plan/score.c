@@ -66,7 +66,7 @@ static bool add_stroke(reader *r)
 {
     himc_score *score = r->score;
     if (score->stroke_count == SCORE_STROKES_MAX)
-        return himc_error_set(r->error, "stroke: one too many, allowed %d strokes",
+        return himc_error_set(r->error, "stroke: one too many, expected %d strokes",
                               SCORE_STROKES_MAX);
     int room = r->stroke_room;
     if (!add_place(r, score->stroke_count) ||
@@ -93,7 +93,7 @@ static bool add_tempo(reader *r)
         return true;
     }
     if (score->tempo_count == SCORE_LINES_MAX)
-        return himc_error_set(r->error, "tempo: one too many, allowed %d", SCORE_LINES_MAX);
+        return himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
     if (!grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi, r->error))
         return false;
     memmove(score->tempi + i + 1, score->tempi + i,
@@ -164,7 +164,7 @@ static bool add_line(reader *r, const char *drum)
     if (r->timed)
         list = (line_list){&score->changes, &score->change_count, &r->change_room};
     if (score->line_count + score->change_count == SCORE_LINES_MAX)
-        return himc_error_set(r->error, "one line too many, allowed %d besides strokes",
+        return himc_error_set(r->error, "one line too many, expected %d besides strokes",
                               SCORE_LINES_MAX);
     if ((r->timed && !add_place(r, -1 - score->change_count)) || !grow_lines(&list, r->error))
         return false;
@@ -223,9 +223,10 @@ bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *o
         return himc_error_prefix(error, "%s", word);
     const himc_command_row *row = himc_command_table((int)out->command.id);
     return (row->marks & HIMC_AT_BEAT) ||
-           himc_error_set(error,
-                          "at: %s, allowed what changes a head: tune, tension, damp, decay, glide",
-                          row->name);
+           himc_error_set(
+               error,
+               "at: %s, expected a command that changes a drumhead: tune, tension, damp, decay, glide",
+               row->name);
 }
 
 /// "at 12 kettle tune 110": a line for a drum, at a beat; "at 12 push ...": one for the performer.
@@ -283,7 +284,7 @@ static bool read_statement(reader *r, const himc_text_statement *s)
         return true;
     if (s->overflow)
         return himc_error_set(r->error,
-                              "more than %zu characters without a ;, allowed: a score, commands "
+                              "more than %zu characters without a ;, expected a score, commands "
                               "that each end with one",
                               s->size);
     if (strcmp(atom[0].symbol, "at") == 0)
@@ -487,7 +488,7 @@ bool himc_score_accepts_roll(const himc_tempo_change *tempi, int count, const hi
     double seconds = himc_score_seconds(tempi, count, roll->beat + roll->length) -
                      himc_score_seconds(tempi, count, roll->beat);
     return seconds <= LONGEST_ROLL ||
-           himc_error_set(error, "roll: LENGTH: %.4g s at this tempo, allowed %g s", seconds,
+           himc_error_set(error, "roll: LENGTH: %.4g s at this tempo, expected %g s", seconds,
                           LONGEST_ROLL);
 }
 
@@ -516,7 +517,7 @@ static bool check_playable(reader *r)
         if (seconds - last[stroke->hand] < HIMC_CLOSEST_STROKES)
             return himc_error_set(
                 r->error,
-                "stroke: BEAT: %g is %.3g s after the last stroke of the %s hand, allowed %g s "
+                "stroke: BEAT: %g is %.3g s after the last stroke of the %s hand, expected %g s "
                 "or more",
                 stroke->beat, seconds - last[stroke->hand], himc_hand_name(stroke->hand),
                 HIMC_CLOSEST_STROKES);

@@ -198,7 +198,7 @@ static himc_track *track_new(himc_take *take, const himc_take_options *options,
     if (!himc_take_tips(take, options, tips, error))
         return NULL;
     if (himc_take_frames(take) < LEAST_FRAMES) {
-        himc_error_set(error, "%d frames, allowed %d or more", himc_take_frames(take),
+        himc_error_set(error, "%d frames, expected %d or more", himc_take_frames(take),
                        LEAST_FRAMES);
         return NULL;
     }
@@ -475,10 +475,10 @@ static bool accept_nudge(const himc_track *track, const himc_nudge *nudge, int c
         return himc_error_set(error, "nudge: HAND: the take has no %s tip",
                               himc_hand_name(nudge->hand));
     if (nudge->time - nudge->span < 0 || nudge->time + nudge->span > length)
-        return himc_error_set(error, "nudge: TIME: %g s, %g s before and after, allowed 0 .. %g s",
+        return himc_error_set(error, "nudge: TIME: %g s, %g s before and after, expected 0 .. %g s",
                               nudge->time, nudge->span, length);
     if (count >= HIMC_NUDGES)
-        return himc_error_set(error, "nudge: one too many, allowed %d", HIMC_NUDGES);
+        return himc_error_set(error, "nudge: one too many, expected %d", HIMC_NUDGES);
     *out = *nudge;
     fit_height(track, out);
     return true;
