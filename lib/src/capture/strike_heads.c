@@ -9,6 +9,10 @@
 /// is fitted again to all of these by weighted least squares. If a good part of the seeds lie
 /// elsewhere and agree on another plane, that is another drum.
 ///
+/// A head gives way, and more to a faster stick, so soft blows end above the plane of loud ones.
+/// Where rebounds tell how deep each fall went, sharp falls that lie on the head at rest are on it,
+/// and the plane is then that of the head at rest.
+///
 /// The random numbers begin with the same seed each time, and no loop depends on the data but by
 /// the number of falls.
 #include "capture/strike_heads.h"
@@ -68,16 +72,24 @@ static void find_seeds(const himc_fall *falls, int count, double threshold, seed
             to->fall[to->count++] = &falls[i];
 }
 
+// where a fall ends on that head; at rest, if that is where its plane is
+static himc_vec3 end_on(const himc_strike_head *head, const himc_fall *f)
+{
+    return himc_vec3_make(f->x.x, f->x.y, f->x.z + (head->at_rest ? f->depth : 0));
+}
+
 static double off(const himc_strike_head *head, const himc_fall *f)
 {
-    return fabs(f->x.z - himc_strike_head_at(head, f->x.x, f->x.y));
+    himc_vec3 x = end_on(head, f);
+    return fabs(x.z - himc_strike_head_at(head, x.x, x.y));
 }
 
 // the plane through three places; level through the first if they are in line or too steep
 static himc_strike_head through(himc_vec3 a, himc_vec3 b, himc_vec3 c)
 {
     himc_vec3 n = himc_vec3_cross(himc_vec3_sub(b, a), himc_vec3_sub(c, a));
-    himc_strike_head head = {a.x, a.y, a.z, -n.x / n.z, -n.y / n.z, 0};
+    himc_strike_head head = {
+        .x0 = a.x, .y0 = a.y, .height = a.z, .slope_x = -n.x / n.z, .slope_y = -n.y / n.z};
     if (!(hypot(head.slope_x, head.slope_y) < STEEPEST)) // NaN in line
         head.slope_x = head.slope_y = 0;
     return head;
@@ -144,7 +156,8 @@ static void fit(himc_strike_head *head, const himc_fall *falls, int count, int i
     himc_vec3 middle = {head->x0, head->y0, head->height};
     for (int i = 0; i < count; i++)
         if (falls[i].head == index)
-            add(&s, 1 / (falls[i].within * falls[i].within), himc_vec3_sub(falls[i].x, middle));
+            add(&s, 1 / (falls[i].within * falls[i].within),
+                himc_vec3_sub(end_on(head, &falls[i]), middle));
     if (s.w <= 0)
         return;
     double x = s.x / s.w, y = s.y / s.w, z = s.z / s.w, rest = 1 / (USUAL_SLOPE * USUAL_SLOPE);
@@ -168,6 +181,23 @@ static void settle(himc_strike_head *head, himc_fall *falls, int count, int inde
         }
         fit(head, falls, count, index);
     }
+}
+
+// takes the head at rest as the plane, if softer blows lie on it that end above the plane so far
+static void settle_at_rest(himc_strike_head *head, himc_fall *falls, int count, int index)
+{
+    himc_strike_head rest = *head;
+    bool softer = false;
+    rest.at_rest = true;
+    fit(&rest, falls, count, index);
+    for (int i = 0; i < count; i++) {
+        const himc_fall *f = &falls[i];
+        softer |= f->head < 0 && f->sharp && f->depth > 0 && lies_on(&rest, f);
+    }
+    if (!softer)
+        return;
+    *head = rest;
+    settle(head, falls, count, index);
 }
 
 static int seeds_on(const seeds *s, int head)
@@ -195,6 +225,7 @@ static int find_heads(himc_fall *falls, int count, const seeds *s,
             break;
         heads[n] = best_plane(s);
         settle(&heads[n], falls, count, n);
+        settle_at_rest(&heads[n], falls, count, n);
         int on = seeds_on(s, n);
         if (n > 0 && (on < LEAST_SEEDS || on < OTHER_DRUM_AGREE * rest)) {
             drop(falls, count, n);

@@ -327,10 +327,19 @@ typedef struct found {
     int count;
 } found;
 
-static himc_fall fall_of(const track *t, const candidate *s, himc_vec3 x)
+// height of the head above the point where fall and rebound intersect: v t down and u (CONTACT - t)
+// up again
+static double above_intersection(const himc_take_strike *s)
+{
+    double sum = s->velocity + s->rebound;
+    return sum > 0 ? CONTACT * s->velocity * s->rebound / sum : 0;
+}
+
+static himc_fall fall_of(const track *t, const candidate *s, const himc_take_strike *end)
 {
     double frame = fmin(s->down / t->rate, FALL_OF_FRAME);
-    return (himc_fall){.x = x,
+    return (himc_fall){.x = end->x,
+                       .depth = above_intersection(end),
                        .speed = s->down,
                        .within =
                            PLAY + PLAY_DEVIATIONS * t->noise + PLAY_FRAMES * frame + DENT * s->down,
@@ -342,7 +351,7 @@ static void find_falls(const track *t, himc_hand hand, found *f)
     candidate s;
     for (int from = 0; next_fall(t, &from, &s); f->count++) {
         f->strike[f->count] = measure(t, &s, hand);
-        f->fall[f->count] = fall_of(t, &s, f->strike[f->count].x);
+        f->fall[f->count] = fall_of(t, &s, &f->strike[f->count]);
     }
 }
 
@@ -422,14 +431,6 @@ static double median(double *values, int count)
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-// height of the head above the point where fall and rebound intersect: v t down and u (CONTACT - t)
-// up again
-static double above_intersection(const himc_take_strike *s)
-{
-    double sum = s->velocity + s->rebound;
-    return sum > 0 ? CONTACT * s->velocity * s->rebound / sum : 0;
-}
-
 // the median position of one hand's strikes on a head along one axis, for z above their
 // intersection; false if it has none
 static bool hand_median(const himc_strike_survey *s, int head, int hand, int axis, double *scratch,
@@ -460,7 +461,7 @@ static himc_vec3 place_on(const himc_strike_survey *s, int head, const himc_stri
         middle[axis] = left && right ? 0.5 * (l + r) : l + r;
     }
     double z = himc_strike_head_at(plane, middle[0], middle[1]);
-    return himc_vec3_make(middle[0], middle[1], z + middle[2]);
+    return himc_vec3_make(middle[0], middle[1], z + (plane->at_rest ? 0 : middle[2]));
 }
 
 // strikes, heads and the place of the drum from the falls; false without memory
