@@ -177,6 +177,8 @@ class Performance:
         error = ffi.new("himc_error *")
         name = ffi.NULL if word is None else ffi.new("char[]", _text(word))
         _check(lib.session_command(self._session, _text(text), name, error), error)
+        if self._channels == 2 and text.split()[:1] == ["reset"]:
+            self.command(_LISTENER)
         return self.notes[before:]
 
     def add_drum(self, name: str = "kettle", inches: float = 0) -> None:
@@ -320,7 +322,8 @@ def _play_to_the_end(p: Performance) -> Rendering:
             since = p.time - done_at
             if (quiet <= _SILENCE * peak and since >= _REST) or since >= _TAIL:
                 break
-    s = p._session
+    s, error = p._session, ffi.new("himc_error *")
+    _check(lib.session_end_recording(s, error), error)
     sound = np.concatenate(cells)
     sound.flags.writeable = False
     return Rendering(sound, p.rate, _array(s, s.rows, s.row_count, _ROW),

@@ -129,6 +129,12 @@ static bool session_command(session *s, const char *text, const char *word, himc
     return good;
 }
 
+// writes what `record` has begun and `record stop` has not ended
+static bool session_end_recording(session *s, himc_error *error)
+{
+    return himc_performance_end_recording(s->performance, error);
+}
+
 static bool session_drum_command(session *s, const char *name, const char *text, himc_error *error)
 {
     himc_command command;

@@ -177,6 +177,23 @@ class Package(unittest.TestCase):
         p.command("tempo 120")
         self.assertAlmostEqual(p.time, 0.5)
 
+    def test_a_reset_leaves_what_a_new_performance_has(self):
+        p, new = himc.Performance(), himc.Performance()
+        p.add_drum()
+        new.add_drum()
+        p.command("tempo 90")
+        p.command("reset")
+        self.assertEqual(p.command("dump"), new.command("dump"))
+        p.drum_command("kettle", "strike 0.1 0.1 3")
+        self.assertGreater(p.process(0.2)[:, 1].std(), 0)
+
+    def test_a_recording_is_there_when_render_returns(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = folder + "/x.bvh"
+            rendering = himc.render("stroke 0 left legato mf;", settings=["record " + path])
+            self.assertGreater(len(himc.Take(path).points), 100)
+            del rendering
+
     def test_licences_are_in_the_package(self):
         package = metadata.distribution("himc")
         terms = {f.name: f.read_text() for f in package.files if "licenses" in str(f)}
