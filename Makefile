@@ -68,16 +68,18 @@ PORTAUDIO := $(if $(EXE)$(findstring aarch64,$(CC)),,$(wildcard /usr/include/por
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
 TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(filter-out $(LEFT_OUT:%=tools/%.c),$(wildcard tools/*.c)))
-UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+# the tests of a room in the room's folder, of whole performances in session; their programs lie side by side in build/tests
+UNIT_C    := $(wildcard $(patsubst %,tests/%/test_*.c,$(ROOMS) session viewer))
+UNIT      := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(UNIT_C)))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh $(addprefix tests/test_,arm64.sh windows.sh macos.sh libpd.sh),$(wildcard tests/test_*.sh tests/pd/test_*.sh))
+SCRIPTS   := $(filter-out tests/pd/test_package.sh,$(foreach folder,cli docs pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
 SOURCES   := $(wildcard lib/himc/*.h lib/src/*/*.[ch] lib/src/*/*.cpp tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
-             tests/*.[ch] tests/*/*.[ch])
+             tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
 ifeq ($(MAKELEVEL),0)
@@ -133,7 +135,7 @@ $(BUILD)/tools/live.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-t
 
 test-arm64: all ## the same, run by qemu: its strikes and its sound are those of this machine
 	@$(MAKE) arm64
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_arm64.sh
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/cross/test_arm64.sh
 
 WINDOWS = $(abspath $(BUILD)/windows/parts/root)
 windows: deps ## program and externals for Windows, crossed by mingw-w64, in build/windows
@@ -149,7 +151,7 @@ windows-here: $(PROGRAM)
 test-windows: all ## the same, run by wine: its strikes are those of Linux, in the program and in Pure Data
 	@$(MAKE) windows
 	@tools/windows.sh $(BUILD)/windows/parts pd
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_windows.sh
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/cross/test_windows.sh
 
 MACOS = $(abspath $(BUILD)/macos/parts)
 check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/macos; none of it has been run
@@ -159,7 +161,7 @@ check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/ma
 	@$(MAKE) macos-here BUILD=$(BUILD)/macos MACOS=$(MACOS) CC=$(MACOS)/bin/cc CXX=$(MACOS)/bin/c++ AR=$(MACOS)/bin/ar LDFLAGS=-L$(MACOS)/root/lib TABLE=$(TABLE) PORTAUDIO= \
 	    CPPFLAGS="-isystem $(MACOS)/root/include" CFLAGS="-Werror -Wno-unused-command-line-argument $(CFLAGS)"
 	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/m_imp.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
-	@tests/test_macos.sh $(BUILD)/macos
+	@tests/cross/test_macos.sh $(BUILD)/macos
 macos-here: $(PROGRAM) $(SHARED)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=d_arm64 ARCHIVES=$(MACOS)/root/lib PDINCLUDEDIR=/usr/include/pd)
@@ -239,7 +241,7 @@ test-asan: deps ## the tests in C, and the viewer's, under the address and undef
 	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
 
 check-asan: units $(if $(TOOL_O),$(PROGRAM)) $(if $(WEBSOCKETS),$(VIEWER))
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ) $(if $(WEBSOCKETS),tests/test_viewer.sh)
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ) $(if $(WEBSOCKETS),tests/viewer/test_viewer.sh)
 
 # the tests with several threads: of the network, and of the loader
 THREADED := $(filter $(BUILD)/tests/test_osc% $(BUILD)/tests/test_loader%,$(UNIT))
@@ -254,7 +256,7 @@ clang: deps ## all of it compiled by clang, whose warnings are errors
 	@$(MAKE) units build/clang/bin/himc $(if $(WEBSOCKETS),build/clang/bin/himc-viewer) BUILD=build/clang CC=clang CFLAGS="$(CFLAGS) -Werror"
 
 # of the tests' scripts those that run nothing but the program
-COVERED := $(addprefix tests/test_,cli.sh evaluate.sh osc_serve.sh osc_vmc.sh)
+COVERED := $(addprefix tests/cli/test_,cli.sh evaluate.sh osc_serve.sh osc_vmc.sh)
 coverage: deps ## the share of lib/ that the tests run, at least 97 %; what they do not run is in build/coverage/coverage.txt
 	@tools/deps.sh tools/deps-coverage.txt
 	@$(MAKE) check-coverage BUILD=build/coverage SANITIZE="--coverage -fprofile-update=atomic" CFLAGS=-O1
@@ -311,7 +313,7 @@ test-pd: deps ## the tests in another Pd than the machine's: NEWER=/its/bin/pd F
 test-libpd: deps ## a program with Pure Data and both objects in it, one and four instances: LIBPD=its/source (with pure-data)
 	@tools/deps.sh tools/deps-libpd.txt
 	@$(MAKE) all
-	@LIBPD=$(abspath $(LIBPD)) HIMC_BUILD=$(BUILD) TEST_TIMEOUT=1800 tests/run.sh tests/test_libpd.sh
+	@LIBPD=$(abspath $(LIBPD)) HIMC_BUILD=$(BUILD) TEST_TIMEOUT=1800 tests/run.sh tests/libpd/test_libpd.sh
 
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
@@ -492,7 +494,7 @@ $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(
 
 $(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
 	$(call say,cc  )
-	$(Q)$(COMPILE) $(UNITY) -c $< -o $@
+	$(Q)$(COMPILE) -I. -Itests/support $(UNITY) -c $< -o $@
 
 # to be preloaded: counts the calls that may wait, for the real-time contract
 WATCH := $(BUILD)/tests/watch.so
@@ -536,7 +538,9 @@ $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
 	$(Q)$(LINK) $^ $(LIBS) $(if $(PORTAUDIO),-lportaudio) -o $@
 
 # a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD; those of OSC listen with liblo
-$(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
+$(foreach test,$(UNIT_C:.c=),$(eval $(BUILD)/tests/$(notdir $(test)): $(BUILD)/$(test).o))
+$(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o
+$(UNIT) $(LONG) $(REALTIME): $(UNITY_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -llo -o $@
 
@@ -551,8 +555,9 @@ $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
 VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,channel.o main.o pages.o receive.o share.o web.o),$(VIEWER_O))
 VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
 $(VIEWER_TESTS): $(VIEWER_PARTS)
-$(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h
-$(VIEWER_TESTS:=.o): private CPPFLAGS += -Iviewer -I$(BUILD)/viewer
+VIEWER_TESTS_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/viewer/test_*.c tests/fuzz/fuzz_viewer_*.c))
+$(VIEWER_TESTS_O): $(BUILD)/viewer/skeleton.h
+$(VIEWER_TESTS_O): private CPPFLAGS += -Iviewer -I$(BUILD)/viewer
 
 $(BUILD)/tests/fuzz/fuzz_edit: $(addprefix $(BUILD)/tools/,edit_text.o cli.o file.o)
 $(BUILD)/tests/test_osc_stranger: private LIBS += -Wl,--wrap=himc_osc_address_loopback
@@ -582,4 +587,4 @@ include tools/figures/figures.mk
 check-figures: $(FIGURES)
 
 -include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
-         $(addsuffix .d,$(UNIT) $(LONG) $(FUZZ) $(BUILD)/tests/fuzz/driver $(REALTIME))
+         $(UNIT_C:%.c=$(BUILD)/%.d) $(addsuffix .d,$(LONG) $(FUZZ) $(BUILD)/tests/fuzz/driver $(REALTIME))

@@ -37,7 +37,7 @@ static const column columns[] = {
 #define KEY "nuance,controller,law,trial"
 #define FIELDS (4 + COLUMNS)
 // relative; of one program, on processors whose C library has other last digits of a sine
-// (measured: 7e-5 in `himc` with the printed law); as in tests/test_docs.sh
+// (measured: 7e-5 in `himc` with the printed law); as in tests/docs/test_docs.sh
 #define SAME 5e-4
 
 static double *field(trial_result *result, size_t at)

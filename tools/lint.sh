@@ -1,7 +1,7 @@
 #!/bin/sh
 # Looks at the sources as a reviewer would, after a build with warnings as errors. Exit status 1 if anything must change.
 #   tools/lint.sh BUILD FILE...
-# Without files only what takes a second and needs no other program (tests/test_layout.sh).
+# Without files only what takes a second and needs no other program (tests/docs/test_layout.sh).
 build=$1
 shift
 faults=0

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # The Python program of docs/osc.md, as it stands there, beside `himc serve`: it hits, and prints the
 # strike. Without python-osc it is ignored.
-cd "$(dirname "$0")/.." || exit 1
+cd "$(dirname "$0")/../.." || exit 1
 build=${HIMC_BUILD:-build}
 work=$(mktemp -d)
 serve= python=
 trap 'kill $serve $python 2>/dev/null; wait 2>/dev/null; rm -rf "$work"' EXIT
-name=tests/test_osc_python.sh:$LINENO:the_program_of_the_manual_hits_and_prints_the_strike
+name=tests/docs/test_osc_python.sh:$LINENO:the_program_of_the_manual_hits_and_prints_the_strike
 if ! python3 -c 'import pythonosc' 2>/dev/null; then
     echo "$name:IGNORE: no python-osc"
     echo "1 Tests 0 Failures 1 Ignored"

@@ -1,4 +1,4 @@
-# check.sh: for tests that are shell scripts, which read it (`. tests/check.sh`): Unity's lines and summary.
+# check.sh: for tests that are shell scripts, which read it (`. tests/support/check.sh`): Unity's lines and summary.
 tests=0 failures=0 ignored=0 script=$0
 
 # line NAME RESULT: what Unity would print

@@ -1,8 +1,8 @@
 #!/bin/sh
 # What is crossed to macOS, which this machine cannot run: Mach-O for arm64, and nothing needed but the system's library and Pd's own
 # functions. `make check-macos` runs it.
-#   tests/test_macos.sh BUILD
-. tests/check.sh
+#   tests/cross/test_macos.sh BUILD
+. tests/support/check.sh
 macos=$1
 export LC_ALL=C
 

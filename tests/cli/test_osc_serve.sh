@@ -1,7 +1,7 @@
 #!/bin/sh
 # `himc serve` and [himc~] as programs: they start, print their port, refuse in one line, end cleanly.
 # Each event is waited for, at most a minute; nothing depends on how long it takes.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}"
 himc=$HIMC_BUILD/bin/himc
 dir=$HIMC_BUILD/tests/osc_serve

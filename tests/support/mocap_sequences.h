@@ -2,7 +2,7 @@
 #ifndef MOCAP_SEQUENCES_H
 #define MOCAP_SEQUENCES_H
 
-#include "../mocap/mocap.h"
+#include "mocap/mocap.h"
 
 #include "unity.h"
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The program for arm64, run by qemu: the strikes of a score are those of this machine, digit by digit, and so is the sound.
 # `make test-arm64` runs it.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}"
 # the C library is this system's, as here: the bits of sin() and exp() are its
 root=$(realpath "$HIMC_BUILD")/arm64/debian/root machine=aarch64-linux-gnu

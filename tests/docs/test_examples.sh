@@ -1,7 +1,7 @@
 #!/bin/sh
 # The installed library as its users meet it: the examples of docs/examples are built with the flags of pkg-config, in C against the
 # shared library, against the static one, and in C++; they run and do what they say.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}" "${CC:=gcc}" "${CXX:=g++}"
 dir=$(pwd)/$HIMC_BUILD/tests/examples
 rm -rf "$dir"

@@ -3,7 +3,7 @@
 #   VMCP_PYTHON: a python3 that has it
 : "${HIMC_BUILD:=build}" "${VMCP_PYTHON:=python3}"
 if ! "$VMCP_PYTHON" -c 'import vmcp.events' 2>/dev/null; then
-    echo "tests/test_osc_vmc.sh:0:test_vmcp_reads_all_bones:IGNORE: no python3 with vmcp"
+    echo "tests/cli/test_osc_vmc.sh:0:test_vmcp_reads_all_bones:IGNORE: no python3 with vmcp"
     echo "-----------------------"
     echo "1 Tests 0 Failures 1 Ignored"
     exit 0
@@ -80,7 +80,7 @@ while time.time() < end and (len(bones) < 21 or len(mallets) < 2 or len(notes) <
             faults.append(f"{path} {atoms}: {fault!r}")
 
 def tell(name, good, why=""):
-    print(f"tests/test_osc_vmc.sh:0:{name}:" + ("PASS" if good else f"FAIL: {why}"))
+    print(f"tests/cli/test_osc_vmc.sh:0:{name}:" + ("PASS" if good else f"FAIL: {why}"))
     return not good
 
 failures = tell("test_vmcp_reads_all_bones", len(bones) == 21 and not faults, f"{len(bones)} bones {faults[:2]}")

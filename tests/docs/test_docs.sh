@@ -1,7 +1,7 @@
 #!/bin/sh
 # Links of the documentation lead somewhere; docs/papers.md has a row for each figure, table, algorithm and equation of the papers,
 # its verdicts are those of today's program and follow from numbers, and the commands in it are there; the trials' tables are of today's program. With HIMC_LONG they run, and the numbers are compared.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}"
 work=$(mktemp -d "$HIMC_BUILD/docs.XXXXXX")
 trap 'rm -rf "$work"' EXIT

@@ -2,7 +2,7 @@
 /// files read back.
 #include "mocap_sequences.h"
 
-#include "../mocap/parts.h"
+#include "mocap/parts.h"
 #include "capture/take.h"
 #include "track/track.h"
 

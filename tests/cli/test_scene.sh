@@ -3,7 +3,7 @@
 : "${HIMC_BUILD:=build}"
 export HIMC_BUILD
 if ! command -v python3 >/dev/null; then
-    echo "tests/test_scene.sh:0:test_scene:IGNORE: needs python3"
+    echo "tests/cli/test_scene.sh:0:test_scene:IGNORE: needs python3"
     echo "1 Tests 0 Failures 1 Ignored"
     exit 0
 fi

@@ -1,6 +1,6 @@
 #!/bin/sh
 # The program from outside: what it prints, what it writes, how it refuses; real takes if present.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}" "${HIMC_SHARED:=../shared}"
 root=$PWD
 himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Data out of the program: columns of motion, the standard streams, JSON, and what is refused by name.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}" "${HIMC_SHARED:=../shared}"
 root=$PWD
 himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc

@@ -3,7 +3,7 @@
 #ifndef HIMC_TESTS_CHRISTIAN_DRUM_H
 #define HIMC_TESTS_CHRISTIAN_DRUM_H
 
-#include "../tools/air/galerkin.h"
+#include "tools/air/galerkin.h"
 
 #include "unity.h"
 

@@ -20,7 +20,7 @@ pid= keeper=
 report() { # report NAME WHY SAID: passed if WHY is empty
     tests=$((tests + 1))
     [ -z "$2" ] || failures=$((failures + 1))
-    echo "tests/test_storm.sh:${BASH_LINENO[0]}:$1:${2:+FAIL: }${2:-PASS}${3:+ $3}"
+    echo "tests/cli/test_storm.sh:${BASH_LINENO[0]}:$1:${2:+FAIL: }${2:-PASS}${3:+ $3}"
 }
 
 trap 'kill $pid $keeper 2>/dev/null' EXIT
@@ -205,7 +205,7 @@ against_pd() { # against_pd NAME
     report himc_tilde_late_blocks "" "the worst by $(grep -a '^late' "$dir/pd" | tail -n 1 | sed 's/late: //') ms; quiet: ${quiet#late: } ms"
 }
 
-"$CC" -std=c17 -O2 -Wall -Wextra tests/storm.c -llo -lm -o "$dir/storm" || exit 1
+"$CC" -std=c17 -O2 -Wall -Wextra tests/cli/storm.c -llo -lm -o "$dir/storm" || exit 1
 bin=$HIMC_BUILD/bin externals=$HIMC_BUILD/externals/himc preload=
 against_serve
 against_pd

@@ -1,6 +1,6 @@
 #!/bin/sh
 # `himc evaluate` from outside: its table, trials in pieces and on more cores, a log gone on with, what it refuses.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}"
 himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc
 work=$(mktemp -d "$(cd "$HIMC_BUILD" && pwd)/evaluate.XXXXXX")

@@ -2,7 +2,7 @@
 # Both objects as plain C files in a program that contains Pure Data (tests/libpd/embed.c): they say what they say in Debian's Pd,
 # alone and in four instances at once, a thread each, where the thread sanitizer finds nothing but a counter of Pd's scheduler that all
 # instances add to and none needs; and no symbol of ours can clash. `make test-libpd LIBPD=path` runs it.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}"
 here=$(realpath "$HIMC_BUILD")
 dir=$here/libpd

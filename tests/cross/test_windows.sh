@@ -2,7 +2,7 @@
 # The program and the externals for Windows, run by wine, the externals in Pd 0.53 crossed by tools/windows.sh: the strikes of a score
 # are those of this machine, digit by digit, and its sound, before it is rounded for a file, is the same within 1e-12 of full scale.
 # `make test-windows` runs it.
-. tests/check.sh
+. tests/support/check.sh
 : "${HIMC_BUILD:=build}"
 windows=$(realpath "$HIMC_BUILD/windows")
 here=$(realpath "$HIMC_BUILD")
@@ -35,7 +35,7 @@ doubles() { # doubles NAME COMMAND...: the samples of NAME.wav, and what they we
     tail -c +$((data + 1)) "$of.wav" | cmp - "$of.f32"
 }
 { echo "listener 2.3 0.5 1.3;"; cat score.txt; } >heard.txt
-link="$source/tests/windows/doubles.c -I$source/lib -o"
+link="$source/tests/cross/doubles.c -I$source/lib -o"
 gcc $link doubles "$here/libhimc.a" -lode -lstdc++ -lpthread -lm
 x86_64-w64-mingw32-gcc -static $link doubles.exe "$windows/libhimc.a" -L"$windows/parts/root/lib" -lode -lstdc++ -lpthread -lws2_32 -lm
 check test_sound_of_linux_is_its_doubles_rounded doubles here ./doubles

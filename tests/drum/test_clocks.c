@@ -7,7 +7,7 @@
 /// after 743 years.
 #if __has_include("m_pd.h")
 #define HIMC_BUILD_ID "test"
-#include "../pd-externals/drum-link.h"
+#include "pd-externals/drum-link.h"
 #define HAVE_PD 1
 #endif
 
