@@ -1,5 +1,5 @@
 #!/bin/sh
-# The program and the externals for Windows, run by wine, the externals in Pd 0.53 crossed by tools/windows.sh: the strikes of a score
+# The program and the externals for Windows, run by wine, the externals in Pd 0.53 crossed by tools/build/windows.sh: the strikes of a score
 # are those of this machine, digit by digit, and its sound, before it is rounded for a file, is the same within 1e-12 of full scale.
 # `make test-windows` runs it.
 . tests/support/check.sh

@@ -40,7 +40,7 @@ done >"$work/missing"
 check test_each_figure_table_and_equation_of_the_papers_has_a_row [ "$(cat "$work/missing")" = "" ]
 
 mkdir "$work/kept"
-tools/papers/papers.sh docs/figures "$work/kept" >"$work/table"
+tools/research/papers/papers.sh docs/figures "$work/kept" >"$work/table"
 sed -n '/^| place |/,$p' docs/papers.md >"$work/documented"
 verdicts() {
     awk -F ' [|] ' '{ print $1, $(NF - 1), $NF }' "$1"
@@ -60,7 +60,7 @@ for way in 1 2 3 4 "5 1.4" "6 2"; do
                 if ($i ~ /^[-+.0-9]/) $i = scale ? scale * $i : (way % 2 ? 1 : -1) * (1 + (FNR * 7919 + i * 104729 + way * 31337) % 997 / 37) } }
             { print }' "$table" >"$work/$way/$(basename "$table")"
     done
-    awk -f tools/papers/papers.awk "$work/$way"/*.csv >"$work/spoilt-$way"
+    awk -f tools/research/papers/papers.awk "$work/$way"/*.csv >"$work/spoilt-$way"
     verdicts "$work/spoilt-$way" | sed 1,2d
 done | cat - "$work/verdicts" | sort | uniq -c | awk '$1 >= 7' >"$work/still"
 check test_no_verdict_is_typed_in_or_it_says_stated [ "$(wc -l <"$work/still" | awk '{print ($1 > 0)}')$(grep -v 'stated: ' "$work/still")" = 1 ]
@@ -71,7 +71,7 @@ deviation() {
     cp "$work"/kept/*.csv "$work/deviation"
     awk -F , -v OFS=, -v trials="$1" -v player="$2" -v default="$3" -v other="$4" 'FNR > 1 { $5 = trials; $7 = $8 = $3 == "id" ? 1 : $4 != "printed" ? other : $1 == 1 ? player : default } { print }' \
         "$work/kept/spread.csv" >"$work/deviation/spread.csv"
-    awk -f tools/papers/papers.awk "$work"/deviation/*.csv | awk -F ' [|] ' '/figure 6b, deviation/ { print $4 }'
+    awk -f tools/research/papers/papers.awk "$work"/deviation/*.csv | awk -F ' [|] ' '/figure 6b, deviation/ { print $4 }'
 }
 check test_a_deviation_of_few_trials_is_not_measured [ "$(deviation 17 .5 .5 .5)$(deviation 100 nan .5 .5)" = "stated: not measuredstated: not measured" ]
 check test_a_smaller_deviation_by_the_papers_law_agrees [ "$(deviation 18 .5 .5 2)" = agrees ]
@@ -81,7 +81,7 @@ check test_a_larger_deviation_does_not_agree [ "$(deviation 100 2 2 2)" = "does 
 check test_nothing_agrees_without_a_number [ "$(awk -F ' [|] ' '$4 == "agrees" && $3 !~ /[0-9]/' "$work/documented")" = "" ]
 
 # trials are played again as the tables of `make trials` have them: of each nuance one, of all with HIMC_LONG; a number that differs
-# by more than another C library makes (5e-4, tools/evaluate_log.c) says that the tables are older than the program
+# by more than another C library makes (5e-4, tools/himc/evaluate_log.c) says that the tables are older than the program
 again="legato,himc,computed-torque tenuto,id,computed-torque accent,himc,feedforward vertical-accent,id,printed staccato,ik"
 [ -z "${HIMC_LONG-}" ] || again=all
 for only in $again; do
@@ -91,7 +91,7 @@ done
 awk -F , 'NR == FNR { for (i = 5; i <= NF; i++) old[$1, $2, $3, i] = $i; next }
     FNR > 1 { for (i = 5; i <= NF; i++) if ((d = old[$1, $2, $3, i] - $i) * d > 2.5e-7 * $i * $i) { print; next } }' docs/figures/first.csv "$work/log.csv" >"$work/moved"
 check test_tables_of_the_trials_are_of_this_program [ "$(wc -l <"$work/log.csv" | awk '{print ($1 > 5)}')$(cat "$work/moved")" = 1 ]
-awk -f tools/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >"$work/evaluation.md"
+awk -f tools/research/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >"$work/evaluation.md"
 check test_the_evaluation_page_has_the_numbers_of_the_trials cmp docs/evaluation.md "$work/evaluation.md"
 check test_tables_of_the_trials_name_their_commit grep -qE '^commit [0-9a-f]{40}, [-0-9]{10}, trials: gain 1 [0-9]+, gain 3 [0-9]+$' docs/figures/trials.txt
 
@@ -126,19 +126,19 @@ if [ -n "${HIMC_LONG-}" ]; then
         check test_the_table_of_own_captures_is_of_this_program [ "$(wc -l <"$work/own") $(grep -cF -f "$work/own" docs/evaluation.md)" = "3 3" ]
     fi
     # strokes and phases played again; what takes hours is read
-    strokes=$HIMC_BUILD/tools/figures/strokes
+    strokes=$HIMC_BUILD/tools/research/figures/strokes
     cp docs/figures/*.csv "$work"
     make "$strokes" >"$work/said" 2>&1
     "$strokes" follow printed 0.333333 2.2 5 >"$work/strokes.csv"
     "$strokes" follow computed-torque 1 2.2 5 >"$work/strokes-default.csv"
     "$strokes" phases printed 0.333333 2 4.6 >"$work/phases.csv"
-    tools/papers/papers.sh "$work" >"$work/anew"
+    tools/research/papers/papers.sh "$work" >"$work/anew"
     verdicts "$work/anew" >"$work/verdicts-anew"
     check test_strokes_played_again_have_the_same_verdicts cmp "$work/verdicts" "$work/verdicts-anew"
     # figures need gnuplot, which make figures installs
     grep -v -e '^make build/trials' -e '^himc bench' -e '^tests/' "$work/commands" | while read -r command; do
         case $command in
-        himc*) command="$HIMC_BUILD/bin/$(echo "$command" | sed 's|SCORE|tools/figures/blows.txt|')" ;;
+        himc*) command="$HIMC_BUILD/bin/$(echo "$command" | sed 's|SCORE|tools/research/figures/blows.txt|')" ;;
         esac
         env -u HIMC_LONG $command >"$work/said" 2>&1 || echo "$command"
     done >"$work/failed"

@@ -6,7 +6,7 @@
 /// One sequence of each nuance, or all 45 with HIMC_LONG (make test-long): 3 players, 5 nuances, 3
 /// spots. Without noise and with exact limbs and masses, so that the errors are those of the
 /// control.
-#include "tools/trial.h"
+#include "tools/himc/trial.h"
 
 #include "unity.h"
 #include "control/controller.h"

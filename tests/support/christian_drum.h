@@ -1,9 +1,9 @@
 /// christian_drum.h: the 26 inch timpano of Christian et al. (1984) for tests of air: solved by
-/// tools/air, and its frequencies by an independent solution.
+/// tools/research/air, and its frequencies by an independent solution.
 #ifndef HIMC_TESTS_CHRISTIAN_DRUM_H
 #define HIMC_TESTS_CHRISTIAN_DRUM_H
 
-#include "tools/air/galerkin.h"
+#include "tools/research/air/galerkin.h"
 
 #include "unity.h"
 
