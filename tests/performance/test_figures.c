@@ -2,7 +2,7 @@
 /// once and to the sample, tip errors outside contact, recoveries.
 #include "session.h"
 #include "performance/performance_state.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 #define RATE 48000
 #define GAP 71 // samples: 1.5 ms, which part two contacts of one hand

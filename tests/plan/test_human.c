@@ -1,7 +1,7 @@
 /// test_human.c: a player's variation, at the planner: its statistics, that it is repeatable from
 /// the seed, and that no stroke becomes impossible by it.
 #include "plan/gesture.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 #include "planners.h"
 
 #include <stdlib.h>

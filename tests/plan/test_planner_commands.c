@@ -3,7 +3,7 @@
 #include "allocations.h"
 #include "planners.h"
 
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 /// answers: bodies of a few lines answer.
 #include "planners.h"
 #include "plan/hand.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 typedef himc_clearance rehearse(const void *motion, const himc_moment *m, himc_rehearsed *r);
 

@@ -3,7 +3,7 @@
 #include "session.h"
 
 #include "performance/performance_state.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 /// Postures that a tick of 4 ms may rehearse: 50 000 a second, what is left of the tick before, and
 /// one moment more.

@@ -13,7 +13,7 @@
 #include "session.h"
 
 #include "performance/performance_state.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 #include <malloc.h>
 

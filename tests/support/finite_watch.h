@@ -8,7 +8,7 @@
 #include "himc/osc.h"
 #include "osc/stepped.h"
 #include "performance/performance_state.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 #include <arpa/inet.h>
 #include <math.h>

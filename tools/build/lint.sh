@@ -23,7 +23,9 @@ prefixed_symbols() {
     nm -g --defined-only "$build/libhimc.a" | awk 'NF == 3 && $3 !~ /^(himc_|_Z.*10himc_eigen|_ZTI|_ZTS|DW\.ref\.)/ { print "no himc_ prefix: " $3; bad = 1 } END { exit bad }'
 }
 rooms() {
-    nm -A -g $(ls lib/src/*/*.c lib/src/*/*.cpp | sed "s|^lib/src/\(.*\)\.c[p]*$|$build/lib/\1.o|") | awk -f tools/build/rooms.awk - lib/src/*/*.[ch]
+    nm -A -g $(ls lib/src/*/*.c lib/src/*/*.cpp mocap/*.c tools/himc/*.c | grep -v mocap/generate |
+        sed "s|^lib/src/|lib/|; s|^mocap/|mocap-o/|; s|^\(.*\)\.c[p]*$|$build/\1.o|") |
+        awk -f tools/build/rooms.awk - lib/himc/*.h lib/src/*/*.[ch] mocap/*.[ch] tools/himc/*.[ch]
 }
 door() {
     awk -f tools/build/door.awk lib/himc/*.h lib/src/*/*.[ch] tools/himc/*.[ch] tools/research/*/*.[ch] mocap/*.[ch] viewer/*.[ch] \
@@ -57,7 +59,7 @@ if [ $# -gt 0 ]; then
     check "layout (make format mends it)" clang-format --dry-run -Werror "$@"
     check "cppcheck" cppcheck -q -j2 --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
         --suppress=uninitvar --suppress=legacyUninitvar --suppress=missingInclude --suppress=checkersReport -Ilib -Ilib/src -I. \
-        lib/src tools pd-externals
+        lib/src tools mocap pd-externals
 fi
 
 [ $faults = 0 ] && echo "lint: clean"

@@ -1,10 +1,11 @@
-/// planner_motion.h: the state of the planner, and the functions that plan motion from it.
+/// planner_state.h: the state of the planner, what is read off it, and the functions that plan
+/// motion from it.
 ///
 /// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
 /// score, planner_notes.c the notes, planner_motion.c (with planner_goal.c and
 /// planner_clear.c) the hands and the clock, and planner_hits.c what is asked for while it happens.
-#ifndef HIMC_PLANNER_MOTION_H
-#define HIMC_PLANNER_MOTION_H
+#ifndef HIMC_PLANNER_STATE_H
+#define HIMC_PLANNER_STATE_H
 
 #include "base/head_frame.h"
 #include "plan/follow.h"
