@@ -409,8 +409,8 @@ format: ## let clang-format lay out all C files
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z0-9-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here linux linux-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage golden fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
-        reference FORCE figures check-figures papers air-table manual lint format help
+# all that is named without a folder
+.PHONY: FORCE $(shell sed -n 's/^\([a-z0-9-]*\):.*/\1/p' Makefile)
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
@@ -442,9 +442,13 @@ $(BUILD)/lib/%.o: lib/src/%.cpp
 	$(call say,c++ )
 	$(Q)$(COMPILE_CXX) -c $< -o $@
 
-$(BUILD)/tools/%.o: tools/%.c
+# the flags of a folder
+IN_tools  = -I.
+IN_tests  = -I. -Itests/support $(UNITY)
+IN_viewer = -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer
+$(BUILD)/%.o: %.c
 	$(call say,cc  )
-	$(Q)$(COMPILE) -I. -c $< -o $@
+	$(Q)$(COMPILE) $(IN_$(firstword $(subst /, ,$<))) -c $< -o $@
 
 # for himc --licences
 $(BUILD)/tools/himc/licences.h: LICENSE LIBRARIES.txt
@@ -462,10 +466,6 @@ $(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)
 $(CLIPS): $(BUILD)/tools/research/clips/clips
 	$(call say,play)
 	$(Q)$< $(@D)
-
-$(BUILD)/viewer/%.o: viewer/%.c
-	$(call say,cc  )
-	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
 
 # names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
 # room base, the skeleton and no other package, so that `make viewer` needs none either
@@ -492,9 +492,7 @@ $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lz -lm -o $@
 
-$(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
-	$(call say,cc  )
-	$(Q)$(COMPILE) -I. -Itests/support $(UNITY) -c $< -o $@
+$(UNIT_C:%.c=$(BUILD)/%.o) $(addsuffix .o,$(LONG) $(REALTIME)): | $(UNITY_DIR)/unity.c
 
 # to be preloaded: counts the calls that may wait, for the real-time contract
 WATCH := $(BUILD)/tests/watch.so
@@ -568,7 +566,6 @@ $(BUILD)/tests/fuzz/fuzz_log: $(addprefix $(BUILD)/tools/himc/,evaluate_log.o tr
 build/unity/src/unity.c:
 	@echo "get  $@"
 	$(Q)tools/build/unity.sh build/unity
-
 
 $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 	@echo "pd   $(EXTERNALS)"
