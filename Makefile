@@ -67,17 +67,19 @@ SHARE_O   := $(if $(EXE),,$(if $(wildcard /usr/share/javascript/three/three.modu
 PORTAUDIO := $(if $(EXE)$(findstring aarch64,$(CC)),,$(wildcard /usr/include/portaudio.h /usr/local/include/portaudio.h))
 VIEWER_O  := $(patsubst viewer/%.c,$(BUILD)/viewer/%.o,$(wildcard viewer/*.c))
 MOCAP_O   := $(patsubst mocap/%.c,$(BUILD)/mocap-o/%.o,$(filter-out mocap/generate.c,$(wildcard mocap/*.c)))
-TOOL_O    := $(patsubst tools/%.c,$(BUILD)/tools/%.o,$(filter-out $(LEFT_OUT:%=tools/%.c),$(wildcard tools/*.c)))
-UNIT      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+TOOL_O    := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(LEFT_OUT:%=tools/himc/%.c),$(wildcard tools/himc/*.c)))
+# the tests of a room in the room's folder, of whole performances in session; their programs lie side by side in build/tests
+UNIT_C    := $(wildcard $(patsubst %,tests/%/test_*.c,$(ROOMS) session viewer))
+UNIT      := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(UNIT_C)))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh $(addprefix tests/test_,arm64.sh windows.sh macos.sh libpd.sh),$(wildcard tests/test_*.sh tests/pd/test_*.sh))
+SCRIPTS   := $(filter-out tests/pd/test_package.sh,$(foreach folder,cli docs pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
-SOURCES   := $(wildcard lib/himc/*.h lib/src/*/*.[ch] lib/src/*/*.cpp tools/*.[ch] tools/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
-             tests/*.[ch] tests/*/*.[ch])
+SOURCES   := $(wildcard lib/himc/*.h lib/src/*/*.[ch] lib/src/*/*.cpp tools/himc/*.[ch] tools/research/*/*.[ch] pd-externals/*.[ch] viewer/*.[ch] mocap/*.[ch] \
+             tests/*/*.[ch])
 
 MAKEFLAGS += --no-builtin-rules --no-print-directory
 ifeq ($(MAKELEVEL),0)
@@ -103,25 +105,25 @@ endef
 ##@ Build
 all: $(if $(wildcard $(VIEWER)),$(VIEWER)) $(LIBRARY) $(SHARED) $(PKGCONFIG) $(PROGRAM) $(EXTERNALS) $(CLIPS) ## the library, the program, the externals and their clips (default)
 
-deps: ## install what is missing of tools/deps.txt (Debian packages; root or sudo)
-	@tools/deps.sh tools/deps.txt
+deps: ## install what is missing of tools/build/deps.txt (Debian packages; root or sudo)
+	@tools/build/deps.sh tools/build/deps.txt
 
 externals-64: $(EXTERNALS_64) ## the externals for Pd with samples of 64 bits, in build/externals-64
 
 externals-multi: $(EXTERNALS_MULTI) ## the externals for libpd with several instances in one process, in build/externals-multi
 
-# a compiler whose programs load on systems of 2020, too (tools/root.sh)
+# a compiler whose programs load on systems of 2020, too (tools/build/root.sh)
 OLDER = CC=$(abspath $(1)/bin)/$(2)-linux-gnu-gcc CXX=$(abspath $(1)/bin)/$(2)-linux-gnu-g++
 # a Pure Data of those years, which tries what is built on their C library
 OLDER_PD = puredata-core libasound2 libjack-jackd2-0 libportaudio2 libsamplerate0 libdb5.3 libopus0 libgcc-s1 libstdc++6
 linux: deps ## the externals, of 32 and of 64 bits, for Linux with glibc 2.31 and newer, in build/linux
-	@tools/root.sh $(BUILD)/linux/debian amd64 $(OLDER_PD)
+	@tools/build/root.sh $(BUILD)/linux/debian amd64 $(OLDER_PD)
 	@$(MAKE) linux-here BUILD=$(BUILD)/linux $(call OLDER,$(BUILD)/linux/debian,x86_64)
 linux-here: $(EXTERNALS) $(EXTERNALS_64)
 
 arm64: deps ## program and externals for Linux on arm64 with glibc 2.31 and newer, crossed, in build/arm64
-	@tools/deps.sh tools/deps-arm64.txt
-	@tools/root.sh $(BUILD)/arm64/debian arm64 libode8 libccd2 libsndfile1-dev libsndfile1 libflac8 libvorbis0a libvorbisenc2 libogg0 zlib1g-dev \
+	@tools/build/deps.sh tools/build/deps-arm64.txt
+	@tools/build/root.sh $(BUILD)/arm64/debian arm64 libode8 libccd2 libsndfile1-dev libsndfile1 libflac8 libvorbis0a libvorbisenc2 libogg0 zlib1g-dev \
 	    zlib1g $(OLDER_PD)
 	@$(MAKE) $(TABLE)
 	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 $(call OLDER,$(BUILD)/arm64/debian,aarch64) TABLE=$(TABLE)
@@ -129,16 +131,16 @@ arm64-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=l_arm64 OBJCOPY=aarch64-linux-gnu-objcopy)
 # the vectorizer of GCC 12 for arm64 ends with an internal error here
-$(BUILD)/tools/live.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-tree-loop-vectorize)
+$(BUILD)/tools/himc/live.o: private CFLAGS += $(if $(findstring aarch64,$(CC)),-fno-tree-loop-vectorize)
 
 test-arm64: all ## the same, run by qemu: its strikes and its sound are those of this machine
 	@$(MAKE) arm64
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_arm64.sh
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/cross/test_arm64.sh
 
 WINDOWS = $(abspath $(BUILD)/windows/parts/root)
 windows: deps ## program and externals for Windows, crossed by mingw-w64, in build/windows
-	@tools/deps.sh tools/deps-windows.txt
-	@tools/windows.sh $(BUILD)/windows/parts
+	@tools/build/deps.sh tools/build/deps-windows.txt
+	@tools/build/windows.sh $(BUILD)/windows/parts
 	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
 	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
 	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser edit%"
@@ -148,36 +150,36 @@ windows-here: $(PROGRAM)
 
 test-windows: all ## the same, run by wine: its strikes are those of Linux, in the program and in Pure Data
 	@$(MAKE) windows
-	@tools/windows.sh $(BUILD)/windows/parts pd
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/test_windows.sh
+	@tools/build/windows.sh $(BUILD)/windows/parts pd
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/cross/test_windows.sh
 
 MACOS = $(abspath $(BUILD)/macos/parts)
 check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/macos; none of it has been run
-	@tools/deps.sh tools/deps-macos.txt
-	@tools/macos.sh $(BUILD)/macos/parts
+	@tools/build/deps.sh tools/build/deps-macos.txt
+	@tools/build/macos.sh $(BUILD)/macos/parts
 	@$(MAKE) $(TABLE)
 	@$(MAKE) macos-here BUILD=$(BUILD)/macos MACOS=$(MACOS) CC=$(MACOS)/bin/cc CXX=$(MACOS)/bin/c++ AR=$(MACOS)/bin/ar LDFLAGS=-L$(MACOS)/root/lib TABLE=$(TABLE) PORTAUDIO= \
 	    CPPFLAGS="-isystem $(MACOS)/root/include" CFLAGS="-Werror -Wno-unused-command-line-argument $(CFLAGS)"
 	@grep -hoE '[A-Za-z_0-9]+' /usr/include/pd/m_pd.h /usr/include/pd/m_imp.h /usr/include/pd/g_canvas.h | sort -u >$(BUILD)/macos/pd.txt
-	@tests/test_macos.sh $(BUILD)/macos
+	@tests/cross/test_macos.sh $(BUILD)/macos
 macos-here: $(PROGRAM) $(SHARED)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=d_arm64 ARCHIVES=$(MACOS)/root/lib PDINCLUDEDIR=/usr/include/pd)
 
 deb: deps ## Debian packages (libhimc0, libhimc-dev, himc, himc-viewer, pd-himc), in build/debian, held against lintian
-	@tools/deps.sh tools/deps-debian.txt tools/deps-viewer.txt
-	@tools/deb.sh $(BUILD)
+	@tools/build/deps.sh tools/build/deps-debian.txt tools/build/deps-viewer.txt
+	@tools/build/deb.sh $(BUILD)
 
 deken: deps ## the package for Pd's package manager, in build/package, tried as a new user would
-	@tools/deps.sh tools/deps-package.txt
+	@tools/build/deps.sh tools/build/deps-package.txt
 	@$(MAKE) all
 	@$(MAKE) linux
 	@$(MAKE) arm64
 	@$(MAKE) windows
-	@tools/package.sh $(BUILD) $(VERSION)
+	@tools/build/package.sh $(BUILD) $(VERSION)
 	@HIMC_BUILD=$(BUILD) tests/pd/test_package.sh $(BUILD)/package/*.dek
 
-INSTALL = BUILD=$(BUILD) DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" LIBDIR="$(LIBDIR)" PDEXTRA="$(PDEXTRA)" VERSION=$(VERSION) STRIP="$(STRIP)" tools/install.sh
+INSTALL = BUILD=$(BUILD) DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" LIBDIR="$(LIBDIR)" PDEXTRA="$(PDEXTRA)" VERSION=$(VERSION) STRIP="$(STRIP)" tools/build/install.sh
 install: all ## install program, library, headers, externals, patches, manual pages and completions under PREFIX (DESTDIR for packagers; STRIP= keeps what debuggers need)
 	@$(INSTALL) install
 
@@ -190,14 +192,14 @@ clean: ## remove all that was built
 ##@ Play
 demo: deps ## install, build, play the improvisation headless; leaves its sound and picture in build/demo
 	@$(MAKE) all
-	@tools/demo.sh
+	@tools/build/demo.sh
 
 mocap: $(BUILD)/bin/generate ## write the motion database, 45 sequences, into build/mocap
 	@mkdir -p $(BUILD)/mocap
 	$(BUILD)/bin/generate $(BUILD)/mocap
 
 view: deps ## build the viewer and show the improvisation in the browser
-	@tools/deps.sh tools/deps-viewer.txt
+	@tools/build/deps.sh tools/build/deps-viewer.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
@@ -207,14 +209,14 @@ view: deps ## build the viewer and show the improvisation in the browser
 CAMERA ?= stage
 AT     ?= 20.2
 still: deps ## a picture of it, by a browser without a window, in build/demo/still.png; CAMERA=eye AT=20.2
-	@tools/deps.sh tools/deps-viewer.txt tools/deps-browser.txt
+	@tools/build/deps.sh tools/build/deps-viewer.txt tools/build/deps-browser.txt
 	@$(MAKE) $(PROGRAM) $(VIEWER)
 	@mkdir -p $(BUILD)/demo
 	$(PROGRAM) render patches/improvisation.txt -o $(BUILD)/demo/view.wav --scene $(BUILD)/demo/view.himc
 	HIMC_BUILD=$(BUILD) python3 tests/viewer/still.py $(BUILD)/demo/view.himc $(BUILD)/demo/still.png $(AT) $(CAMERA)
 
 viewer: ## the viewer alone, build/bin/himc-viewer
-	@tools/deps.sh tools/deps-viewer.txt
+	@tools/build/deps.sh tools/build/deps-viewer.txt
 	@$(MAKE) $(VIEWER)
 
 ##@ Test
@@ -224,7 +226,7 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 units: $(UNIT) $(FUZZ)
 
 # what docs/papers.md asks of the library
-MEASURE := $(BUILD)/tools/papers/measure
+MEASURE := $(BUILD)/tools/research/papers/measure
 
 check: all units $(MEASURE) $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
@@ -239,7 +241,7 @@ test-asan: deps ## the tests in C, and the viewer's, under the address and undef
 	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
 
 check-asan: units $(if $(TOOL_O),$(PROGRAM)) $(if $(WEBSOCKETS),$(VIEWER))
-	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ) $(if $(WEBSOCKETS),tests/test_viewer.sh)
+	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(UNIT) $(FUZZ) $(if $(WEBSOCKETS),tests/viewer/test_viewer.sh)
 
 # the tests with several threads: of the network, and of the loader
 THREADED := $(filter $(BUILD)/tests/test_osc% $(BUILD)/tests/test_loader%,$(UNIT))
@@ -250,13 +252,13 @@ check-tsan: $(THREADED)
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh $(THREADED)
 
 clang: deps ## all of it compiled by clang, whose warnings are errors
-	@tools/deps.sh tools/deps-clang.txt
+	@tools/build/deps.sh tools/build/deps-clang.txt
 	@$(MAKE) units build/clang/bin/himc $(if $(WEBSOCKETS),build/clang/bin/himc-viewer) BUILD=build/clang CC=clang CFLAGS="$(CFLAGS) -Werror"
 
 # of the tests' scripts those that run nothing but the program
-COVERED := $(addprefix tests/test_,cli.sh evaluate.sh osc_serve.sh osc_vmc.sh)
+COVERED := $(addprefix tests/cli/test_,cli.sh evaluate.sh osc_serve.sh osc_vmc.sh)
 coverage: deps ## the share of lib/ that the tests run, at least 97 %; what they do not run is in build/coverage/coverage.txt
-	@tools/deps.sh tools/deps-coverage.txt
+	@tools/build/deps.sh tools/build/deps-coverage.txt
 	@$(MAKE) check-coverage BUILD=build/coverage SANITIZE="--coverage -fprofile-update=atomic" CFLAGS=-O1
 
 check-coverage: units $(PROGRAM)
@@ -272,13 +274,13 @@ golden: deps ## write the bits of the sessions in tests/golden, where a change i
 # how long each target runs (s)
 FUZZ_SECONDS ?= 60
 fuzz: deps ## arbitrary bytes to all readers by clang's libFuzzer, FUZZ_SECONDS=60 each; FUZZ_TARGETS="bvh osc" only these
-	@tools/deps.sh tools/deps-fuzz.txt
+	@tools/build/deps.sh tools/build/deps-fuzz.txt
 	@$(MAKE) check-fuzz BUILD=build/fuzz CC=clang LIBFUZZER=-fsanitize=fuzzer \
 	    SANITIZE="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
 
 FUZZ_TARGETS ?= $(patsubst $(BUILD)/tests/fuzz/fuzz_%,%,$(FUZZ))
 check-fuzz: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
-	@tools/fuzz.sh $(BUILD) $(FUZZ_SECONDS) $^
+	@tools/build/fuzz.sh $(BUILD) $(FUZZ_SECONDS) $^
 
 # how many commands `make torment` sends, and the seed of their order
 COMMANDS ?= 1000000
@@ -309,9 +311,9 @@ test-pd: deps ## the tests in another Pd than the machine's: NEWER=/its/bin/pd F
 	    tests/run.sh tests/pd/test_pd.sh tests/pd/test_patches.sh tests/pd/test_save.sh
 
 test-libpd: deps ## a program with Pure Data and both objects in it, one and four instances: LIBPD=its/source (with pure-data)
-	@tools/deps.sh tools/deps-libpd.txt
+	@tools/build/deps.sh tools/build/deps-libpd.txt
 	@$(MAKE) all
-	@LIBPD=$(abspath $(LIBPD)) HIMC_BUILD=$(BUILD) TEST_TIMEOUT=1800 tests/run.sh tests/test_libpd.sh
+	@LIBPD=$(abspath $(LIBPD)) HIMC_BUILD=$(BUILD) TEST_TIMEOUT=1800 tests/run.sh tests/libpd/test_libpd.sh
 
 test-realtime: deps ## what only the wall clock can show: rates, latencies, computing times; on a machine at rest
 	@$(MAKE) check-realtime
@@ -322,32 +324,32 @@ check-realtime: all $(REALTIME)
 # how much of each file is played (s)
 MIDI_SECONDS ?= 15
 test-midi: deps ## plays MIDI files of two games and holds what is struck against them (MIDI_SECONDS=15 of each; some minutes)
-	@tools/deps.sh tools/deps-midi.txt
+	@tools/build/deps.sh tools/build/deps-midi.txt
 	@$(MAKE) $(PROGRAM)
 	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid
 
 test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
-	@tools/deps.sh tools/deps-python.txt
+	@tools/build/deps.sh tools/build/deps-python.txt
 	@build/python/bin/python -c 'import cffi, setuptools as s; assert int(s.__version__.split(".")[0]) >= 77' 2>/dev/null || \
 		{ python3 -m venv build/python && build/python/bin/pip -q install numpy cffi 'setuptools>=77' wheel matplotlib; }
 	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
 	@build/python/bin/python python/tests/test_himc.py
 
 levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
-	@tools/deps.sh tools/deps-sound.txt
+	@tools/build/deps.sh tools/build/deps-sound.txt
 	@$(MAKE) check-levels
 
-check-levels: all $(BUILD)/tools/sound/loudness
+check-levels: all $(BUILD)/tools/research/sound/loudness
 	@HIMC_BUILD=$(BUILD) JOBS=1 TEST_TIMEOUT=900 tests/run.sh tests/sound/test_levels.sh
 
 sound-report: deps ## how near the timpano is to recorded ones: table and plot in build/sound-report (two minutes)
-	@tools/deps.sh tools/deps-sound.txt
+	@tools/build/deps.sh tools/build/deps-sound.txt
 	@$(MAKE) check-sound-report
 
 PYTHON ?= python3
-check-sound-report: all $(BUILD)/tools/sound/loudness
-	@$(PYTHON) tools/sound/report.py $(PROGRAM) $(BUILD)/sound-report
-	@gnuplot -e "folder='$(BUILD)/sound-report'" tools/sound/report.gp
+check-sound-report: all $(BUILD)/tools/research/sound/loudness
+	@$(PYTHON) tools/research/sound/report.py $(PROGRAM) $(BUILD)/sound-report
+	@gnuplot -e "folder='$(BUILD)/sound-report'" tools/research/sound/report.gp
 
 bench: deps ## what a step, a mode and a performer cost on this machine
 	@$(MAKE) check-bench
@@ -355,35 +357,35 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 check-bench: all
 	@$(PROGRAM) bench
 
-bench-peers: deps $(BUILD)/tools/skeleton/table ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
-	@tools/deps.sh tools/deps-peers.txt
+bench-peers: deps $(BUILD)/tools/research/skeleton/table ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
+	@tools/build/deps.sh tools/build/deps-peers.txt
 	@test -d build/peers || { python3 -m venv build/peers && build/peers/bin/pip -q install mujoco==4.0.0 dm_control==1.0.50; }
 	@$(MAKE) all
 	@$(PROGRAM) bench --peers
 
 ##@ Documentation
 figures: deps ## draw the pictures and play the sounds of docs into build/figures and build/sounds
-	@tools/deps.sh tools/deps-figures.txt
+	@tools/build/deps.sh tools/build/deps-figures.txt
 	@$(MAKE) check-figures
 
 trials: deps ## the trials behind the figures anew, 90 minutes of processor time: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
-papers: $(PROGRAM) $(BUILD)/tools/papers/measure ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md; the trials' tables into evaluation.md
-	@HIMC_BUILD=$(BUILD) tools/papers/papers.sh >$(BUILD)/papers.md
+papers: $(PROGRAM) $(BUILD)/tools/research/papers/measure ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md; the trials' tables into evaluation.md
+	@HIMC_BUILD=$(BUILD) tools/research/papers/papers.sh >$(BUILD)/papers.md
 	@sed '/^| place |/,$$d' docs/papers.md | cat - $(BUILD)/papers.md >$(BUILD)/papers.new && mv $(BUILD)/papers.new docs/papers.md
-	@awk -f tools/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >$(BUILD)/papers.new
+	@awk -f tools/research/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >$(BUILD)/papers.new
 	@mv $(BUILD)/papers.new docs/evaluation.md
 	@echo "wrote docs/papers.md and the tables of docs/evaluation.md"
 
 air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
-	@$(MAKE) $(BUILD)/tools/air/table
-	$(BUILD)/tools/air/table >$(BUILD)/air_table.c
+	@$(MAKE) $(BUILD)/tools/research/air/table
+	$(BUILD)/tools/research/air/table >$(BUILD)/air_table.c
 	cmp -s $(BUILD)/air_table.c lib/src/head/air_table.c || mv $(BUILD)/air_table.c lib/src/head/air_table.c
 
 regression-table: ## lib/src/control/posture_regression_table.c anew: how arms move with their sticks, from the database
-	@$(MAKE) $(BUILD)/tools/regression/table
-	$(BUILD)/tools/regression/table >$(BUILD)/posture_regression_table.c
+	@$(MAKE) $(BUILD)/tools/research/regression/table
+	$(BUILD)/tools/research/regression/table >$(BUILD)/posture_regression_table.c
 	mv $(BUILD)/posture_regression_table.c lib/src/control/posture_regression_table.c
 
 ##@ Style
@@ -391,24 +393,24 @@ manual: $(BUILD)/tests/test_manual ## write the library's vocabulary into docs/m
 	@HIMC_WRITE_MANUAL=1 $< >/dev/null && echo "wrote docs/manual.md"
 
 lint: ## formatting, warnings as errors, cppcheck, the one-way order of the rooms
-	@tools/deps.sh tools/deps.txt tools/deps-lint.txt
+	@tools/build/deps.sh tools/build/deps.txt tools/build/deps-lint.txt
 	@$(MAKE) all units BUILD=build/lint CFLAGS="$(CFLAGS) -Werror"
-	@tools/lint.sh build/lint $(SOURCES)
+	@tools/build/lint.sh build/lint $(SOURCES)
 
 reference: ## the public headers and the Python package as web pages, build/reference/index.html (doxygen); no warning is let pass
-	@tools/deps.sh tools/deps-reference.txt
+	@tools/build/deps.sh tools/build/deps-reference.txt
 	@mkdir -p $(BUILD)
 	doxygen docs/Doxyfile
 
 format: ## let clang-format lay out all C files
-	@tools/deps.sh tools/deps-lint.txt
+	@tools/build/deps.sh tools/build/deps-lint.txt
 	clang-format -i $(SOURCES)
 
 help: ## this list
 	@awk -F ':.*## ' '/^##@/ {print "\n" substr($$0, 5)} /^[a-z0-9-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
 
-.PHONY: deb test-libpd test-python windows windows-here test-windows check-macos macos-here linux linux-here arm64 arm64-here test-arm64 deken test-pd externals-64 externals-multi still regression-table mocap view viewer all deps install uninstall clean demo test units check test-long check-long test-asan check-asan test-tsan check-tsan clang coverage check-coverage golden fuzz check-fuzz torment soak mutants test-realtime check-realtime test-midi levels check-levels sound-report check-sound-report bench check-bench bench-peers \
-        reference FORCE figures check-figures papers air-table manual lint format help
+# all that is named without a folder
+.PHONY: FORCE $(shell sed -n 's/^\([a-z0-9-]*\):.*/\1/p' Makefile)
 
 # one rule per kind; V=1 shows the whole commands
 Q   = $(if $(V),,@)
@@ -427,7 +429,7 @@ $(SHARED): $(LIB_O)
 EMPTY   :=
 pc_path  = $(subst $(EMPTY) $(EMPTY),\\ ,$(1))
 
-$(PKGCONFIG): tools/himc.pc.in FORCE
+$(PKGCONFIG): tools/build/himc.pc.in FORCE
 	@mkdir -p $(@D)
 	@sed -e 's|@PREFIX@|$(call pc_path,$(PREFIX))|; s|@LIBDIR@|$(call pc_path,$(LIBDIR))|; s|@VERSION@|$(VERSION)|; s|@LIBS@|$(LIB_LIBS)|' $< >$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
@@ -440,16 +442,20 @@ $(BUILD)/lib/%.o: lib/src/%.cpp
 	$(call say,c++ )
 	$(Q)$(COMPILE_CXX) -c $< -o $@
 
-$(BUILD)/tools/%.o: tools/%.c
+# the flags of a folder
+IN_tools  = -I.
+IN_tests  = -I. -Itests/support $(UNITY)
+IN_viewer = -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer
+$(BUILD)/%.o: %.c
 	$(call say,cc  )
-	$(Q)$(COMPILE) -c $< -o $@
+	$(Q)$(COMPILE) $(IN_$(firstword $(subst /, ,$<))) -c $< -o $@
 
 # for himc --licences
-$(BUILD)/tools/licences.h: LICENSE LIBRARIES.txt
+$(BUILD)/tools/himc/licences.h: LICENSE LIBRARIES.txt
 	$(call say,make)
 	$(Q)(cat LICENSE; echo; cat LIBRARIES.txt) | sed 's/[\\"]/\\&/g; s/.*/"&",/' >$@
-$(BUILD)/tools/himc.o: private override CPPFLAGS += -I$(BUILD)/tools
-$(BUILD)/tools/himc.o: $(BUILD)/tools/licences.h
+$(BUILD)/tools/himc/himc.o: private override CPPFLAGS += -I$(BUILD)/tools/himc
+$(BUILD)/tools/himc/himc.o: $(BUILD)/tools/himc/licences.h
 
 # small programs that make tables, figures and clips
 $(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)
@@ -457,20 +463,16 @@ $(BUILD)/tools/%: $(BUILD)/tools/%.o $(LIBRARY)
 	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -o $@
 
 # the timpano's own blows, which the clip technique replays
-$(CLIPS): $(BUILD)/tools/clips/clips
+$(CLIPS): $(BUILD)/tools/research/clips/clips
 	$(call say,play)
 	$(Q)$< $(@D)
 
-$(BUILD)/viewer/%.o: viewer/%.c
-	$(call say,cc  )
-	$(Q)$(COMPILE) -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer -c $< -o $@
-
 # names, parents and lengths of the body's segments, for the viewer and its page; the program that prints them needs its
 # room base, the skeleton and no other package, so that `make viewer` needs none either
-SKELETON_O := $(BUILD)/tools/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
+SKELETON_O := $(BUILD)/tools/research/skeleton/table.o $(BUILD)/lib/body/skeleton.o $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 # of this machine: what is crossed for another does not run here
-TABLE = $(BUILD)/tools/skeleton/table
-$(BUILD)/tools/skeleton/table: $(SKELETON_O)
+TABLE = $(BUILD)/tools/research/skeleton/table
+$(BUILD)/tools/research/skeleton/table: $(SKELETON_O)
 	$(call say,link)
 	$(Q)$(LINK) $^ -lm -o $@
 
@@ -490,9 +492,7 @@ $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lz -lm -o $@
 
-$(BUILD)/tests/%.o: tests/%.c | $(UNITY_DIR)/unity.c
-	$(call say,cc  )
-	$(Q)$(COMPILE) $(UNITY) -c $< -o $@
+$(UNIT_C:%.c=$(BUILD)/%.o) $(addsuffix .o,$(LONG) $(REALTIME)): | $(UNITY_DIR)/unity.c
 
 # to be preloaded: counts the calls that may wait, for the real-time contract
 WATCH := $(BUILD)/tests/watch.so
@@ -513,30 +513,32 @@ $(BUILD)/bin/generate: $(BUILD)/mocap-o/generate.o $(MOCAP_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) -o $@
 
-$(BUILD)/tests/test_golden $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/regression/table: $(MOCAP_O)
+$(BUILD)/tests/test_golden $(BUILD)/tests/test_mocap $(BUILD)/tests/test_mocap_strokes $(BUILD)/tools/research/regression/table: $(MOCAP_O)
 
-$(addprefix $(BUILD)/tools/,figures/strokes figures/claim figures/database papers/measure): $(BUILD)/tools/trial.o $(BUILD)/tools/pool.o $(MOCAP_O)
+$(addprefix $(BUILD)/tools/research/,figures/strokes figures/claim figures/database papers/measure): $(BUILD)/tools/himc/trial.o $(BUILD)/tools/himc/pool.o $(MOCAP_O)
 
-$(BUILD)/tools/air/table $(BUILD)/tests/test_air $(BUILD)/tests/test_air_galerkin: $(BUILD)/tools/air/galerkin.o
+$(BUILD)/tools/research/air/table $(BUILD)/tests/test_air $(BUILD)/tests/test_air_galerkin: $(BUILD)/tools/research/air/galerkin.o
 
-$(BUILD)/tests/test_database: $(BUILD)/tools/trial.o $(MOCAP_O)
+$(BUILD)/tests/test_database: $(BUILD)/tools/himc/trial.o $(MOCAP_O)
 
-# needs tools/deps-sound.txt
-$(BUILD)/tools/sound/loudness: private LIBS += -lebur128
+# needs tools/build/deps-sound.txt
+$(BUILD)/tools/research/sound/loudness: private LIBS += -lebur128
 
 # names of files are UTF-8
-$(BUILD)/tools/windows.o: tools/windows.rc tools/windows.manifest
-	$(Q)x86_64-w64-mingw32-windres -I tools $< $@
-$(PROGRAM): $(if $(EXE),$(BUILD)/tools/windows.o)
+$(BUILD)/tools/himc/windows.o: tools/build/windows.rc tools/build/windows.manifest
+	$(Q)x86_64-w64-mingw32-windres -I tools/build $< $@
+$(PROGRAM): $(if $(EXE),$(BUILD)/tools/himc/windows.o)
 
-$(BUILD)/tools/share.o $(BUILD)/tools/film.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
-$(BUILD)/tools/play.o: private CPPFLAGS += $(if $(PORTAUDIO),-DHIMC_PORTAUDIO)
+$(BUILD)/tools/himc/share.o $(BUILD)/tools/himc/film.o: private CPPFLAGS += -Iviewer $(if $(SHARE_O),-DHIMC_SHARE)
+$(BUILD)/tools/himc/play.o: private CPPFLAGS += $(if $(PORTAUDIO),-DHIMC_PORTAUDIO)
 $(PROGRAM): $(TOOL_O) $(MOCAP_O) $(SHARE_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $^ $(LIBS) $(if $(PORTAUDIO),-lportaudio) -o $@
 
 # a test file is a program; it runs from the repository's root and finds what was built by HIMC_BUILD; those of OSC listen with liblo
-$(UNIT) $(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(UNITY_O) $(LIBRARY)
+$(foreach test,$(UNIT_C:.c=),$(eval $(BUILD)/tests/$(notdir $(test)): $(BUILD)/$(test).o))
+$(LONG) $(REALTIME): $(BUILD)/tests/%: $(BUILD)/tests/%.o
+$(UNIT) $(LONG) $(REALTIME): $(UNITY_O) $(LIBRARY)
 	$(call say,link)
 	$(Q)$(LINK) $(filter %.o,$^) $(LIBRARY) $(LIBS) -llo -o $@
 
@@ -551,19 +553,19 @@ $(BUILD)/tests/fuzz/%.o: private CPPFLAGS += -D_GNU_SOURCE # files in memory
 VIEWER_PARTS := $(filter-out $(addprefix $(BUILD)/viewer/,channel.o main.o pages.o receive.o share.o web.o),$(VIEWER_O))
 VIEWER_TESTS := $(filter $(BUILD)/tests/test_viewer_% $(BUILD)/tests/fuzz/fuzz_viewer_%,$(UNIT) $(FUZZ))
 $(VIEWER_TESTS): $(VIEWER_PARTS)
-$(VIEWER_TESTS:=.o): $(BUILD)/viewer/skeleton.h
-$(VIEWER_TESTS:=.o): private CPPFLAGS += -Iviewer -I$(BUILD)/viewer
+VIEWER_TESTS_O := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/viewer/test_*.c tests/fuzz/fuzz_viewer_*.c))
+$(VIEWER_TESTS_O): $(BUILD)/viewer/skeleton.h
+$(VIEWER_TESTS_O): private CPPFLAGS += -Iviewer -I$(BUILD)/viewer
 
-$(BUILD)/tests/fuzz/fuzz_edit: $(addprefix $(BUILD)/tools/,edit_text.o cli.o file.o)
+$(BUILD)/tests/fuzz/fuzz_edit: $(addprefix $(BUILD)/tools/himc/,edit_text.o cli.o file.o)
 $(BUILD)/tests/test_osc_stranger: private LIBS += -Wl,--wrap=himc_osc_address_loopback
 $(BUILD)/tests/fuzz/fuzz_edit: private LIBS += -Wl,--wrap=himc_system_open -Wl,--wrap=himc_system_open_inside
-$(BUILD)/tests/fuzz/fuzz_log: $(addprefix $(BUILD)/tools/,evaluate_log.o trial.o) $(MOCAP_O)
+$(BUILD)/tests/fuzz/fuzz_log: $(addprefix $(BUILD)/tools/himc/,evaluate_log.o trial.o) $(MOCAP_O)
 
 # Debian has no package of Unity's own; the source package cjson carries it
 build/unity/src/unity.c:
 	@echo "get  $@"
-	$(Q)tools/unity.sh build/unity
-
+	$(Q)tools/build/unity.sh build/unity
 
 $(EXTERNALS) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 	@echo "pd   $(EXTERNALS)"
@@ -578,8 +580,8 @@ $(EXTERNALS_MULTI) &: $(wildcard pd-externals/* lib/himc/*.h) $(LIBRARY)
 	$(call make_externals,$(BUILD)/externals-multi INSTANCES=1)
 	@! nm -D --undefined-only $(EXTERNALS) | grep ' himc_' || { echo "$(@D): lacks the above; Pd would not load it" >&2; false; }
 
-include tools/figures/figures.mk
+include tools/research/figures/figures.mk
 check-figures: $(FIGURES)
 
--include $(wildcard $(BUILD)/tools/*/*.d) $(LIB_O:.o=.d) $(TOOL_O:.o=.d) $(MOCAP_O:.o=.d) \
-         $(addsuffix .d,$(UNIT) $(LONG) $(FUZZ) $(BUILD)/tests/fuzz/driver $(REALTIME))
+-include $(wildcard $(BUILD)/tools/*/*.d $(BUILD)/tools/*/*/*.d) $(LIB_O:.o=.d) $(MOCAP_O:.o=.d) \
+         $(UNIT_C:%.c=$(BUILD)/%.d) $(addsuffix .d,$(LONG) $(FUZZ) $(BUILD)/tests/fuzz/driver $(REALTIME))

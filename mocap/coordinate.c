@@ -25,8 +25,9 @@ static const double reversals[HIMC_ARM_JOINTS][2] = {
 // chosen: share of the grip's rate in the joint's; the rest is the elbow's
 static const double distal[HIMC_ARM_JOINTS] = {0, 0, 0.15, 1};
 
-void himc_mocap_joints_at(const mocap_arm *arm, const mocap_stroke *stroke,
-                          const double share[HIMC_ARM_JOINTS], himc_quat joint[HIMC_ARM_JOINTS])
+// an arm's joints for given shares of the stroke between impact and apex
+static void joints_at(const mocap_arm *arm, const mocap_stroke *stroke,
+                      const double share[HIMC_ARM_JOINTS], himc_quat joint[HIMC_ARM_JOINTS])
 {
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_vec3 stroke_k = himc_vec3_sub(stroke->apex[k], stroke->impact[k]);
@@ -45,7 +46,7 @@ static void slopes(const himc_mocap *m, himc_hand hand, const mocap_stroke *stro
         for (int i = 0; i < 2; i++) {
             double share[HIMC_ARM_JOINTS] = {0, 0, 0, 0};
             share[k] = i ? SMALL : -SMALL;
-            himc_mocap_joints_at(&m->arm[hand], stroke, share, joint);
+            joints_at(&m->arm[hand], stroke, share, joint);
             z[i] = himc_mocap_stick_point(&m->skeleton, trunk, hand, joint, back).z;
         }
         slope[k] = (z[1] - z[0]) / (2 * SMALL);

@@ -1,12 +1,8 @@
-/// motion.c: a sequence: random strokes, their two postures, and the joints between them.
+/// motion.c: a sequence is made: random strokes, their two postures, and the joints between them.
 ///
-/// Each stroke has a posture of its impact and one of its apex, y_i and y_a, rotation vectors
-/// about the arm's mean posture; joint k is at exp(y_i + s_k (y_a - y_i) + loop + drift), where
-/// its share s_k of the stroke runs from 1 to 0 and back in its own time. From one stroke to the
-/// next both postures pass smoothly over, while the arm rises. Strokes vary in height, speed,
-/// timing, aim and posture by first-order autoregressive noise. Only the joints are moved; the tips
-/// follow by forward kinematics. Invariant: at an impact all shares are 0 and nothing
-/// is added, so the tip is where the stroke was aimed, on the head.
+/// Each stroke has a posture of its impact and one of its apex, which sequence.c interpolates.
+/// Strokes vary in height, speed, timing, aim and posture by first-order autoregressive noise. Only
+/// the joints are moved; the tips follow by forward kinematics.
 #include "motion.h"
 #include "body/posture.h"
 
@@ -18,7 +14,6 @@
 #define MEMORY 0.4           // correlation of the variation from stroke to stroke
 #define WITH_HEIGHT 0.8      // part of a speed's variation that follows the height's ...
 #define OWN 0.6              // ... and the independent part: the squares sum to one
-#define BLEND 0.04           // time after the impact at which the next stroke's postures begin (s)
 #define AIM_SPREAD 0.003     // standard deviations: of the aim (m)
 #define OUT_SPREAD 0.006     // of the elbow's angle (rad)
 #define HAND_SPREAD 0.005    // of the hand's elevation (rad)
@@ -28,39 +23,11 @@
 #define TIME_SPREAD 0.012    // of intervals (shares)
 #define MOST_FLEXION 1.6     // of the elbow, searched in ...
 #define FLEXION_STEP 0.02    // ... steps (rad)
-#define LEAN_MORE 1.3        // lean of the trunk towards strike places beyond the usual one (rad/m)
-#define JOINT_DRIFT 0.003    // of a joint between impacts (rad)
-#define TRUNK_DRIFT 0.003    // (rad)
 
 himc_mocap_config himc_mocap_default(void)
 {
     return (himc_mocap_config){
         .nuance = HIMC_LEGATO, .spot = HIMC_SPOT_NORMAL, .seed = 1, .strokes = 16, .pace = 1};
-}
-
-static himc_quat trunk_rotation(double turn, double lean)
-{
-    return himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, turn)),
-                         himc_quat_exp(himc_vec3_make(0, lean, 0)));
-}
-
-static double mean_lean(const himc_mocap *m)
-{
-    double usual = himc_mocap_spot(HIMC_SPOT_NORMAL);
-    return m->player->lean + LEAN_MORE * (himc_mocap_spot(m->config.spot) - usual);
-}
-
-himc_quat himc_mocap_trunk(const himc_mocap *m, double t)
-{
-    double sway = m->player->sway, loose = TRUNK_DRIFT * m->player->looseness;
-    double left = 0.5, right = 0.5;
-    if (m->arm[HIMC_LEFT].effort.count && m->arm[HIMC_RIGHT].effort.count) {
-        left = himc_mocap_curve_at(&m->arm[HIMC_LEFT].effort, t);
-        right = himc_mocap_curve_at(&m->arm[HIMC_RIGHT].effort, t);
-    }
-    return trunk_rotation(sway * (left - right) + loose * himc_mocap_wander_at(&m->turn, t),
-                          mean_lean(m) - 0.5 * sway * (left + right - 1) +
-                              0.5 * loose * himc_mocap_wander_at(&m->lean, t));
 }
 
 // variations of one hand's strokes
@@ -125,7 +92,7 @@ static void flex(const mocap_gesture *g, const himc_vec3 axis[], double elbow,
 static double rise_of(const himc_mocap *m, himc_hand hand, const himc_quat low[],
                       const himc_vec3 way[])
 {
-    himc_quat trunk = trunk_rotation(0, mean_lean(m)), high[HIMC_ARM_JOINTS];
+    himc_quat trunk = himc_mocap_trunk_mean(m), high[HIMC_ARM_JOINTS];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         high[k] = himc_quat_mul(low[k], himc_quat_exp(way[k]));
     return himc_mocap_stick_point(&m->skeleton, trunk, hand, high, MOCAP_POINT).z -
@@ -162,7 +129,7 @@ static double find_flexion(const himc_mocap *m, himc_hand hand, const mocap_gest
 static void find_apex(const himc_mocap *m, himc_hand hand, mocap_stroke *s, const himc_quat low[])
 {
     himc_vec3 axis[HIMC_ARM_JOINTS], way[HIMC_ARM_JOINTS];
-    himc_mocap_flexion(trunk_rotation(0, mean_lean(m)), low, axis);
+    himc_mocap_flexion(himc_mocap_trunk_mean(m), low, axis);
     flex(&s->gesture, axis, find_flexion(m, hand, &s->gesture, low, axis), way);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_quat high = himc_quat_mul(low[k], himc_quat_exp(way[k]));
@@ -178,8 +145,7 @@ static void carry_aim(const himc_mocap *m, himc_hand hand, mocap_stroke *s)
     const himc_quat *mean = m->arm[hand].mean;
     himc_vec3 there =
         himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk(m, s->touch), hand, mean, 0);
-    himc_vec3 usual =
-        himc_mocap_stick_point(&m->skeleton, trunk_rotation(0, mean_lean(m)), hand, mean, 0);
+    himc_vec3 usual = himc_mocap_stick_point(&m->skeleton, himc_mocap_trunk_mean(m), hand, mean, 0);
     s->aim.x += there.x - usual.x;
     s->aim.y += there.y - usual.y;
     s->low.tip = s->aim;
@@ -241,7 +207,7 @@ static bool find_mean(himc_mocap *m, himc_hand hand)
     variation none = {0};
     mocap_stroke usual;
     draw_stroke(m, hand, &none, &usual);
-    return himc_mocap_arm(&m->skeleton, trunk_rotation(0, mean_lean(m)), hand, &usual.low,
+    return himc_mocap_arm(&m->skeleton, himc_mocap_trunk_mean(m), hand, &usual.low,
                           m->arm[hand].mean);
 }
 
@@ -327,61 +293,4 @@ void himc_mocap_free(himc_mocap *m)
             himc_mocap_curve_free(&m->arm[hand].share[k]);
     }
     free(m);
-}
-
-// the stroke before `t`, and how far its postures have passed over to the next one's
-static int stroke_at(const mocap_arm *arm, double t, double *passed)
-{
-    int i = 0;
-    while (i + 1 < arm->count && arm->stroke[i + 1].touch <= t)
-        i++;
-    *passed = 0;
-    if (i + 1 < arm->count && t > arm->stroke[i].touch) {
-        double from = arm->stroke[i].touch + BLEND;
-        double to = arm->stroke[i + 1].touch - arm->stroke[i + 1].gesture.fall;
-        double u = fmin(fmax((t - from) / (to - from), 0), 1);
-        *passed = u * u * u * (10 + u * (6 * u - 15));
-    }
-    return i;
-}
-
-void himc_mocap_arm_at(const himc_mocap *m, himc_hand hand, double t,
-                       himc_quat joint[HIMC_ARM_JOINTS])
-{
-    const mocap_arm *arm = &m->arm[hand];
-    double passed, loop = himc_mocap_curve_at(&arm->loop, t);
-    int i = stroke_at(arm, t, &passed);
-    const mocap_stroke *a = &arm->stroke[i], *b = &arm->stroke[i + (i + 1 < arm->count)];
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        double s = himc_mocap_curve_at(&arm->share[k], t),
-               w = JOINT_DRIFT * m->player->looseness * s;
-        himc_vec3 low =
-            himc_vec3_madd(himc_vec3_scale(a->impact[k], 1 - passed), passed, b->impact[k]);
-        himc_vec3 high =
-            himc_vec3_madd(himc_vec3_scale(a->apex[k], 1 - passed), passed, b->apex[k]);
-        himc_vec3 y = himc_vec3_madd(low, s, himc_vec3_sub(high, low));
-        const mocap_wander *n = arm->wander[k];
-        y = himc_vec3_madd(y, loop, a->loop[k]);
-        y = himc_vec3_add(y, himc_vec3_make(w * himc_mocap_wander_at(&n[0], t),
-                                            w * himc_mocap_wander_at(&n[1], t),
-                                            w * himc_mocap_wander_at(&n[2], t)));
-        joint[k] = himc_quat_mul(arm->mean[k], himc_quat_exp(y));
-    }
-}
-
-himc_pose himc_mocap_pose(const himc_mocap *m, double t)
-{
-    himc_pose pose = m->rest;
-    himc_quat joint[HIMC_ARM_JOINTS];
-    t = fmin(fmax(t * m->config.pace, 0), m->length);
-    pose.joint[HIMC_TRUNK - 1] = himc_mocap_trunk(m, t);
-    himc_quat nod =
-        himc_quat_exp(himc_vec3_make(0, 2 * TRUNK_DRIFT * himc_mocap_wander_at(&m->nod, t), 0));
-    pose.joint[HIMC_NECK - 1] = himc_quat_mul(pose.joint[HIMC_NECK - 1], nod);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_mocap_arm_at(m, (himc_hand)hand, t, joint);
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            pose.joint[himc_arm_joint((himc_hand)hand, k)] = joint[k];
-    }
-    return pose;
 }

@@ -35,15 +35,12 @@ struct himc_mocap {
     mocap_wander turn, lean, nod;
 };
 
-/// The trunk's orientation at `t`.
+/// The trunk's orientation without sway and drift, and at `t`.
+himc_quat himc_mocap_trunk_mean(const himc_mocap *mocap);
 HIMC_RT himc_quat himc_mocap_trunk(const himc_mocap *mocap, double t);
 /// An arm's joints at `t`.
 HIMC_RT void himc_mocap_arm_at(const himc_mocap *mocap, himc_hand hand, double t,
                                himc_quat joint[HIMC_ARM_JOINTS]);
-/// An arm's joints for given shares of the stroke between impact and apex.
-HIMC_RT void himc_mocap_joints_at(const mocap_arm *arm, const mocap_stroke *stroke,
-                                  const double share[HIMC_ARM_JOINTS],
-                                  himc_quat joint[HIMC_ARM_JOINTS]);
 /// Makes the curves of both arms from their strokes.
 void himc_mocap_coordinate(himc_mocap *mocap);
 

@@ -2,10 +2,11 @@
 ///
 /// The page's messages go to that program, one line each, or are a file to be edited; and what
 /// that program tells goes back, as fast as the page takes it; what this program itself says to the
-/// page goes between, as text. It ends with its page; the piece's journal (tools/edit_journal.c)
-/// brings the changes back to the next one. A piece that is dropped is played aside until it can be
-/// heard, so that one that is refused disturbs nothing. Invariant: one page edits, the newest;
-/// `passed` holds at most one message, and the program is not read before the page has taken it.
+/// page goes between, as text. It ends with its page; the piece's journal
+/// (tools/himc/edit_journal.c) brings the changes back to the next one. A piece that is dropped is
+/// played aside until it can be heard, so that one that is refused disturbs nothing. Invariant: one
+/// page edits, the newest; `passed` holds at most one message, and the program is not read before
+/// the page has taken it.
 #include "channel.h"
 #include "base/line.h"
 #include "editor.h"

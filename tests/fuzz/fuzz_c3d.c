@@ -4,7 +4,7 @@
 /// mutations here know the format: words of the header, the parameters' names, types, sizes,
 /// links and values, in the file's own processor order, and samples. A file too short to be one is
 /// replaced by a new, good one, so the corpus needs no seeds.
-#include "../c3d_files.h"
+#include "c3d_files.h"
 #include "take.h"
 
 #define LEAST (512 * 5) // a file of c3d_files.h without frames (bytes)

@@ -3,7 +3,7 @@
 /// what is refused or taken back changes nothing, nor what undo and redo can do, which are each
 /// other's inverse. And the fences: if a score is said to name no file, playing it opens none; and
 /// none is played with a line that writes a file.
-#include "../../tools/edit_text.h"
+#include "tools/himc/edit_text.h"
 #include "fuzz.h"
 #include "himc/performance.h"
 #include "performance/research.h"

@@ -1,6 +1,6 @@
 /// fuzz_log.c: logs of `himc evaluate`. What is accepted is finite; what is refused stays as it
 /// was; a log that was continued is accepted again.
-#include "../../tools/evaluate_log.h"
+#include "tools/himc/evaluate_log.h"
 #include "fuzz.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 /// finite.
 #include "fuzz.h"
 
-#include "../finite_watch.h"
+#include "finite_watch.h"
 
 #include "himc/osc.h"
 #include "osc/decode.h"

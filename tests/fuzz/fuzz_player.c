@@ -3,7 +3,7 @@
 ///
 /// The format is known by the first bytes. What is too short to be a take is replaced by a good
 /// one of a whole player, so the corpus needs no seeds.
-#include "../take_players.h"
+#include "take_players.h"
 #include "track/track.h"
 #include "take.h"
 

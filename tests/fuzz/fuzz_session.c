@@ -5,8 +5,8 @@
 /// time. Commands that name a file are left out. All that the session shows is finite.
 #include "fuzz.h"
 
-#include "../finite_watch.h"
-#include "../random_commands.h"
+#include "finite_watch.h"
+#include "random_commands.h"
 
 #define RATE 16000     // (Hz) of samples, physics at 1000 Hz: to save time
 #define MOST 12        // commands; chosen: an input stays quick

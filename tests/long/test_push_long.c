@@ -1,5 +1,5 @@
 /// test_push_long.c: six pushes in every combination of pipeline, law, gains and piece.
-#include "../pushes.h"
+#include "pushes.h"
 
 static const struct {
     int segment;

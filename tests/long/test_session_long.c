@@ -1,5 +1,5 @@
 /// test_session_long.c: timing, position, dynamics and nuances of strokes in long sessions.
-#include "../session.h"
+#include "session.h"
 #include "base/head_frame.h"
 
 static const char *const nuances[] = {"legato", "tenuto", "accent", "vertical-accent", "staccato"};

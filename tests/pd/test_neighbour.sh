@@ -1,7 +1,7 @@
 #!/bin/sh
 # The externals as neighbours of others in one Pd: each shows its setup function alone, so another external that is linked with a library
 # of which [himc~] contains a part has its own.
-. tests/check.sh
+. tests/support/check.sh
 build=$(cd "${HIMC_BUILD:-build}" && pwd) || exit 1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

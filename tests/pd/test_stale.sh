@@ -1,7 +1,7 @@
 #!/bin/sh
 # [himc~] and [membrane~] are two binaries that share structs of the library. One of them built from sources with a changed struct:
 # they refuse each other in one line, the strokes are silent, nothing crashes.
-. tests/check.sh
+. tests/support/check.sh
 root=$(pwd)
 build=$root/${HIMC_BUILD:-build}
 work=$(mktemp -d)

@@ -1,7 +1,7 @@
 // What takes long while the sound goes on, or before it begins, by the processor's time.
-#include "../session.h"
+#include "session.h"
 
-#include "../heads.h"
+#include "heads.h"
 #include "head/air.h"
 #include "head/modes.h"
 #include "plan/score.h"

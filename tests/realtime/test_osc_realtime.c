@@ -1,6 +1,6 @@
 // OSC with its network thread, by the wall clock: rates, floods, time that commands may take.
 #define OSC_REAL_TIME
-#include "../osc_ear.h"
+#include "osc_ear.h"
 
 static int lines_of_vanished(void)
 {

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # How loud the pieces are (make levels): -23 +-2 LUFS as broadcasters want, true peaks below full
-# scale, all by one gain for all drums. The numbers are libebur128's; build/tools/sound/loudness prints
+# scale, all by one gain for all drums. The numbers are libebur128's; build/tools/research/sound/loudness prints
 # them. HIMC_BUILD is where the build is (build).
 cd "$(dirname "$0")/../.." || exit 1
 build=$(cd "${HIMC_BUILD:-build}" && pwd) || exit 1
-loudness=$build/tools/sound/loudness
+loudness=$build/tools/research/sound/loudness
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 tests=0 failures=0

@@ -313,7 +313,7 @@ def bundle(*messages, told=None):
 
 def skeleton():
     """The library's table of segments as it prints it now, a JavaScript module."""
-    table = os.path.join(BUILD, "tools/skeleton/table")
+    table = os.path.join(BUILD, "tools/research/skeleton/table")
     return subprocess.run([table, "js"], capture_output=True, check=True).stdout
 
 

@@ -36,7 +36,7 @@ FOUR_SCORE = "tests/viewer/four.txt"
 # fixed, because the page must find a restarted viewer again; different for each run of this file
 HTTP = 20000 + os.getpid() % 20000
 OSC, SERVE = HTTP + 1, HTTP + 2
-RECOVERED = 10  # of a body that was pushed, a second later (mm); tests/pushes.h
+RECOVERED = 10  # of a body that was pushed, a second later (mm); tests/support/pushes.h
 MARKS = 7  # layer of the marks of strikes
 browser = bridge = None
 STATES = tempfile.TemporaryDirectory(prefix="himc-states-")  # of pieces that were dropped

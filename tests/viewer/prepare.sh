@@ -7,7 +7,7 @@ export HIMC_MADE
 dir=$HIMC_MADE
 for need in python3 chromedriver; do
     if [ ! -x "$HIMC_BUILD/bin/himc-viewer" ] || ! command -v $need >/dev/null; then
-        echo "$0:0:$(basename "$0" .sh):IGNORE: needs what tools/deps-viewer.txt and tools/deps-browser.txt list"
+        echo "$0:0:$(basename "$0" .sh):IGNORE: needs what tools/build/deps-viewer.txt and tools/build/deps-browser.txt list"
         echo "1 Tests 0 Failures 1 Ignored"
         exit 0
     fi

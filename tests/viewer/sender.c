@@ -11,7 +11,7 @@
 #include "himc/membrane.h"
 #include "himc/body.h"
 
-#include "../heads.h"
+#include "../support/heads.h"
 
 #include <lo/lo.h>
 #include <math.h>

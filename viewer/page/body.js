@@ -1,5 +1,5 @@
 // Forward kinematics of a body. The default performer is the library's own table of segments
-// (skeleton.js, made by tools/skeleton/table.c when the viewer is built); a scene brings the measures
+// (skeleton.js, made by tools/research/skeleton/table.c when the viewer is built); a scene brings the measures
 // of its own.
 import { segments, root } from "./skeleton.js";
 

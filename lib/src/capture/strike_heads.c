@@ -23,7 +23,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// chosen by 400 synthetic takes (tests/test_take_mixed.c), where nothing else is said
+// chosen by 400 synthetic takes (tests/capture/test_take_mixed.c), where nothing else is said
 #define TRIPLES 300          // planes tried
 #define STEEPEST 0.15        // slope of a plane through three seeds; a tilted timpano's is 0.1
 #define LEAST_SEEDS 3        // with fewer all sharp falls are seeds; no fewer make another drum

@@ -53,7 +53,7 @@
 #define DISTURBED 0.1 // chosen: share of the largest bend that ends the undisturbed fall
 #define SHARP 0.8     // chosen: share of D that a sharp track has in two frames
 // by which a fall's end may lie off the head: play of felt and marker, noise, blunting by frames,
-// and a dent of 12 mm at 8 m/s; chosen by synthetic takes (tests/test_take_mixed.c)
+// and a dent of 12 mm at 8 m/s; chosen by synthetic takes (tests/capture/test_take_mixed.c)
 #define PLAY 0.008          // (m)
 #define PLAY_DEVIATIONS 3.0 // of noise
 #define PLAY_FRAMES 0.35    // of the fall in a frame ...

@@ -64,7 +64,7 @@ HIMC_RT himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *he
 /// The same, with the load found first; that of both members of a pair is equal.
 HIMC_RT himc_mode himc_air_mode(const himc_air *air, const himc_head *head, const himc_mode *bare);
 
-// The table (air_table.c), computed by tools/air/table.c.
+// The table (air_table.c), computed by tools/research/air/table.c.
 
 #define HIMC_AIR_DRUMS 4
 #define HIMC_AIR_ORDERS 11 ///< m = 0 .. 10

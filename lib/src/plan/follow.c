@@ -19,7 +19,8 @@
 /// Invariant: position, velocity and acceleration are continuous.
 #include "plan/follow.h"
 
-// the stream; chosen: steady for a mouse (60 Hz) and a tracker (1 kHz) alike, see tests/test_live.c
+// the stream; chosen: steady for a mouse (60 Hz) and a tracker (1 kHz) alike, see
+// tests/performance/test_live.c
 #define STREAM_PAUSE 0.3       // a target later than this after the last begins anew (s)
 #define PERIOD_SHARE 0.25      // of a new period in the estimate
 #define VELOCITY_TIME 0.010    // smooths the velocity (s)

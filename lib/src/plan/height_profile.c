@@ -61,7 +61,7 @@
 #define FALL_OVERSHOOT 1.1         // of the height ...
 #define FALL_OVERSHOOT_MARGIN 0.02 // ... and so much more (m)
 
-// a fall that comes too late; chosen by walks of the tempo (tests/test_tempo_walk.c)
+// a fall that comes too late; chosen by walks of the tempo (tests/plan/test_tempo_walk.c)
 #define PLUNGE 1.6          // mean speed over the touch's, at most, with a peak above BRAKED_PEAK
 #define HARDEST_FALL 300.0  // a body follows a higher peak late (m/s^2) ...
 #define HARDEST_PLUNGE 1.25 // ... so the mean speed over the touch's is at most this

@@ -17,7 +17,7 @@
 #include "plan/ornament.h"
 
 #include "plan/bounce.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 #include "plan/planner_roll.h"
 
 #define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long

@@ -4,7 +4,7 @@
 /// Each function here changes the settings or the score (planner_score.c) and then lets the hands
 /// be planned again (planner_motion.c); calls go in that direction only. Memory grows here, in
 /// setup; the motion only moves within it.
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 #include "base/head_frame.h"
 #include "plan/planner_roll.h"
 

@@ -13,7 +13,7 @@
 /// (himc_planner_think), so no step carries more than a few of them, and the result does not depend
 /// on the speed of the machine. A plan that changes before the walk's place lets the walk begin
 /// anew; lifts and other ways that have been found stay with their stroke.
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 // the walk; chosen
 #define MOST_CREDIT 16.0   // work that is not done is not owed

@@ -4,7 +4,7 @@
 ///
 /// The gesture is that of the nuance and dynamic, in the shape of the motion unit that fits best,
 /// no faster than fingers can turn the stick for its bounces, and varied as a player's.
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 #include "plan/bounce.h"
 #include "plan/planner_roll.h"
 

@@ -15,7 +15,7 @@
 /// Choosing changes nothing; only the plan of the hand that plays is cut.
 ///
 /// A tip is led, by live targets or to lie on a head, while no stroke is near.
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 #include "plan/sticking.h"
 
 #define QUEUED_HITS 4 // without a time; chosen: a player remembers no more

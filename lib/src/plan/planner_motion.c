@@ -14,7 +14,7 @@
 /// A hit is a stroke with a time instead of a beat; it waits in a short queue of its hand, and so
 /// does a reassigned stroke, which keeps its beat. Invariants: strokes of one hand are planned in
 /// the order of time; each is played once, or given up and counted.
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 #include "plan/bounce.h"
 #include "base/format.h"
 

@@ -10,7 +10,7 @@
 /// loop the round is named, too, from 1 on.
 #include "plan/planner_notes.h"
 #include "base/format.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 
 #include "base/line.h"
 

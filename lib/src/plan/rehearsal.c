@@ -3,7 +3,7 @@
 /// of a plan, a lift or another motion, is walked through in the same way, from a moment before it
 /// begins.
 #include "plan/rehearsal.h"
-#include "plan/planner_motion.h"
+#include "plan/planner_state.h"
 #include "plan/stroke_plan.h"
 
 // moments; chosen: sticks that play one head side by side are 14 mm apart

@@ -4,7 +4,7 @@
 #include "track/track_fit.h"
 
 // chosen: a blow at 5 m/s loses less than 2 % of its speed, at 0.2 mm of noise less than 5 %
-// (tests/test_track.c)
+// (tests/track/test_track.c)
 #define FIT_HALF_WIDTH 0.025    // of the local fits (s)
 #define EDGE_FRAMES 6           // of the one-sided fit beside a strike, at least ...
 #define LONGEST_EDGE_TIME 0.048 // ... and for a noisy capture up to so many seconds ...

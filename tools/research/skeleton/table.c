@@ -1,0 +1,92 @@
+/// table.c: the default performer's segments and joints, from lib/src/body/skeleton.c, for programs
+/// that do not link the library: `table c` prints a C header, `table js` a JavaScript module,
+/// `table mjcf` a model for MuJoCo (tests/bench/peers).
+///
+/// make runs it when the viewer is built (build/viewer/skeleton.h and skeleton.js), so the names,
+/// their order and the parents stand in skeleton.c alone. `origin` is the joint in the parent's
+/// frame, `center` the centre of mass in the segment's; lengths in metres, to a thousandth of a
+/// millimetre.
+#include "himc/body.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void print_c(void)
+{
+    printf("// made by tools/research/skeleton/table.c from lib/src/body/skeleton.c: do not edit\n"
+           "#ifndef VIEWER_SKELETON_H\n#define VIEWER_SKELETON_H\n\n"
+           "#define SKELETON_SEGMENTS %d\n#define SKELETON_SEGMENT_NAMES",
+           HIMC_SEGMENTS);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        printf("%s \\\n    \"%s\"", i ? "," : "", himc_segment_name(i));
+    printf("\n\n#endif\n");
+}
+
+static void print_segment(const himc_skeleton *k, int i)
+{
+    const himc_segment *s = &k->segment[i];
+    printf("    { name: \"%s\", joint: \"%s\", parent: %d,\n"
+           "      length: %.6f, origin: [%.6f, %.6f, %.6f], center: [%.6f, %.6f, %.6f] },\n",
+           himc_segment_name(i), i ? himc_joint_name(i - 1) : "", s->parent, s->length, s->origin.x,
+           s->origin.y, s->origin.z, s->center.x, s->center.y, s->center.z);
+}
+
+static void print_js(const himc_skeleton *k)
+{
+    printf("// made by tools/research/skeleton/table.c from lib/src/body/skeleton.c: do not edit\n"
+           "export const segments = [\n");
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        print_segment(k, i);
+    printf("];\nexport const root = [%.6f, %.6f, %.6f]; // the pelvis\n", k->root.x, k->root.y,
+           k->root.z);
+    printf("export const tip = %.6f; // of the stick, below its joint\n", -k->tip.z);
+    printf("export const malletRadius = %.6f;\n", k->mallet_radius);
+}
+
+static int children(const himc_skeleton *k, int parent, int from)
+{
+    while (from < HIMC_SEGMENTS && k->segment[from].parent != parent)
+        from++;
+    return from;
+}
+
+/// A body element with its joint, inertia and children.
+static void print_body(const himc_skeleton *k, int i)
+{
+    const himc_segment *s = &k->segment[i];
+    himc_vec3 at = i ? s->origin : k->root;
+    printf("<body name=\"%s\" pos=\"%.6f %.6f %.6f\">%s<inertial pos=\"%.9f %.9f %.9f\" "
+           "mass=\"%.9f\" diaginertia=\"%.9e %.9e %.9e\"/>\n",
+           himc_segment_name(i), at.x, at.y, at.z, i ? "<joint type=\"ball\"/>" : "", s->center.x,
+           s->center.y, s->center.z, s->mass, s->inertia.x, s->inertia.y, s->inertia.z);
+    for (int c = children(k, i, 0); c < HIMC_SEGMENTS; c = children(k, i, c + 1))
+        print_body(k, c);
+    puts("</body>");
+}
+
+/// The pelvis is fixed, as in the simulation.
+static void print_mjcf(const himc_skeleton *k)
+{
+    puts("<mujoco><compiler balanceinertia=\"true\"/><option timestep=\"0.0001\"/><worldbody>");
+    print_body(k, HIMC_PELVIS);
+    puts("</worldbody></mujoco>");
+}
+
+int main(int count, char **word)
+{
+    himc_skeleton k;
+    himc_skeleton_config config = himc_skeleton_default();
+    const char *format = count == 2 ? word[1] : "";
+    bool c = !strcmp(format, "c"), js = !strcmp(format, "js"), mjcf = !strcmp(format, "mjcf");
+    if (!(c || js || mjcf) || !himc_skeleton_init(&k, &config, NULL)) {
+        fprintf(stderr, "usage: table c|js|mjcf\n");
+        return 1;
+    }
+    if (c)
+        print_c();
+    else if (js)
+        print_js(&k);
+    else
+        print_mjcf(&k);
+    return 0;
+}
