@@ -177,18 +177,29 @@ static past past_of(const himc_drum *d, int slot)
     return *h;
 }
 
-// the sound of a pickup with the most energy that the head has had in the mode that is loudest
-// there, at the highest level that it has had: what ears hear late is of before
-static double loudest_ringing(const himc_drum *d, int pickup, past before)
+// the sound of an output with the most energy that the head has had in the mode that is loudest
+// there, at the highest level that the sound has had
+static double loudest_ringing_of(const himc_drum *d, int k, past before)
 {
     const himc_membrane *m = d->membrane;
-    const himc_readout *r = &m->core.outputs[pickup].readout;
+    const himc_readout *r = &m->core.outputs[k].readout;
     double most = 0;
-    if (m->core.stale || !himc_membrane_wants(m, pickup))
+    if (m->core.stale || !himc_membrane_wants(m, k))
         return 0;
     for (int i = 0; i < himc_membrane_audible(m); i++)
         most = fmax(most, hypot(r->p[i], r->s[i]) / sqrt(m->core.oscillators[i].mass));
     return fmax(d->gain, before.level) * sqrt(2 * before.most) * most;
+}
+
+// of a pickup, or of the ear in its place, to which rays come directly and from the floor
+static double loudest_ringing(const himc_drum *d, int channel, past before)
+{
+    if (!d->listener.on || channel >= HIMC_EARS)
+        return loudest_ringing_of(d, channel, before);
+    himc_ear_paths p = himc_ears_trace(&d->listener, &d->place);
+    return p.direct[channel].gain *
+               loudest_ringing_of(d, HIMC_PICKUPS + HIMC_RAY_LEFT + channel, before) +
+           p.floor[channel].gain * loudest_ringing_of(d, HIMC_PICKUPS + HIMC_RAY_FLOOR, before);
 }
 
 // `before` is of before its setting changed. Made slacker, heavier or much lighter, or with a
@@ -202,9 +213,7 @@ static void hear_loudest(const himc_drum *d, int slot, past before)
     for (int k = 0; k < HIMC_PICKUPS; k++)
         loudest[slot][k] =
             fmax(loudest[slot][k], now[k] * (struck > 0 ? fmax(1, sqrt(before.most / struck)) : 1));
-    int pickups;
-    himc_membrane_pickups(d->membrane, &pickups);
-    for (int k = 0; k < pickups; k++)
+    for (int k = 0; k < HIMC_PICKUPS; k++)
         loudest[slot][k] = fmax(loudest[slot][k], loudest_ringing(d, k, before));
 }
 
