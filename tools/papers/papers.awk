@@ -1,7 +1,7 @@
 # papers.awk: the rows of papers.sh. A table's values are value[TABLE, LINE, COLUMN], its number of lines is count[TABLE].
 BEGIN {
     FS = ","
-    # limits of verdicts, ours where the papers have no number; docs/papers.md names them
+    # limits of verdicts, ours where the papers have no number; docs/results/papers.md names them
     CORRELATED = 0.8; NEAR = 0.25 # consistent: at least, and RMS distance over swing at most
     MORE = 1.05; LESS = 0.95      # ranges that are exaggerated, lost
     ALTERED = 0.1                 # ranges that differ by more
