@@ -225,7 +225,7 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 
 units: $(UNIT) $(FUZZ)
 
-# what docs/papers.md asks of the library
+# what docs/results/papers.md asks of the library
 MEASURE := $(BUILD)/tools/research/papers/measure
 
 check: all units $(MEASURE) $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
@@ -368,15 +368,15 @@ figures: deps ## draw the pictures and play the sounds of docs into build/figure
 	@tools/build/deps.sh tools/build/deps-figures.txt
 	@$(MAKE) check-figures
 
-trials: deps ## the trials behind the figures anew, 90 minutes of processor time: writes docs/figures/*.csv
+trials: deps ## play the trials behind the figures again, 90 minutes of processor time: writes docs/figures/*.csv
 	@$(MAKE) check-trials
 
-papers: $(PROGRAM) $(BUILD)/tools/research/papers/measure ## write the table of the papers' figures, tables and claims, remade, into docs/papers.md; the trials' tables into evaluation.md
+papers: $(PROGRAM) $(BUILD)/tools/research/papers/measure ## remake the table of the papers in docs/results/papers.md and the trials' tables of evaluation.md
 	@HIMC_BUILD=$(BUILD) tools/research/papers/papers.sh >$(BUILD)/papers.md
-	@sed '/^| place |/,$$d' docs/papers.md | cat - $(BUILD)/papers.md >$(BUILD)/papers.new && mv $(BUILD)/papers.new docs/papers.md
-	@awk -f tools/research/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >$(BUILD)/papers.new
-	@mv $(BUILD)/papers.new docs/evaluation.md
-	@echo "wrote docs/papers.md and the tables of docs/evaluation.md"
+	@sed '/^| place |/,$$d' docs/results/papers.md | cat - $(BUILD)/papers.md >$(BUILD)/papers.new && mv $(BUILD)/papers.new docs/results/papers.md
+	@awk -f tools/research/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/results/evaluation.md >$(BUILD)/papers.new
+	@mv $(BUILD)/papers.new docs/results/evaluation.md
+	@echo "wrote docs/results/papers.md and the tables of docs/results/evaluation.md"
 
 air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
 	@$(MAKE) $(BUILD)/tools/research/air/table

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Links of the documentation lead somewhere; docs/papers.md has a row for each figure, table, algorithm and equation of the papers,
+# Links of the documentation lead somewhere; docs/results/papers.md has a row for each figure, table, algorithm and equation of the papers,
 # its verdicts are those of today's program and follow from numbers, and the commands in it are there; the trials' tables are of today's program. With HIMC_LONG they run, and the numbers are compared.
 . tests/support/check.sh
 : "${HIMC_BUILD:=build}"
@@ -31,7 +31,7 @@ numbers() {
     for i in 1 2 3 4 5 6; do echo "2012 equation $i"; done
 }
 # places name a paper once for several equations: "CASA figure 1, equation 1" or "2012 equations 2 and 3"
-sed -n 's/^| \([^|]*\) | .*/\1/p' docs/papers.md | sed 's/; /\n/g' |
+sed -n 's/^| \([^|]*\) | .*/\1/p' docs/results/papers.md | sed 's/; /\n/g' |
     sed 's/^\([^ ]*\) \(.*\), equation/\1 \2\n\1 equation/; s/^\([^ ]*\) equations \([0-9]\) and /\1 equation \2\n\1 equation /' |
     sed 's/, CASA/\nCASA/; s/, preprint/\npreprint/; s/, 2012/\n2012/' >"$work/places"
 numbers | while read -r number; do
@@ -41,7 +41,7 @@ check test_each_figure_table_and_equation_of_the_papers_has_a_row [ "$(cat "$wor
 
 mkdir "$work/kept"
 tools/research/papers/papers.sh docs/figures "$work/kept" >"$work/table"
-sed -n '/^| place |/,$p' docs/papers.md >"$work/documented"
+sed -n '/^| place |/,$p' docs/results/papers.md >"$work/documented"
 verdicts() {
     awk -F ' [|] ' '{ print $1, $(NF - 1), $NF }' "$1"
 }
@@ -91,8 +91,8 @@ done
 awk -F , 'NR == FNR { for (i = 5; i <= NF; i++) old[$1, $2, $3, i] = $i; next }
     FNR > 1 { for (i = 5; i <= NF; i++) if ((d = old[$1, $2, $3, i] - $i) * d > 2.5e-7 * $i * $i) { print; next } }' docs/figures/first.csv "$work/log.csv" >"$work/moved"
 check test_tables_of_the_trials_are_of_this_program [ "$(wc -l <"$work/log.csv" | awk '{print ($1 > 5)}')$(cat "$work/moved")" = 1 ]
-awk -f tools/research/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/evaluation.md >"$work/evaluation.md"
-check test_the_evaluation_page_has_the_numbers_of_the_trials cmp docs/evaluation.md "$work/evaluation.md"
+awk -f tools/research/papers/evaluation.awk docs/figures/spread.csv docs/figures/database.csv docs/results/evaluation.md >"$work/evaluation.md"
+check test_the_evaluation_page_has_the_numbers_of_the_trials cmp docs/results/evaluation.md "$work/evaluation.md"
 check test_tables_of_the_trials_name_their_commit grep -qE '^commit [0-9a-f]{40}, [-0-9]{10}, trials: gain 1 [0-9]+, gain 3 [0-9]+$' docs/figures/trials.txt
 
 # exists COMMAND: it could be run
@@ -120,10 +120,10 @@ if [ -n "${HIMC_LONG-}" ]; then
     # the table of own captures, where these are
     mocap=${HIMC_SHARED:-../shared}/mocap
     if [ -d "$mocap" ]; then
-        sed -n '/^## Your own captures/,$p' docs/evaluation.md | sed -n '/himc evaluate --take drum/,/--left-tip/p' | sed 's/.*himc //; s/\\$//' |
+        sed -n '/^## Your own captures/,$p' docs/results/evaluation.md | sed -n '/himc evaluate --take drum/,/--left-tip/p' | sed 's/.*himc //; s/\\$//' |
             (himc=$(cd "$HIMC_BUILD" && pwd)/bin/himc && cd "$mocap" && xargs "$himc") >"$work/own.csv" 2>"$work/said"
         awk -F , 'FNR > 1 && $3 != "feedforward" { n[$1]++; line[$1] = line[$1] sprintf(" | %.3g mm", $6); if (n[$1] == 5) print line[$1] " |" }' "$work/own.csv" >"$work/own"
-        check test_the_table_of_own_captures_is_of_this_program [ "$(wc -l <"$work/own") $(grep -cF -f "$work/own" docs/evaluation.md)" = "3 3" ]
+        check test_the_table_of_own_captures_is_of_this_program [ "$(wc -l <"$work/own") $(grep -cF -f "$work/own" docs/results/evaluation.md)" = "3 3" ]
     fi
     # strokes and phases played again; what takes hours is read
     strokes=$HIMC_BUILD/tools/research/figures/strokes

@@ -103,7 +103,7 @@ unstripped() { # binaries with what only a debugger needs
 check test_installed_files_are_stripped [ -z "$(unstripped)" ]
 # dead: links of the installed documentation to what is not there
 dead_links() {
-    for page in "$prefix"/share/doc/himc/*.md "$prefix"/share/doc/himc/docs/*.md; do
+    for page in "$prefix"/share/doc/himc/*.md "$prefix"/share/doc/himc/docs/*.md "$prefix"/share/doc/himc/docs/results/*.md; do
         sed '/^```/,/^```/d' "$page" | grep -oE '\]\([^) ]+\)' | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*:' | while read -r to; do
             [ -z "$to" ] || [ -e "${page%/*}/$to" ] || echo "$page: $to"
         done

@@ -28,7 +28,7 @@ lists() {
     entry 644 "$PDEXTRA/himc/patches/pieces" patches/pieces/*
     entry 644 "$doc" LICENSE LIBRARIES.txt README.md CHANGELOG.md
     entry 644 "$doc/docs" docs/*.md
-    for part in examples figures sounds; do
+    for part in examples figures results sounds; do
         entry 644 "$doc/docs/$part" docs/$part/*
     done
     entry 644 "$share/man/man1" "$BUILD"/share/*.1
@@ -38,7 +38,7 @@ lists() {
 
 # a link of the documentation to what is not installed becomes its text
 drop_dead_links() {
-    for page in "$DESTDIR$doc"/*.md "$DESTDIR$doc"/docs/*.md; do
+    for page in "$DESTDIR$doc"/*.md "$DESTDIR$doc"/docs/*.md "$DESTDIR$doc"/docs/results/*.md; do
         grep -oE '\]\([^) ]+\)' "$page" | sed 's/^](//; s/)$//' | sort -u | while read -r link; do
             case $link in *://* | mailto:* | "#"*) continue ;; esac
             [ -e "${page%/*}/${link%%#*}" ] && continue

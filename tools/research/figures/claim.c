@@ -19,7 +19,7 @@
 #include <string.h>
 
 #define MOST_TRIALS 100 // as many as the evaluation has by default
-#define PLAYER 3.0      // default gain over a player's stiffness (docs/evaluation.md)
+#define PLAYER 3.0      // default gain over a player's stiffness (docs/results/evaluation.md)
 #define CONTROLS 2      // id, himc
 #define GAINS 3
 #define RATES 5

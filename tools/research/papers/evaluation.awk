@@ -1,5 +1,5 @@
-# evaluation.awk: docs/evaluation.md with the numbers of its tables as the trials have them (make papers).
-#   awk -f evaluation.awk spread.csv database.csv docs/evaluation.md
+# evaluation.awk: docs/results/evaluation.md with the numbers of its tables as the trials have them (make papers).
+#   awk -f evaluation.awk spread.csv database.csv docs/results/evaluation.md
 # Three rows of the requirements are of database.csv. The first table with a row for each nuance is that of the printed law (gain 1 and 3), the second that of the two other laws.
 BEGIN { FS = "," }
 FNR == 1 { file++ }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A blind test of computed timpani beside recorded ones (docs/listen.md).
+"""A blind test of computed timpani beside recorded ones (docs/results/listen.md).
 
     listen.py prepare FOLDER [PROGRAM]    render the six strokes into FOLDER, NAME-computed.wav each
     listen.py hear FOLDER [PLAYER]        play each pair twice in random order, and keep the answers
