@@ -431,8 +431,8 @@ static void find_posture(const performance_motion *m, const performance_settings
     bool captured = s->control.mode != HIMC_PIPELINE_HIMC && m->track && isfinite(m->track_start) &&
                     himc_track_has_posture(m->track);
     if (captured)
-        himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start,
-                           s->unbent ? NULL : tip, motion);
+        himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start, s->bend ? tip : NULL,
+                           motion);
 }
 
 // the posture regression in place of the natural posture

@@ -307,22 +307,6 @@ static void free_recording(himc_job *job)
     free(job);
 }
 
-static record_job *record_job_new(himc_performance *p, const himc_command *command,
-                                  himc_error *error)
-{
-    record_job *j = NULL;
-    if (!himc_performance_allows(p->recording.file, command, error))
-        return NULL;
-    j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "record: out of memory");
-        return NULL;
-    }
-    j->performance = p;
-    himc_command_copy(&j->command, command);
-    return j;
-}
-
 bool himc_performance_allows(bool recording, const himc_command *c, himc_error *error)
 {
     enum { STOP };
@@ -332,34 +316,32 @@ bool himc_performance_allows(bool recording, const himc_command *c, himc_error *
                himc_error_set(error,
                               "rate task: %g: not possible while recording, first send record stop",
                               c->atom[1].number);
-    if (recording && c->form != STOP)
-        return himc_error_set(error, "record: %s: already recording, expected stop",
-                              c->atom[0].symbol);
-    return recording || c->form != STOP ||
-           himc_error_set(error, "record: stop: nothing is being recorded, expected FILE");
+    if (c->id != HIMC_COMMAND_RECORD || recording == (c->form == STOP))
+        return true;
+    return recording
+               ? himc_error_set(error, "record: %s: already recording, expected stop",
+                                c->atom[0].symbol)
+               : himc_error_set(error, "record: stop: nothing is being recorded, expected FILE");
 }
 
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error)
 {
-    record_job *j = record_job_new(p, command, error);
-    if (!j)
+    enum { STOP };
+    if (!himc_performance_allows(p->recording.file, command, error))
         return NULL;
-    j->job = (himc_job){make_recording, begin_recording, free_recording};
+    record_job *j = calloc(1, sizeof *j);
+    if (!j) {
+        himc_error_set(error, "record: out of memory");
+        return NULL;
+    }
+    j->job = command->form == STOP ? (himc_job){write_recording, end_recording, free_recording}
+                                   : (himc_job){make_recording, begin_recording, free_recording};
+    j->performance = p;
+    himc_command_copy(&j->command, command);
     j->skeleton = p->body->skeleton;
     j->rate = p->clock.task_rate;
-    return &j->job;
-}
-
-himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
-                                           himc_error *error)
-{
-    record_job *j = record_job_new(p, command, error);
-    if (!j)
-        return NULL;
-    j->job = (himc_job){write_recording, end_recording, free_recording};
-    j->rate = p->clock.task_rate;
-    j->file = p->recording.file; // a recording that cannot be written is lost, with an error
+    j->file = p->recording.file; // one that cannot be written is lost, with an error
     p->recording.file = NULL;
     return &j->job;
 }
@@ -388,11 +370,10 @@ static void describe_control(const himc_performance *p, himc_line_sink to)
     const himc_controller_config *c = &s->control;
     snprintf(text, sizeof text, "mode %s%s, solver %s, damping %g m, law %s, coupling %s",
              word(HIMC_COMMAND_MODE, (int)c->mode).text,
-             s->unbent ? " (in id, arms as captured)" : "",
+             s->bend ? "" : " (in id, arms as captured)",
              word(HIMC_COMMAND_SOLVER, (int)c->solver).text, c->damping,
              word(HIMC_COMMAND_LAW, (int)c->law).text,
-             word(HIMC_COMMAND_COUPLING, s->one_way ? HIMC_COUPLING_ONE_WAY : HIMC_COUPLING_TWO_WAY)
-                 .text);
+             word(HIMC_COMMAND_COUPLING, (int)s->coupling).text);
     to.line(to.user, text);
     snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz, engine %s",
              p->clock.physics_rate, p->clock.task_rate, p->clock.sample_rate,

@@ -187,26 +187,23 @@ static bool rehearse_take(score_job *j, const himc_command *c, himc_error *error
 static bool rehearse_command(score_job *j, const himc_command *c, score_state *state,
                              himc_error *error)
 {
-    const char *word = c->count > 0 ? c->atom[0].symbol : "";
-    int index;
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
-        return trial_drum(j, word, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
+        return trial_drum(j, c->atom[0].symbol,
+                          c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
                           j->make_drums ? DRUM_MADE : DRUM_SILENT, error);
-    case HIMC_COMMAND_GAIN:
-        return c->count < 3 || himc_body_find_joint(word, "gain", &index, error);
-    case HIMC_COMMAND_STRENGTH:
-        return c->count < 2 || himc_body_find_joint(word, "strength", &index, error);
     case HIMC_COMMAND_PUSH: return himc_body_read_push(c, &(planned_push){0}, error);
-    case HIMC_COMMAND_RATE: return himc_performance_allows(state->recording, c, error);
     case HIMC_COMMAND_RESET: *state = (score_state){.units = 0}; return true;
     case HIMC_COMMAND_TAKE: return rehearse_take(j, c, error);
     case HIMC_COMMAND_NUDGE: return himc_performance_try_nudge(j->take, c, error);
     case HIMC_COMMAND_UNITS: return rehearse_units(j, c, state, error);
     case HIMC_COMMAND_RECORD: return rehearse_record(j, c, state, error);
     default: // the network's are always refused
-        return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
-               j->performance->runner.run(j->performance, c, 0, error);
+        return himc_performance_allows(state->recording, c, error) &&
+               himc_settings_read(&(performance_settings){.bend = true},
+                                  &j->performance->host.usual, c, error) &&
+               (himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
+                j->performance->runner.run(j->performance, c, 0, error));
     }
 }
 
