@@ -315,21 +315,20 @@ static const performer_action actions[HIMC_COMMANDS] = {
     [HIMC_COMMAND_LISTEN] = {refuse_network},
 };
 
-static bool takes_long(const void *receiver, const himc_command *c)
+static bool takes_long(const himc_performance *p, const himc_command *c)
 {
     const performer_action *a = &actions[c->id];
-    return a->job && (!a->takes_long || a->takes_long(receiver, c));
+    return a->job && (!a->takes_long || a->takes_long(p, c));
 }
 
-static himc_job *job_of(void *receiver, const himc_command *c, himc_error *error)
+static himc_job *job_of(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return actions[c->id].job(receiver, c, error);
+    return actions[c->id].job(p, c, error);
 }
 
 // the drum that a command is for, or NULL with the reason
-static himc_drum *drum_of(void *receiver, const himc_command *c, himc_error *error)
+static himc_drum *drum_of(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    himc_performance *p = receiver;
     int index = himc_drums_find(&p->drums, c->drum);
     if (index >= 0)
         return p->drums.slot[index].drum;
@@ -353,17 +352,8 @@ static bool command_drum(himc_performance *p, const himc_command *c, int delay, 
     return good || himc_error_prefix(error, "%s", c->drum);
 }
 
-static bool run(void *receiver, const himc_command *c, int delay, himc_error *error)
-{
-    return himc_performance_command(receiver, c, delay, error);
-}
-
-static himc_job *state_job(void *receiver, const char *state, himc_error *error)
-{
-    return himc_performance_state_job(receiver, state, error);
-}
-
-const himc_runner himc_performance_runner = {takes_long, run, job_of, state_job, drum_of};
+const himc_runner himc_performance_runner = {takes_long, himc_performance_command, job_of,
+                                             himc_performance_state_job, drum_of};
 
 // makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)

@@ -103,12 +103,6 @@ static const himc_drum_form *find_form(const score_job *j, const char *name)
     return NULL;
 }
 
-static bool too_many_drums(const char *name, himc_error *error)
-{
-    return himc_error_set(error, "drum %s: a performer plays on %d drums at most", name,
-                          HIMC_DRUMS);
-}
-
 static void free_drums(score_job *j)
 {
     for (; j->drums > 0; j->drums--) {
@@ -128,7 +122,7 @@ static himc_drum *trial_drum(score_job *j, const char *name, double inches, drum
     if (known)
         return known->trial;
     if (j->drums == HIMC_DRUMS) {
-        too_many_drums(name, error);
+        himc_drums_full(name, error);
         return NULL;
     }
     score_drum made = {.source = source};
@@ -187,6 +181,7 @@ static bool rehearse_take(score_job *j, const himc_command *c, himc_error *error
 static bool rehearse_command(score_job *j, const himc_command *c, score_state *state,
                              himc_error *error)
 {
+    performance_settings aside = {.alive = false};
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
         return trial_drum(j, c->atom[0].symbol,
@@ -200,8 +195,7 @@ static bool rehearse_command(score_job *j, const himc_command *c, score_state *s
     case HIMC_COMMAND_RECORD: return rehearse_record(j, c, state, error);
     default: // the network's are always refused
         return himc_performance_allows(state->recording, c, error) &&
-               himc_settings_read(&(performance_settings){.bend = true},
-                                  &j->performance->host.usual, c, error) &&
+               himc_settings_read(&aside, &j->performance->host.usual, c, error) &&
                (himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
                 j->performance->runner.run(j->performance, c, 0, error));
     }
@@ -236,7 +230,7 @@ static bool count_drums(score_job *j, himc_error *error)
         if (k < count || !wanted[0])
             continue;
         if (count == HIMC_DRUMS)
-            return too_many_drums(wanted, error);
+            return himc_drums_full(wanted, error);
         if (!trial_drum(j, wanted, HIMC_INCHES_USUAL, DRUM_SILENT, error))
             return false;
         name[count++] = wanted;
@@ -505,18 +499,13 @@ static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_e
     return j->line ? HIMC_JOB_AGAIN : failed(j, error);
 }
 
-// commands that act on strokes or on the transport are carried out after the strokes are loaded
-static bool comes_after_strokes(const himc_score_line *line)
-{
-    return himc_command_table((int)line->command.id)->marks & HIMC_AFTER_STROKES;
-}
-
 // a portion of the lines before or after the strokes; DONE after the last
 static himc_job_state run_lines(score_job *j, bool after, himc_error *error)
 {
     for (int run = 0; j->at < j->score->line_count; j->at++) {
         const himc_score_line *line = &j->score->lines[j->at];
-        if (comes_after_strokes(line) != after)
+        unsigned marks = himc_command_table((int)line->command.id)->marks;
+        if (((marks & HIMC_AFTER_STROKES) != 0) != after) // on strokes or the transport
             continue;
         if (run == LINES_AT_ONCE)
             return HIMC_JOB_MORE;
@@ -753,12 +742,9 @@ static void free_job(himc_job *job)
 
 static score_job *job_new(himc_performance *p, himc_error *error)
 {
-    score_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "score: out of memory");
+    score_job *j = himc_job_new(sizeof *j, "score", (himc_job){prepare, install, free_job}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
     copy_performance(j);
     j->take = himc_performance_take_trial(p, error);

@@ -378,12 +378,10 @@ static void free_drum(himc_job *job)
 himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
-    make_drum_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "drum: out of memory");
+    make_drum_job *j =
+        himc_job_new(sizeof *j, "drum", (himc_job){make_drum, add_drum, free_drum}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){make_drum, add_drum, free_drum};
     j->performance = p;
     j->sample_rate = p->clock.sample_rate;
     himc_command_copy(&j->command, command);

@@ -4,14 +4,15 @@
 /// Each part has its own type and one file that writes it; other files read it or call that file's
 /// functions. In the order of the calls:
 ///
+///     performance_settings        the settings: one table
 ///     performance_clock, _events, _queue, _statistics, _drums, _body, _motion    the parts alone
 ///     performance_contacts        sticks on heads: acts on motion, statistics and events
 ///     performance_report.c        reports: figures, rows of motion, `info`; the recording
-///     performance_setup.c         new, rebuild, reset: puts the parts together; the settings
+///     performance_setup.c         new, rebuild, reset: puts the parts together
 ///     performance_change.c        what a score has at beats: pedals, hands, pushes
 ///     performance_play.c, _take.c, _score.c     playing strokes, takes and scores
 ///     performance_command.c       the commands
-///     performance_dump.c          the settings as commands, for `dump` and saved states
+///     performance_dump.c          the state as commands, for `dump` and saved states
 ///     performance.c               the step
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
