@@ -740,25 +740,27 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-static score_job *job_new(himc_performance *p, himc_error *error)
+// of a text that is borrowed, or of the file at `path` if it is NULL
+static himc_job *job_new(himc_performance *p, const char *text, const char *path, himc_error *error)
 {
     score_job *j = himc_job_new(sizeof *j, "score", (himc_job){prepare, install, free_job}, error);
     if (!j)
         return NULL;
     j->performance = p;
+    j->text = text;
+    j->path = path;
     copy_performance(j);
     j->take = himc_performance_take_trial(p, error);
-    if (!j->take) {
-        free_job(&j->job);
-        return NULL;
-    }
-    return j;
+    if (j->take)
+        return &j->job;
+    free_job(&j->job);
+    return NULL;
 }
 
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
                                      himc_error *error)
 {
-    score_job *j = job_new(p, error);
+    score_job *j = (score_job *)job_new(p, NULL, NULL, error);
     if (!j)
         return NULL;
     himc_command_copy(&j->command, command);
@@ -768,23 +770,13 @@ himc_job *himc_performance_score_job(himc_performance *p, const himc_command *co
 
 himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error)
 {
-    score_job *j = job_new(p, error);
-    if (!j)
-        return NULL;
-    j->path = "state";
-    j->text = state;
-    return &j->job;
+    return job_new(p, state, "state", error);
 }
 
 bool himc_performance_load_text(himc_performance *p, const char *text, const char *name,
                                 himc_error *error)
 {
-    score_job *j = job_new(p, error);
-    if (!j)
-        return false;
-    j->path = name;
-    j->text = text;
-    return himc_job_carry_out(&j->job, error);
+    return himc_job_carry_out(job_new(p, text, name, error), error);
 }
 
 // the strokes of a score that is not installed, in the order of add_strokes(); a drum that there is
