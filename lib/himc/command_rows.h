@@ -8,7 +8,7 @@
 /// receiver, when, marks, atoms, does):
 ///
 ///   ID        the command is HIMC_COMMAND_ID
-///   word      the command's name; its action is the function do_word of the receiver's room
+///   word      the command's name; a drum's action is the function do_word
 ///   receiver  PERFORMER or DRUM
 ///   when      NOW        acts when it arrives: it may allocate, read files, or be refused for a
 ///                        reason that the parser cannot know
@@ -21,9 +21,23 @@
 ///             optional, ` | ` separates the forms. SPOT is a word or two numbers, `...` any atoms.
 ///             Where words are the names of an enum's values, they stand in the order of that enum.
 ///   does      one sentence for the manual
+///
+/// A command that only sets something of the performer is a HIMC_SETTING_ROW(ID, word, when, atoms,
+/// kind, field, usual, after, does). The command's action, the default, `dump`, `reset` and the
+/// check of scores follow from it. The library alone reads its further columns:
+///
+///   kind      how its atoms are stored: switch, off_switch (true at 0), word, numbers, or its own
+///             way (lib/src/performance/performance_settings.c)
+///   field     where: of performance_settings (lib/src/performance/performance_settings.h)
+///   usual     its default, as atoms; "": that of the struct around the field
+///   after     the consequence of a change (setting_effect), NOTHING for most
 
 #ifndef HIMC_COMMAND_ROW
 #define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does)
+#endif
+#ifndef HIMC_SETTING_ROW
+#define HIMC_SETTING_ROW(ID, word, when, atoms, kind, field, usual, after, does) \
+    HIMC_COMMAND_ROW(ID, word, PERFORMER, when, 0, atoms, does)
 #endif
 
 #define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
@@ -36,11 +50,6 @@ HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
                  "that suits better, on one drum in turns")
-HIMC_COMMAND_ROW(
-    LATENCY, latency, PERFORMER, AT_SAMPLE, 0, "MS | auto",
-    "has every hit land exactly so long after its message, 150 by default, as strong "
-    "as that allows; auto: 330, so that all but vertical accents from f on are as strong as "
-    "written; 0: each as soon as it can")
 HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [DRUM] | "
@@ -58,15 +67,6 @@ HIMC_COMMAND_ROW(AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push
                  "or glide; or pushes the performer")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, 100 by default, from that beat or from now on")
-HIMC_COMMAND_ROW(
-    GRIP, grip, PERFORMER, NOW, 0, "german|french [servo] | servo",
-    "sets the grip: palms down (german), or thumbs up (french), and lets strokes bounce "
-    "that shall; servo: a stroke has one contact, as published")
-HIMC_COMMAND_ROW(HUMAN, human, PERFORMER, AT_SAMPLE, 0, "AMOUNT [SEED]",
-                 "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
-                 "all; each seed is another player")
-HIMC_COMMAND_ROW(ALIVE, alive, PERFORMER, AT_SAMPLE, 0, "SWITCH",
-                 "1: head and trunk follow the music, the player breathes; 0: they rest")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
                  "1: the score begins again after its last whole beat")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
@@ -87,37 +87,59 @@ HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
                  "cuts strokes out of a take and plays them instead of the built-in ones")
 HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",
                  "moves a drumstick's tip to a point; it follows a stream of targets")
-HIMC_COMMAND_ROW(MODE, mode, PERFORMER, AT_SAMPLE, 0, "himc|id|ik", "chooses the control pipeline")
-HIMC_COMMAND_ROW(SOLVER, solver, PERFORMER, AT_SAMPLE, 0, "dls|pinv|transpose|nakamura|sdls",
-                 "chooses the inverse kinematics")
-HIMC_COMMAND_ROW(DAMPING, damping, PERFORMER, AT_SAMPLE, 0, "LAMBDA",
-                 "sets the damping of the least squares")
-HIMC_COMMAND_ROW(POSTURE, posture, PERFORMER, AT_SAMPLE, 0, "SWITCH",
-                 "null space of the tips: 1 keeps a natural posture, 0 is unused, as published")
-HIMC_COMMAND_ROW(BEND, bend, PERFORMER, AT_SAMPLE, 0, "SWITCH",
-                 "in `id`: 1 bends a take's arms so that its tips are reached and strokes land, 0 "
-                 "follows the joints as captured, as published")
-HIMC_COMMAND_ROW(ELBOW, elbow, PERFORMER, AT_SAMPLE, 0, "SWITCH",
-                 "1: the elbow's place has priority over the rest of the posture")
-HIMC_COMMAND_ROW(WEIGHTS, weights, PERFORMER, AT_SAMPLE, 0, "SHOULDER ELBOW WRIST GRIP",
-                 "sets how readily each joint turns to bring the tip nearer")
-HIMC_COMMAND_ROW(LAW, law, PERFORMER, AT_SAMPLE, 0, "printed|feedforward|computed-torque",
-                 "chooses the inverse dynamics")
-HIMC_COMMAND_ROW(GAIN, gain, PERFORMER, NOW, 0, "reset | frequency FACTOR | JOINT KS KD | DB",
-                 "sets stiffness and damping of a joint's servo, or the natural frequency of all "
-                 "over the default, or resets all; with one number, how loud all drums are heard")
-HIMC_COMMAND_ROW(LIMITS, limits, PERFORMER, NOW, 0, "off|ellipsoid|euler",
-                 "limits the joints to the range of the take's player, else of table 1")
-HIMC_COMMAND_ROW(STRENGTH, strength, PERFORMER, NOW, 0, "human|off | JOINT TORQUE",
-                 "sets the largest torque of a joint, or a man's for all joints, or no limit")
-HIMC_COMMAND_ROW(RATE, rate, PERFORMER, NOW, 0, "physics HZ | task HZ",
+
+// settings, in the order of `dump`
+HIMC_SETTING_ROW(RATE, rate, NOW, "physics HZ | task HZ", rate, physics_rate, "", STEPS,
                  "sets the rate of simulation or control")
-HIMC_COMMAND_ROW(COUPLING, coupling, PERFORMER, AT_SAMPLE, 0, "two-way|one-way",
-                 "two-way: the head's vibration pushes back on the stick")
-HIMC_COMMAND_ROW(ENGINE, engine, PERFORMER, AT_SAMPLE, 0, "tree|ode",
+HIMC_SETTING_ROW(ENGINE, engine, AT_SAMPLE, "tree|ode", word, engine, "tree", NOTHING,
                  "chooses who solves the equations of the body's motion, to the same result: himc, "
                  "along the tree of joints, or the Open Dynamics Engine")
-HIMC_COMMAND_ROW(PLAYER, player, PERFORMER, NOW, 0, "HEIGHT MASS", "changes the performer's body")
+HIMC_SETTING_ROW(COUPLING, coupling, AT_SAMPLE, "two-way|one-way", word, coupling, "two-way",
+                 NOTHING, "two-way: the head's vibration pushes back on the stick")
+HIMC_SETTING_ROW(PLAYER, player, NOW, "HEIGHT MASS", player, skeleton, "", BODY,
+                 "changes the performer's body")
+HIMC_SETTING_ROW(MODE, mode, AT_SAMPLE, "himc|id|ik", word, control.mode, "", MODE,
+                 "chooses the control pipeline")
+HIMC_SETTING_ROW(SOLVER, solver, AT_SAMPLE, "dls|pinv|transpose|nakamura|sdls", word,
+                 control.solver, "", NOTHING, "chooses the inverse kinematics")
+HIMC_SETTING_ROW(DAMPING, damping, AT_SAMPLE, "LAMBDA", numbers, control.damping, "", NOTHING,
+                 "sets the damping of the least squares")
+HIMC_SETTING_ROW(POSTURE, posture, AT_SAMPLE, "SWITCH", off_switch, control.null_space_off, "",
+                 NOTHING,
+                 "null space of the tips: 1 keeps a natural posture, 0 is unused, as published")
+HIMC_SETTING_ROW(BEND, bend, AT_SAMPLE, "SWITCH", switch, bend, "1", REPLAN,
+                 "in `id`: 1 bends a take's arms so that its tips are reached and strokes land, 0 "
+                 "follows the joints as captured, as published")
+HIMC_SETTING_ROW(ELBOW, elbow, AT_SAMPLE, "SWITCH", switch, control.elbow, "", NOTHING,
+                 "1: the elbow's place has priority over the rest of the posture")
+HIMC_SETTING_ROW(WEIGHTS, weights, AT_SAMPLE, "SHOULDER ELBOW WRIST GRIP", numbers, control.weight,
+                 "", NOTHING, "sets how readily each joint turns to bring the tip nearer")
+HIMC_SETTING_ROW(LAW, law, AT_SAMPLE, "printed|feedforward|computed-torque", word, control.law, "",
+                 NOTHING, "chooses the inverse dynamics")
+HIMC_SETTING_ROW(LIMITS, limits, NOW, "off|ellipsoid|euler", word, limits, "off", LIMITS,
+                 "limits the joints to the range of the take's player, else of table 1")
+HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB", gain, gain, "",
+                 FADER,
+                 "sets stiffness and damping of a joint's servo, or the natural frequency of all "
+                 "over the default, or resets all; with one number, how loud all drums are heard")
+HIMC_SETTING_ROW(STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength,
+                 "", NOTHING,
+                 "sets the largest torque of a joint, or a man's for all joints, or no limit")
+HIMC_SETTING_ROW(
+    GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
+    "sets the grip: palms down (german), or thumbs up (french), and lets strokes bounce "
+    "that shall; servo: a stroke has one contact, as published")
+HIMC_SETTING_ROW(HUMAN, human, AT_SAMPLE, "AMOUNT [SEED]", human, human, "0", HUMAN,
+                 "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
+                 "all; each seed is another player")
+HIMC_SETTING_ROW(ALIVE, alive, AT_SAMPLE, "SWITCH", switch, alive, "0", NOTHING,
+                 "1: head and trunk follow the music, the player breathes; 0: they rest")
+HIMC_SETTING_ROW(
+    LATENCY, latency, AT_SAMPLE, "MS | auto", latency, latency, "150", NOTHING,
+    "has every hit land exactly so long after its message, 150 by default, as strong "
+    "as that allows; auto: 330, so that all but vertical accents from f on are as strong as "
+    "written; 0: each as soon as it can")
+
 HIMC_COMMAND_ROW(
     PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",
     "pushes a segment with a force for a time, at its centre of mass or ALONG m from its joint")
@@ -209,3 +231,4 @@ HIMC_COMMAND_ROW(STRIKE, strike, DRUM, AT_SAMPLE, 0, "X Y VELOCITY", "strikes wi
 #undef HIMC_ROW_ROLL
 #undef HIMC_ROW_STREAM
 #undef HIMC_COMMAND_ROW
+#undef HIMC_SETTING_ROW

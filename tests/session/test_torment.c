@@ -191,15 +191,23 @@ static double loudest_ringing_of(const himc_drum *d, int k, past before)
     return fmax(d->gain, before.level) * sqrt(2 * before.most) * most;
 }
 
-// of a pickup, or of the ear in its place, to which rays come directly and from the floor
+// sound that a room returns of a source that sends 1 at 1 m (Sabine), at most
+static double room_of(const himc_walls *walls)
+{
+    return walls->seconds > 0 ? sqrt(4 * HIMC_PI * walls->seconds / (0.161 * walls->volume)) : 0;
+}
+
+// of a pickup, or of the ear in its place, which hears rays, the floor and the room
 static double loudest_ringing(const himc_drum *d, int channel, past before)
 {
     if (!d->listener.on || channel >= HIMC_EARS)
         return loudest_ringing_of(d, channel, before);
     himc_ear_paths p = himc_ears_trace(&d->listener, &d->place);
-    return p.direct[channel].gain *
-               loudest_ringing_of(d, HIMC_PICKUPS + HIMC_RAY_LEFT + channel, before) +
-           p.floor[channel].gain * loudest_ringing_of(d, HIMC_PICKUPS + HIMC_RAY_FLOOR, before);
+    double ray = 0;
+    for (int k = 0; k < HIMC_RAYS; k++)
+        ray = fmax(ray, loudest_ringing_of(d, HIMC_PICKUPS + k, before));
+    return ray *
+           (p.direct[channel].gain + p.floor[channel].gain + HIMC_EARS_LEVEL * room_of(&d->walls));
 }
 
 // `before` is of before its setting changed. Made slacker, heavier or much lighter, or with a

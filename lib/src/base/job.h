@@ -9,7 +9,10 @@
 
 #include "himc/command.h"
 
-typedef struct himc_drum himc_drum; ///< himc/drum.h
+#include <stdlib.h>
+
+typedef struct himc_drum himc_drum;               ///< himc/drum.h
+typedef struct himc_performance himc_performance; ///< himc/performance.h
 
 /// What `install` says.
 typedef enum himc_job_state {
@@ -31,17 +34,30 @@ struct himc_job {
     void (*free)(himc_job *job); ///< frees the job and what `install` has replaced
 };
 
-/// The first member of what takes commands, some of which take long.
+/// The first member of a performance: how it takes commands, some of which take long.
 typedef struct himc_runner {
-    bool (*takes_long)(const void *receiver, const himc_command *command); ///< HIMC_RT
+    bool (*takes_long)(const himc_performance *receiver, const himc_command *command); ///< HIMC_RT
     /// carries it out `delay` samples from now; false with the reason
-    bool (*run)(void *receiver, const himc_command *command, int delay, himc_error *error);
-    himc_job *(*job)(void *receiver, const himc_command *command, himc_error *error);
+    bool (*run)(himc_performance *receiver, const himc_command *command, int delay,
+                himc_error *error);
+    himc_job *(*job)(himc_performance *receiver, const himc_command *command, himc_error *error);
     /// lines that `dump` has told, borrowed, as a job
-    himc_job *(*state_job)(void *receiver, const char *state, himc_error *error);
+    himc_job *(*state_job)(himc_performance *receiver, const char *state, himc_error *error);
     /// the drum that a command with a drum's name is for, borrowed; NULL with the reason
-    himc_drum *(*drum)(void *receiver, const himc_command *command, himc_error *error);
+    himc_drum *(*drum)(himc_performance *receiver, const himc_command *command, himc_error *error);
 } himc_runner;
+
+/// Memory of `size` bytes, zero but for the job that they begin with; NULL with a reason that
+/// begins with `what`.
+static inline void *himc_job_new(size_t size, const char *what, himc_job functions, himc_error *why)
+{
+    himc_job *job = calloc(1, size);
+    if (job)
+        *job = functions;
+    else
+        himc_error_set(why, "%s: out of memory", what);
+    return job;
+}
 
 /// Carries out a job at once and frees it. NULL: false; whoever made none has said why.
 static inline bool himc_job_carry_out(himc_job *job, himc_error *why)

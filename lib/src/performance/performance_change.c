@@ -132,12 +132,9 @@ static void free_job(himc_job *job)
 himc_job *himc_performance_change_job(himc_performance *p, const himc_command *command,
                                       himc_error *error)
 {
-    change_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "at: out of memory");
+    change_job *j = himc_job_new(sizeof *j, "at", (himc_job){prepare, install, free_job}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
     bool read = himc_score_read_change(command->atom, command->count, &j->line, error);
     if (read && j->line.drum[0])

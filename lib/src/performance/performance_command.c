@@ -1,5 +1,4 @@
-/// performance_command.c: the performer's commands, one function for each row of command_rows.h
-/// that is for the performer.
+/// performance_command.c: the performer's commands, one row of a table for each of command_rows.h.
 ///
 /// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a queue until
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
@@ -12,8 +11,6 @@
 #include <string.h>
 
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
-/// That a hit needs from rest (s): measured, an accent at ff; vertical accents need more from f on.
-#define LONGEST_PREPARATION 0.33
 
 static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)
 {
@@ -27,44 +24,9 @@ static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *er
     return himc_performance_add_stroke(p, &c->stroke, error);
 }
 
-static bool do_roll(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_performance_add_stroke(p, &c->stroke, error);
-}
-
-static bool do_flam(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_performance_add_stroke(p, &c->stroke, error);
-}
-
-static bool do_drag(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_performance_add_stroke(p, &c->stroke, error);
-}
-
-static bool do_ruff(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_performance_add_stroke(p, &c->stroke, error);
-}
-
 static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
 {
     return himc_performance_hit(p, &c->stroke, error);
-}
-
-static bool do_at(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return carry_out(p, c, error);
-}
-
-static bool do_latency(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    enum { TIME, AUTO };
-    (void)error;
-    s.latency = c->form == AUTO ? LONGEST_PREPARATION : 1e-3 * c->atom[0].number;
-    himc_performance_adopt(p, &s);
-    return true;
 }
 
 static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
@@ -116,22 +78,6 @@ static bool do_seek(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-static bool do_score(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return carry_out(p, c, error);
-}
-
-// which the parser makes a score
-static bool do_preset(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return carry_out(p, c, error);
-}
-
-static bool do_take(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return carry_out(p, c, error);
-}
-
 static bool do_units(himc_performance *p, const himc_command *c, himc_error *error)
 {
     enum { CLEAR };
@@ -152,57 +98,6 @@ static bool do_target(himc_performance *p, const himc_command *c, himc_error *er
     return true;
 }
 
-static bool do_drum(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    if (himc_performance_find_drum(p, c->atom[0].symbol))
-        return true;
-    return carry_out(p, c, error);
-}
-
-// control
-
-static bool do_mode(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    himc_pipeline mode = (himc_pipeline)c->choice[0];
-    performance_settings s = p->settings;
-    (void)error;
-    if (s.control.mode == HIMC_PIPELINE_IK && mode != HIMC_PIPELINE_IK)
-        himc_body_take_up(p->body);
-    s.control.mode = mode;
-    himc_performance_adopt(p, &s);
-    if (p->motion->has_regression)
-        himc_motion_replan(p->motion);
-    return true;
-}
-
-static bool do_solver(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.control.solver = (himc_solver)c->choice[0];
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_damping(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.control.damping =
-        himc_argument_usual(c->atom[0].number, himc_controller_config_default().damping);
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_posture(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.control.null_space_off = c->atom[0].number == 0;
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
 static bool do_nudge(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_nudge nudge = himc_performance_nudge(c);
@@ -211,198 +106,69 @@ static bool do_nudge(himc_performance *p, const himc_command *c, himc_error *err
     return himc_track_nudge(p->motion->track, &nudge, error);
 }
 
-static bool do_bend(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.unbent = c->atom[0].number == 0;
-    himc_performance_adopt(p, &s);
-    himc_motion_replan(p->motion);
-    return true;
-}
+// the settings
 
-static bool do_elbow(himc_performance *p, const himc_command *c, himc_error *error)
+// a body of other size; a take is loaded again for it
+static bool change_body(himc_performance *p, const performance_settings *s, himc_error *error)
 {
-    performance_settings s = p->settings;
-    (void)error;
-    s.control.elbow = c->atom[0].number != 0;
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_weights(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    const himc_controller_config usual = himc_controller_config_default();
-    (void)error;
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        s.control.weight[k] = himc_argument_usual(c->atom[k].number, usual.weight[k]);
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_law(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.control.law = (himc_law)c->choice[0];
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_gain(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    himc_controller_config *config = &s.control;
-    enum { RESET, FREQUENCY, JOINT, DRUMS };
-    int joint;
-    if (c->form == DRUMS) {
-        himc_drums_fade(&p->drums, pow(10, c->atom[0].number / 20), p->drums.mute);
-        return true;
-    }
-    if (c->form == RESET) {
-        memset(config->gain_set, 0, sizeof config->gain_set);
-        memset(s.gain, 0, sizeof s.gain);
-    } else if (c->form == FREQUENCY) {
-        for (joint = 0; joint < HIMC_JOINTS; joint++) {
-            config->gain_set[joint] = true;
-            s.gain[joint] = (asked_gain){.frequency = c->atom[1].number};
-        }
-    } else {
-        if (!himc_body_find_joint(c->atom[0].symbol, "gain", &joint, error))
-            return false;
-        config->gain_set[joint] = true;
-        s.gain[joint] = (asked_gain){c->atom[1].number, c->atom[2].number, 0};
-    }
-    himc_settings_gains(&s, &p->body->controller);
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_limits(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.limits = (himc_limits_kind)c->choice[0];
-    himc_performance_adopt(p, &s);
-    himc_performance_renew_limits(p);
-    himc_body_clear_limit_counts(p->body); // the counts belong to other limits
-    return true;
-}
-
-static bool do_strength(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    enum { HUMAN, OFF };
-    enum { ALL, JOINT };
-    int joint;
-    if (c->form == JOINT) {
-        if (!himc_body_find_joint(c->atom[0].symbol, "strength", &joint, error))
-            return false;
-        s.control.strength[joint] = c->atom[1].number;
-    } else if (c->choice[0] == HUMAN) {
-        himc_controller_set_human_strength(&s.control, s.skeleton.mass);
-    } else {
-        memset(s.control.strength, 0, sizeof s.control.strength);
-        s.control.human_strength = false;
-    }
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_rate(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    enum { PHYSICS, TASK };
-    bool physics = c->form == PHYSICS;
-    double hz = c->atom[1].number;
-    if (!himc_performance_allows(p->recording.file, c, error))
-        return false;
-    const himc_performance_config *usual = &p->host.config;
-    *(physics ? &s.physics_rate : &s.task_rate) =
-        himc_argument_usual(hz, physics ? usual->physics_rate : usual->task_rate);
-    himc_performance_adopt(p, &s);
-    himc_performance_restart_steps(p);
-    return true;
-}
-
-static bool do_coupling(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.one_way = c->choice[0] == HIMC_COUPLING_ONE_WAY;
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-static bool do_engine(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.engine = (himc_engine)c->choice[0];
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-// body and instrument
-
-static bool do_grip(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    enum { PALMS, SERVO };
-    (void)error;
-    s.servo = c->form == SERVO || c->count > 1;
-    if (c->form == PALMS)
-        s.grip = (himc_grip)c->choice[0];
-    himc_performance_adopt(p, &s);
-    himc_planner_set_grip(p->motion->planner, s.grip);
-    himc_planner_set_servo(p->motion->planner, s.servo);
-    himc_motion_replan(p->motion);
-    return true;
-}
-
-static bool do_human(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.human.amount = c->atom[0].number;
-    s.human.seed = c->count > 1 ? (uint32_t)c->atom[1].number : 0;
-    himc_performance_adopt(p, &s);
-    himc_planner_set_human(p->motion->planner, s.human);
-    himc_motion_replan(p->motion);
-    return true;
-}
-
-static bool do_alive(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings;
-    (void)error;
-    s.alive = c->atom[0].number != 0;
-    himc_performance_adopt(p, &s);
-    return true;
-}
-
-// Height and mass as asked for replace those of a take's player, whether the take comes after or
-// has come before. The usual ones are as if nobody had asked.
-static bool do_player(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    performance_settings s = p->settings, before = s;
-    const himc_skeleton_config usual = himc_skeleton_default();
-    s.skeleton.height = himc_argument_usual(c->atom[0].number, usual.height);
-    s.skeleton.mass = himc_argument_usual(c->atom[1].number, usual.mass);
-    bool asked = s.skeleton.height != usual.height || s.skeleton.mass != usual.mass;
-    s.asked_height = asked ? s.skeleton.height : 0;
-    s.asked_mass = asked ? s.skeleton.mass : 0;
-    s.skeleton.seat = s.skeleton.shoulders = 0; // not those measured from a take
-    memset(s.skeleton.length, 0, sizeof s.skeleton.length);
+    performance_settings before = p->settings;
     if (!p->motion->track || p->written.take_command.count == 0)
-        return himc_performance_rebuild(p, &s, error);
-    p->settings = s; // the take's lengths stay
+        return himc_performance_rebuild(p, s, error);
+    p->settings = *s; // the take's lengths stay
     if (himc_job_carry_out(himc_performance_take_again_job(p, error), error))
         return true;
     p->settings = before;
     return false;
 }
+
+// what follows from a command that has changed a setting
+static void follow(himc_performance *p, const himc_command *c, himc_pipeline before)
+{
+    const performance_settings *s = &p->settings;
+    himc_planner *planner = p->motion->planner;
+    enum { DRUMS = 3 }; // form of `gain`
+    switch (himc_settings_effect(c->id)) {
+    case AFTER_MODE:
+        if (before == HIMC_PIPELINE_IK && s->control.mode != HIMC_PIPELINE_IK)
+            himc_body_take_up(p->body);
+        if (p->motion->has_regression)
+            himc_motion_replan(p->motion);
+        return;
+    case AFTER_LIMITS:
+        himc_performance_renew_limits(p);
+        himc_body_clear_limit_counts(p->body); // the counts belong to other limits
+        return;
+    case AFTER_FADER:
+        if (c->form == DRUMS)
+            himc_drums_fade(&p->drums, pow(10, c->atom[0].number / 20), p->drums.mute);
+        return;
+    case AFTER_STEPS: himc_performance_restart_steps(p); return;
+    case AFTER_GRIP:
+        himc_planner_set_grip(planner, s->grip);
+        himc_planner_set_servo(planner, s->servo);
+        break;
+    case AFTER_HUMAN: himc_planner_set_human(planner, s->human); break;
+    case AFTER_REPLAN: break;
+    default: return;
+    }
+    himc_motion_replan(p->motion);
+}
+
+static bool do_setting(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    performance_settings s = p->settings;
+    himc_pipeline before = s.control.mode;
+    if (!himc_performance_allows(p->recording.file, c, error) ||
+        !himc_settings_read(&s, &p->host.usual, c, error))
+        return false;
+    if (himc_settings_effect(c->id) == AFTER_BODY)
+        return change_body(p, &s, error);
+    himc_performance_adopt(p, &s);
+    follow(p, c, before);
+    return true;
+}
+
+// body and instrument
 
 static bool do_push(himc_performance *p, const himc_command *c, himc_error *error)
 {
@@ -459,28 +225,21 @@ static bool do_mute(himc_performance *p, const himc_command *c, himc_error *erro
     return true;
 }
 
-static bool do_record(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return carry_out(p, c, error);
-}
-
-// without a file the host answers, with himc_performance_describe
-static bool do_dump(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return c->count == 0 || carry_out(p, c, error);
-}
-
 static bool do_reset(himc_performance *p, const himc_command *c, himc_error *error)
 {
     (void)c;
     return himc_performance_reset(p, error);
 }
 
-// carried out by the host, with himc_performance_describe
-static bool leave_to_host(himc_performance *p, const himc_command *c, himc_error *error)
+static bool do_drum(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    (void)p, (void)c, (void)error;
-    return true;
+    return himc_performance_find_drum(p, c->atom[0].symbol) || carry_out(p, c, error);
+}
+
+// without a file the host answers, with himc_performance_describe; as `info`
+static bool do_dump(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return c->count == 0 || carry_out(p, c, error);
 }
 
 static bool refuse_network(himc_performance *p, const himc_command *c, himc_error *error)
@@ -490,23 +249,86 @@ static bool refuse_network(himc_performance *p, const himc_command *c, himc_erro
                           himc_command_table((int)c->id)->name);
 }
 
-// the action of a row for the performer is do_ and its word
-static performance_action *const actions[HIMC_COMMANDS] = {
-#define ACTION_NOW(word) do_##word
-#define ACTION_AT_SAMPLE(word) do_##word
-#define ACTION_HOST(word) leave_to_host
-#define ACTION_NETWORK(word) refuse_network
-#define ACTION_DRUM(ID, word, when)
-#define ACTION_PERFORMER(ID, word, when) [HIMC_COMMAND_##ID] = ACTION_##when(word),
-#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) \
-    ACTION_##receiver(ID, word, when)
+// the table
+
+static bool names_file(const himc_performance *p, const himc_command *c)
+{
+    int file;
+    (void)p;
+    return himc_command_file(c, &file) != HIMC_FILE_NONE;
+}
+
+static bool makes_drum(const himc_performance *p, const himc_command *c)
+{
+    return himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
+}
+
+static bool listening_takes_long(const himc_performance *p, const himc_command *c)
+{
+    (void)c;
+    return himc_drums_listening_takes_long(&p->drums);
+}
+
+/// How a command is carried out. One that reads or writes a file, makes a drum or computes heads
+/// takes long: a loader (himc/loader.h) carries out its job, which the performance must outlive.
+typedef struct performer_action {
+    performance_action *act; ///< carry_out: always a job
+    himc_job *(*job)(himc_performance *, const himc_command *, himc_error *);
+    bool (*takes_long)(const himc_performance *, const himc_command *); ///< NULL: always
+} performer_action;
+
+// a row for each command of the performer
+static const performer_action actions[HIMC_COMMANDS] = {
+#define HIMC_SETTING_ROW(ID, word, when, atoms, kind, field, usual, after, does) \
+    [HIMC_COMMAND_##ID] = {do_setting},
 #include "himc/command_rows.h"
+    [HIMC_COMMAND_STROKE] = {do_stroke},
+    [HIMC_COMMAND_ROLL] = {do_stroke},
+    [HIMC_COMMAND_FLAM] = {do_stroke},
+    [HIMC_COMMAND_DRAG] = {do_stroke},
+    [HIMC_COMMAND_RUFF] = {do_stroke},
+    [HIMC_COMMAND_HIT] = {do_hit},
+    [HIMC_COMMAND_AT] = {carry_out, himc_performance_change_job},
+    [HIMC_COMMAND_TEMPO] = {do_tempo},
+    [HIMC_COMMAND_LOOP] = {do_loop},
+    [HIMC_COMMAND_CLEAR] = {do_clear},
+    [HIMC_COMMAND_PLAY] = {do_play},
+    [HIMC_COMMAND_STOP] = {do_stop},
+    [HIMC_COMMAND_SEEK] = {do_seek},
+    [HIMC_COMMAND_SCORE] = {carry_out, himc_performance_score_job},
+    [HIMC_COMMAND_TAKE] = {carry_out, himc_performance_take_job},
+    [HIMC_COMMAND_NUDGE] = {do_nudge},
+    [HIMC_COMMAND_UNITS] = {do_units, himc_performance_units_job, names_file},
+    [HIMC_COMMAND_TARGET] = {do_target},
+    [HIMC_COMMAND_PUSH] = {do_push},
+    [HIMC_COMMAND_LISTENER] = {do_listener, listener_job, listening_takes_long},
+    [HIMC_COMMAND_ROOM] = {do_room},
+    [HIMC_COMMAND_MUTE] = {do_mute},
+    [HIMC_COMMAND_RECORD] = {carry_out, himc_performance_record_job},
+    [HIMC_COMMAND_INFO] = {do_dump},
+    [HIMC_COMMAND_DUMP] = {do_dump, himc_performance_dump_job, names_file},
+    [HIMC_COMMAND_PRESET] = {carry_out, himc_performance_score_job}, // the parser makes it a score
+    [HIMC_COMMAND_RESET] = {do_reset},
+    [HIMC_COMMAND_MAKE_DRUM] = {do_drum, himc_performance_drum_job, makes_drum},
+    [HIMC_COMMAND_SUBSCRIBE] = {refuse_network},
+    [HIMC_COMMAND_UNSUBSCRIBE] = {refuse_network},
+    [HIMC_COMMAND_LISTEN] = {refuse_network},
 };
 
-// the drum that a command is for, or NULL with the reason
-static himc_drum *drum_of(void *receiver, const himc_command *c, himc_error *error)
+static bool takes_long(const himc_performance *p, const himc_command *c)
 {
-    himc_performance *p = receiver;
+    const performer_action *a = &actions[c->id];
+    return a->job && (!a->takes_long || a->takes_long(p, c));
+}
+
+static himc_job *job_of(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return actions[c->id].job(p, c, error);
+}
+
+// the drum that a command is for, or NULL with the reason
+static himc_drum *drum_of(himc_performance *p, const himc_command *c, himc_error *error)
+{
     int index = himc_drums_find(&p->drums, c->drum);
     if (index >= 0)
         return p->drums.slot[index].drum;
@@ -530,49 +352,8 @@ static bool command_drum(himc_performance *p, const himc_command *c, int delay, 
     return good || himc_error_prefix(error, "%s", c->drum);
 }
 
-// true if it reads or writes a file, makes a drum or computes heads
-static bool takes_long(const void *receiver, const himc_command *c)
-{
-    const himc_performance *p = receiver;
-    int file;
-    if (c->id == HIMC_COMMAND_MAKE_DRUM)
-        return himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
-    if (c->id == HIMC_COMMAND_LISTENER)
-        return himc_drums_listening_takes_long(&p->drums);
-    return c->id == HIMC_COMMAND_AT || c->id == HIMC_COMMAND_RECORD ||
-           himc_command_file(c, &file) != HIMC_FILE_NONE;
-}
-
-// a command that takes long; the performance must outlive it
-static himc_job *job_of(void *receiver, const himc_command *c, himc_error *error)
-{
-    himc_performance *p = receiver;
-    enum { STOP };
-    switch (c->id) {
-    case HIMC_COMMAND_SCORE: return himc_performance_score_job(p, c, error);
-    case HIMC_COMMAND_AT: return himc_performance_change_job(p, c, error);
-    case HIMC_COMMAND_DUMP: return himc_performance_dump_job(p, c, error);
-    case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
-    case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
-    case HIMC_COMMAND_LISTENER: return listener_job(p, c, error);
-    case HIMC_COMMAND_MAKE_DRUM: return himc_performance_drum_job(p, c, error);
-    default:
-        return c->form == STOP ? himc_performance_record_stop_job(p, c, error)
-                               : himc_performance_record_job(p, c, error);
-    }
-}
-
-static bool run(void *receiver, const himc_command *c, int delay, himc_error *error)
-{
-    return himc_performance_command(receiver, c, delay, error);
-}
-
-static himc_job *state_job(void *receiver, const char *state, himc_error *error)
-{
-    return himc_performance_state_job(receiver, state, error);
-}
-
-const himc_runner himc_performance_runner = {takes_long, run, job_of, state_job, drum_of};
+const himc_runner himc_performance_runner = {takes_long, himc_performance_command, job_of,
+                                             himc_performance_state_job, drum_of};
 
 // makes drums for waiting commands now, not in the audio callback
 static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
@@ -591,14 +372,13 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     const himc_command_row *row = himc_command_table((int)command->id);
     if (!row)
         return himc_error_set(error, "command %d: not from the parser", (int)command->id);
-    performance_action *act = actions[command->id];
     if (command->drum[0])
         return command_drum(p, command, delay, error);
-    if (!act)
+    if (row->receiver != HIMC_PERFORMER)
         return himc_error_set(error, "a drum's command, not the performer's");
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates
     if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE || on_beat)
-        return act(p, command, error);
+        return actions[command->id].act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, expected 0 .. %d", delay, LONGEST_DELAY);
     if (!himc_queue_has_room(&p->queue))
@@ -613,7 +393,7 @@ static bool run_waiting(himc_performance *p, const himc_command *command, himc_e
 {
     himc_drums_catch_up(&p->drums);
     himc_motion_stir(p->motion);
-    return actions[command->id](p, command, error);
+    return actions[command->id].act(p, command, error);
 }
 
 void himc_performance_run_due_commands(himc_performance *p)

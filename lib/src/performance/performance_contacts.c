@@ -324,7 +324,7 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     double added = c->stick.head.mass - own_mass(&b->skeleton, hand);
     c->stick.mass = fmax(body + added, LEAST_STICK * body);
     c->share = body / c->stick.mass;
-    c->stick.one_way = s->settings->one_way;
+    c->stick.one_way = s->settings->coupling == HIMC_COUPLING_ONE_WAY;
     c->stick.x = local.x;
     c->stick.y = local.y;
     c->stick.acceleration = c->hand;

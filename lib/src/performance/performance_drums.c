@@ -150,11 +150,9 @@ static void release(performance_drums *d, himc_drum *drum)
     himc_drum_release(drum);
 }
 
-// `name` is of one drum more
-static bool have_room(const performance_drums *d, const char *name, himc_error *error)
+bool himc_drums_full(const char *name, himc_error *error)
 {
-    return d->count < HIMC_DRUMS ||
-           himc_error_set(error, "drum %s: a performer plays on %d drums at most", name,
+    return himc_error_set(error, "drum %s: a performer plays on %d drums at most", name,
                           HIMC_DRUMS);
 }
 
@@ -201,8 +199,8 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
                     himc_error *error)
 {
     int i = himc_drums_find(d, himc_drum_name(drum));
-    if (i < 0 && !have_room(d, himc_drum_name(drum), error))
-        return false;
+    if (i < 0 && d->count == HIMC_DRUMS)
+        return himc_drums_full(himc_drum_name(drum), error);
     if (i < 0)
         i = d->count++;
     *index = i;
@@ -415,12 +413,11 @@ static void free_listening(himc_job *job)
 himc_job *himc_drums_listen_job(performance_drums *d, const himc_listener *listener,
                                 himc_error *error)
 {
-    listen_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "listener: out of memory");
+    listen_job *j =
+        himc_job_new(sizeof *j, "listener",
+                     (himc_job){prepare_listening, install_listening, free_listening}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){prepare_listening, install_listening, free_listening};
     j->drums = d;
     j->listener = *listener;
     for (; j->count < d->count; j->count++) {

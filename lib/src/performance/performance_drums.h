@@ -61,6 +61,8 @@ HIMC_RT bool himc_drums_refuse(const performance_drums *drums, const char *word,
 /// The same with the names of all drums that there are, `count`.
 HIMC_RT bool himc_drums_refuse_of(const char *const *names, int count, const char *word,
                                   himc_spot spot, himc_error *error);
+/// The reason why there is no place for a drum of that name; returns false.
+HIMC_RT bool himc_drums_full(const char *name, himc_error *error);
 /// Takes a drum and its reference, in the slot of the same name or a new one. A drum without a
 /// place is placed automatically. False, and nothing changed, if there is no slot left.
 bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source source, int *index,

@@ -136,93 +136,6 @@ static bool dump_written(const himc_text_lines *lines, size_t *at, const himc_li
 
 // settings
 
-static void tell_word(const himc_line_sink *to, himc_command_id id, int choice)
-{
-    himc_state_tell(to, himc_command_table((int)id)->name, himc_command_word(id, 0, choice).text, 0,
-                    NULL);
-}
-
-static void tell_switch(const himc_line_sink *to, const char *name, bool on)
-{
-    himc_state_tell(to, name, NULL, 1, (double[]){on});
-}
-
-static void dump_rates(const himc_performance *p, const himc_line_sink *to)
-{
-    const performance_settings *s = &p->settings;
-    himc_state_tell(to, "rate", "physics", 1, &s->physics_rate);
-    himc_state_tell(to, "rate", "task", 1, &s->task_rate);
-    tell_word(to, HIMC_COMMAND_ENGINE, (int)s->engine);
-    tell_word(to, HIMC_COMMAND_COUPLING,
-              s->one_way ? HIMC_COUPLING_ONE_WAY : HIMC_COUPLING_TWO_WAY);
-}
-
-// a take has measured the player if it has lengths; then the take's line tells them, and `player`
-// only what has been asked for instead
-static void dump_player(const himc_performance *p, const himc_line_sink *to)
-{
-    const himc_skeleton_config *s = &p->settings.skeleton;
-    bool measured = s->seat != 0 || s->shoulders != 0;
-    for (size_t i = 0; i < sizeof s->length / sizeof *s->length; i++)
-        measured = measured || s->length[i] != 0;
-    if (!measured || p->settings.asked_height > 0)
-        himc_state_tell(to, "player", NULL, 2, (double[]){s->height, s->mass});
-}
-
-static void dump_control(const himc_performance *p, const himc_line_sink *to)
-{
-    const himc_controller_config *c = &p->settings.control;
-    tell_word(to, HIMC_COMMAND_MODE, (int)c->mode);
-    tell_word(to, HIMC_COMMAND_SOLVER, (int)c->solver);
-    himc_state_tell(to, "damping", NULL, 1, &c->damping);
-    tell_switch(to, "posture", !c->null_space_off);
-    tell_switch(to, "bend", !p->settings.unbent);
-    tell_switch(to, "elbow", c->elbow);
-    himc_state_tell(to, "weights", NULL, HIMC_ARM_JOINTS, c->weight);
-    tell_word(to, HIMC_COMMAND_LAW, (int)c->law);
-    tell_word(to, HIMC_COMMAND_LIMITS, (int)p->settings.limits);
-}
-
-static void dump_gains(const himc_performance *p, const himc_line_sink *to)
-{
-    const asked_gain *asked = p->settings.gain;
-    double frequency = 0;
-    himc_state_tell(to, "gain", "reset", 0, NULL);
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        frequency = fmax(frequency, asked[j].frequency);
-    if (frequency > 0)
-        himc_state_tell(to, "gain", "frequency", 1, &frequency);
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        if (p->settings.control.gain_set[j] && asked[j].frequency == 0)
-            himc_state_tell(to, "gain", himc_joint_name(j), 2,
-                            (double[]){asked[j].stiffness, asked[j].damping});
-}
-
-static void dump_strength(const himc_performance *p, const himc_line_sink *to)
-{
-    const himc_controller_config *c = &p->settings.control;
-    himc_controller_config usual = {.human_strength = false};
-    if (c->human_strength)
-        himc_controller_set_human_strength(&usual, p->settings.skeleton.mass);
-    himc_state_tell(to, "strength", c->human_strength ? "human" : "off", 0, NULL);
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        if (c->strength[j] != usual.strength[j])
-            himc_state_tell(to, "strength", himc_joint_name(j), 1, &c->strength[j]);
-}
-
-static void dump_playing(const himc_performance *p, const himc_line_sink *to)
-{
-    const performance_settings *s = &p->settings;
-    himc_state_line grip = himc_state_begin("grip");
-    himc_state_word(&grip, himc_command_word(HIMC_COMMAND_GRIP, 0, (int)s->grip).text);
-    if (s->servo)
-        himc_state_word(&grip, "servo");
-    himc_state_end(&grip, to);
-    himc_state_tell(to, "human", NULL, 2, (double[]){s->human.amount, s->human.seed});
-    tell_switch(to, "alive", s->alive);
-    himc_state_tell(to, "latency", NULL, 1, (double[]){1e3 * s->latency});
-}
-
 static void dump_hearing(const performance_drums *d, const himc_line_sink *to)
 {
     const himc_listener *l = &d->listener;
@@ -233,7 +146,7 @@ static void dump_hearing(const performance_drums *d, const himc_line_sink *to)
         himc_state_tell(to, "listener", "off", 0, NULL);
     himc_state_tell(to, "room", NULL, 2, (double[]){d->walls.seconds, d->walls.volume});
     himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(d->gain)});
-    tell_switch(to, "mute", d->mute);
+    himc_state_tell(to, "mute", NULL, 1, (double[]){d->mute});
 }
 
 // drums
@@ -323,16 +236,6 @@ static bool dump_pushes(const performance_body *b, size_t *at, const himc_line_s
     return *at < (size_t)b->planned_count;
 }
 
-static void dump_settings(const himc_performance *p, const himc_line_sink *to)
-{
-    dump_player(p, to);
-    dump_control(p, to);
-    dump_gains(p, to);
-    dump_strength(p, to);
-    dump_playing(p, to);
-    dump_hearing(&p->drums, to);
-}
-
 bool himc_performance_describe_on(const himc_performance *p, himc_describe_place *place,
                                   void (*line)(void *, const char *), void *user)
 {
@@ -344,15 +247,21 @@ bool himc_performance_describe_on(const himc_performance *p, himc_describe_place
     case NAMES: dump_drums(p, to); break;
     case DRUMS: more = dump_drum(p, at, to); break;
     case RATES:
-        dump_rates(p, to);
+        himc_settings_tell(&p->settings, HIMC_COMMAND_RATE, HIMC_COMMAND_PLAYER, to);
         if (p->written.take[0])
             himc_state_tell(to, "take", p->written.take, 0, NULL);
         break;
     case NUDGES: more = dump_nudges(p->motion->track, at, to); break;
-    case SETTINGS: dump_settings(p, to); break;
+    case SETTINGS:
+        himc_settings_tell(&p->settings, HIMC_COMMAND_PLAYER, HIMC_COMMANDS, to);
+        dump_hearing(&p->drums, to);
+        break;
     case UNITS: more = dump_written(&p->written.units, at, to); break;
     case TEMPI: more = dump_tempi(p->motion->planner, at, to); break;
-    case LOOP: tell_switch(to, "loop", himc_planner_is_looped(p->motion->planner)); break;
+    case LOOP:
+        himc_state_tell(to, "loop", NULL, 1,
+                        (double[]){himc_planner_is_looped(p->motion->planner)});
+        break;
     case SCORE: more = !p->written.take[0] && dump_written(&p->written.score, at, to); break;
     case PUSHES: more = dump_pushes(p->body, at, to); break;
     default: return false;
@@ -379,7 +288,7 @@ void himc_performance_describe(const himc_performance *p, himc_description what,
         himc_performance_inform(p, to);
 }
 
-himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
+himc_job *himc_performance_dump_job(himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
     himc_text_lines lines = {0};

@@ -215,7 +215,8 @@ static double take_end(const performance_motion *m)
     return m->track_start + himc_track_length(m->track);
 }
 
-void himc_motion_take_hands_back(performance_motion *m, double t)
+// Gives the hands of the take to the planner.
+static void take_hands_back(performance_motion *m, double t)
 {
     bool tracked = false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -231,7 +232,7 @@ void himc_motion_take_hands_back(performance_motion *m, double t)
 bool himc_motion_free_hand(performance_motion *m, himc_hand hand, double t)
 {
     if (himc_motion_tracks(m, hand) && t >= take_end(m))
-        himc_motion_take_hands_back(m, t);
+        take_hands_back(m, t);
     return !himc_motion_tracks(m, hand);
 }
 
@@ -239,7 +240,7 @@ himc_track *himc_motion_set_track(performance_motion *m, himc_track *track,
                                   const himc_limits *learned, double t)
 {
     himc_track *old = m->track;
-    himc_motion_take_hands_back(m, t);
+    take_hands_back(m, t);
     m->track = track;
     m->over = false;
     m->has_learned = learned != NULL;
@@ -328,16 +329,6 @@ void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
 
 // trunk and grip
 
-// the next strike point of a hand, or its position
-static himc_vec3 attention(const performance_motion *m, const performance_drums *drums,
-                           himc_hand hand, double t)
-{
-    planned_stroke next = himc_motion_stroke(m, drums, hand, t);
-    if (!next.any || next.time > t + TRUNK_FORESIGHT)
-        return himc_motion_planned(m, hand, t).x;
-    return himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y);
-}
-
 // the course at a time, not before it was set
 static himc_trunk_posture trunk_at(const performance_motion *m, double t)
 {
@@ -406,8 +397,13 @@ static void set_course(performance_motion *m, const performance_settings *s,
                        const performance_drums *drums, double t)
 {
     himc_vec3 place[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        place[hand] = attention(m, drums, (himc_hand)hand, t);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) { // its next strike point, or its position
+        planned_stroke next = himc_motion_stroke(m, drums, (himc_hand)hand, t);
+        place[hand] =
+            next.any && next.time <= t + TRUNK_FORESIGHT
+                ? himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y)
+                : himc_motion_planned(m, (himc_hand)hand, t).x;
+    }
     m->course.from = trunk_at(m, t);
     m->course.goal = himc_posture_trunk(place, s->grip);
     if (m->track && himc_settings_trunk_known(s)) {
@@ -431,8 +427,8 @@ static void find_posture(const performance_motion *m, const performance_settings
     bool captured = s->control.mode != HIMC_PIPELINE_HIMC && m->track && isfinite(m->track_start) &&
                     himc_track_has_posture(m->track);
     if (captured)
-        himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start,
-                           s->unbent ? NULL : tip, motion);
+        himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start, s->bend ? tip : NULL,
+                           motion);
 }
 
 // the posture regression in place of the natural posture

@@ -161,8 +161,6 @@ HIMC_RT bool himc_motion_captured(const performance_motion *motion, himc_hand ha
 /// has joints.
 HIMC_RT bool himc_motion_captured_joints(const performance_motion *motion, double t,
                                          himc_posture_motion *joints);
-/// Gives the hands of the take to the planner.
-HIMC_RT void himc_motion_take_hands_back(performance_motion *motion, double t);
 /// Gives the hand to the planner if its take is over; false while the take plays.
 HIMC_RT bool himc_motion_free_hand(performance_motion *motion, himc_hand hand, double t);
 /// Replaces the take (NULL: none) and the limits of its player (NULL: none). Returns the one

@@ -114,19 +114,13 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
             himc_hand_name(own.hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT));
 }
 
-/// The time for which a command was meant that acts in this step (s): its sample's, up to a step
-/// before.
-static double asked_time(const himc_performance *p)
-{
-    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
-    return (double)sample / p->clock.sample_rate;
-}
-
 /// Plays a hit; returns the time from the moment it was asked to its contact (s), infinite if it is
 /// given up.
 static double hit(himc_performance *p, const himc_hit *asked)
 {
-    double now = step_time(p), from = asked_time(p);
+    // a command that acts in this step was meant for its sample, up to a step before
+    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
+    double now = step_time(p), from = (double)sample / p->clock.sample_rate;
     himc_hit timed = *asked;
     timed.at = from + p->settings.latency;
     if (p->settings.latency > 0)
@@ -327,11 +321,10 @@ static void free_units(himc_job *job)
 static units_job *units_job_new(const himc_command *command, const himc_take_options *options,
                                 himc_error *error)
 {
-    units_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "units: out of memory");
+    units_job *j =
+        himc_job_new(sizeof *j, "units", (himc_job){cut_units, add_units, free_units}, error);
+    if (!j)
         return NULL;
-    }
     himc_command_copy(&j->command, command);
     j->options = *options;
     return j;
@@ -343,7 +336,6 @@ himc_job *himc_performance_units_job(himc_performance *p, const himc_command *co
     units_job *j = units_job_new(command, &p->host.take_options, error);
     if (!j)
         return NULL;
-    j->job = (himc_job){cut_units, add_units, free_units};
     j->performance = p;
     j->grip = p->settings.grip;
     return &j->job;

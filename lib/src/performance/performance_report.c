@@ -85,13 +85,6 @@ static double null_share(const himc_body_state *state, himc_hand hand, const him
     return all > 0 ? share / all : 0;
 }
 
-// the head's force on the mallet's own mass, as a share of that on the body's stick
-static double mallet_share(const himc_performance *p, himc_hand hand)
-{
-    double share = p->contacts.hand[hand].share;
-    return share > 0 ? 1 / share - 1 : 0;
-}
-
 static void fill_hands(himc_performance *p, himc_motion_row *row)
 {
     const performance_body *b = p->body;
@@ -106,7 +99,9 @@ static void fill_hands(himc_performance *p, himc_motion_row *row)
         himc_contacts_take_row(&p->contacts, hand, &row->force[i], &row->impulse[i]);
         row->elbow[i] = b->state.origin[HIMC_LEFT_FOREARM + i];
         row->tip_force[i] = b->tip_force[i];
-        row->mallet_force[i] = himc_vec3_scale(b->tip_force[i], mallet_share(p, hand));
+        // the head's force on the mallet's own mass, as a share of that on the body's stick
+        double share = p->contacts.hand[i].share;
+        row->mallet_force[i] = himc_vec3_scale(b->tip_force[i], share > 0 ? 1 / share - 1 : 0);
         row->null_space[i] = null_share(&b->state, hand, row->rate);
     }
 }
@@ -307,22 +302,6 @@ static void free_recording(himc_job *job)
     free(job);
 }
 
-static record_job *record_job_new(himc_performance *p, const himc_command *command,
-                                  himc_error *error)
-{
-    record_job *j = NULL;
-    if (!himc_performance_allows(p->recording.file, command, error))
-        return NULL;
-    j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "record: out of memory");
-        return NULL;
-    }
-    j->performance = p;
-    himc_command_copy(&j->command, command);
-    return j;
-}
-
 bool himc_performance_allows(bool recording, const himc_command *c, himc_error *error)
 {
     enum { STOP };
@@ -332,49 +311,37 @@ bool himc_performance_allows(bool recording, const himc_command *c, himc_error *
                himc_error_set(error,
                               "rate task: %g: not possible while recording, first send record stop",
                               c->atom[1].number);
-    if (recording && c->form != STOP)
-        return himc_error_set(error, "record: %s: already recording, expected stop",
-                              c->atom[0].symbol);
-    return recording || c->form != STOP ||
-           himc_error_set(error, "record: stop: nothing is being recorded, expected FILE");
+    if (c->id != HIMC_COMMAND_RECORD || recording == (c->form == STOP))
+        return true;
+    return recording
+               ? himc_error_set(error, "record: %s: already recording, expected stop",
+                                c->atom[0].symbol)
+               : himc_error_set(error, "record: stop: nothing is being recorded, expected FILE");
 }
 
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error)
 {
-    record_job *j = record_job_new(p, command, error);
+    enum { STOP };
+    if (!himc_performance_allows(p->recording.file, command, error))
+        return NULL;
+    bool stop = command->form == STOP;
+    record_job *j = himc_job_new(sizeof *j, "record",
+                                 (himc_job){stop ? write_recording : make_recording,
+                                            stop ? end_recording : begin_recording, free_recording},
+                                 error);
     if (!j)
         return NULL;
-    j->job = (himc_job){make_recording, begin_recording, free_recording};
+    j->performance = p;
+    himc_command_copy(&j->command, command);
     j->skeleton = p->body->skeleton;
     j->rate = p->clock.task_rate;
-    return &j->job;
-}
-
-himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
-                                           himc_error *error)
-{
-    record_job *j = record_job_new(p, command, error);
-    if (!j)
-        return NULL;
-    j->job = (himc_job){write_recording, end_recording, free_recording};
-    j->rate = p->clock.task_rate;
-    j->file = p->recording.file; // a recording that cannot be written is lost, with an error
+    j->file = p->recording.file; // one that cannot be written is lost, with an error
     p->recording.file = NULL;
     return &j->job;
 }
 
 // info
-
-static void describe_player(const himc_performance *p, himc_line_sink to)
-{
-    char text[512];
-    const performance_settings *s = &p->settings;
-    snprintf(text, sizeof text,
-             "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom",
-             s->skeleton.height, s->skeleton.mass);
-    to.line(to.user, text);
-}
 
 static himc_word word(himc_command_id id, int choice)
 {
@@ -383,21 +350,17 @@ static himc_word word(himc_command_id id, int choice)
 
 static void describe_control(const himc_performance *p, himc_line_sink to)
 {
-    char text[512];
     const performance_settings *s = &p->settings;
     const himc_controller_config *c = &s->control;
-    snprintf(text, sizeof text, "mode %s%s, solver %s, damping %g m, law %s, coupling %s",
-             word(HIMC_COMMAND_MODE, (int)c->mode).text,
-             s->unbent ? " (in id, arms as captured)" : "",
-             word(HIMC_COMMAND_SOLVER, (int)c->solver).text, c->damping,
-             word(HIMC_COMMAND_LAW, (int)c->law).text,
-             word(HIMC_COMMAND_COUPLING, s->one_way ? HIMC_COUPLING_ONE_WAY : HIMC_COUPLING_TWO_WAY)
-                 .text);
-    to.line(to.user, text);
-    snprintf(text, sizeof text, "rate physics %g Hz, task %g Hz, sound %g Hz, engine %s",
-             p->clock.physics_rate, p->clock.task_rate, p->clock.sample_rate,
-             word(HIMC_COMMAND_ENGINE, (int)s->engine).text);
-    to.line(to.user, text);
+    himc_tell(&to, "mode %s%s, solver %s, damping %g m, law %s, coupling %s",
+              word(HIMC_COMMAND_MODE, (int)c->mode).text,
+              s->bend ? "" : " (in id, arms as captured)",
+              word(HIMC_COMMAND_SOLVER, (int)c->solver).text, c->damping,
+              word(HIMC_COMMAND_LAW, (int)c->law).text,
+              word(HIMC_COMMAND_COUPLING, (int)s->coupling).text);
+    himc_tell(&to, "rate physics %g Hz, task %g Hz, sound %g Hz, engine %s", p->clock.physics_rate,
+              p->clock.task_rate, p->clock.sample_rate,
+              word(HIMC_COMMAND_ENGINE, (int)s->engine).text);
 }
 
 static const char *strength_word(const himc_controller_config *c)
@@ -410,37 +373,27 @@ static const char *strength_word(const himc_controller_config *c)
 
 static void describe_limits(const himc_performance *p, himc_line_sink to)
 {
-    char text[256];
     const himc_saturation_counts *s = &p->body->saturation;
-    snprintf(text, sizeof text, "limits %s%s, hit %ld times, strength %s",
-             word(HIMC_COMMAND_LIMITS, (int)p->settings.limits).text,
-             p->settings.limits == HIMC_LIMITS_OFF ? ""
-             : p->motion->has_learned              ? " of the take"
-                                                   : " of table 1",
-             himc_body_limit_hits(p->body), strength_word(&p->settings.control));
-    to.line(to.user, text);
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        if (s->hits[j] == 0)
-            continue;
-        snprintf(text, sizeof text, "limit %s: hit %ld times, up to %.2f degrees beyond",
-                 himc_joint_name(j), s->hits[j], s->farthest[j] * 180 / HIMC_PI);
-        to.line(to.user, text);
-    }
+    himc_tell(&to, "limits %s%s, hit %ld times, strength %s",
+              word(HIMC_COMMAND_LIMITS, (int)p->settings.limits).text,
+              p->settings.limits == HIMC_LIMITS_OFF ? ""
+              : p->motion->has_learned              ? " of the take"
+                                                    : " of table 1",
+              himc_body_limit_hits(p->body), strength_word(&p->settings.control));
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (s->hits[j] > 0)
+            himc_tell(&to, "limit %s: hit %ld times, up to %.2f degrees beyond", himc_joint_name(j),
+                      s->hits[j], s->farthest[j] * 180 / HIMC_PI);
 }
 
 static void describe_strength(const himc_performance *p, himc_line_sink to)
 {
-    char text[256];
     const himc_saturation_counts *s = &p->body->saturation;
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        if (s->weak[j] == 0)
-            continue;
-        snprintf(text, sizeof text,
-                 "strength %s %g N m: too weak in %.3g %% of steps, %.1f N m asked",
-                 himc_joint_name(j), p->settings.control.strength[j],
-                 100.0 * (double)s->weak[j] / (double)s->steps, s->torque[j]);
-        to.line(to.user, text);
-    }
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (s->weak[j] > 0)
+            himc_tell(&to, "strength %s %g N m: too weak in %.3g %% of steps, %.1f N m asked",
+                      himc_joint_name(j), p->settings.control.strength[j],
+                      100.0 * (double)s->weak[j] / (double)s->steps, s->torque[j]);
 }
 
 // of a drum, to `user`, a sink
@@ -470,50 +423,43 @@ static void describe_drums(const himc_performance *p, himc_line_sink to)
 
 static void describe_playing(const himc_performance *p, himc_line_sink to)
 {
-    char text[512];
     himc_performance_stats s = himc_performance_measure(p);
-    snprintf(text, sizeof text,
-             "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",
-             word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, p->settings.servo ? " servo" : "",
-             1e3 * p->settings.latency, s.hits, 1e3 * s.hit_latency, 1e3 * s.longest_latency);
-    to.line(to.user, text);
-    if (p->settings.human.amount > 0) {
-        snprintf(text, sizeof text, "human %g, seed %u", p->settings.human.amount,
-                 (unsigned)p->settings.human.seed);
-        to.line(to.user, text);
-    }
-    snprintf(text, sizeof text,
-             "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, "
-             "peak force %.1f N, recoveries %ld",
-             p->motion->playing ? "playing" : "stopped", s.seconds, s.strokes, s.played,
-             1e3 * s.tip_rms, s.peak_force, s.recoveries);
-    to.line(to.user, text);
+    himc_tell(
+        &to, "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",
+        word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, p->settings.servo ? " servo" : "",
+        1e3 * p->settings.latency, s.hits, 1e3 * s.hit_latency, 1e3 * s.longest_latency);
+    if (p->settings.human.amount > 0)
+        himc_tell(&to, "human %g, seed %u", p->settings.human.amount,
+                  (unsigned)p->settings.human.seed);
+    himc_tell(&to,
+              "%s %.3f s, strokes %d, played %d, tips within %.4f mm RMS, "
+              "peak force %.1f N, recoveries %ld",
+              p->motion->playing ? "playing" : "stopped", s.seconds, s.strokes, s.played,
+              1e3 * s.tip_rms, s.peak_force, s.recoveries);
 }
 
 static void describe_peaks(const himc_performance *p, himc_line_sink to)
 {
-    char text[512];
     himc_performance_stats s = himc_performance_measure(p);
-    snprintf(
-        text, sizeof text,
+    himc_tell(
+        &to,
         "contacts: %d unplanned, the longest %.3f s; joints up to %.1f rad/s (%s) and %.1f N m "
         "(%s)",
         s.unplanned_contacts, s.longest_contact, s.peak_rate, himc_joint_name(s.peak_rate_joint),
         s.peak_torque, himc_joint_name(s.peak_torque_joint));
-    to.line(to.user, text);
     if (isnan(s.captured_rms))
         return;
-    snprintf(text, sizeof text,
-             "capture: tips %.2f mm RMS off it, at most %.1f mm; %.2f %% and %.1f %% of the "
-             "strokes' height; strikes at %.3f of its speeds",
-             1e3 * s.captured_rms, 1e3 * s.captured_most, s.captured_rms_percent,
-             s.captured_most_percent, s.captured_speed_ratio);
-    to.line(to.user, text);
+    himc_tell(&to,
+              "capture: tips %.2f mm RMS off it, at most %.1f mm; %.2f %% and %.1f %% of the "
+              "strokes' height; strikes at %.3f of its speeds",
+              1e3 * s.captured_rms, 1e3 * s.captured_most, s.captured_rms_percent,
+              s.captured_most_percent, s.captured_speed_ratio);
 }
 
 void himc_performance_inform(const himc_performance *p, himc_line_sink to)
 {
-    describe_player(p, to);
+    himc_tell(&to, "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom",
+              p->settings.skeleton.height, p->settings.skeleton.mass);
     describe_control(p, to);
     describe_limits(p, to);
     describe_strength(p, to);

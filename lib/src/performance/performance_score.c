@@ -103,12 +103,6 @@ static const himc_drum_form *find_form(const score_job *j, const char *name)
     return NULL;
 }
 
-static bool too_many_drums(const char *name, himc_error *error)
-{
-    return himc_error_set(error, "drum %s: a performer plays on %d drums at most", name,
-                          HIMC_DRUMS);
-}
-
 static void free_drums(score_job *j)
 {
     for (; j->drums > 0; j->drums--) {
@@ -128,7 +122,7 @@ static himc_drum *trial_drum(score_job *j, const char *name, double inches, drum
     if (known)
         return known->trial;
     if (j->drums == HIMC_DRUMS) {
-        too_many_drums(name, error);
+        himc_drums_full(name, error);
         return NULL;
     }
     score_drum made = {.source = source};
@@ -187,26 +181,23 @@ static bool rehearse_take(score_job *j, const himc_command *c, himc_error *error
 static bool rehearse_command(score_job *j, const himc_command *c, score_state *state,
                              himc_error *error)
 {
-    const char *word = c->count > 0 ? c->atom[0].symbol : "";
-    int index;
+    performance_settings aside = {.alive = false};
     switch (c->id) {
     case HIMC_COMMAND_MAKE_DRUM:
-        return trial_drum(j, word, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
+        return trial_drum(j, c->atom[0].symbol,
+                          c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
                           j->make_drums ? DRUM_MADE : DRUM_SILENT, error);
-    case HIMC_COMMAND_GAIN:
-        return c->count < 3 || himc_body_find_joint(word, "gain", &index, error);
-    case HIMC_COMMAND_STRENGTH:
-        return c->count < 2 || himc_body_find_joint(word, "strength", &index, error);
     case HIMC_COMMAND_PUSH: return himc_body_read_push(c, &(planned_push){0}, error);
-    case HIMC_COMMAND_RATE: return himc_performance_allows(state->recording, c, error);
     case HIMC_COMMAND_RESET: *state = (score_state){.units = 0}; return true;
     case HIMC_COMMAND_TAKE: return rehearse_take(j, c, error);
     case HIMC_COMMAND_NUDGE: return himc_performance_try_nudge(j->take, c, error);
     case HIMC_COMMAND_UNITS: return rehearse_units(j, c, state, error);
     case HIMC_COMMAND_RECORD: return rehearse_record(j, c, state, error);
     default: // the network's are always refused
-        return himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
-               j->performance->runner.run(j->performance, c, 0, error);
+        return himc_performance_allows(state->recording, c, error) &&
+               himc_settings_read(&aside, &j->performance->host.usual, c, error) &&
+               (himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
+                j->performance->runner.run(j->performance, c, 0, error));
     }
 }
 
@@ -239,7 +230,7 @@ static bool count_drums(score_job *j, himc_error *error)
         if (k < count || !wanted[0])
             continue;
         if (count == HIMC_DRUMS)
-            return too_many_drums(wanted, error);
+            return himc_drums_full(wanted, error);
         if (!trial_drum(j, wanted, HIMC_INCHES_USUAL, DRUM_SILENT, error))
             return false;
         name[count++] = wanted;
@@ -508,18 +499,13 @@ static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_e
     return j->line ? HIMC_JOB_AGAIN : failed(j, error);
 }
 
-// commands that act on strokes or on the transport are carried out after the strokes are loaded
-static bool comes_after_strokes(const himc_score_line *line)
-{
-    return himc_command_table((int)line->command.id)->marks & HIMC_AFTER_STROKES;
-}
-
 // a portion of the lines before or after the strokes; DONE after the last
 static himc_job_state run_lines(score_job *j, bool after, himc_error *error)
 {
     for (int run = 0; j->at < j->score->line_count; j->at++) {
         const himc_score_line *line = &j->score->lines[j->at];
-        if (comes_after_strokes(line) != after)
+        unsigned marks = himc_command_table((int)line->command.id)->marks;
+        if (((marks & HIMC_AFTER_STROKES) != 0) != after) // on strokes or the transport
             continue;
         if (run == LINES_AT_ONCE)
             return HIMC_JOB_MORE;
@@ -754,28 +740,27 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-static score_job *job_new(himc_performance *p, himc_error *error)
+// of a text that is borrowed, or of the file at `path` if it is NULL
+static himc_job *job_new(himc_performance *p, const char *text, const char *path, himc_error *error)
 {
-    score_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "score: out of memory");
+    score_job *j = himc_job_new(sizeof *j, "score", (himc_job){prepare, install, free_job}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
+    j->text = text;
+    j->path = path;
     copy_performance(j);
     j->take = himc_performance_take_trial(p, error);
-    if (!j->take) {
-        free_job(&j->job);
-        return NULL;
-    }
-    return j;
+    if (j->take)
+        return &j->job;
+    free_job(&j->job);
+    return NULL;
 }
 
 himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
                                      himc_error *error)
 {
-    score_job *j = job_new(p, error);
+    score_job *j = (score_job *)job_new(p, NULL, NULL, error);
     if (!j)
         return NULL;
     himc_command_copy(&j->command, command);
@@ -785,23 +770,13 @@ himc_job *himc_performance_score_job(himc_performance *p, const himc_command *co
 
 himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error)
 {
-    score_job *j = job_new(p, error);
-    if (!j)
-        return NULL;
-    j->path = "state";
-    j->text = state;
-    return &j->job;
+    return job_new(p, state, "state", error);
 }
 
 bool himc_performance_load_text(himc_performance *p, const char *text, const char *name,
                                 himc_error *error)
 {
-    score_job *j = job_new(p, error);
-    if (!j)
-        return false;
-    j->path = name;
-    j->text = text;
-    return himc_job_carry_out(&j->job, error);
+    return himc_job_carry_out(job_new(p, text, name, error), error);
 }
 
 // the strokes of a score that is not installed, in the order of add_strokes(); a drum that there is

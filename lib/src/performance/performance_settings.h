@@ -1,7 +1,9 @@
-/// performance_settings.h: the settings made by commands; `reset` restores the default.
+/// performance_settings.h: the settings made by commands, a row each (himc/command_rows.h); `reset`
+/// restores the default.
 #ifndef HIMC_PERFORMANCE_SETTINGS_H
 #define HIMC_PERFORMANCE_SETTINGS_H
 
+#include "base/line.h"
 #include "body/character.h"
 #include "control/controller.h"
 #include "himc/performance.h"
@@ -20,6 +22,9 @@ typedef struct asked_gain {
     double frequency;          ///< instead, over the usual natural frequency; 0: not so
 } asked_gain;
 
+/// In the order of the words of `coupling`.
+typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
+
 typedef struct performance_settings {
     double physics_rate, task_rate; ///< requested (Hz)
     himc_skeleton_config skeleton;
@@ -34,19 +39,36 @@ typedef struct performance_settings {
     himc_human human;
     bool alive;     ///< head, weight and breath follow the music
     double latency; ///< of a hit, from its message to its contact; 0: as soon as it can (s)
-    bool one_way;   ///< the head's vibration does not push back on the stick
-    bool unbent;    ///< `id` follows a take's arms as captured
+    himc_coupling coupling;
+    bool bend; ///< `id` bends a take's arms to its tips, else it follows them as captured
     captured_player captured;
 } performance_settings;
-
-/// Chosen: softer than f nothing is lost, at f 2 dB.
-#define USUAL_LATENCY 0.15 // (s)
 
 /// The settings of a new performance with that configuration.
 performance_settings himc_settings_default(const himc_performance_config *config);
 
-/// Sets the gains of the joints as they were asked for, for the body of that controller.
-void himc_settings_gains(performance_settings *settings, const himc_controller *controller);
+/// The consequence of a changed setting, besides that controller and engine get it.
+typedef enum setting_effect {
+    AFTER_NOTHING,
+    AFTER_REPLAN, ///< the next task is read again
+    AFTER_STEPS,  ///< a step begins, with these rates
+    AFTER_BODY,   ///< another body
+    AFTER_MODE,   ///< the engine takes up the kinematic pose; a regression follows otherwise
+    AFTER_LIMITS, ///< other limits
+    AFTER_FADER,  ///< with one number the drums', not the joints' gain
+    AFTER_GRIP,   ///< the planner's grip
+    AFTER_HUMAN   ///< the planner's variation
+} setting_effect;
+
+/// The effect of a setting.
+HIMC_RT setting_effect himc_settings_effect(himc_command_id id);
+/// Sets what a command says, and nothing if it is no setting. `usual` are the default settings: a
+/// number that equals theirs in single precision becomes theirs. False with the reason.
+HIMC_RT bool himc_settings_read(performance_settings *settings, const performance_settings *usual,
+                                const himc_command *command, himc_error *error);
+/// Tells the settings from one row to another (not told) as commands.
+void himc_settings_tell(const performance_settings *settings, himc_command_id from,
+                        himc_command_id to, const himc_line_sink *sink);
 
 /// True if the captured trunk is known; it replaces the natural one.
 static inline bool himc_settings_trunk_known(const performance_settings *settings)

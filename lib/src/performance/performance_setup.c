@@ -31,22 +31,8 @@ static bool config_valid(const himc_performance_config *c, himc_error *error)
                             error);
 }
 
-performance_settings himc_settings_default(const himc_performance_config *config)
-{
-    performance_settings s = {.physics_rate = config->physics_rate,
-                              .task_rate = config->task_rate,
-                              .skeleton = himc_skeleton_default(),
-                              .control = himc_controller_config_default(),
-                              .engine = HIMC_ENGINE_TREE,
-                              .limits = HIMC_LIMITS_OFF,
-                              .grip = HIMC_GRIP_GERMAN,
-                              .latency = USUAL_LATENCY};
-    for (int i = 0; i < HIMC_SEGMENTS; i++)
-        s.weight[i] = 1;
-    return s;
-}
-
-void himc_settings_gains(performance_settings *s, const himc_controller *controller)
+// the gains of the joints as they were asked for, for the body of that controller
+static void renew_gains(performance_settings *s, const himc_controller *controller)
 {
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const asked_gain *asked = &s->gain[j];
@@ -74,14 +60,6 @@ static void fit_stool(performance_motion *motion, performance_body *body,
     }
     himc_body_seat(body, himc_posture_seat(&s->skeleton, lowest, highest));
     himc_motion_seat(motion, body->skeleton.root.z);
-}
-
-// what gains that were asked for are with this body
-static void renew_gains(himc_performance *p)
-{
-    performance_settings s = p->settings;
-    himc_settings_gains(&s, &p->body->controller);
-    himc_performance_adopt(p, &s);
 }
 
 // body and motion begin together, at the targets of `t`
@@ -119,10 +97,10 @@ static bool make_parts(made_parts *parts, const performance_settings *s, himc_er
     return true;
 }
 
-// restarts everything except drums, events and recording with these settings and parts
-static void begin(himc_performance *p, const performance_settings *s, const made_parts *parts)
+// restarts everything except drums, events and recording with these parts and the usual settings
+static void begin(himc_performance *p, const made_parts *parts)
 {
-    p->settings = *s;
+    p->settings = p->host.usual;
     p->written.take[0] = '\0';
     himc_text_clear(&p->written.score);
     himc_text_clear(&p->written.units);
@@ -153,18 +131,19 @@ himc_performance *himc_performance_make(const himc_performance_config *config, h
         himc_error_set(error, "performance: out of memory");
         return NULL;
     }
-    performance_settings s = himc_settings_default(config);
+    p->host = (performance_host){.config = *config,
+                                 .take_options = himc_take_default(),
+                                 .usual = himc_settings_default(config)};
     if (!himc_written_room(&p->written.score, "performance", error) ||
         !himc_written_room(&p->written.units, "performance", error) ||
-        !make_parts(&parts, &s, error)) {
+        !make_parts(&parts, &p->host.usual, error)) {
         free_written(&p->written);
         free(p);
         return NULL;
     }
-    p->host = (performance_host){.config = *config, .take_options = himc_take_default()};
     himc_clock_init(&p->clock, config->sample_rate);
     himc_drums_begin(&p->drums);
-    begin(p, &s, &parts);
+    begin(p, &parts);
     return p;
 }
 
@@ -182,9 +161,8 @@ void himc_performance_free(himc_performance *p)
 
 bool himc_performance_reset(himc_performance *p, himc_error *error)
 {
-    performance_settings s = himc_settings_default(&p->host.config);
     made_parts fresh, old = {p->motion, p->body};
-    if (!make_parts(&fresh, &s, error))
+    if (!make_parts(&fresh, &p->host.usual, error))
         return himc_error_prefix(error, "reset");
     if (p->recording.file && himc_recording_frames(p->recording.file) == 0)
         himc_performance_drop_recording(p); // nothing to write
@@ -192,7 +170,7 @@ bool himc_performance_reset(himc_performance *p, himc_error *error)
         free_parts(&fresh);
         return himc_error_prefix(error, "reset");
     }
-    begin(p, &s, &fresh);
+    begin(p, &fresh);
     free_parts(&old);
     himc_drums_put_back(&p->drums);
     himc_performance_notice_drums(p);
@@ -208,7 +186,8 @@ void himc_performance_restart_steps(himc_performance *p)
 void himc_performance_adopt(himc_performance *p, const performance_settings *s)
 {
     p->settings = *s;
-    himc_body_configure(p->body, s);
+    renew_gains(&p->settings, &p->body->controller);
+    himc_body_configure(p->body, &p->settings);
 }
 
 void himc_performance_embody(himc_performance *p, const performance_settings *wanted,
@@ -221,7 +200,7 @@ void himc_performance_embody(himc_performance *p, const performance_settings *wa
     p->settings = s;
     fit_stool(p->motion, p->body, &p->drums, &s);
     put_together(p->motion, p->body, &s, step_time(p));
-    renew_gains(p);
+    himc_performance_adopt(p, &p->settings);
     himc_performance_renew_limits(p);
 }
 
@@ -290,7 +269,7 @@ void himc_performance_notice_drums(himc_performance *p)
             himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
     if (unseen) {
         put_together(p->motion, p->body, &p->settings, 0);
-        renew_gains(p);
+        himc_performance_adopt(p, &p->settings);
     }
     himc_drums_join(&p->drums);
     himc_performance_renew_limits(p);
@@ -399,12 +378,10 @@ static void free_drum(himc_job *job)
 himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
-    make_drum_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "drum: out of memory");
+    make_drum_job *j =
+        himc_job_new(sizeof *j, "drum", (himc_job){make_drum, add_drum, free_drum}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){make_drum, add_drum, free_drum};
     j->performance = p;
     j->sample_rate = p->clock.sample_rate;
     himc_command_copy(&j->command, command);

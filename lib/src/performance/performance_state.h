@@ -4,14 +4,15 @@
 /// Each part has its own type and one file that writes it; other files read it or call that file's
 /// functions. In the order of the calls:
 ///
+///     performance_settings        the settings: one table
 ///     performance_clock, _events, _queue, _statistics, _drums, _body, _motion    the parts alone
 ///     performance_contacts        sticks on heads: acts on motion, statistics and events
 ///     performance_report.c        reports: figures, rows of motion, `info`; the recording
-///     performance_setup.c         new, rebuild, reset: puts the parts together; the settings
+///     performance_setup.c         new, rebuild, reset: puts the parts together
 ///     performance_change.c        what a score has at beats: pedals, hands, pushes
 ///     performance_play.c, _take.c, _score.c     playing strokes, takes and scores
 ///     performance_command.c       the commands
-///     performance_dump.c          the settings as commands, for `dump` and saved states
+///     performance_dump.c          the state as commands, for `dump` and saved states
 ///     performance.c               the step
 #ifndef HIMC_PERFORMANCE_STATE_H
 #define HIMC_PERFORMANCE_STATE_H
@@ -35,7 +36,8 @@
 typedef struct performance_host {
     himc_performance_config config; ///< given to himc_performance_new
     himc_take_options take_options;
-    bool make_drums; ///< `drum` makes one that sounds
+    performance_settings usual; ///< of `reset`
+    bool make_drums;            ///< `drum` makes one that sounds
 } performance_host;
 
 typedef struct performance_recording {
@@ -74,29 +76,24 @@ static inline double step_time(const himc_performance *p)
     return himc_clock_time(&p->clock);
 }
 
-/// In the order of the words of `coupling`.
-typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
-
 // performance_report.c
 /// Notes the energies at a task tick, before the step, if rows of motion are asked for.
 HIMC_RT void himc_performance_take_energy(himc_performance *p);
 /// Gives the state to host and recording, at a task tick.
 HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
 void himc_performance_drop_recording(himc_performance *p);
-/// True if `record FILE`, `record stop` or `rate` is allowed while recording, or while not.
+/// True if the command is allowed while recording, or while not: `record` and `rate` may not be.
 bool himc_performance_allows(bool recording, const himc_command *command, himc_error *error);
-/// The command `record FILE` and `record stop` as jobs; NULL with the reason.
+/// The command `record` as a job; NULL with the reason.
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error);
-himc_job *himc_performance_record_stop_job(himc_performance *p, const himc_command *command,
-                                           himc_error *error);
 
 /// The lines of `info`.
 void himc_performance_inform(const himc_performance *p, himc_line_sink to);
 
 // performance_dump.c
 /// The command `dump FILE` as a job; NULL without memory.
-himc_job *himc_performance_dump_job(const himc_performance *p, const himc_command *command,
+himc_job *himc_performance_dump_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
 
 /// Room for one more line; false with the reason, which begins with `command`.

@@ -498,12 +498,9 @@ static void free_job(himc_job *job)
 
 static take_job *take_job_new(himc_performance *p, const char *name, bool again, himc_error *error)
 {
-    take_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "%s: out of memory", name);
+    take_job *j = himc_job_new(sizeof *j, name, (himc_job){prepare, install, free_job}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){prepare, install, free_job};
     j->performance = p;
     j->name = name;
     j->again = again;

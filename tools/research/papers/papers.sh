@@ -48,7 +48,7 @@ phases() {
 phases 'coupling two-way' >"$work/loud.csv"
 phases 'coupling one-way' >"$work/loud-one-way.csv"
 # words of a command's grammar: WORDS,row
-sed -n 's/.*HIMC_COMMAND_ROW([A-Z_]*, *\([a-z]*\), [^"]*, "\([^"]*\)".*/\1,\2/p' lib/himc/command_rows.h |
+sed -n 's/.*HIMC_[A-Z]*_ROW([A-Z_]*, *\([a-z]*\), [^"]*, "\([^"]*\)".*/\1,\2/p' lib/himc/command_rows.h |
     sed '1i name,grammar' >"$work/commands.csv"
 # the first and the last row of the improvisation: what is between balances too if these do
 sed -i -n '1p; 2p; $p' "$work/improvisation.csv"
