@@ -487,7 +487,7 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
     himc_state_tell(to, "damp", NULL, 1, (double[]){head->damp});
     if (himc_membrane_shape(drum->membrane)->kind == HIMC_CIRCLE) {
         himc_state_numbers(&seeded, 1, &head->uniformity);
-        if (head->uniformity_seed != drum->usual.uniformity_seed)
+        if (head->uniformity < 1) // its usual one is of the drum's name, which another may not have
             himc_state_numbers(&seeded, 1, (double[]){head->uniformity_seed});
         himc_state_end(&seeded, to);
     }
