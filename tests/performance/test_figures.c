@@ -246,7 +246,7 @@ static void test_targets_that_are_no_numbers_are_replaced_and_the_performer_play
         double *const number[] = {&path->segment[0].q.c[0].x,
                                   &h[HIMC_RIGHT].plan.height_profile.segment[0].q.c[5].z,
                                   &h[HIMC_RIGHT].plan.end,
-                                  &p->motion->course.from.value[0],
+                                  &p->motion->body.from.value[0],
                                   &p->motion->reference.posture.joint[3].w,
                                   &p->body->state.tip[HIMC_LEFT].z};
         expect_recovery_of(p, number[i]);

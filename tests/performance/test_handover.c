@@ -182,8 +182,9 @@ static void test_reset_leaves_a_performer_as_just_made(void)
     TEST_ASSERT_EQUAL_STRING(fresh, after);
     TEST_ASSERT_EQUAL_MEMORY(new->body->controller.gain, p->body->controller.gain,
                              sizeof p->body->controller.gain);
-    TEST_ASSERT_EQUAL_MEMORY(new->motion->posture.rest.joint, p->motion->posture.rest.joint,
-                             sizeof p->motion->posture.rest.joint);
+    TEST_ASSERT_EQUAL_MEMORY(new->motion->body.posture.rest.joint,
+                             p->motion->body.posture.rest.joint,
+                             sizeof p->motion->body.posture.rest.joint);
     session_do(p, "stroke 2 left legato mf");
     session_do(p, "stroke 4 left legato mf");
     session_do(p, "play");

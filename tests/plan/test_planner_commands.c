@@ -343,12 +343,15 @@ static void test_values_that_are_not_finite_change_nothing(void)
     same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
 }
 
-/// A planner of one drum with a reach given by `beyond`, with `strokes` of alternating hands.
-static void use_reach(double (*beyond)(const void *body, himc_hand hand, himc_vec3 point),
-                      int strokes)
+/// A planner of one drum with `strokes` of alternating hands, of a player whose left arm, or both,
+/// is as short as a finger.
+static void use_reach(bool right_too, int strokes)
 {
-    himc_planner_config config = himc_planner_default();
-    config.beyond = beyond;
+    himc_planner_config config = with_body();
+    for (int i = HIMC_LEFT_FOREARM; i <= HIMC_RIGHT_HAND; i += right_too ? 1 : 2) {
+        himc_vec3 *joint = &body.posture.skeleton.segment[i].origin;
+        *joint = himc_vec3_scale(*joint, 0.1);
+    }
     himc_planner_free(planner);
     planner = himc_planner_new(&config, &error);
     TEST_ASSERT_NOT_NULL(planner);
@@ -357,30 +360,16 @@ static void use_reach(double (*beyond)(const void *body, himc_hand hand, himc_ve
     himc_planner_play(planner, 0);
 }
 
-static double far_from_both(const void *body, himc_hand hand, himc_vec3 point)
-{
-    (void)body;
-    (void)hand;
-    (void)point;
-    return 0.5;
-}
-
-static double far_from_left(const void *body, himc_hand hand, himc_vec3 point)
-{
-    (void)body;
-    (void)point;
-    return hand == HIMC_LEFT ? 0.5 : 0;
-}
-
 static void test_strokes_that_no_hand_reaches_are_given_up_once_each(void)
 {
     himc_planner_note note;
     int notes = 0;
-    use_reach(far_from_both, 40);
+    use_reach(true, 40);
     for (double t = 0; t < himc_planner_end(planner); t += 0.01) {
         himc_planner_advance(planner, t);
         while (himc_planner_note_next(planner, &note) && notes++ == 0)
-            TEST_ASSERT_NOT_NULL(strstr(note.text, "given up, out of reach by 0.50 m"));
+            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(note.text, "given up, out of reach by 0.14 m"),
+                                         note.text);
     }
     TEST_ASSERT_EQUAL_INT(40, himc_planner_given_up(planner));
     himc_planner_finish(planner);
@@ -399,7 +388,7 @@ static void test_strokes_out_of_one_hands_reach_are_all_played_by_the_other(void
 {
     int played = 0;
     double last = -1;
-    use_reach(far_from_left, 40);
+    use_reach(false, 40);
     for (double t = 0; t < himc_planner_end(planner); t += 0.01) {
         himc_stroke s;
         int drum;

@@ -76,7 +76,7 @@ static void watch(void *user, const himc_motion_row *row)
         }
     w->shell = fmin(w->shell, stick_gap(w, capsule));
     for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
-        w->avoided = w->avoided || w->p->motion->avoidance.goal[i] != 0;
+        w->avoided = w->avoided || w->p->motion->body.avoidance.goal[i] != 0;
     long work = himc_planner_work(w->p->motion->planner);
     w->most = work - w->work > w->most ? work - w->work : w->most;
     w->work = work;

@@ -3,6 +3,7 @@
 #ifndef HIMC_TESTS_PLANNERS_H
 #define HIMC_TESTS_PLANNERS_H
 
+#include "body/posture.h"
 #include "plan/planner.h"
 
 #include "unity.h"
@@ -11,6 +12,7 @@
 
 static himc_planner *planner;
 static himc_error error;
+static himc_planned_body body; ///< of a planner from use_body
 
 static inline himc_planner *make_with(const himc_planner_config *config, double bpm)
 {
@@ -58,6 +60,20 @@ static inline void use(double bpm)
 {
     himc_planner_free(planner);
     planner = make(bpm);
+}
+
+/// A seated timpanist of the usual size; planners made with it rehearse.
+static inline himc_planner_config with_body(void)
+{
+    himc_planner_config config = himc_planner_default();
+    himc_skeleton_config of = himc_skeleton_default();
+    himc_skeleton skeleton;
+    TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &of, &error));
+    body = (himc_planned_body){.grip = HIMC_GRIP_GERMAN};
+    himc_posture_init(&body.posture, &skeleton, PLANE);
+    body.from = body.goal = himc_posture_trunk(config.rest, body.grip);
+    config.body = &body;
+    return config;
 }
 
 static inline void same_state(himc_target a, himc_target b)

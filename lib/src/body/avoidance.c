@@ -19,7 +19,8 @@
 #include <string.h>
 
 #define NEAR_ARM 0.06 // D of the two arms (m); chosen: uncrossed ones are 80 mm apart and more
-#define SEEN 0.1 // the arms' gaps are told below this (m); chosen: more than rehearsal.c asks for
+#define SEEN \
+    0.1 // the arms' gaps are told below this (m); chosen: more than planner_clear.c asks for
 #define NEAR_BODY 0.02 // D of arm and body (m); chosen: usual forearms pass the trunk at 39 mm
 // wrist from shoulder (m), pushed apart from NEAR_ARM more; chosen: nearer, small ways of the wrist
 // swing the elbow ...
@@ -37,6 +38,8 @@
 // limits of the three angles of an arm; chosen: what shoulders and wrists allow
 static const double least[HIMC_ARM_ANGLES] = {-0.5, -0.4, -0.6},
                     most[HIMC_ARM_ANGLES] = {1.5, 1.0, 1.0};
+
+const double himc_avoidance_times[HIMC_FORESEEN] = {0.06, 0.14};
 
 // the parts of the body that an arm may meet
 static const unsigned char body_part[] = {HIMC_TRUNK, HIMC_HEAD, HIMC_LEFT_UPPER_LEG,
@@ -271,6 +274,19 @@ int himc_avoidance_update(himc_avoidance *a, const himc_posture *posture, const 
     }
     step(a, rate, fmin(dt, LONGEST_STEP));
     return work;
+}
+
+int himc_avoidance_look_ahead(himc_avoidance *a, const himc_posture *posture,
+                              const himc_shells *shells, const himc_trunk_posture *now,
+                              const himc_trunk_posture *goal,
+                              himc_vec3 tip[HIMC_FORESEEN][HIMC_HANDS], double dt)
+{
+    himc_foreseen foreseen[HIMC_FORESEEN];
+    for (int k = 0; k < HIMC_FORESEEN; k++) {
+        memcpy(foreseen[k].tip, tip[k], sizeof foreseen[k].tip);
+        foreseen[k].trunk = himc_trunk_posture_foreseen(now, goal, himc_avoidance_times[k]);
+    }
+    return himc_avoidance_update(a, posture, shells, foreseen, dt);
 }
 
 himc_clearance himc_avoidance_gaps(const himc_avoidance *a, const himc_posture *posture,

@@ -19,6 +19,9 @@ typedef struct himc_foreseen {
 } himc_foreseen;
 
 #define HIMC_FORESEEN 2 ///< postures looked at; chosen: so few that a rehearsal can do the same
+/// Their times from now on (s). Chosen: elbows and wrists lag by 0.07 s.
+extern const double himc_avoidance_times[HIMC_FORESEEN];
+#define HIMC_AVOIDANCE_PERIOD 0.0119 ///< of updates; chosen: every third tick at 250 Hz (s)
 
 /// The drums.
 typedef struct himc_shells {
@@ -31,6 +34,12 @@ typedef struct himc_shells {
 HIMC_RT int himc_avoidance_update(himc_avoidance *avoidance, const himc_posture *posture,
                                   const himc_shells *shells,
                                   const himc_foreseen foreseen[HIMC_FORESEEN], double dt);
+
+/// The same for the tips at these times, and a trunk on its way from `now` to `goal`.
+HIMC_RT int himc_avoidance_look_ahead(himc_avoidance *avoidance, const himc_posture *posture,
+                                      const himc_shells *shells, const himc_trunk_posture *now,
+                                      const himc_trunk_posture *goal,
+                                      himc_vec3 tip[HIMC_FORESEEN][HIMC_HANDS], double dt);
 
 /// The gaps of a posture; no work is counted.
 HIMC_RT himc_clearance himc_avoidance_gaps(const himc_avoidance *avoidance,

@@ -18,11 +18,10 @@
 #include <string.h>
 
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
-#define TRUNK_FORESIGHT 1.2     // chosen: strokes further ahead do not turn the trunk (s)
-#define AVOIDANCE_PERIOD 0.0119 // chosen: every third tick at 250 Hz (s)
-#define REHEARSED_STEP 0.004    // of the rehearsed trunk, at most (s): a usual tick
-#define CLEARING_STEPS 40       // of the avoidance, before the body is first placed
-#define TRUNK_STEP 0.02         // longest step of himc_trunk_posture_approach (s)
+#define TRUNK_FORESIGHT 1.2 // chosen: strokes further ahead do not turn the trunk (s)
+#define USUAL_TICK 0.004    // (s)
+#define CLEARING_STEPS 40   // of the avoidance, before the body is first placed
+#define TRUNK_STEP 0.02     // longest step of himc_trunk_posture_approach (s)
 // postures a second of the planner's rehearsal; chosen: 10 % of a core, and a tenth of that near
 // contacts, whose steps cost most
 #define WORK 50000.0
@@ -49,77 +48,6 @@
 static const double rests_at[] = {0.06, 0.09}; // (s)
 #define RESTS_BELOW 0.002                      // (m)
 
-// the postures that the avoidance looks at (s); chosen: elbows and wrists lag by 0.07 s
-static const double ahead[HIMC_FORESEEN] = {0.06, 0.14};
-
-// distance of a place from the nearest one that the tip reaches
-static double beyond_reach(const void *posture, himc_hand hand, himc_vec3 place)
-{
-    return himc_vec3_length(himc_vec3_sub(place, himc_posture_reachable(posture, hand, place)));
-}
-
-// what a rehearsal remembers
-typedef struct rehearsed {
-    himc_avoidance avoidance;
-    double since; // its last update (s)
-    himc_trunk_posture trunk, goal;
-} rehearsed;
-
-_Static_assert(sizeof(rehearsed) <= sizeof(himc_rehearsed), "himc_rehearsed has no room");
-
-// one step of the avoidance with the tips in `foreseen`; returns how many postures were looked at
-static int clear_ahead(const performance_motion *m, himc_avoidance *a,
-                       const himc_trunk_posture *now, const himc_trunk_posture *goal,
-                       himc_foreseen foreseen[HIMC_FORESEEN], double dt)
-{
-    for (int k = 0; k < HIMC_FORESEEN; k++)
-        foreseen[k].trunk = himc_trunk_posture_foreseen(now, goal, ahead[k]);
-    return himc_avoidance_update(a, &m->posture, &m->shells, foreseen, dt);
-}
-
-// by `time` (s), in steps of a tick
-static void move_trunk(rehearsed *r, double time)
-{
-    int steps = (int)ceil(time / REHEARSED_STEP);
-    for (int i = 0; i < steps; i++)
-        r->trunk = himc_trunk_posture_approach(&r->trunk, &r->goal, time / steps);
-}
-
-// as `avoid` does; the work
-static int rehearse_avoidance(const performance_motion *m, const himc_moment *at, rehearsed *r)
-{
-    himc_foreseen f[HIMC_FORESEEN];
-    int work = 0;
-    r->since += fmax(at->after, 0);
-    if (r->since >= AVOIDANCE_PERIOD) {
-        for (int k = 0; k < HIMC_FORESEEN; k++)
-            for (int hand = 0; hand < HIMC_HANDS; hand++)
-                f[k].tip[hand] = himc_moment_tip(at, (himc_hand)hand, at->time + ahead[k]);
-        work = clear_ahead(m, &r->avoidance, &r->trunk, &r->goal, f, r->since);
-        r->since = 0;
-    }
-    himc_avoidance_apply(&r->avoidance, &r->goal);
-    return work;
-}
-
-// Gaps at a moment of the plan. Trunk, elbows and wrists move as they will: the same steps of the
-// avoidance are taken with the same tips.
-static himc_clearance rehearse(const void *motion, const himc_moment *at, himc_rehearsed *state)
-{
-    const performance_motion *m = motion;
-    rehearsed r = {m->avoidance, m->course.time - m->avoided, m->course.from, m->course.goal};
-    if (at->after >= 0)
-        memcpy(&r, state, sizeof r);
-    move_trunk(&r, at->after < 0 ? fmax(at->time - m->course.time, 0) : at->after);
-    himc_posture then = m->posture;
-    then.trunk_posture = r.trunk;
-    himc_clearance clear = himc_avoidance_gaps(&r.avoidance, &then, &m->shells, at->tip);
-    r.goal = himc_posture_trunk(at->place, m->grip);
-    clear.work = 1 + rehearse_avoidance(m, at, &r);
-    memcpy(state, &r, sizeof r);
-    return clear;
-}
-
 performance_motion *himc_motion_new(himc_error *error)
 {
     performance_motion *m = calloc(1, sizeof *m);
@@ -129,16 +57,13 @@ performance_motion *himc_motion_new(himc_error *error)
         return NULL;
     }
     planning.mallet_radius = himc_skeleton_default().mallet_radius;
-    planning.beyond = beyond_reach;
-    planning.body = &m->posture;
-    planning.rehearse = rehearse;
-    planning.motion = m;
+    planning.body = &m->body;
     m->planner = himc_planner_new(&planning, error);
     if (!m->planner) {
         free(m);
         return NULL;
     }
-    m->posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
+    m->body.posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
     m->track_start = INFINITY;
     m->last_beat = -1;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -162,7 +87,7 @@ void himc_motion_replan(performance_motion *m)
 
 void himc_motion_seat(performance_motion *m, double height)
 {
-    m->posture.skeleton.root.z = height;
+    m->body.posture.skeleton.root.z = height;
 }
 
 bool himc_motion_rests_elsewhere(const performance_motion *m)
@@ -178,7 +103,7 @@ void himc_motion_set_drum(performance_motion *m, int index, const himc_head_fram
 {
     himc_planner_set_drum(m->planner, index, frame);
     if (index == 0)
-        m->posture.level = frame->center.z + m->posture.skeleton.mallet_radius;
+        m->body.posture.level = frame->center.z + m->body.posture.skeleton.mallet_radius;
     m->replan = true;
 }
 
@@ -206,7 +131,7 @@ bool himc_motion_captured_joints(const performance_motion *m, double t, himc_pos
     if (!m->track || !isfinite(m->track_start) || !himc_track_has_posture(m->track))
         return false;
     *joints = m->reference.posture;
-    himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start, NULL, joints);
+    himc_track_posture(m->track, &m->body.posture.skeleton, t - m->track_start, NULL, joints);
     return true;
 }
 
@@ -332,8 +257,8 @@ void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
 // the course at a time, not before it was set
 static himc_trunk_posture trunk_at(const performance_motion *m, double t)
 {
-    return himc_trunk_posture_approach(&m->course.from, &m->course.goal,
-                                       fmin(fmax(t - m->course.time, 0), TRUNK_STEP));
+    return himc_trunk_posture_approach(&m->body.from, &m->body.goal,
+                                       fmin(fmax(t - m->body.time, 0), TRUNK_STEP));
 }
 
 // head, weight and breath; a take shows its own
@@ -348,7 +273,7 @@ static void enliven(performance_motion *m, const performance_drums *drums, doubl
         next.in = s.time - t;
         next.at = himc_head_frame_to_world(himc_drums_frame(drums, s.drum), s.x, s.y);
     }
-    himc_alive_add(&m->posture, &next, t, &m->course.goal);
+    himc_alive_add(&m->body.posture, &next, t, &m->body.goal);
 }
 
 // when a hand has nothing to play; never while live targets move it
@@ -374,22 +299,25 @@ static void damp(performance_motion *m, const performance_drums *drums, double t
         head[i] = (himc_damped_head){.frame = himc_drums_frame(drums, i),
                                      .now = himc_drums_damped(drums, i),
                                      .soon = himc_drums_will_be_damped(drums, i, soon)};
-    if (himc_damping_move(&m->damping, m->planner, &m->posture, head, drums->count, hand, t))
+    if (himc_damping_move(&m->damping, m->planner, &m->body.posture, head, drums->count, hand, t))
         m->replan = true;
 }
 
 // keeps the arms clear along the planned way of the tips
 static void avoid(performance_motion *m, double t)
 {
-    himc_foreseen f[HIMC_FORESEEN];
-    if (t - m->avoided >= AVOIDANCE_PERIOD) {
+    himc_planned_body *b = &m->body;
+    himc_vec3 tip[HIMC_FORESEEN][HIMC_HANDS];
+    if (t - b->avoided >= HIMC_AVOIDANCE_PERIOD) {
         for (int k = 0; k < HIMC_FORESEEN; k++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)
-                f[k].tip[hand] = himc_motion_planned(m, (himc_hand)hand, t + ahead[k]).x;
-        clear_ahead(m, &m->avoidance, &m->course.from, &m->course.goal, f, t - m->avoided);
-        m->avoided = t;
+                tip[k][hand] =
+                    himc_motion_planned(m, (himc_hand)hand, t + himc_avoidance_times[k]).x;
+        himc_avoidance_look_ahead(&b->avoidance, &b->posture, &b->shells, &b->from, &b->goal, tip,
+                                  t - b->avoided);
+        b->avoided = t;
     }
-    himc_avoidance_apply(&m->avoidance, &m->course.goal);
+    himc_avoidance_apply(&b->avoidance, &b->goal);
 }
 
 // sets a new course, from trunk and grip at `t` to those for the next strokes
@@ -404,17 +332,17 @@ static void set_course(performance_motion *m, const performance_settings *s,
                 ? himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y)
                 : himc_motion_planned(m, (himc_hand)hand, t).x;
     }
-    m->course.from = trunk_at(m, t);
-    m->course.goal = himc_posture_trunk(place, s->grip);
+    m->body.from = trunk_at(m, t);
+    m->body.goal = himc_posture_trunk(place, s->grip);
     if (m->track && himc_settings_trunk_known(s)) {
         const double *captured = s->captured.trunk.value;
-        m->course.goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
-        m->course.goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
+        m->body.goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
+        m->body.goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
     }
     if (s->alive && !m->track)
         enliven(m, drums, t);
     avoid(m, t);
-    m->course.time = t;
+    m->body.time = t;
 }
 
 // the joints
@@ -423,12 +351,12 @@ static void set_course(performance_motion *m, const performance_settings *s,
 static void find_posture(const performance_motion *m, const performance_settings *s, double t,
                          const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
 {
-    himc_posture_moving(&m->posture, tip, motion);
+    himc_posture_moving(&m->body.posture, tip, motion);
     bool captured = s->control.mode != HIMC_PIPELINE_HIMC && m->track && isfinite(m->track_start) &&
                     himc_track_has_posture(m->track);
     if (captured)
-        himc_track_posture(m->track, &m->posture.skeleton, t - m->track_start, s->bend ? tip : NULL,
-                           motion);
+        himc_track_posture(m->track, &m->body.posture.skeleton, t - m->track_start,
+                           s->bend ? tip : NULL, motion);
 }
 
 // the posture regression in place of the natural posture
@@ -451,7 +379,7 @@ static void follow_regression(const performance_motion *m, const performance_set
 static void fit_regression(performance_motion *m, const performance_settings *s)
 {
     himc_pose pose;
-    himc_posture held = m->posture;
+    himc_posture held = m->body.posture;
     const himc_vec3 tip[HIMC_HANDS] = {m->from.tip[HIMC_LEFT].x, m->from.tip[HIMC_RIGHT].x};
     if (!m->has_regression || !m->track || !himc_settings_trunk_known(s))
         return;
@@ -491,7 +419,7 @@ static void crossfade(performance_motion *m, himc_setpoint *tick)
 // height of a tip over a head, as the mallet has it
 static double height_over(const performance_motion *m, const himc_head_frame *head, himc_vec3 tip)
 {
-    return himc_head_frame_from_world(head, tip).z - m->posture.skeleton.mallet_radius;
+    return himc_head_frame_from_world(head, tip).z - m->body.posture.skeleton.mallet_radius;
 }
 
 // a target below the head under the hand becomes a press; towards the rim it may go deeper, so that
@@ -503,7 +431,7 @@ static void limit_depth(const performance_motion *m, himc_hand hand, himc_target
         return;
     himc_vec3 at = himc_head_frame_from_world(head, tip->x), n = himc_head_frame_normal(head);
     double out = fmax(hypot(at.x, at.y) / head->radius - PRESS_RIM, 0) / (1 - PRESS_RIM);
-    double h = at.z - m->posture.skeleton.mallet_radius, v = himc_vec3_dot(n, tip->v),
+    double h = at.z - m->body.posture.skeleton.mallet_radius, v = himc_vec3_dot(n, tip->v),
            a = himc_vec3_dot(n, tip->a), free = h, free_v = v, free_a = a;
     if (out >= 1)
         return;
@@ -516,7 +444,7 @@ static void limit_depth(const performance_motion *m, himc_hand hand, himc_target
 static void fill_tick(performance_motion *m, const performance_settings *s, himc_setpoint *tick,
                       double t)
 {
-    m->posture.trunk_posture = trunk_at(m, t);
+    m->body.posture.trunk_posture = trunk_at(m, t);
     tick->time = t;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         tick->tip[hand] = himc_motion_planned(m, (himc_hand)hand, t);
@@ -530,10 +458,10 @@ static void fill_tick(performance_motion *m, const performance_settings *s, himc
 void himc_motion_read_task(performance_motion *m, const performance_settings *s,
                            const performance_drums *drums, double t, double next)
 {
-    m->grip = s->grip;
-    m->shells.count = drums->count;
+    m->body.grip = s->grip;
+    m->body.shells.count = drums->count;
     for (int i = 0; i < drums->count; i++)
-        m->shells.head[i] = *himc_drums_frame(drums, i);
+        m->body.shells.head[i] = *himc_drums_frame(drums, i);
     himc_planner_advance(m->planner, t);
     himc_motion_stir(m);
     if (s->alive && !m->track)
@@ -576,12 +504,13 @@ static void begin_clear(performance_motion *m, const performance_settings *s, do
     f[0].trunk = himc_posture_trunk(f[0].tip, s->grip);
     for (int k = 1; k < HIMC_FORESEEN; k++)
         f[k] = f[0];
-    m->avoidance = (himc_avoidance){{0}, 0};
+    m->body.avoidance = (himc_avoidance){{0}, 0};
     for (int i = 0; i < CLEARING_STEPS; i++)
-        himc_avoidance_update(&m->avoidance, &m->posture, &m->shells, f, AVOIDANCE_PERIOD);
-    m->course.goal = f[0].trunk;
-    himc_avoidance_apply(&m->avoidance, &m->course.goal);
-    m->course.from = m->course.goal;
+        himc_avoidance_update(&m->body.avoidance, &m->body.posture, &m->body.shells, f,
+                              HIMC_AVOIDANCE_PERIOD);
+    m->body.goal = f[0].trunk;
+    himc_avoidance_apply(&m->body.avoidance, &m->body.goal);
+    m->body.from = m->body.goal;
 }
 
 bool himc_motion_is_finite(const performance_motion *m)
@@ -603,10 +532,10 @@ void himc_motion_recover(performance_motion *m, const performance_settings *s, d
     m->crossfade_due = false;
     himc_posture_crossfade_cancel(&m->crossfade);
     begin_clear(m, s, t);
-    m->course.time = t;
+    m->body.time = t;
     fill_tick(m, s, &m->from, t);
     m->to = m->from;
-    m->to.time += REHEARSED_STEP; // until the setpoints are read again
+    m->to.time += USUAL_TICK; // until the setpoints are read again
     memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
     m->reference.posture = m->from.posture;
     himc_setpoint_course_make(&m->between, &m->from, &m->to);
@@ -619,9 +548,9 @@ void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
     // the body begins in the posture: no cross-fade
     m->crossfade_due = false;
     himc_posture_crossfade_cancel(&m->crossfade);
-    himc_motion_init_posture(&m->posture, skeleton, &s->captured, m->posture.level);
+    himc_motion_init_posture(&m->body.posture, skeleton, &s->captured, m->body.posture.level);
     himc_planner_set_body(m->planner);
-    if (m->course.time == 0)
+    if (m->body.time == 0)
         begin_clear(m, s, t);
     fill_tick(m, s, &m->from, t);
     memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
@@ -633,8 +562,9 @@ void himc_motion_resting_pose(const performance_motion *m, himc_pose *pose)
 {
     himc_planner_config resting = himc_planner_default();
     himc_posture posture;
-    himc_posture_init(&posture, &m->posture.skeleton, resting.rest[HIMC_RIGHT].z - REST_HEIGHT);
-    posture.rest = m->posture.rest;
+    himc_posture_init(&posture, &m->body.posture.skeleton,
+                      resting.rest[HIMC_RIGHT].z - REST_HEIGHT);
+    posture.rest = m->body.posture.rest;
     himc_posture_at(&posture, resting.rest, pose);
 }
 
@@ -645,9 +575,9 @@ himc_pose himc_motion_mean_pose(const performance_motion *m, double t)
         himc_vec3 tip[HIMC_HANDS];
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
-            tip[hand].z = m->posture.level + LIMIT_HEIGHT * i / (LIMIT_HEIGHTS - 1);
+            tip[hand].z = m->body.posture.level + LIMIT_HEIGHT * i / (LIMIT_HEIGHTS - 1);
         }
-        himc_posture_at(&m->posture, tip, &pose[i]);
+        himc_posture_at(&m->body.posture, tip, &pose[i]);
     }
     return himc_limits_mean(pose, LIMIT_HEIGHTS);
 }
@@ -733,7 +663,7 @@ void himc_motion_stop(performance_motion *m, double t)
 himc_vec3 himc_motion_reachable(performance_motion *m, himc_hand hand, himc_vec3 asked,
                                 bool *reachable, bool *first)
 {
-    himc_vec3 x = himc_posture_reachable(&m->posture, hand, asked);
+    himc_vec3 x = himc_posture_reachable(&m->body.posture, hand, asked);
     *reachable = himc_vec3_length(himc_vec3_sub(x, asked)) <= OUT_OF_REACH;
     *first = !m->out_of_reach[hand];
     m->out_of_reach[hand] = !*reachable;
@@ -764,9 +694,10 @@ himc_vec3 himc_motion_beyond(const performance_motion *m, const himc_head_frame 
         double x, y;
         himc_stroke_spot(&usual, head->radius, &x, &y);
         himc_vec3 tip =
-            himc_vec3_madd(himc_head_frame_to_world(head, x, y), m->posture.skeleton.mallet_radius,
-                           himc_head_frame_normal(head));
-        himc_vec3 way = himc_vec3_sub(tip, himc_posture_reachable(&m->posture, usual.hand, tip));
+            himc_vec3_madd(himc_head_frame_to_world(head, x, y),
+                           m->body.posture.skeleton.mallet_radius, himc_head_frame_normal(head));
+        himc_vec3 way =
+            himc_vec3_sub(tip, himc_posture_reachable(&m->body.posture, usual.hand, tip));
         if (himc_vec3_length(way) < himc_vec3_length(least))
             least = way;
     }

@@ -4,8 +4,7 @@
 #define HIMC_PERFORMANCE_MOTION_H
 
 #include "plan/planner.h"
-#include "body/avoidance.h"
-#include "control/damping.h"
+#include "plan/damping.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"
 #include "control/setpoint.h"
@@ -19,12 +18,6 @@ typedef struct live_target {
     double time; ///< (s)
     bool eased;  ///< it comes down to a head more slowly than asked
 } live_target;
-
-/// The course of trunk and grip towards the posture for the next strokes.
-typedef struct trunk_course {
-    himc_trunk_posture from, goal;
-    double time; ///< of `from` (s)
-} trunk_course;
 
 /// The present or next contact of a hand.
 typedef struct planned_contact {
@@ -52,18 +45,13 @@ typedef struct performance_motion {
     himc_track *track;     ///< owned; instead of the planner when a take is loaded
     double track_start;    ///< (s); infinite while the planner moves the hands
     bool has_learned;
-    himc_limits learned;  ///< joint limits of the take's player
-    himc_posture posture; ///< makes natural postures for the tips
+    himc_limits learned;    ///< joint limits of the take's player
+    himc_planned_body body; ///< its posture, and the course towards that for the next strokes
     bool has_regression;
     bool regression_of_take; ///< dropped with the take
     himc_posture_regression
         regression; ///< null-space target; replaces the natural posture in `himc`
-    trunk_course course;
-    himc_avoidance avoidance;
     himc_damping damping;
-    double avoided;     ///< time of its last update (s)
-    himc_shells shells; ///< the drums at the last tick
-    himc_grip grip;     ///< at the last tick
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;            ///< of the ticks before and after

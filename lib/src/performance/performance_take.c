@@ -433,7 +433,7 @@ static void copy_performance(take_job *j)
     j->body = p->settings.skeleton;
     j->asked_height = p->settings.asked_height;
     j->asked_mass = p->settings.asked_mass;
-    j->posture = p->motion->posture;
+    j->posture = p->motion->body.posture;
     j->sample_rate = p->clock.sample_rate;
     j->own_regression = has_own_regression(p);
     j->has_drum = p->drums.count > 0;

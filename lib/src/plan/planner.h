@@ -9,41 +9,27 @@
 #define HIMC_PLANNER_H
 
 #include "base/quintic.h"
-#include "body/capsules.h"
+#include "body/avoidance.h"
 #include "himc/score.h"
 #include "capture/units.h"
 #include "plan/human.h"
 
-/// Both hands at a moment of their plans.
-typedef struct himc_moment {
-    double time;                      ///< (s)
-    double after;                     ///< the moment before (s); negative: it is the first
-    himc_vec3 tip[HIMC_HANDS];        ///< (m)
-    himc_vec3 place[HIMC_HANDS];      ///< of the next touch, or the tip (m)
-    const struct planner_hand *plans; ///< of both hands ...
-    const struct planner_lift *lift;  ///< ... and a lift of one; NULL: the tips stay; borrowed
-} himc_moment;
-
-/// The tip of a hand (m) at another time (s) of these plans.
-HIMC_RT himc_vec3 himc_moment_tip(const himc_moment *moment, himc_hand hand, double t);
-
-/// What a rehearsal remembers from moment to moment; its contents are of `rehearse` alone.
-typedef struct himc_rehearsed {
-    double state[96];
-} himc_rehearsed;
+/// The body that is to follow the plan, as it is now. Its owner writes it, the planner only reads.
+typedef struct himc_planned_body {
+    himc_posture posture; ///< makes natural postures for the tips
+    himc_grip grip;
+    himc_shells shells;      ///< the drums
+    himc_trunk_posture from; ///< course of the trunk: from here ...
+    himc_trunk_posture goal; ///< ... to here
+    double time;             ///< of `from` (s)
+    himc_avoidance avoidance;
+    double avoided; ///< time of its last update (s)
+} himc_planned_body;
 
 typedef struct himc_planner_config {
     double mallet_radius;       ///< the tip is the mallet's centre: it touches at this height (m)
     himc_vec3 rest[HIMC_HANDS]; ///< where a tip rests while no drum in its reach is known (m)
-    /// Distance of a point from the part of space the hand can reach (m), 0 inside it; HIMC_RT.
-    /// NULL: all is in reach.
-    double (*beyond)(const void *body, himc_hand hand, himc_vec3 point);
-    const void *body; ///< given to `beyond`; borrowed
-    /// Gaps of the body at a moment of the plan, one moment after the other; HIMC_RT. NULL: the
-    /// hands never meet.
-    himc_clearance (*rehearse)(const void *motion, const himc_moment *moment,
-                               himc_rehearsed *rehearsed);
-    const void *motion; ///< given to `rehearse`; borrowed
+    const himc_planned_body *body; ///< borrowed; NULL: all is in reach, the hands never meet
 } himc_planner_config;
 
 himc_planner_config himc_planner_default(void);

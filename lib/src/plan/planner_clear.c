@@ -1,19 +1,45 @@
-/// planner_clear.c: hands that would meet pass each other: the search for a way, a little at a
-/// time.
+/// planner_clear.c: both plans are rehearsed ahead of time with the whole body, and hands that
+/// would meet pass each other.
 ///
-/// What is planned stands at once and is rehearsed afterwards (rehearsal.c): a walk goes through
-/// both plans, ahead of the time at which they can still be changed, as far as both are known.
+/// What is planned stands at once and is rehearsed afterwards: a walk goes through both plans,
+/// ahead of the time at which they can still be changed, as far as both are known. At each touch,
+/// and as often as needed between touches, it asks the body for its gaps, with trunk, elbows and
+/// wrists as they will have moved by then: the same steps of the avoidance are taken with the same
+/// tips.
+///
 /// Where the hands come near, changes are tried in a fixed order: the upper hand is lifted over the
 /// other one, or over and outwards, then the other hand is; if the body still meets itself, the
 /// spot of the next stroke is moved aside, or its hand waits, or the other hand plays it; where the
-/// body still meets itself it is left out, and a line says so. For these the planner itself plans a
-/// trial (PLANNER_TRY). The best change is made, and the walk goes on through it.
+/// body still meets itself it is left out, and a line says so. For these a trial is planned. Each
+/// change is walked through in the same way, from a moment before it begins. The best one is made,
+/// and the walk goes on through it.
 ///
 /// All of this is work that is counted in postures of the body and paid for by the time that passes
 /// (himc_planner_think), so no step carries more than a few of them, and the result does not depend
 /// on the speed of the machine. A plan that changes before the walk's place lets the walk begin
-/// anew; lifts and other ways that have been found stay with their stroke.
+/// again; lifts and other ways that have been found stay with their stroke.
 #include "plan/planner_state.h"
+
+#include <string.h>
+
+// moments; chosen: sticks that play one head side by side are 14 mm apart
+#define STEP 0.012         // between two looks (s)
+#define PASSING_GAP 0.1    // sticks nearer than this (m) ...
+#define PASSING_STEP 0.004 // ... are looked at so often (s): they pass at up to 6 m/s
+#define NEAR_GAP 0.008     // hands nearer than this are kept apart (m) ...
+#define CROSSED_GAP 0.05   // ... and crossed ones nearer by this
+#define CROSSED 0.02       // one tip is so far on the other's side (m)
+#define UNSURE_GAP 0.004 // real gaps are less than rehearsed ones by up to this (m): seen 1 to 4 mm
+#define UNSURE 0.003     // so early or late a stick may pass (s): the rebound is only predicted ...
+#define MOST_UNSURE 0.01 // ... so that the gap may be less by this, too (m)
+#define STRETCHED 2.0    // ... and a body gap by this share of the way out of reach: seen up to 1.8
+#define OVERREACH 0.04   // no motion so far out of reach of the usual posture (m)
+#define FOLDED 0.25      // no way of a tip so near to its shoulder (m): the arm would whip
+#define UNREACHED 0.1    // and no stroke so far (m): the arm would not find back
+#define PLACE_AHEAD 1.2  // the trunk turns to a touch within this time (s)
+#define TRUNK_STEP 0.004 // of the rehearsed trunk, at most (s): a usual tick
+/// With a smaller gap other ways are tried (m); chosen: a rebound changes the plan by 6 mm.
+#define SURE_GAP 0.008
 
 // the walk; chosen
 #define MOST_CREDIT 16.0   // work that is not done is not owed
@@ -23,13 +49,11 @@
 #define AFTER_WAY 0.5      // ... and a stroke played in another way (s)
 
 // lifts; chosen
-#define LIFT 0.08         // their length in these steps (m) ...
-#define LIFTS 4           // ... and up to so many
-#define WAYS 3            // directions
-#define QUICK_LIFT 60.0   // peak acceleration with time (m/s^2)
-#define LIFT_MARGIN 1.001 // of the quickest lift's time: it is possible in spite of rounding
-#define SAME_TOUCH 1e-6   // (s)
-#define STILL 0.03        // no lift so near before a touch (s)
+#define LIFT 0.08       // their length in these steps (m) ...
+#define LIFTS 4         // ... and up to so many
+#define WAYS 3          // directions
+#define QUICK_LIFT 60.0 // peak acceleration with time (m/s^2)
+#define STILL 0.03      // no lift so near before a touch (s)
 #define LEAST_AHEAD \
     0.012 // changes begin after now (s); more than the longest period of advance, 10 ms
 
@@ -46,6 +70,211 @@ static const planner_way stroke_way[] = {
     {.aside = 0.03}, {.aside = 0.06}, {.waits = true}, {.other = true}, {.leaves = true}};
 #define STROKE_WAYS (int)(sizeof stroke_way / sizeof stroke_way[0])
 #define KEPT_WAYS 3 ///< the first ones: its hand plays it
+
+/// A walk that begins at t (s).
+static planner_rehearsal begin_walk(double t)
+{
+    return (planner_rehearsal){
+        .t = t, .after = -1, .met = true, .near = {0, HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0}};
+}
+
+static bool is_crossed(const himc_vec3 tip[HIMC_HANDS])
+{
+    himc_vec3 left = tip[HIMC_LEFT], right = tip[HIMC_RIGHT];
+    return left.x * right.y - left.y * right.x > CROSSED * hypot(left.x, left.y);
+}
+
+/// The part of a lift at t that is done (0 .. 1), as himc_hand_lift has it.
+static double lifted(const planner_lift *l, double t)
+{
+    double u =
+        t < l->from ? (t - l->begin) / (l->from - l->begin) : (l->end - t) / (l->end - l->to);
+    u = fmin(fmax(u, 0), 1);
+    return u * u * u * (10 - u * (15 - 6 * u));
+}
+
+/// Where the hand touches next, if that is soon; else its tip.
+static himc_vec3 next_place(const planner_hand *h, double t, himc_vec3 tip)
+{
+    const timed_stroke *s = himc_planner_current_planned(h, t);
+    bool soon = s && s->goal.time >= t && s->goal.time < t + PLACE_AHEAD;
+    return soon ? s->goal.spot : tip;
+}
+
+/// Both hands at a moment.
+typedef struct moment {
+    double time, after;          // the moment before (s); negative: it is the first
+    himc_vec3 tip[HIMC_HANDS];   // (m)
+    himc_vec3 place[HIMC_HANDS]; // of the next touch, or the tip (m)
+    const planner_hand *hand;    // their plans ...
+    const planner_lift *lift;    // ... and a lift of one; NULL: the tips stay
+} moment;
+
+static himc_vec3 tip_at(const moment *m, himc_hand hand, double t)
+{
+    if (!m->hand)
+        return m->tip[hand];
+    himc_vec3 tip = himc_hand_at(&m->hand[hand].plan, t).x;
+    return m->lift->end > 0 && m->lift->hand == hand
+               ? himc_vec3_madd(tip, lifted(m->lift, t), m->lift->way)
+               : tip;
+}
+
+static moment moment_at(const planner_rehearsal *walk, const planner_lift *lift,
+                        const planner_hand *hand)
+{
+    moment m = {.time = walk->t, .after = walk->after, .hand = hand, .lift = lift};
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        m.tip[i] = tip_at(&m, (himc_hand)i, walk->t);
+        m.place[i] = next_place(&hand[i], walk->t, m.tip[i]);
+    }
+    return m;
+}
+
+/// The trunk by `time` (s), in steps of a tick.
+static void move_trunk(planner_rehearsal *r, double time)
+{
+    int steps = (int)ceil(time / TRUNK_STEP);
+    for (int i = 0; i < steps; i++)
+        r->trunk = himc_trunk_posture_approach(&r->trunk, &r->goal, time / steps);
+}
+
+/// One step of the avoidance, if it is due; the work.
+static int avoid(const himc_planned_body *b, const moment *at, planner_rehearsal *r)
+{
+    himc_vec3 tip[HIMC_FORESEEN][HIMC_HANDS];
+    int work = 0;
+    r->since += fmax(at->after, 0);
+    if (r->since >= HIMC_AVOIDANCE_PERIOD) {
+        for (int k = 0; k < HIMC_FORESEEN; k++)
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                tip[k][hand] = tip_at(at, (himc_hand)hand, at->time + himc_avoidance_times[k]);
+        work = himc_avoidance_look_ahead(&r->avoidance, &b->posture, &b->shells, &r->trunk,
+                                         &r->goal, tip, r->since);
+        r->since = 0;
+    }
+    himc_avoidance_apply(&r->avoidance, &r->goal);
+    return work;
+}
+
+/// The gaps at a moment. Trunk, elbows and wrists move as they will, at first from where they are
+/// now.
+static himc_clearance look(const himc_planned_body *b, const moment *at, planner_rehearsal *r)
+{
+    if (at->after < 0) {
+        r->trunk = b->from;
+        r->goal = b->goal;
+        r->avoidance = b->avoidance;
+        r->since = b->time - b->avoided;
+    }
+    move_trunk(r, at->after < 0 ? fmax(at->time - b->time, 0) : at->after);
+    himc_posture then = b->posture;
+    then.trunk_posture = r->trunk;
+    himc_clearance clear = himc_avoidance_gaps(&r->avoidance, &then, &b->shells, at->tip);
+    r->goal = himc_posture_trunk(at->place, b->grip);
+    clear.work = 1 + avoid(b, at, r);
+    return clear;
+}
+
+bool himc_planner_bends_to(const himc_planner *planner, himc_hand hand, double t,
+                           const himc_goal *goal)
+{
+    const himc_planned_body *body = planner->config.body;
+    planner_rehearsal r = begin_walk(t);
+    moment m = {.time = t, .after = -1};
+    if (!body)
+        return true;
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = himc_hand_at(&planner->hand[i].plan, t).x;
+    m.place[hand] = goal->spot;
+    look(body, &m, &r);
+    m.time = goal->time;
+    m.after = goal->time - t;
+    m.tip[hand] = goal->spot;
+    return look(body, &m, &r).beyond <= PLANNER_UNREACHED;
+}
+
+bool himc_planner_meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    planner_rehearsal r = begin_walk(t);
+    moment m = {.time = t, .after = -1};
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    return planner->config.body && look(planner->config.body, &m, &r).sticks < 0;
+}
+
+/// What the gaps lack at a moment (m), and the hand that should give way: `order` of
+/// himc_clearance.
+static double lack_of(const himc_clearance *clear, const moment *at, int *order)
+{
+    double lack = NEAR_GAP - clear->sticks + (is_crossed(at->tip) ? CROSSED_GAP : 0);
+    lack = fmax(lack, -fmin(clear->body, OVERREACH - clear->beyond));
+    *order = clear->order;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (FOLDED - clear->folded[hand] > lack) {
+            lack = FOLDED - clear->folded[hand];
+            *order = hand == HIMC_LEFT ? 1 : -1;
+        }
+    return lack;
+}
+
+/// Notes what is near at a moment, for the time until the next one.
+static void note(near_time *n, double t, double after, double lack, int order)
+{
+    if (n->lack == 0)
+        n->from = t;
+    if (n->lack == 0 || n->order == 0)
+        n->order = order;
+    n->lack += after * lack;
+    n->to = t;
+}
+
+double himc_planner_least_gap(himc_clearance *clear, double speed_past)
+{
+    clear->body -= UNSURE_GAP + STRETCHED * clear->beyond;
+    clear->sticks -= UNSURE_GAP + fmin(MOST_UNSURE, UNSURE * speed_past);
+    return fmin(fmin(clear->body, clear->sticks), UNREACHED - clear->beyond);
+}
+
+/// Of the tips past each other, from above (m/s).
+static double speed_past(const planner_hand *hand, double t)
+{
+    himc_vec3 v = himc_vec3_sub(himc_hand_at(&hand[HIMC_LEFT].plan, t).v,
+                                himc_hand_at(&hand[HIMC_RIGHT].plan, t).v);
+    return hypot(v.x, v.y);
+}
+
+/// One moment of the walk through the plans of both hands and a lift; what is near before `ignored`
+/// (s) is not noted. Returns the work.
+static int walk_step(const himc_planner *planner, planner_rehearsal *walk, const planner_lift *lift,
+                     const planner_hand *hand, double ignored)
+{
+    int order;
+    moment at = moment_at(walk, lift, hand);
+    himc_clearance clear = look(planner->config.body, &at, walk);
+    double gap = himc_planner_least_gap(&clear, speed_past(hand, at.time));
+    double lack = lack_of(&clear, &at, &order);
+    walk->after = fmin(clear.sticks < PASSING_GAP ? PASSING_STEP : STEP,
+                       fmin(himc_planner_touch_after(&hand[HIMC_LEFT], walk->t),
+                            himc_planner_touch_after(&hand[HIMC_RIGHT], walk->t)) -
+                           walk->t);
+    walk->met = walk->met && gap < 0;
+    if (at.time > ignored) {
+        walk->near.gap = walk->met ? walk->near.gap : fmin(walk->near.gap, gap);
+        if (lack > 0)
+            note(&walk->near, at.time, walk->after, lack, order);
+    }
+    walk->t += walk->after;
+    return clear.work;
+}
+
+/// True if `a` is the better way: its least gap is larger, or both are SURE_GAP, and less is
+/// lacking.
+static bool is_better(const near_time *a, const near_time *b)
+{
+    double p = fmin(a->gap, SURE_GAP), q = fmin(b->gap, SURE_GAP);
+    return p == q ? a->lack < b->lack : p > q;
+}
 
 static himc_hand other_hand(himc_hand hand)
 {
@@ -67,39 +296,24 @@ static void walk_from(planner_clear *c, planner_rehearsal from)
 
 static void walk_anew(himc_planner *planner)
 {
-    walk_from(&planner->clear, himc_rehearsal_begin(planner->now));
+    walk_from(&planner->clear, begin_walk(planner->now));
     planner->clear.searched = -HUGE_VAL;
 }
 
-void himc_planner_changed(himc_planner *planner, double t)
+/// A plan that has changed where the walk has been is walked through again.
+static void notice_change(himc_planner *planner)
 {
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        planner->hand[hand].checked = fmin(planner->hand[hand].checked, t);
-    if (t < planner->clear.walk.t - fmax(planner->clear.walk.after, 0) && !planner->clear.planning)
+    const planner_rehearsal *walk = &planner->clear.walk;
+    if (planner->changed < walk->t - fmax(walk->after, 0))
         walk_anew(planner);
-}
-
-/// Index of the hand's first planned stroke after t; the count if there is none.
-static int next_planned(const planner_hand *h, double t)
-{
-    int k = 0;
-    while (k < h->planned_count && h->planned[k].goal.time <= t)
-        k++;
-    return k;
-}
-
-/// Time of the hand's next planned touch after t (s).
-static double touch_after(const planner_hand *h, double t)
-{
-    int k = next_planned(h, t);
-    return k < h->planned_count ? h->planned[k].goal.time : HUGE_VAL;
+    planner->changed = HUGE_VAL;
 }
 
 /// The hand that has more time after the time near.
 static himc_hand later_hand(const himc_planner *planner, const near_time *n)
 {
-    return touch_after(&planner->hand[HIMC_LEFT], n->from - AT_TOUCH) >
-                   touch_after(&planner->hand[HIMC_RIGHT], n->from - AT_TOUCH)
+    return himc_planner_touch_after(&planner->hand[HIMC_LEFT], n->from - AT_TOUCH) >
+                   himc_planner_touch_after(&planner->hand[HIMC_RIGHT], n->from - AT_TOUCH)
                ? HIMC_LEFT
                : HIMC_RIGHT;
 }
@@ -122,12 +336,6 @@ static himc_vec3 way_past(himc_vec3 tip, int k)
                           size * s[0]);
 }
 
-/// The least time in which a hand can be lifted so (s).
-static double lift_time(const planner_lift *l)
-{
-    return LIFT_MARGIN * himc_move_time(himc_vec3_length(l->way), HIMC_HARDEST_LIFT);
-}
-
 /// The k-th lift of a hand where it is near; false if there is no time for it.
 static bool make_lift(himc_planner *planner, himc_hand hand, int k)
 {
@@ -135,17 +343,17 @@ static bool make_lift(himc_planner *planner, himc_hand hand, int k)
     const planner_hand *h = &planner->hand[hand];
     const himc_spline *lifts = &h->plan.lift;
     const near_time *n = &c->plain;
-    int next = next_planned(h, n->from);
+    int next = himc_planner_next_planned(h, n->from);
     double begin = planner->now + PLANNER_AHEAD, end = h->plan.end;
     if (next > 0)
         begin = fmax(begin, himc_goal_end(&h->planned[next - 1].goal));
     if (lifts->count > 0)
         begin = fmax(begin, lifts->segment[lifts->count - 1].t1);
-    planner_lift l = {.hand = hand, .touch = touch_after(h, n->from)};
+    planner_lift l = {.hand = hand, .touch = himc_planner_touch_after(h, n->from)};
     end = fmin(end, l.touch);
     l.way = way_past(himc_hand_at(&h->plan, n->from).x, k);
     double size = himc_vec3_length(l.way), up = himc_move_time(size, QUICK_LIFT);
-    l.from = fmax(n->from, begin + lift_time(&l));
+    l.from = fmax(n->from, begin + himc_planner_lift_time(&l));
     l.begin = fmax(begin, l.from - up);
     l.to = fmax(l.from, fmin(n->to, end - STILL - up));
     l.end = l.to + up;
@@ -157,7 +365,7 @@ static bool make_lift(himc_planner *planner, himc_hand hand, int k)
 static const timed_stroke *yielding(const himc_planner *planner, const near_time *n, himc_hand hand)
 {
     const planner_hand *h = &planner->hand[hand];
-    int k = next_planned(h, n->from - AT_TOUCH);
+    int k = himc_planner_next_planned(h, n->from - AT_TOUCH);
     const timed_stroke *s = &h->planned[k];
     bool changeable = k < h->planned_count && (s->index >= 0 || s->reassigned) &&
                       s->goal.time > planner->now + CHANGEABLE;
@@ -183,7 +391,7 @@ static double side_of(const himc_planner *planner, himc_hand hand, const timed_s
 static bool may_pass_on(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
 {
     return !s->reassigned && planner->clear.least.gap < 0 &&
-           himc_planner_reaches(planner, other_hand(hand), &s->written);
+           himc_planner_reaches(planner, other_hand(hand), s->written.spot);
 }
 
 /// Whether the stroke may be left out: a leap to another drum, not one of a roll, where a gap would
@@ -236,7 +444,7 @@ static bool make_candidate(himc_planner *planner)
 static bool goes_on(const himc_planner *planner)
 {
     const planner_clear *c = &planner->clear;
-    double enough = c->candidate < 2 * LIFT_TRIES ? HIMC_SURE_GAP : 0;
+    double enough = c->candidate < 2 * LIFT_TRIES ? SURE_GAP : 0;
     bool due = c->best_lift.end > 0 && c->best_lift.begin < planner->now + 2 * LEAST_AHEAD;
     return c->least.lack > 0 && c->candidate < 2 * (LIFT_TRIES + STROKE_WAYS) &&
            (c->least.gap < enough || (c->candidate < LIFT_TRIES && !due));
@@ -256,7 +464,7 @@ static void say_meet(himc_planner *planner)
 {
     const near_time *n = &planner->clear.plain;
     himc_hand later = later_hand(planner, n);
-    int k = next_planned(&planner->hand[later], n->from - AT_TOUCH);
+    int k = himc_planner_next_planned(&planner->hand[later], n->from - AT_TOUCH);
     const timed_stroke *s = &planner->hand[later].planned[k];
     char name[HIMC_PLANNER_NAME];
     if (k < planner->hand[later].planned_count)
@@ -266,27 +474,40 @@ static void say_meet(himc_planner *planner)
         himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
 }
 
-/// Lifts a hand, a little later than found if it cannot begin before t (s); false if it is too
-/// late.
-static bool lift_from(planner_hand *h, const planner_lift *l, double t)
-{
-    double begin = fmax(l->begin, t), from = fmax(l->from, begin + lift_time(l));
-    return himc_hand_lift(&h->plan, begin, from, fmax(l->to, from), l->end, l->way);
-}
-
 static bool lift_now(himc_planner *planner)
 {
     const planner_lift *l = &planner->clear.best_lift;
     planner_hand *h = &planner->hand[l->hand];
-    if (!(l->end > 0) || !lift_from(h, l, planner->now + LEAST_AHEAD))
+    if (!(l->end > 0) || !himc_planner_lift_from(h, l, planner->now + LEAST_AHEAD))
         return false;
     h->lift = *l;
     return true;
 }
 
-/// Makes the best change. True if a stroke is played in another way, so that its hand has to be
-/// planned again.
-static bool end_search(himc_planner *planner)
+static void plan_way(himc_planner *planner, const planner_way *way)
+{
+    double t = planner->now + PLANNER_AHEAD;
+    planner->hand[way->hand].way = *way;
+    himc_planner_cut(planner, way->hand, t);
+    himc_planner_extend(planner, way->hand, t + PLANNER_HORIZON);
+}
+
+/// The hands as they would be planned with `clear.way`; nothing else changes.
+static void try_way(himc_planner *planner)
+{
+    planner_clear *c = &planner->clear;
+    planner_score score = planner->score;
+    memcpy(c->own, planner->hand, sizeof c->own);
+    c->planning = planner->notes.silent = true;
+    plan_way(planner, &c->way);
+    c->planning = planner->notes.silent = false;
+    memcpy(c->with_way, planner->hand, sizeof c->own);
+    memcpy(planner->hand, c->own, sizeof c->own);
+    planner->score = score;
+}
+
+/// Makes the best change.
+static void end_search(himc_planner *planner)
 {
     planner_clear *c = &planner->clear;
     try_nothing(c);
@@ -294,19 +515,20 @@ static bool end_search(himc_planner *planner)
     c->searched = c->plain.to;
     if (c->least.gap < 0)
         say_meet(planner);
-    c->walk.near = himc_rehearsal_begin(0).near;
-    if (c->best_way.touch > -HUGE_VAL)
-        return true;
-    if (lift_now(planner))
+    c->walk.near = begin_walk(0).near;
+    if (c->best_way.touch > -HUGE_VAL) {
+        plan_way(planner, &c->best_way);
+        notice_change(planner);
+    } else if (lift_now(planner)) {
         walk_from(c, c->kept[1]);
-    return false;
+    }
 }
 
 static void judge(planner_clear *c)
 {
     c->trying = false;
     c->candidate++;
-    if (!himc_rehearsal_is_better(&c->trial_walk.near, &c->least))
+    if (!is_better(&c->trial_walk.near, &c->least))
         return;
     c->least = c->trial_walk.near;
     c->best_lift = c->lift;
@@ -322,9 +544,13 @@ static int try_next(himc_planner *planner)
         c->candidate++;
         return 1;
     }
-    bool lifts = c->lift.end > 0;
-    c->trial_walk = lifts ? c->kept[1] : himc_rehearsal_begin(planner->now);
-    return lifts ? 2 : PLANNING_WORK;
+    if (c->lift.end > 0) {
+        c->trial_walk = c->kept[1];
+        return 2;
+    }
+    c->trial_walk = begin_walk(planner->now);
+    try_way(planner);
+    return PLANNING_WORK;
 }
 
 /// Both plans are known so far (s).
@@ -340,8 +566,8 @@ static int try_on(himc_planner *planner)
     bool lifts = c->lift.end > 0;
     const planner_hand *hand = lifts ? planner->hand : c->with_way;
     double end = fmin(c->plain.to + (lifts ? BESIDE : AFTER_WAY), known_to(hand));
-    int work = himc_rehearsal_step(&planner->config, walk, &c->lift, hand, c->searched);
-    if (walk->t >= end || !himc_rehearsal_is_better(&walk->near, &c->least))
+    int work = walk_step(planner, walk, &c->lift, hand, c->searched);
+    if (walk->t >= end || !is_better(&walk->near, &c->least))
         judge(c);
     return work;
 }
@@ -365,19 +591,19 @@ static int walk_on(himc_planner *planner)
         c->kept[1] = c->kept[0];
         c->kept[0] = c->walk;
     }
-    return himc_rehearsal_step(&planner->config, &c->walk, &c->lift, planner->hand, c->searched);
+    return walk_step(planner, &c->walk, &c->lift, planner->hand, c->searched);
 }
 
-planner_wish himc_planner_search(himc_planner *planner, double work)
+void himc_planner_think(himc_planner *planner, double work)
 {
     planner_clear *c = &planner->clear;
-    if (!planner->config.rehearse)
-        return PLANNER_NO_WISH;
+    if (!planner->config.body)
+        return;
+    notice_change(planner);
     c->credit = fmin(c->credit + work, MOST_CREDIT);
     while (c->credit > 0) {
-        bool ends = c->searching && !c->trying && !goes_on(planner), begins = !c->trying;
-        if (ends && end_search(planner))
-            return PLANNER_MAKE;
+        if (c->searching && !c->trying && !goes_on(planner))
+            end_search(planner);
         int done = !c->searching ? walk_on(planner)
                    : c->trying   ? try_on(planner)
                                  : try_next(planner);
@@ -385,18 +611,10 @@ planner_wish himc_planner_search(himc_planner *planner, double work)
             c->credit = 0;
         c->credit -= done;
         c->work += done;
-        if (begins && c->trying && c->way.touch > -HUGE_VAL)
-            return PLANNER_TRY;
     }
-    return PLANNER_NO_WISH;
 }
 
-void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t)
+long himc_planner_work(const himc_planner *planner)
 {
-    planner_hand *h = &planner->hand[hand];
-    const planner_lift *l = &h->lift;
-    double touch = touch_after(h, t);
-    bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
-    if (l->end > t && same && l->end <= h->plan.end)
-        lift_from(h, l, t);
+    return planner->clear.work;
 }

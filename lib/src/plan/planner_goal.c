@@ -86,6 +86,36 @@ double himc_planner_asked(const himc_planner *planner, const timed_stroke *s)
     return varied * gesture_of(planner, &s->stroke).speed;
 }
 
+himc_vec3 himc_planner_tip_at(const himc_planner *planner, const himc_head_frame *head, double x,
+                              double y)
+{
+    return himc_vec3_madd(himc_head_frame_to_world(head, x, y), planner->config.mallet_radius,
+                          himc_head_frame_normal(head));
+}
+
+double himc_planner_beyond(const himc_planner *planner, himc_hand hand, himc_vec3 place)
+{
+    const himc_planned_body *b = planner->config.body;
+    return b ? himc_vec3_length(
+                   himc_vec3_sub(place, himc_posture_reachable(&b->posture, hand, place)))
+             : 0;
+}
+
+bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, himc_vec3 place)
+{
+    return himc_planner_beyond(planner, hand, place) <= PLANNER_UNREACHED;
+}
+
+himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *s, double by)
+{
+    const himc_head_frame *head = &planner->drum[s->drum];
+    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
+    double most =
+        sqrt(fmax(PLANNER_STRUCK * head->radius * PLANNER_STRUCK * head->radius - at.x * at.x, 0));
+    at.y = by > 0 ? fmin(at.y + by, fmax(most, at.y)) : fmax(at.y + by, fmin(-most, at.y));
+    return himc_planner_tip_at(planner, head, at.x, at.y);
+}
+
 /// Moves a place into the part of a head that is struck; true if it was beyond.
 static bool keep_inside(const himc_head_frame *head, double *x, double *y)
 {
@@ -167,10 +197,8 @@ static int rest_drum(const himc_planner *planner, himc_hand hand)
 
 static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_vec3 *place)
 {
-    const himc_planner_config *c = &planner->config;
     *place = rest_over(planner, hand, drum);
-    return planner->known[drum] &&
-           !(c->beyond && c->beyond(c->body, hand, *place) > PLANNER_UNREACHED);
+    return planner->known[drum] && himc_planner_reaches(planner, hand, *place);
 }
 
 himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand)

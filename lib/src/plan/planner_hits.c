@@ -123,24 +123,6 @@ static bool strikes_from(const planner_hand *h, double t, const himc_goal *goal)
            lands_softly(h, t, goal, himc_gesture_bend(goal->gesture, HIMC_HURRY * time).speed);
 }
 
-/// Whether the trunk, from where it is at t, bends far enough until then.
-static bool bends_to(const himc_planner *planner, himc_hand hand, double t, const himc_goal *goal)
-{
-    const himc_planner_config *c = &planner->config;
-    himc_rehearsed rehearsed = {{0}};
-    himc_moment m = {.time = t, .after = -1};
-    if (!c->rehearse)
-        return true;
-    for (int i = 0; i < HIMC_HANDS; i++)
-        m.tip[i] = m.place[i] = himc_hand_at(&planner->hand[i].plan, t).x;
-    m.place[hand] = goal->spot;
-    c->rehearse(c->motion, &m, &rehearsed);
-    m.time = goal->time;
-    m.after = goal->time - t;
-    m.tip[hand] = goal->spot;
-    return c->rehearse(c->motion, &m, &rehearsed).beyond <= PLANNER_UNREACHED;
-}
-
 /// Whether a stroke of the score after the hit stays as strong as it would be without it.
 static bool leaves_strength(const chance *c)
 {
@@ -160,8 +142,9 @@ static bool has_time(const himc_planner *planner, himc_hand hand, double t, doub
     double at = c->goal.time, free = fmax(t, himc_goal_end(&c->near.before));
     if (at - free < least || c->near.after.time - at < least + HIMC_CONTACT_TIME)
         return false;
-    bool gets_there = c->idle ? strikes_from(h, t, &c->goal) && bends_to(planner, hand, t, &c->goal)
-                              : can_follow(&c->near.before, &c->goal);
+    bool gets_there =
+        c->idle ? strikes_from(h, t, &c->goal) && himc_planner_bends_to(planner, hand, t, &c->goal)
+                : can_follow(&c->near.before, &c->goal);
     return gets_there && (isinf(c->near.after.time) ||
                           (can_follow(&c->goal, &c->near.after) && leaves_strength(c)));
 }
@@ -193,7 +176,7 @@ static chance chance_of(himc_planner *planner, himc_hand hand, double t, const h
     c.idle = himc_goal_end(&c.near.before) < t;
     c.over = h->drum == hit->drum;
     c.from = c.idle ? himc_hand_at(&h->plan, t).x : c.near.before.spot;
-    c.reaches = himc_planner_reaches(planner, hand, &c.goal);
+    c.reaches = himc_planner_reaches(planner, hand, c.goal.spot);
     find_time(planner, hand, t, &c);
     return c;
 }
@@ -328,9 +311,7 @@ bool himc_planner_correct(himc_planner *planner, himc_hand hand, double t,
                           const himc_target *measured)
 {
     planner_hand *h = &planner->hand[hand];
-    int i = 0;
-    while (i < h->planned_count && h->planned[i].goal.time <= t)
-        i++;
+    int i = himc_planner_next_planned(h, t);
     if (i == h->planned_count || !h->planned[i].exact ||
         h->planned[i].goal.time - t > CORRECTION_TIME)
         return false;
@@ -378,24 +359,11 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
 }
 
-/// Whether the sticks meet with one tip there.
-static bool meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
-{
-    const himc_planner_config *c = &planner->config;
-    himc_rehearsed rehearsed = {{0}};
-    himc_moment m = {.time = t, .after = -1};
-    for (int i = 0; i < HIMC_HANDS; i++)
-        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
-    return c->rehearse && c->rehearse(c->motion, &m, &rehearsed).sticks < 0;
-}
-
 bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x, double at)
 {
-    const himc_planner_config *c = &planner->config;
     planner_hand *h = &planner->hand[hand];
     if (!isfinite(t) || stroke_is_near(planner, hand, t) ||
-        (c->beyond && c->beyond(c->body, hand, x) > PLANNER_UNREACHED) ||
-        meets_at(planner, t, hand, x))
+        !himc_planner_reaches(planner, hand, x) || himc_planner_meets_at(planner, t, hand, x))
         return false;
     himc_planner_cut(planner, hand, t);
     himc_hand_reach(&h->plan, x, at);

@@ -18,8 +18,6 @@
 #include "plan/bounce.h"
 #include "base/format.h"
 
-#include <string.h>
-
 // when a stroke is planned; chosen: a player cannot take back the second half of a fall, and
 // prepares no stroke more than a slow bar ahead
 #define COMMIT_TIME 0.08    // a stroke so near is not changed any more (s)
@@ -38,6 +36,10 @@
 #define HIT_GAP 0.12        // to the strokes before and after (s)
 #define HIT_GAP_MARGIN 1.01 // a hit that is moved comes so many gaps later
 
+#define LIFT_MARGIN \
+    1.001               // of the quickest lift's time: it is possible in spite of rounding; chosen
+#define SAME_TOUCH 1e-6 // (s); chosen
+
 #define HOME_MOVED 1e-4 // (m) a smaller change of the resting place moves nothing; chosen
 
 /// What has become of a stroke that was to be planned.
@@ -51,6 +53,60 @@ void himc_planner_motion_init(himc_planner *planner)
         planner->hand[hand].way.touch = -HUGE_VAL;
     }
     himc_planner_changed(planner, -HUGE_VAL);
+}
+
+void himc_planner_changed(himc_planner *planner, double t)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        planner->hand[hand].checked = fmin(planner->hand[hand].checked, t);
+    if (!planner->clear.planning)
+        planner->changed = fmin(planner->changed, t);
+}
+
+const timed_stroke *himc_planner_current_planned(const planner_hand *h, double t)
+{
+    for (int i = 0; i < h->planned_count; i++) {
+        const timed_stroke *s = &h->planned[i];
+        double next = i + 1 < h->planned_count ? s[1].goal.time : HUGE_VAL;
+        if (t <= s->goal.time + fmin(PLANNER_CURRENT, 0.5 * (next - s->goal.time)))
+            return s;
+    }
+    return NULL;
+}
+
+int himc_planner_next_planned(const planner_hand *h, double t)
+{
+    int k = 0;
+    while (k < h->planned_count && h->planned[k].goal.time <= t)
+        k++;
+    return k;
+}
+
+double himc_planner_touch_after(const planner_hand *h, double t)
+{
+    int k = himc_planner_next_planned(h, t);
+    return k < h->planned_count ? h->planned[k].goal.time : HUGE_VAL;
+}
+
+double himc_planner_lift_time(const planner_lift *l)
+{
+    return LIFT_MARGIN * himc_move_time(himc_vec3_length(l->way), HIMC_HARDEST_LIFT);
+}
+
+bool himc_planner_lift_from(planner_hand *h, const planner_lift *l, double t)
+{
+    double begin = fmax(l->begin, t), from = fmax(l->from, begin + himc_planner_lift_time(l));
+    return himc_hand_lift(&h->plan, begin, from, fmax(l->to, from), l->end, l->way);
+}
+
+/// The hand's plan, made again from t (s) on, keeps the lift found for its next stroke.
+static void lift_again(planner_hand *h, double t)
+{
+    const planner_lift *l = &h->lift;
+    double touch = himc_planner_touch_after(h, t);
+    bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
+    if (l->end > t && same && l->end <= h->plan.end)
+        himc_planner_lift_from(h, l, t);
 }
 
 static himc_hand other_hand(himc_hand hand)
@@ -235,7 +291,7 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
 {
     if (result == TOO_FAR)
         himc_format(text, 48, "out of reach by %.2f m",
-                    himc_planner_beyond(planner, s->stroke.hand, &s->written));
+                    himc_planner_beyond(planner, s->stroke.hand, s->written.spot));
     else
         himc_format(text, 48, "%s",
                     result == NO_TIME   ? "no time to prepare it"
@@ -303,7 +359,7 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
 {
     himc_hand hand = s->stroke.hand;
     timed_stroke after;
-    if (!himc_planner_reaches(planner, hand, &s->goal) ||
+    if (!himc_planner_reaches(planner, hand, s->goal.spot) ||
         !himc_hand_can_strike(&planner->hand[hand].plan, &s->goal))
         return false;
     return !next_written(planner, hand, &after) || himc_hand_can_follow(&s->goal, &after.written) ||
@@ -331,7 +387,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         s->varied = false;
     }
     const planner_way *way = h->way.touch == s->written.time ? &h->way : &as_written;
-    if (!himc_planner_reaches(planner, s->stroke.hand, &s->goal))
+    if (!himc_planner_reaches(planner, s->stroke.hand, s->goal.spot))
         return TOO_FAR;
     if (way->leaves)
         return LEFT_OUT;
@@ -368,7 +424,7 @@ static plan_result check_following(himc_planner *planner, himc_hand hand, timed_
 {
     if (!next_written(planner, hand, following) || following->index < 0)
         return PLANNED;
-    if (!himc_planner_reaches(planner, hand, &following->written))
+    if (!himc_planner_reaches(planner, hand, following->written.spot))
         return TOO_FAR;
     return himc_hand_can_strike(&planner->hand[hand].plan, &following->written) ? PLANNED : NO_TIME;
 }
@@ -596,7 +652,8 @@ static bool can_take(himc_planner *planner, himc_hand hand, const timed_stroke *
     double t = s->goal.time, gap = t;
     bool in_time = hurries ? himc_hand_can_strike(&h->plan, &s->goal)
                            : t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
-    return h->waiting_count < PLANNER_WAITING && himc_planner_reaches(planner, hand, &s->goal) &&
+    return h->waiting_count < PLANNER_WAITING &&
+           himc_planner_reaches(planner, hand, s->goal.spot) &&
            himc_planner_find_gap(planner, hand, &gap) && gap == t && in_time &&
            fits_in(planner, hand, &s->goal);
 }
@@ -663,43 +720,6 @@ void himc_planner_replan(himc_planner *planner, double t)
         himc_planner_cut(planner, (himc_hand)hand, t);
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
-}
-
-static void plan_way(himc_planner *planner, const planner_way *way)
-{
-    double t = planner->now + PLANNER_AHEAD;
-    planner->hand[way->hand].way = *way;
-    himc_planner_cut(planner, way->hand, t);
-    himc_planner_extend(planner, way->hand, t + PLANNER_HORIZON);
-}
-
-/// The hands as they would be planned with `clear.way`; nothing else changes.
-static void try_way(himc_planner *planner)
-{
-    planner_clear *c = &planner->clear;
-    planner_score score = planner->score;
-    memcpy(c->own, planner->hand, sizeof c->own);
-    c->planning = planner->notes.silent = true;
-    plan_way(planner, &c->way);
-    c->planning = planner->notes.silent = false;
-    memcpy(c->with_way, planner->hand, sizeof c->own);
-    memcpy(planner->hand, c->own, sizeof c->own);
-    planner->score = score;
-}
-
-void himc_planner_think(himc_planner *planner, double work)
-{
-    for (;; work = 0)
-        switch (himc_planner_search(planner, work)) {
-        case PLANNER_TRY: try_way(planner); break;
-        case PLANNER_MAKE: plan_way(planner, &planner->clear.best_way); break;
-        default: return;
-        }
-}
-
-long himc_planner_work(const himc_planner *planner)
-{
-    return planner->clear.work;
 }
 
 double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
@@ -815,7 +835,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     }
     himc_planner_changed(planner, t);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-    himc_planner_lift_again(planner, hand, t);
+    lift_again(h, t);
 }
 
 static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
@@ -857,4 +877,11 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
     *drum = due.drum;
     *contact_time = due.time;
     return true;
+}
+
+bool himc_planner_name_current(const himc_planner *planner, himc_hand hand, double t,
+                               char text[HIMC_PLANNER_NAME])
+{
+    const timed_stroke *s = himc_planner_current_planned(&planner->hand[hand], t);
+    return s && himc_planner_name(planner, s, text);
 }

@@ -217,10 +217,3 @@ const char *himc_planner_name(const himc_planner *planner, const timed_stroke *s
         himc_format(text + used, size - used, ", round %ld", (long)score->past + s->round + 1);
     return text;
 }
-
-bool himc_planner_name_current(const himc_planner *planner, himc_hand hand, double t,
-                               char text[HIMC_PLANNER_NAME])
-{
-    const timed_stroke *s = himc_planner_current_planned(&planner->hand[hand], t);
-    return s && himc_planner_name(planner, s, text);
-}

@@ -1,9 +1,10 @@
 /// planner_state.h: the state of the planner, what is read off it, and the functions that plan
 /// motion from it.
 ///
-/// Owners: planner.c writes the settings (config, drums, units, grip, human), planner_score.c the
-/// score, planner_notes.c the notes, planner_motion.c (with planner_goal.c and
-/// planner_clear.c) the hands and the clock, and planner_hits.c what is asked for while it happens.
+/// Calls go up this list: planner_goal.c, from strokes to goals; planner_motion.c, from goals to
+/// the plans of the hands, and the clock; planner_clear.c, rehearsals of the plans and the search
+/// for ways past each other; planner_hits.c, what is asked for while it happens; planner.c, the
+/// settings. The score and the notes have files of their own, planner_score.c and planner_notes.c.
 #ifndef HIMC_PLANNER_STATE_H
 #define HIMC_PLANNER_STATE_H
 
@@ -13,7 +14,6 @@
 #include "plan/planner.h"
 #include "plan/planner_notes.h"
 #include "plan/planner_score.h"
-#include "plan/rehearsal.h"
 
 /// Strokes that wait for a hand; chosen: as many as can be planned, so that all can be put back.
 #define PLANNER_WAITING 16
@@ -67,6 +67,15 @@ typedef struct planner_way {
     int tried;    ///< so many ways
 } planner_way;
 
+/// A hand is moved by `way` (m) from `from` to `to` (s), not at all before `begin` and after `end`;
+/// no lift if `end` is 0.
+typedef struct planner_lift {
+    himc_hand hand;
+    double begin, from, to, end;
+    double touch; ///< the next one of the hand (s)
+    himc_vec3 way;
+} planner_lift;
+
 typedef struct planner_hand {
     timed_stroke waiting[PLANNER_WAITING]; ///< hits and reassigned strokes, sorted by time
     int waiting_count;
@@ -83,7 +92,26 @@ typedef struct planner_hand {
     planner_lift lift; ///< found for one of its strokes
 } planner_hand;
 
-/// The search; owned by planner_clear.c.
+/// A time in which the hands come near.
+typedef struct near_time {
+    double lack;     ///< what gaps lack, over the time (m s)
+    double gap;      ///< least of all (m)
+    double from, to; ///< first and last time of a lack (s)
+    int order;       ///< of the arms then: 1 the left one is above, -1 below, 0 not crossed
+} near_time;
+
+/// A walk through both plans.
+typedef struct planner_rehearsal {
+    double t;     ///< the next moment (s) ...
+    double after; ///< ... after the last one (s), negative: it is the first
+    bool met;     ///< the body has met itself since the first moment: no plan parts it
+    near_time near;
+    himc_trunk_posture trunk, goal; ///< the body's at the last moment ...
+    himc_avoidance avoidance;
+    double since; ///< ... so long after the last update of the avoidance (s)
+} planner_rehearsal;
+
+/// The search.
 typedef struct planner_clear {
     double credit;             ///< work that has been paid for
     long work;                 ///< done so far
@@ -115,63 +143,24 @@ struct himc_planner {
     planner_hand hand[HIMC_HANDS];
     planner_clear clear;
     int hits;        ///< since the last `clear` or change of `human`
+    double changed;  ///< plans are others from here on than when last rehearsed (s)
     double now;      ///< of the last advance (s)
     double hastened; ///< strokes up to here may have lost their time to a new tempo (s)
     bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
-/// The planned stroke that is the current one at t, as himc_planner_current has it, or NULL.
-/// HIMC_RT.
-static inline const timed_stroke *himc_planner_current_planned(const planner_hand *h, double t)
-{
-    for (int i = 0; i < h->planned_count; i++) {
-        const timed_stroke *s = &h->planned[i];
-        double next = i + 1 < h->planned_count ? s[1].goal.time : HUGE_VAL;
-        if (t <= s->goal.time + fmin(PLANNER_CURRENT, 0.5 * (next - s->goal.time)))
-            return s;
-    }
-    return NULL;
-}
-
-/// The tip's position when it touches a head at (x, y) (m). HIMC_RT.
-static inline himc_vec3 himc_planner_tip_at(const himc_planner *p, const himc_head_frame *head,
-                                            double x, double y)
-{
-    return himc_vec3_madd(himc_head_frame_to_world(head, x, y), p->config.mallet_radius,
-                          himc_head_frame_normal(head));
-}
-
-/// How far out of a hand's reach the goal is (m). HIMC_RT.
-static inline double himc_planner_beyond(const himc_planner *p, himc_hand hand,
-                                         const himc_goal *goal)
-{
-    const himc_planner_config *c = &p->config;
-    return c->beyond ? c->beyond(c->body, hand, goal->spot) : 0;
-}
-
-/// True if the hand reaches a stroke's spot. HIMC_RT.
-static inline bool himc_planner_reaches(const himc_planner *p, himc_hand hand,
-                                        const himc_goal *goal)
-{
-    return himc_planner_beyond(p, hand, goal) <= PLANNER_UNREACHED;
-}
-
-/// A stroke's spot moved to the left on its head, not over the rim (m). HIMC_RT.
-static inline himc_vec3 himc_planner_aside(const himc_planner *p, const timed_stroke *s, double by)
-{
-    const himc_head_frame *head = &p->drum[s->drum];
-    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
-    double most =
-        sqrt(fmax(PLANNER_STRUCK * head->radius * PLANNER_STRUCK * head->radius - at.x * at.x, 0));
-    at.y = by > 0 ? fmin(at.y + by, fmax(most, at.y)) : fmax(at.y + by, fmin(-most, at.y));
-    return himc_planner_tip_at(p, head, at.x, at.y);
-}
-
-/// Both hands wait at rest.
-HIMC_RT void himc_planner_motion_init(himc_planner *planner);
-/// Drums, reach or first strokes have changed: the hands rest elsewhere.
-HIMC_RT void himc_planner_rest_again(himc_planner *planner);
-/// planner_goal.c: where and how a tip plays a stroke on a drum at t, as written.
+// planner_goal.c
+/// The tip's position when it touches a head at (x, y) (m).
+HIMC_RT himc_vec3 himc_planner_tip_at(const himc_planner *planner, const himc_head_frame *head,
+                                      double x, double y);
+/// How far out of a hand's reach a place is (m).
+HIMC_RT double himc_planner_beyond(const himc_planner *planner, himc_hand hand, himc_vec3 place);
+/// True if the hand reaches it.
+HIMC_RT bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, himc_vec3 place);
+/// A stroke's spot moved to the left on its head, not over the rim (m).
+HIMC_RT himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *stroke,
+                                     double by);
+/// Where and how a tip plays a stroke on a drum at t, as written.
 HIMC_RT himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum,
                                     double t);
 /// Time that bounces from t on take at most before the hand's next stroke (s): they leave to one
@@ -182,22 +171,28 @@ HIMC_RT double himc_planner_bounce_most(himc_planner *planner, int bounces, doub
 HIMC_RT double himc_planner_asked(const himc_planner *planner, const timed_stroke *stroke);
 /// Lets the goal differ from the written one as a player's would.
 HIMC_RT void himc_planner_vary(const himc_planner *planner, timed_stroke *stroke);
-/// planner_goal.c: where a hand rests (m): over its drum or, out of its reach, over the first one
+/// Where a hand rests (m): over its drum or, out of its reach, over the first one
 /// in reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
-/// planner_clear.c: the plan of a hand is another one from t (s) on, to be checked and rehearsed.
+
+// planner_motion.c
+/// Both hands wait at rest.
+HIMC_RT void himc_planner_motion_init(himc_planner *planner);
+/// Drums, reach or first strokes have changed: the hands rest elsewhere.
+HIMC_RT void himc_planner_rest_again(himc_planner *planner);
+/// The plan of a hand is another one from t (s) on, to be checked and rehearsed.
 HIMC_RT void himc_planner_changed(himc_planner *planner, double t);
-/// What the search needs from planner_motion.c.
-typedef enum planner_wish {
-    PLANNER_NO_WISH,
-    PLANNER_TRY,  ///< plan a trial with `clear.way`
-    PLANNER_MAKE, ///< plan the hand of `clear.best_way` again, in that way
-} planner_wish;
-/// Rehearses what is planned, for as much work, and lifts a hand over the other where they would
-/// meet, until it is done or wishes something.
-HIMC_RT planner_wish himc_planner_search(himc_planner *planner, double work);
-/// The hand's plan, made anew from t (s) on, keeps the lift found for its next stroke.
-HIMC_RT void himc_planner_lift_again(himc_planner *planner, himc_hand hand, double t);
+/// The planned stroke that is the current one at t, as himc_planner_current has it, or NULL.
+HIMC_RT const timed_stroke *himc_planner_current_planned(const planner_hand *hand, double t);
+/// Index of the hand's first planned stroke after t; the count if there is none.
+HIMC_RT int himc_planner_next_planned(const planner_hand *hand, double t);
+/// Time of the hand's next planned touch after t (s).
+HIMC_RT double himc_planner_touch_after(const planner_hand *hand, double t);
+/// The least time in which a hand can be lifted so (s).
+HIMC_RT double himc_planner_lift_time(const planner_lift *lift);
+/// Lifts a hand, a little later than found if it cannot begin before t (s); false if it is too
+/// late.
+HIMC_RT bool himc_planner_lift_from(planner_hand *hand, const planner_lift *lift, double t);
 /// Time of a waiting stroke (s): a reassigned one keeps its beat, a hit its time.
 HIMC_RT double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *stroke);
 /// Lets a stroke wait for its hand, in the order of time; there must be room.
@@ -217,10 +212,6 @@ HIMC_RT void himc_planner_extend(himc_planner *planner, himc_hand hand, double u
 HIMC_RT void himc_planner_cut_both(himc_planner *planner, double t);
 /// ... and plans them again from there.
 HIMC_RT void himc_planner_replan(himc_planner *planner, double t);
-/// planner_notes.c: "stroke at beat 3 left kettle", as a line for the user names it; in a loop with
-/// its round, unless that is below 0. Returns `text`.
-HIMC_RT const char *himc_planner_name(const himc_planner *planner, const timed_stroke *stroke,
-                                      char text[HIMC_PLANNER_NAME]);
 /// A line: this stroke of a loop is left out of the round under way.
 HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke);
 /// The hand's plan so far rests on no stroke of its part after this time (s); *index is that of the
@@ -228,5 +219,22 @@ HIMC_RT void himc_planner_tell_next_round(himc_planner *planner, const himc_stro
 HIMC_RT double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index);
 /// How much too late the hands would be for their next strokes (s); 0 if they are not.
 HIMC_RT double himc_planner_lateness(himc_planner *planner);
+
+// planner_clear.c
+/// Takes from rehearsed gaps what real ones may be less, with sticks that pass each other at a
+/// speed (m/s); returns the least (m).
+HIMC_RT double himc_planner_least_gap(himc_clearance *clear, double speed_past);
+/// True if the trunk, from where it is at t, bends far enough for a hand's stroke until then.
+HIMC_RT bool himc_planner_bends_to(const himc_planner *planner, himc_hand hand, double t,
+                                   const himc_goal *goal);
+/// True if the sticks meet with the tip of that hand at x.
+HIMC_RT bool himc_planner_meets_at(const himc_planner *planner, double t, himc_hand hand,
+                                   himc_vec3 x);
+
+// planner_notes.c
+/// "stroke at beat 3 left kettle", as a line for the user names it; in a loop with
+/// its round, unless that is below 0. Returns `text`.
+HIMC_RT const char *himc_planner_name(const himc_planner *planner, const timed_stroke *stroke,
+                                      char text[HIMC_PLANNER_NAME]);
 
 #endif

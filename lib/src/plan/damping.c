@@ -5,7 +5,7 @@
 /// a natural posture with the fingers on the head. The plan moves it there, C2 and at rest in time,
 /// as it moves to any target. The head is damped at its own time, whether a hand has come or not:
 /// the losses are the head's, and the fingers have no contact of their own.
-#include "control/damping.h"
+#include "plan/damping.h"
 
 #define FINGERS_BACK 0.55 // from the centre towards the performer, of the radius; chosen
 #define FINGERS_OVER 0.03 // the grip over the head: fingers are so thick (m); chosen
