@@ -20,6 +20,7 @@
 #define HIMC_ELEVATION_MAX 1.5708      ///< of a pickup over the head: overhead, from 0 (rad)
 #define HIMC_PICKUP_DISTANCE_MIN 0.3   ///< from the head's centre (m)
 #define HIMC_PICKUP_DISTANCE_MAX 100.0 ///< (m)
+#define HIMC_STRIKE_VELOCITY_MIN 0.001 ///< of a mallet without a hand (m/s); chosen
 #define HIMC_STRIKE_VELOCITY_MAX 30.0  ///< of a mallet without a hand (m/s)
 #define HIMC_FORCE_MAX 1e4             ///< on a head: 1 kg at 30 m/s, stopped in 3 ms (N)
 

@@ -62,7 +62,7 @@ static void make_commands(himc_receiver receiver)
 static void make_atoms(void)
 {
     char seen[4096] = "", line[640], allowed[512], key[128];
-    say("| atom | of | allowed |\n|---|---|---|\n");
+    say("| atom | of | expected |\n|---|---|---|\n");
     const himc_command_row *row;
     for (int i = 0; (row = himc_command_table(i)); i++) {
         char grammar[256], *word, *rest = grammar;

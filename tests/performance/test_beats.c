@@ -141,6 +141,32 @@ static void test_a_loop_of_one_beat_reports_it_in_each_round(void)
     himc_performance_free(p);
 }
 
+// a counter or a sequencer on the outlet gets each beat once
+static void test_stop_and_play_within_a_beat_do_not_begin_it_again(void)
+{
+    himc_performance *p = session_new();
+    himc_event event;
+    double last = -1;
+    session_do(p, "drum kettle 26");
+    session_do(p, "stroke 0 right legato mf");
+    session_do(p, "stroke 7 left legato mf");
+    session_do(p, "play");
+    for (int i = 0; i < 80; i++) {
+        if (i == 19)
+            session_do(p, "stop");
+        if (i == 24)
+            session_do(p, "play");
+        himc_performance_process(p, 4800, NULL);
+        while (himc_performance_event(p, &event))
+            if (event.kind == HIMC_EVENT_BEAT) {
+                TEST_ASSERT_EQUAL_DOUBLE(last + 1, event.beat);
+                last = event.beat;
+            }
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(7, last);
+    himc_performance_free(p);
+}
+
 typedef struct pushes {
     bool pushed;
     int count;
@@ -186,6 +212,7 @@ int main(void)
     RUN_TEST(test_beats_and_the_end_come_in_the_same_steps_at_any_block_size);
     RUN_TEST(test_tempo_in_a_loop_keeps_the_tempi_of_other_parts_in_later_rounds);
     RUN_TEST(test_a_loop_of_one_beat_reports_it_in_each_round);
+    RUN_TEST(test_stop_and_play_within_a_beat_do_not_begin_it_again);
     RUN_TEST(test_a_push_acts_once_in_each_round_of_a_loop_on_its_last_beat_too);
     return UNITY_END();
 }

@@ -110,7 +110,8 @@ static const himc_argument arguments[] = {
     {"ELEVATION", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_ELEVATION_MAX, "rad", NULL},
     {"DISTANCE", NULL, HIMC_ARGUMENT_NUMBER, HIMC_PICKUP_DISTANCE_MIN, HIMC_PICKUP_DISTANCE_MAX,
      "m", NULL},
-    {"VELOCITY", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_STRIKE_VELOCITY_MAX, "m/s", NULL},
+    {"VELOCITY", NULL, HIMC_ARGUMENT_NUMBER, HIMC_STRIKE_VELOCITY_MIN, HIMC_STRIKE_VELOCITY_MAX,
+     "m/s", NULL},
 };
 
 const himc_argument *himc_argument_find(const char *name, const char *context)

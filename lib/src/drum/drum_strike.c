@@ -15,9 +15,8 @@
 
 #include <math.h>
 
-#define GONE 0.005           // (m) above the head at rest and rising: the contact is over; chosen
-#define LONGEST_LIFE 1.0     // (s) of a mallet, whatever it does; chosen
-#define LEAST_VELOCITY 0.001 // (m/s) of a strike; chosen
+#define GONE 0.005       // (m) above the head at rest and rising: the contact is over; chosen
+#define LONGEST_LIFE 1.0 // (s) of a mallet, whatever it does; chosen
 
 bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                          himc_error *error)
@@ -26,8 +25,8 @@ bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double 
     if (!himc_check_range("strike: X", x, -radius, radius, "m", error) ||
         !himc_check_range("strike: Y", y, -radius, radius, "m", error) ||
         !himc_check_range("strike: X Y, from the centre", hypot(x, y), 0, radius, "m", error) ||
-        !himc_check_range("strike: VELOCITY", velocity, LEAST_VELOCITY, HIMC_STRIKE_VELOCITY_MAX,
-                          "m/s", error))
+        !himc_check_range("strike: VELOCITY", velocity, HIMC_STRIKE_VELOCITY_MIN,
+                          HIMC_STRIKE_VELOCITY_MAX, "m/s", error))
         return false;
     if (delay == HIMC_STRIKE_NEVER)
         return true;

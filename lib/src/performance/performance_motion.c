@@ -41,7 +41,8 @@
 
 // after the predicted end of the last contact, by when the real one has begun; chosen: strokes land
 // within 10 ms of their time, bounces within 30 ms
-#define LATE_CONTACT 0.05 // (s)
+#define LATE_CONTACT 0.05  // (s)
+#define BEAT_BEGINNING 0.1 // of a beat; chosen: a tick at 1000 beats a minute
 
 // a stroke that does not rebound: at both times after it the tip is wanted so low; chosen: the
 // softest roll of one hand, ppp at 12 Hz, is higher at the first, the fastest at one of them
@@ -711,10 +712,16 @@ bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
     return first;
 }
 
-static long whole_beat(const performance_motion *m, double t)
+// of a score, or of the count before it
+static double score_beat(const performance_motion *m, double t)
 {
     bool prepares = himc_planner_is_preparing(m->planner, t);
-    double beat = prepares ? himc_planner_count(m->planner, t) : himc_planner_beat(m->planner, t);
+    return prepares ? himc_planner_count(m->planner, t) : himc_planner_beat(m->planner, t);
+}
+
+static long whole_beat(const performance_motion *m, double t)
+{
+    double beat = score_beat(m, t);
     return m->track || m->over || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
 }
 
@@ -725,10 +732,20 @@ double himc_motion_score_beat(const performance_motion *m, double t)
     return m->playing || m->over ? t - m->track_start : -1;
 }
 
-/// True if a beat begins by t: another one, or the same one of a later round or behind a count.
+// true within the first tick of a beat
+static bool is_beginning(const performance_motion *m, double t)
+{
+    double beat = score_beat(m, t);
+    return beat - floor(beat + BEAT_ROUNDING) < BEAT_BEGINNING;
+}
+
+/// True if a beat begins by t: another one, or the same one of a later round or behind a count. A
+/// score that starts within a beat does not begin it.
 static bool begins_beat(const performance_motion *m, double t)
 {
-    return whole_beat(m, t) != m->last_beat || himc_planner_round(m->planner, t) > m->last_round ||
+    long whole = whole_beat(m, t);
+    bool other = whole != m->last_beat && (m->last_beat >= 0 || whole < 0 || is_beginning(m, t));
+    return other || himc_planner_round(m->planner, t) > m->last_round ||
            (m->counted && !himc_planner_is_preparing(m->planner, t));
 }
 
