@@ -337,13 +337,16 @@ static void check_drum(const himc_drum *d, int slot, int n, past before)
         check_sound(d, slot, k, n, before);
 }
 
-// true if both drums have sounded the same
+// true if both drums have sounded the same; -0 is the same sample as 0
 static bool sound_alike(const himc_drum *a, const himc_drum *b, int n)
 {
     double ours[LONGEST_BLOCK], theirs[LONGEST_BLOCK];
     himc_drum_read(a, himc_drum_time(a) - (uint64_t)n, n, ours, NULL);
     himc_drum_read(b, himc_drum_time(b) - (uint64_t)n, n, theirs, NULL);
-    return memcmp(ours, theirs, (size_t)n * sizeof(double)) == 0;
+    for (int i = 0; i < n; i++)
+        if (!(ours[i] == theirs[i]))
+            return false;
+    return true;
 }
 
 static void check_twin(const pair *of, int n, double *const a[2], double *const b[2])
