@@ -183,6 +183,27 @@ static void test_noise_drive_ends_at_0_while_the_noise_still_sounds(void)
         TEST_ASSERT_EQUAL_DOUBLE(0, noise.slope[k]);
 }
 
+// a listener leaves within a block, and the rest of the block depends on the host
+static void test_a_second_row_is_the_same_wherever_it_paused(void)
+{
+    static const int pause[] = {640, 700};
+    double one[2][1000], two[2][1000];
+    for (int i = 0; i < 2; i++) {
+        himc_stroke_noise noise = himc_stroke_noise_at(RATE);
+        double *row[] = {one[i], two[i]};
+        himc_stroke_noise_begin(&noise, 0.1, 0.2);
+        himc_stroke_noise_run(&noise, 100, 0, 2, row);
+        for (int k = 0; k < 100; k++)
+            himc_stroke_noise_run(&noise, 1, 0.4 * k, 2, row);
+        himc_stroke_noise_run(&noise, pause[i], 0, 2, row);
+        himc_stroke_noise_run(&noise, 800 - pause[i], 0, 1, row);
+        himc_stroke_noise_run(&noise, 1000, 0, 2, row);
+    }
+    TEST_ASSERT_TRUE(two[0][10] != 0);
+    TEST_ASSERT_EQUAL_MEMORY(one[0], one[1], sizeof one[0]);
+    TEST_ASSERT_EQUAL_MEMORY(two[0], two[1], sizeof two[0]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -195,5 +216,6 @@ int main(void)
     RUN_TEST(test_a_slow_press_makes_hardly_any_noise);
     RUN_TEST(test_pickups_on_the_head_hear_none_and_distance_weakens_it);
     RUN_TEST(test_noise_drive_ends_at_0_while_the_noise_still_sounds);
+    RUN_TEST(test_a_second_row_is_the_same_wherever_it_paused);
     return UNITY_END();
 }
