@@ -125,10 +125,9 @@ HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB",
 HIMC_SETTING_ROW(STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength,
                  "", NOTHING,
                  "sets the largest torque of a joint, or a man's for all joints, or no limit")
-HIMC_SETTING_ROW(
-    GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
-    "sets the grip: palms down (german), or thumbs up (french), and lets strokes bounce "
-    "that shall; servo: a stroke has one contact, as published")
+HIMC_SETTING_ROW(GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
+                 "sets the grip: palms down (german), or thumbs up (french), and lets doubles, "
+                 "buzzes and grace notes bounce; servo: a stroke has one contact, as published")
 HIMC_SETTING_ROW(HUMAN, human, AT_SAMPLE, "AMOUNT [SEED]", human, human, "0", HUMAN,
                  "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
                  "all; each seed is another player")
