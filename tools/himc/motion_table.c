@@ -68,7 +68,7 @@ static const array arrays[] = {
     {"contact", "mallet_forces", PER_HAND, "_mallet_force", 3, "n", AT(mallet_force), 0, false,
      "and on the mallet's mass beyond the body's stick (docs/data.md)"},
     {"contact", "impulses", PER_HAND, "_impulse", 1, "n_s", AT(impulse), 0, false,
-     "impulse of the head on the stick since the last row"},
+     "impulse of the head on the stick since the last row, with the step that begins at this one"},
     {"contact", "felt", PER_HAND, "_felt", 1, "j", AT(energy.felt), 0, false,
      "energy stored in the mallet's felt"},
     {"contact", "heads", PER_ROW, "heads", 1, "j", AT(energy.heads), 0, false,
