@@ -48,7 +48,7 @@ himc_take_options himc_take_default(void);
 /// A capture: points over time, and of a BVH a skeleton. Opaque.
 typedef struct himc_take himc_take;
 
-/// Reads a file by its suffix (.bvh .c3d .trc). `options` may be NULL. NULL with the error "file:
+/// Reads a file by its suffix (.bvh .c3d .trc .csv .tsv). `options` may be NULL. NULL with the error "file:
 /// what, value, what is allowed". Limits: rates of 20 .. 10000 Hz, 1000000 frames, 30000000 frames
 /// x points.
 himc_take *himc_take_load(const char *path, const himc_take_options *options, himc_error *error);

@@ -312,6 +312,11 @@ check test_a_closed_output_is_an_error_for_help [ "$?$(cat err)" = "1himc: stand
 "$himc" import - -o stdin.txt <"$root/patches/pieces/zarathustra.mid" 2>err
 "$himc" import "$root/patches/pieces/zarathustra.mid" -o file.txt 2>err
 check test_import_reads_the_standard_input [ "$?$(diff stdin.txt file.txt | grep '^<')" = "0< comment made of standard_input by himc import;" ]
+awk 'BEGIN { print "time,LeftStick_end_x_m,LeftStick_end_y_m,LeftStick_end_z_m"
+    for (i = 0; i < 500; i++) print i / 250 ",0.5,0.1," 0.85 + 0.1 * (i % 100) / 100 }' >table.csv
+"$himc" info table.csv | tail -n +2 >file.txt
+"$himc" info - <table.csv 2>err | tail -n +2 >stdin.txt
+check test_a_table_of_points_is_read_from_the_standard_input cmp file.txt stdin.txt
 refuses test_what_comes_is_no_midi "standard input: not a MIDI file" import - -o x.txt
 refuses test_what_comes_is_no_scene "-: not a scene" share - -o x.html
 refuses test_what_comes_is_no_scene_for_a_film "-: not a scene" film - -o x.glb

@@ -135,7 +135,7 @@ static void test_each_command_of_the_performer_has_an_action(void)
 
 int main(void)
 {
-    static const char *const files[] = {"no-such-file.txt", NULL};
+    static const char *const files[] = {"no-such-folder/file.txt", NULL};
     random_files = files;
     UNITY_BEGIN();
     RUN_TEST(test_each_setting_is_dumped_made_again_and_reset);

@@ -18,10 +18,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RATE 48000 // sample rate (Hz)
-#define BLOCK 64   // (samples)
-#define KINDS 7    // ik; id and himc under three laws
-#define LEARNED 16 // other takes that a regression is learned from, at most; chosen
+#define RATE 48000                 // sample rate (Hz)
+#define BLOCK 64                   // (samples)
+#define KINDS (1 + 2 * TRIAL_LAWS) // ik; id and himc under each law
+#define LEARNED 16                 // other takes that a regression is learned from, at most; chosen
 
 typedef struct own_result {
     double rms, most;       ///< to the capture (m)
@@ -360,8 +360,9 @@ static void print_row(const own_takes *own, int item, bool json, FILE *stream)
 // logarithmic axis: figure 6b of the 2012 paper for own takes
 static void draw(const own_takes *own, FILE *out)
 {
-    static const char *const colour[KINDS] = {"#999",    "#9ecae1", "#4292c6", "#084594",
-                                              "#fdbe85", "#fd8d3c", "#a63603"};
+    static const char *const colour[] = {"#999",    "#9ecae1", "#4292c6", "#084594",
+                                         "#fdbe85", "#fd8d3c", "#a63603"};
+    enum { colours = sizeof colour / sizeof *colour };
     fprintf(out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
             "font-family=\"sans-serif\" font-size=\"11\">\n",
@@ -379,7 +380,7 @@ static void draw(const own_takes *own, FILE *out)
         double high = fmin(fmax(log10(value / LEAST) / DECADES, 0), 1) * HIGH;
         fprintf(out, "<rect x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%.1f\" fill=\"%s\"/>\n",
                 60 + GROUP * (i / KINDS) + BAR * (i % KINDS), 20 + HIGH - high, BAR - 2, high,
-                colour[i % KINDS]);
+                colour[i % KINDS % colours]);
         if (i % KINDS == 0)
             fprintf(out, "<text x=\"%d\" y=\"%d\">take %d, %s</text>\n", 60 + GROUP * (i / KINDS),
                     HIGH + 36, i / KINDS + 1, isfinite(r->percent) ? "%" : "mm");
@@ -387,7 +388,7 @@ static void draw(const own_takes *own, FILE *out)
     for (int k = 0; k < KINDS; k++) {
         trial_kind kind = kind_of(k);
         fprintf(out, "<text x=\"%d\" y=\"%d\" fill=\"%s\">%s %s</text>\n", 75 + GROUP * own->count,
-                40 + 18 * k, colour[k], trial_controller_name(kind.controller).text,
+                40 + 18 * k, colour[k % colours], trial_controller_name(kind.controller).text,
                 k ? trial_law_name(&kind).text : "");
     }
     fputs("</svg>\n", out);

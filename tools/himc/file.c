@@ -190,10 +190,8 @@ static const char *suffix_of(const char *bytes, size_t size)
 {
     static const struct {
         const char *begin, *suffix;
-    } known[] = {{"HIERARCHY", ".bvh"},
-                 {"PathFileType", ".trc"},
-                 {"MThd", ".mid"},
-                 {"Trajectories", ".csv"},
+    } known[] = {{"HIERARCHY", ".bvh"},    {"PathFileType", ".trc"},   {"MThd", ".mid"},
+                 {"Trajectories", ".csv"}, {"Format Version", ".csv"}, {"time,", ".csv"},
                  {"NO_OF_FRAMES", ".tsv"}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (size >= strlen(known[i].begin) &&

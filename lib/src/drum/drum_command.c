@@ -350,7 +350,6 @@ static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
     return good;
 }
 
-// only a round head may be in air; one that becomes round again is in air again
 // the word of a misspelt outline looks like no file's name
 static bool refuse_shape(const char *word, himc_error *error)
 {
@@ -360,6 +359,7 @@ static bool refuse_shape(const char *word, himc_error *error)
                           word);
 }
 
+// only a round head may be in air; one that becomes round again is in air again
 static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
 {
     enum { CIRCLE, RECTANGLE, FROM_FILE };
