@@ -209,6 +209,17 @@ static void test_approach_and_stop_lead_in_and_out_smoothly(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(at(5).x, at(9).x));
 }
 
+static void test_a_stop_after_the_end_changes_nothing(void)
+{
+    make_take(4, 0);
+    himc_target far = {.x = {0.1, -0.4, 1.4}}, now[HIMC_HANDS] = {far, far};
+    double length = himc_track_length(track);
+    himc_vec3 before = at(length + 1).x;
+    himc_track_stop(track, length + 0.1, now);
+    TEST_ASSERT_EQUAL_DOUBLE(length, himc_track_length(track));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(before, at(length + 1).x));
+}
+
 static void test_the_take_may_be_freed_and_the_strikes_are_on_the_usual_spot(void)
 {
     make_take(4, 0);
@@ -351,6 +362,7 @@ int main(void)
     RUN_TEST(test_20_ms_after_separation_the_take_is_followed_at_any_speed_of_the_stick);
     RUN_TEST(test_after_rewind_the_track_is_the_same_bit_by_bit);
     RUN_TEST(test_approach_and_stop_lead_in_and_out_smoothly);
+    RUN_TEST(test_a_stop_after_the_end_changes_nothing);
     RUN_TEST(test_the_take_may_be_freed_and_the_strikes_are_on_the_usual_spot);
     RUN_TEST(test_one_strike_in_another_place_does_not_move_the_head);
     RUN_TEST(test_playing_allocates_nothing);
