@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #define MOST_DESCRIPTORS 4096 // of this process, closed in the child; chosen
+#define MISSING "the program himc is not beside himc-viewer"
 
 static const char *const endings[] = {".txt", ".mid", ".bvh", ".c3d", ".trc"};
 
@@ -41,35 +42,57 @@ bool editor_is_key(const char *key, const char *given)
     return !differ;
 }
 
-// in the child: becomes `himc edit`, or tells the page why not
-static void become(const editor *e)
+// in the child: becomes himc; comes back if there is none
+static void become_himc(char *const *arguments)
 {
     char path[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", path, sizeof path - 8);
     char *slash = length > 0 ? memrchr(path, '/', (size_t)length) : NULL;
-    char *const own[] = {"himc", "edit", (char *)e->piece.source, NULL},
-                *const sent[] = {"himc",       "edit",   (char *)e->piece.source,
-                                 "--confined", "--name", (char *)e->piece.name,
-                                 NULL},
-                *const *arguments = e->piece.name[0] ? sent : own;
-    static const char missing[] =
-        "{\"event\":\"failed\",\"text\":\"the program himc is not beside himc-viewer\"}";
-    uint32_t size = sizeof missing - 1;
     for (int i = 3; i < MOST_DESCRIPTORS; i++)
         close(i);
     signal(SIGPIPE, SIG_DFL);
     signal(SIGCHLD, SIG_DFL);
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (e->folder->path[0])
-        setenv("TMPDIR", e->folder->path, 1);
     if (slash) {
         strcpy(slash + 1, "himc");
         execv(path, arguments);
     }
     execvp("himc", arguments);
+}
+
+// in the child: becomes `himc edit`, or tells the page why not
+static void become(const editor *e)
+{
+    char *const own[] = {"himc", "edit", (char *)e->piece.source, NULL},
+                *const sent[] = {"himc",       "edit",   (char *)e->piece.source,
+                                 "--confined", "--name", (char *)e->piece.name,
+                                 NULL};
+    static const char missing[] = "{\"event\":\"failed\",\"text\":\"" MISSING "\"}";
+    uint32_t size = sizeof missing - 1;
+    if (e->folder->path[0])
+        setenv("TMPDIR", e->folder->path, 1);
+    become_himc(e->piece.name[0] ? sent : own);
     if (write(1, "edit", 4) == 4 && write(1, &size, 4) == 4 && write(1, missing, size) > 0)
         _exit(1);
     _exit(127);
+}
+
+bool editor_check(const char *source)
+{
+    int status = 0;
+    pid_t process = fork();
+    if (process == 0) {
+        char *const check[] = {"himc", "edit", (char *)source, "--check", NULL};
+        if (freopen("/dev/null", "r", stdin) && freopen("/dev/null", "w", stdout))
+            become_himc(check);
+        fputs("himc-viewer: " MISSING "\n", stderr);
+        _exit(1);
+    }
+    if (process < 0 || waitpid(process, &status, 0) != process) {
+        fprintf(stderr, "himc-viewer: %s\n", strerror(errno));
+        return false;
+    }
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 void editor_stop(editor *e)

@@ -39,6 +39,9 @@ bool editor_key(char key[EDITOR_KEY + 1], himc_error *error);
 /// Compares in a time that does not depend on where they differ.
 bool editor_is_key(const char *key, const char *given);
 
+/// Asks `himc edit` whether it takes the source; if not its line is on standard error.
+bool editor_check(const char *source);
+
 /// Starts the program for the source; one that runs ends first. False with the reason.
 bool editor_start(editor *e, himc_error *error);
 /// Sends a line, "" to 4000 bytes without a newline; false if it is none, or not taken.

@@ -131,7 +131,6 @@ static void handle_signals(void)
     signal(SIGPIPE, SIG_IGN);
 }
 
-// what is wrong with the piece itself, himc tells the page
 static bool check_edit(const options *o, himc_error *error)
 {
     if (o->play)
@@ -151,6 +150,8 @@ static int serve(const options *o, himc_error *error)
         free(recording);
         return fail(error);
     }
+    if (o->edit && !editor_check(o->edit))
+        return 1;
     folder_remove_stale();
     config.edit = o->edit;
     config.folder = &f;

@@ -553,6 +553,26 @@ def test_a_piece_is_edited_over_the_stream():
             assert page.closed_with() == 4001
 
 
+def test_what_cannot_be_edited_ends_the_program_at_once():
+    """In the line of `himc edit`, with no address; the same line for all that it refuses."""
+    with tempfile.TemporaryDirectory() as home:
+        for name, contents in (("a.wav", b"RIFF\0\0\0\0WAVE"), ("bad.txt", b"stroke 0 right boing f;")):
+            path = os.path.join(home, name)
+            with open(path, "wb") as file:
+                file.write(contents)
+            said = [
+                subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=WAIT)
+                for command in (
+                    [os.path.join(BUILD, "bin/himc"), "edit", path],
+                    [VIEWER, "--no-browser", "--osc", "0", "--http", "0", "--edit", path],
+                )
+            ]
+            assert [s.returncode for s in said] == [1, 1], said
+            assert said[1].stdout == b"" and said[1].stderr == said[0].stderr, said
+            assert said[1].stderr.count(b"\n") == 1 and name.encode() in said[1].stderr, said
+        assert sorted(os.listdir(home)) == ["a.wav", "bad.txt"]
+
+
 def processes(viewer):
     """Of `himc edit` and those that play, by the process groups' beginning (with their parents)."""
     parents = {}
@@ -685,8 +705,10 @@ def test_a_name_is_no_sound():
         os.mkdir(os.path.join(home, "my pcm files"))
         own = os.path.join(home, "my pcm files", "b.txt")
         with open(own, "wb") as file:
-            file.write(b"stroke nonsense;")
+            file.write(score_of("0 right legato mf"))
         with Viewer("--edit", own, home=home) as v:
+            with open(own, "wb") as file:  # it has become a bad one when the page comes
+                file.write(b"stroke nonsense;")
             page = Editing(v)
             assert "my pcm files" in page.until("failed")["text"]
             page.s.settimeout(1)
@@ -728,7 +750,7 @@ def test_a_program_that_ends_by_itself_is_started_again_once():
         viewer = shutil.copy(VIEWER, home)
         starts = os.path.join(home, "starts")
         with open(os.path.join(home, "himc"), "w") as file:
-            file.write(f"#!/bin/sh\necho start >>{starts}\nread line\nprintf 'pcm \\001\\000\\000\\000x'\n")
+            file.write(f"#!/bin/sh\n[ \"$3\" != --check ] || exit 0\necho start >>{starts}\nread line\nprintf 'pcm \\001\\000\\000\\000x'\n")
         os.chmod(os.path.join(home, "himc"), 0o755)
         with open(os.path.join(home, "piece.txt"), "wb") as file:
             file.write(score_of("0 right legato mf"))

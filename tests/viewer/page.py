@@ -1721,6 +1721,65 @@ def test_a_dropped_score_is_played_and_a_point_of_a_take_is_dragged():
         assert browser.run("return viewer.saved.arrayBuffer().then(b => new Uint8Array(b)[1])") == 0x50
 
 
+# a click of the mouse there, as from the user
+CLICK = """
+    const stage = document.getElementById("stage"), [x, y] = arguments;
+    stage.setPointerCapture = () => {}; // there is no true pointer
+    for (const name of ["pointerdown", "pointerup"])
+        stage.dispatchEvent(new PointerEvent(name, { clientX: x, clientY: y, button: 0, pointerId: 1, bubbles: true, cancelable: true }));
+"""
+# the page's key there: the timeline has the focus
+KEY = "viewer.panel.timeline.canvas.dispatchEvent(new KeyboardEvent('keydown', { key: arguments[0], bubbles: true, cancelable: true }))"
+# [x, y] on the window of a point of the path that is drawn for a hand, null if none is
+ON_PATH = """
+    const e = viewer.editor, made = e.group.visible && e.offered[arguments[0]];
+    if (!made || !made.visible) return null;
+    const p = made.geometry.attributes.position, i = p.count >> 1;
+    return e.screen(e.spot.position.clone().set(p.getX(i), p.getY(i), p.getZ(i))).slice(0, 2);
+"""
+CHOSEN = "const c = viewer.editor.chosen; return c && [!!c.take, c.hand, c.time]"
+
+
+def test_a_nudge_is_begun_on_the_page_of_a_take_without_one():
+    """By a click on a path that is seen, and by keys: nothing is chosen for the user."""
+    with tempfile.TemporaryDirectory() as home:
+        score, take = os.path.join(home, "s.txt"), os.path.join(home, "nine.trc")
+        with open(score, "w") as file:
+            file.write("tempo 96; stroke 0 right legato mf; stroke 1 left accent f; stroke 2 right legato mf;")
+        command = [HIMC, "render", score, "-o", os.path.join(home, "n.wav"), "--set", f"record {take}"]
+        assert subprocess.run(command, capture_output=True).returncode == 0
+        with editing(take):
+            assert browser.run("return viewer.editor.piece.text.statements.length") == 0
+            browser.run("viewer.actions.seek(1936)")
+            for h, hand in enumerate(("left", "right")):
+                assert browser.wait(f"return (() => {{{ON_PATH.replace('arguments[0]', str(h))}}})()", 20), "no path is drawn"
+                browser.run(CLICK, *browser.run(ON_PATH, h))
+                chosen = browser.run(CHOSEN)
+                assert chosen and chosen[0] and abs(chosen[2] - 1.936) < 0.7, chosen
+                assert browser.wait("return viewer.editor.spot.visible && !viewer.editor.offered.some(o => o.visible)")
+                browser.run("viewer.editor.choose(null)")
+                assert not browser.run("return viewer.editor.spot.visible || viewer.editor.path.visible")
+            # enter chooses the point at the cursor, and again the other hand's; a key goes along its path
+            browser.run(KEY, "Enter")
+            first = browser.run(CHOSEN)
+            assert first[0] and abs(first[2] - 1.936) < 1e-6, first
+            browser.run(KEY, "Enter")
+            assert {first[1], browser.run(CHOSEN)[1]} == {"left", "right"}
+            browser.run(KEY, ".")
+            _, hand, time_ = browser.run(CHOSEN)
+            assert abs(time_ - 1.960) < 1e-6, time_
+            # and the ball is dragged
+            assert browser.wait("return viewer.editor.spot.visible && viewer.editor.group.visible")
+            browser.run(DRAG, "spot", 12, -12)
+            heard(1)
+            words = browser.run(WORDS)
+            assert words.startswith(f"nudge {hand} 0.96 0.3 "), words
+            # enter at a nudge chooses that
+            browser.run("viewer.playback.play(false); viewer.editor.choose(null); viewer.actions.seek(1960)")
+            browser.run(KEY, "Enter")
+            assert browser.run(WORDS) == words
+
+
 def test_a_shared_page_plays_from_the_disk():
     """One file, no server: the same scene, with its sound, and nothing on the console."""
     html = os.path.join(MADE, "shared.html")

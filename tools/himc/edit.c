@@ -27,7 +27,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { CONFINED, NAME, TAKE };
+enum { CONFINED, CHECK, NAME, TAKE };
 #define LINE 4096                       // a line of standard input (bytes); chosen
 #define TAKEN_BACK "back"               // line of a journal after one that could not be played
 #define FILE_NAME 64                    // of a file for the page, with its final 0
@@ -35,6 +35,7 @@ enum { CONFINED, NAME, TAKE };
 
 static const cli_option options[] = {
     {"confined", 0, NULL, "refuses a score that names other files"},
+    {"check", 0, NULL, "only tells whether the source can be edited, and changes nothing"},
     {"name", 0, "NAME", "the name under which a page has sent the source"},
     CLI_TAKE_OPTIONS,
     {0},
@@ -641,12 +642,13 @@ static int run(const cli_arguments *arguments)
     s.confined = arguments->value[CONFINED] && !cli_is_take(s.source);
     s.text = text ? edit_text_new(text, &error) : NULL;
     good = s.text && check(&s, s.text, &error);
-    if (good) {
+    bool only = good && arguments->value[CHECK];
+    if (good && !only) {
         hold_back(&s);
         restore(&s, text, sent);
     }
-    s.play = good && s.text ? edit_play_new(s.name, &s.take, &error) : NULL;
-    good = s.play && serve(&s, &error);
+    s.play = good && !only && s.text ? edit_play_new(s.name, &s.take, &error) : NULL;
+    good = only || (s.play && serve(&s, &error));
     if (!good) {
         name_source(&s, &error);
         tell("failed", error.text, NULL);

@@ -43,7 +43,7 @@ export class View {
             ),
         );
         on("pointermove", e => this.drag(e));
-        on("pointerup", e => this.still(e) && this.chosen(e));
+        on("pointerup", e => this.pointers.has(e.pointerId) && this.still(e) && this.chosen(e));
         for (const name of ["pointerup", "pointercancel"])
             on(name, e => this.pointers.delete(e.pointerId));
         on("wheel", e => (e.preventDefault(), this.zoom(Math.exp(0.0012 * e.deltaY), e)));

@@ -18,6 +18,7 @@ const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger 
     STROKES = 1.5, // dots of strokes so near in time (s)
     BEFORE = 0.7, // a stroke that is changed while it plays is heard from so much before (s)
     SOON = 0.25, // once so much after it has come (s)
+    AT = 0.012, // a nudge so near is at the cursor (s): half a step of a key
     INSIDE = 0.95, // of a head's radius: nothing is struck further out
     RANGE = 0.45, // height that a drag from the softest to the loudest takes (m)
     DYNAMICS = ["ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"], // of 0 .. 1, as the library
@@ -86,8 +87,9 @@ export class Editor {
         this.group = new THREE.Group();
         ((this.spot = dot("#ffd21f", 0.02)), (this.top = dot("#ff8f5c", 0.02)));
         ((this.path = line("#ffffff", 0.95)), (this.ghost = line("#ffffff", 0.4)));
+        this.offered = HANDS.map((_, h) => line(handColor[h], 0.6)); // paths of a take, to choose a point of
         this.dots = Array.from({ length: 24 }, () => dot("#ffffff", 0.008));
-        this.group.add(this.path, this.ghost, ...this.dots, this.spot, this.top);
+        this.group.add(this.path, this.ghost, ...this.offered, ...this.dots, this.spot, this.top);
         stage.scene.add(this.group);
         this.pushes = new Pushes(this, stage.scene);
         this.hide();
@@ -391,6 +393,7 @@ export class Editor {
             if (!own) this.on.note("No words of the score stand for this stroke.");
         }
         draw(this.ghost, []);
+        if (!this.chosen) (draw(this.path, []), (this.spot.visible = this.top.visible = false));
         this.show();
         if (this.chosen && scene) this.trace();
     }
@@ -407,6 +410,18 @@ export class Editor {
     // a click of the timeline, on a strike, a nudge or a push
     pick(what) {
         if (this.piece.scene && (what.push || !!this.piece.text?.take === !!what.take)) this.choose(what);
+    }
+
+    // by a key, of a take: the nudge at that time (s), or the point there of the hand that strikes next to it;
+    // once more the other hand's
+    pickAt(time) {
+        const c = this.chosen,
+            apart = s => Math.abs(s.time - time),
+            nearest = list => list.reduce((a, b) => (a && apart(a) <= apart(b) ? a : b), null),
+            nudge = nearest(this.piece.nudges),
+            again = c?.take && apart(c) < AT,
+            hand = again ? HANDS.find(h => h !== c.hand) : (nearest(this.piece.scene.strikes)?.hand ?? HANDS[1]);
+        this.pick(nudge && apart(nudge) < AT && nudge.index !== c?.index ? nudge : { take: true, hand, time });
     }
 
     // the nudges and pushes, as what can be chosen
@@ -447,6 +462,14 @@ export class Editor {
         }
         this.spot.visible = !c.push;
         this.top.visible = !c.take && !c.push && c.statement?.beat !== undefined;
+    }
+
+    // the paths of a take around that time (s), while none of their points is chosen
+    offer(time) {
+        const key = this.chosen || !this.piece.text?.take ? "" : `${time} ${this.piece.cuts} ${this.piece.scene.end}`;
+        if (key === this.offers) return;
+        this.offers = key;
+        this.offered.forEach((made, h) => draw(made, key ? this.points(HANDS[h], time) : []));
     }
 
     hide() {
@@ -705,7 +728,9 @@ export class Editor {
         document.body.classList.toggle("elsewhere", this.elsewhere);
         this.pushes.update();
         if (this.late) this.trace();
-        if (!this.group.visible || this.piece.text?.take) return;
+        if (!this.group.visible) return;
+        this.offer(p.at / 1000);
+        if (this.piece.text?.take) return;
         const list = p.scene.strikes,
             first = before(list, p.at / 1000 - STROKES, s => s.time) + 1,
             near = [...p.scene.missed.filter(s => Math.abs(s.time - p.at / 1000) < STROKES), ...list.slice(first, first + this.dots.length)];

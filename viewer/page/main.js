@@ -84,6 +84,7 @@ const actions = {
     pause: () => playback && playback.play(!playback.playing),
     seek: ms => playback && playback.seek(ms),
     pick: strike => editor?.pick(strike),
+    pickAt: time => editor?.pickAt(time),
     get marks() {
         return this.when ? editor.marks : [];
     },

@@ -217,9 +217,10 @@ export class Timeline {
         this.held = false;
     }
 
-    // enter chooses the stroke at the cursor
+    // enter chooses the stroke at the cursor, in a take the point there of a path
     key(e) {
         if (e.key !== "Enter" || !this.playback) return;
+        if (this.actions.when?.take) return this.actions.pickAt(this.playback.at / 1000);
         const apart = s => Math.abs(1000 * s.time - this.playback.at),
             [first, ...rest] = this.playback.scene.strikes;
         if (first) this.actions.pick(rest.reduce((a, b) => (apart(b) < apart(a) ? b : a), first));

@@ -71,10 +71,13 @@ export class When {
 
     key(e) {
         const { chosen, pushes } = this.editor;
-        if (!KEYS[e.key] || !chosen?.statement || e.ctrlKey || e.metaKey || e.altKey) return;
+        if (!KEYS[e.key] || !(chosen?.statement || chosen?.take) || e.ctrlKey || e.metaKey || e.altKey) return;
         if (["INPUT", "SELECT"].includes(e.target.tagName) || !this.editor.able()) return;
         e.preventDefault();
-        this.move(pushes.timeAt(pushes.beatAt(this.to ?? chosen.time) + KEYS[e.key] * STEP[this.take ? 1 : 0]));
+        const to = pushes.timeAt(pushes.beatAt(this.to ?? chosen.time) + KEYS[e.key] * STEP[this.take ? 1 : 0]);
+        // a point of a path that is not nudged yet: the next one of it
+        if (!chosen.statement) return this.editor.choose({ take: true, hand: chosen.hand, time: Math.min(this.editor.piece.scene.end, Math.max(0, to)) });
+        this.move(to);
         clearTimeout(this.timer);
         this.timer = setTimeout(() => this.drop(), SOON);
     }
