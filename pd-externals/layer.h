@@ -24,18 +24,6 @@ typedef struct t_layer {
     double l_level; /* of its sound, 0 .. 1 */
 } t_layer;
 
-/* The layer's head, which is to equal the drum's. */
-static inline himc_membrane *layer_membrane(const t_layer *layer)
-{
-    return himc_drum_membrane(layer->l_drum);
-}
-
-/* True if it equals the drum's head and pickups. */
-static inline bool layer_fits(const t_layer *layer, const himc_membrane *drum)
-{
-    return himc_membrane_alike(drum, layer_membrane(layer));
-}
-
 static inline double layer_declick(t_layer *layer)
 {
     double goal = !layer->l_silent, step = 1 / (LAYER_DECLICK * himc_drum_rate(layer->l_drum));
@@ -44,13 +32,12 @@ static inline double layer_declick(t_layer *layer)
     return layer->l_level;
 }
 
-/* Adds the response to the force in[0] at in[1], in[2] to the sound of `channels` channels of
-`drum` and to the displacement, which comes after them. */
-static inline void layer_play(t_layer *layer, const himc_drum *drum, int channels, int n,
-                              double in[3][LAYER_CHUNK], double out[LAYER_OUTS][LAYER_CHUNK])
+/* Adds the response to the force in[0] at in[1], in[2] to the sound of `channels` channels and to
+the displacement, which comes after them. */
+static inline void layer_play(t_layer *layer, int channels, int n, double in[3][LAYER_CHUNK],
+                              double out[LAYER_OUTS][LAYER_CHUNK])
 {
     double heard[HIMC_PICKUPS][LAYER_CHUNK], seen[LAYER_CHUNK];
-    himc_drum_hear_as(layer->l_drum, drum);
     for (int i = 0; i < n && !layer->l_sounds; i++)
         layer->l_sounds = in[0][i] != 0;
     if (!layer->l_sounds)

@@ -79,26 +79,21 @@ static himc_drum *membrane_guest(const t_membrane *x, int index)
     return himc_drum_get_driver(x->x_guest[index]).performer ? x->x_guest[index] : NULL;
 }
 
-/* True if the heads beside the drum's equal it. */
+/* True if the drums beside the object's follow it. */
 static bool membrane_fits(const t_membrane *x)
 {
-    const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
-    bool fits = layer_fits(&x->x_layer, drum);
+    const himc_drum *drum = x->x_link.l_drum;
+    bool fits = himc_drum_follows(x->x_layer.l_drum, drum);
     for (int i = 0; i < x->x_guests; i++)
         if (membrane_guest(x, i))
-            fits = fits && himc_membrane_alike(drum, himc_drum_membrane(x->x_guest[i]));
+            fits = fits && himc_drum_follows(x->x_guest[i], drum);
     return fits;
 }
 
-/* Makes a head equal to the drum's. */
-static void membrane_fit(t_membrane *x, himc_membrane *head)
+static void membrane_fit(t_membrane *x, himc_drum *beside)
 {
     himc_error error;
-    const himc_membrane *drum = himc_drum_membrane(x->x_link.l_drum);
-    bool good = himc_membrane_alike(drum, head) ||
-                (pd_in_real_time() ? himc_loader_follow(x->x_loader, head, drum, &error)
-                                   : himc_membrane_follow(head, drum, &error));
-    if (!good)
+    if (!himc_drum_follow(beside, x->x_link.l_drum, &error))
         pd_error(x, "membrane~: %s: inlet: %s", himc_drum_name(x->x_link.l_drum), error.text);
 }
 
@@ -115,11 +110,9 @@ static double membrane_number(t_membrane *x, t_sample value, double most)
 static void membrane_fit_heads(t_membrane *x)
 {
     x->x_fits_soon = false;
-    membrane_fit(x, layer_membrane(&x->x_layer));
+    membrane_fit(x, x->x_layer.l_drum);
     for (int i = 0; i < x->x_guests; i++)
-        membrane_fit(x, himc_drum_membrane(x->x_guest[i]));
-    if (himc_loader_busy(x->x_loader))
-        clock_delay(x->x_load, LOAD_PERIOD);
+        membrane_fit(x, x->x_guest[i]);
 }
 
 /* After a change of the drum. A layer that has not felt a force waits until the pedal rests. */
@@ -177,7 +170,7 @@ static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
         membrane_read(x, n, out);
         membrane_add_guests(x, n, out);
         x->x_layer.l_silent = himc_drum_technique(drum) != HIMC_TECHNIQUE_MODAL;
-        layer_play(&x->x_layer, drum, x->x_channels, n, in, out);
+        layer_play(&x->x_layer, x->x_channels, n, in, out);
     } else {
         himc_drum_advance(drum, n, in[0], in[1], in[2]);
         membrane_read(x, n, out);

@@ -77,10 +77,12 @@ HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t
 /// Whether the displacement of the watched point is computed, as it is at first; without, it reads
 /// as 0 and the drum costs less.
 HIMC_RT void himc_drum_watch(himc_drum *drum, bool on);
-/// Takes the place of `other` and, if a performer's `listener` hears that, the ways from there to
-/// its ears: for a second drum that sounds together with it. The heads must be alike
-/// (himc_membrane_follow).
-HIMC_RT void himc_drum_hear_as(himc_drum *drum, const himc_drum *other);
+/// Takes outline, head and pickups of `other`, and, unless a performer has the drum, its place and
+/// who hears it: for a second drum that sounds together with it. Its own sound goes on. Memory is
+/// allocated.
+bool himc_drum_follow(himc_drum *drum, const himc_drum *other, himc_error *error);
+/// True if there is nothing to follow.
+HIMC_RT bool himc_drum_follows(const himc_drum *drum, const himc_drum *other);
 /// Samples advanced since the last realign.
 HIMC_RT uint64_t himc_drum_time(const himc_drum *drum);
 /// Counts time from 0 again; the last `ahead` samples become samples 0 .. ahead - 1. The sound goes

@@ -48,10 +48,6 @@ bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
 /// after all that waits: all of them, or none and false with the reason. A performer's are a score.
 bool himc_loader_restore(himc_loader *loader, const himc_load_target *target, const char *state,
                          himc_error *error);
-/// The head of `follower` becomes that of `leader` (himc_membrane_follow). No effect while the same
-/// follower waits already. False if it was refused.
-bool himc_loader_follow(himc_loader *loader, himc_membrane *follower, const himc_membrane *leader,
-                        himc_error *error);
 /// Installs what is ready, about 0.2 ms of it, and never waits for the helper thread. It may
 /// allocate: it carries short commands out, and makes what the helper works on. True while commands
 /// wait.

@@ -110,14 +110,6 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
 /// Frees it. NULL is allowed.
 void himc_membrane_free(himc_membrane *membrane);
 
-/// Changes the head while it sounds: modes keep energy and phase, the sound of those that no longer
-/// exist ends in 5 ms, and there is no click. Pickups at points outside a smaller head move to its
-/// rim. Allocates only if the number of modes changes.
-bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error);
-/// Sets a head of another outline, at rest; the old sound ends in 5 ms. Retains a grid. Air is
-/// known for round heads alone.
-bool himc_membrane_set_shape(himc_membrane *membrane, const himc_shape *shape,
-                             const himc_head *head, himc_error *error);
 /// Its outline, borrowed.
 HIMC_RT const himc_shape *himc_membrane_shape(const himc_membrane *membrane);
 /// Replaces the pickups by these `count` (1 .. HIMC_PICKUPS); their sound changes over in 5 ms.
@@ -125,11 +117,6 @@ bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *picku
                                himc_error *error);
 /// Sets another sample rate (Hz, 4000 .. 480000); the sound goes on.
 bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error);
-
-/// True if outline, head and pickups of both are equal.
-HIMC_RT bool himc_membrane_alike(const himc_membrane *a, const himc_membrane *b);
-/// Copies outline, head and pickups of `other`; where they are equal the sound goes on.
-bool himc_membrane_follow(himc_membrane *membrane, const himc_membrane *other, himc_error *error);
 
 /// Its head, borrowed.
 HIMC_RT const himc_head *himc_membrane_head(const himc_membrane *membrane);
@@ -142,10 +129,6 @@ HIMC_RT himc_mode himc_membrane_mode(const himc_membrane *membrane, int index);
 /// Frequency of the principal mode (Hz) of `head` with this membrane's outline: (1,1) if round,
 /// whether or not it is in the list, else the lowest.
 HIMC_RT double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head);
-/// The tension (N/m, HIMC_TENSION_MIN .. HIMC_TENSION_MAX) that brings this mode nearest to
-/// `frequency` (Hz).
-HIMC_RT double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
-                                         double frequency);
 /// Number of modes below 0.49 of the rate; those above are silent, not aliased.
 HIMC_RT int himc_membrane_audible(const himc_membrane *membrane);
 

@@ -2,6 +2,7 @@
 /// all when they are far apart.
 #include "drum/air_between.h"
 #include "drum/membrane_probe.h"
+#include "drum/membrane_state.h"
 #include "himc/himc.h"
 
 #include "unity.h"

@@ -1,4 +1,5 @@
 /// test_contact.c: energy, forces, times and rebounds of sticks on a head.
+#include "drum/membrane_state.h"
 #include "drum/contact.h"
 #include "drum/membrane_probe.h"
 

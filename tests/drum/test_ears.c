@@ -154,6 +154,18 @@ static void test_ears_hear_the_dips_of_the_floor_at_281_and_842_hz(void)
     TEST_ASSERT_DOUBLE_WITHIN(6, 842, dip(&paths, 810, 870));
 }
 
+static void listens(himc_drum *to, const himc_listener *listener)
+{
+    TEST_ASSERT_TRUE_MESSAGE(himc_drum_open_ears(to, &error), error.text);
+    himc_drum_listen(to, listener);
+}
+
+static void test_a_drum_that_nobody_listens_to_has_no_ears_and_takes_less_than_2_5_megabytes(void)
+{
+    TEST_ASSERT_NULL(drum->ears);
+    TEST_ASSERT_LESS_THAN(2500000, sizeof *drum);
+}
+
 // the drum, struck, in blocks, with a listener who comes, moves and leaves; two channels
 static void listened(int block, double *left, double *right)
 {
@@ -166,11 +178,11 @@ static void listened(int block, double *left, double *right)
         int stop = i < 1200 ? 1200 : i < 4000 ? 4000 : i < 4100 ? 4100 : i < 8000 ? 8000 : LENGTH;
         int n = stop - i < block ? stop - i : block;
         if (i == 1200 || i == 4100)
-            himc_drum_listen(drum, &first);
+            listens(drum, &first);
         if (i == 4000)
-            himc_drum_listen(drum, &second);
+            listens(drum, &second);
         if (i == 8000)
-            himc_drum_listen(drum, &off);
+            listens(drum, &off);
         advance(n);
         himc_drum_read_channel(drum, 0, himc_drum_time(drum) - (uint64_t)n, n, left + i);
         himc_drum_read_channel(drum, 1, himc_drum_time(drum) - (uint64_t)n, n, right + i);
@@ -225,14 +237,14 @@ static void test_ears_do_not_click_when_they_come_move_and_leave(void)
     advance(9600);
     double before = bent(1200); // of the pickups, at 1 m
     for (int i = 0; i < 6; i++) {
-        himc_drum_listen(drum, &to[i]);
+        listens(drum, &to[i]);
         double now = bent(1200);
         TEST_ASSERT_TRUE(now > 0);
         TEST_ASSERT_TRUE_MESSAGE(now < 3 * before, "a click");
     }
     for (int i = 0; i < 200; i++) { // on the move all the time
         himc_listener l = facing(3 * cos(0.1 * i), 3 * sin(0.1 * i), 1.2);
-        himc_drum_listen(drum, &l);
+        listens(drum, &l);
         TEST_ASSERT_TRUE_MESSAGE(bent(48) < 3 * before, "a click on the move");
     }
 }
@@ -247,10 +259,10 @@ static void test_pickups_sound_as_if_nobody_had_listened_once_ears_have_left(voi
         himc_drum_strike_at(drum, 0, -0.2, 0, 3, &error);
         advance(2000);
         if (k == 0)
-            himc_drum_listen(drum, &l);
+            listens(drum, &l);
         advance(2000);
         l.on = false;
-        himc_drum_listen(drum, &l);
+        listens(drum, &l);
         advance(1000);
         advance(LENGTH);
         himc_drum_read(drum, himc_drum_time(drum) - LENGTH, LENGTH, k == 0 ? with : without, NULL);
@@ -261,11 +273,12 @@ static void test_pickups_sound_as_if_nobody_had_listened_once_ears_have_left(voi
 static void test_ears_find_a_drum_that_was_moved(void)
 {
     himc_listener l = facing(2, 1, 1.5);
-    himc_drum_listen(drum, &l);
+    listens(drum, &l);
     says("place 0.2 -0.8 0.9 0.1");
     himc_ear_paths p = himc_ears_trace(&l, himc_drum_head_frame(drum));
-    TEST_ASSERT_EQUAL_MEMORY(p.ray, himc_membrane_rays(himc_drum_membrane(drum)), sizeof p.ray);
-    TEST_ASSERT_EQUAL_INT((int)floor(p.direct[0].delay * RATE), drum->ears.next.direct[0].whole);
+    TEST_ASSERT_EQUAL_MEMORY(p.ray, himc_membrane_config_of(drum->membrane)->pickups + HIMC_PICKUPS,
+                             sizeof p.ray);
+    TEST_ASSERT_EQUAL_INT((int)floor(p.direct[0].delay * RATE), drum->ears->next.direct[0].whole);
 }
 
 // the sound of an outside force on a second drum that hears as the first is that on the first
@@ -277,10 +290,8 @@ static void test_a_drum_hears_as_another(void)
     for (int i = 0; i < 200; i++)
         force[i] = 20 * sin(HIMC_PI * i / 200);
     says("place 0.2 -0.8 0.9");
-    himc_drum_listen(drum, &l);
-    TEST_ASSERT_TRUE(
-        himc_membrane_follow(himc_drum_membrane(other), himc_drum_membrane(drum), &error));
-    himc_drum_hear_as(other, drum);
+    listens(drum, &l);
+    TEST_ASSERT_TRUE(himc_drum_follow(other, drum, &error));
     himc_drum_advance(drum, LENGTH, force, where, where);
     himc_drum_advance(other, LENGTH, force, where, where);
     for (int ear = 0; ear < HIMC_EARS; ear++) {
@@ -371,7 +382,8 @@ static void test_listener_is_loaded_to_the_same_result(void)
     himc_loader_finish(loader);
     hears(drum, 2, atan2(-1, -2));
     himc_ear_paths p = himc_ears_trace(&drum->listener, himc_drum_head_frame(drum));
-    TEST_ASSERT_EQUAL_MEMORY(p.ray, himc_membrane_rays(himc_drum_membrane(drum)), sizeof p.ray);
+    TEST_ASSERT_EQUAL_MEMORY(p.ray, himc_membrane_config_of(drum->membrane)->pickups + HIMC_PICKUPS,
+                             sizeof p.ray);
     himc_loader_free(loader);
     himc_performance_free(performance);
 }
@@ -416,7 +428,7 @@ static void test_ears_beside_a_drum_hear_two_sounds(void)
     TEST_ASSERT_TRUE(himc_command_parse_text(&quiet, HIMC_DRUM, "noise 0", &error));
     TEST_ASSERT_TRUE(himc_drum_command(timpano, &quiet, &error));
     himc_drum_enclose(timpano, &(himc_walls){0});
-    himc_drum_listen(timpano, &l);
+    listens(timpano, &l);
     himc_drum_strike_at(timpano, 0, -0.75 * 0.33, 0.015, 2, &error);
     himc_drum_advance(timpano, 32000, NULL, NULL, NULL);
     double low = correlation(timpano, 32000, 800, false);
@@ -438,6 +450,7 @@ int main(void)
     RUN_TEST(test_ears_hear_the_dips_of_the_floor_at_281_and_842_hz);
     RUN_TEST(test_ears_exchange_sides_when_all_is_mirrored);
     RUN_TEST(test_ears_see_a_tilted_head_as_it_lies);
+    RUN_TEST(test_a_drum_that_nobody_listens_to_has_no_ears_and_takes_less_than_2_5_megabytes);
     RUN_TEST(test_ears_hear_the_same_in_blocks_of_any_size);
     RUN_TEST(test_ears_do_not_click_when_they_come_move_and_leave);
     RUN_TEST(test_pickups_sound_as_if_nobody_had_listened_once_ears_have_left);

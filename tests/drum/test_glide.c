@@ -1,7 +1,7 @@
 /// test_glide.c: the film's stretching: the rise of pitch, and that energy never grows.
 #include "base/random.h"
 #include "drum/contact.h"
-#include "drum/membrane_form.h"
+#include "drum/membrane_state.h"
 #include "drum/membrane_probe.h"
 
 #include "unity.h"

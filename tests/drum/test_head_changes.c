@@ -2,7 +2,7 @@
 #include "session.h"
 
 #include "allocations.h"
-#include "drum/membrane_form.h"
+#include "drum/membrane_config.h"
 #include "himc/membrane.h"
 
 #include <math.h>

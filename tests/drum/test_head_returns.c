@@ -2,6 +2,7 @@
 /// back, is one that was used before; nothing of what it did then may sound again.
 #include "base/job.h"
 #include "drum/drum_performer.h"
+#include "drum/membrane_state.h"
 #include "himc/membrane.h"
 
 #include "unity.h"
@@ -51,8 +52,10 @@ static himc_drum *drum_of(bool ears)
     himc_drum *drum = himc_drum_new("timp", 26, RATE, &error);
     himc_listener listener = himc_listener_at((himc_vec3){2, 0, 1.4});
     TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
-    if (ears)
+    if (ears) {
+        TEST_ASSERT_TRUE(himc_drum_open_ears(drum, &error));
         himc_drum_listen(drum, &listener);
+    }
     say(drum, "tune A2");
     return drum;
 }
@@ -70,9 +73,9 @@ static double energy_of(himc_drum *drum)
 // the changes at beats 1, 2, ...
 static himc_drum_heads *heads_for(himc_drum *drum, const char *const *change, int count)
 {
-    himc_drum_form form = himc_drum_form_of(drum);
-    himc_drum_heads *heads = himc_drum_heads_new(&form, &error);
-    himc_drum_form_free(&form);
+    himc_drum_settings settings = himc_drum_settings_of(drum);
+    himc_drum_heads *heads = himc_drum_heads_new(&settings, &error);
+    himc_drum_settings_free(&settings);
     for (int i = 0; i < count; i++) {
         himc_command c;
         parse(&c, change[i]);
@@ -258,31 +261,26 @@ static const char *const anything[] = {
 #define ANYTHING ((int)(sizeof anything / sizeof *anything))
 
 // by command, aside, or as a head made ahead; a follower, which rings by itself, goes along
-static void change_somehow(himc_drum *drum, himc_membrane *follower, unsigned *random)
+static void change_somehow(himc_drum *drum, himc_drum *follower, unsigned *random)
 {
     bool any = next(random, 2);
     const char *text = any ? anything[next(random, ANYTHING)] : at_beats[next(random, AT_BEATS)];
     himc_command c;
     parse(&c, text);
-    himc_drum_form form = himc_drum_form_of(drum);
-    himc_drum *trial = himc_drum_new_of(&form, &error);
-    bool good = himc_drum_command(trial, &c, NULL); // `air 1` is not for a rectangle
-    himc_drum_release(trial);
-    himc_drum_form_free(&form);
+    himc_drum_settings trial = himc_drum_settings_of(drum);
+    bool good = himc_drum_settings_command(&trial, &c, NULL); // `air 1` is not for a rectangle
+    himc_drum_settings_free(&trial);
     if (!good)
         return;
-    double before = energy_of(drum), beside = himc_membrane_energy(follower);
+    double before = energy_of(drum), beside = energy_of(follower);
     if (next(random, 2))
         say(drum, text);
     else
         say_aside(drum, text);
     TEST_ASSERT_TRUE_MESSAGE(energy_of(drum) <= before * (1 + ROUNDING), text);
-    const himc_membrane *leader = himc_drum_membrane(drum);
-    good = next(random, 2)
-               ? himc_membrane_follow(follower, leader, &error)
-               : himc_job_carry_out(himc_membrane_job(follower, leader, &error), &error);
-    TEST_ASSERT_TRUE_MESSAGE(good, error.text);
-    TEST_ASSERT_TRUE_MESSAGE(himc_membrane_energy(follower) <= beside * (1 + ROUNDING), text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_drum_follow(follower, drum, &error), error.text);
+    TEST_ASSERT_TRUE(himc_drum_follows(follower, drum));
+    TEST_ASSERT_TRUE_MESSAGE(energy_of(follower) <= beside * (1 + ROUNDING), text);
 }
 
 static void test_no_change_of_a_ringing_or_silent_head_brings_energy(void)
@@ -295,7 +293,7 @@ static void test_no_change_of_a_ringing_or_silent_head_brings_energy(void)
                 strike(drum), strike(other);
                 play(drum, CHUNK * 10, NULL), play(other, CHUNK * 10, NULL);
             }
-            change_somehow(drum, himc_drum_membrane(other), &random);
+            change_somehow(drum, other, &random);
             int n = pause_of(&random);
             ring(drum, n, "drum");
             ring(other, n, "follower");
@@ -305,10 +303,30 @@ static void test_no_change_of_a_ringing_or_silent_head_brings_energy(void)
     }
 }
 
+static void test_drums_of_any_rate_follow_one(void)
+{
+    himc_drum *drum = drum_of(false), *beside[2];
+    for (int i = 0; i < 2; i++)
+        beside[i] = himc_drum_new("beside", 23, i ? 44100 : himc_drum_rate(drum), &error);
+    for (int change = 0; change < 3; change++) {
+        say(drum, change == 0 ? "modes 400" : change == 1 ? "shape rectangle 0.5 0.4" : "pickups 3");
+        for (int i = 0; i < 2; i++) {
+            TEST_ASSERT_FALSE(himc_drum_follows(beside[i], drum));
+            TEST_ASSERT_TRUE_MESSAGE(himc_drum_follow(beside[i], drum, &error), error.text);
+            TEST_ASSERT_TRUE(himc_drum_follows(beside[i], drum));
+        }
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(44100, himc_drum_rate(beside[1]));
+    himc_drum_release(drum);
+    himc_drum_release(beside[0]);
+    himc_drum_release(beside[1]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_released_head_stays_as_silent_as_it_was);
+    RUN_TEST(test_drums_of_any_rate_follow_one);
     RUN_TEST(test_a_pedal_that_returns_sounds_as_one_moved_by_hand);
     RUN_TEST(test_heads_return_in_any_order_and_bring_nothing);
     RUN_TEST(test_no_change_of_a_ringing_or_silent_head_brings_energy);

@@ -329,49 +329,6 @@ static void test_a_head_from_the_helper_sounds_on_as_one_changed_in_place(void)
     }
 }
 
-static void test_a_follower_gets_its_leaders_head(void)
-{
-    himc_loader *loader = loader_new();
-    himc_drum *drum = himc_drum_new("kettle", 26, 48000, &error);
-    himc_membrane *leader = himc_drum_membrane(drum);
-    himc_head head = himc_head_default();
-    himc_membrane *follower = himc_membrane_new(&head, 44100, &error);
-    himc_command c;
-    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, "modes 400", &error) &&
-                     himc_drum_command(drum, &c, &error));
-    TEST_ASSERT_TRUE(himc_loader_follow(loader, follower, leader, &error));
-    TEST_ASSERT_TRUE(himc_loader_follow(loader, follower, leader, &error));
-    himc_loader_run(loader);
-    TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, "shape rectangle 0.5 0.4", &error) &&
-                     himc_drum_command(drum, &c, &error));
-    himc_loader_finish(loader);
-    TEST_ASSERT_TRUE(himc_membrane_alike(follower, leader));
-    TEST_ASSERT_TRUE(himc_membrane_rate(follower) == 44100);
-    himc_loader_free(loader);
-    himc_membrane_free(follower);
-    himc_drum_release(drum);
-}
-
-static void test_all_followers_of_a_leader_get_its_head(void)
-{
-    himc_loader *loader = loader_new();
-    himc_head head = himc_head_default();
-    himc_membrane *follower[3], *leader = himc_membrane_new(&head, 48000, &error);
-    for (int i = 0; i < 3; i++)
-        follower[i] = himc_membrane_new(&head, 48000, &error);
-    head.tension = 5000;
-    TEST_ASSERT_TRUE_MESSAGE(himc_membrane_set_head(leader, &head, &error), error.text);
-    for (int i = 0; i < 6; i++) // each is asked for twice
-        TEST_ASSERT_TRUE(himc_loader_follow(loader, follower[i % 3], leader, &error));
-    himc_loader_finish(loader);
-    for (int i = 0; i < 3; i++) {
-        TEST_ASSERT_TRUE(himc_membrane_alike(follower[i], leader));
-        himc_membrane_free(follower[i]);
-    }
-    himc_loader_free(loader);
-    himc_membrane_free(leader);
-}
-
 static void test_a_head_is_installed_without_the_allocator(void)
 {
     if (!CAN_FAIL_ALLOCATIONS)
@@ -464,8 +421,6 @@ int main(void)
     RUN_TEST(test_a_drum_changed_meanwhile_keeps_both_changes);
     RUN_TEST(test_a_drum_that_changes_all_the_time_does_not_hold_up_a_load);
     RUN_TEST(test_a_head_from_the_helper_sounds_on_as_one_changed_in_place);
-    RUN_TEST(test_a_follower_gets_its_leaders_head);
-    RUN_TEST(test_all_followers_of_a_leader_get_its_head);
     RUN_TEST(test_a_head_is_installed_without_the_allocator);
     RUN_TEST(test_the_sample_rate_may_change_while_a_load_is_prepared);
     RUN_TEST(test_the_sound_goes_on_while_the_helper_works);

@@ -1,5 +1,5 @@
 /// test_membrane.c: pitch, decay, energy and pickups of a bare head, and changes while it sounds.
-#include "drum/membrane_form.h"
+#include "drum/membrane_state.h"
 #include "drum/membrane_probe.h"
 #include "head/air.h"
 #include "head/bessel.h"
@@ -373,12 +373,12 @@ static void test_membrane_sounds_at_a_metre_as_rayleighs_integral_within_a_decib
 
 // displacement at one point after 5 ms, for an impulse at another; `lowest`: the velocity of (0,1)
 // beside that of (1,1)
-static double after_a_push(const himc_head *of, double push, double watch, double *lowest)
+static double after_a_push(const himc_head *of, double pushed, double watch, double *lowest)
 {
     double sound_now[240], here[240];
     himc_membrane *m = himc_membrane_new(of, RATE, NULL);
     himc_membrane_watch(m, watch, 0.01);
-    himc_membrane_push(m, push, 0.01, 100);
+    himc_membrane_push(m, pushed, 0.01, 100);
     himc_membrane_run(m, 240, &(double *const){sound_now}, here);
     double q[2], v[2];
     for (int i = 0; i < 2; i++) {
@@ -473,7 +473,7 @@ static void sound_after_tuning(bool mute, bool exchange, double *out, int n)
     TEST_ASSERT_TRUE(himc_membrane_set_head(membrane, &higher, &error));
     if (exchange) {
         himc_membrane *other = himc_membrane_new(&head, RATE, &error);
-        himc_membrane_exchange(other, membrane);
+        membrane->model = himc_membrane_exchange(other, membrane->model);
         himc_membrane_free(membrane);
         membrane = other;
     }

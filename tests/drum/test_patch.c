@@ -250,8 +250,9 @@ static void test_a_patch_without_losses_keeps_energy(void)
         himc_mallet_head lossless = mallet[i];
         lossless.relaxation = 0;
         remake();
-        himc_shape shape = {.kind = HIMC_RECTANGLE, .length = 0.5, .width = 0.4};
-        TEST_ASSERT_TRUE(himc_membrane_set_shape(membrane, &shape, &head, NULL));
+        himc_membrane_config config = *himc_membrane_config_of(membrane);
+        config.shape = (himc_shape){.kind = HIMC_RECTANGLE, .length = 0.5, .width = 0.4};
+        TEST_ASSERT_TRUE(himc_membrane_become(membrane, &config, NULL));
         place(&lossless, 0.05, 4);
         double start = energy(), worst = 0, most = 0, widest = 0;
         for (int n = 0; n < 1200; n++) {

@@ -1,7 +1,7 @@
 /// test_statistical.c: the few modes that stand for all high ones: energy that a blow gives them,
 /// their decay, their sound, passivity.
 #include "drum/contact.h"
-#include "drum/membrane_form.h"
+#include "drum/membrane_state.h"
 #include "drum/membrane_probe.h"
 #include "head/air.h"
 #include "head/bessel.h"

@@ -108,21 +108,18 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_drum_watch, himc_drum_watch(drum, false))                                            \
     CALL(himc_drum_time, himc_drum_time(drum))                                                     \
     CALL(himc_drum_realign, himc_drum_realign(drum, 0))                                            \
-    CALL(himc_drum_hear_as, himc_drum_hear_as(drum, drum))                                         \
+    CALL(himc_drum_follows, himc_drum_follows(drum, drum))                                         \
     CALL(himc_drum_strike_next, himc_drum_strike_next(drum, &(himc_contact_report){0}))            \
     CALL(himc_drum_contact_next, himc_drum_contact_next(drum, &(himc_contact_onset){0}))           \
     CALL(himc_drum_technique, himc_drum_technique(drum))                                           \
     CALL(himc_drum_get_driver, himc_drum_get_driver(drum))                                         \
     CALL(himc_loader_busy, himc_loader_busy(loader))                                               \
     CALL(himc_membrane_shape, himc_membrane_shape(head))                                           \
-    CALL(himc_membrane_alike, himc_membrane_alike(head, other))                                    \
     CALL(himc_membrane_head, himc_membrane_head(head))                                             \
     CALL(himc_membrane_pickups, himc_membrane_pickups(head, &whole))                               \
     CALL(himc_membrane_rate, himc_membrane_rate(head))                                             \
     CALL(himc_membrane_mode, himc_membrane_mode(head, 3))                                          \
     CALL(himc_membrane_principal, himc_membrane_principal(head, himc_membrane_head(other)))        \
-    CALL(himc_membrane_tension_for,                                                                \
-         himc_membrane_tension_for(head, himc_membrane_head(head), 120))                           \
     CALL(himc_membrane_audible, himc_membrane_audible(head))                                       \
     CALL(himc_membrane_watch, himc_membrane_watch(head, x += 1e-3, 0.1))                           \
     CALL(himc_membrane_push, himc_membrane_push(head, 0.1, 0, 5))                                  \

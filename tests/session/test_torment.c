@@ -182,13 +182,13 @@ static past past_of(const himc_drum *d, int slot)
 static double loudest_ringing_of(const himc_drum *d, int k, past before)
 {
     const himc_membrane *m = d->membrane;
-    const himc_readout *r = &m->core.outputs[k].readout;
+    const himc_readout *r = &m->model->outputs[k].readout;
     double most = 0;
-    if (m->core.stale || !himc_membrane_wants(m, k))
+    if (m->model->stale || !himc_membrane_wants(m, k))
         return 0;
     for (int i = 0; i < himc_membrane_audible(m); i++)
-        most = fmax(most, hypot(r->p[i], r->s[i]) / sqrt(m->core.oscillators[i].mass));
-    return fmax(d->gain, before.level) * sqrt(2 * before.most) * most;
+        most = fmax(most, hypot(r->p[i], r->s[i]) / sqrt(m->model->oscillators[i].mass));
+    return fmax(d->set.gain, before.level) * sqrt(2 * before.most) * most;
 }
 
 // sound that a room returns of a source that sends 1 at 1 m (Sabine), at most
@@ -202,7 +202,7 @@ static double loudest_ringing(const himc_drum *d, int channel, past before)
 {
     if (!d->listener.on || channel >= HIMC_EARS)
         return loudest_ringing_of(d, channel, before);
-    himc_ear_paths p = himc_ears_trace(&d->listener, &d->place);
+    himc_ear_paths p = himc_ears_trace(&d->listener, &d->set.place);
     double ray = 0;
     for (int k = 0; k < HIMC_RAYS; k++)
         ray = fmax(ray, loudest_ringing_of(d, HIMC_PICKUPS + k, before));
@@ -318,7 +318,7 @@ static void check_sound(const himc_drum *d, int slot, int pickup, int n, past be
     seen.loudest = fmax(seen.loudest, most);
     seen.share = fmax(seen.share, most / scale);
     if (!isfinite(sum) || most > louder * scale) {
-        printf("%s, channel %d: %g, the loudest stroke %g\n", d->name, pickup, most, scale);
+        printf("%s, channel %d: %g, the loudest stroke %g\n", d->set.name, pickup, most, scale);
         fail(thrown ? "a sample 40 dB above the loudest real stroke, after an arm was thrown"
                     : "a sample 20 dB above the loudest real stroke");
     }
@@ -411,19 +411,12 @@ static himc_performance *performer(himc_drum *drum)
 // the new drum never had any.
 static himc_drum *drum_like(const himc_drum *d)
 {
-    himc_drum *c = himc_drum_new(d->name, 23, d->rate, &error);
-    TEST_ASSERT_TRUE_MESSAGE(c && himc_membrane_follow(c->membrane, d->membrane, &error),
-                             error.text);
+    himc_drum_settings settings = himc_drum_settings_of(d);
+    himc_drum *c = himc_drum_new_of(&settings, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(c, error.text);
+    himc_drum_settings_free(&settings);
     himc_membrane_set_rays(c->membrane, NULL);
-    c->mallet = d->mallet;
-    c->mallet_name = d->mallet_name;
-    c->place = d->place;
-    c->placed = d->placed;
-    c->technique = d->technique;
-    c->gain = d->gain;
-    c->mute = d->mute;
     c->level = d->level;
-    c->noise.amount = d->noise.amount;
     return c;
 }
 

@@ -4,6 +4,7 @@
 #define HIMC_TESTS_HEADS_H
 
 #include "himc/drum.h"
+#include "drum/membrane_state.h"
 #include "himc/membrane.h"
 
 #include <assert.h>

@@ -19,21 +19,25 @@ static inline bool loudest_stroke(const himc_drum *drum, double level, double pe
     static const double place[] = {-0.3, -0.75}; // of the radius: loudest, usual
     double sound[256], speed = himc_gesture_of(HIMC_VERTICAL_ACCENT, 1).speed;
     himc_error error;
-    himc_drum_form form = himc_drum_form_of(drum);
-    himc_drum *copy = himc_drum_new_of(&form, &error);
-    himc_drum_form_free(&form);
+    himc_drum_settings settings = himc_drum_settings_of(drum);
+    himc_drum *copy = himc_drum_new_of(&settings, &error);
+    himc_drum_settings_free(&settings);
     for (int k = 0; k < HIMC_PICKUPS; k++)
         peak[k] = 0;
     *energy = 0;
     if (!copy)
         return false;
-    bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
-    copy->gain = fmax(sounds ? drum->gain * drum->fader : 0, fmax(drum->level, level));
+    if (drum->listener.on && himc_drum_open_ears(copy, &error)) {
+        himc_drum_enclose(copy, &drum->walls);
+        himc_drum_listen(copy, &drum->listener);
+    }
+    bool sounds = drum->set.technique == HIMC_TECHNIQUE_MODAL && !drum->set.mute;
+    copy->set.gain = fmax(sounds ? drum->set.gain * drum->fader : 0, fmax(drum->level, level));
     copy->fader = 1; // it is in the gain
-    copy->technique = HIMC_TECHNIQUE_MODAL;
-    copy->mute = false;
+    copy->set.technique = HIMC_TECHNIQUE_MODAL;
+    copy->set.mute = false;
     for (int i = 0; i < 2; i++) {
-        himc_drum_strike_at(copy, 0, place[i] * copy->place.radius, 0, speed, &error);
+        himc_drum_strike_at(copy, 0, place[i] * copy->set.place.radius, 0, speed, &error);
         for (int n = 0; n < LOUDEST_HEARD * copy->rate; n += 256) {
             himc_drum_advance(copy, 256, NULL, NULL, NULL);
             *energy = fmax(*energy, drum_energy(copy));

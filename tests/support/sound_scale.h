@@ -29,7 +29,7 @@ static inline double point_yield(const himc_drum *d, double x, double y, double 
     static double shape[HIMC_MODES_MAX + 4];
     const himc_membrane *m = d->membrane;
     double yield = 0;
-    himc_modes_shapes(m->core.modes, m->head.radius, x, y, shape);
+    himc_modes_shapes(m->model->modes, m->model->config.head.radius, x, y, shape);
     *inverse_mass = 0;
     for (int i = 0; i < himc_membrane_audible(m); i++) {
         himc_mode mode = himc_membrane_mode(m, i);
@@ -52,7 +52,7 @@ static inline double largest_sample(const himc_drum *d, int pickup, double energ
     int count;
     const himc_membrane *m = d->membrane;
     const himc_pickup *at = &himc_membrane_pickups(m, &count)[pickup];
-    double area = HIMC_PI * m->head.radius * m->head.radius, inverse_mass;
+    double area = HIMC_PI * pow(m->model->config.head.radius, 2), inverse_mass;
     double step = 1 / (d->rate * himc_membrane_substeps(m));
     double fastest = sqrt(2.0) * 2 * HIMC_PI * 0.49 * d->rate + 2 / step;
     if (at->kind == HIMC_PICKUP_POINT) {
@@ -60,7 +60,7 @@ static inline double largest_sample(const himc_drum *d, int pickup, double energ
         return sqrt(2 * energy * inverse_mass) / HIMC_PICKUP_VELOCITY;
     }
     return SOUND_SCALE_RHO / (2 * HIMC_PI * at->distance * HIMC_PICKUP_PRESSURE) *
-           sqrt(2 * area * energy / m->head.density) * fastest;
+           sqrt(2 * area * energy / m->model->config.head.density) * fastest;
 }
 
 /// The same with declicks, `scale` being the largest before and after the changes.

@@ -41,6 +41,9 @@ HIMC_RT void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, 
 /// others at rest. Nothing remains of what `bank` did before.
 HIMC_RT void himc_bank_continue(himc_bank *bank, himc_bank *from, int count);
 
+/// Gives a bank at rest, of the same capacity, the constants of `from`.
+HIMC_RT void himc_bank_copy(himc_bank *bank, const himc_bank *from);
+
 /// The bank has coefficients for two lengths of step.
 typedef enum himc_step_length {
     HIMC_STEP_SAMPLE,  ///< a whole sample

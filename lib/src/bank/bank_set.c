@@ -226,6 +226,20 @@ void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int coun
     bank->forced = true;
 }
 
+void himc_bank_copy(himc_bank *bank, const himc_bank *from)
+{
+    memcpy(bank->memory, from->memory, sizeof(double) * ARRAYS * (size_t)bank->capacity);
+    bank->count = from->count;
+    bank->whole_pass = from->whole_pass;
+    bank->substeps = from->substeps;
+    bank->h = from->h;
+    bank->film.set = from->film.set;
+    bank->film.least = from->film.least;
+    memcpy(bank->film.most, from->film.most, sizeof bank->film.most);
+    memcpy(bank->film.reach, from->film.reach, sizeof bank->film.reach);
+    himc_bank_rest(bank);
+}
+
 void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *on_v,
                        const double *on_force, himc_readout *readout)
 {

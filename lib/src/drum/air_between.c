@@ -21,7 +21,7 @@
 #include "drum/air_between.h"
 
 #include "base/head_frame.h"
-#include "drum/strike_point.h"
+#include "drum/membrane_state.h"
 
 #include <math.h>
 #include <string.h>

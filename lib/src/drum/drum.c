@@ -7,6 +7,7 @@
 /// not depend on how the caller cuts time into blocks.
 #include "drum/drum_state.h"
 
+#include "base/head_frame.h"
 #include "base/line.h"
 #include "drum/contact.h"
 #include "drum/membrane_state.h"
@@ -29,31 +30,6 @@ static const himc_vec3 FIRST_PLACE = {0.70, 0, 0.85}; // (m) chosen: in front of
 static bool check_rate(double rate, himc_error *error)
 {
     return himc_check_range("sample rate", rate, 8000, 192000, "Hz", error);
-}
-
-static himc_drum *drum_new(const char *name, himc_membrane *membrane, const himc_head_frame *place,
-                           himc_error *error)
-{
-    himc_drum *drum = membrane ? calloc(1, sizeof *drum) : NULL;
-    if (!drum) {
-        if (membrane)
-            himc_error_set(error, "drum: no memory");
-        himc_membrane_free(membrane);
-        return NULL;
-    }
-    snprintf(drum->name, sizeof drum->name, "%s", name);
-    drum->references = 1;
-    drum->level = drum->gain = drum->fader = 1;
-    drum->walls = HIMC_WALLS_USUAL;
-    drum->membrane = membrane;
-    drum->usual = *himc_membrane_head(membrane);
-    himc_drum_take_mallet(drum, DRUM_MALLET_MEDIUM);
-    drum->place = *place;
-    drum->rate = himc_membrane_rate(membrane);
-    drum->noise = himc_stroke_noise_at(drum->rate);
-    drum->outside_x = FIRST_WATCHED * place->radius;
-    himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
-    return drum;
 }
 
 // of uneven lugs: another for another name (G. Fowler, L. C. Noll & K.-P. Vo: FNV-1a)
@@ -86,41 +62,110 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     himc_head head = himc_head_default();
     head.radius = inches * METRES_PER_INCH / 2;
     head.uniformity_seed = seed_of(name);
-    himc_head_frame place = {.center = FIRST_PLACE, .radius = head.radius};
-    return drum_new(name, himc_membrane_new(&head, sample_rate, error), &place, error);
+    himc_drum_settings settings = {.head = {.shape = {.kind = HIMC_CIRCLE},
+                                            .head = head,
+                                            .pickups = {himc_pickup_default()},
+                                            .pickup_count = 1,
+                                            .rate = sample_rate},
+                                   .usual = head,
+                                   .place = {.center = FIRST_PLACE, .radius = head.radius},
+                                   .noise = himc_stroke_noise_at(sample_rate).amount,
+                                   .gain = 1};
+    snprintf(settings.name, sizeof settings.name, "%s", name);
+    himc_drum_take_mallet(&settings, DRUM_MALLET_MEDIUM);
+    return himc_drum_new_of(&settings, error);
 }
 
-himc_drum_manner himc_drum_manner_of(const himc_drum *drum)
+himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error)
 {
-    return (himc_drum_manner){drum->mallet, drum->mallet_name, drum->noise.amount, drum->gain,
-                              drum->mute,   drum->technique,   drum->placed};
-}
-
-void himc_drum_set_manner(himc_drum *drum, const himc_drum_manner *manner)
-{
-    drum->mallet = manner->mallet;
-    drum->mallet_name = manner->mallet_name;
-    drum->noise.amount = manner->noise;
-    drum->gain = manner->gain;
-    drum->mute = manner->mute;
-    drum->technique = manner->technique;
-    drum->placed = manner->placed;
-    drum->revision++;
-}
-
-himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error)
-{
-    himc_drum *drum =
-        drum_new(form->name, himc_membrane_new_of(&form->head, error), &form->place, error);
-    if (drum) {
-        himc_membrane_watch(drum->membrane, form->head.watch_x, form->head.watch_y);
-        himc_drum_enclose(drum, &form->walls);
-        himc_drum_listen(drum, &form->listener);
-        drum->usual = form->usual;
-        himc_drum_set_manner(drum, &form->manner);
-        drum->external_sound = form->external_sound;
+    himc_membrane *membrane =
+        himc_membrane_new_of(himc_model_new(&settings->head, NULL, error), error);
+    himc_drum *drum = membrane ? calloc(1, sizeof *drum) : NULL;
+    if (!drum) {
+        if (membrane)
+            himc_error_set(error, "drum: no memory");
+        himc_membrane_free(membrane);
+        return NULL;
     }
+    drum->references = 1;
+    drum->level = drum->fader = 1;
+    drum->walls = HIMC_WALLS_USUAL;
+    drum->membrane = membrane;
+    drum->set = *settings;
+    drum->rate = settings->head.rate;
+    drum->noise = himc_stroke_noise_at(drum->rate);
+    drum->noise.amount = settings->noise;
+    drum->outside_x = FIRST_WATCHED * settings->place.radius;
+    himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
     return drum;
+}
+
+himc_drum_settings himc_drum_settings_of(const himc_drum *drum)
+{
+    himc_drum_settings settings = drum->set;
+    settings.head = *himc_membrane_config_of(drum->membrane);
+    return himc_drum_settings_copy(&settings);
+}
+
+himc_drum_settings himc_drum_settings_copy(const himc_drum_settings *settings)
+{
+    himc_grid_retain(settings->head.shape.grid);
+    return *settings;
+}
+
+void himc_drum_settings_free(himc_drum_settings *settings)
+{
+    himc_grid_release(settings->head.shape.grid);
+    settings->head.shape.grid = NULL;
+}
+
+bool himc_drum_has_head(const himc_drum *drum, const himc_drum_settings *settings)
+{
+    return himc_membrane_config_equal(himc_membrane_config_of(drum->membrane), &settings->head);
+}
+
+// gives the drum's head another config, or the model that was made of it
+static bool set_head(himc_drum *drum, const himc_membrane_config *to, himc_model **made,
+                     himc_error *error)
+{
+    const himc_membrane_config *now = himc_membrane_config_of(drum->membrane);
+    himc_membrane_config here = *to;
+    here.rate = now->rate;
+    here.shares = now->shares;
+    if (made && *made) {
+        if (here.rate != (*made)->config.rate || here.shares != (*made)->config.shares)
+            himc_model_make(*made, &here, false);
+        *made = himc_membrane_exchange(drum->membrane, *made);
+        return true;
+    }
+    here.rays = false;
+    himc_membrane_config_set_rays(&here, now->rays ? now->pickups + HIMC_PICKUPS : NULL);
+    if (himc_membrane_config_equal(now, &here))
+        return true;
+    return himc_head_equal(&now->head, &here.head) && himc_shape_equal(&now->shape, &here.shape)
+               ? himc_membrane_set_pickups(drum->membrane, here.pickups, here.pickup_count, error)
+               : himc_membrane_become(drum->membrane, &here, error);
+}
+
+bool himc_drum_set(himc_drum *drum, const himc_drum_settings *to, himc_model **made,
+                   himc_error *error)
+{
+    const himc_mallet_head *mallet = &drum->set.mallet;
+    himc_head_frame there = to->place;
+    there.radius = drum->set.place.radius;
+    bool moves = !himc_head_frame_equal(&drum->set.place, &there);
+    bool grows = drum->set.place.radius != to->place.radius ||
+                 himc_membrane_shape(drum->membrane)->kind != to->head.shape.kind;
+    bool exchanges = made && *made;
+    if (!set_head(drum, &to->head, made, error))
+        return false;
+    drum->revision += moves || grows || drum->set.placed != to->placed ||
+                      memcmp(mallet, &to->mallet, sizeof *mallet) != 0;
+    drum->set = *to;
+    drum->noise.amount = to->noise;
+    if (moves || exchanges)
+        himc_drum_find_ways(drum);
+    return true;
 }
 
 himc_drum *himc_drum_retain(himc_drum *drum)
@@ -134,12 +179,13 @@ void himc_drum_release(himc_drum *drum)
     if (!drum || --drum->references > 0)
         return;
     himc_membrane_free(drum->membrane);
+    free(drum->ears);
     free(drum);
 }
 
 const char *himc_drum_name(const himc_drum *drum)
 {
-    return drum->name;
+    return drum->set.name;
 }
 
 void himc_drum_rest(himc_drum *drum)
@@ -153,12 +199,12 @@ void himc_drum_rest(himc_drum *drum)
 
 bool himc_drum_is_placed(const himc_drum *drum)
 {
-    return drum->placed;
+    return drum->set.placed;
 }
 
 double himc_drum_usual_radius(const himc_drum *drum)
 {
-    return drum->usual.radius;
+    return drum->set.usual.radius;
 }
 
 void himc_drum_fade(himc_drum *drum, double factor)
@@ -168,14 +214,14 @@ void himc_drum_fade(himc_drum *drum, double factor)
 
 void himc_drum_stand(himc_drum *drum, himc_vec3 center)
 {
-    drum->place.center = center;
+    drum->set.place.center = center;
     drum->revision++;
     himc_drum_find_ways(drum);
 }
 
 const himc_head_frame *himc_drum_head_frame(const himc_drum *drum)
 {
-    return &drum->place;
+    return &drum->set.place;
 }
 
 himc_membrane *himc_drum_membrane(himc_drum *drum)
@@ -185,7 +231,7 @@ himc_membrane *himc_drum_membrane(himc_drum *drum)
 
 const himc_mallet_head *himc_drum_mallet(const himc_drum *drum)
 {
-    return &drum->mallet;
+    return &drum->set.mallet;
 }
 
 unsigned himc_drum_revision(const himc_drum *drum)
@@ -268,8 +314,8 @@ static int channels(const himc_drum *drum)
 // levels of the head's own sound in the coming n samples; `levels` is NULL if nothing sounds
 static void next_levels(himc_drum *drum, int n, double *levels)
 {
-    bool sounds = drum->technique == HIMC_TECHNIQUE_MODAL && !drum->mute;
-    double goal = sounds ? drum->gain * drum->fader : 0;
+    bool sounds = drum->set.technique == HIMC_TECHNIQUE_MODAL && !drum->set.mute;
+    double goal = sounds ? drum->set.gain * drum->fader : 0;
     for (int i = 0; i < n && (levels || drum->level != goal); i++) {
         if (drum->level != goal) {
             double step = fmax(fmax(goal, drum->level), 1) / (LEVEL_RAMP * drum->rate);
@@ -297,13 +343,13 @@ static void store_row(himc_drum *drum, int index, int n, const double *row, cons
 // rays behind the pickups. Returns the number of channels that may sound.
 static int listen_in(himc_drum *drum, int n, double *const *sound, bool silent)
 {
-    himc_ears *ears = &drum->ears;
+    himc_ears *ears = drum->ears;
     int count = silent ? 0 : channels(drum), some = count > HIMC_EARS ? count : HIMC_EARS;
     if (!himc_ears_heard(ears) || (silent && himc_ears_at_rest(ears)))
         return count;
     for (int k = himc_ears_alone(ears) ? 0 : count; k < some; k++)
         memset(sound[k], 0, (size_t)n * sizeof(double));
-    bool rays = !silent && himc_membrane_rays(drum->membrane);
+    bool rays = !silent && himc_membrane_config_of(drum->membrane)->rays;
     himc_ears_hear(ears, n, rays ? sound + HIMC_PICKUPS : NULL, some, sound);
     if (himc_ears_alone(ears))
         himc_membrane_mute_pickups(drum->membrane, true);
@@ -333,9 +379,9 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
     const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
     if (!drum->noise.sounds && force == 0)
         return;
-    bool rays = himc_membrane_rays(drum->membrane);
+    bool rays = himc_membrane_config_of(drum->membrane)->rays;
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
-    for (int k = 0; k < count && !himc_ears_alone(&drum->ears); k++)
+    for (int k = 0; k < count && !himc_ears_alone(drum->ears); k++)
         for (int i = 0; i < n && pickups[k].kind == HIMC_PICKUP_AIR; i++)
             sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
     for (int k = 0; k < HIMC_RAYS && rays; k++)
@@ -349,7 +395,7 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
 {
     double sound[HIMC_OUTPUTS][RUN_BLOCK], watched[RUN_BLOCK], h = 1 / drum->rate;
     double *into[HIMC_OUTPUTS], *wanted[HIMC_OUTPUTS], *seen = drum->unwatched ? NULL : watched;
-    bool alone = himc_ears_alone(&drum->ears);
+    bool alone = himc_ears_alone(drum->ears);
     for (int k = 0; k < HIMC_OUTPUTS; k++) {
         into[k] = sound[k];
         wanted[k] = alone && k < HIMC_PICKUPS ? NULL : sound[k];
@@ -531,12 +577,12 @@ himc_drum_driver himc_drum_get_driver(const himc_drum *drum)
 
 himc_technique himc_drum_technique(const himc_drum *drum)
 {
-    return drum->technique;
+    return drum->set.technique;
 }
 
 void himc_drum_set_external_sound(himc_drum *drum, bool external)
 {
-    drum->external_sound = external;
+    drum->set.external_sound = external;
 }
 
 bool himc_drum_is_touched(const himc_drum *drum)

@@ -1,5 +1,5 @@
 /// drum_command.c: a drum's commands, one function for each row of command_rows.h that is for a
-/// drum. Each makes the new state aside, has it checked, and only then takes it.
+/// drum. They act on settings; a drum takes them when they are good.
 #include "drum/drum_state.h"
 
 #include "base/argument.h"
@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "head/air.h"
 #include "head/grid.h"
+#include "head/pickup.h"
 #include "himc/vec.h"
 
 #include <math.h>
@@ -50,10 +51,10 @@ static const himc_mallet_head presets[] = {
 #define OWN_MALLET "own"
 #define OWN_RADIUS 0.0175 // (m) of a mallet given by numbers; chosen: a usual felt's
 
-void himc_drum_take_mallet(himc_drum *drum, drum_mallet_preset preset)
+void himc_drum_take_mallet(himc_drum_settings *s, drum_mallet_preset preset)
 {
-    drum->mallet = presets[preset];
-    drum->mallet_name = himc_command_word(HIMC_COMMAND_MALLET, 0, (int)preset);
+    s->mallet = presets[preset];
+    s->mallet_name = himc_command_word(HIMC_COMMAND_MALLET, 0, (int)preset);
 }
 
 static double number(const himc_command *c, int index)
@@ -68,22 +69,28 @@ static double as_said(const char *argument, double value)
     return himc_argument_number(himc_argument_find(argument, NULL), value);
 }
 
-static bool set_head(himc_drum *drum, const himc_head *head, himc_error *error)
+// a config's, if it can have that outline, head and pickups
+static bool set_config(himc_drum_settings *s, const himc_membrane_config *config, himc_error *error)
 {
-    if (!himc_membrane_set_head(drum->membrane, head, error))
+    if (!himc_membrane_config_check(config, error))
         return false;
-    if (drum->place.radius != head->radius) {
-        drum->place.radius = head->radius;
-        drum->revision++;
-    }
+    s->head = *config;
+    himc_membrane_config_keep_pickups(&s->head);
+    s->place.radius = s->head.head.radius;
     return true;
 }
 
-// the head that a drum of this shape has at first
-static himc_head usual_head(const himc_drum *drum)
+static bool set_head(himc_drum_settings *s, const himc_head *head, himc_error *error)
 {
-    const himc_shape *shape = himc_membrane_shape(drum->membrane);
-    himc_head head = drum->usual;
+    himc_membrane_config config = s->head;
+    config.head = *head;
+    return set_config(s, &config, error);
+}
+
+// the head that a drum of this shape has at first
+static himc_head usual_head(const himc_shape *shape, const himc_head *usual)
+{
+    himc_head head = *usual;
     if (shape->kind == HIMC_RECTANGLE)
         head.radius = 0.5 * hypot(shape->length, shape->width);
     if (shape->kind == HIMC_GRID) {
@@ -94,140 +101,102 @@ static himc_head usual_head(const himc_drum *drum)
     return head;
 }
 
-// one number of the head
-static bool find_field(const himc_drum *drum, const himc_command *c, size_t field, himc_head *head)
-{
-    himc_head usual = usual_head(drum);
-    double value;
-    memcpy(&value, (char *)&usual + field, sizeof value);
-    value = himc_argument_usual(number(c, 0), value);
-    memcpy((char *)head + field, &value, sizeof value);
-    return true;
-}
-
-static bool find_decay(const himc_drum *drum, const himc_command *c, himc_head *head)
+static void find_decay(const himc_head *usual, const himc_command *c, himc_head *head)
 {
     enum { T60, BOTH };
     head->decay_constant =
         c->form == T60 ? as_said("SIGMA0", log(1000) / number(c, 0)) : number(c, 0);
     head->decay_square = c->form == BOTH ? number(c, 1) : 0;
-    head->decay_constant = himc_argument_usual(head->decay_constant, drum->usual.decay_constant);
-    head->decay_square = himc_argument_usual(head->decay_square, drum->usual.decay_square);
-    return true;
+    head->decay_constant = himc_argument_usual(head->decay_constant, usual->decay_constant);
+    head->decay_square = himc_argument_usual(head->decay_square, usual->decay_square);
 }
 
-static bool find_tune(const himc_drum *drum, const himc_command *c, himc_head *head,
+static bool find_tune(const himc_shape *shape, const himc_command *c, himc_head *head,
                       himc_error *error)
 {
     himc_head lowest = *head, highest = *head;
     double hz = number(c, 0);
     lowest.tension = HIMC_TENSION_MIN;
     highest.tension = HIMC_TENSION_MAX;
-    if (!himc_check_range("tune", hz, himc_membrane_principal(drum->membrane, &lowest),
-                          himc_membrane_principal(drum->membrane, &highest), "Hz", error))
+    if (!himc_check_range("tune", hz, himc_head_principal(&lowest, shape),
+                          himc_head_principal(&highest, shape), "Hz", error))
         return false;
-    head->tension = as_said("TENSION", himc_membrane_tension_for(drum->membrane, head, hz));
+    head->tension = as_said("TENSION", himc_head_tension(head, shape, hz));
     return true;
 }
 
-bool himc_drum_find_head(const himc_drum *drum, const himc_command *c, himc_head *head,
-                         himc_error *error)
+bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const himc_command *c,
+                         himc_head *head, himc_error *error)
 {
+    himc_head here = usual_head(shape, usual);
     switch (c->id) {
-    case HIMC_COMMAND_RADIUS: return find_field(drum, c, offsetof(himc_head, radius), head);
-    case HIMC_COMMAND_TENSION: return find_field(drum, c, offsetof(himc_head, tension), head);
-    case HIMC_COMMAND_DENSITY: return find_field(drum, c, offsetof(himc_head, density), head);
-    case HIMC_COMMAND_GLIDE: return find_field(drum, c, offsetof(himc_head, glide), head);
-    case HIMC_COMMAND_DAMP: return find_field(drum, c, offsetof(himc_head, damp), head);
-    case HIMC_COMMAND_DECAY: return find_decay(drum, c, head);
-    default: return find_tune(drum, c, head, error);
+    case HIMC_COMMAND_RADIUS:
+        head->radius = himc_argument_usual(number(c, 0), here.radius);
+        return true;
+    case HIMC_COMMAND_TENSION:
+        head->tension = himc_argument_usual(number(c, 0), here.tension);
+        return true;
+    case HIMC_COMMAND_DENSITY:
+        head->density = himc_argument_usual(number(c, 0), here.density);
+        return true;
+    case HIMC_COMMAND_GLIDE:
+        head->glide = himc_argument_usual(number(c, 0), here.glide);
+        return true;
+    case HIMC_COMMAND_DAMP: head->damp = himc_argument_usual(number(c, 0), here.damp); return true;
+    case HIMC_COMMAND_DECAY: find_decay(usual, c, head); return true;
+    default: return find_tune(shape, c, head, error);
     }
 }
 
-static bool change_head(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool change_head(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    himc_head head = *himc_membrane_head(drum->membrane);
-    return himc_drum_find_head(drum, c, &head, error) && set_head(drum, &head, error);
+    himc_head head = s->head.head;
+    return himc_drum_find_head(&s->head.shape, &s->usual, c, &head, error) &&
+           set_head(s, &head, error);
 }
 
-static bool do_radius(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    return change_head(drum, c, error);
-}
-
-static bool do_tension(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    return change_head(drum, c, error);
-}
-
-static bool do_density(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    return change_head(drum, c, error);
-}
-
-static bool do_glide(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    return change_head(drum, c, error);
-}
-
-static bool do_damp(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    return change_head(drum, c, error);
-}
-
-static bool do_noise(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_noise(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     (void)error;
-    drum->noise.amount = number(c, 0);
+    s->noise = number(c, 0);
     return true;
 }
 
 // other heads have no pairs to split
-static bool do_uniformity(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_uniformity(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    himc_head head = *himc_membrane_head(drum->membrane);
-    bool round = himc_membrane_shape(drum->membrane)->kind == HIMC_CIRCLE;
-    head.uniformity = himc_argument_usual(number(c, 0), drum->usual.uniformity);
+    himc_head head = s->head.head;
+    bool round = s->head.shape.kind == HIMC_CIRCLE;
+    head.uniformity = himc_argument_usual(number(c, 0), s->usual.uniformity);
     if (c->count == 2)
         head.uniformity_seed = (int)number(c, 1);
     if (head.uniformity < 1 && !round)
         return himc_error_set(error, "uniformity: %.6g, expected 1 on a head that is not round",
                               head.uniformity);
-    return set_head(drum, &head, error);
+    return set_head(s, &head, error);
 }
 
-static bool do_modes(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_modes(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    himc_head head = *himc_membrane_head(drum->membrane);
+    himc_head head = s->head.head;
     enum { COUNT, AUTO };
     head.modes = c->form == AUTO ? HIMC_MODES_AUTO : (int)number(c, 0);
-    return set_head(drum, &head, error);
+    return set_head(s, &head, error);
 }
 
-static bool do_decay(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    return change_head(drum, c, error);
-}
-
-static bool do_tune(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    return change_head(drum, c, error);
-}
-
-static bool do_mallet(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_mallet(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     enum { PRESET, NUMBERS };
     (void)error;
     if (c->form == NUMBERS) {
-        drum->mallet = (himc_mallet_head){.stiffness = number(c, 0),
-                                          .exponent = number(c, 1),
-                                          .mass = number(c, 2),
-                                          .radius = OWN_RADIUS};
-        drum->mallet_name = (himc_word){OWN_MALLET};
+        s->mallet = (himc_mallet_head){.stiffness = number(c, 0),
+                                       .exponent = number(c, 1),
+                                       .mass = number(c, 2),
+                                       .radius = OWN_RADIUS};
+        s->mallet_name = (himc_word){OWN_MALLET};
     } else {
-        himc_drum_take_mallet(drum, (drum_mallet_preset)c->choice[0]);
+        himc_drum_take_mallet(s, (drum_mallet_preset)c->choice[0]);
     }
-    drum->revision++;
     return true;
 }
 
@@ -238,14 +207,12 @@ bool himc_drum_check_place(himc_vec3 center, himc_error *error)
            himc_check_range("place Z", center.z, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error);
 }
 
-static bool do_place(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_place(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     (void)error;
-    drum->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
-    drum->place.tilt = c->count == 4 ? number(c, 3) : drum->place.tilt;
-    drum->placed = true;
-    drum->revision++;
-    himc_drum_find_ways(drum);
+    s->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
+    s->place.tilt = c->count == 4 ? number(c, 3) : s->place.tilt;
+    s->placed = true;
     return true;
 }
 
@@ -267,77 +234,78 @@ static himc_pickup read_pickup(const himc_command *c, int first, himc_pickup pic
 }
 
 // pickup `index` from the command's atoms from `first` on; the others stay
-static bool change_pickup(himc_drum *drum, const himc_command *c, int first, int index,
+static bool change_pickup(himc_drum_settings *s, const himc_command *c, int first, int index,
                           himc_error *error)
 {
-    himc_pickup all[HIMC_PICKUPS];
-    int count;
-    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
-    memcpy(all, now, sizeof *all * (size_t)count);
-    all[index] = read_pickup(c, first, all[index]);
-    return himc_membrane_set_pickups(drum->membrane, all, count, error);
+    himc_pickup changed = read_pickup(c, first, s->head.pickups[index]);
+    if (!himc_pickup_check(&changed, &s->head.head, error))
+        return false;
+    s->head.pickups[index] = changed;
+    return true;
 }
 
-static bool do_pickup(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_pickup(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    return change_pickup(drum, c, 0, 0, error);
+    return change_pickup(s, c, 0, 0, error);
 }
 
 // each new pickup is PICKUP_STEP to the right of the one before
-static bool do_pickups(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_pickups(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    himc_pickup all[HIMC_PICKUPS];
-    int count, wanted = (int)number(c, 0);
-    const himc_pickup *now = himc_membrane_pickups(drum->membrane, &count);
-    memcpy(all, now, sizeof *all * (size_t)count);
-    for (int i = count; i < wanted; i++) {
+    himc_pickup *all = s->head.pickups;
+    int wanted = (int)number(c, 0);
+    (void)error;
+    for (int i = s->head.pickup_count; i < wanted; i++) {
         all[i] = all[i - 1];
         all[i].kind = HIMC_PICKUP_AIR;
         all[i].distance = fmax(all[i].distance, himc_pickup_default().distance);
         all[i].azimuth = himc_argument_single(remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI));
     }
-    return himc_membrane_set_pickups(drum->membrane, all, wanted, error);
-}
-
-static bool do_channel(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    int count, channel = (int)number(c, 0);
-    himc_membrane_pickups(drum->membrane, &count);
-    return himc_check_range("channel", channel, 1, count, "", error) &&
-           change_pickup(drum, c, 1, channel - 1, error);
-}
-
-static bool do_air(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    himc_head head = *himc_membrane_head(drum->membrane);
-    head.air = number(c, 0) == 1;
-    return set_head(drum, &head, error);
-}
-
-static bool do_kettle(himc_drum *drum, const himc_command *c, himc_error *error)
-{
-    enum { USUAL, VOLUME };
-    himc_head head = *himc_membrane_head(drum->membrane);
-    if (c->form == VOLUME && !himc_air_check(number(c, 0), head.radius, error))
-        return false;
-    head.kettle = c->form == USUAL ? 0 : number(c, 0);
-    return set_head(drum, &head, error);
-}
-
-static bool replace_shape(himc_drum *drum, const himc_shape *shape, himc_head *head,
-                          himc_error *error)
-{
-    head->air = head->air && shape->kind == HIMC_CIRCLE;
-    if (!himc_membrane_set_shape(drum->membrane, shape, head, error))
-        return false;
-    drum->place.radius = head->radius;
-    drum->revision++;
+    s->head.pickup_count = wanted;
     return true;
 }
 
-static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
+static bool do_channel(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    himc_head head = *himc_membrane_head(drum->membrane);
+    int channel = (int)number(c, 0);
+    return himc_check_range("channel", channel, 1, s->head.pickup_count, "", error) &&
+           change_pickup(s, c, 1, channel - 1, error);
+}
+
+static bool do_air(himc_drum_settings *s, const himc_command *c, himc_error *error)
+{
+    himc_head head = s->head.head;
+    head.air = number(c, 0) == 1;
+    return set_head(s, &head, error);
+}
+
+static bool do_kettle(himc_drum_settings *s, const himc_command *c, himc_error *error)
+{
+    enum { USUAL, VOLUME };
+    himc_head head = s->head.head;
+    if (c->form == VOLUME && !himc_air_check(number(c, 0), head.radius, error))
+        return false;
+    head.kettle = c->form == USUAL ? 0 : number(c, 0);
+    return set_head(s, &head, error);
+}
+
+// takes the outline and its reference
+static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_head *head,
+                          himc_error *error)
+{
+    himc_membrane_config config = s->head;
+    himc_grid *before = config.shape.grid;
+    head->air = head->air && shape.kind == HIMC_CIRCLE;
+    config.shape = shape;
+    config.head = *head;
+    bool good = set_config(s, &config, error);
+    himc_grid_release(good ? before : shape.grid);
+    return good;
+}
+
+static bool load_shape(himc_drum_settings *s, const char *path, himc_error *error)
+{
+    himc_head head = s->head.head;
     himc_shape shape = {.kind = HIMC_GRID, .grid = himc_grid_load(path, error)};
     if (!shape.grid)
         return false;
@@ -345,9 +313,7 @@ static bool load_shape(himc_drum *drum, const char *path, himc_error *error)
     head.tension = shape.grid->tension;
     head.density = shape.grid->density;
     head.modes = head.modes < shape.grid->modes ? head.modes : shape.grid->modes;
-    bool good = replace_shape(drum, &shape, &head, error) || himc_error_prefix(error, "%s", path);
-    himc_grid_release(shape.grid);
-    return good;
+    return replace_shape(s, shape, &head, error) || himc_error_prefix(error, "%s", path);
 }
 
 // the word of a misspelt outline looks like no file's name
@@ -360,58 +326,66 @@ static bool refuse_shape(const char *word, himc_error *error)
 }
 
 // only a round head may be in air; one that becomes round again is in air again
-static bool do_shape(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_shape(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     enum { CIRCLE, RECTANGLE, FROM_FILE };
-    himc_head head = *himc_membrane_head(drum->membrane);
+    himc_head head = s->head.head;
     himc_shape shape = {.kind = HIMC_CIRCLE};
     if (c->form == FROM_FILE)
-        return load_shape(drum, c->atom[0].symbol, error) || refuse_shape(c->atom[0].symbol, error);
+        return load_shape(s, c->atom[0].symbol, error) || refuse_shape(c->atom[0].symbol, error);
     // those of a file or of a rectangle were not said
-    head.radius = himc_argument_usual(as_said("RADIUS", head.radius), drum->usual.radius);
-    head.tension = himc_argument_usual(as_said("TENSION", head.tension), drum->usual.tension);
-    head.density = himc_argument_usual(as_said("DENSITY", head.density), drum->usual.density);
+    head.radius = himc_argument_usual(as_said("RADIUS", head.radius), s->usual.radius);
+    head.tension = himc_argument_usual(as_said("TENSION", head.tension), s->usual.tension);
+    head.density = himc_argument_usual(as_said("DENSITY", head.density), s->usual.density);
     if (c->form == CIRCLE) {
-        head.air = head.air || himc_membrane_shape(drum->membrane)->kind != HIMC_CIRCLE;
-        return replace_shape(drum, &shape, &head, error);
+        head.air = head.air || s->head.shape.kind != HIMC_CIRCLE;
+        return replace_shape(s, shape, &head, error);
     }
     shape = (himc_shape){HIMC_RECTANGLE, number(c, 1), number(c, 2), NULL};
     head.radius = 0.5 * hypot(shape.length, shape.width);
-    return replace_shape(drum, &shape, &head, error);
+    return replace_shape(s, shape, &head, error);
 }
 
-static bool do_gain(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_gain(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     (void)error;
-    drum->gain = pow(10, number(c, 0) / 20);
+    s->gain = pow(10, number(c, 0) / 20);
     return true;
 }
 
-static bool do_mute(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_mute(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     (void)error;
-    drum->mute = number(c, 0) == 1;
+    s->mute = number(c, 0) == 1;
     return true;
 }
 
-static bool do_technique(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_technique(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     himc_technique wanted = (himc_technique)c->choice[0];
-    if (wanted != HIMC_TECHNIQUE_MODAL && !drum->external_sound)
+    if (wanted != HIMC_TECHNIQUE_MODAL && !s->external_sound)
         return himc_error_set(error,
                               "technique: %s, expected modal here: signal and clip are patches, "
                               "[technique~ NAME] in Pure Data",
                               c->atom[0].symbol);
-    drum->technique = wanted;
+    s->technique = wanted;
     return true;
 }
 
-static bool do_strike(himc_drum *drum, const himc_command *c, himc_error *error)
+static bool do_strike(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    return himc_drum_strike_at(drum, 0, number(c, 0), number(c, 1), number(c, 2), error);
+    return himc_drum_may_strike(s->place.radius, number(c, 0), number(c, 1), number(c, 2), error);
 }
 
-typedef bool drum_action(himc_drum *drum, const himc_command *command, himc_error *error);
+// those that a score may have at a beat, and three alike
+#define do_radius change_head
+#define do_tension change_head
+#define do_density change_head
+#define do_glide change_head
+#define do_damp change_head
+#define do_decay change_head
+#define do_tune change_head
+typedef bool drum_action(himc_drum_settings *s, const himc_command *command, himc_error *error);
 
 // the action of each row for a drum is do_ and its word; these two are jobs (drum_job.c)
 #define do_info NULL
@@ -424,26 +398,31 @@ static drum_action *const actions[HIMC_COMMANDS] = {
 #include "himc/command_rows.h"
 };
 
-bool himc_drum_act(himc_drum *drum, const himc_command *checked, himc_error *error)
+bool himc_drum_settings_command(himc_drum_settings *settings, const himc_command *command,
+                                himc_error *error)
 {
-    return actions[checked->id](drum, checked, error);
+    himc_command checked; // also one that was put together without the parser
+    if (!himc_command_check(&checked, HIMC_DRUM, command, error))
+        return false;
+    drum_action *act = actions[checked.id];
+    return !act || act(settings, &checked, error);
 }
 
 static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
 {
     char text[512];
     const himc_head *head = himc_membrane_head(drum->membrane);
-    const himc_head_frame *p = &drum->place;
+    const himc_head_frame *p = &drum->set.place;
     double principal = himc_membrane_principal(drum->membrane, head);
     snprintf(text, sizeof text,
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
              "%d modes (%d audible), uniformity %.3g, seed %d, "
              "mallet %s, technique %s, at %.4g %.4g %.4g m",
-             drum->name, head->radius, head->tension, head->density, principal,
+             drum->set.name, head->radius, head->tension, head->density, principal,
              himc_membrane_modes(drum->membrane), himc_membrane_audible(drum->membrane),
-             head->uniformity, head->uniformity_seed, drum->mallet_name.text,
-             himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, p->center.x,
-             p->center.y, p->center.z);
+             head->uniformity, head->uniformity_seed, drum->set.mallet_name.text,
+             himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text,
+             p->center.x, p->center.y, p->center.z);
     to->line(to->user, text);
 }
 
@@ -514,20 +493,21 @@ static void dump_pickups(const himc_drum *drum, const himc_line_sink *to)
 
 static void dump_rest(const himc_drum *drum, const himc_line_sink *to)
 {
-    const himc_mallet_head *m = &drum->mallet;
-    if (strcmp(drum->mallet_name.text, OWN_MALLET) == 0)
+    const himc_mallet_head *m = &drum->set.mallet;
+    if (strcmp(drum->set.mallet_name.text, OWN_MALLET) == 0)
         himc_state_tell(to, "mallet", NULL, 3, (double[]){m->stiffness, m->exponent, m->mass});
     else
-        himc_state_tell(to, "mallet", drum->mallet_name.text, 0, NULL);
-    himc_state_tell(to, "noise", NULL, 1, (double[]){drum->noise.amount});
-    if (drum->placed)
+        himc_state_tell(to, "mallet", drum->set.mallet_name.text, 0, NULL);
+    himc_state_tell(to, "noise", NULL, 1, (double[]){drum->set.noise});
+    if (drum->set.placed)
         himc_state_tell(to, "place", NULL, 4,
-                        (double[]){drum->place.center.x, drum->place.center.y, drum->place.center.z,
-                                   drum->place.tilt});
-    himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(drum->gain)});
-    himc_state_tell(to, "mute", NULL, 1, (double[]){drum->mute ? 1.0 : 0.0});
+                        (double[]){drum->set.place.center.x, drum->set.place.center.y,
+                                   drum->set.place.center.z, drum->set.place.tilt});
+    himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(drum->set.gain)});
+    himc_state_tell(to, "mute", NULL, 1, (double[]){drum->set.mute ? 1.0 : 0.0});
     himc_state_tell(to, "technique",
-                    himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->technique).text, 0, 0);
+                    himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text, 0,
+                    0);
 }
 
 void himc_drum_describe(const himc_drum *drum, himc_description what,

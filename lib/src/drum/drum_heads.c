@@ -1,5 +1,6 @@
 /// drum_heads.c: the heads of a drum whose pedal and damping are written in a score: each change
-/// acts on a copy of the drum, so that the score's commands give the heads they would give by hand.
+/// acts on a copy of the drum's settings, so that the score's commands give the heads they would
+/// give by hand.
 /// All that differ are computed ahead, and one is exchanged for another when its beat has come
 /// (himc_membrane_exchange): the head taken out is kept for its next time. The head at a beat does
 /// not depend on the way there, so a loop or `seek` finds it, too. Invariant: the drum's head is
@@ -29,14 +30,13 @@ typedef struct head_change {
 } head_change;
 
 struct himc_drum_heads {
-    himc_drum *copy;     ///< owned; the commands act on it
-    himc_head first;     ///< before the first change
-    drum_told_head told; ///< known: of the latest heads only
+    himc_drum_settings settings; ///< owned; the changes act on them in their order
+    himc_head first;             ///< before the first change
+    drum_told_head told;         ///< known: of the latest heads only
     bool edited;         ///< the drum was changed by hand: the heads of changes are out of date
-    himc_drum_form form; ///< owned
     head_change *change; ///< owned, in the order of beats
     int count, room;
-    himc_membrane *spare[MOST_SPARES]; ///< owned
+    himc_model *spare[MOST_SPARES]; ///< owned
     int spares;
     int now;                 ///< the change whose head the drum has, -1: the first; -2: not known
     int late;                ///< a change that came, at beat `since`, after its beat: ...
@@ -45,20 +45,15 @@ struct himc_drum_heads {
     double from;             ///< (beats)
 };
 
-himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *error)
+himc_drum_heads *himc_drum_heads_new(const himc_drum_settings *settings, himc_error *error)
 {
     himc_drum_heads *heads = calloc(1, sizeof *heads);
-    if (heads)
-        heads->copy = himc_drum_new_of(form, error);
-    else
+    if (!heads) {
         himc_error_set(error, "at: out of memory");
-    if (!heads || !heads->copy) {
-        free(heads);
         return NULL;
     }
-    heads->form = himc_drum_form_of(heads->copy);
-    heads->first = heads->told.base = heads->told.known =
-        *himc_membrane_head(heads->copy->membrane);
+    heads->settings = himc_drum_settings_copy(settings);
+    heads->first = heads->told.base = heads->told.known = settings->head.head;
     heads->now = -2;
     return heads;
 }
@@ -81,15 +76,15 @@ static himc_command command_of(const head_change *change)
     return command;
 }
 
-/// Carries out the command of a change on the copy, and keeps the head that it leaves.
-static bool find_head(himc_drum *copy, head_change *change, himc_error *error)
+/// Carries out the command of a change on settings, and keeps the head that it leaves.
+static bool find_head(himc_drum_settings *settings, head_change *change, himc_error *error)
 {
     himc_command command = command_of(change), checked;
     if (!himc_command_check(&checked, HIMC_DRUM, &command, error) ||
-        !himc_drum_act(copy, &checked, error))
+        !himc_drum_settings_command(settings, &checked, error))
         return false;
     change->form = checked.form;
-    change->head = *himc_membrane_head(copy->membrane);
+    change->head = settings->head.head;
     return true;
 }
 
@@ -98,7 +93,7 @@ bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command
 {
     head_change change = {.beat = beat};
     keep_command(&change, command);
-    if (!find_head(heads->copy, &change, error))
+    if (!find_head(&heads->settings, &change, error))
         return false;
     if (heads->count == heads->room) {
         int room = heads->room ? 2 * heads->room : 16;
@@ -118,22 +113,23 @@ static const himc_head *head_of(const himc_drum_heads *heads, int change)
     return change < 0 ? &heads->first : &heads->change[change].head;
 }
 
-static himc_membrane *find_spare(himc_drum_heads *heads, const himc_membrane_form *form)
+// the place of the model of that config, or NULL
+static himc_model **find_spare(himc_drum_heads *heads, const himc_membrane_config *config)
 {
     for (int i = 0; i < heads->spares; i++)
-        if (himc_membrane_has_form(heads->spare[i], form))
-            return heads->spare[i];
+        if (himc_membrane_config_equal(&heads->spare[i]->config, config))
+            return &heads->spare[i];
     return NULL;
 }
 
 bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error)
 {
-    himc_membrane_form form = heads->form.head;
+    himc_membrane_config config = heads->settings.head;
     for (int i = 0; i < heads->count && heads->spares < MOST_SPARES; i++) {
-        form.head = *head_of(heads, i);
-        if (find_spare(heads, &form))
+        config.head = *head_of(heads, i);
+        if (find_spare(heads, &config))
             continue;
-        himc_membrane *made = himc_membrane_new_of(&form, error);
+        himc_model *made = himc_model_new(&config, heads->spares ? heads->spare[0] : NULL, error);
         if (!made)
             return false;
         heads->spare[heads->spares++] = made;
@@ -233,7 +229,9 @@ static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int cha
                    : command.id == HIMC_COMMAND_DAMP  ? DAMP
                                                       : PITCH;
         if (!(set & sets))
-            good = himc_drum_find_head(drum, &command, head, error) && good;
+            good = himc_drum_find_head(himc_membrane_shape(drum->membrane), &drum->set.usual,
+                                       &command, head, error) &&
+                   good;
         set |= sets;
     }
     return good;
@@ -242,18 +240,15 @@ static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int cha
 /// Gives the drum that head.
 static bool give(himc_drum_heads *heads, himc_drum *drum, const himc_head *head, himc_error *error)
 {
-    bool good = true;
-    himc_membrane *membrane = drum->membrane;
-    himc_membrane_form form = himc_membrane_form_of(membrane);
-    form.head = *head;
-    bool same = himc_membrane_has_form(membrane, &form);
-    himc_membrane *spare = same ? NULL : find_spare(heads, &form);
-    if (spare)
-        himc_membrane_exchange(membrane, spare);
-    else if (!same)
-        good = himc_membrane_set_head(membrane, &form.head, error);
-    himc_membrane_form_free(&form);
-    return good;
+    himc_membrane_config config = *himc_membrane_config_of(drum->membrane);
+    if (himc_head_equal(&config.head, head))
+        return true;
+    config.head = *head;
+    himc_model **spare = find_spare(heads, &config);
+    if (!spare)
+        return himc_membrane_become(drum->membrane, &config, error);
+    *spare = himc_membrane_exchange(drum->membrane, *spare);
+    return true;
 }
 
 /// Gives the drum the head of a change.
@@ -295,7 +290,9 @@ bool himc_drum_heads_begin_again(himc_drum_heads *heads, himc_drum *drum, double
     bool good = true;
     for (int i = from; i < heads->count; i++) {
         himc_command command = command_of(&heads->change[i]);
-        good = himc_drum_find_head(drum, &command, &head, error) && good;
+        good = himc_drum_find_head(himc_membrane_shape(drum->membrane), &drum->set.usual, &command,
+                                   &head, error) &&
+               good;
     }
     good = give(heads, drum, &head, error) && good;
     heads->edited = true; // the next changes act on this head
@@ -332,9 +329,8 @@ void himc_drum_heads_free(himc_drum_heads *heads)
     while (heads) {
         himc_drum_heads *before = heads->before;
         while (heads->spares > 0)
-            himc_membrane_free(heads->spare[--heads->spares]);
-        himc_drum_form_free(&heads->form);
-        himc_drum_release(heads->copy);
+            himc_model_free(heads->spare[--heads->spares]);
+        himc_drum_settings_free(&heads->settings);
         free(heads->change);
         free(heads);
         heads = before;
@@ -344,17 +340,16 @@ void himc_drum_heads_free(himc_drum_heads *heads)
 // a change that is added while others are in use
 
 struct himc_head_insertion {
-    himc_drum *drum;     ///< borrowed
-    himc_drum_heads *to; ///< not touched by `prepare`; NULL: the drum has no changes yet
-    himc_drum_form form; ///< owned; of the drum
+    himc_drum *drum;             ///< borrowed
+    himc_drum_heads *to;         ///< not touched by `prepare`; NULL: the drum has no changes yet
+    himc_drum_settings settings; ///< owned; of the drum
     himc_head first;
-    himc_drum *copy;              ///< owned; the commands act on it
     head_change *change;          ///< owned; those of `to` with the new one
     int count, at;                ///< the new one's index
     bool anew;                    ///< the drum was changed by hand: all heads are made again
     himc_head known[MOST_SPARES]; ///< heads that are made already ...
     int known_count;
-    himc_membrane *spare[MOST_SPARES]; ///< ... and those that are not, owned
+    himc_model *spare[MOST_SPARES]; ///< ... and those that are not, owned
     int spares;
     himc_drum_heads *fresh; ///< owned; for a drum without changes
 };
@@ -369,11 +364,11 @@ static himc_drum_heads *heads_at(himc_drum_heads *heads, double beat)
 
 static void know_heads(himc_head_insertion *j)
 {
-    himc_membrane_form form = j->form.head;
+    himc_membrane_config config = j->settings.head;
     for (int i = 0; i < j->to->spares; i++) {
-        form.head = *himc_membrane_head(j->to->spare[i]);
-        if (himc_membrane_has_form(j->to->spare[i], &form))
-            j->known[j->known_count++] = form.head;
+        config.head = j->to->spare[i]->config.head;
+        if (himc_membrane_config_equal(&j->to->spare[i]->config, &config))
+            j->known[j->known_count++] = config.head;
     }
 }
 
@@ -391,8 +386,8 @@ himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *
         return NULL;
     }
     *j = (himc_head_insertion){.drum = drum, .to = to, .change = change, .count = old + 1};
-    j->form = himc_drum_form_of(drum);
-    j->first = to ? to->first : j->form.head.head;
+    j->settings = himc_drum_settings_of(drum);
+    j->first = to ? to->first : j->settings.head.head;
     j->anew = to && to->edited;
     while (j->at < old && to->change[j->at].beat <= beat)
         j->at++;
@@ -400,59 +395,47 @@ himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *
         change[i + (i >= j->at)] = to->change[i];
     change[j->at] = (head_change){.beat = beat};
     keep_command(&change[j->at], command);
-    if (to) {
+    if (to)
         know_heads(j);
-        j->copy = to->copy;
-        to->copy = NULL;
-    }
     return j;
 }
 
 static bool is_known(const himc_head_insertion *j, const himc_head *head)
 {
-    bool known = himc_head_equal(head, &j->form.head.head);
+    bool known = himc_head_equal(head, &j->settings.head.head);
     for (int i = 0; i < j->known_count; i++)
         known = known || himc_head_equal(head, &j->known[i]);
     for (int i = 0; i < j->spares; i++)
-        known = known || himc_head_equal(head, himc_membrane_head(j->spare[i]));
+        known = known || himc_head_equal(head, &j->spare[i]->config.head);
     return known;
 }
 
 bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
 {
     int from = j->anew ? 0 : j->at;
-    const himc_head *before = from > 0 ? &j->change[from - 1].head : &j->first;
-    himc_membrane_form form = j->form.head;
-    if (j->anew) {
-        himc_drum_release(j->copy);
-        j->copy = NULL;
-    }
-    if (!j->copy)
-        j->copy = himc_drum_new_of(&j->form, error);
-    if (!j->copy || (!himc_head_equal(himc_membrane_head(j->copy->membrane), before) &&
-                     !himc_membrane_set_head(j->copy->membrane, before, error)))
-        return false;
-    for (int i = from; i < j->count; i++) {
-        if (!find_head(j->copy, &j->change[i], error))
-            return false;
-        form.head = j->change[i].head;
-        if (j->known_count + j->spares == MOST_SPARES || is_known(j, &form.head))
+    himc_drum_settings after = himc_drum_settings_copy(&j->settings);
+    bool good = true;
+    after.head.head = from > 0 ? j->change[from - 1].head : j->first;
+    for (int i = from; i < j->count && good; i++) {
+        good = find_head(&after, &j->change[i], error);
+        if (!good || j->known_count + j->spares == MOST_SPARES || is_known(j, &after.head.head))
             continue;
-        himc_membrane *made = himc_membrane_new_of(&form, error);
-        if (!made)
-            return false;
-        j->spare[j->spares++] = made;
+        himc_model *made = himc_model_new(&after.head, j->spares ? j->spare[0] : NULL, error);
+        if (made)
+            j->spare[j->spares++] = made;
+        good = made;
     }
-    if (!j->to && !j->fresh)
+    himc_drum_settings_free(&after);
+    if (good && !j->to && !j->fresh)
         j->fresh = calloc(1, sizeof *j->fresh);
-    return j->to || j->fresh || himc_error_set(error, "at: out of memory");
+    return good && (j->to || j->fresh || himc_error_set(error, "at: out of memory"));
 }
 
 /// True if the changes are still those that it was prepared for.
 static bool still_fits(const himc_head_insertion *j, const himc_drum_heads *to)
 {
     if (!to)
-        return !j->to && himc_membrane_has_form(j->drum->membrane, &j->form.head);
+        return !j->to && himc_drum_has_head(j->drum, &j->settings);
     bool fits = to == j->to && to->count == j->count - 1 && himc_head_equal(&to->first, &j->first);
     for (int i = 0; fits && i < to->count; i++) {
         const head_change *was = &j->change[i + (i >= j->at)];
@@ -470,17 +453,15 @@ bool himc_head_insertion_install(himc_head_insertion *j, himc_drum_heads **heads
     if (!to) {
         to = *heads = j->fresh;
         *to = (himc_drum_heads){
-            .first = j->first, .told = {j->first, j->first}, .form = j->form, .now = -1};
+            .first = j->first, .told = {j->first, j->first}, .settings = j->settings, .now = -1};
         himc_drum_set_heads(j->drum, to);
         j->fresh = NULL;
-        j->form = (himc_drum_form){.name = ""};
+        j->settings.head.shape.grid = NULL; // it has the reference
     }
     head_change *old = to->change;
     to->change = j->change;
     to->count = to->room = j->count;
     j->change = old;
-    to->copy = j->copy;
-    j->copy = NULL;
     while (j->spares > 0 && to->spares < MOST_SPARES)
         to->spare[to->spares++] = j->spare[--j->spares];
     to->now += to->now >= j->at;
@@ -497,9 +478,8 @@ void himc_head_insertion_free(himc_head_insertion *j)
     if (!j)
         return;
     while (j->spares > 0)
-        himc_membrane_free(j->spare[--j->spares]);
-    himc_drum_form_free(&j->form);
-    himc_drum_release(j->copy);
+        himc_model_free(j->spare[--j->spares]);
+    himc_drum_settings_free(&j->settings);
     free(j->fresh);
     free(j->change);
     free(j);

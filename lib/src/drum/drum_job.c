@@ -1,7 +1,7 @@
 /// drum_job.c: a command that computes a drum's head anew, mode by mode, is carried out on a copy
-/// of the drum, at rest; then the two exchange their heads. The head that sounds gives its motion
-/// to the new one. If another command has changed it meanwhile, a new copy is made; if that happens
-/// again and again, the command is carried out in place.
+/// of the drum's settings, and the model of the new head is made; then the drum takes both. If
+/// another command has changed its head meanwhile, that is done again; if it happens again and
+/// again, the command is carried out in place.
 #include "drum/drum_state.h"
 
 #include "base/file.h"
@@ -17,44 +17,6 @@
 // head that chooses its modes itself
 #define SHORT_WORK 700
 #define STATISTICAL_WORK 3 // so many statistical modes take as long as an exact one
-
-himc_drum_form himc_drum_form_of(const himc_drum *drum)
-{
-    himc_drum_form form = {.head = himc_membrane_form_of(drum->membrane),
-                           .usual = drum->usual,
-                           .manner = himc_drum_manner_of(drum),
-                           .place = drum->place,
-                           .listener = drum->listener,
-                           .walls = drum->walls,
-                           .external_sound = drum->external_sound};
-    memcpy(form.name, drum->name, sizeof form.name);
-    return form;
-}
-
-void himc_drum_form_free(himc_drum_form *form)
-{
-    himc_membrane_form_free(&form->head);
-}
-
-bool himc_drum_has_form(const himc_drum *drum, const himc_drum_form *form)
-{
-    return himc_membrane_has_form(drum->membrane, &form->head);
-}
-
-void himc_drum_exchange(himc_drum *drum, himc_drum *made)
-{
-    bool grown =
-        drum->place.radius != made->place.radius ||
-        himc_membrane_shape(drum->membrane)->kind != himc_membrane_shape(made->membrane)->kind;
-    if (himc_membrane_rate(made->membrane) != drum->rate)
-        himc_membrane_set_rate(made->membrane, drum->rate, NULL);
-    bool shares = himc_membrane_shares(drum->membrane);
-    himc_membrane_exchange(drum->membrane, made->membrane);
-    himc_membrane_share(drum->membrane, shares); // `made` stood alone
-    drum->place.radius = made->place.radius;
-    drum->revision += grown;
-    himc_drum_find_ways(drum);
-}
 
 // modes of a head, those that are computed faster counted for less
 static int mode_work(const himc_membrane *membrane)
@@ -92,18 +54,20 @@ typedef struct drum_job {
     himc_job job;
     himc_drum *drum; ///< borrowed
     himc_command command;
-    const char *state;      ///< borrowed; a preset's lines that are in no file
-    himc_listener listener; ///< of himc_drum_listen_job; then there is no command
-    bool listens;
-    himc_drum_form form; ///< of the drum when the job was made
-    himc_drum *made;     ///< owned
+    const char *state;         ///< borrowed; a preset's lines that are in no file
+    himc_listener listener;    ///< the drum's, or of himc_drum_listen_job ...
+    bool listens;              ///< ... which has no command
+    himc_drum_settings before; ///< of the drum when the job was begun
+    himc_drum_settings after;  ///< of the command
+    himc_model *made;          ///< owned; of the head after; once installed, the one before
+    himc_ears *ears;           ///< owned; for a drum without any
     int tries;
 } drum_job;
 
 #define LONGEST_PRESET 65536 // chosen: thirty times what a drum tells (bytes)
 
 // a line of a preset: what sets something and names no file but a shape's
-static bool run_line(himc_drum *drum, const himc_text_statement *line, himc_error *error)
+static bool run_line(himc_drum_settings *s, const himc_text_statement *line, himc_error *error)
 {
     himc_command c;
     int count = line->count < line->capacity ? line->count : line->capacity;
@@ -114,11 +78,10 @@ static bool run_line(himc_drum *drum, const himc_text_statement *line, himc_erro
     if (c.id == HIMC_COMMAND_DRUM_PRESET || c.id == HIMC_COMMAND_DRUM_DUMP ||
         c.id == HIMC_COMMAND_DRUM_INFO || c.id == HIMC_COMMAND_STRIKE)
         return himc_error_set(error, "%s: not allowed in a preset", line->atom[0].symbol);
-    return himc_drum_command(drum, &c, error);
+    return himc_drum_settings_command(s, &c, error);
 }
 
-// the lines of a preset, on a copy of the drum
-static bool run_lines(himc_drum *drum, const char *rest, const char *name, himc_error *error)
+static bool run_lines(himc_drum_settings *s, const char *rest, const char *name, himc_error *error)
 {
     char storage[2 * HIMC_PATH_SIZE];
     himc_atom atoms[HIMC_COMMAND_ATOMS + 2];
@@ -129,47 +92,56 @@ static bool run_lines(himc_drum *drum, const char *rest, const char *name, himc_
     int at = 1;
     bool good = true;
     while (good && himc_text_next(&rest, &at, &line))
-        good = line.count == 0 || run_line(drum, &line, error) ||
+        good = line.count == 0 || run_line(s, &line, error) ||
                himc_error_prefix(error, "%s:%d", name, line.line);
     return good;
 }
 
-static bool run_preset(himc_drum *drum, const char *name, himc_error *error)
+bool himc_drum_settings_preset(himc_drum_settings *s, const char *name, himc_error *error)
 {
     char path[HIMC_PATH_SIZE + 8];
     size_t size;
     snprintf(path, sizeof path, "%s.txt", name);
     char *text = himc_file_load(path, LONGEST_PRESET, &size, error);
-    bool good =
-        text && himc_text_check(text, size, path, error) && run_lines(drum, text, path, error);
+    bool good = text && himc_text_check(text, size, path, error) && run_lines(s, text, path, error);
     free(text);
     return good || himc_error_prefix(error, "preset");
+}
+
+static bool is_preset(const drum_job *j)
+{
+    return !j->listens && j->command.id == HIMC_COMMAND_DRUM_PRESET;
+}
+
+static bool find_settings(drum_job *j, himc_error *error)
+{
+    if (j->listens)
+        return true;
+    if (j->state)
+        return run_lines(&j->after, j->state, "state", error);
+    return is_preset(j) ? himc_drum_settings_preset(&j->after, j->command.atom[0].symbol, error)
+                        : himc_drum_settings_command(&j->after, &j->command, error);
 }
 
 static bool prepare(himc_job *job, himc_error *error)
 {
     drum_job *j = (drum_job *)job;
-    himc_drum_release(j->made);
-    j->made = himc_drum_new_of(&j->form, error);
-    if (j->made && j->listens)
-        himc_drum_listen(j->made, &j->listener);
-    if (j->made && j->state)
-        return run_lines(j->made, j->state, "state", error);
-    if (j->made && !j->listens && j->command.id == HIMC_COMMAND_DRUM_PRESET)
-        return run_preset(j->made, j->command.atom[0].symbol, error);
-    return j->made && (j->listens || himc_drum_command(j->made, &j->command, error));
-}
-
-// beside its head, all that a preset has set
-static himc_job_state take_preset(drum_job *j)
-{
-    himc_drum_manner manner = himc_drum_manner_of(j->made);
-    himc_head_frame place = j->made->place;
-    himc_drum_exchange(j->drum, j->made);
-    himc_drum_set_manner(j->drum, &manner);
-    j->drum->place = place;
-    himc_drum_find_ways(j->drum);
-    return HIMC_JOB_DONE;
+    himc_drum_settings_free(&j->after);
+    himc_model_free(j->made);
+    j->made = NULL;
+    j->after = himc_drum_settings_copy(&j->before);
+    if (!find_settings(j, error))
+        return false;
+    if (j->listener.on) {
+        himc_ear_paths paths = himc_ears_trace(&j->listener, &j->after.place);
+        himc_membrane_config_set_rays(&j->after.head, paths.ray);
+    }
+    if (j->listener.on && !j->ears && !(j->ears = calloc(1, sizeof *j->ears)))
+        return himc_error_set(error, "listener: out of memory");
+    if (himc_membrane_config_equal(&j->before.head, &j->after.head))
+        return true;
+    j->made = himc_model_new(&j->after.head, NULL, error);
+    return j->made;
 }
 
 // Carries it out on the drum itself. Where only rays change and the drum has them already, that is
@@ -185,26 +157,45 @@ static bool act(drum_job *j, himc_error *error)
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     drum_job *j = (drum_job *)job;
-    bool preset = !j->listens && j->command.id == HIMC_COMMAND_DRUM_PRESET;
-    if (preset && (himc_drum_has_form(j->drum, &j->form) || ++j->tries == HIMC_JOB_TRIES))
-        return take_preset(j);
-    if (himc_drum_has_form(j->drum, &j->form)) {
-        bool rays = j->listens || j->command.id == HIMC_COMMAND_PLACE;
-        himc_drum_exchange(j->drum, j->made);
-        return !rays || act(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
+    himc_drum *drum = j->drum;
+    bool same = himc_drum_has_head(drum, &j->before), preset = is_preset(j);
+    himc_drum_settings to = himc_drum_settings_of(drum);
+    if (!same && ++j->tries < HIMC_JOB_TRIES) {
+        himc_drum_settings_free(&j->before);
+        j->before = to;
+        return HIMC_JOB_AGAIN;
     }
-    if (!preset && ++j->tries == HIMC_JOB_TRIES)
+    himc_drum_settings_free(&to); // the drum's model, and what is prepared, have the grids
+    if (!drum->ears) {
+        drum->ears = j->ears;
+        j->ears = NULL;
+    }
+    if (!same && !preset)
         return act(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
-    himc_drum_form_free(&j->form);
-    j->form = himc_drum_form_of(j->drum);
-    return HIMC_JOB_AGAIN;
+    if (preset) {
+        to = j->after;
+    } else {
+        to.head = j->after.head;
+        to.place.radius = j->after.place.radius;
+        if (j->command.id == HIMC_COMMAND_PLACE && !j->listens) {
+            to.place = j->after.place;
+            to.placed = true;
+        }
+    }
+    if (!himc_drum_set(drum, &to, &j->made, error))
+        return HIMC_JOB_FAILED;
+    if (j->listens)
+        himc_drum_listen(drum, &j->listener);
+    return HIMC_JOB_DONE;
 }
 
 static void free_job(himc_job *job)
 {
     drum_job *j = (drum_job *)job;
-    himc_drum_form_free(&j->form);
-    himc_drum_release(j->made);
+    himc_drum_settings_free(&j->before);
+    himc_drum_settings_free(&j->after);
+    himc_model_free(j->made);
+    free(j->ears);
     free(j);
 }
 
@@ -217,7 +208,8 @@ static drum_job *job_new(himc_drum *drum, const char *what, himc_error *error)
     }
     j->job = (himc_job){prepare, install, free_job};
     j->drum = drum;
-    j->form = himc_drum_form_of(drum);
+    j->before = himc_drum_settings_of(drum);
+    j->listener = drum->listener;
     return j;
 }
 
@@ -261,7 +253,14 @@ bool himc_drum_command(himc_drum *drum, const himc_command *command, himc_error 
         return true;
     if (checked.id == HIMC_COMMAND_DRUM_DUMP || checked.id == HIMC_COMMAND_DRUM_PRESET)
         return himc_job_carry_out(himc_drum_job(drum, &checked, error), error);
-    return himc_drum_act(drum, &checked, error);
+    if (checked.id == HIMC_COMMAND_STRIKE)
+        return himc_drum_strike_at(drum, 0, checked.atom[0].number, checked.atom[1].number,
+                                   checked.atom[2].number, error);
+    himc_drum_settings to = himc_drum_settings_of(drum);
+    bool good =
+        himc_drum_settings_command(&to, &checked, error) && himc_drum_set(drum, &to, NULL, error);
+    himc_drum_settings_free(&to);
+    return good;
 }
 
 himc_job *himc_drum_listen_job(himc_drum *drum, const himc_listener *listener, himc_error *error)
@@ -271,65 +270,5 @@ himc_job *himc_drum_listen_job(himc_drum *drum, const himc_listener *listener, h
         return NULL;
     j->listener = *listener;
     j->listens = true;
-    return &j->job;
-}
-
-typedef struct follow_job {
-    himc_job job;
-    himc_membrane *follower; ///< borrowed, as the leader
-    const himc_membrane *leader;
-    himc_membrane_form form; ///< of the leader, at the follower's rate
-    himc_membrane *made;     ///< owned
-    int tries;
-} follow_job;
-
-static void copy_leader(follow_job *j)
-{
-    himc_membrane_form_free(&j->form);
-    j->form = himc_membrane_form_of(j->leader);
-    j->form.shares = false; // no other head is near the follower
-    j->form.rate = himc_membrane_rate(j->follower);
-}
-
-static bool prepare_follower(himc_job *job, himc_error *error)
-{
-    follow_job *j = (follow_job *)job;
-    himc_membrane_free(j->made);
-    j->made = himc_membrane_new_of(&j->form, error);
-    return j->made;
-}
-
-static himc_job_state install_follower(himc_job *job, himc_error *error)
-{
-    follow_job *j = (follow_job *)job;
-    (void)error;
-    bool same = himc_membrane_alike(j->made, j->leader) || ++j->tries == HIMC_JOB_TRIES;
-    if (same && himc_membrane_rate(j->made) == himc_membrane_rate(j->follower)) {
-        himc_membrane_exchange(j->follower, j->made);
-        return HIMC_JOB_DONE;
-    }
-    copy_leader(j);
-    return HIMC_JOB_AGAIN;
-}
-
-static void free_follower(himc_job *job)
-{
-    follow_job *j = (follow_job *)job;
-    himc_membrane_form_free(&j->form);
-    himc_membrane_free(j->made);
-    free(j);
-}
-
-himc_job *himc_membrane_job(himc_membrane *follower, const himc_membrane *leader, himc_error *error)
-{
-    follow_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "head: out of memory");
-        return NULL;
-    }
-    j->job = (himc_job){prepare_follower, install_follower, free_follower};
-    j->follower = follower;
-    j->leader = leader;
-    copy_leader(j);
     return &j->job;
 }

@@ -3,25 +3,28 @@
 
 #include "base/head_frame.h"
 
-// the ways to the ears; the rays may come from elsewhere
-static void find_ways(himc_drum *drum, bool rays)
+#include <stdlib.h>
+
+bool himc_drum_open_ears(himc_drum *drum, himc_error *error)
 {
-    if (!drum->listener.on) {
-        himc_membrane_mute_pickups(drum->membrane, false);
-        himc_ears_close(&drum->ears);
-        if (rays && !himc_ears_heard(&drum->ears))
-            himc_membrane_set_rays(drum->membrane, NULL);
-        return;
-    }
-    himc_ear_paths paths = himc_ears_trace(&drum->listener, &drum->place);
-    if (rays)
-        himc_membrane_set_rays(drum->membrane, paths.ray);
-    himc_ears_set(&drum->ears, &paths, &drum->walls, drum->rate);
+    if (!drum->ears)
+        drum->ears = calloc(1, sizeof *drum->ears);
+    return drum->ears || himc_error_set(error, "listener: out of memory");
 }
 
 void himc_drum_find_ways(himc_drum *drum)
 {
-    find_ways(drum, true);
+    if (!drum->listener.on) {
+        himc_membrane_mute_pickups(drum->membrane, false);
+        if (drum->ears)
+            himc_ears_close(drum->ears);
+        if (!himc_ears_heard(drum->ears))
+            himc_membrane_set_rays(drum->membrane, NULL);
+        return;
+    }
+    himc_ear_paths paths = himc_ears_trace(&drum->listener, &drum->set.place);
+    himc_membrane_set_rays(drum->membrane, paths.ray);
+    himc_ears_set(drum->ears, &paths, &drum->walls, drum->rate);
 }
 
 void himc_drum_listen(himc_drum *drum, const himc_listener *listener)
@@ -29,7 +32,7 @@ void himc_drum_listen(himc_drum *drum, const himc_listener *listener)
     if (himc_listener_equal(&drum->listener, listener))
         return;
     drum->listener = *listener;
-    find_ways(drum, true);
+    himc_drum_find_ways(drum);
 }
 
 void himc_drum_enclose(himc_drum *drum, const himc_walls *walls)
@@ -37,15 +40,45 @@ void himc_drum_enclose(himc_drum *drum, const himc_walls *walls)
     if (drum->walls.seconds == walls->seconds && drum->walls.volume == walls->volume)
         return;
     drum->walls = *walls;
-    find_ways(drum, false);
+    himc_drum_find_ways(drum);
 }
 
-void himc_drum_hear_as(himc_drum *drum, const himc_drum *other)
+// a drum that no performer has is heard by those who hear the other
+static bool hears_with(const himc_drum *drum, const himc_drum *other)
 {
-    if (himc_listener_equal(&drum->listener, &other->listener) &&
-        himc_head_frame_equal(&drum->place, &other->place))
-        return;
+    return drum->driver.performer || (himc_listener_equal(&drum->listener, &other->listener) &&
+                                      himc_head_frame_equal(&drum->set.place, &other->set.place));
+}
+
+bool himc_drum_follows(const himc_drum *drum, const himc_drum *other)
+{
+    return hears_with(drum, other) &&
+           himc_membrane_config_alike(himc_membrane_config_of(drum->membrane),
+                                      himc_membrane_config_of(other->membrane));
+}
+
+bool himc_drum_follow(himc_drum *drum, const himc_drum *other, himc_error *error)
+{
+    const himc_membrane_config *now = himc_membrane_config_of(drum->membrane);
+    himc_membrane_config to = *himc_membrane_config_of(other->membrane);
+    bool hears = hears_with(drum, other);
+    if (!hears && other->listener.on && !himc_drum_open_ears(drum, error))
+        return false;
+    to.rate = now->rate;
+    to.shares = false; // no other head is near
+    if (drum->driver.performer)
+        to.rays = false,
+        himc_membrane_config_set_rays(&to, now->rays ? now->pickups + HIMC_PICKUPS : NULL);
+    if (!himc_membrane_config_equal(now, &to)) {
+        himc_model *made = himc_model_new(&to, other->membrane->model, error);
+        if (!made)
+            return false;
+        himc_model_free(himc_membrane_exchange(drum->membrane, made));
+    }
+    if (hears)
+        return true;
     drum->listener = other->listener;
-    drum->place = other->place;
-    find_ways(drum, false);
+    drum->set.place = other->set.place;
+    himc_drum_find_ways(drum);
+    return true;
 }

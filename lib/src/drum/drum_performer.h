@@ -5,7 +5,7 @@
 
 #include "base/job.h"
 #include "drum/ears.h"
-#include "drum/membrane_form.h"
+#include "drum/model.h"
 #include "himc/drum.h"
 
 /// Forces from outside, one of each for a sample.
@@ -25,8 +25,11 @@ HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const 
 /// several others.
 HIMC_RT uint64_t himc_drum_single_samples(const himc_drum *drum);
 
+/// Memory for a listener's ears, which a drum has from the first listener on.
+bool himc_drum_open_ears(himc_drum *drum, himc_error *error);
 /// Who hears the drum by two ears: from now on they are its first two channels, instead of pickups.
-/// A listener who is off, as at first, leaves them to the pickups. It changes over in 5 ms.
+/// A listener who is off, as at first, leaves them to the pickups; one who is on needs open ears.
+/// It changes over in 5 ms.
 HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);
 
 /// The walls around who hears it; at first HIMC_WALLS_USUAL. They change in 5 ms.
@@ -55,49 +58,51 @@ HIMC_RT double himc_drum_pitch(const himc_drum *drum);
 /// True if a force acted on the head in its last sample.
 HIMC_RT bool himc_drum_is_touched(const himc_drum *drum);
 
-// Commands that compute a drum's head anew, carried out on a copy of the drum (drum_job.c).
-
-/// What commands set beside the head.
-typedef struct himc_drum_manner {
+/// All of a drum that its commands set: plain data, on which commands act in any thread, and which
+/// a drum then takes. It retains the grid of its outline.
+typedef struct himc_drum_settings {
+    char name[HIMC_NAME_SIZE];
+    himc_membrane_config head;
+    himc_head usual; ///< when the drum was made
+    himc_head_frame place;
+    bool placed; ///< by the command `place`
     himc_mallet_head mallet;
     himc_word mallet_name; ///< "medium", or "own" when given by numbers
     double noise;          ///< its amount
     double gain;           ///< of its sound (factor)
     bool mute;
     himc_technique technique;
-    bool placed; ///< by the command `place`
-} himc_drum_manner;
-
-/// All of a drum that its commands change, without its motion.
-typedef struct himc_drum_form {
-    char name[HIMC_NAME_SIZE];
-    himc_membrane_form head;
-    himc_head usual; ///< when the drum was made
-    himc_drum_manner manner;
-    himc_head_frame place;
-    himc_listener listener;
-    himc_walls walls;
     bool external_sound;
-} himc_drum_form;
+} himc_drum_settings;
 
-/// The form of a drum; free it with himc_drum_form_free.
-himc_drum_form himc_drum_form_of(const himc_drum *drum);
-void himc_drum_form_free(himc_drum_form *form);
-/// True if the drum's head still has that form.
-bool himc_drum_has_form(const himc_drum *drum, const himc_drum_form *form);
+/// Those of a drum; free them with himc_drum_settings_free.
+HIMC_RT himc_drum_settings himc_drum_settings_of(const himc_drum *drum);
+himc_drum_settings himc_drum_settings_copy(const himc_drum_settings *settings);
+void himc_drum_settings_free(himc_drum_settings *settings);
+/// Carries out a command, but for what it does once: a strike, an answer, a file, a preset. False
+/// with the reason, and nothing changed, if it is refused.
+bool himc_drum_settings_command(himc_drum_settings *settings, const himc_command *command,
+                                himc_error *error);
 
-/// A drum of that form, at rest; NULL with the reason.
-himc_drum *himc_drum_new_of(const himc_drum_form *form, himc_error *error);
-/// Gives `drum` the head of `made`, and the other way round (himc_membrane_exchange). It
-/// is quick if both have one sample rate.
-void himc_drum_exchange(himc_drum *drum, himc_drum *made);
+/// Carries out the lines of a preset, NAME of NAME.txt.
+bool himc_drum_settings_preset(himc_drum_settings *settings, const char *name, himc_error *error);
+
+/// A drum with these settings, at rest; NULL with the reason.
+himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error);
+/// Gives the drum these settings. *made, or NULL, is a model of their head, and then the one that
+/// the drum had before; with it no memory is allocated. False with the reason, and nothing changed,
+/// without memory.
+bool himc_drum_set(himc_drum *drum, const himc_drum_settings *settings, himc_model **made,
+                   himc_error *error);
+/// True if the drum's head is that of the settings.
+HIMC_RT bool himc_drum_has_head(const himc_drum *drum, const himc_drum_settings *settings);
 
 // Heads that a drum gets one after the other while a score plays (drum_heads.c).
 
 typedef struct himc_drum_heads himc_drum_heads;
 
-/// Changes of the head of a drum of that form, none yet; NULL with the reason.
-himc_drum_heads *himc_drum_heads_new(const himc_drum_form *form, himc_error *error);
+/// Changes of the head of a drum with these settings, none yet; NULL with the reason.
+himc_drum_heads *himc_drum_heads_new(const himc_drum_settings *settings, himc_error *error);
 /// Adds a command that is marked HIMC_AT_BEAT, for a beat at or after the last one's: it acts on
 /// what the ones before left. False with the reason if the drum refuses it.
 bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command *command,
@@ -158,9 +163,5 @@ himc_job *himc_drum_state_job(himc_drum *drum, const char *state, himc_error *er
 HIMC_RT bool himc_drum_listening_takes_long(const himc_drum *drum);
 /// himc_drum_listen as a job; the drum must outlive it, but for `free`. NULL without memory.
 himc_job *himc_drum_listen_job(himc_drum *drum, const himc_listener *listener, himc_error *error);
-
-/// himc_membrane_follow as a job; both must outlive it. NULL without memory.
-himc_job *himc_membrane_job(himc_membrane *follower, const himc_membrane *leader,
-                            himc_error *error);
 
 #endif

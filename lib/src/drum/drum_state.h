@@ -5,6 +5,7 @@
 
 #include "drum/drum_performer.h"
 #include "drum/ears.h"
+#include "drum/membrane_state.h"
 #include "drum/stroke_noise.h"
 
 #define DRUM_WAITING 64 ///< strikes; this, the next two and the delay: chosen
@@ -41,14 +42,9 @@ typedef struct drum_told_head {
 } drum_told_head;
 
 struct himc_drum {
-    char name[HIMC_NAME_SIZE];
+    himc_drum_settings set; ///< but for its head, which the membrane has
     int references;
     himc_membrane *membrane;
-    himc_mallet_head mallet;
-    himc_head usual;       ///< its head when it was made
-    himc_word mallet_name; ///< "medium", or "own" when given by numbers
-    himc_head_frame place;
-    bool placed;                ///< by the command `place`
     const drum_told_head *told; ///< borrowed; of its changes in a score, NULL for none
     unsigned revision;
     himc_drum_driver driver;
@@ -67,23 +63,13 @@ struct himc_drum {
     drum_queue report_queue;
     himc_contact_onset onsets[DRUM_ONSETS]; ///< `at` is in samples of `time`
     drum_queue onset_queue;
-    himc_technique technique;
-    bool external_sound;
-    double gain;  ///< of its sound, set by the command `gain` (factor)
     double fader; ///< of all drums of its performer (factor)
-    bool mute;    ///< set by the command `mute`
     double level; ///< of the drum's own sound: on its way to the product, or to 0
     himc_stroke_noise noise;
     himc_listener listener;
     himc_walls walls; ///< around the listener
-    himc_ears ears;   ///< of the listener
+    himc_ears *ears;  ///< owned; of the listener; NULL before the first one
 };
-
-himc_drum_manner himc_drum_manner_of(const himc_drum *drum);
-void himc_drum_set_manner(himc_drum *drum, const himc_drum_manner *manner);
-
-/// Carries out a checked command that is no job.
-bool himc_drum_act(himc_drum *drum, const himc_command *checked, himc_error *error);
 
 /// The head without the changes of a score: the drum's own, which a state tells.
 himc_head himc_drum_base_head(const himc_drum *drum);
@@ -92,8 +78,11 @@ HIMC_RT void himc_drum_keep_edits(himc_head *head, const himc_head *was, const h
 
 /// The head after a checked command of one that a score may have at a beat, or of `radius` or
 /// `density`. False with the reason if the drum refuses it.
-HIMC_RT bool himc_drum_find_head(const himc_drum *drum, const himc_command *checked,
-                                 himc_head *head, himc_error *error);
+HIMC_RT bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual,
+                                 const himc_command *checked, himc_head *head, himc_error *error);
+/// False with the reason if a head of that radius cannot be struck so.
+HIMC_RT bool himc_drum_may_strike(double radius, double x, double y, double velocity,
+                                  himc_error *error);
 
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.
 HIMC_RT void himc_drum_find_ways(himc_drum *drum);
@@ -118,7 +107,7 @@ typedef enum drum_mallet_preset {
     DRUM_MALLET_WOOD
 } drum_mallet_preset;
 
-/// Gives the drum that mallet, with its name.
-void himc_drum_take_mallet(himc_drum *drum, drum_mallet_preset preset);
+/// That mallet, with its name.
+void himc_drum_take_mallet(himc_drum_settings *settings, drum_mallet_preset preset);
 
 #endif

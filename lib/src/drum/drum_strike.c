@@ -18,15 +18,19 @@
 #define GONE 0.005       // (m) above the head at rest and rising: the contact is over; chosen
 #define LONGEST_LIFE 1.0 // (s) of a mallet, whatever it does; chosen
 
+bool himc_drum_may_strike(double radius, double x, double y, double velocity, himc_error *error)
+{
+    return himc_check_range("strike: X", x, -radius, radius, "m", error) &&
+           himc_check_range("strike: Y", y, -radius, radius, "m", error) &&
+           himc_check_range("strike: X Y, from the centre", hypot(x, y), 0, radius, "m", error) &&
+           himc_check_range("strike: VELOCITY", velocity, HIMC_STRIKE_VELOCITY_MIN,
+                            HIMC_STRIKE_VELOCITY_MAX, "m/s", error);
+}
+
 bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                          himc_error *error)
 {
-    double radius = drum->place.radius;
-    if (!himc_check_range("strike: X", x, -radius, radius, "m", error) ||
-        !himc_check_range("strike: Y", y, -radius, radius, "m", error) ||
-        !himc_check_range("strike: X Y, from the centre", hypot(x, y), 0, radius, "m", error) ||
-        !himc_check_range("strike: VELOCITY", velocity, HIMC_STRIKE_VELOCITY_MIN,
-                          HIMC_STRIKE_VELOCITY_MAX, "m/s", error))
+    if (!himc_drum_may_strike(drum->set.place.radius, x, y, velocity, error))
         return false;
     if (delay == HIMC_STRIKE_NEVER)
         return true;
@@ -87,8 +91,8 @@ static void forget(himc_drum *drum, int index)
 static void launch(himc_drum *drum, drum_mallet *m, const drum_waiting *w)
 {
     *m = (drum_mallet){.used = true};
-    m->stick = (himc_stick){.head = drum->mallet,
-                            .mass = drum->mallet.mass,
+    m->stick = (himc_stick){.head = drum->set.mallet,
+                            .mass = drum->set.mallet.mass,
                             .x = w->x,
                             .y = w->y,
                             .velocity = -w->velocity};

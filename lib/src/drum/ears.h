@@ -2,7 +2,7 @@
 #ifndef HIMC_EARS_H
 #define HIMC_EARS_H
 
-#include "drum/membrane_form.h"
+#include "drum/membrane_config.h"
 #include "drum/room.h"
 #include "himc/vec.h"
 
@@ -80,15 +80,15 @@ HIMC_RT void himc_ears_set(himc_ears *ears, const himc_ear_paths *paths, const h
 /// The pickups come back, in 5 ms.
 HIMC_RT void himc_ears_close(himc_ears *ears);
 
-/// True if the ears are heard: set, or giving way.
+/// True if the ears are heard: set, or giving way. NULL is nobody's.
 static inline bool himc_ears_heard(const himc_ears *ears)
 {
-    return ears->on || ears->level > 0;
+    return ears && (ears->on || ears->level > 0);
 }
-/// True if the ears alone are heard.
+/// True if the ears alone are heard. NULL is nobody's.
 static inline bool himc_ears_alone(const himc_ears *ears)
 {
-    return ears->on && ears->level == 1;
+    return ears && ears->on && ears->level == 1;
 }
 /// True if nothing is left to be heard, and nothing about to change.
 HIMC_RT bool himc_ears_at_rest(const himc_ears *ears);

@@ -26,8 +26,6 @@ typedef enum loader_stage { IDLE, PREPARING, PREPARED, FREEING } loader_stage;
 typedef struct waiting_load {
     himc_load_target target; ///< its drum is retained
     himc_command command;
-    himc_membrane *follower; ///< of himc_loader_follow; then there is no command
-    const himc_membrane *leader;
 } waiting_load;
 
 struct himc_loader {
@@ -166,7 +164,7 @@ static void end_first(himc_loader *loader, const char *error)
     const waiting_load *first = take_first(loader);
     himc_load_target target = first->target;
     himc_error lost = {""}, named = {""};
-    if (error && first->command.drum[0] && !first->follower) {
+    if (error && first->command.drum[0]) {
         himc_error_set(&named, "%s: %s", first->command.drum, error);
         error = named.text;
     }
@@ -202,8 +200,6 @@ static bool carry_out(const himc_load_target *target, const himc_command *comman
 
 static himc_job *make_job(const waiting_load *load, himc_error *error)
 {
-    if (load->follower)
-        return himc_membrane_job(load->follower, load->leader, error);
     return load->target.drum
                ? himc_drum_job(load->target.drum, &load->command, error)
                : runner_of(&load->target)->job(load->target.performance, &load->command, error);
@@ -214,7 +210,7 @@ static bool begin_first(himc_loader *loader)
 {
     const waiting_load *load = &loader->queue[loader->first];
     himc_error error = {""};
-    if (load->follower || takes_long(&load->target, &load->command)) {
+    if (takes_long(&load->target, &load->command)) {
         loader->job = start(loader, &error) ? make_job(load, &error) : NULL;
         if (loader->job)
             hand_over(loader, PREPARING);
@@ -295,7 +291,6 @@ bool himc_loader_command(himc_loader *loader, const himc_load_target *asked,
     if (!load)
         return loader->dropped > 1;
     load->target = *target;
-    load->follower = NULL;
     himc_command_copy(&load->command, command);
     if (target->drum)
         himc_drum_retain(target->drum);
@@ -309,19 +304,4 @@ bool himc_loader_restore(himc_loader *loader, const himc_load_target *target, co
     himc_job *job = target->drum ? himc_drum_state_job(target->drum, state, error)
                                  : runner_of(target)->state_job(target->performance, state, error);
     return himc_job_carry_out(job, error);
-}
-
-bool himc_loader_follow(himc_loader *loader, himc_membrane *follower, const himc_membrane *leader,
-                        himc_error *error)
-{
-    for (int i = 0; i < loader->count; i++)
-        if (loader->queue[(loader->first + i) % WAITING_LOADS].follower == follower)
-            return true;
-    waiting_load *load = add(loader, error);
-    if (!load)
-        return false;
-    load->target = (himc_load_target){.performance = NULL};
-    load->follower = follower;
-    load->leader = leader;
-    return true;
 }

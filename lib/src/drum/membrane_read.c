@@ -3,92 +3,62 @@
 #include "drum/membrane_probe.h"
 #include "drum/membrane_state.h"
 
-#include "head/bessel.h"
-
 #include <math.h>
 
-#define BISECTIONS 60 // halvings of ln T: exact to the last bit of a double
+const himc_membrane_config *himc_membrane_config_of(const himc_membrane *membrane)
+{
+    return &membrane->model->config;
+}
 
 const himc_shape *himc_membrane_shape(const himc_membrane *membrane)
 {
-    return himc_modes_shape(membrane->core.modes);
+    return himc_modes_shape(membrane->model->modes);
 }
 
 const himc_head *himc_membrane_head(const himc_membrane *membrane)
 {
-    return &membrane->head;
+    return &membrane->model->config.head;
 }
 
 const himc_pickup *himc_membrane_pickups(const himc_membrane *membrane, int *count)
 {
-    *count = membrane->pickup_count;
-    return membrane->pickups;
+    *count = membrane->model->config.pickup_count;
+    return membrane->model->config.pickups;
 }
 
 double himc_membrane_rate(const himc_membrane *membrane)
 {
-    return membrane->rate;
+    return membrane->model->config.rate;
 }
 
 int himc_membrane_modes(const himc_membrane *membrane)
 {
-    return himc_modes_count(membrane->core.modes);
+    return himc_modes_count(membrane->model->modes);
 }
 
 himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
     if (index >= himc_membrane_modes(membrane))
         return (himc_mode){0};
-    himc_mode bare = himc_modes_get(membrane->core.modes, &membrane->head, index);
-    return membrane->head.air ? himc_air_mode(&membrane->air, &membrane->head, &bare) : bare;
-}
-
-// j_11 of a round head, else the lowest mode's radius times wavenumber
-static double principal_zero(const himc_membrane *membrane)
-{
-    bool round = himc_membrane_shape(membrane)->kind == HIMC_CIRCLE;
-    return round ? himc_bessel_zero(1, 1)
-                 : himc_modes_get(membrane->core.modes, &membrane->head, 0).zero;
-}
-
-static double principal_of(const himc_head *head, double zero)
-{
-    double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
-    if (!head->air)
-        return bare;
-    himc_air air = himc_membrane_air(head);
-    return bare * himc_air_on(&air, 1, 1, zero).frequency;
+    himc_mode bare = himc_modes_get(membrane->model->modes, &membrane->model->config.head, index);
+    return membrane->model->config.head.air
+               ? himc_air_mode(&membrane->model->air, &membrane->model->config.head, &bare)
+               : bare;
 }
 
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
 {
-    return principal_of(head, principal_zero(membrane));
-}
-
-double himc_membrane_tension_for(const himc_membrane *membrane, const himc_head *head,
-                                 double frequency)
-{
-    himc_head trial = *head;
-    double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
-    double zero = principal_zero(membrane);
-    for (int i = 0; i < BISECTIONS; i++) {
-        trial.tension = exp(0.5 * (low + high));
-        if (principal_of(&trial, zero) < frequency)
-            low = log(trial.tension);
-        else
-            high = log(trial.tension);
-    }
-    return trial.tension;
+    return himc_head_principal(head, himc_membrane_shape(membrane));
 }
 
 int himc_membrane_audible(const himc_membrane *membrane)
 {
-    return himc_bank_count(membrane->core.bank);
+    return himc_bank_count(membrane->model->bank);
 }
 
 void himc_membrane_state(const himc_membrane *membrane, int index, double *q, double *v)
 {
-    himc_bank_state(membrane->core.bank, index, q, v);
+    himc_bank_state(membrane->model->bank, index, q, v);
 }
 
 // a mode's displacement: that of `modal`, which has `count`, or if that is NULL its own
@@ -105,7 +75,7 @@ static double coordinate(const himc_membrane *membrane, int count, const double 
 static void unmix(const himc_membrane *membrane, int count, const double *modal,
                   double *displacement)
 {
-    const himc_mixture *mix = himc_modes_mixture(membrane->core.modes);
+    const himc_mixture *mix = himc_modes_mixture(membrane->model->modes);
     for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
         double sum = 0;
         for (int n = 0; n < mix->count; n++)
@@ -117,16 +87,16 @@ static void unmix(const himc_membrane *membrane, int count, const double *modal,
 void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
                            double *displacement)
 {
-    const himc_modes *modes = membrane->core.modes;
+    const himc_modes *modes = membrane->model->modes;
     double pair[2] = {0, 0};
     for (int i = 0; i < count; i++) {
-        himc_mode mode = himc_modes_get(modes, &membrane->head, i);
+        himc_mode mode = himc_modes_get(modes, &membrane->model->config.head, i);
         displacement[i] = coordinate(membrane, count, modal, i);
         if (mode.m <= 0 || himc_membrane_shape(membrane)->kind != HIMC_CIRCLE)
             continue;
         const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
-        bool whole =
-            i + 1 < himc_modes_count(modes) && himc_modes_get(modes, &membrane->head, i + 1).sine;
+        bool whole = i + 1 < himc_modes_count(modes) &&
+                     himc_modes_get(modes, &membrane->model->config.head, i + 1).sine;
         if (!mode.sine) {
             pair[0] = displacement[i];
             pair[1] = whole ? coordinate(membrane, count, modal, i + 1) : 0;

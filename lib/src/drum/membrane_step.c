@@ -14,31 +14,23 @@
 #include <math.h>
 #include <string.h>
 
-#define SUBSTEP_RATE 192000.0 // (Hz) least rate of substeps; chosen: contact.c
-
-// Young's modulus, Poisson's ratio and density of polyester film (Mylar), typical values; the
-// thickness of a head follows from its mass
-#define YOUNG 4e9 // (Pa)
-#define POISSON 0.38
-#define FILM 1390.0 // (kg/m^3)
-
 // the weights of all modes under a patch of that radius
 static const double *weights(himc_membrane *m, double b)
 {
-    core *c = &m->core;
-    patch *oldest = &c->patches[0];
-    for (int i = 0; i < PATCHES; i++) {
-        patch *p = &c->patches[i];
+    himc_model *c = m->model;
+    himc_patch *oldest = &c->patches[0];
+    for (int i = 0; i < HIMC_PATCHES; i++) {
+        himc_patch *p = &c->patches[i];
         if (p->b == b) {
-            p->age = ++m->clock;
+            p->age = ++m->model->clock;
             return p->weight;
         }
         if (p->b == 0 || (oldest->b > 0 && p->age < oldest->age))
             oldest = p;
     }
     oldest->b = b;
-    oldest->age = ++m->clock;
-    for (int i = 0; i < himc_modes_count(m->core.modes); i++)
+    oldest->age = ++m->model->clock;
+    for (int i = 0; i < himc_modes_count(m->model->modes); i++)
         oldest->weight[i] = i > 0 && c->wave[i] == c->wave[i - 1]
                                 ? oldest->weight[i - 1]
                                 : himc_patch_weight(c->wave[i] * b);
@@ -48,9 +40,9 @@ static const double *weights(himc_membrane *m, double b)
 // what the modes of the list do not yield under a patch of radius b
 static himc_residual find_residual(const himc_membrane *m, const strike_point *s, double b)
 {
-    const core *c = &m->core;
-    double compliance = himc_patch_compliance(&m->head, hypot(s->x, s->y), b);
-    double per_mass = 1 / (m->head.density * HIMC_PI * b * b);
+    const himc_model *c = m->model;
+    double compliance = himc_patch_compliance(&m->model->config.head, hypot(s->x, s->y), b);
+    double per_mass = 1 / (m->model->config.head.density * HIMC_PI * b * b);
     for (int i = 0; i < himc_bank_count(c->bank); i++) {
         double square = s->shape[i] * s->shape[i];
         compliance -= square * c->per_stiffness[i];
@@ -62,13 +54,13 @@ static himc_residual find_residual(const himc_membrane *m, const strike_point *s
 // spreads a force at the point over its patch
 static void spread(himc_membrane *m, strike_point *s)
 {
-    bool round = himc_modes_shape(m->core.modes)->kind == HIMC_CIRCLE;
-    double b = round ? fmin(s->b, m->head.radius - hypot(s->x, s->y)) : s->b;
+    bool round = himc_modes_shape(m->model->modes)->kind == HIMC_CIRCLE;
+    double b = round ? fmin(s->b, m->model->config.head.radius - hypot(s->x, s->y)) : s->b;
     s->residual = (himc_residual){0};
     if (!(b > 0))
         return;
     const double *weight = weights(m, b);
-    for (int i = 0; i < himc_modes_count(m->core.modes); i++)
+    for (int i = 0; i < himc_modes_count(m->model->modes); i++)
         s->shape[i] *= weight[i];
     if (round)
         s->residual = find_residual(m, s, b);
@@ -77,23 +69,23 @@ static void spread(himc_membrane *m, strike_point *s)
 // finds the point's shapes; most points of a stick on its way feel no force
 static void move_point(himc_membrane *m, strike_point *s, double x, double y, double b)
 {
-    const core *c = &m->core;
+    const himc_model *c = m->model;
     s->used = true;
     s->x = x;
     s->y = y;
     s->b = b;
-    himc_modes_shapes(c->modes, m->head.radius, x, y, s->shape);
+    himc_modes_shapes(c->modes, m->model->config.head.radius, x, y, s->shape);
     spread(m, s);
     himc_modes_mix(c->modes, s->shape);
     himc_bank_readout(c->bank, s->shape, NULL, NULL, &s->readout);
     memset(s->responds, 0, sizeof s->responds);
 }
 
-const unit_response *himc_strike_point_response(himc_membrane *m, strike_point *s,
-                                                himc_step_length k)
+const himc_unit_response *himc_strike_point_response(himc_membrane *m, strike_point *s,
+                                                     himc_step_length k)
 {
-    const core *c = &m->core;
-    unit_response *e = &s->response[k];
+    const himc_model *c = m->model;
+    himc_unit_response *e = &s->response[k];
     if (s->responds[k])
         return e;
     s->responds[k] = true;
@@ -108,36 +100,36 @@ const unit_response *himc_strike_point_response(himc_membrane *m, strike_point *
 
 int himc_membrane_substeps(const himc_membrane *membrane)
 {
-    return (int)ceil(SUBSTEP_RATE / membrane->rate);
+    return himc_model_substeps(membrane->model);
 }
 
 void himc_membrane_set_substep(himc_membrane *membrane, int index, int count)
 {
     membrane->step = count > 1 ? HIMC_STEP_SUBSTEP : HIMC_STEP_SAMPLE;
     membrane->ends_sample = index == count - 1;
-    himc_bank_set_step(membrane->core.bank, membrane->step);
+    himc_bank_set_step(membrane->model->bank, membrane->step);
 }
 
 strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y, double b)
 {
-    strike_point *oldest = &membrane->points[0];
-    for (int i = 0; i < STRIKE_POINTS; i++) {
-        strike_point *s = &membrane->points[i];
+    strike_point *oldest = &membrane->model->points[0];
+    for (int i = 0; i < HIMC_STRIKE_POINTS; i++) {
+        strike_point *s = &membrane->model->points[i];
         if (s->used && s->x == x && s->y == y && s->b == b) {
-            s->age = ++membrane->clock;
+            s->age = ++membrane->model->clock;
             return s;
         }
         if (!s->used || (oldest->used && s->age < oldest->age))
             oldest = s;
     }
     move_point(membrane, oldest, x, y, b);
-    oldest->age = ++membrane->clock;
+    oldest->age = ++membrane->model->clock;
     return oldest;
 }
 
 double himc_strike_point_displacement(const himc_membrane *membrane, strike_point *s)
 {
-    return himc_bank_read(membrane->core.bank, &s->readout);
+    return himc_bank_read(membrane->model->bank, &s->readout);
 }
 
 himc_residual himc_strike_point_residual(const strike_point *s)
@@ -148,49 +140,35 @@ himc_residual himc_strike_point_residual(const strike_point *s)
 double himc_strike_point_compliance(himc_membrane *membrane, strike_point *a, strike_point *b)
 {
     return a == b ? himc_strike_point_response(membrane, a, membrane->step)->compliance
-                  : himc_bank_response(membrane->core.bank, b->shape, &a->readout);
+                  : himc_bank_response(membrane->model->bank, b->shape, &a->readout);
 }
 
 void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double force)
 {
     if (force == 0)
         return;
-    himc_bank_push(membrane->core.bank, s->shape, force);
-    const unit_response *e = himc_strike_point_response(membrane, s, membrane->step);
+    himc_bank_push(membrane->model->bank, s->shape, force);
+    const himc_unit_response *e = himc_strike_point_response(membrane, s, membrane->step);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         if (himc_membrane_wants(membrane, i))
             membrane->sound[i] += e->sound[i] * force;
-    if (membrane->applied_count < STRIKE_POINTS)
-        membrane->applied[membrane->applied_count++] = (push){s->x, s->y, s->b, force};
-}
-
-double himc_membrane_film_stiffness(const himc_membrane *m)
-{
-    const himc_shape *shape = himc_modes_shape(m->core.modes);
-    if (shape->kind == HIMC_GRID && shape->grid->free)
-        return 0; // no film, and nothing that it could be stretched between
-    double thickness = m->head.density / FILM;
-    double area = himc_modes_area(m->core.modes, m->head.radius);
-    return m->head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);
+    if (membrane->applied_count < HIMC_STRIKE_POINTS)
+        membrane->applied[membrane->applied_count++] = (himc_push){s->x, s->y, s->b, force};
 }
 
 double himc_membrane_rise(const himc_membrane *membrane)
 {
-    return sqrt(2 * himc_membrane_film_stiffness(membrane)) * himc_bank_film(membrane->core.bank);
+    return sqrt(2 * himc_model_film_stiffness(membrane->model)) *
+           himc_bank_film(membrane->model->bank);
 }
 
 // runs n steps without forces; adds the declicks to the sound
 static void run_free(himc_membrane *m, int n, double *const *sound, double *watched)
 {
-    core *c = &m->core;
+    himc_model *c = m->model;
     himc_readout *readouts[HIMC_OUTPUTS + 1];
     double *out[HIMC_OUTPUTS + 1];
     int count = 0;
-    bool alike = himc_modes_shape(c->modes)->kind == HIMC_CIRCLE;
-    for (int k = 0; k < HIMC_RAYS; k++) { // a core may have been moved
-        c->rays.readout[k] = &c->outputs[HIMC_PICKUPS + k].readout;
-        c->rays.readout[k]->alike = alike ? &c->rays : NULL;
-    }
     for (int k = 0; k < HIMC_OUTPUTS; k++)
         if (himc_membrane_has(m, k)) {
             readouts[count] = &c->outputs[k].readout;
@@ -213,7 +191,7 @@ static void run_free(himc_membrane *m, int n, double *const *sound, double *watc
 
 void himc_membrane_ready(himc_membrane *membrane)
 {
-    himc_bank_ready(membrane->core.bank);
+    himc_bank_ready(membrane->model->bank);
 }
 
 void himc_membrane_free_step(himc_membrane *membrane)
@@ -223,7 +201,7 @@ void himc_membrane_free_step(himc_membrane *membrane)
         into[k] = himc_membrane_wants(membrane, k) ? &sound[k] : NULL;
     run_free(membrane, 1, into, NULL);
     for (int i = 0; i < membrane->push_count; i++) {
-        const push *p = &membrane->pushes[i];
+        const himc_push *p = &membrane->pushes[i];
         himc_strike_point_apply(membrane, himc_membrane_strike_point(membrane, p->x, p->y, p->b),
                                 -p->force);
     }
@@ -253,7 +231,7 @@ void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound,
 void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, double *watched)
 {
     double *rows[HIMC_OUTPUTS] = {NULL};
-    for (int k = 0; k < membrane->pickup_count; k++)
+    for (int k = 0; k < membrane->model->config.pickup_count; k++)
         rows[k] = sound[k];
     himc_membrane_run_all(membrane, n, rows, watched);
 }
@@ -261,7 +239,7 @@ void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, dou
 void himc_membrane_push(himc_membrane *membrane, double x, double y, double force)
 {
     if (membrane->push_count < MAX_PUSHES)
-        membrane->pushes[membrane->push_count++] = (push){x, y, 0, force};
+        membrane->pushes[membrane->push_count++] = (himc_push){x, y, 0, force};
 }
 
 double himc_membrane_sound(const himc_membrane *membrane, int pickup)
@@ -272,7 +250,7 @@ double himc_membrane_sound(const himc_membrane *membrane, int pickup)
 double himc_membrane_watched(const himc_membrane *membrane)
 {
     // only what is known of the coming samples changes, which nobody can see
-    return himc_bank_read(membrane->core.bank, &((himc_membrane *)membrane)->core.watched);
+    return himc_bank_read(membrane->model->bank, &((himc_membrane *)membrane)->model->watched);
 }
 
 double himc_membrane_displacement(const himc_membrane *membrane, double x, double y)
@@ -284,20 +262,20 @@ double himc_membrane_displacement(const himc_membrane *membrane, double x, doubl
 
 double himc_membrane_energy(const himc_membrane *membrane)
 {
-    double s = himc_bank_film(membrane->core.bank);
-    return himc_bank_energy(membrane->core.bank) + 0.5 * s * s;
+    double s = himc_bank_film(membrane->model->bank);
+    return himc_bank_energy(membrane->model->bank) + 0.5 * s * s;
 }
 
 himc_bank_bounds himc_membrane_bounds(himc_membrane *membrane)
 {
-    if (himc_modes_shape(membrane->core.modes)->kind == HIMC_GRID)
+    if (himc_modes_shape(membrane->model->modes)->kind == HIMC_GRID)
         return (himc_bank_bounds){INFINITY, INFINITY};
-    return himc_bank_bounds_of(membrane->core.bank, membrane->core.most);
+    return himc_bank_bounds_of(membrane->model->bank, membrane->model->most);
 }
 
 bool himc_membrane_at_rest(const himc_membrane *membrane)
 {
-    bool rest = membrane->push_count == 0 && himc_bank_at_rest(membrane->core.bank);
+    bool rest = membrane->push_count == 0 && himc_bank_at_rest(membrane->model->bank);
     for (int k = 0; k < HIMC_OUTPUTS; k++)
         if (himc_membrane_has(membrane, k))
             rest = rest && membrane->declicks[k].at >= membrane->declicks[k].length;

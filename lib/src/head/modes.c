@@ -48,6 +48,7 @@ typedef struct entry {
 } entry;
 
 struct himc_modes {
+    _Atomic int *users; // of the list, which copies share: all but pairs and mixture
     himc_shape shape;
     int count;       // modes
     int exact;       // of these, in the list of entries; the others are statistical
@@ -271,16 +272,29 @@ static bool list_statistical(himc_modes *modes)
     return true;
 }
 
+static int most_modes(const himc_shape *shape)
+{
+    return shape->kind == HIMC_GRID ? shape->grid->modes : HIMC_MODES_MAX;
+}
+
+bool himc_modes_check(const himc_shape *shape, int count, himc_error *error)
+{
+    return count == HIMC_MODES_AUTO ||
+           himc_check_range("modes", count, 1, most_modes(shape), "", error);
+}
+
 himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error)
 {
-    int most = shape->kind == HIMC_GRID ? shape->grid->modes : HIMC_MODES_MAX;
     bool automatic = count == HIMC_MODES_AUTO;
-    if (automatic)
-        count = exact_of_auto(shape, most);
-    if (!himc_check_range("modes", count, 1, most, "", error))
+    if (!himc_modes_check(shape, count, error))
         return NULL;
+    if (automatic)
+        count = exact_of_auto(shape, most_modes(shape));
     himc_modes *modes = calloc(1, sizeof *modes);
-    if (modes) {
+    if (modes)
+        modes->users = malloc(sizeof *modes->users);
+    if (modes && modes->users) {
+        *modes->users = 1;
         modes->count = modes->exact = count;
         modes->uniformity = 1;
         himc_lugs_split(1, 0, modes->pairs);
@@ -294,17 +308,44 @@ himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error
     return NULL;
 }
 
+himc_modes *himc_modes_copy(const himc_modes *modes, himc_error *error)
+{
+    himc_modes *copy = malloc(sizeof *copy);
+    if (!copy) {
+        himc_error_set(error, "modes: no memory for %d modes", modes->count);
+        return NULL;
+    }
+    *copy = *modes;
+    ++*copy->users;
+    himc_grid_retain(copy->shape.grid);
+    return copy;
+}
+
 void himc_modes_free(himc_modes *modes)
 {
     if (!modes)
         return;
     himc_grid_release(modes->shape.grid);
-    free(modes->entries);
-    free(modes->first);
-    free(modes->of);
-    free(modes->table);
-    free(modes->statistical);
+    if (!modes->users || --*modes->users == 0) {
+        free(modes->entries);
+        free(modes->first);
+        free(modes->of);
+        free(modes->table);
+        free(modes->statistical);
+        free((void *)modes->users);
+    }
     free(modes);
+}
+
+double himc_shape_principal(const himc_shape *shape)
+{
+    double a, b;
+    if (shape->kind == HIMC_GRID)
+        return shape->grid->zero[0];
+    if (shape->kind == HIMC_CIRCLE)
+        return himc_bessel_zero(1, 1);
+    sides(shape, &a, &b);
+    return hypot(1 / a, 1 / b) * HIMC_PI;
 }
 
 int himc_modes_count(const himc_modes *modes)

@@ -21,7 +21,15 @@ typedef struct himc_modes himc_modes;
 /// those of a grid are numbered by n; both have no pairs. NULL with an error out of range or
 /// without memory.
 himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error);
+/// False with the reason if no head of that outline has so many.
+bool himc_modes_check(const himc_shape *shape, int count, himc_error *error);
+/// Another with the same list, which they share in any threads, and with lugs and mixture of its
+/// own. NULL without memory.
+himc_modes *himc_modes_copy(const himc_modes *modes, himc_error *error);
 void himc_modes_free(himc_modes *modes);
+
+/// Of the principal mode: j_11 of a round head, else the lowest mode's radius times wavenumber.
+HIMC_RT double himc_shape_principal(const himc_shape *shape);
 
 HIMC_RT int himc_modes_count(const himc_modes *modes);
 HIMC_RT const himc_shape *himc_modes_shape(const himc_modes *modes);

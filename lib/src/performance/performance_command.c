@@ -195,9 +195,7 @@ static himc_listener listener_of(const himc_command *c)
 static bool do_listener(himc_performance *p, const himc_command *c, himc_error *error)
 {
     himc_listener listener = listener_of(c);
-    (void)error;
-    himc_drums_listen(&p->drums, &listener);
-    return true;
+    return himc_drums_listen(&p->drums, &listener, error);
 }
 
 static himc_job *listener_job(himc_performance *p, const himc_command *c, himc_error *error)

@@ -201,6 +201,8 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
     int i = himc_drums_find(d, himc_drum_name(drum));
     if (i < 0 && d->count == HIMC_DRUMS)
         return himc_drums_full(himc_drum_name(drum), error);
+    if (d->listener.on && !himc_drum_open_ears(drum, error))
+        return false;
     if (i < 0)
         i = d->count++;
     *index = i;
@@ -333,11 +335,15 @@ void himc_drums_release(performance_drums *d)
         release(d, d->slot[--d->count].drum);
 }
 
-void himc_drums_listen(performance_drums *d, const himc_listener *listener)
+bool himc_drums_listen(performance_drums *d, const himc_listener *listener, himc_error *error)
 {
+    for (int i = 0; i < d->count; i++)
+        if (listener->on && !himc_drum_open_ears(d->slot[i].drum, error))
+            return false;
     d->listener = *listener;
     for (int i = 0; i < d->count; i++)
         himc_drum_listen(d->slot[i].drum, listener);
+    return true;
 }
 
 void himc_drums_enclose(performance_drums *d, const himc_walls *walls)
@@ -397,8 +403,7 @@ static himc_job_state install_listening(himc_job *job, himc_error *error)
     }
     if (again)
         return HIMC_JOB_AGAIN;
-    himc_drums_listen(d, &j->listener);
-    return HIMC_JOB_DONE;
+    return himc_drums_listen(d, &j->listener, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
 }
 
 static void free_listening(himc_job *job)

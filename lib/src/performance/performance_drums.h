@@ -64,7 +64,8 @@ HIMC_RT bool himc_drums_refuse_of(const char *const *names, int count, const cha
 /// The reason why there is no place for a drum of that name; returns false.
 HIMC_RT bool himc_drums_full(const char *name, himc_error *error);
 /// Takes a drum and its reference, in the slot of the same name or a new one. A drum without a
-/// place is placed automatically. False, and nothing changed, if there is no slot left.
+/// place is placed automatically. False, and nothing changed, if there is no slot left or no
+/// memory.
 bool himc_drums_add(performance_drums *drums, himc_drum *drum, drum_source source, int *index,
                     himc_error *error);
 /// Moves a drum under a take's strikes, until its owner places it or himc_drums_put_back.
@@ -72,7 +73,8 @@ bool himc_drums_move(performance_drums *drums, int index, himc_vec3 center, himc
 /// A drum's head frame, with the place it had before himc_drums_move or an automatic place.
 HIMC_RT himc_head_frame himc_drums_found(const performance_drums *drums, int index);
 /// All drums, also those to come, are heard by this listener as long as they are the performance's.
-HIMC_RT void himc_drums_listen(performance_drums *drums, const himc_listener *listener);
+/// False, and nothing changed, without memory for the ears of one.
+bool himc_drums_listen(performance_drums *drums, const himc_listener *listener, himc_error *error);
 /// All drums, as above, stand between these walls.
 HIMC_RT void himc_drums_enclose(performance_drums *drums, const himc_walls *walls);
 /// All drums, as above, sound by `gain` (factor) of their own, or not at all.

@@ -1,9 +1,9 @@
 /// performance_score.c: `score FILE`: a score is accepted as a whole, or refused.
 ///
 /// It is a job (base/job.h). The file is parsed as a whole (score.c) and then tried aside: its
-/// lines for drums go to copies of the drums, its lines for the performer are checked against what
-/// the lines before them leave, its drums are counted and those that are missing are made. Only
-/// then is it installed: the copies give their heads to the drums, lines and strokes follow in
+/// lines for drums go to copies of their settings, its lines for the performer are checked against
+/// what the lines before them leave, its drums are counted and those that are missing are made.
+/// Only then is it installed: the drums take the heads of the copies, lines and strokes follow in
 /// portions, a line that takes long is a job of its own. While a score plays, the beats of the next
 /// one follow its own. Invariants: a score that is refused has changed nothing; a score from the
 /// network may do what its sender may do. A hit or a blow, which happens once, is no reason to
@@ -28,11 +28,12 @@
 
 /// A drum of the score.
 typedef struct score_drum {
-    himc_drum *trial;   ///< owned; the lines were carried out on it
-    himc_drum *missing; ///< owned; a drum to be added, NULL if there is one
-    drum_source source; ///< of the missing one
-    bool exchanged;     ///< the drum has the head of the trial
-    bool changed;       ///< since the trial: lines are carried out in place
+    himc_drum_settings trial; ///< owned; the lines were carried out on them
+    himc_model *made;         ///< owned; of the head that they leave, NULL if it is the drum's
+    himc_drum *missing;       ///< owned; a drum to be added, NULL if there is one
+    drum_source source;       ///< of the missing one
+    bool exchanged;           ///< the drum has the head of the trial
+    bool changed;             ///< since the trial: lines are carried out in place
 } score_drum;
 
 /// A drum that a line names and that is not there; names are those of the score.
@@ -64,7 +65,7 @@ typedef struct score_job {
     bool make_drums, host_finds;
     score_state state;
     himc_job *take; ///< owned; to try takes
-    himc_drum_form form[HIMC_DRUMS];
+    himc_drum_settings form[HIMC_DRUMS];
     int forms;
     // the score, tried
     himc_score *score;
@@ -90,12 +91,12 @@ typedef struct score_job {
 static score_drum *find_drum(score_job *j, const char *name)
 {
     for (int i = 0; i < j->drums; i++)
-        if (strcmp(himc_drum_name(j->drum[i].trial), name) == 0)
+        if (strcmp(j->drum[i].trial.name, name) == 0)
             return &j->drum[i];
     return NULL;
 }
 
-static const himc_drum_form *find_form(const score_job *j, const char *name)
+static const himc_drum_settings *find_form(const score_job *j, const char *name)
 {
     for (int i = 0; i < j->forms; i++)
         if (strcmp(j->form[i].name, name) == 0)
@@ -106,37 +107,52 @@ static const himc_drum_form *find_form(const score_job *j, const char *name)
 static void free_drums(score_job *j)
 {
     for (; j->drums > 0; j->drums--) {
-        himc_drum_release(j->drum[j->drums - 1].trial);
-        himc_drum_release(j->drum[j->drums - 1].missing);
+        score_drum *d = &j->drum[j->drums - 1];
+        himc_drum_settings_free(&d->trial);
+        himc_model_free(d->made);
+        himc_drum_release(d->missing);
     }
 }
 
 /// The trial drum of that name; "" is the performer's first.
-static himc_drum *trial_drum(score_job *j, const char *name, double inches, drum_source source,
-                             himc_error *error)
+static himc_drum_settings *trial_drum(score_job *j, const char *name, double inches,
+                                      drum_source source, himc_error *error)
 {
     if (!name[0] && j->forms > 0)
         name = j->form[0].name;
     score_drum *known = find_drum(j, name);
-    const himc_drum_form *form = find_form(j, name);
+    const himc_drum_settings *form = find_form(j, name);
     if (known)
-        return known->trial;
+        return &known->trial;
     if (j->drums == HIMC_DRUMS) {
         himc_drums_full(name, error);
         return NULL;
     }
-    score_drum made = {.source = source};
+    score_drum *made = &j->drum[j->drums];
+    *made = (score_drum){.source = source};
     if (!form)
-        made.missing = himc_drum_new(name, inches, j->sample_rate, error);
-    made.trial = form           ? himc_drum_new_of(form, error)
-                 : made.missing ? himc_drum_new(name, inches, j->sample_rate, error)
-                                : NULL;
-    if (!made.trial) {
-        himc_drum_release(made.missing);
+        made->missing = himc_drum_new(name, inches, j->sample_rate, error);
+    if (!form && !made->missing)
         return NULL;
+    made->trial = form ? himc_drum_settings_copy(form) : himc_drum_settings_of(made->missing);
+    j->drums++;
+    return &made->trial;
+}
+
+/// Computes the heads that the lines leave.
+static bool make_heads(score_job *j, himc_error *error)
+{
+    bool good = true;
+    for (int i = 0; i < j->drums && good; i++) {
+        score_drum *d = &j->drum[i];
+        const himc_drum_settings *form = find_form(j, d->trial.name);
+        if (form ? himc_membrane_config_equal(&form->head, &d->trial.head)
+                 : himc_drum_has_head(d->missing, &d->trial))
+            continue;
+        d->made = himc_model_new(&d->trial.head, NULL, error);
+        good = d->made;
     }
-    j->drum[j->drums] = made;
-    return j->drum[j->drums++].trial;
+    return good;
 }
 
 static bool rehearse_record(const score_job *j, const himc_command *c, score_state *state,
@@ -171,7 +187,7 @@ static bool rehearse_take(score_job *j, const himc_command *c, himc_error *error
 {
     const score_drum *first = j->forms > 0 ? find_drum(j, j->form[0].name) : j->drum;
     bool tried = first && j->drums > 0;
-    const himc_head_frame *place = tried          ? himc_drum_head_frame(first->trial)
+    const himc_head_frame *place = tried          ? &first->trial.place
                                    : j->forms > 0 ? &j->form[0].place
                                                   : NULL;
     return himc_performance_try_take(j->take, c, place, error);
@@ -201,13 +217,20 @@ static bool rehearse_command(score_job *j, const himc_command *c, score_state *s
     }
 }
 
+static bool rehearse_on_drum(himc_drum_settings *drum, const himc_command *c, himc_error *error)
+{
+    return c->id == HIMC_COMMAND_DRUM_PRESET
+               ? himc_drum_settings_preset(drum, c->atom[0].symbol, error)
+               : himc_drum_settings_command(drum, c, error);
+}
+
 static bool rehearse_line(score_job *j, const himc_score_line *line, score_state *state,
                           himc_error *error)
 {
     if (!line->drum[0])
         return rehearse_command(j, &line->command, state, error);
-    himc_drum *drum = trial_drum(j, line->drum, HIMC_INCHES_USUAL, DRUM_SILENT, error);
-    return drum && (himc_drum_command(drum, &line->command, error) ||
+    himc_drum_settings *drum = trial_drum(j, line->drum, HIMC_INCHES_USUAL, DRUM_SILENT, error);
+    return drum && (rehearse_on_drum(drum, &line->command, error) ||
                     himc_error_prefix(error, "%s", line->drum));
 }
 
@@ -220,8 +243,7 @@ static bool count_drums(score_job *j, himc_error *error)
     for (int i = 0; i < j->forms; i++)
         name[count++] = j->form[i].name;
     for (int i = -j->drums; i < j->score->stroke_count; i++) {
-        const char *wanted =
-            i < 0 ? himc_drum_name(j->drum[-1 - i].trial) : j->score->strokes[i].drum;
+        const char *wanted = i < 0 ? j->drum[-1 - i].trial.name : j->score->strokes[i].drum;
         if (!wanted[0] && count == 0)
             wanted = FIRST_DRUM;
         int k = 0;
@@ -239,7 +261,8 @@ static bool count_drums(score_job *j, himc_error *error)
 }
 
 // the changes of the head of a drum of that form; NULL with the reason
-static himc_drum_heads *heads_of(const score_job *j, const himc_drum_form *form, himc_error *error)
+static himc_drum_heads *heads_of(const score_job *j, const himc_drum_settings *form,
+                                 himc_error *error)
 {
     himc_drum_heads *heads = himc_drum_heads_new(form, error);
     for (int i = 0; heads && i < j->score->change_count; i++) {
@@ -302,13 +325,11 @@ static bool rehearse_changes(score_job *j, himc_error *error)
             return himc_error_prefix(error, "%s:%d", j->path, j->score->changes[i].line);
     bool good = pushes_of(j->score, j->path, 0, list, &count, error);
     for (int i = 0; i < j->drums && good; i++) {
-        if (!has_changes(j->score, himc_drum_name(j->drum[i].trial)))
+        if (!has_changes(j->score, j->drum[i].trial.name))
             continue;
-        himc_drum_form form = himc_drum_form_of(j->drum[i].trial);
-        himc_drum_heads *heads = heads_of(j, &form, error);
+        himc_drum_heads *heads = heads_of(j, &j->drum[i].trial, error);
         good = heads != NULL;
         himc_drum_heads_free(heads);
-        himc_drum_form_free(&form);
     }
     return good;
 }
@@ -428,7 +449,7 @@ static bool prepare(himc_job *job, himc_error *error)
     j->score = j->text ? himc_score_parse(j->text, j->path, error)
                        : himc_score_load_in(j->command.folder, j->path, error);
     // where the host may have other drums it is asked later, in its own thread
-    return j->score && check_drums(j, error) && rehearse(j, error);
+    return j->score && check_drums(j, error) && rehearse(j, error) && make_heads(j, error);
 }
 
 // the drum of that name; a missing one is added
@@ -456,10 +477,13 @@ static bool run_on_drum(score_job *j, const himc_score_line *line, himc_error *e
     if (made->changed || !(himc_command_table((int)line->command.id)->marks & HIMC_CHANGES_HEAD))
         return himc_drum_command(drum, &line->command, error) ||
                himc_error_prefix(error, "%s", line->drum);
-    if (!made->exchanged)
-        himc_drum_exchange(drum, made->trial);
+    himc_drum_settings to = himc_drum_settings_of(drum);
+    himc_drum_settings_free(&to); // what is prepared has its own grid
+    to.head = made->trial.head;
+    to.place.radius = made->trial.place.radius;
+    bool good = made->exchanged || himc_drum_set(drum, &to, &made->made, error);
     made->exchanged = true;
-    return true;
+    return good;
 }
 
 // of the present line
@@ -538,9 +562,9 @@ static void copy_performance(score_job *j)
 {
     const himc_performance *p = j->performance;
     while (j->forms > 0)
-        himc_drum_form_free(&j->form[--j->forms]);
+        himc_drum_settings_free(&j->form[--j->forms]);
     for (int i = 0; i < p->drums.count; i++)
-        j->form[j->forms++] = himc_drum_form_of(p->drums.slot[i].drum);
+        j->form[j->forms++] = himc_drum_settings_of(p->drums.slot[i].drum);
     j->options = p->host.take_options;
     j->skeleton = p->body->skeleton;
     j->sample_rate = p->clock.sample_rate;
@@ -640,8 +664,8 @@ static bool drums_as_tried(score_job *j)
     bool same = drums->count == j->forms && j->sample_rate == j->performance->clock.sample_rate;
     for (int i = 0; i < drums->count; i++) {
         himc_drum *drum = drums->slot[i].drum;
-        const himc_drum_form *form = find_form(j, himc_drum_name(drum));
-        bool changed = !form || !himc_drum_has_form(drum, form);
+        const himc_drum_settings *form = find_form(j, himc_drum_name(drum));
+        bool changed = !form || !himc_drum_has_head(drum, form);
         score_drum *made = find_drum(j, himc_drum_name(drum));
         if (made)
             made->changed = changed;
@@ -730,7 +754,7 @@ static void free_job(himc_job *job)
         j->take->free(j->take);
     free_drums(j);
     while (j->forms > 0)
-        himc_drum_form_free(&j->form[--j->forms]);
+        himc_drum_settings_free(&j->form[--j->forms]);
     for (int i = 0; i < HIMC_DRUMS; i++) {
         himc_drum_heads_free(j->heads[i]);
         himc_drum_heads_free(j->over[i]);
