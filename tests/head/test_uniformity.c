@@ -1,6 +1,6 @@
 /// test_uniformity.c: a head with uneven lugs: how far its pairs split, on which axes, and how they
 /// beat; an even head is as it was.
-#include "heads.h"
+#include "dry_drum.h"
 #include "one_drum.h"
 
 #include "drum/membrane_probe.h"

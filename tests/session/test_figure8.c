@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "heads.h"
+#include "dry_drum.h"
 
 #include <stdio.h>
 

@@ -3,11 +3,7 @@
 #ifndef HIMC_TESTS_HEADS_H
 #define HIMC_TESTS_HEADS_H
 
-#include "himc/drum.h"
-#include "drum/membrane_state.h"
 #include "himc/membrane.h"
-
-#include <assert.h>
 
 /// An ideal membrane of 23 inches, as `himc evaluate` strikes it.
 static inline himc_head dry_head(void)
@@ -20,16 +16,6 @@ static inline himc_head dry_head(void)
                        .modes = 200,
                        .glide = 1,
                        .uniformity = 1};
-}
-
-/// The same for a drum of any size.
-static inline void make_dry(himc_drum *drum)
-{
-    himc_head head = dry_head();
-    head.radius = himc_drum_head_frame(drum)->radius;
-    bool good = himc_membrane_set_head(himc_drum_membrane(drum), &head, NULL);
-    assert(good);
-    (void)good;
 }
 
 #endif
