@@ -309,7 +309,9 @@ static void test_drums_of_any_rate_follow_one(void)
     for (int i = 0; i < 2; i++)
         beside[i] = himc_drum_new("beside", 23, i ? 44100 : himc_drum_rate(drum), &error);
     for (int change = 0; change < 3; change++) {
-        say(drum, change == 0 ? "modes 400" : change == 1 ? "shape rectangle 0.5 0.4" : "pickups 3");
+        say(drum, change == 0   ? "modes 400"
+                  : change == 1 ? "shape rectangle 0.5 0.4"
+                                : "pickups 3");
         for (int i = 0; i < 2; i++) {
             TEST_ASSERT_FALSE(himc_drum_follows(beside[i], drum));
             TEST_ASSERT_TRUE_MESSAGE(himc_drum_follow(beside[i], drum, &error), error.text);

@@ -77,14 +77,83 @@ struct himc_bank {
     _Alignas(HIMC_ALIGNMENT) double a[BLOCK], b[BLOCK]; ///< of himc_bank_waves
 };
 
+// the state (bank.c)
+
 /// From now on only the oscillators at the top that are at rest count as such.
 void himc_bank_wake(himc_bank *bank);
+
+// the film (bank_film.c)
+
+/// Its exchange with the velocities, after which it is `lead` samples ahead.
+void himc_bank_exchange(himc_bank *bank, double lead);
 /// Brings state and film to the present sample, before a change.
 void himc_bank_settle(himc_bank *bank);
+/// It is off, and its energy lost.
+void himc_bank_slacken(himc_bank *bank);
+/// Chooses its steps, sets s to what the state makes of it, and scales the velocities so that the
+/// energy stays. Ends it when the oscillators' energy has become small.
+void himc_bank_anchor(himc_bank *bank);
+/// Turns the oscillators on which it does not act by what its pull has been.
+void himc_bank_turn(himc_bank *bank);
+/// s as a readout hears it: at most twice the pull of the last exchange, which a film stiffer than
+/// the modes themselves has not had in full.
+double himc_bank_audible(const bank_film *film);
+/// What it adds to a readout between exchanges, per sample of its lead, `sum` being the readout's
+/// weights `film` on the state. The rate of s counts at most so that s doubles in a step.
+double himc_bank_film_slope(const himc_bank *bank, const himc_readout *readout, double sum);
+
+// readouts (bank_read.c)
+
+/// The n samples after `at` of the present pass.
+void himc_bank_read_ahead(himc_bank *bank, himc_readout *readout, int n, double *out);
+/// The value after a step of its own.
+double himc_bank_read_single(himc_bank *bank, himc_readout *readout);
 
 static inline int bank_round_up(int n)
 {
     return (n + LANES - 1) / LANES * LANES;
+}
+
+/// Number of oscillators on which the film acts.
+static inline int bank_coupled(const himc_bank *bank)
+{
+    int count = bank->film.reach[bank->film.level];
+    return count < bank->live ? count : bank->live;
+}
+
+/// Turns the oscillators from `first` to `end` by n samples.
+static inline void bank_rotate(himc_bank *bank, int first, int end, int n)
+{
+    for (int k = POWERS - 1; k >= 0 && end > first; k--)
+        if (n >> k & 1)
+            bank->loops->rotate(bank->p + first, bank->s + first, bank->power[k].c + first,
+                                bank->power[k].s + first, end - first);
+}
+
+/// Brings the state to the present sample, which ends the pass.
+static inline void bank_arrive(himc_bank *bank)
+{
+    bank_rotate(bank, 0, bank->low, bank->step_at);
+    bank_rotate(bank, bank->low, bank->live, bank->at);
+    bank->film.lead -= bank->step_at;
+    bank->film.due += bank->film.s * bank->at * bank->h;
+    bank->at = bank->length = bank->low = bank->step_at = 0;
+    bank->pass++;
+}
+
+/// p and s of one oscillator at the present sample: the same numbers as by bank_arrive.
+static inline void bank_present(const himc_bank *bank, int i, double *p, double *s)
+{
+    *p = bank->p[i];
+    *s = bank->s[i];
+    int n = i < bank->low ? bank->step_at : bank->at;
+    for (int k = POWERS - 1; k >= 0; k--) {
+        if (!(n >> k & 1))
+            continue;
+        double c = bank->power[k].c[i], w = bank->power[k].s[i], before = *p;
+        *p = c * before + w * *s;
+        *s = c * *s - w * before;
+    }
 }
 
 #endif

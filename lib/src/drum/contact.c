@@ -16,7 +16,7 @@
 ///     free head and sticks: d_f, x_f;  c0 = d - x before;  b = (d_f - x_f) - c0;
 ///     G_ij = sum_modes phi_i phi_j b1 + (i = j) (C_res (1 - a11) + h^2/(2 M_i));
 ///     solve r = b - G F(r);  push the head by -F, the sticks by F.
-/// The film's stretching acts between two steps (bank.c), so it is not in these equations.
+/// The film's stretching acts between two steps (bank_film.c), so it is not in these equations.
 ///
 /// The size. phi is a mode's mean over the patch that the mallet covers, and d has one silent
 /// oscillator more for each stick, which yields as the modes do that the list lacks (patch.c). The

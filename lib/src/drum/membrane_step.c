@@ -5,8 +5,8 @@
 /// dS, and the energy of stretching is s^2/2 with
 ///     s = sqrt(kappa/2) sum_i Lam_i q_i^2,   Lam_i = int |grad phi_i|^2 dS,
 ///     kappa = E h_f/(2 (1 - nu^2) area).
-/// bank.c says how the film and the modes act on each other; contact (contact.c) need not know of
-/// it.
+/// bank_film.c says how the film and the modes act on each other; contact (contact.c) need not know
+/// of it.
 #include "drum/membrane_state.h"
 
 #include "drum/membrane_probe.h"
