@@ -490,11 +490,12 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
 {
     for (int done = 0, run; done < n; done += run) {
         int64_t now = s->clock->made + done;
-        if (himc_air_between_due(&s->drums->air, now)) {
+        himc_air_between *air = s->drums->air;
+        if (air && himc_air_between_due(air, now)) {
             himc_drums_catch_up(s->drums);
-            himc_air_between_exchange(&s->drums->air);
+            himc_air_between_exchange(air);
         }
-        run = himc_air_between_until(&s->drums->air, now, n - done);
+        run = air ? himc_air_between_until(air, now, n - done) : n - done;
         for (int i = 0; i < s->drums->count; i++)
             advance_drum(c, s, i, done, run, near);
     }

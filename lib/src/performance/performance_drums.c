@@ -136,13 +136,15 @@ void himc_drums_join(performance_drums *d)
     himc_drum *drums[HIMC_DRUMS];
     for (int i = 0; i < d->count; i++)
         drums[i] = d->slot[i].drum;
-    himc_air_between_join(&d->air, drums, d->count);
+    if (d->air)
+        himc_air_between_join(d->air, drums, d->count);
 }
 
 // gives a drum back
 static void release(performance_drums *d, himc_drum *drum)
 {
-    himc_air_between_leave(&d->air, drum);
+    if (d->air)
+        himc_air_between_leave(d->air, drum);
     himc_drum_listen(drum, &(himc_listener){.on = false});
     himc_drum_enclose(drum, &HIMC_WALLS_USUAL);
     himc_drum_fade(drum, 1);
@@ -203,6 +205,8 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
         return himc_drums_full(himc_drum_name(drum), error);
     if (d->listener.on && !himc_drum_open_ears(drum, error))
         return false;
+    if (!d->air && i < 0 && d->count == 1 && !(d->air = calloc(1, sizeof *d->air)))
+        return himc_error_set(error, "drum: out of memory");
     if (i < 0)
         i = d->count++;
     *index = i;
@@ -242,9 +246,11 @@ void himc_drums_put_back(performance_drums *d)
     drum_slot old[HIMC_DRUMS];
     int count = d->count;
     memcpy(old, d->slot, sizeof old);
-    for (int i = 0; i < count; i++)
-        himc_air_between_leave(&d->air, old[i].drum);
+    for (int i = 0; i < count && d->air; i++)
+        himc_air_between_leave(d->air, old[i].drum);
+    himc_air_between *air = d->air;
     himc_drums_begin(d);
+    d->air = air;
     for (int i = 0; i < count; i++) {
         himc_drum *drum = old[i].drum;
         himc_drum_heads_free(old[i].heads);
@@ -333,6 +339,7 @@ void himc_drums_release(performance_drums *d)
     himc_drums_drop_heads(d);
     while (d->count > 0)
         release(d, d->slot[--d->count].drum);
+    free(d->air);
 }
 
 bool himc_drums_listen(performance_drums *d, const himc_listener *listener, himc_error *error)

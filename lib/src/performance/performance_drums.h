@@ -41,8 +41,8 @@ typedef struct performance_drums {
     himc_walls walls;
     double gain; ///< of their sound (factor)
     bool mute;
-    long round;           ///< of a loop, at the last himc_drums_turn_heads
-    himc_air_between air; ///< between those that are near
+    long round;            ///< of a loop, at the last himc_drums_turn_heads
+    himc_air_between *air; ///< owned; between those that are near, NULL before the second drum
 } performance_drums;
 
 /// No drums, no listener, the usual walls.

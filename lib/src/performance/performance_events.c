@@ -7,14 +7,32 @@
 #include <stdarg.h>
 #include <string.h>
 
+static size_t size_of(const himc_event *event)
+{
+    return EVENT_SIZE + strlen(event->text);
+}
+
+// the event that begins at byte `at`
+static himc_event event_at(const performance_events *e, size_t at)
+{
+    himc_event event;
+    size_t room = sizeof e->waiting, first = room - at < sizeof event ? room - at : sizeof event;
+    memcpy(&event, e->waiting + at, first);
+    memcpy((char *)&event + first, e->waiting, sizeof event - first);
+    return event;
+}
+
 void himc_events_add(performance_events *e, const himc_event *event)
 {
-    if (e->count == EVENTS_WAITING) {
-        e->first = (e->first + 1) % EVENTS_WAITING;
-        e->count--;
+    size_t size = size_of(event), room = sizeof e->waiting;
+    himc_event oldest;
+    while (e->used + size > room && himc_events_take(e, &oldest))
         e->lost++;
-    }
-    e->event[(e->first + e->count++) % EVENTS_WAITING] = *event;
+    e->last = (e->first + e->used) % room;
+    size_t first = room - e->last < size ? room - e->last : size;
+    memcpy(e->waiting + e->last, event, first);
+    memcpy(e->waiting, (const char *)event + first, size - first);
+    e->used += size;
 }
 
 static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
@@ -22,10 +40,10 @@ static void add_note(performance_events *e, himc_event event, const char *format
 
 static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
 {
-    const himc_event *last = &e->event[(e->first + e->count + EVENTS_WAITING - 1) % EVENTS_WAITING];
+    himc_event last = event_at(e, e->last);
     himc_line_print(event.text, sizeof event.text, format, args);
     // a score that plays, and then its host: one cause, one line
-    if (e->count == 0 || last->kind != HIMC_EVENT_NOTE || strcmp(last->text, event.text) != 0)
+    if (e->used == 0 || last.kind != HIMC_EVENT_NOTE || strcmp(last.text, event.text) != 0)
         himc_events_add(e, &event);
 }
 
@@ -66,11 +84,11 @@ void himc_events_missed(performance_events *e, const himc_strike *missed, const 
 
 bool himc_events_take(performance_events *e, himc_event *event)
 {
-    if (e->count == 0)
+    if (e->used == 0)
         return false;
-    *event = e->event[e->first];
-    e->first = (e->first + 1) % EVENTS_WAITING;
-    e->count--;
+    *event = event_at(e, e->first);
+    e->first = (e->first + size_of(event)) % sizeof e->waiting;
+    e->used -= size_of(event);
     return true;
 }
 

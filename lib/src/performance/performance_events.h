@@ -5,12 +5,17 @@
 
 #include "himc/performance.h"
 
-#define EVENTS_WAITING 1024 // chosen: a minute of a roll with a host that takes none
+#include <stddef.h>
+
+#define EVENTS_WAITING \
+    1024 // without a text; chosen: a minute of a roll with a host that takes none
+#define EVENT_SIZE (offsetof(himc_event, text) + 1) // of one with an empty text
 
 typedef struct performance_events {
-    himc_event event[EVENTS_WAITING]; ///< ring, oldest first
-    int first, count;
-    long lost; ///< dropped because the host took none
+    unsigned char waiting[EVENTS_WAITING * EVENT_SIZE]; ///< ring of events up to their text's end
+    size_t first, used;                                 ///< bytes: the oldest one's, of all
+    size_t last;                                        ///< the latest one's, if any waits
+    long lost;                                          ///< dropped because the host took none
     void (*on_motion)(void *, const himc_motion_row *);
     void *motion_user;
     void (*on_tick)(void *, const himc_tick *);

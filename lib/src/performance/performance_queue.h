@@ -5,9 +5,11 @@
 #include "himc/performance.h"
 #include "performance/performance_events.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 #define WAITING_COMMANDS 256 // chosen: one every 32 samples of the longest delay
+#define USUAL_TEXT 48 // (bytes) of a command, so that so many have room; a file's may be longer
 
 typedef struct waiting_command {
     int64_t due; ///< sample
@@ -15,8 +17,11 @@ typedef struct waiting_command {
 } waiting_command;
 
 typedef struct performance_queue {
-    waiting_command waiting[WAITING_COMMANDS]; ///< in their order of arrival
-    int count;
+    /// in their order of arrival, each up to the end of its text; the last one may be the longest
+    _Alignas(waiting_command) unsigned char waiting
+        [WAITING_COMMANDS * (offsetof(waiting_command, command.storage) + USUAL_TEXT) +
+         sizeof(waiting_command)];
+    size_t used;    ///< bytes
     int64_t acting; ///< sample for which the command was meant that acts now; -1: none acts
     long dropped;   ///< because the queue was full
 } performance_queue;
