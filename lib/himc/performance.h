@@ -134,8 +134,8 @@ typedef struct himc_event {
     /// Of HIMC_EVENT_STRIKE, and of HIMC_EVENT_MISSED: as planned, velocity, force, impulse and
     /// duration 0, the beat NaN of a hit.
     himc_strike strike;
-    double beat;                              ///< of HIMC_EVENT_BEAT ...
-    double time;                              ///< ... and when it began (s, as of a strike)
+    double beat;  ///< of HIMC_EVENT_BEAT ...
+    double time;  ///< ... and when it began (s, as of a strike)
     bool minor;   ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
     bool refused; ///< of HIMC_EVENT_NOTE: a command that could not be carried out on its sample
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE; of _MISSED, why
