@@ -1,8 +1,9 @@
 /// test_own_kind.c: a kind of instrument in one file: a free bar (Euler and Bernoulli), which a
 /// performer plays, damps and tunes, and which is sent to be drawn.
 ///
-/// phi(u) = cos(lam u)/cos(lam/2) + cosh(lam u)/cosh(lam/2), or sin and sinh, u in -1/2 .. 1/2 along
-/// the bar, cos(lam) cosh(lam) = 1; frequencies as lam^2 (Fletcher & Rossing 1998, section 2.15).
+/// phi(u) = cos(lam u)/cos(lam/2) + cosh(lam u)/cosh(lam/2), or sin and sinh, u from -1/2 to 1/2
+/// along the bar, cos(lam) cosh(lam) = 1; frequencies as lam^2 (Fletcher & Rossing 1998, section
+/// 2.15).
 #include "osc_ear.h"
 
 #include "drum/drum_performer.h"
@@ -240,8 +241,7 @@ static void test_the_bar_is_drawn_from_what_is_sent(void)
     himc_modes_free(modes);
 }
 
-// force and displacement use one phi: without losses the energy of a bar that is struck stays
-static void test_no_stroke_gives_the_bar_energy_after_it(void)
+static void test_the_energy_of_a_bar_that_rings_never_grows(void)
 {
     himc_drum *bar = add_bar(220);
     say("/membrane/bar/strike", "0.03 0 3");
@@ -261,6 +261,6 @@ int main(void)
     RUN_TEST(test_a_damped_bar_rings_shorter);
     RUN_TEST(test_tuning_moves_all_modes_of_the_bar_by_one_ratio);
     RUN_TEST(test_the_bar_is_drawn_from_what_is_sent);
-    RUN_TEST(test_no_stroke_gives_the_bar_energy_after_it);
+    RUN_TEST(test_the_energy_of_a_bar_that_rings_never_grows);
     return UNITY_END();
 }

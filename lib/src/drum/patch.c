@@ -9,8 +9,8 @@
 /// that touch as Hertz's do, c = b^2 (1/R - F/(2 pi T b^2)), so
 ///     b^2 = R (c + F/(2 pi T)).
 /// b is fixed for a blow, at the force-weighted mean of that. Its largest force comes from the
-/// energy at impact, m v^2/2 = V(c) + C(b) f(c)^2/2 with the compliance C of round.c: felt and head in series, as if they had time.
-/// A few Newton steps on the logarithms solve it.
+/// energy at impact, m v^2/2 = V(c) + C(b) f(c)^2/2 (C: round.c): felt and head in series, as if
+/// they had time. A few Newton steps on the logarithms solve it.
 ///
 /// Residual. The modes that a list lacks yield, too. All together move like one oscillator with the
 /// compliance and the inverse mass that they have together,
