@@ -115,7 +115,6 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_drum_technique, himc_drum_technique(drum))                                           \
     CALL(himc_drum_get_driver, himc_drum_get_driver(drum))                                         \
     CALL(himc_loader_busy, himc_loader_busy(loader))                                               \
-    CALL(himc_membrane_shape, himc_membrane_shape(head))                                           \
     CALL(himc_membrane_head, himc_membrane_head(head))                                             \
     CALL(himc_membrane_pickups, himc_membrane_pickups(head, &whole))                               \
     CALL(himc_membrane_rate, himc_membrane_rate(head))                                             \

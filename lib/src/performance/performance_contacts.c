@@ -149,7 +149,7 @@ static int head_under(const stick_contact *c, const contact_scene *s, himc_hand 
     for (int i = 0; i < s->drums->count; i++) {
         himc_vec3 at = over_head(s, i, s->body->state.tip[hand]);
         double lowest = c->touching && c->drum == i ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
-        if (hypot(at.x, at.y) < frame_of(s, i)->radius && at.z > lowest && at.z < least) {
+        if (himc_head_frame_contains(frame_of(s, i), at.x, at.y) && at.z > lowest && at.z < least) {
             least = at.z;
             under = i;
         }
@@ -275,7 +275,8 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
     double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
     double highest = c->bounce.on && c->drum == drum ? HIGHEST_BOUNCE : NEAR_HEAD;
     *local = at;
-    return at.x * at.x + at.y * at.y < radius * radius && at.z < highest && at.z > lowest;
+    return himc_head_frame_contains(frame_of(s, drum), at.x, at.y) && at.z < highest &&
+           at.z > lowest;
 }
 
 // the drum below a tip, or -1; of two drums at one place, the planned one

@@ -237,7 +237,8 @@ static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
         const himc_head_frame *frame = himc_drums_frame(&p->drums, i);
         himc_vec3 local = himc_head_frame_from_world(frame, *x);
         double under = p->body->skeleton.mallet_radius - local.z;
-        if (hypot(local.x, local.y) >= frame->radius || under < 0 || under > UNDER_THE_HEAD)
+        if (!himc_head_frame_contains(frame, local.x, local.y) || under < 0 ||
+            under > UNDER_THE_HEAD)
             continue;
         *x = himc_vec3_madd(*x, fmax(under - DEEPEST_TARGET, 0), himc_head_frame_normal(frame));
         return frame;

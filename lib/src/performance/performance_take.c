@@ -218,7 +218,7 @@ static bool count_strikes(take_job *j, himc_error *error)
     for (int i = 0; i < s.count; i++) {
         himc_vec3 at = himc_vec3_add(s.strikes[i].x, himc_track_offset(j->track));
         himc_vec3 local = himc_head_frame_from_world(&j->frame, at);
-        j->outside += hypot(local.x, local.y) > j->frame.radius;
+        j->outside += !himc_head_frame_contains(&j->frame, local.x, local.y);
         j->fastest = fmax(j->fastest, s.strikes[i].velocity);
         j->seen = fmax(j->seen,
                        himc_take_fastest_fall(j->take, &j->tips[s.strikes[i].hand], &s.strikes[i]));
