@@ -104,26 +104,21 @@ static bool take_word(walk *w, const char *token, char expected[EXPECTED_SIZE])
     return false;
 }
 
-/// Takes all that is left: words and finite numbers.
-static bool take_rest(walk *w, char expected[EXPECTED_SIZE])
-{
-    const himc_argument *word = himc_argument_find("COMMAND", NULL);
-    snprintf(expected, EXPECTED_SIZE, "words and finite numbers");
-    for (; w->at < w->count && w->at < HIMC_COMMAND_ATOMS; w->at++) {
-        const himc_atom *atom = &w->atom[w->at];
-        bool number = atom->kind == HIMC_ATOM_NUMBER;
-        if (number ? !isfinite((float)atom->number) : !himc_argument_accepts(word, atom))
-            return false;
-        w->out->number[w->at] = number ? (float)atom->number : 0;
-    }
-    return true;
-}
-
 /// Takes the atoms that fit the token; false, and `expected` filled, if the next one does not.
 static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
 {
-    if (strcmp(token, "...") == 0)
-        return take_rest(w, expected);
+    if (strcmp(token, "...") == 0) { // all that is left
+        const himc_argument *word = himc_argument_find("COMMAND", NULL);
+        snprintf(expected, EXPECTED_SIZE, "words and finite numbers");
+        for (; w->at < w->count && w->at < HIMC_COMMAND_ATOMS; w->at++) {
+            const himc_atom *atom = &w->atom[w->at];
+            bool number = atom->kind == HIMC_ATOM_NUMBER;
+            if (number ? !isfinite((float)atom->number) : !himc_argument_accepts(word, atom))
+                return false;
+            w->out->number[w->at] = number ? (float)atom->number : 0;
+        }
+        return true;
+    }
     if (!is_argument(token))
         return take_word(w, token, expected);
     const himc_argument *argument = himc_argument_find(token, w->context);

@@ -66,19 +66,6 @@ FILE *himc_file_read(const char *path, himc_error *error)
     return stream_of(path, open_regular(path, O_RDONLY, error), "rb", error);
 }
 
-// -1 with one line, the same whatever stands there, so that it tells nothing about the disk
-static int open_inside(const char *folder, const char *name, himc_error *error)
-{
-    struct stat status;
-    int file = himc_system_open_inside(folder, name);
-    if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode))
-        return file;
-    if (file >= 0)
-        close(file);
-    himc_error_set(error, "%.200s: no such file in the folder given by --files", name);
-    return -1;
-}
-
 static bool cannot_write(const char *path, himc_error *error)
 {
     return himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno ? errno : EIO));
@@ -220,7 +207,14 @@ static char *read_all(FILE *stream, size_t most, size_t *size)
 char *himc_file_load_in(const char *folder, const char *path, size_t most, size_t *size,
                         himc_error *error)
 {
-    int file = folder ? open_inside(folder, path, error) : open_regular(path, O_RDONLY, error);
+    struct stat status;
+    int file = folder ? himc_system_open_inside(folder, path) : open_regular(path, O_RDONLY, error);
+    if (folder && (file < 0 || fstat(file, &status) != 0 || !S_ISREG(status.st_mode))) {
+        if (file >= 0)
+            close(file);
+        himc_error_set(error, "%.200s: no such file in the folder given by --files", path);
+        return NULL;
+    }
     FILE *stream = stream_of(path, file, "rb", error);
     if (!stream)
         return NULL;
