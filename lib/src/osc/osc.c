@@ -152,12 +152,12 @@ static void send_answer(himc_osc *osc, const osc_line *line)
     const osc_address *to = &line->to;
     bool stranger = !himc_osc_trusted(&osc->subscriptions, to), sent = false;
     if (!line->further) {
-        if (himc_osc_afford(&osc->answers, himc_osc_now(osc), stranger && !line->error ? 2 : 1)) {
-            if (line->error)
-                send_refusal(osc, to, line->text);
-            sent = line->error ||
-                   (allows(osc, to, SMALL_PACKET) && send_line(osc, to, false, line->text, false));
-        }
+        double cost = stranger && !line->error ? 2 : 1;
+        bool afforded = himc_osc_afford(&osc->answers, himc_osc_now(osc), cost);
+        if (afforded && line->error)
+            send_refusal(osc, to, line->text);
+        sent = afforded && (line->error || (allows(osc, to, SMALL_PACKET) &&
+                                            send_line(osc, to, false, line->text, false)));
         osc->answered = sent;
         osc->cut = !sent;
         return;

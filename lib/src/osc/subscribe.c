@@ -56,8 +56,8 @@ bool himc_osc_change_from(osc_change *change, const himc_command *c)
         change->stream = c->form == VMC ? STREAM_VMC : (osc_stream)c->choice[next];
     if (change->stream != STREAM_ANY)
         next++;
-    change->hz =
-        next < c->count ? c->atom[next].number : 33; // chosen: a pose a frame of 30 a second
+    // chosen: 33 Hz, one pose a frame of 30 a second
+    change->hz = next < c->count ? c->atom[next].number : 33;
     change->remove = c->id == HIMC_COMMAND_UNSUBSCRIBE;
     return true;
 }
@@ -144,34 +144,41 @@ static bool has_room(const osc_subscriptions *s, const osc_change *change, const
     return refuse(change, error, why);
 }
 
+static bool unsubscribe(osc_subscriptions *s, const osc_change *change, const osc_address *to,
+                        himc_error *error)
+{
+    int removed = 0;
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && (change->stream == STREAM_ANY || one->stream == change->stream) &&
+            himc_osc_address_same(&one->to, to)) {
+            one->used = false;
+            removed++;
+        }
+    update(s);
+    return removed || refuse(change, error, "not subscribed");
+}
+
 static bool make_change(osc_subscriptions *s, const osc_change *change, const osc_address *to,
                         double now, himc_error *error)
 {
     osc_subscription *place = NULL;
-    bool removed = false;
+    if (change->remove)
+        return unsubscribe(s, change, to, error);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
-        bool same =
-            one->used && himc_osc_address_same(&one->to, to) &&
-            (one->stream == change->stream || (change->remove && change->stream == STREAM_ANY));
-        if (same && change->remove) {
-            one->used = false;
-            removed = true;
-        } else if (same) {
+        if (one->used && one->stream == change->stream && himc_osc_address_same(&one->to, to)) {
             place = one;
             break;
-        } else if (!one->used && !place) {
-            place = one;
         }
-    }
-    if (change->remove) {
-        update(s);
-        return removed || refuse(change, error, "not subscribed");
+        if (!one->used && !place)
+            place = one;
     }
     if (!place)
         return refuse(change, error, "256 subscriptions already, expected no more");
-    double expires = change->granted                            ? change->expires
-                     : change->local || himc_osc_trusted(s, to) ? 0
-                                                                : now + RENEWED_WITHIN;
+    double expires = 0; // never
+    if (change->granted)
+        expires = change->expires;
+    else if (!change->local && !himc_osc_trusted(s, to))
+        expires = now + RENEWED_WITHIN;
     if (!place->used && expires > 0 && !has_room(s, change, to, error))
         return false;
     *place = (osc_subscription){.used = true,
