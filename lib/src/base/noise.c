@@ -1,10 +1,10 @@
 /// noise.c: noise of a point's track from its fourth differences.
 ///
-/// White noise of variance sigma^2 has fourth differences of variance (1 + 16 + 36 + 16 + 1) sigma^2. Smooth motion
-/// nearly cancels: only its fourth derivative times dt^4 remains. The median of the differences'
-/// lengths is insensitive to the few frames of an impact; for three normal coordinates it is 1.5382
-/// standard deviations of one coordinate (the median of the chi distribution, 3 degrees of
-/// freedom).
+/// White noise of variance sigma^2 has fourth differences of variance 70 sigma^2, 70 = 1 + 16 + 36
+/// + 16 + 1. Smooth motion nearly cancels: only its fourth derivative times dt^4 remains. The
+/// median of the differences' lengths is insensitive to the few frames of an impact; for three
+/// normal coordinates it is 1.5382 standard deviations of one coordinate (the median of the chi
+/// distribution, 3 degrees of freedom).
 #include "base/noise.h"
 
 #include <stdlib.h>

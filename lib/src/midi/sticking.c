@@ -44,8 +44,8 @@ static double stroke_cost(const state *now, const hand_state *to, int hand)
                        .inwards = hand == HIMC_LEFT ? other->y - to->y : to->y - other->y,
                        .other_gap = to->at - other->at};
     s.same_spot = s.way == 0;
-    // on one spot 0.055 s, as the planner refuses 0.04 s; the margin is the planner's (hand.c) for a
-    // stroke's swing, and a little more
+    // on one spot 0.055 s, as the planner refuses 0.04 s; the margin is the planner's (hand.c) for
+    // a stroke's swing, and a little more
     if (s.gap < fmax(0.055, 1.45 * himc_move_time(s.way, HIMC_HARDEST_MOVE)))
         return HUGE_VAL;
     return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);

@@ -228,7 +228,7 @@ bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *er
     return true;
 }
 
-// leaves room in the ring for states (64; chosen: poses of 0.25 s); the line that ends a long answer
+// leaves room in the ring for 64 states (chosen: poses of 0.25 s); the line that ends a long answer
 // is in that room
 static void answer(void *object, const char *line)
 {
