@@ -425,21 +425,11 @@ bool himc_command_parse_text(himc_command *out, himc_receiver receiver, const ch
     return himc_command_parse(out, receiver, atoms[0].symbol, atoms + 1, known - 1, error);
 }
 
-size_t himc_command_size(const himc_command *c)
-{
-    const char *end = c->folder ? c->folder + strlen(c->folder) + 1 : c->storage;
-    for (int i = 0; i < c->count; i++) {
-        bool longer = c->atom[i].kind == HIMC_ATOM_SYMBOL && c->atom[i].symbol >= end;
-        end = longer ? c->atom[i].symbol + strlen(c->atom[i].symbol) + 1 : end;
-    }
-    return (size_t)(end - (const char *)c);
-}
-
 void himc_command_copy(himc_command *out, const himc_command *in)
 {
     if (out == in)
         return;
-    memcpy(out, in, himc_command_size(in));
+    *out = *in;
     for (int i = 0; i < out->count; i++)
         if (out->atom[i].kind == HIMC_ATOM_SYMBOL)
             out->atom[i].symbol = out->storage + (in->atom[i].symbol - in->storage);
