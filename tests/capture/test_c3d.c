@@ -102,7 +102,7 @@ static void test_dec_numbers_have_the_documented_bytes(void)
     TEST_ASSERT_EQUAL_DOUBLE(1, himc_c3d_real(C3D_DEC, one));
     TEST_ASSERT_EQUAL_DOUBLE(-6, himc_c3d_real(C3D_DEC, minus));
     TEST_ASSERT_EQUAL_DOUBLE(0, himc_c3d_real(C3D_DEC, zero));
-    himc_c3d_put_real(C3D_DEC, -6, bytes);
+    write_real(C3D_DEC, -6, bytes);
     TEST_ASSERT_EQUAL_MEMORY(minus, bytes, 4);
     static const unsigned char reserved[4] = {0, 0x80, 1, 0};
     TEST_ASSERT_TRUE(isnan(himc_c3d_real(C3D_DEC, reserved)));
@@ -113,10 +113,10 @@ static void test_numbers_survive_writing_and_reading_on_every_processor(void)
     for (c3d_processor p = C3D_INTEL; p <= C3D_MIPS; p++)
         for (double v = 1e-30; v < 1e30; v *= -7.3) {
             unsigned char bytes[4];
-            himc_c3d_put_real(p, v, bytes);
+            write_real(p, v, bytes);
             TEST_ASSERT_EQUAL_DOUBLE((double)(float)v, himc_c3d_real(p, bytes));
             double below = copysign(exp2(ceil(log2(fabs(v)))) * (1 - 1e-9), v); // rounds to a power
-            himc_c3d_put_real(p, below, bytes);
+            write_real(p, below, bytes);
             TEST_ASSERT_EQUAL_DOUBLE((double)(float)below, himc_c3d_real(p, bytes));
         }
 }
@@ -517,7 +517,7 @@ static void test_analog_samples_are_scaled_and_named(void)
                 unsigned char *to = m.bytes + 512 * 5 + stride * (size_t)(sample / 2) +
                                     width * (12 + 2 * (size_t)(sample % 2) + (size_t)channel);
                 if (floats)
-                    himc_c3d_put_real(C3D_INTEL, raw, to);
+                    write_real(C3D_INTEL, raw, to);
                 else
                     put_word(&m, to, raw);
             }

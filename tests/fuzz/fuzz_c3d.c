@@ -127,7 +127,7 @@ static void change_record(file *f, size_t at)
     case 5: type[2] = (uint8_t)(below(f, 2) ? below(f, 8) : below(f, 256)); break;
     default:
         if (*type == 4 && type + 6 <= f->data + f->size)
-            himc_c3d_put_real(f->order.processor, some_real(f), type + 2);
+            write_real(f->order.processor, some_real(f), type + 2);
         else
             put_word(&f->order, type + 2 + below(f, 2), some_word(f));
     }
@@ -138,8 +138,8 @@ static void change_header(file *f)
     switch (below(f, 6)) {
     case 0: f->data[below(f, 2)] = (uint8_t)below(f, 8); break; // the parameters' block, the mark
     case 1: f->data[515] = (uint8_t)(C3D_INTEL - 1 + (int)below(f, 5)); break; // the processor
-    case 2: himc_c3d_put_real(f->order.processor, some_real(f), f->data + 12); break; // the scale
-    case 3: himc_c3d_put_real(f->order.processor, some_real(f), f->data + 20); break; // the rate
+    case 2: write_real(f->order.processor, some_real(f), f->data + 12); break; // the scale
+    case 3: write_real(f->order.processor, some_real(f), f->data + 20); break; // the rate
     case 4: put_word(&f->order, f->data + 298 + 2 * below(f, 100), some_word(f)); break; // events
     default: put_word(&f->order, f->data + 2 * below(f, 10), some_word(f));
     }
@@ -151,7 +151,7 @@ static void change_sample(file *f)
         return;
     uint8_t *at = f->data + LEAST + 2 * below(f, (uint32_t)(f->size - LEAST - 4) / 2);
     if (below(f, 2))
-        himc_c3d_put_real(f->order.processor, some_real(f), at);
+        write_real(f->order.processor, some_real(f), at);
     else
         put_word(&f->order, at, some_word(f));
 }

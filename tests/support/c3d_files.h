@@ -23,6 +23,38 @@ typedef struct maker {
     size_t size;
 } maker;
 
+// the bits of DEC's number nearest to the value; the reserved one for infinity and NaN
+static inline uint32_t dec_bits(double value)
+{
+    int exponent;
+    double mantissa = frexp(fabs(value), &exponent);
+    uint32_t m = (uint32_t)lround(mantissa * 16777216.0);
+    // rounding may carry into the next power of two
+    if (m == 16777216u) {
+        m = 8388608u;
+        exponent++;
+    }
+    if (value == 0 || exponent < -127)
+        return 0;
+    if (!isfinite(value) || exponent > 127)
+        return 0x80000000u;
+    return (value < 0 ? 0x80000000u : 0) | (uint32_t)(exponent + 128) << 23 | (m - 8388608u);
+}
+
+// writes a number as the processor does: the inverse of himc_c3d_real
+static inline void write_real(c3d_processor processor, double value, unsigned char *at)
+{
+    uint32_t bits;
+    float narrow = (float)value;
+    memcpy(&bits, &narrow, sizeof bits);
+    if (processor == C3D_DEC)
+        bits = dec_bits(value);
+    // byte k of the file is this byte of the number, counted from the highest
+    static const int order[3][4] = {{3, 2, 1, 0}, {1, 0, 3, 2}, {0, 1, 2, 3}};
+    for (int k = 0; k < 4; k++)
+        at[k] = (unsigned char)(bits >> (24 - 8 * order[processor - C3D_INTEL][k]));
+}
+
 static inline maker maker_default(c3d_processor processor, bool floats)
 {
     return (maker){.processor = processor,
@@ -93,7 +125,7 @@ static inline unsigned char *put_real(const maker *m, unsigned char *at, int gro
                                       const char *name, double value)
 {
     unsigned char data[4];
-    himc_c3d_put_real(m->processor, value, data);
+    write_real(m->processor, value, data);
     return put(m, at, group, name, 4, 0, 0, data);
 }
 
@@ -123,10 +155,10 @@ static inline unsigned char *put_field(const maker *m, unsigned char *at, const 
 static inline unsigned char *put_events(const maker *m, unsigned char *at)
 {
     unsigned char times[16];
-    himc_c3d_put_real(m->processor, 0, times);
-    himc_c3d_put_real(m->processor, 0.5, times + 4);
-    himc_c3d_put_real(m->processor, 1, times + 8);
-    himc_c3d_put_real(m->processor, 2.25, times + 12);
+    write_real(m->processor, 0, times);
+    write_real(m->processor, 0.5, times + 4);
+    write_real(m->processor, 1, times + 8);
+    write_real(m->processor, 2.25, times + 12);
     at = put_group(m, at, 2, "EVENT");
     at = put_integer(m, at, 2, "USED", 2);
     at = put(m, at, 2, "TIMES", 4, 2, 2, times);
@@ -178,14 +210,14 @@ static inline void put_header(const maker *m, unsigned char *at)
     put_word(m, at + 4, m->analog);
     put_word(m, at + 6, m->long_frames ? 1 : m->first);
     put_word(m, at + 8, m->long_frames ? 65535 : last);
-    himc_c3d_put_real(m->processor, m->floats ? -m->scale : m->scale, at + 12);
+    write_real(m->processor, m->floats ? -m->scale : m->scale, at + 12);
     put_word(m, at + 16, 6);
     put_word(m, at + 18, 2);
-    himc_c3d_put_real(m->processor, m->rate, at + 20);
+    write_real(m->processor, m->rate, at + 20);
     if (m->header_events) {
         put_word(m, at + 298, 12345);
         put_word(m, at + 300, m->header_events);
-        himc_c3d_put_real(m->processor, 0.25, at + 304);
+        write_real(m->processor, 0.25, at + 304);
         memcpy(at + 396, "RFS ", 4);
     }
 }
@@ -199,7 +231,7 @@ static inline void put_frame(const maker *m, unsigned char *at, int f)
             double v = k == 3 ? (lost ? -1 : 0) : lost ? 0 : coordinate(f, i, k);
             int n = 4 * i + k;
             if (m->floats)
-                himc_c3d_put_real(m->processor, v, at + 4 * n);
+                write_real(m->processor, v, at + 4 * n);
             else
                 put_word(m, at + 2 * n, k == 3 ? (int)v : (int)lround(v / m->scale));
         }

@@ -24,13 +24,9 @@
 #define MOST_NODES 4096 // chosen: far more than a body has
 #define MOST_DEPTH 256  // chosen: far more than a body has; bounds the recursion of the writer
 
-// frame times of 10000 .. 20 Hz, the rates of himc_take_load (s)
-#define LEAST_TIME 1e-4
-#define MOST_TIME 0.05
-
 typedef struct node {
     char name[TAKE_NAME];
-    int parent;
+    int parent, depth;
     himc_vec3 offset;
     bool has_offset, has_channels, is_end;
     int count;              // channels
@@ -53,54 +49,29 @@ static bool refuse(const bvh *r, const char *what, himc_span found, const char *
                           what, himc_span_text(found, text), expected);
 }
 
-static bool refuse_end(const bvh *r, const char *where)
-{
-    return himc_error_set(r->error, "%s:%d: the file ends within %s", r->take->file, r->text.line,
-                          where);
-}
-
 // takes the next word, on this line or a later one
-static bool word(bvh *r, himc_span *w)
+static bool word(bvh *r, const char *where, himc_span *w)
 {
     while (!himc_span_word(&r->line, w))
         if (!himc_text_line(&r->text, &r->line))
-            return false;
+            return himc_error_set(r->error, "%s:%d: the file ends within %s", r->take->file,
+                                  r->text.line, where);
     return true;
 }
 
 static bool expect(bvh *r, const char *wanted, const char *where)
 {
     himc_span w;
-    if (!word(r, &w))
-        return refuse_end(r, where);
-    return himc_span_is(w, wanted) || refuse(r, where, w, wanted);
+    return word(r, where, &w) && (himc_span_is(w, wanted) || refuse(r, where, w, wanted));
 }
 
 static bool number(bvh *r, const char *what, double *value)
 {
     himc_span w;
-    if (!word(r, &w))
-        return refuse_end(r, what);
-    if (himc_span_number(w, value) && fabs(*value) <= TAKE_LARGEST)
-        return true;
-    return refuse(r, what, w, "a number up to 1e8");
-}
-
-static bool add_node(bvh *r, int parent, bool is_end)
-{
-    if (r->count >= MOST_NODES)
-        return himc_error_set(r->error, "%s:%d: too many joints, expected %d", r->take->file,
-                              r->text.line, MOST_NODES);
-    // grown by doubling
-    if ((r->count & (r->count - 1)) == 0) {
-        node *grown = realloc(r->nodes, (size_t)(r->count ? 2 * r->count : 1) * sizeof *grown);
-        if (!grown)
-            return himc_error_set(r->error, "%s: no memory", r->take->file);
-        r->nodes = grown;
-    }
-    node *n = &r->nodes[r->count++];
-    *n = (node){.parent = parent, .is_end = is_end};
-    return true;
+    if (!word(r, what, &w))
+        return false;
+    return (himc_span_number(w, value) && fabs(*value) <= TAKE_LARGEST) ||
+           refuse(r, what, w, "a number up to 1e8");
 }
 
 // a name is the rest of its line, because some contain blanks; a brace at its end begins the block
@@ -118,33 +89,19 @@ static bool read_name(bvh *r, node *n)
     return expect(r, "{", "before the joint's block");
 }
 
-static bool read_end_site(bvh *r, int parent)
+// names an end site by its joint; a second one of the same joint must not have the same name
+static bool name_end_site(bvh *r, node *n)
 {
-    if (!add_node(r, parent, true) || !expect(r, "Site", "after End"))
-        return false;
-    node *n = &r->nodes[r->count - 1];
     char of[TAKE_NAME];
-    memcpy(of, r->nodes[parent].name, sizeof of);
-    // a second end site of the same joint must not have the same name
+    memcpy(of, r->nodes[n->parent].name, sizeof of);
     int before = 0;
-    for (int i = 0; i < r->count - 1; i++)
-        before += r->nodes[i].parent == parent && r->nodes[i].is_end;
+    for (const node *other = r->nodes; other < n; other++)
+        before += other->parent == n->parent && other->is_end;
     if (before)
         snprintf(n->name, sizeof n->name, "%.48s_end%d", of, before + 1);
     else
         snprintf(n->name, sizeof n->name, "%.59s_end", of);
-    return expect(r, "{", "before the end site's block");
-}
-
-static bool read_offset(bvh *r, node *n)
-{
-    double v[3];
-    for (int axis = 0; axis < 3; axis++)
-        if (!number(r, "OFFSET", &v[axis]))
-            return false;
-    n->offset = himc_vec3_make(v[0], v[1], v[2]);
-    n->has_offset = true;
-    return true;
+    return expect(r, "Site", "after End") && expect(r, "{", "before the end site's block");
 }
 
 static bool read_channels(bvh *r, node *n)
@@ -153,16 +110,16 @@ static bool read_channels(bvh *r, node *n)
                                          "Xrotation", "Yrotation", "Zrotation"};
     himc_span w;
     long count;
-    if (!word(r, &w))
-        return refuse_end(r, "CHANNELS");
-    if (n->is_end || n->has_channels || !himc_span_integer(w, 0, 6, &count))
+    if (!word(r, "CHANNELS", &w))
+        return false;
+    if (n->has_channels || !himc_span_integer(w, 0, 6, &count))
         return refuse(r, "CHANNELS", w, "0 .. 6, once for each joint");
     n->has_channels = true;
     unsigned seen = 0;
     for (; n->count < count; n->count++) {
         unsigned kind = 0;
-        if (!word(r, &w))
-            return refuse_end(r, "CHANNELS");
+        if (!word(r, "CHANNELS", &w))
+            return false;
         while (kind < 6 && !himc_span_is(w, kinds[kind]))
             kind++;
         if (kind == 6 || seen & 1u << kind)
@@ -174,70 +131,64 @@ static bool read_channels(bvh *r, node *n)
     return true;
 }
 
-static bool close_node(bvh *r, int *current, int *depth)
-{
-    node *n = &r->nodes[*current];
-    if (!n->has_offset)
-        return himc_error_set(r->error,
-                              "%s:%d: joint %s has no OFFSET, expected one for each joint",
-                              r->take->file, r->text.line, n->name);
-    *current = n->parent;
-    --*depth;
-    return true;
-}
-
 // opens ROOT, JOINT or End Site
-static bool open_node(bvh *r, int *current, int *depth, bool is_end)
+static bool open_node(bvh *r, int parent, bool is_end)
 {
-    if (++*depth > MOST_DEPTH)
+    int depth = parent < 0 ? 1 : r->nodes[parent].depth + 1;
+    if (depth > MOST_DEPTH)
         return himc_error_set(r->error, "%s:%d: joints are nested too deeply, expected %d levels",
                               r->take->file, r->text.line, MOST_DEPTH);
-    if (is_end ? !read_end_site(r, *current)
-               : !add_node(r, *current, false) || !read_name(r, &r->nodes[r->count - 1]))
-        return false;
-    *current = r->count - 1;
-    return true;
+    if (r->count >= MOST_NODES)
+        return himc_error_set(r->error, "%s:%d: too many joints, expected %d", r->take->file,
+                              r->text.line, MOST_NODES);
+    // grown by doubling
+    if ((r->count & (r->count - 1)) == 0) {
+        node *grown = realloc(r->nodes, (size_t)(r->count ? 2 * r->count : 1) * sizeof *grown);
+        if (!grown)
+            return himc_error_set(r->error, "%s: no memory", r->take->file);
+        r->nodes = grown;
+    }
+    node *n = &r->nodes[r->count++];
+    *n = (node){.parent = parent, .depth = depth, .is_end = is_end};
+    return is_end ? name_end_site(r, n) : read_name(r, n);
 }
 
 static bool read_hierarchy(bvh *r)
 {
-    int current = -1, depth = 0;
+    int current = -1;
     himc_span w;
     if (!expect(r, "HIERARCHY", "the first line"))
         return false;
     for (;;) {
-        if (!word(r, &w))
-            return refuse_end(r, "the hierarchy");
-        bool joint = current >= 0 && !r->nodes[current].is_end, ok;
-        if (himc_span_is(w, "MOTION") && current < 0)
+        if (!word(r, "the hierarchy", &w))
+            return false;
+        node *n = current < 0 ? NULL : &r->nodes[current];
+        bool joint = n && !n->is_end, is_end = himc_span_is(w, "End"), ok = true;
+        bool root = !n && himc_span_is(w, "ROOT");
+        if (himc_span_is(w, "MOTION") && !n)
             return r->count > 0 || refuse(r, "before any joint", w, "ROOT");
-        if ((himc_span_is(w, "ROOT") && current < 0) || (himc_span_is(w, "JOINT") && joint))
-            ok = open_node(r, &current, &depth, false);
-        else if (himc_span_is(w, "End") && joint)
-            ok = open_node(r, &current, &depth, true);
-        else if (himc_span_is(w, "OFFSET") && current >= 0 && !r->nodes[current].has_offset)
-            ok = read_offset(r, &r->nodes[current]);
-        else if (himc_span_is(w, "CHANNELS") && joint)
-            ok = read_channels(r, &r->nodes[current]);
-        else if (himc_span_is(w, "}") && current >= 0)
-            ok = close_node(r, &current, &depth);
-        else
-            ok = refuse(r, current < 0 ? "between joints" : "in a joint", w,
-                        current < 0 ? "ROOT or MOTION"
-                                    : "one OFFSET, one CHANNELS, JOINT, End Site or }");
+        if (root || (joint && (is_end || himc_span_is(w, "JOINT")))) {
+            ok = open_node(r, current, is_end);
+            current = r->count - 1;
+        } else if (himc_span_is(w, "OFFSET") && n && !n->has_offset) {
+            n->has_offset = true;
+            ok = number(r, "OFFSET", &n->offset.x) && number(r, "OFFSET", &n->offset.y) &&
+                 number(r, "OFFSET", &n->offset.z);
+        } else if (himc_span_is(w, "CHANNELS") && joint) {
+            ok = read_channels(r, n);
+        } else if (himc_span_is(w, "}") && n) {
+            if (!n->has_offset)
+                return himc_error_set(r->error,
+                                      "%s:%d: joint %s has no OFFSET, expected one for each joint",
+                                      r->take->file, r->text.line, n->name);
+            current = n->parent;
+        } else {
+            ok = refuse(r, n ? "in a joint" : "between joints", w,
+                        n ? "one OFFSET, one CHANNELS, JOINT, End Site or }" : "ROOT or MOTION");
+        }
         if (!ok)
             return false;
     }
-}
-
-static int count_rows(const bvh *r)
-{
-    himc_text text = r->text;
-    himc_span row;
-    int rows = himc_span_trim(r->line).length > 0;
-    while (himc_text_filled_line(&text, &row))
-        rows++;
-    return rows;
 }
 
 static bool read_motion_header(bvh *r, int *frames, double *rate)
@@ -245,20 +196,21 @@ static bool read_motion_header(bvh *r, int *frames, double *rate)
     himc_span w;
     long count;
     double time;
-    if (!expect(r, "Frames:", "after MOTION"))
+    if (!expect(r, "Frames:", "after MOTION") || !word(r, "Frames:", &w))
         return false;
-    if (!word(r, &w))
-        return refuse_end(r, "Frames:");
     if (!himc_span_integer(w, 1, TAKE_MOST_FRAMES, &count))
         return refuse(r, "Frames:", w, "1 .. 1000000");
-    if (!expect(r, "Frame", "after Frames:") || !expect(r, "Time:", "after Frame"))
+    if (!expect(r, "Frame", "after Frames:") || !expect(r, "Time:", "after Frame") ||
+        !number(r, "Frame Time:", &time))
         return false;
-    if (!number(r, "Frame Time:", &time))
-        return false;
-    if (!(time >= LEAST_TIME && time <= MOST_TIME))
+    // the rates of himc_take_load, 20 .. 10000 Hz
+    if (!(time >= 1e-4 && time <= 0.05))
         return himc_error_set(r->error, "%s:%d: Frame Time: %g s, expected 0.0001 .. 0.05 s",
                               r->take->file, r->text.line, time);
-    int rows = count_rows(r);
+    himc_text rest = r->text;
+    int rows = himc_span_trim(r->line).length > 0;
+    while (himc_text_filled_line(&rest, &w))
+        rows++;
     if (rows != count)
         return himc_error_set(r->error, "%s: the header says %ld frames, the file has %d rows",
                               r->take->file, count, rows);
@@ -273,67 +225,45 @@ static bool read_motion_header(bvh *r, int *frames, double *rate)
     return true;
 }
 
-static himc_quat about(int axis, double degrees)
-{
-    double half = degrees * HIMC_PI / 360, s = sin(half);
-    return (himc_quat){cos(half), axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0};
-}
-
-// reads a node's channels from the row: its rotation and its position in the parent's frame
-static bool read_node(bvh *r, const node *n, himc_quat *rotation, himc_vec3 *place)
-{
-    himc_span w;
-    double v[6] = {n->offset.x, n->offset.y, n->offset.z, 0, 0, 0};
-    *rotation = himc_quat_identity();
-    for (int k = 0; k < n->count; k++) {
-        int kind = n->kinds[k];
-        if (!himc_span_word(&r->line, &w))
-            return himc_error_set(
-                r->error,
-                "%s:%d: the row ends before channel %d of %s, expected rows of %d numbers",
-                r->take->file, r->text.line, k + 1, n->name, r->channels);
-        if (!himc_span_number(w, &v[kind]) || !(fabs(v[kind]) <= TAKE_LARGEST))
-            return refuse(r, n->name, w, "a number up to 1e8");
-        if (kind >= 3)
-            *rotation = himc_quat_mul(*rotation, about(kind - 3, v[kind]));
-    }
-    *place = himc_vec3_make(v[0], v[1], v[2]);
-    return true;
-}
-
+// reads a row of channels; `world` is room for the nodes' rotations in the world
 static bool read_row(bvh *r, int frame, himc_quat *world)
 {
     himc_span w;
-    if (himc_span_trim(r->line).length == 0 && !himc_text_filled_line(&r->text, &r->line))
-        return refuse_end(r, "its rows");
     himc_take *take = r->take;
     himc_quat *local = take->rotations + (size_t)frame * (size_t)take->points;
+    if (himc_span_trim(r->line).length == 0)
+        himc_text_filled_line(&r->text, &r->line); // its rows were counted
     for (int i = 0; i < r->count; i++) {
         const node *n = &r->nodes[i];
-        himc_vec3 place;
-        if (!read_node(r, n, &local[i], &place))
-            return false;
-        bool root = n->parent < 0;
-        world[i] = root ? local[i] : himc_quat_unit(himc_quat_mul(world[n->parent], local[i]));
-        *himc_take_at(take, frame, i) =
-            root ? place
-                 : himc_vec3_add(*himc_take_at(take, frame, n->parent),
-                                 himc_quat_rotate(world[n->parent], place));
+        double v[6] = {n->offset.x, n->offset.y, n->offset.z, 0, 0, 0};
+        local[i] = himc_quat_identity();
+        for (int k = 0; k < n->count; k++) {
+            int kind = n->kinds[k];
+            if (!himc_span_word(&r->line, &w))
+                return himc_error_set(
+                    r->error,
+                    "%s:%d: the row ends before channel %d of %s, expected rows of %d numbers",
+                    take->file, r->text.line, k + 1, n->name, r->channels);
+            if (!himc_span_number(w, &v[kind]) || !(fabs(v[kind]) <= TAKE_LARGEST))
+                return refuse(r, n->name, w, "a number up to 1e8");
+            if (kind < 3)
+                continue;
+            double half = v[kind] * HIMC_PI / 360, s = sin(half);
+            himc_quat about = {cos(half), kind == 3 ? s : 0, kind == 4 ? s : 0, kind == 5 ? s : 0};
+            local[i] = himc_quat_mul(local[i], about);
+        }
+        himc_vec3 place = himc_vec3_make(v[0], v[1], v[2]);
+        world[i] = local[i];
+        if (n->parent >= 0) {
+            himc_quat parent = world[n->parent];
+            world[i] = himc_quat_unit(himc_quat_mul(parent, local[i]));
+            place = himc_vec3_add(*himc_take_at(take, frame, n->parent),
+                                  himc_quat_rotate(parent, place));
+        }
+        *himc_take_at(take, frame, i) = place;
     }
     return !himc_span_word(&r->line, &w) ||
            refuse(r, "after the row's last channel", w, "a new line");
-}
-
-static bool read_rows(bvh *r)
-{
-    himc_quat *world = calloc((size_t)r->count, sizeof *world);
-    if (!world)
-        return himc_error_set(r->error, "%s: no memory", r->take->file);
-    bool ok = true;
-    for (int frame = 0; frame < r->take->frames && ok; frame++)
-        ok = read_row(r, frame, world);
-    free(world);
-    return ok;
 }
 
 static bool read_all(bvh *r)
@@ -349,7 +279,14 @@ static bool read_all(bvh *r)
         // the origin of the zero pose is arbitrary
         r->take->offsets[i] = r->nodes[i].parent < 0 ? himc_vec3_make(0, 0, 0) : r->nodes[i].offset;
     }
-    return read_rows(r);
+    himc_quat *world = calloc((size_t)r->count, sizeof *world);
+    if (!world)
+        return himc_error_set(r->error, "%s: no memory", r->take->file);
+    bool ok = true;
+    for (int frame = 0; frame < frames && ok; frame++)
+        ok = read_row(r, frame, world);
+    free(world);
+    return ok;
 }
 
 bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
@@ -364,20 +301,9 @@ bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *
 }
 
 #define CENTIMETRES 100.0
-#define DEGREES (180 / HIMC_PI)
 
 // from the library's axes to the file's: a quarter turn about -x
 static const himc_quat y_up = {0.70710678118654752, -0.70710678118654752, 0, 0};
-
-// Euler angles z, x, y (degrees) of a rotation in the library's axes
-static void put_angles(FILE *file, himc_quat q)
-{
-    himc_mat3 r = himc_mat3_from_quat(himc_quat_mul(himc_quat_mul(y_up, q), himc_quat_conj(y_up)));
-    double x = asin(fmin(fmax(r.m[2][1], -1), 1));
-    double angles[3] = {atan2(-r.m[0][1], r.m[1][1]) * DEGREES, x * DEGREES,
-                        atan2(-r.m[2][0], r.m[2][2]) * DEGREES};
-    himc_text_put_row(file, angles, 3, 6, ' ');
-}
 
 static bool is_leaf(const himc_take *take, int point)
 {
@@ -390,8 +316,6 @@ static bool is_leaf(const himc_take *take, int point)
 static void put_joint(FILE *file, const himc_take *take, int point, int depth)
 {
     bool root = take->parents[point] < 0, leaf = is_leaf(take, point);
-    himc_vec3 o = himc_vec3_scale(himc_take_y_up(take->offsets[point]), CENTIMETRES);
-    double offset[3] = {o.x, o.y, o.z};
     char indent[80];
     snprintf(indent, sizeof indent, "%*s", depth < 70 ? depth : 70, "");
     if (leaf)
@@ -399,7 +323,8 @@ static void put_joint(FILE *file, const himc_take *take, int point, int depth)
     else
         fprintf(file, "%s%s %s\n%s{\n%s\tOFFSET", indent, root ? "ROOT" : "JOINT",
                 take->names[point], indent, indent);
-    himc_text_put_row(file, offset, 3, 6, ' ');
+    himc_vec3 offset = himc_take_y_up(take->offsets[point]);
+    himc_text_put_vec3(file, himc_vec3_scale(offset, CENTIMETRES), 6, ' ');
     if (!leaf)
         fprintf(file, "\n%s\tCHANNELS %s", indent,
                 root ? "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
@@ -417,12 +342,14 @@ static void put_channels(FILE *file, const himc_take *take, int frame, int point
     if (is_leaf(take, point))
         return;
     if (take->parents[point] < 0) {
-        himc_vec3 x =
-            himc_vec3_scale(himc_take_y_up(*himc_take_at(take, frame, point)), CENTIMETRES);
-        double place[3] = {x.x, x.y, x.z};
-        himc_text_put_row(file, place, 3, 6, ' ');
+        himc_vec3 x = himc_take_y_up(*himc_take_at(take, frame, point));
+        himc_text_put_vec3(file, himc_vec3_scale(x, CENTIMETRES), 6, ' ');
     }
-    put_angles(file, himc_take_rotation(take, frame, point));
+    himc_quat q = himc_quat_mul(y_up, himc_take_rotation(take, frame, point));
+    himc_mat3 r = himc_mat3_from_quat(himc_quat_mul(q, himc_quat_conj(y_up)));
+    himc_vec3 zxy = {atan2(-r.m[0][1], r.m[1][1]), asin(fmin(fmax(r.m[2][1], -1), 1)),
+                     atan2(-r.m[2][0], r.m[2][2])};
+    himc_text_put_vec3(file, himc_vec3_scale(zxy, 180 / HIMC_PI), 6, ' ');
     for (int i = point + 1; i < take->points; i++)
         if (take->parents[i] == point)
             put_channels(file, take, frame, i);

@@ -17,12 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 512          // bytes, by the format
-#define HEADER_EVENTS 18   // most in a header, by the format
-#define EVENTS_KEY 12345   // header word that says events have labels, by the format
-#define LONGEST_METRES 100 // chosen: heights above are in millimetres
-#define FARTHEST_EVENT 1e6 // chosen: no take is so long (s)
-
 typedef struct c3d {
     himc_take *take;
     const unsigned char *bytes;
@@ -32,6 +26,7 @@ typedef struct c3d {
     int analog; // samples per frame
     double scale;
     bool is_float;
+    size_t width;        // bytes of a value
     size_t data, stride; // where frames begin, bytes of one
     int *kept;           // (points) index in the take, or -1
     himc_span *label;    // (points) empty if a point has none
@@ -48,6 +43,14 @@ static double parameter(const c3d *r, const char *group, const char *name, int i
 {
     return himc_c3d_number(&r->parameters, himc_c3d_find(&r->parameters, group, name), index,
                            fallback);
+}
+
+// a string without blanks at its ends, empty if there is none
+static himc_span string(const c3d *r, const char *group, const char *name, int index)
+{
+    himc_span span = {"", 0};
+    himc_c3d_string(himc_c3d_find(&r->parameters, group, name), index, &span.at, &span.length);
+    return himc_span_trim(span);
 }
 
 static bool read_layout(c3d *r)
@@ -71,16 +74,16 @@ static bool read_layout(c3d *r)
             "integers",
             r->take->file, r->scale);
     r->is_float = r->scale < 0;
-    size_t value = r->is_float ? 4 : 2;
-    r->stride = value * (4 * (size_t)r->points + (size_t)r->analog);
+    r->width = r->is_float ? 4 : 2;
+    r->stride = r->width * (4 * (size_t)r->points + (size_t)r->analog);
     unsigned block = header_word(r, 9);
     if (block < 2)
         block = (unsigned)fmin(65535, fmax(0, parameter(r, "POINT", "DATA_START", 0, 0)));
-    r->data = (size_t)(block - 1) * BLOCK;
+    r->data = (size_t)(block - 1) * C3D_BLOCK;
     if (block < 2 || r->data >= r->size)
         return himc_error_set(r->error,
                               "%s: the frames begin at block %u, but the file has %zu blocks",
-                              r->take->file, block, (r->size + BLOCK - 1) / BLOCK);
+                              r->take->file, block, (r->size + C3D_BLOCK - 1) / C3D_BLOCK);
     return true;
 }
 
@@ -193,48 +196,39 @@ static bool choose_points(c3d *r, int *count)
                           r->take->file);
 }
 
-static void name_points(const c3d *r)
-{
-    for (int i = 0; i < r->points; i++)
-        if (r->kept[i] >= 0)
-            himc_take_set_name(r->take, r->kept[i], r->label[i].at, r->label[i].length);
-}
-
-static himc_vec3 read_point(const c3d *r, const unsigned char *at)
-{
-    double v[4];
-    for (int k = 0; k < 4; k++)
-        v[k] = r->is_float
-                   ? himc_c3d_real(r->parameters.processor, at + 4 * k)
-                   : himc_c3d_integer(r->parameters.processor, at + 2 * k) * (k < 3 ? r->scale : 1);
-    bool seen = v[3] >= 0;
-    for (int k = 0; k < 3; k++)
-        seen = seen && fabs(v[k]) <= TAKE_LARGEST;
-    return seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
-}
-
 static void read_points(const c3d *r)
 {
-    size_t step = r->is_float ? 16 : 8;
-    for (int frame = 0; frame < r->take->frames; frame++) {
-        const unsigned char *row = r->bytes + r->data + (size_t)frame * r->stride;
-        for (int i = 0; i < r->points; i++)
-            if (r->kept[i] >= 0)
-                *himc_take_at(r->take, frame, r->kept[i]) = read_point(r, row + step * (size_t)i);
+    c3d_processor processor = r->parameters.processor;
+    for (int i = 0; i < r->points; i++) {
+        if (r->kept[i] < 0)
+            continue;
+        himc_take_set_name(r->take, r->kept[i], r->label[i].at, r->label[i].length);
+        for (int frame = 0; frame < r->take->frames; frame++) {
+            const unsigned char *at =
+                r->bytes + r->data + (size_t)frame * r->stride + 4 * r->width * (size_t)i;
+            double v[4]; // x, y, z, residual
+            for (int k = 0; k < 4; k++)
+                v[k] = r->is_float
+                           ? himc_c3d_real(processor, at + 4 * k)
+                           : himc_c3d_integer(processor, at + 2 * k) * (k < 3 ? r->scale : 1);
+            bool seen = v[3] >= 0;
+            for (int k = 0; k < 3; k++)
+                seen = seen && fabs(v[k]) <= TAKE_LARGEST;
+            *himc_take_at(r->take, frame, r->kept[i]) =
+                seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
+        }
     }
 }
 
 static bool read_unit(const c3d *r)
 {
-    const char *at;
-    size_t length;
     char text[44];
-    if (!himc_c3d_string(himc_c3d_find(&r->parameters, "POINT", "UNITS"), 0, &at, &length))
-        return true;
-    const char *nul = memchr(at, 0, length); // some fill with it
-    himc_span span = himc_span_trim((himc_span){at, nul ? (size_t)(nul - at) : length});
-    r->take->file_unit = himc_take_unit(himc_span_text(span, text));
-    return span.length == 0 || r->take->file_unit > 0 ||
+    himc_span unit = string(r, "POINT", "UNITS", 0);
+    const char *nul = memchr(unit.at, 0, unit.length); // some fill with it
+    if (nul)
+        unit = himc_span_trim((himc_span){unit.at, (size_t)(nul - unit.at)});
+    r->take->file_unit = himc_take_unit(himc_span_text(unit, text));
+    return unit.length == 0 || r->take->file_unit > 0 ||
            himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", expected mm, cm, m, in or ft",
                           r->take->file, text);
 }
@@ -242,18 +236,11 @@ static bool read_unit(const c3d *r)
 // "+X", "-Z", "Y" as a unit vector; 0 for anything else
 static himc_vec3 read_axis(const c3d *r, const char *name)
 {
-    const char *at;
-    size_t length;
-    if (!himc_c3d_string(himc_c3d_find(&r->parameters, "POINT", name), 0, &at, &length))
-        return himc_vec3_make(0, 0, 0);
-    himc_span s = himc_span_trim((himc_span){at, length});
-    double sign = s.length > 1 && s.at[0] == '-' ? -1 : 1;
-    char axis = s.length ? s.at[s.length - 1] : 0;
-    if (s.length > 2 || (s.length == 2 && s.at[0] != '+' && s.at[0] != '-'))
-        axis = 0;
-    return himc_vec3_make(axis == 'X' || axis == 'x' ? sign : 0,
-                          axis == 'Y' || axis == 'y' ? sign : 0,
-                          axis == 'Z' || axis == 'z' ? sign : 0);
+    himc_span s = string(r, "POINT", name, 0);
+    bool has_sign = s.length == 2 && (s.at[0] == '+' || s.at[0] == '-');
+    int axis = s.length == 1 || has_sign ? s.at[s.length - 1] | 32 : 0;
+    double sign = has_sign && s.at[0] == '-' ? -1 : 1;
+    return himc_vec3_make(axis == 'x' ? sign : 0, axis == 'y' ? sign : 0, axis == 'z' ? sign : 0);
 }
 
 // the player's mass and height if the file has them; Vicon writes them in kg and mm
@@ -268,7 +255,7 @@ static void read_subject(c3d *r)
         if (height <= 0)
             height = parameter(r, groups[i], "HEIGHT", 0, 0);
     }
-    height *= height > LONGEST_METRES ? 0.001 : 1;
+    height *= height > 100 ? 0.001 : 1;
     r->take->mass = mass >= TAKE_LEAST_MASS && mass <= TAKE_MOST_MASS ? mass : 0;
     r->take->height = height >= TAKE_LEAST_HEIGHT && height <= TAKE_MOST_HEIGHT ? height : 0;
     if ((mass > 0 && r->take->mass == 0) || (height > 0 && r->take->height == 0))
@@ -283,23 +270,13 @@ static void add_event(c3d *r, double time, himc_span context, himc_span label)
 {
     himc_take *take = r->take;
     time -= (take->first_frame - 1) / take->rate;
-    if (!isfinite(time) || fabs(time) > FARTHEST_EVENT)
+    if (!isfinite(time) || fabs(time) > 1e6) // no take is so long
         return;
     char a[44], b[44];
-    context = himc_span_trim(context);
-    himc_span_text(context, a);
-    himc_span_text(himc_span_trim(label), b);
     himc_take_event *event = &take->events[take->event_count++];
     event->time = time;
-    snprintf(event->label, sizeof event->label, "%.12s%s%.18s", a, context.length ? " " : "", b);
-}
-
-// a string of EVENT, or an empty one
-static himc_span event_text(const c3d *r, const char *name, int index)
-{
-    himc_span span = {"", 0};
-    himc_c3d_string(himc_c3d_find(&r->parameters, "EVENT", name), index, &span.at, &span.length);
-    return span;
+    snprintf(event->label, sizeof event->label, "%.12s%s%.18s", himc_span_text(context, a),
+             context.length ? " " : "", himc_span_text(label, b));
 }
 
 static bool read_events(c3d *r)
@@ -307,55 +284,37 @@ static bool read_events(c3d *r)
     const c3d_parameter *times = himc_c3d_find(&r->parameters, "EVENT", "TIMES");
     int group = times && times->dimensions == 2 && times->size[0] == 2 ? times->size[1] : 0;
     group = (int)fmin(group, fmax(0, parameter(r, "EVENT", "USED", 0, 0)));
-    // events of the header are used if there is no group EVENT; 12345 says that labels are there
-    int header = group == 0 && header_word(r, 150) == EVENTS_KEY ? (int)header_word(r, 151) : 0;
-    header = header < HEADER_EVENTS ? header : HEADER_EVENTS;
+    // without a group EVENT up to 18 events of the header; the key 12345 says they have labels
+    int header = group == 0 && header_word(r, 150) == 12345 ? (int)header_word(r, 151) : 0;
+    header = header < 18 ? header : 18;
     r->take->events = calloc((size_t)(group + header + 1), sizeof *r->take->events);
     if (!r->take->events)
         return himc_error_set(r->error, "%s: no memory", r->take->file);
-    for (int i = 0; i < group; i++)
-        add_event(r,
-                  60 * himc_c3d_number(&r->parameters, times, 2 * i, 0) +
-                      himc_c3d_number(&r->parameters, times, 2 * i + 1, 0),
-                  event_text(r, "CONTEXTS", i), event_text(r, "LABELS", i));
-    for (int i = 0; i < header; i++)
+    for (int i = 0; i < group; i++) {
+        double minutes = himc_c3d_number(&r->parameters, times, 2 * i, 0);
+        double seconds = himc_c3d_number(&r->parameters, times, 2 * i + 1, 0);
+        add_event(r, 60 * minutes + seconds, string(r, "EVENT", "CONTEXTS", i),
+                  string(r, "EVENT", "LABELS", i));
+    }
+    for (int i = 0; i < header; i++) {
+        himc_span label = {(const char *)r->bytes + 396 + 4 * i, 4};
         add_event(r, himc_c3d_real(r->parameters.processor, r->bytes + 304 + 4 * i),
-                  (himc_span){"", 0}, (himc_span){(const char *)r->bytes + 396 + 4 * i, 4});
+                  (himc_span){"", 0}, himc_span_trim(label));
+    }
     return true;
 }
 
 // "EMG1 (V)" of ANALOG:LABELS and UNITS
 static void name_channel(const c3d *r, int channel, char name[TAKE_NAME])
 {
-    himc_span label = {"", 0}, unit = {"", 0};
+    himc_span label = string(r, "ANALOG", "LABELS", channel);
+    himc_span unit = string(r, "ANALOG", "UNITS", channel);
     char a[44], b[44];
-    himc_c3d_string(himc_c3d_find(&r->parameters, "ANALOG", "LABELS"), channel, &label.at,
-                    &label.length);
-    himc_c3d_string(himc_c3d_find(&r->parameters, "ANALOG", "UNITS"), channel, &unit.at,
-                    &unit.length);
-    label = himc_span_trim(label);
-    unit = himc_span_trim(unit);
     himc_span_text(label, a);
-    himc_span_text(unit, b);
     if (label.length == 0)
         snprintf(a, sizeof a, "channel %d", channel + 1);
-    snprintf(name, TAKE_NAME, "%s%s%.15s%s", a, unit.length ? " (" : "", b, unit.length ? ")" : "");
-}
-
-static double analog_value(const c3d *r, const unsigned char *at, bool is_unsigned)
-{
-    if (r->is_float)
-        return himc_c3d_real(r->parameters.processor, at);
-    return is_unsigned ? (double)himc_c3d_word(r->parameters.processor, at)
-                       : (double)himc_c3d_integer(r->parameters.processor, at);
-}
-
-static bool unsigned_samples(const c3d *r)
-{
-    himc_span format = {"", 0};
-    himc_c3d_string(himc_c3d_find(&r->parameters, "ANALOG", "FORMAT"), 0, &format.at,
-                    &format.length);
-    return himc_span_is(himc_span_trim(format), "unsigned");
+    snprintf(name, TAKE_NAME, "%s%s%.15s%s", a, unit.length ? " (" : "", himc_span_text(unit, b),
+             unit.length ? ")" : "");
 }
 
 // The analog samples behind the points of each frame: (raw - OFFSET) SCALE GEN_SCALE. Their counts
@@ -363,6 +322,7 @@ static bool unsigned_samples(const c3d *r)
 static bool read_analog(c3d *r)
 {
     himc_take *take = r->take;
+    c3d_processor processor = r->parameters.processor;
     int channels = (int)parameter(r, "ANALOG", "USED", 0, 0);
     if (r->analog == 0 || channels < 1 || r->analog % channels != 0)
         return true;
@@ -374,8 +334,7 @@ static bool read_analog(c3d *r)
     take->analog_channels = channels;
     take->analog_samples = take->frames * each;
     take->analog_rate = take->rate * each;
-    size_t width = r->is_float ? 4 : 2;
-    bool is_unsigned = unsigned_samples(r);
+    bool is_unsigned = himc_span_is(string(r, "ANALOG", "FORMAT", 0), "unsigned");
     double general = parameter(r, "ANALOG", "GEN_SCALE", 0, 1);
     for (int channel = 0; channel < channels; channel++) {
         double offset = parameter(r, "ANALOG", "OFFSET", channel, 0);
@@ -385,9 +344,11 @@ static bool read_analog(c3d *r)
             size_t frame = (size_t)(i / each), sample = (size_t)(i % each);
             const unsigned char *at =
                 r->bytes + r->data + frame * r->stride +
-                width * (4 * (size_t)r->points + sample * (size_t)channels + (size_t)channel);
-            take->analog[(size_t)i * (size_t)channels + (size_t)channel] =
-                (analog_value(r, at, is_unsigned) - offset) * scale;
+                r->width * (4 * (size_t)r->points + sample * (size_t)channels + (size_t)channel);
+            double raw = r->is_float   ? himc_c3d_real(processor, at)
+                         : is_unsigned ? (double)himc_c3d_word(processor, at)
+                                       : (double)himc_c3d_integer(processor, at);
+            take->analog[(size_t)i * (size_t)channels + (size_t)channel] = (raw - offset) * scale;
         }
     }
     return true;
@@ -397,7 +358,7 @@ static bool read_all(c3d *r)
 {
     int frames = 0, points = 0;
     if (!himc_c3d_parameters_read(&r->parameters, r->bytes, r->size,
-                                  (size_t)(r->bytes[0] - 1) * BLOCK, r->error))
+                                  (size_t)(r->bytes[0] - 1) * C3D_BLOCK, r->error))
         return himc_error_prefix(r->error, "%s", r->take->file);
     double rate =
         parameter(r, "POINT", "RATE", 0, himc_c3d_real(r->parameters.processor, r->bytes + 20));
@@ -410,7 +371,6 @@ static bool read_all(c3d *r)
     read_subject(r);
     r->take->file_up = read_axis(r, "Y_SCREEN");
     r->take->file_right = read_axis(r, "X_SCREEN");
-    name_points(r);
     read_points(r);
     return read_events(r) && read_analog(r);
 }
@@ -420,9 +380,9 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
     const unsigned char *bytes = file;
     c3d r = {.take = take, .bytes = bytes, .size = size, .error = error};
     take->format_up = himc_vec3_make(0, 0, 1);
-    if (size < BLOCK)
+    if (size < C3D_BLOCK)
         return himc_error_set(error, "%s: %zu bytes, expected at least a header of %d", take->file,
-                              size, BLOCK);
+                              size, C3D_BLOCK);
     if (bytes[1] != 0x50 || bytes[0] < 2)
         return himc_error_set(error,
                               "%s: begins with bytes %d %d, expected for C3D: 2 .. 255 and 80",
@@ -439,7 +399,6 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
 // than 65535 frames are counted by TRIAL:ACTUAL_END_FIELD.
 
 #define MOST_LABELS 255 // a parameter's dimension is one byte
-#define MILLIMETRES 1000.0
 
 typedef struct bytes {
     unsigned char *at, *end;
@@ -459,10 +418,11 @@ static void put_word(bytes *b, unsigned value)
 
 static void put_real(bytes *b, double value)
 {
-    unsigned char four[4];
-    himc_c3d_put_real(C3D_INTEL, value, four);
-    for (int i = 0; i < 4; i++)
-        put_byte(b, four[i]);
+    float narrow = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &narrow, sizeof bits);
+    put_word(b, bits & 65535);
+    put_word(b, bits >> 16);
 }
 
 static void put_text(bytes *b, const char *text, int width)
@@ -554,7 +514,7 @@ static void put_parameters(bytes *b, const himc_take *take, int blocks)
     put_group(b, 2, "TRIAL");
     put_field(b, "ACTUAL_START_FIELD", 1);
     put_field(b, "ACTUAL_END_FIELD", (unsigned)take->frames);
-    b->at = begin + (size_t)blocks * BLOCK;
+    b->at = begin + (size_t)blocks * C3D_BLOCK;
 }
 
 static void put_header(bytes *b, const himc_take *take, int blocks)
@@ -571,17 +531,7 @@ static void put_header(bytes *b, const himc_take *take, int blocks)
     put_word(b, (unsigned)(2 + blocks));
     put_word(b, 0);
     put_real(b, take->rate);
-    b->at = begin + BLOCK;
-}
-
-static void put_point(bytes *b, himc_vec3 x)
-{
-    bool seen = himc_vec3_finite(x);
-    himc_vec3 mm = seen ? himc_vec3_scale(x, MILLIMETRES) : himc_vec3_make(0, 0, 0);
-    put_real(b, mm.x);
-    put_real(b, mm.y);
-    put_real(b, mm.z);
-    put_real(b, seen ? 0 : -1);
+    b->at = begin + C3D_BLOCK;
 }
 
 bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
@@ -589,8 +539,8 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
     if (take->points > MOST_LABELS)
         return himc_error_set(error, "%s: %d points, expected up to %d in a .c3d", take->file,
                               take->points, MOST_LABELS);
-    int blocks = 2 + (take->points * TAKE_NAME + BLOCK - 1) / BLOCK;
-    size_t before = (size_t)(1 + blocks) * BLOCK, row = 16 * (size_t)take->points;
+    int blocks = 2 + (take->points * TAKE_NAME + C3D_BLOCK - 1) / C3D_BLOCK;
+    size_t before = (size_t)(1 + blocks) * C3D_BLOCK, row = 16 * (size_t)take->points;
     unsigned char *buffer = calloc(1, before > row ? before : row);
     if (!buffer)
         return himc_error_set(error, "%s: no memory", take->file);
@@ -600,8 +550,15 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
     fwrite(buffer, 1, before, file);
     for (int frame = 0; frame < take->frames; frame++) {
         b = (bytes){buffer, buffer + row};
-        for (int i = 0; i < take->points; i++)
-            put_point(&b, *himc_take_at(take, frame, i));
+        for (int i = 0; i < take->points; i++) {
+            himc_vec3 x = *himc_take_at(take, frame, i);
+            bool seen = himc_vec3_finite(x);
+            himc_vec3 mm = seen ? himc_vec3_scale(x, 1000) : himc_vec3_make(0, 0, 0);
+            put_real(&b, mm.x);
+            put_real(&b, mm.y);
+            put_real(&b, mm.z);
+            put_real(&b, seen ? 0 : -1);
+        }
         fwrite(buffer, 1, row, file);
     }
     free(buffer);

@@ -15,8 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define C3D_BLOCK 512 // bytes, by the format
-
 unsigned himc_c3d_word(c3d_processor processor, const unsigned char *at)
 {
     return processor == C3D_MIPS ? (unsigned)(at[0] << 8 | at[1]) : (unsigned)(at[1] << 8 | at[0]);
@@ -28,76 +26,20 @@ int himc_c3d_integer(c3d_processor processor, const unsigned char *at)
     return word < 32768 ? word : word - 65536;
 }
 
-static double dec_real(uint32_t bits)
-{
-    int exponent = (int)(bits >> 23 & 255);
-    double mantissa = 0.5 + (double)(bits & 0x7FFFFF) / 16777216.0;
-    if (exponent == 0)
-        return bits >> 31 ? NAN : 0;
-    return ldexp(bits >> 31 ? -mantissa : mantissa, exponent - 128);
-}
-
 double himc_c3d_real(c3d_processor processor, const unsigned char *at)
 {
     uint32_t first = himc_c3d_word(processor, at), second = himc_c3d_word(processor, at + 2);
-    if (processor == C3D_DEC)
-        return dec_real(first << 16 | second);
-    uint32_t bits = processor == C3D_MIPS ? first << 16 | second : second << 16 | first;
+    uint32_t bits = processor == C3D_INTEL ? second << 16 | first : first << 16 | second;
+    if (processor == C3D_DEC) {
+        int exponent = (int)(bits >> 23 & 255);
+        double mantissa = 0.5 + (double)(bits & 0x7FFFFF) / 16777216.0;
+        if (exponent == 0)
+            return bits >> 31 ? NAN : 0;
+        return ldexp(bits >> 31 ? -mantissa : mantissa, exponent - 128);
+    }
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
-}
-
-static uint32_t dec_bits(double value)
-{
-    int exponent;
-    double mantissa = frexp(fabs(value), &exponent);
-    uint32_t m = (uint32_t)lround(mantissa * 16777216.0);
-    // rounding may carry into the next power of two
-    if (m == 16777216u) {
-        m = 8388608u;
-        exponent++;
-    }
-    if (value == 0 || exponent < -127)
-        return 0;
-    if (!isfinite(value) || exponent > 127)
-        return 0x80000000u;
-    return (value < 0 ? 0x80000000u : 0) | (uint32_t)(exponent + 128) << 23 | (m - 8388608u);
-}
-
-void himc_c3d_put_real(c3d_processor processor, double value, unsigned char *at)
-{
-    uint32_t bits;
-    float narrow = (float)value;
-    memcpy(&bits, &narrow, sizeof bits);
-    if (processor == C3D_DEC)
-        bits = dec_bits(value);
-    // byte k of the file is this byte of the number, counted from the highest
-    static const int order[3][4] = {{3, 2, 1, 0}, {1, 0, 3, 2}, {0, 1, 2, 3}};
-    for (int k = 0; k < 4; k++)
-        at[k] = (unsigned char)(bits >> (24 - 8 * order[processor - C3D_INTEL][k]));
-}
-
-// converts to upper case and cuts to 23 letters, for the comparison of names
-static void copy_name(char name[24], const unsigned char *at, size_t length)
-{
-    size_t n = 0;
-    for (; n < length && n < 23; n++)
-        name[n] = at[n] >= 'a' && at[n] <= 'z' ? (char)(at[n] - 'a' + 'A') : (char)at[n];
-    name[n] = 0;
-}
-
-static bool add(c3d_parameters *p, const c3d_parameter *parameter)
-{
-    if ((p->count & (p->count - 1)) == 0) {
-        c3d_parameter *grown =
-            realloc(p->list, (size_t)(p->count ? 2 * p->count : 1) * sizeof *grown);
-        if (!grown)
-            return false;
-        p->list = grown;
-    }
-    p->list[p->count++] = *parameter;
-    return true;
 }
 
 // reads the value at `at`; false if it goes beyond the end of the file
@@ -125,45 +67,52 @@ static bool read_value(c3d_parameter *q, const unsigned char *at, const unsigned
     return true;
 }
 
-// true if the next record, at `next`, is outside the section and not where this one ends: files of
-// the format's own test suite have such remains of earlier records behind their last
-static bool is_remains(const c3d_parameter *q, const unsigned char *next,
-                       const unsigned char *section_end, const unsigned char *end)
-{
-    const unsigned char *text = q->data + (size_t)q->count * (size_t)abs(q->type);
-    return next > section_end && !(text < end && next == text + 1 + *text);
-}
-
 // reads the record at *at and moves *at to the next, to NULL after the last
 static bool read_record(c3d_parameters *p, const unsigned char **at,
                         const unsigned char *section_end, const unsigned char *end,
                         himc_error *error)
 {
-    if (end - *at < 2)
-        return himc_error_set(error, "its parameters go beyond the end of the file");
     const unsigned char *a = *at;
-    int length = abs(a[0] < 128 ? a[0] : a[0] - 256), group = a[1] < 128 ? a[1] : a[1] - 256;
-    if (length == 0 || group == 0) {
+    bool fits = end - a >= 2;
+    int length = fits ? abs(a[0] < 128 ? a[0] : a[0] - 256) : 0;
+    int group = fits ? (a[1] < 128 ? a[1] : a[1] - 256) : 0;
+    if (fits && (length == 0 || group == 0)) {
         *at = NULL;
         return true;
     }
-    if (end - a < length + 4)
+    if (!fits || end - a < length + 4)
         return himc_error_set(error, "its parameters go beyond the end of the file");
     c3d_parameter q = {.group = abs(group)};
-    copy_name(q.name, a + 2, (size_t)length);
+    for (int i = 0; i < length && i < (int)sizeof q.name - 1; i++) {
+        int c = a[2 + i];
+        q.name[i] = (char)(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    }
     const unsigned char *link = a + 2 + length;
-    unsigned distance = himc_c3d_word(p->processor, link);
     if (group < 0 && q.group < C3D_GROUPS)
         memcpy(p->groups[q.group], q.name, sizeof q.name);
-    else if (group > 0 && !read_value(&q, link + 2, end))
+    if (group > 0 && !read_value(&q, link + 2, end))
         return himc_error_set(error, "parameter %.23s does not fit into the file", q.name);
-    else if (group > 0 && !add(p, &q))
-        return himc_error_set(error, "no memory");
+    if (group > 0 && (p->count & (p->count - 1)) == 0) { // grown by doubling
+        c3d_parameter *grown =
+            realloc(p->list, (size_t)(p->count ? 2 * p->count : 1) * sizeof *grown);
+        if (!grown)
+            return himc_error_set(error, "no memory");
+        p->list = grown;
+    }
+    if (group > 0)
+        p->list[p->count++] = q;
+    unsigned distance = himc_c3d_word(p->processor, link);
     if (distance != 0 && (distance < 2 || distance >= (size_t)(end - link)))
         return himc_error_set(
             error, "the record after parameter %.23s is beyond the end of the file", q.name);
-    bool last = distance == 0 || (group > 0 && is_remains(&q, link + distance, section_end, end));
-    *at = last ? NULL : link + distance;
+    *at = distance == 0 ? NULL : link + distance;
+    // a next record outside the section that is not where this one ends is a remnant of an earlier
+    // file: some of the format's own test suite have such behind their last
+    if (group > 0 && *at > section_end) {
+        const unsigned char *text = q.data + (size_t)q.count * (size_t)abs(q.type);
+        if (text >= end || *at != text + 1 + *text)
+            *at = NULL;
+    }
     return true;
 }
 

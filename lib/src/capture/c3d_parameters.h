@@ -11,8 +11,6 @@ unsigned himc_c3d_word(c3d_processor processor, const unsigned char *at); ///< 1
 int himc_c3d_integer(c3d_processor processor, const unsigned char *at);   ///< 16 bits, signed
 double himc_c3d_real(c3d_processor processor,
                      const unsigned char *at); ///< 32 bits; NaN where reserved
-void himc_c3d_put_real(c3d_processor processor, double value,
-                       unsigned char *at); ///< the inverse, for writers and tests
 
 typedef struct c3d_parameter {
     int group;
@@ -24,6 +22,7 @@ typedef struct c3d_parameter {
     const unsigned char *data; ///< into the file's bytes, count x |type| of them
 } c3d_parameter;
 
+#define C3D_BLOCK 512  ///< by the format (bytes)
 #define C3D_GROUPS 128 ///< most, by the format
 
 typedef struct c3d_parameters {

@@ -4,20 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-static bool refuse_cell(const marker_row *row, int point, int axis, himc_span cell)
+bool himc_marker_row_is_filled(himc_span row, char separator)
 {
-    char text[44];
-    return himc_error_set(
-        row->error,
-        "%s:%d: %s %c is \"%s\", expected a number up to 1e8, or an empty cell for a gap",
-        row->take->file, row->line, row->take->names[point], "XYZ"[axis],
-        himc_span_text(cell, text));
-}
-
-static bool is_gap_mark(himc_span cell, double value)
-{
-    return cell.length == 0 || himc_span_is(cell, "nan") || himc_span_is(cell, "-nan") ||
-           value == 9999999;
+    bool filled = false;
+    while (row.at && !filled)
+        filled = himc_span_cell(&row, separator).length > 0;
+    return filled;
 }
 
 bool himc_marker_number(himc_span cell, char separator, double *value)
@@ -36,12 +28,18 @@ bool himc_marker_row_point(const marker_row *row, himc_span *rest, int frame, in
     double v[3] = {0, 0, 0};
     int seen = 0;
     for (int axis = 0; axis < 3; axis++) {
-        himc_span cell = rest->at ? himc_span_cell(rest, row->separator) : (himc_span){"", 0};
+        char text[44];
+        himc_span cell = himc_span_cell(rest, row->separator);
         bool number = himc_marker_number(cell, row->separator, &v[axis]);
-        if (is_gap_mark(cell, v[axis]))
+        if (cell.length == 0 || himc_span_is(cell, "nan") || himc_span_is(cell, "-nan") ||
+            v[axis] == 9999999)
             continue;
         if (!number || !(fabs(v[axis]) <= TAKE_LARGEST))
-            return refuse_cell(row, point, axis, cell);
+            return himc_error_set(
+                row->error,
+                "%s:%d: %s %c is \"%s\", expected a number up to 1e8, or an empty cell for a gap",
+                row->take->file, row->line, row->take->names[point], "XYZ"[axis],
+                himc_span_text(cell, text));
         seen++;
     }
     if (seen != 0 && seen != 3)

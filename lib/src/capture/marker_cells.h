@@ -13,6 +13,9 @@ typedef struct marker_row {
     himc_error *error;
 } marker_row;
 
+/// True if the row has a cell that is not blank.
+bool himc_marker_row_is_filled(himc_span row, char separator);
+
 /// Reads a decimal number, with a comma instead of the point if no comma is between cells.
 bool himc_marker_number(himc_span cell, char separator, double *value);
 

@@ -4,23 +4,22 @@
 /// All are a head that says rate, unit and the column where each marker's three cells begin,
 /// then rows of numbers. A head is read into a plan; one loop reads the rows of all.
 ///
-///     Nexus     sections "Devices", "Joints", "Trajectories", ...; of these "Trajectories" is
-///     read: the
-///               rate, a line of names each above its first column, "Frame,Sub Frame,X,Y,Z,...", a
-///               line of units, rows up to an empty one
-///     Motive    "Format Version,1.23,Export Frame Rate,120,Length Units,Meters,...", then lines of
-///     types
-///               (Marker, Rigid Body, Bone, ...), names, identifiers, properties (Position,
-///               Rotation), and "Frame,Time (Seconds),X,Y,Z,..."; y up. Positions of all are read,
-///               but not where a body's markers ought to be if the file has where they were
-///     Qualisys  lines KEY<tab>VALUE, of which FREQUENCY and MARKER_NAMES are needed; mm; then
-///     rows,
-///               with Frame and Time first if the line before them says so
-///     any       one line of column names: time (s), and three columns for each marker, NAME_x
-///     NAME_y
-///               NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the
-///               others are not read. So motion.csv of `himc render` is a take, too. Where a
-///               semicolon or a tab parts the cells, numbers may have a decimal comma
+/// Nexus: sections "Devices", "Joints", "Trajectories", ...; of these "Trajectories" is read: the
+/// rate, a line of names each above its first column, "Frame,Sub Frame,X,Y,Z,...", a line of
+/// units, rows up to an empty one.
+///
+/// Motive: "Format Version,1.23,Export Frame Rate,120,Length Units,Meters,...", then lines of
+/// types (Marker, Rigid Body, Bone, ...), names, identifiers, properties (Position, Rotation), and
+/// "Frame,Time (Seconds),X,Y,Z,..."; y up. Positions of all are read, but not the expected ones of
+/// a body's markers if the file has the measured ones.
+///
+/// Qualisys: lines KEY<tab>VALUE, of which FREQUENCY and MARKER_NAMES are needed; mm; then rows,
+/// with Frame and Time first if the line before them says so.
+///
+/// Any: one line of column names: time (s), and three columns for each marker, NAME_x NAME_y
+/// NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the others are not
+/// read. So motion.csv of `himc render` is a take, too. Where a semicolon or a tab parts the
+/// cells, numbers may have a decimal comma.
 #include "capture/marker_cells.h"
 
 #include <math.h>
@@ -28,8 +27,6 @@
 #include <string.h>
 
 #define NOT_THERE (-1)
-#define SAME_UNIT 1e-9
-#define RATE_TOLERANCE 0.02 // of the steps of a time column, over their mean; chosen
 
 typedef struct plan {
     himc_take *take;
@@ -77,6 +74,7 @@ static himc_span unquoted(himc_span cell)
     return quoted ? (himc_span){cell.at + 1, cell.length - 2} : cell;
 }
 
+// metres per unit; 0 if the word is no unit
 static double unit_of(himc_span word)
 {
     static const struct {
@@ -89,40 +87,22 @@ static double unit_of(himc_span word)
     return 0;
 }
 
-// Nexus
-
-static bool nexus_names(plan *p, himc_span line)
+// sets the unit of the file if one is given; a file has one
+static bool set_unit(plan *p, double unit)
 {
-    if (!make_room(p, count_cells(line, ',')))
-        return false;
-    for (int column = 0; line.at; column++) {
-        himc_span cell = himc_span_cell(&line, ',');
-        if (cell.length == 0 || column < 2)
-            continue;
-        if (p->points > 0 && column < p->begin[p->points - 1] + 3)
-            return refuse(p, "two names less than three columns apart");
-        add_point(p, cell, column);
-    }
-    return p->points > 0 || refuse(p, "no names of markers, expected one above each first column");
-}
-
-static bool nexus_units(plan *p, himc_span line)
-{
-    while (line.at) {
-        himc_span cell = himc_span_cell(&line, ',');
-        double unit = unit_of(cell);
-        if (unit == 0)
-            continue;
-        if (p->take->file_unit != 0 && fabs(p->take->file_unit - unit) > SAME_UNIT)
-            return refuse(p, "markers in several units, expected one");
-        p->take->file_unit = unit;
-    }
+    if (unit == 0)
+        return true;
+    if (p->take->file_unit != 0 && p->take->file_unit != unit)
+        return refuse(p, "markers in several units, expected one");
+    p->take->file_unit = unit;
     return true;
 }
 
+// Nexus
+
 static bool read_nexus(plan *p)
 {
-    himc_span line, names, heads;
+    himc_span line;
     memcpy(p->take->format, "CSV (Vicon Nexus)", 18);
     bool found = false;
     while (!found && himc_text_line(&p->text, &line))
@@ -133,67 +113,46 @@ static bool read_nexus(plan *p)
                               p->take->file);
     if (!himc_text_line(&p->text, &line) || !himc_span_number(himc_span_cell(&line, ','), &p->rate))
         return refuse(p, "no rate, expected frames per second (Hz)");
-    if (!himc_text_line(&p->text, &names))
+    if (!himc_text_line(&p->text, &line))
         return refuse(p, "no names of markers");
-    if (!nexus_names(p, names))
+    if (!make_room(p, count_cells(line, ',')))
         return false;
-    if (!himc_text_line(&p->text, &heads) || !himc_span_is(himc_span_cell(&heads, ','), "frame"))
+    for (int column = 0; line.at; column++) {
+        himc_span name = himc_span_cell(&line, ',');
+        if (name.length == 0 || column < 2)
+            continue;
+        if (p->points > 0 && column < p->begin[p->points - 1] + 3)
+            return refuse(p, "two names less than three columns apart");
+        add_point(p, name, column);
+    }
+    if (p->points == 0)
+        return refuse(p, "no names of markers, expected one above each first column");
+    if (!himc_text_line(&p->text, &line) || !himc_span_is(himc_span_cell(&line, ','), "frame"))
         return refuse(p, "not the line of columns, expected Frame,Sub Frame,X,Y,Z,...");
+    if (!himc_text_line(&p->text, &line))
+        return refuse(p, "no line of units");
+    while (line.at)
+        if (!set_unit(p, unit_of(himc_span_cell(&line, ','))))
+            return false;
     p->frame = 0;
     p->ends_with_blank = true;
-    return himc_text_line(&p->text, &line) ? nexus_units(p, line) : refuse(p, "no line of units");
+    return true;
 }
 
 // Motive
 
-static double motive_unit(himc_span word)
-{
-    return himc_span_is(word, "meters")        ? 1
-           : himc_span_is(word, "centimeters") ? 0.01
-           : himc_span_is(word, "millimeters") ? 0.001
-                                               : 0;
-}
-
-static bool motive_settings(plan *p, himc_span line)
-{
-    double capture = 0;
-    while (line.at) {
-        himc_span key = himc_span_cell(&line, ','), rest = line;
-        himc_span value = rest.at ? himc_span_cell(&rest, ',') : (himc_span){"", 0};
-        if (himc_span_is(key, "export frame rate") && !himc_span_number(value, &p->rate))
-            return refuse(p, "Export Frame Rate is no number (Hz)");
-        if (himc_span_is(key, "capture frame rate") && !himc_span_number(value, &capture))
-            return refuse(p, "Capture Frame Rate is no number (Hz)");
-        if (himc_span_is(key, "length units"))
-            p->take->file_unit = motive_unit(value);
-    }
-    p->rate = p->rate > 0 ? p->rate : capture;
-    return true;
-}
-
-static himc_span next_cell(himc_span *line)
-{
-    return line->at ? himc_span_cell(line, ',') : (himc_span){"", 0};
-}
-
-static bool has_measured_markers(himc_span types)
-{
-    while (types.at)
-        if (himc_span_is(himc_span_cell(&types, ','), "marker"))
-            return true;
-    return false;
-}
-
 static bool motive_columns(plan *p, himc_span types, himc_span names, himc_span properties,
                            himc_span axes)
 {
-    bool measured = has_measured_markers(types);
+    bool measured = false;
+    for (himc_span rest = types; rest.at && !measured;)
+        measured = himc_span_is(himc_span_cell(&rest, ','), "marker");
     int next = 0; // axis that goes on with the point
     if (!make_room(p, count_cells(axes, ',')))
         return false;
     for (int column = 0; axes.at; column++) {
-        himc_span type = next_cell(&types), name = unquoted(next_cell(&names));
-        himc_span property = next_cell(&properties), axis = next_cell(&axes);
+        himc_span type = himc_span_cell(&types, ','), name = himc_span_cell(&names, ',');
+        himc_span property = himc_span_cell(&properties, ','), axis = himc_span_cell(&axes, ',');
         bool expected =
             himc_span_is(type, "rigid body marker") || himc_span_is(type, "bone marker");
         bool here = himc_span_is(property, "position") && !(measured && expected);
@@ -202,7 +161,7 @@ static bool motive_columns(plan *p, himc_span types, himc_span names, himc_span 
             continue;
         }
         if (next == 2)
-            add_point(p, name, column - 2);
+            add_point(p, unquoted(name), column - 2);
         next = (next + 1) % 3;
     }
     return p->points > 0 || refuse(p, "no columns Position, expected an export with markers, rigid "
@@ -212,10 +171,22 @@ static bool motive_columns(plan *p, himc_span types, himc_span names, himc_span 
 static bool read_motive(plan *p)
 {
     himc_span line, types = {"", 0}, names = {"", 0}, properties = {"", 0};
+    double capture = 0;
+    char unit[44];
     memcpy(p->take->format, "CSV (OptiTrack Motive)", 23);
     p->take->format_up = himc_vec3_make(0, 1, 0);
-    if (!himc_text_line(&p->text, &line) || !motive_settings(p, line))
-        return false;
+    himc_text_line(&p->text, &line); // there: it names the format
+    while (line.at) {
+        himc_span key = himc_span_cell(&line, ','), rest = line;
+        himc_span value = himc_span_cell(&rest, ',');
+        if (himc_span_is(key, "export frame rate") && !himc_span_number(value, &p->rate))
+            return refuse(p, "Export Frame Rate is no number (Hz)");
+        if (himc_span_is(key, "capture frame rate") && !himc_span_number(value, &capture))
+            return refuse(p, "Capture Frame Rate is no number (Hz)");
+        if (himc_span_is(key, "length units"))
+            p->take->file_unit = himc_take_unit(himc_span_text(value, unit));
+    }
+    p->rate = p->rate > 0 ? p->rate : capture;
     for (int row = 0; himc_text_filled_line(&p->text, &line); row++) {
         himc_span rest = line;
         if (himc_span_is(himc_span_cell(&rest, ','), "frame")) {
@@ -232,25 +203,13 @@ static bool read_motive(plan *p)
 
 // Qualisys
 
-static bool qualisys_names(plan *p, himc_span rest)
-{
-    if (!make_room(p, count_cells(rest, '\t')))
-        return false;
-    while (rest.at) {
-        himc_span cell = himc_span_cell(&rest, '\t');
-        if (cell.length > 0)
-            add_point(p, cell, 0);
-    }
-    return p->points > 0 || refuse(p, "MARKER_NAMES has none");
-}
-
 // columns of the points, behind Frame and Time if the table begins with them
 static void qualisys_columns(plan *p, himc_span line)
 {
     int column = 0;
     if (himc_span_is(himc_span_cell(&line, '\t'), "frame")) {
         p->frame = column++;
-        if (line.at && himc_span_is(himc_span_cell(&line, '\t'), "time"))
+        if (himc_span_is(himc_span_cell(&line, '\t'), "time"))
             p->time = column++;
     }
     for (int i = 0; i < p->points; i++)
@@ -259,19 +218,25 @@ static void qualisys_columns(plan *p, himc_span line)
 
 static bool read_qualisys(plan *p)
 {
-    himc_span line, key;
+    himc_span line;
     double unused;
     memcpy(p->take->format, "TSV (Qualisys)", 15);
     p->take->file_unit = 0.001;
     for (himc_text before = p->text; himc_text_line(&p->text, &line); before = p->text) {
-        himc_span rest = line;
-        key = himc_span_cell(&rest, '\t');
+        himc_span rest = line, key = himc_span_cell(&rest, '\t');
         if (himc_span_is(key, "frequency")) {
-            if (!rest.at || !himc_span_number(himc_span_cell(&rest, '\t'), &p->rate))
+            if (!himc_span_number(himc_span_cell(&rest, '\t'), &p->rate))
                 return refuse(p, "FREQUENCY is no number (Hz)");
         } else if (himc_span_is(key, "marker_names") && p->points == 0) {
-            if (!rest.at || !qualisys_names(p, rest))
-                return p->points > 0 || refuse(p, "MARKER_NAMES has none");
+            if (!make_room(p, count_cells(rest, '\t')))
+                return false;
+            while (rest.at) {
+                himc_span name = himc_span_cell(&rest, '\t');
+                if (name.length > 0)
+                    add_point(p, name, 0);
+            }
+            if (p->points == 0)
+                return refuse(p, "MARKER_NAMES has none");
             qualisys_columns(p, (himc_span){"", 0});
         } else if (himc_span_is(key, "frame")) {
             qualisys_columns(p, line);
@@ -316,53 +281,37 @@ static int coordinate_of(himc_span cell, himc_span *name, double *unit)
     return NOT_THERE;
 }
 
-static bool is_time(himc_span cell)
-{
-    himc_span name = cell, word = last_word(&name);
-    return himc_span_is(cell, "time") || (himc_span_is(word, "s") && himc_span_is(name, "time"));
-}
-
-static bool same_name(himc_span a, himc_span b)
-{
-    return a.length == b.length && memcmp(a.at, b.at, a.length) == 0;
-}
-
-static bool any_columns(plan *p, himc_span line)
-{
-    himc_span name, last = {"", 0};
-    double unit;
-    for (int column = 0, next = 0; line.at; column++) {
-        himc_span cell = unquoted(himc_span_cell(&line, p->separator));
-        int axis = coordinate_of(cell, &name, &unit);
-        if (is_time(cell) && p->time == NOT_THERE)
-            p->time = column;
-        bool goes_on = next > 0 && axis == next && same_name(name, last);
-        if (axis != 0 && !goes_on) {
-            next = 0;
-            continue;
-        }
-        next = (axis + 1) % 3;
-        last = name;
-        if (unit != 0 && p->take->file_unit != 0 && fabs(unit - p->take->file_unit) > SAME_UNIT)
-            return refuse(p, "markers in several units, expected one");
-        p->take->file_unit = unit != 0 ? unit : p->take->file_unit;
-        if (axis == 2)
-            add_point(p, name, column - 2);
-    }
-    return true;
-}
-
 static bool read_any(plan *p)
 {
-    himc_span line;
+    himc_span line, last = {"", 0};
     memcpy(p->take->format, "CSV", 4);
     if (!himc_text_filled_line(&p->text, &line))
         return refuse(p, "the file has no line");
     p->separator = memchr(line.at, ';', line.length)    ? ';'
                    : memchr(line.at, '\t', line.length) ? '\t'
                                                         : ',';
-    if (!make_room(p, count_cells(line, p->separator)) || !any_columns(p, line))
+    if (!make_room(p, count_cells(line, p->separator)))
         return false;
+    for (int column = 0, next = 0; line.at; column++) {
+        himc_span cell = unquoted(himc_span_cell(&line, p->separator)), name = cell;
+        bool seconds = himc_span_is(last_word(&name), "s");
+        if (p->time == NOT_THERE && himc_span_is(seconds ? name : cell, "time"))
+            p->time = column;
+        double unit;
+        int axis = coordinate_of(cell, &name, &unit);
+        bool goes_on = next > 0 && axis == next && name.length == last.length &&
+                       memcmp(name.at, last.at, name.length) == 0;
+        if (axis != 0 && !goes_on) {
+            next = 0;
+            continue;
+        }
+        next = (axis + 1) % 3;
+        last = name;
+        if (!set_unit(p, unit))
+            return false;
+        if (axis == 2)
+            add_point(p, name, column - 2);
+    }
     if (p->points == 0)
         return refuse(p,
                       "no markers, expected columns time,NAME_x_m,NAME_y_m,NAME_z_m,... (or _mm, "
@@ -371,25 +320,6 @@ static bool read_any(plan *p)
 }
 
 // rows
-
-static bool is_row(const plan *p, himc_span line, bool *over)
-{
-    for (size_t i = 0; i < line.length; i++)
-        if (line.at[i] != p->separator && line.at[i] != ' ' && line.at[i] != '\t')
-            return true;
-    *over = p->ends_with_blank;
-    return false;
-}
-
-static int count_rows(const plan *p)
-{
-    himc_text text = p->text;
-    himc_span line;
-    int rows = 0;
-    for (bool over = false; !over && himc_text_line(&text, &line);)
-        rows += is_row(p, line, &over);
-    return rows;
-}
 
 static bool read_number(const plan *p, himc_span cell, const char *column, double *value)
 {
@@ -411,7 +341,7 @@ static bool read_row(const plan *p, himc_span line, int frame, double *time)
             column += 3;
             continue;
         }
-        himc_span cell = line.at ? himc_span_cell(&line, p->separator) : (himc_span){"", 0};
+        himc_span cell = himc_span_cell(&line, p->separator);
         if (column == p->frame && frame == 0) {
             if (!read_number(p, cell, "the frame", &number))
                 return false;
@@ -424,51 +354,42 @@ static bool read_row(const plan *p, himc_span line, int frame, double *time)
     return true;
 }
 
-static bool read_rows(plan *p)
-{
-    himc_span line;
-    double time = NAN;
-    for (int frame = 0; frame < p->take->frames && himc_text_line(&p->text, &line);) {
-        bool over = false;
-        if (is_row(p, line, &over) && !read_row(p, line, frame++, &time))
-            return false;
-    }
-    return true;
-}
-
 // the rate of a table that has only a time column: from its first to its last row
 static bool find_rate(plan *p, int rows)
 {
     himc_span line;
-    double first = NAN, last = NAN;
-    bool over = false;
+    double first = NAN, second = NAN, last = NAN;
     plan look = *p;
     for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
-        if (!is_row(&look, line, &over))
+        if (!himc_marker_row_is_filled(line, p->separator))
             continue;
         himc_span cell = {"", 0};
-        for (int column = 0; column <= look.time && line.at; column++)
-            cell = himc_span_cell(&line, look.separator);
-        if (row != 0 && row != 1 && row != rows - 1) {
-            row++;
-            continue;
-        }
-        if (!read_number(&look, cell, "the time", row++ ? &last : &first))
+        for (int column = 0; column <= p->time; column++)
+            cell = himc_span_cell(&line, p->separator);
+        bool is_read = row < 2 || row == rows - 1;
+        if (is_read && !read_number(&look, cell, "the time", row == 0 ? &first : &last))
             return false;
-        if (row == 2 && rows > 2)
-            p->rate = last - first;
+        second = row++ == 1 ? last : second;
     }
-    double step = (last - first) / (rows - 1), second = p->rate;
-    if (rows > 2 && !(fabs(second - step) <= RATE_TOLERANCE * fabs(step) + 1e-6))
+    double step = (last - first) / (rows - 1), early = second - first;
+    // chosen: 2 % are more than the rounding of the column
+    if (rows > 2 && !(fabs(early - step) <= 0.02 * fabs(step) + 1e-6))
         himc_take_note(p->take, "rate: the first rows are %.6g s apart, all on average %.6g s",
-                       second, step);
+                       early, step);
     p->rate = 1 / step;
     return rows > 1 || refuse(p, "one row: no rate");
 }
 
 static bool read_table(plan *p, size_t size)
 {
-    int rows = count_rows(p);
+    himc_span line;
+    int rows = 0;
+    for (himc_text rest = p->text; himc_text_line(&rest, &line);) {
+        bool filled = himc_marker_row_is_filled(line, p->separator);
+        if (!filled && p->ends_with_blank)
+            break;
+        rows += filled;
+    }
     if (rows == 0)
         return refuse(p, "no rows");
     if (p->rate == 0 && !find_rate(p, rows))
@@ -479,25 +400,11 @@ static bool read_table(plan *p, size_t size)
         return false;
     for (int i = 0; i < p->points; i++)
         himc_take_set_name(p->take, i, p->names[i].at, p->names[i].length);
-    return read_rows(p);
-}
-
-static bool is_nexus(himc_text text)
-{
-    himc_span line;
-    if (!himc_text_line(&text, &line))
-        return false;
-    himc_span cell = himc_span_cell(&line, ',');
-    return himc_span_is(cell, "trajectories") || himc_span_is(cell, "devices") ||
-           himc_span_is(cell, "joints") || himc_span_is(cell, "model outputs") ||
-           himc_span_is(cell, "segments") || himc_span_is(cell, "events");
-}
-
-static bool is_motive(himc_text text)
-{
-    himc_span line;
-    return himc_text_line(&text, &line) &&
-           himc_span_is(himc_span_cell(&line, ','), "format version");
+    double time = NAN;
+    for (int frame = 0; frame < rows && himc_text_line(&p->text, &line);)
+        if (himc_marker_row_is_filled(line, p->separator) && !read_row(p, line, frame++, &time))
+            return false;
+    return true;
 }
 
 static bool read_as(himc_take *take, const void *bytes, size_t size, char separator,
@@ -518,12 +425,17 @@ static bool read_as(himc_take *take, const void *bytes, size_t size, char separa
 
 bool himc_csv_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
 {
+    static const char *const sections[] = {"trajectories",  "devices",  "joints",
+                                           "model outputs", "segments", "events"};
     himc_text text = himc_text_open(bytes, size);
-    return read_as(take, bytes, size, ',',
-                   is_nexus(text)    ? read_nexus
-                   : is_motive(text) ? read_motive
-                                     : read_any,
-                   error);
+    himc_span line = {"", 0};
+    himc_text_line(&text, &line);
+    himc_span cell = himc_span_cell(&line, ',');
+    bool (*head)(plan *) = himc_span_is(cell, "format version") ? read_motive : read_any;
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
+        if (himc_span_is(cell, sections[i]))
+            head = read_nexus;
+    return read_as(take, bytes, size, ',', head, error);
 }
 
 bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *error)

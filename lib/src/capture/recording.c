@@ -53,30 +53,14 @@ static himc_vec3 far_end(const himc_skeleton *skeleton, int segment)
     return himc_vec3_scale(skeleton->segment[segment].axis, skeleton->segment[segment].length);
 }
 
-// the contents of an existing file stay until there is something to write
-static bool check_path(const char *path, himc_error *error)
-{
-    himc_file_draft draft;
-    bool good = himc_take_can_save(path, error) && himc_file_draft_open(&draft, path, error);
-    if (good)
-        himc_file_draft_drop(&draft);
-    return good;
-}
-
-static bool is_recording(const himc_take *take)
-{
-    bool same = take && take->points == (take->parents ? POINTS : MARKERS);
-    for (int i = 0; same && i < POINTS; i++)
-        same = himc_take_find(take, names[i]) >= 0;
-    return same;
-}
-
 bool himc_recording_may_replace(const char *path, himc_error *error)
 {
     if (access(path, F_OK) != 0)
         return true;
     himc_take *there = himc_take_load(path, NULL, NULL);
-    bool good = is_recording(there);
+    bool good = there && there->points == (there->parents ? POINTS : MARKERS);
+    for (int i = 0; good && i < POINTS; i++)
+        good = himc_take_find(there, names[i]) >= 0;
     himc_take_free(there);
     return good || himc_error_set(error,
                                   "%s: not a recording, and a score overwrites no other file; "
@@ -87,8 +71,11 @@ bool himc_recording_may_replace(const char *path, himc_error *error)
 himc_recording *himc_recording_new(const char *path, const himc_skeleton *skeleton, double rate,
                                    double longest, himc_error *error)
 {
-    if (!himc_check_range("rate", rate, 20, 10000, "Hz", error) || !check_path(path, error))
+    himc_file_draft draft;
+    if (!himc_check_range("rate", rate, 20, 10000, "Hz", error) ||
+        !himc_take_can_save(path, error) || !himc_file_draft_open(&draft, path, error))
         return NULL;
+    himc_file_draft_drop(&draft); // the contents of an existing file stay until it is written
     himc_recording *r = calloc(1, sizeof *r);
     if (r) {
         r->skeleton = *skeleton;
@@ -136,48 +123,9 @@ const char *himc_recording_path(const himc_recording *r)
     return r->path;
 }
 
-static void fill_skeleton(himc_take *take, const himc_skeleton *skeleton)
-{
-    for (int i = 0; i < POINTS; i++) {
-        int tip = i - HIMC_SEGMENTS, end = tip - HIMC_HANDS;
-        himc_take_set_name(take, i, names[i], strlen(names[i]));
-        take->parents[i] = end >= 0   ? ends[end]
-                           : tip >= 0 ? HIMC_LEFT_STICK + tip
-                                      : skeleton->segment[i].parent;
-        take->offsets[i] = end >= 0   ? far_end(skeleton, ends[end])
-                           : tip >= 0 ? skeleton->tip
-                                      : skeleton->segment[i].origin;
-    }
-    take->offsets[0] = himc_vec3_make(0, 0, 0);
-}
-
-static bool has_skeleton(const himc_recording *r)
-{
-    const char *dot = strrchr(r->path, '.');
-    return dot && strcasecmp(dot, ".bvh") == 0;
-}
-
-static void name_markers(himc_take *take)
-{
-    for (int i = 0; i < POINTS; i++)
-        himc_take_set_name(take, i, names[i], strlen(names[i]));
-    for (int i = 0; i < HIMC_SEGMENTS; i++) {
-        char side[32];
-        int n = snprintf(side, sizeof side, "%s_side", names[i]);
-        himc_take_set_name(take, POINTS + i, side, (size_t)n);
-    }
-}
-
 static himc_vec3 on_segment(const himc_body_state *state, int i, himc_vec3 x)
 {
     return himc_vec3_add(state->origin[i], himc_mat3_apply(&state->rotation[i], x));
-}
-
-static void fill_markers(himc_take *take, int index, const himc_body_state *state)
-{
-    himc_vec3 *x = himc_take_at(take, index, POINTS);
-    for (int i = 0; i < HIMC_SEGMENTS; i++)
-        x[i] = on_segment(state, i, himc_vec3_make(0, BESIDE, 0));
 }
 
 static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton, const frame *f)
@@ -187,16 +135,19 @@ static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton
     for (int j = 0; j < HIMC_JOINTS; j++)
         pose.joint[j] = himc_quat_unit((himc_quat){f->q[j][0], f->q[j][1], f->q[j][2], f->q[j][3]});
     himc_pose_to_state(skeleton, &pose, NULL, &state);
-    himc_quat *rotation = take->rotations ? take->rotations + (size_t)index * POINTS : NULL;
-    for (int i = 0; rotation && i < POINTS; i++)
-        rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
-    if (!rotation)
-        fill_markers(take, index, &state);
-    memcpy(himc_take_at(take, index, 0), state.origin, sizeof state.origin);
-    memcpy(himc_take_at(take, index, HIMC_SEGMENTS), state.tip, sizeof state.tip);
+    himc_vec3 *x = himc_take_at(take, index, 0);
+    memcpy(x, state.origin, sizeof state.origin);
+    memcpy(x + HIMC_SEGMENTS, state.tip, sizeof state.tip);
     for (int i = 0; i < ENDS; i++)
-        *himc_take_at(take, index, HIMC_SEGMENTS + HIMC_HANDS + i) =
-            on_segment(&state, ends[i], far_end(skeleton, ends[i]));
+        x[HIMC_SEGMENTS + HIMC_HANDS + i] = on_segment(&state, ends[i], far_end(skeleton, ends[i]));
+    if (take->rotations) {
+        himc_quat *rotation = take->rotations + (size_t)index * POINTS;
+        for (int i = 0; i < POINTS; i++)
+            rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
+    } else {
+        for (int i = 0; i < HIMC_SEGMENTS; i++)
+            x[POINTS + i] = on_segment(&state, i, himc_vec3_make(0, BESIDE, 0));
+    }
 }
 
 himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
@@ -208,16 +159,31 @@ himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
     }
     snprintf(take->file, sizeof take->file, "%.180s", r->path);
     snprintf(take->format, sizeof take->format, "recording");
-    bool skeleton = has_skeleton(r);
-    if (!himc_take_allocate(take, r->rate, r->count, skeleton ? POINTS : MARKERS, skeleton,
+    const char *dot = strrchr(r->path, '.');
+    bool has_skeleton = dot && strcasecmp(dot, ".bvh") == 0;
+    if (!himc_take_allocate(take, r->rate, r->count, has_skeleton ? POINTS : MARKERS, has_skeleton,
                             error)) {
         himc_take_free(take);
         return NULL;
     }
-    if (skeleton)
-        fill_skeleton(take, &r->skeleton);
-    else
-        name_markers(take);
+    for (int i = 0; i < POINTS; i++)
+        himc_take_set_name(take, i, names[i], strlen(names[i]));
+    for (int i = 0; has_skeleton && i < POINTS; i++) {
+        int tip = i - HIMC_SEGMENTS, end = tip - HIMC_HANDS;
+        take->parents[i] = end >= 0   ? ends[end]
+                           : tip >= 0 ? HIMC_LEFT_STICK + tip
+                                      : r->skeleton.segment[i].parent;
+        take->offsets[i] = end >= 0   ? far_end(&r->skeleton, ends[end])
+                           : tip >= 0 ? r->skeleton.tip
+                                      : r->skeleton.segment[i].origin;
+    }
+    if (has_skeleton)
+        take->offsets[0] = himc_vec3_make(0, 0, 0);
+    for (int i = 0; !has_skeleton && i < HIMC_SEGMENTS; i++) {
+        char side[32];
+        int n = snprintf(side, sizeof side, "%s_side", names[i]);
+        himc_take_set_name(take, POINTS + i, side, (size_t)n);
+    }
     for (int i = 0; i < r->count; i++)
         fill_frame(take, i, &r->skeleton, &r->frames[i]);
     return take;

@@ -38,30 +38,26 @@ typedef struct seeds {
     int count;
 } seeds;
 
-// the value that divides sorted numbers into two classes with the largest variance between them
-static double otsu(const double *sorted, int count)
+// the speed at which Otsu's threshold divides the logarithms of all speeds: that with the largest
+// variance between both classes
+static double dividing_speed(const himc_fall *falls, int count, double *scratch)
 {
     double all = 0, low = 0, best = -1, threshold = -INFINITY;
     for (int i = 0; i < count; i++)
-        all += sorted[i];
+        scratch[i] = log(falls[i].speed);
+    qsort(scratch, (size_t)count, sizeof *scratch, himc_order_doubles);
+    for (int i = 0; i < count; i++)
+        all += scratch[i];
     for (int i = 0; i < count - 1; i++) {
-        low += sorted[i];
+        low += scratch[i];
         double below = i + 1, above = count - below;
         double apart = (all - low) / above - low / below, between = below * above * apart * apart;
         if (between > best) {
             best = between;
-            threshold = 0.5 * (sorted[i] + sorted[i + 1]);
+            threshold = 0.5 * (scratch[i] + scratch[i + 1]);
         }
     }
-    return threshold;
-}
-
-static double dividing_speed(const himc_fall *falls, int count, double *scratch)
-{
-    for (int i = 0; i < count; i++)
-        scratch[i] = log(falls[i].speed);
-    qsort(scratch, (size_t)count, sizeof *scratch, himc_order_doubles);
-    return exp(otsu(scratch, count));
+    return exp(threshold);
 }
 
 static void find_seeds(const himc_fall *falls, int count, double threshold, seeds *to)
@@ -95,24 +91,13 @@ static himc_strike_head through(himc_vec3 a, himc_vec3 b, himc_vec3 c)
     return head;
 }
 
-// of the seeds that are on no head yet; fast ones count more, so that they decide between few
-static double score(const himc_strike_head *head, const seeds *s)
-{
-    double sum = 0;
-    for (int i = 0; i < s->count; i++) {
-        double d = off(head, s->fall[i]) / s->fall[i]->within;
-        if (s->fall[i]->head < 0 && d < 1)
-            sum += s->fall[i]->speed * (1 - d * d);
-    }
-    return sum;
-}
-
 static const himc_fall *any_seed(const seeds *s, uint64_t *random)
 {
     return s->fall[himc_random_bits(random) % (uint64_t)s->count];
 }
 
-// RANSAC: planes through three seeds, and level ones through one
+// RANSAC: planes through three seeds, and level ones through one. Their score is that of the seeds
+// that are on no head yet; fast ones count more, so that they decide between few
 static himc_strike_head best_plane(const seeds *s)
 {
     uint64_t random = 1;
@@ -122,9 +107,14 @@ static himc_strike_head best_plane(const seeds *s)
         himc_vec3 a = any_seed(s, &random)->x, b = any_seed(s, &random)->x,
                   c = any_seed(s, &random)->x;
         himc_strike_head tried = i % 2 ? through(a, b, c) : through(a, a, a);
-        double reached = score(&tried, s);
-        if (reached > most) {
-            most = reached;
+        double score = 0;
+        for (int k = 0; k < s->count; k++) {
+            double d = off(&tried, s->fall[k]) / s->fall[k]->within;
+            if (s->fall[k]->head < 0 && d < 1)
+                score += s->fall[k]->speed * (1 - d * d);
+        }
+        if (score > most) {
+            most = score;
             best = tried;
         }
     }
@@ -208,13 +198,6 @@ static int seeds_on(const seeds *s, int head)
     return n;
 }
 
-static void drop(himc_fall *falls, int count, int head)
-{
-    for (int i = 0; i < count; i++)
-        if (falls[i].head == head)
-            falls[i].head = -1;
-}
-
 static int find_heads(himc_fall *falls, int count, const seeds *s,
                       himc_strike_head heads[HIMC_STRIKE_HEADS])
 {
@@ -228,7 +211,8 @@ static int find_heads(himc_fall *falls, int count, const seeds *s,
         settle_at_rest(&heads[n], falls, count, n);
         int on = seeds_on(s, n);
         if (n > 0 && (on < LEAST_SEEDS || on < OTHER_DRUM_AGREE * rest)) {
-            drop(falls, count, n);
+            for (int i = 0; i < count; i++)
+                falls[i].head = falls[i].head == n ? -1 : falls[i].head;
             break;
         }
     }

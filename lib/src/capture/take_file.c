@@ -52,13 +52,6 @@ static const struct {
 };
 #define REFUSED (sizeof refused / sizeof refused[0])
 
-static bool check_options(const himc_take_options *options, himc_error *error)
-{
-    if (options->unit != 0 && !himc_check_range("unit", options->unit, 1e-6, 10, "m", error))
-        return false;
-    return himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error);
-}
-
 static bool ends_with(const char *path, const char *suffix)
 {
     size_t n = strlen(path), m = strlen(suffix);
@@ -126,7 +119,9 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
     himc_take_options usual = himc_take_default();
     options = options ? options : &usual;
     const format *f = format_of(name, error);
-    if (!f || !check_options(options, error))
+    if (!f ||
+        (options->unit != 0 && !himc_check_range("unit", options->unit, 1e-6, 10, "m", error)) ||
+        !himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error))
         return NULL;
     himc_take *take = calloc(1, sizeof *take);
     if (!take) {

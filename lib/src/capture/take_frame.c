@@ -30,6 +30,11 @@
 
 #define SAMPLED 200 // chosen: about so many frames, spread over the take, are looked at
 
+static int sample_step(const himc_take *take)
+{
+    return take->frames / SAMPLED + 1;
+}
+
 static const struct {
     const char *name;
     double metres;
@@ -61,10 +66,6 @@ static const struct {
 // sizes of markers (m)
 #define LEAST_SPREAD 0.2 // chosen: one forearm's markers ...
 #define MOST_SPREAD 4.0  // ... to a player and a drum
-#define TOO_WIDE 8.0     // chosen: no player and drums are so far apart
-#define TOO_SMALL 0.02   // chosen: a tip that plays moves farther
-#define FARTHEST 100.0   // chosen: of a room's origin
-#define STILL_SHARE 0.05 // chosen: smaller shares of the whole spread are those of one marker
 
 double himc_take_unit(const char *name)
 {
@@ -72,11 +73,6 @@ double himc_take_unit(const char *name)
         if (himc_span_is((himc_span){name, strlen(name)}, units[i].name))
             return units[i].metres;
     return 0;
-}
-
-static double distance(himc_vec3 a, himc_vec3 b)
-{
-    return himc_vec3_length(himc_vec3_sub(a, b));
 }
 
 // the longest path along the bones between any two nodes (file units); -1 without memory
@@ -125,7 +121,7 @@ static void box_add(box *b, himc_vec3 x)
 
 static double box_size(const box *b)
 {
-    return b->high.x >= b->low.x ? distance(b->high, b->low) : 0;
+    return b->high.x >= b->low.x ? himc_vec3_length(himc_vec3_sub(b->high, b->low)) : 0;
 }
 
 // in file units
@@ -138,9 +134,9 @@ typedef struct sizes {
 static sizes marker_sizes(const himc_take *take)
 {
     double spread[SAMPLED + 1];
-    int count = 0, step = take->frames / SAMPLED + 1;
+    int count = 0;
     box whole = box_empty();
-    for (int frame = 0; frame < take->frames; frame += step) {
+    for (int frame = 0; frame < take->frames; frame += sample_step(take)) {
         box one = box_empty();
         for (int i = 0; i < take->points; i++) {
             box_add(&one, *himc_take_at(take, frame, i));
@@ -154,6 +150,13 @@ static sizes marker_sizes(const himc_take *take)
     return (sizes){spread[count / 2], box_size(&whole), fmax(low, high)};
 }
 
+static int named(const himc_take *take, int point, const char *const *words, char rest[TAKE_NAME])
+{
+    char plain[TAKE_NAME];
+    himc_take_plain_name(take->names[point], plain);
+    return himc_take_side(plain, words, rest);
+}
+
 static const char *unit_name(double metres, char text[32])
 {
     for (int i = 0; i < UNITS; i++)
@@ -163,26 +166,19 @@ static const char *unit_name(double metres, char text[32])
     return text;
 }
 
-static bool has_legs(const himc_take *take)
+static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
 {
     static const char *const words[] = {"foot", "toe", "base", "end",   "ankle", "knee",
                                         "leg",  "up",  "low",  "lower", NULL};
-    char plain[TAKE_NAME], rest[TAKE_NAME];
-    for (int i = 0; i < take->points; i++) {
-        himc_take_plain_name(take->names[i], plain);
-        int side = himc_take_side(plain, words, rest);
-        if (side >= 0 && strcmp(rest, "end") != 0 && strcmp(rest, "base") != 0)
-            return true;
-    }
-    return false;
-}
-
-static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
-{
     double size = skeleton_size(take);
     if (size < 0)
         return himc_error_set(error, "%s: no memory", take->file);
-    bool legs = has_legs(take);
+    bool legs = false;
+    for (int i = 0; i < take->points && !legs; i++) {
+        char rest[TAKE_NAME];
+        int side = named(take, i, words, rest);
+        legs = side >= 0 && strcmp(rest, "end") != 0 && strcmp(rest, "base") != 0;
+    }
     *unit = guess_unit(size, LEAST_SKELETON, MOST_SKELETON, legs ? GUESSED : GUESSED_ARMS);
     if (*unit == 0 && !legs)
         *unit = guess_unit(size, LEAST_ARMS, MOST_SKELETON, METRIC);
@@ -199,22 +195,22 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
     return true;
 }
 
-// the metric unit that gives the points a player's size near the origin; 0 if none
-static double guess_marker_unit(const sizes *s)
-{
-    double size = s->typical > STILL_SHARE * s->all ? s->typical : s->all;
-    double unit = guess_unit(size, LEAST_SPREAD, MOST_SPREAD, METRIC);
-    return s->far * unit <= FARTHEST ? unit : 0;
-}
-
 static bool settle_markers(himc_take *take, double *unit, himc_error *error)
 {
     sizes s = marker_sizes(take);
     double said = take->file_unit, in = said > 0 ? said : 1;
-    bool small = s.all * said < TOO_SMALL && s.all > 0 && take->frames > 1;
-    bool fits = said > 0 && s.typical * said <= TOO_WIDE && !small;
+    // chosen: a tip that plays moves by more than 2 cm, players and drums are less than 8 m apart
+    bool small = s.all * said < 0.02 && s.all > 0 && take->frames > 1;
+    bool fits = said > 0 && s.typical * said <= 8 && !small;
     char text[32], other[32];
-    *unit = fits ? said : guess_marker_unit(&s);
+    *unit = said;
+    if (!fits) {
+        // the metric unit that makes the points a player's size, up to 100 m from a room's origin;
+        // chosen: a spread below 5 % of the whole is that of one marker
+        double size = s.typical > 0.05 * s.all ? s.typical : s.all;
+        *unit = guess_unit(size, LEAST_SPREAD, MOST_SPREAD, METRIC);
+        *unit = s.far * *unit <= 100 ? *unit : 0;
+    }
     // one marker may hardly move: a small size that no other unit explains is accepted
     if (*unit == 0 && said > 0 && small) {
         *unit = said;
@@ -234,15 +230,6 @@ static bool settle_markers(himc_take *take, double *unit, himc_error *error)
     return true;
 }
 
-static void scale(himc_take *take, double unit)
-{
-    size_t all = (size_t)take->frames * (size_t)take->points;
-    for (size_t i = 0; i < all; i++)
-        take->x[i] = himc_vec3_scale(take->x[i], unit);
-    for (int i = 0; i < take->points && take->offsets; i++)
-        take->offsets[i] = himc_vec3_scale(take->offsets[i], unit);
-}
-
 static bool settle_units(himc_take *take, const himc_take_options *options, himc_error *error)
 {
     double unit = options->unit;
@@ -253,7 +240,11 @@ static bool settle_units(himc_take *take, const himc_take_options *options, himc
     else if (!(take->parents ? settle_skeleton(take, &unit, error)
                              : settle_markers(take, &unit, error)))
         return false;
-    scale(take, unit);
+    size_t all = (size_t)take->frames * (size_t)take->points;
+    for (size_t i = 0; i < all; i++)
+        take->x[i] = himc_vec3_scale(take->x[i], unit);
+    for (int i = 0; i < take->points && take->offsets; i++)
+        take->offsets[i] = himc_vec3_scale(take->offsets[i], unit);
     return true;
 }
 
@@ -271,25 +262,14 @@ static const char *const low_words[] = {"hips", "hip",  "joint", "pelvis", "asis
                                         "psi",  "knee", "ankle", "foot",   "toe",  "heel", NULL};
 static const char *const shoulder_words[] = {"shoulder", "sho", "acromion", "acr", "joint", NULL};
 
-#define BLURRED 40.0 // chosen: a contact of some 7 ms is less than a third of a frame (Hz)
-#define CLEARLY 0.8  // chosen: share of a direction along one axis that makes it that axis
-#define STEADY 0.5   // chosen: share of the summed lengths, less means a player that turns round
-#define LEAST_ACROSS 0.03 // chosen: a shorter left-to-right vector has no direction (m)
-#define MOST_PAIRS 16     // chosen: a body has fewer
-
-static int named(const himc_take *take, int point, const char *const *words, char rest[TAKE_NAME])
-{
-    char plain[TAKE_NAME];
-    himc_take_plain_name(take->names[point], plain);
-    return himc_take_side(plain, words, rest);
-}
+#define MOST_PAIRS 16 // chosen: a body has fewer
 
 // mean over the frames of b - a; false if they are never seen together
 static bool mean_difference(const himc_take *take, int a, int b, himc_vec3 *mean)
 {
     himc_vec3 sum = {0, 0, 0};
     int count = 0;
-    for (int frame = 0; frame < take->frames; frame += take->frames / SAMPLED + 1) {
+    for (int frame = 0; frame < take->frames; frame += sample_step(take)) {
         himc_vec3 d = himc_vec3_sub(*himc_take_at(take, frame, b), *himc_take_at(take, frame, a));
         if (!himc_vec3_finite(d))
             continue;
@@ -343,7 +323,7 @@ static bool up_from_data(himc_take *take, himc_vec3 *up)
     }
     if (high < 0 || low < 0 || !mean_difference(take, low, high, &d))
         return false;
-    double clear = CLEARLY * himc_vec3_length(d);
+    double clear = 0.8 * himc_vec3_length(d); // chosen: so much along one axis is that axis
     *up = himc_vec3_make(copysign(fabs(d.x) > clear, d.x), copysign(fabs(d.y) > clear, d.y),
                          copysign(fabs(d.z) > clear, d.z));
     if (himc_vec3_length(*up) != 1)
@@ -370,33 +350,32 @@ static himc_vec3 find_up(himc_take *take, himc_up asked)
     return take->format_up;
 }
 
-static himc_mat3 rows_of(himc_vec3 x, himc_vec3 y, himc_vec3 z)
-{
-    return (himc_mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
-}
-
+// the rotation that makes `up` z, and x what is forward: to the right of the screen if that is known
 static himc_mat3 upright_axes(himc_vec3 up, himc_vec3 right)
 {
-    himc_vec3 forward = right;
+    himc_vec3 x = right;
     if (himc_vec3_length(right) == 0 || himc_vec3_dot(right, up) != 0)
-        forward = up.x == 0 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
-    return rows_of(forward, himc_vec3_cross(up, forward), up);
+        x = up.x == 0 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
+    himc_vec3 y = himc_vec3_cross(up, x);
+    return (himc_mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
 }
 
-// the rotation about z that brings a horizontal direction to +y
-static himc_mat3 rotate_to_left(himc_vec3 d, bool quarters)
+// the upright axes, rotated about z so that a horizontal direction in them becomes +y
+static himc_mat3 rotate_to_left(const himc_mat3 *upright, himc_vec3 d, bool quarters)
 {
     double angle = HIMC_PI / 2 - atan2(d.y, d.x);
     if (quarters)
         angle = round(angle / (HIMC_PI / 2)) * (HIMC_PI / 2);
     double c = quarters ? round(cos(angle)) : cos(angle),
            s = quarters ? round(sin(angle)) : sin(angle);
-    return (himc_mat3){{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+    himc_mat3 rotation = {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+    return himc_mat3_mul(&rotation, upright);
 }
 
+// chosen: a shorter vector from right to left has no direction
 static bool is_long_enough(himc_vec3 d)
 {
-    return hypot(d.x, d.y) > LEAST_ACROSS;
+    return hypot(d.x, d.y) > 0.03;
 }
 
 // the body's left side in the upright frame: mean over the take, or at its start if the player
@@ -407,7 +386,7 @@ static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_v
     himc_vec3 sum = {0, 0, 0}, first = {0, 0, 0}, d;
     double lengths = 0;
     int count = find_pairs(take, pairs, MOST_PAIRS);
-    for (int frame = 0; frame < take->frames && count; frame += take->frames / SAMPLED + 1) {
+    for (int frame = 0; frame < take->frames && count; frame += sample_step(take)) {
         himc_vec3 now = {0, 0, 0};
         for (int i = 0; i < count; i++) {
             d = himc_vec3_sub(*himc_take_at(take, frame, pairs[i].left),
@@ -419,7 +398,7 @@ static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_v
         sum = himc_vec3_add(sum, now);
         lengths += hypot(now.x, now.y);
     }
-    *left = hypot(sum.x, sum.y) > STEADY * lengths ? sum : first;
+    *left = hypot(sum.x, sum.y) > 0.5 * lengths ? sum : first; // chosen
     return is_long_enough(*left);
 }
 
@@ -464,15 +443,14 @@ static bool left_of_rest(const himc_take *take, const himc_mat3 *upright, himc_v
     return is_long_enough(*left);
 }
 
-static void rotate_points(himc_take *take, const himc_mat3 *a)
+// rotates the points by `a`, and the skeleton's zero pose by `b`
+static void rotate(himc_take *take, const himc_mat3 *a, const himc_mat3 *b)
 {
     size_t all = (size_t)take->frames * (size_t)take->points;
     for (size_t i = 0; i < all; i++)
         take->x[i] = himc_mat3_apply(a, take->x[i]);
-}
-
-static void rotate_skeleton(himc_take *take, const himc_mat3 *a, const himc_mat3 *b)
-{
+    if (!take->parents)
+        return;
     himc_quat qa = himc_quat_from_mat3(*a), qb = himc_quat_from_mat3(*b), back = himc_quat_conj(qb);
     for (int i = 0; i < take->points; i++)
         take->offsets[i] = himc_mat3_apply(b, take->offsets[i]);
@@ -481,14 +459,6 @@ static void rotate_skeleton(himc_take *take, const himc_mat3 *a, const himc_mat3
         for (int i = 0; i < take->points; i++)
             q[i] = himc_quat_mul(himc_quat_mul(take->parents[i] < 0 ? qa : qb, q[i]), back);
     }
-}
-
-static void say_axes(himc_take *take, himc_vec3 up, const char *heading)
-{
-    char axis = fabs(up.x) > 0.5 ? 'x' : fabs(up.y) > 0.5 ? 'y' : 'z', reason[128];
-    snprintf(reason, sizeof reason, "%.127s", take->axes_text);
-    snprintf(take->axes_text, sizeof take->axes_text, "%s%c up, %s; %s",
-             up.x + up.y + up.z < 0 ? "-" : "", axis, reason, heading);
 }
 
 static int by_name(const void *a, const void *b)
@@ -525,28 +495,25 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
     himc_take_drop_spikes(take);
     if (!note_names(take, error))
         return false;
-    if (take->rate < BLURRED)
+    if (take->rate < 40) // chosen: a contact of some 7 ms is less than a third of a frame
         himc_take_note(take, "rate: at %g Hz strikes are blurred, some may be missed or misplaced",
                        take->rate);
-    himc_vec3 up = find_up(take, options->up), left, rest_left;
-    himc_mat3 upright = upright_axes(up, take->file_right), a = upright, b;
+    himc_vec3 up = find_up(take, options->up), left;
+    himc_mat3 upright = upright_axes(up, take->file_right), a = upright;
     const char *heading = "heading as in the file";
     if (left_of_body(take, &upright, &left)) {
-        himc_mat3 rotation = rotate_to_left(left, false);
-        a = himc_mat3_mul(&rotation, &upright);
+        a = rotate_to_left(&upright, left, false);
         heading = "rotated so that the body faces along x";
     } else if (left_of_tips(take, options, &upright, &left, &heading)) {
-        himc_mat3 rotation = rotate_to_left(left, true);
-        a = himc_mat3_mul(&rotation, &upright);
+        a = rotate_to_left(&upright, left, true);
     }
-    b = a;
-    if (take->parents && left_of_rest(take, &upright, &rest_left)) {
-        himc_mat3 rotation = rotate_to_left(rest_left, false);
-        b = himc_mat3_mul(&rotation, &upright);
-    }
-    rotate_points(take, &a);
-    if (take->parents)
-        rotate_skeleton(take, &a, &b);
-    say_axes(take, up, heading);
+    himc_mat3 b = a;
+    if (take->parents && left_of_rest(take, &upright, &left))
+        b = rotate_to_left(&upright, left, false);
+    rotate(take, &a, &b);
+    char axis = fabs(up.x) > 0.5 ? 'x' : fabs(up.y) > 0.5 ? 'y' : 'z', reason[128];
+    snprintf(reason, sizeof reason, "%.127s", take->axes_text);
+    snprintf(take->axes_text, sizeof take->axes_text, "%s%c up, %s; %s",
+             up.x + up.y + up.z < 0 ? "-" : "", axis, reason, heading);
     return true;
 }

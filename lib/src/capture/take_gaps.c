@@ -16,12 +16,8 @@
 
 #include <stdlib.h>
 
-#define FASTEST 30.0       // chosen: four times the mallet of a hard blow (m/s)
-#define LEAST_JUMP 0.1     // chosen: noise of a tracker is far smaller (m)
-#define LONGEST_SPIKE 0.1  // chosen: a marker that stays elsewhere for longer was there (s)
-#define MOST_SPIKES 0.05   // chosen: of a point's frames
-#define DEFAULT_UNIT 0.001 // of marker files that do not state one (m)
-#define EDGE_TIME 0.02     // chosen: an edge's parabola is short beside a stroke of 0.2 s (s)
+#define FASTEST 30.0   // chosen: four times the mallet of a hard blow (m/s)
+#define LEAST_JUMP 0.1 // chosen: noise of a tracker is far smaller (m)
 
 static bool is_zero(himc_vec3 x)
 {
@@ -36,7 +32,7 @@ static bool is_far(const himc_take *take, int frame, int point, double far)
 
 void himc_take_drop_zeros(himc_take *take)
 {
-    double unit = take->file_unit > 0 ? take->file_unit : DEFAULT_UNIT;
+    double unit = take->file_unit > 0 ? take->file_unit : 0.001; // most marker files are in mm
     double far = fmax(LEAST_JUMP, FASTEST / take->rate) / unit;
     int dropped = 0, first = -1;
     for (int i = 0; i < take->points; i++)
@@ -64,27 +60,25 @@ static int next_seen(const himc_take *take, int point, int from)
     return from;
 }
 
-static bool jumps(const himc_take *take, int point, int from, int to)
-{
-    himc_vec3 way = himc_vec3_sub(*himc_take_at(take, to, point), *himc_take_at(take, from, point));
-    return himc_vec3_length(way) > fmax(LEAST_JUMP, FASTEST * (to - from) / take->rate);
-}
-
 // the end of the run that begins at a seen frame; `*last` is its last seen frame
 static int run_end(const himc_take *take, int point, int begin, int *last)
 {
-    int at = begin;
     *last = begin;
-    while ((at = next_seen(take, point, at + 1)) < take->frames && !jumps(take, point, *last, at))
-        *last = at;
-    return at;
+    for (int at = begin; (at = next_seen(take, point, at + 1)) < take->frames; *last = at) {
+        himc_vec3 way =
+            himc_vec3_sub(*himc_take_at(take, at, point), *himc_take_at(take, *last, point));
+        if (himc_vec3_length(way) > fmax(LEAST_JUMP, FASTEST * (at - *last) / take->rate))
+            return at;
+    }
+    return take->frames;
 }
 
 // finds a point's spikes, and with `drop` makes them gaps; returns the number of frames, `*first`
 // is the first of them
 static int spikes(himc_take *take, int point, bool drop, int *first)
 {
-    int longest = (int)fmax(1, LONGEST_SPIKE * take->rate), count = 0, last;
+    // chosen: a marker that stays elsewhere for more than 0.1 s was there
+    int longest = (int)fmax(1, 0.1 * take->rate), count = 0, last;
     for (int begin = next_seen(take, point, 0), end; begin < take->frames; begin = end) {
         end = run_end(take, point, begin, &last);
         bool alone = begin == next_seen(take, point, 0) && end == take->frames;
@@ -104,7 +98,7 @@ void himc_take_drop_spikes(himc_take *take)
     const char *name = "";
     for (int i = 0; i < take->points; i++) {
         int first = 0, count = spikes(take, i, false, &first);
-        if (count == 0 || count > MOST_SPIKES * take->frames)
+        if (count == 0 || count > 0.05 * take->frames)
             continue;
         spikes(take, i, true, &first);
         if (points++ == 0) {
@@ -137,7 +131,8 @@ static himc_take_gap next_gap(const himc_take *take, int point, int from)
 static bool edge_slope(const himc_vec3 *x, int frames, int edge, int step, double rate,
                        himc_vec3 *slope)
 {
-    int most = (int)fmax(3, floor(EDGE_TIME * rate)), n = 0;
+    // chosen: the parabola is short beside a stroke of 0.2 s
+    int most = (int)fmax(3, floor(0.02 * rate)), n = 0;
     double s[5] = {0, 0, 0, 0, 0};
     himc_vec3 b[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int i = edge; n < most && i >= 0 && i < frames && himc_vec3_finite(x[i]); i += step, n++) {
@@ -164,6 +159,11 @@ static bool edge_slope(const himc_vec3 *x, int frames, int edge, int step, doubl
 static void bridge(himc_vec3 *x, int frames, himc_take_gap g, double rate)
 {
     int a = g.begin - 1, b = g.end;
+    if (a < 0 || b == frames) { // held at the take's ends
+        for (int i = g.begin; i < g.end; i++)
+            x[i] = x[a < 0 ? b : a];
+        return;
+    }
     double h = b - a;
     himc_vec3 xa = x[a], xb = x[b], chord = himc_vec3_scale(himc_vec3_sub(xb, xa), 1 / h),
               va = chord, vb = chord;
@@ -178,16 +178,6 @@ static void bridge(himc_vec3 *x, int frames, himc_take_gap g, double rate)
     }
 }
 
-static void fill(himc_vec3 *x, int frames, himc_take_gap g, double rate)
-{
-    if (g.begin > 0 && g.end < frames) {
-        bridge(x, frames, g, rate);
-        return;
-    }
-    for (int i = g.begin; i < g.end; i++)
-        x[i] = g.begin > 0 ? x[g.begin - 1] : x[g.end];
-}
-
 int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
                    himc_take_gap *gap)
 {
@@ -199,7 +189,7 @@ int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *
         int length = gap->end - gap->begin;
         if (length / take->rate > longest || length == take->frames)
             return -1;
-        fill(x, take->frames, *gap, take->rate);
+        bridge(x, take->frames, *gap, take->rate);
         filled += length;
     }
     return filled;

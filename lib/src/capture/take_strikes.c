@@ -28,37 +28,12 @@
 
 #include <stdlib.h>
 
-#define LEAST_SPEED 0.25   // chosen: slower touches are not strokes (m/s) ...
-#define NOISE_SPEEDS 3.0   // ... nor those within so many deviations of a noisy track's speeds
-#define MOST_SINKING 0.3   // chosen: speed of a fall that goes on after it, as a share of its speed
-#define REFRACTORY 0.045   // chosen: strikes of one hand are further apart (s)
-#define APART 0.025        // chosen: peaks are further apart (s)
-#define STRIKE_WINDOW 0.03 // chosen: D is taken within this time, longer than any contact (s) ...
-#define SPEED_TIME 0.02    // ... of speeds over this time, to average noise (s)
-#define STRIKE_WIDTH 0.026 // chosen: most of D / A, between a head's 18 ms and the air's 55 (s)
-#define STRIKE_FRAMES 3.2  // chosen: the same in frames, if these are long
-#define BLUNT 1.6          // chosen: a fall on a head may be this much less sharp
-#define FALL_TIME 0.024    // chosen: length of the parabolas, short beside a fall of 0.2 s (s)
-#define CONTACT 0.007      // of a felt mallet with the simulated head (s)
-#define LONGEST_UNSEEN 0.012   // chosen: longer gaps may hide a strike (s)
-#define NOISE_DEVIATIONS 3.0   // chosen: standard deviations of noise that a bend must exceed
-#define SHORT_DIFFERENCE 0.006 // chosen: of quiet tracks, about a contact (s) ...
-#define LONG_DIFFERENCE 0.012  // ... and at most, of noisy ones (s)
-#define QUIET_BEND 100.0       // chosen: noise up to which differences stay short (m/s^2)
-#define SHARPEST_WITHIN 0.008  // chosen: time around a candidate for its largest bend (s)
-#define LOWEST_WITHIN 0.025    // chosen: time around it for the lowest position (s)
-#define FALL_DIFFERENCE 0.004  // chosen: of the bends that end the undisturbed fall (s)
-#define SLOWER 0.8 // chosen: bounds of the touch's speed, as shares of the fall's over SPEED_TIME,
-#define FASTER 1.6 // which noise changes less than the parabola's slope
-#define DISTURBED 0.1 // chosen: share of the largest bend that ends the undisturbed fall
-#define SHARP 0.8     // chosen: share of D that a sharp track has in two frames
-// by which a fall's end may lie off the head: play of felt and marker, noise, blunting by frames,
-// and a dent of 12 mm at 8 m/s; chosen by synthetic takes (tests/capture/test_take_mixed.c)
-#define PLAY 0.008          // (m)
-#define PLAY_DEVIATIONS 3.0 // of noise
-#define PLAY_FRAMES 0.35    // of the fall in a frame ...
-#define FALL_OF_FRAME 0.02  // ... up to this (m)
-#define DENT 0.0015         // for each m/s (m)
+#define REFRACTORY 0.045     // chosen: strikes of one hand are further apart (s)
+#define APART 0.025          // chosen: peaks are further apart (s)
+#define STRIKE_WINDOW 0.03   // chosen: D is taken within this time, longer than any contact (s) ...
+#define SPEED_TIME 0.02      // ... of speeds over this time, to average noise (s)
+#define NOISE_DEVIATIONS 3.0 // chosen: standard deviations of noise that count as noise
+#define SHARP 0.8            // chosen: share of D that a sharp track has in two frames
 
 typedef struct track {
     const himc_take *take;
@@ -100,11 +75,12 @@ static double noise_bend(const track *t, int h)
     return NOISE_DEVIATIONS * sqrt(6) * t->noise * s * s;
 }
 
-// frames of the differences in which strikes are looked for
+// frames of the differences in which strikes are looked for; chosen: about a contact in quiet
+// tracks, and longer in noisy ones, up to 12 ms, while noise bends by more than 100 m/s^2
 static int difference(const track *t)
 {
-    int h = frames_of(t, SHORT_DIFFERENCE, 1), longest = frames_of(t, LONG_DIFFERENCE, 1);
-    while (h < longest && noise_bend(t, h) > QUIET_BEND)
+    int h = frames_of(t, 0.006, 1), longest = frames_of(t, 0.012, 1);
+    while (h < longest && noise_bend(t, h) > 100)
         h++;
     return h;
 }
@@ -160,15 +136,6 @@ static double crossing(const parabola *p, const parabola *q, double from, double
     return 0.5 * (from + to);
 }
 
-static int lowest(const track *t, int from, int to)
-{
-    int best = from;
-    for (int i = from; i <= to; i++)
-        if (t->x[i].z < t->x[best].z)
-            best = i;
-    return best;
-}
-
 // the end of a fall: a peak of upward acceleration
 typedef struct candidate {
     int frame;
@@ -181,10 +148,11 @@ static bool is_unseen(const track *t, int frame)
            !himc_vec3_finite(*himc_take_at(t->take, frame, t->point));
 }
 
-// true if frames from .. to reach into a gap that may hide a strike; at the take's ends any gap may
+// true if frames from .. to reach into a gap that may hide a strike; chosen: one longer than 12 ms,
+// and any at the take's ends
 static bool in_gap(const track *t, int from, int to)
 {
-    int most = frames_of(t, LONGEST_UNSEEN, 2);
+    int most = frames_of(t, 0.012, 2);
     for (int i = from; i <= to; i++) {
         int begin = i, end = i;
         while (begin >= 0 && is_unseen(t, begin) && i - begin <= most)
@@ -202,22 +170,13 @@ static double bend_or_zero(const track *t, int i, int h)
     return i >= h && i + h < t->frames ? fmax(0, bend(t, i, h)) : 0;
 }
 
-static double width(const candidate *s)
-{
-    return (s->down + s->up) / s->bend;
-}
-
-static double widest(const track *t)
-{
-    return fmax(STRIKE_WIDTH, STRIKE_FRAMES / t->rate);
-}
-
-// true if no bend by h frames nearby is larger
+// true if the track bends upwards, and by no less than nearby
 static bool is_peak(const track *t, int i, int h)
 {
-    int w = frames_of(t, APART, 1);
     double here = bend(t, i, h);
-    for (int k = 1; k <= w; k++)
+    if (!(here > 0))
+        return false;
+    for (int k = 1; k <= frames_of(t, APART, 1); k++)
         if (bend_or_zero(t, i - k, h) >= here || bend_or_zero(t, i + k, h) > here)
             return false;
     return true;
@@ -236,87 +195,60 @@ static candidate candidate_at(const track *t, int i, int h)
     return s;
 }
 
-static double least_speed(const track *t)
-{
-    return fmax(LEAST_SPEED, NOISE_SPEEDS * sqrt(2) * t->noise / SPEED_TIME);
-}
-
-static bool is_fall(const track *t, const candidate *s, int h)
-{
-    return s->down > least_speed(t) && s->up > -MOST_SINKING * s->down &&
-           width(s) < BLUNT * widest(t) && !in_gap(t, s->frame - h, s->frame + h);
-}
-
-// the next end of a fall from frame *from on; false when there are no more
-static bool next_fall(const track *t, int *from, candidate *s)
-{
-    int h = difference(t);
-    for (int i = *from < h ? h : *from; i + h < t->frames; i++)
-        if (bend(t, i, h) > 0 && is_peak(t, i, h)) {
-            *s = candidate_at(t, i, h);
-            *from = i + 1;
-            if (is_fall(t, s, h))
-                return true;
-        }
-    *from = t->frames;
-    return false;
-}
-
-// the frame of the largest bend by differences of h frames, near `frame`
+// the frame of the largest bend by differences of h frames, near `frame`; chosen: within 8 ms
 static int sharpest(const track *t, int frame, int h)
 {
-    int w = frames_of(t, SHARPEST_WITHIN, 2), best = frame;
+    int w = frames_of(t, 0.008, 2), best = frame;
     for (int i = frame - w; i <= frame + w; i++)
         if (bend_or_zero(t, i, h) > bend_or_zero(t, best, h))
             best = i;
     return best;
 }
 
-// the last frame before a blunt peak in which the fall is still undisturbed
+// the last frame before a blunt peak in which the fall is still undisturbed: its bends, of 4 ms
+// (chosen), are less than a tenth of the largest
 static int clean_end(const track *t, int frame)
 {
-    int h = frames_of(t, FALL_DIFFERENCE, 1), limit = frame - frames_of(t, STRIKE_WINDOW, 3);
+    int h = frames_of(t, 0.004, 1), limit = frame - frames_of(t, STRIKE_WINDOW, 3);
     double largest = bend_or_zero(t, sharpest(t, frame, h), h);
     for (int i = frame - h; i > limit && i >= h; i--)
-        if (bend(t, i, h) < DISTURBED * largest && t->x[i + h].z < t->x[i].z)
+        if (bend(t, i, h) < 0.1 * largest && t->x[i + h].z < t->x[i].z)
             return i + h;
     return frame > 0 ? frame - 1 : 0;
-}
-
-static himc_vec3 place_between(const track *t, double frame, double height)
-{
-    int i = (int)frame < t->frames - 1 ? (int)frame : t->frames - 2;
-    himc_vec3 x = himc_vec3_madd(t->x[i], frame - i, himc_vec3_sub(t->x[i + 1], t->x[i]));
-    x.z = height;
-    return x;
 }
 
 static himc_take_strike measure(const track *t, const candidate *s, himc_hand hand)
 {
     bool quiet = noise_bend(t, 1) < (1 - SHARP) * (s->down + s->up) * t->rate;
-    int peak = quiet ? sharpest(t, s->frame, 1) : s->frame, w = frames_of(t, LOWEST_WITHIN, 2),
-        n = frames_of(t, FALL_TIME, 4);
+    int peak = quiet ? sharpest(t, s->frame, 1) : s->frame;
     double earlier = bend_or_zero(t, peak - 1, 1), later = bend_or_zero(t, peak + 1, 1);
     bool sharp = quiet && bend_or_zero(t, peak, 1) + fmax(earlier, later) >
                               SHARP * (s->down + s->up) * t->rate;
-    int low = lowest(t, peak < w ? 0 : peak - w, peak + w < t->frames ? peak + w : t->frames - 1);
+    int w = frames_of(t, APART, 2), low = peak < w ? 0 : peak - w;
+    for (int i = low; i <= peak + w && i < t->frames; i++)
+        if (t->x[i].z < t->x[low].z)
+            low = i;
     // a kink between two frames bends the track in both: the fall ends with the earlier one
     int end = sharp ? peak - (earlier > later) : clean_end(t, peak);
+    int n = frames_of(t, 0.024, 4); // chosen: short beside a fall of 0.2 s
     parabola before = fit(t, end, -1, n < end + 1 ? n : end + 1);
     parabola after = {t->x[low].z, 0, 0, low};
     if (sharp)
         after = fit(t, end + 1, 1, n < t->frames - end - 1 ? n : t->frames - end - 1);
     double touch = crossing(&before, &after, end, sharp ? end + 1 : low + 1);
     double u = sharp ? touch - end : 0;
-    double height = sharp ? value(&before, touch) : t->x[low].z;
     double up = sharp ? (after.b + 2 * after.c * (touch - end - 1)) * t->rate : 0;
     double down = -(before.b + 2 * before.c * u) * t->rate;
+    int i = (int)touch < t->frames - 1 ? (int)touch : t->frames - 2;
+    himc_vec3 x = himc_vec3_madd(t->x[i], touch - i, himc_vec3_sub(t->x[i + 1], t->x[i]));
+    x.z = sharp ? value(&before, touch) : t->x[low].z;
+    // chosen bounds: noise changes the fall's speed over SPEED_TIME less than the parabola's slope
     return (himc_take_strike){.hand = hand,
                               .frame = low,
                               .clear = end,
                               .time = touch / t->rate,
-                              .x = place_between(t, touch, height),
-                              .velocity = fmin(fmax(down, SLOWER * s->down), FASTER * s->down),
+                              .x = x,
+                              .velocity = fmin(fmax(down, 0.8 * s->down), 1.6 * s->down),
                               .rebound = fmax(up, 0)};
 }
 
@@ -327,37 +259,43 @@ typedef struct found {
     int count;
 } found;
 
-// height of the head above the point where fall and rebound intersect: v t down and u (CONTACT - t)
-// up again
+// height of the head above the point where fall and rebound intersect: v t down and u (T - t) up
+// again, with the contact T = 7 ms of a felt mallet with the simulated head
 static double above_intersection(const himc_take_strike *s)
 {
     double sum = s->velocity + s->rebound;
-    return sum > 0 ? CONTACT * s->velocity * s->rebound / sum : 0;
-}
-
-static himc_fall fall_of(const track *t, const candidate *s, const himc_take_strike *end)
-{
-    double frame = fmin(s->down / t->rate, FALL_OF_FRAME);
-    return (himc_fall){.x = end->x,
-                       .depth = above_intersection(end),
-                       .speed = s->down,
-                       .within =
-                           PLAY + PLAY_DEVIATIONS * t->noise + PLAY_FRAMES * frame + DENT * s->down,
-                       .sharp = width(s) < widest(t) && s->bend > noise_bend(t, difference(t))};
+    return sum > 0 ? 0.007 * s->velocity * s->rebound / sum : 0;
 }
 
 static void find_falls(const track *t, himc_hand hand, found *f)
 {
-    candidate s;
-    for (int from = 0; next_fall(t, &from, &s); f->count++) {
-        f->strike[f->count] = measure(t, &s, hand);
-        f->fall[f->count] = fall_of(t, &s, &f->strike[f->count]);
+    int h = difference(t);
+    // chosen: slower touches are not strokes, nor those that a noisy track's speeds hide
+    double least = fmax(0.25, NOISE_DEVIATIONS * sqrt(2) * t->noise / SPEED_TIME);
+    // chosen: most of D / A, between a head's 18 ms and the air's 55; and in frames
+    double widest = fmax(0.026, 3.2 / t->rate);
+    for (int i = h; i + h < t->frames; i++) {
+        if (!is_peak(t, i, h))
+            continue;
+        candidate s = candidate_at(t, i, h);
+        double width = (s.down + s.up) / s.bend;
+        // chosen: a fall may go on at 0.3 of its speed, and be 1.6 times less sharp than a blow
+        bool ends = s.down > least && s.up > -0.3 * s.down && width < 1.6 * widest;
+        if (!ends || in_gap(t, i - h, i + h))
+            continue;
+        himc_take_strike strike = measure(t, &s, hand);
+        // a fall's end may lie off the head by the play of felt and marker (m), noise, blunting by
+        // frames, and a dent of 12 mm at 8 m/s; chosen by synthetic takes
+        // (tests/capture/test_take_mixed.c)
+        double within = 0.008 + NOISE_DEVIATIONS * t->noise + 0.35 * fmin(s.down / t->rate, 0.02) +
+                        0.0015 * s.down;
+        f->strike[f->count] = strike;
+        f->fall[f->count++] = (himc_fall){.x = strike.x,
+                                          .depth = above_intersection(&strike),
+                                          .speed = s.down,
+                                          .within = within,
+                                          .sharp = width < widest && s.bend > noise_bend(t, h)};
     }
-}
-
-static int most_falls(const track *t)
-{
-    return t->frames / frames_of(t, APART, 1) + 1;
 }
 
 // the falls of both hands, one hand after the other; false without memory
@@ -369,7 +307,7 @@ static bool find(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], fo
         t[hand] = (track){take, tips[hand].point, tips[hand].x, take->frames, take->rate, 0};
         if (tips[hand].present && !himc_noise(tips[hand].x, take->frames, &t[hand].noise))
             return false;
-        most += tips[hand].present ? most_falls(&t[hand]) : 0;
+        most += tips[hand].present ? take->frames / frames_of(&t[hand], APART, 1) + 1 : 0;
     }
     f->strike = calloc((size_t)most + 1, sizeof *f->strike);
     f->fall = calloc((size_t)most + 1, sizeof *f->fall);
@@ -377,15 +315,6 @@ static bool find(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], fo
         if (tips[hand].present)
             find_falls(&t[hand], (himc_hand)hand, f);
     return f->strike && f->fall;
-}
-
-static void leave_out(const himc_fall *f, const himc_strike_head *head, himc_strike_survey *to)
-{
-    double over = f->x.z - himc_strike_head_at(head, f->x.x, f->x.y);
-    to->lowest = to->left_out ? fmin(to->lowest, over) : over;
-    to->highest = to->left_out ? fmax(to->highest, over) : over;
-    to->fastest = fmax(to->fastest, f->speed);
-    to->left_out++;
 }
 
 // true if fall k is a strike of the same hand as fall i, and too close in time to be another
@@ -396,12 +325,18 @@ static bool is_same(const found *f, int i, int k)
            fabs(f->strike[k].time - f->strike[i].time) < REFRACTORY;
 }
 
-static void list_left_out(const found *f, const himc_strike_head *heads, himc_strike_survey *to)
+static void list_left_out(const found *f, const himc_strike_head *head, himc_strike_survey *to)
 {
-    for (int i = 0; i < f->count; i++)
-        if (f->fall[i].head < 0 && f->fall[i].sharp && !is_same(f, i, i - 1) &&
-            !is_same(f, i, i + 1))
-            leave_out(&f->fall[i], &heads[0], to);
+    for (int i = 0; i < f->count; i++) {
+        const himc_fall *fall = &f->fall[i];
+        if (fall->head >= 0 || !fall->sharp || is_same(f, i, i - 1) || is_same(f, i, i + 1))
+            continue;
+        double over = fall->x.z - himc_strike_head_at(head, fall->x.x, fall->x.y);
+        to->lowest = to->left_out ? fmin(to->lowest, over) : over;
+        to->highest = to->left_out ? fmax(to->highest, over) : over;
+        to->fastest = fmax(to->fastest, fall->speed);
+        to->left_out++;
+    }
 }
 
 // moves the strikes to the front of the list, without those that follow a faster one closely
@@ -425,12 +360,6 @@ static int by_time(const void *a, const void *b)
     return (s > t) - (s < t);
 }
 
-static double median(double *values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, himc_order_doubles);
-    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
-
 // the median position of one hand's strikes on a head along one axis, for z above their
 // intersection; false if it has none
 static bool hand_median(const himc_strike_survey *s, int head, int hand, int axis, double *scratch,
@@ -444,9 +373,11 @@ static bool hand_median(const himc_strike_survey *s, int head, int hand, int axi
                            : axis == 1 ? strike->x.y
                                        : above_intersection(strike);
     }
-    if (n > 0)
-        *middle = median(scratch, n);
-    return n > 0;
+    if (n == 0)
+        return false;
+    qsort(scratch, (size_t)n, sizeof *scratch, himc_order_doubles);
+    *middle = 0.5 * (scratch[(n - 1) / 2] + scratch[n / 2]);
+    return true;
 }
 
 // the middle of the strikes on a head, on its plane
@@ -464,37 +395,31 @@ static himc_vec3 place_on(const himc_strike_survey *s, int head, const himc_stri
     return himc_vec3_make(middle[0], middle[1], z + (plane->at_rest ? 0 : middle[2]));
 }
 
-// strikes, heads and the place of the drum from the falls; false without memory
-static bool judge(found *f, himc_strike_survey *to)
-{
-    himc_strike_head heads[HIMC_STRIKE_HEADS];
-    double *scratch = malloc(((size_t)f->count + 1) * sizeof *scratch);
-    to->heads = scratch ? himc_strike_heads(f->fall, f->count, heads) : -1;
-    if (to->heads > 0) {
-        list_left_out(f, heads, to);
-        keep_strikes(f, to);
-    }
-    qsort(to->strikes, (size_t)to->count, sizeof *to->strikes, by_time);
-    for (int i = 0; i < to->heads; i++)
-        to->head[i] = place_on(to, i, &heads[i], scratch);
-    free(scratch);
-    return to->heads >= 0;
-}
-
 bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                        himc_strike_survey *survey)
 {
     found f = {NULL, NULL, 0};
-    *survey = (himc_strike_survey){.strikes = NULL};
-    bool found_all = find(take, tips, &f);
+    himc_strike_head heads[HIMC_STRIKE_HEADS];
+    *survey = (himc_strike_survey){.heads = -1};
+    bool all = find(take, tips, &f);
+    double *scratch = all ? malloc(((size_t)f.count + 1) * sizeof *scratch) : NULL;
     survey->strikes = f.strike;
-    found_all = found_all && judge(&f, survey);
-    free(f.fall);
-    if (!found_all) {
-        free(f.strike);
-        *survey = (himc_strike_survey){.strikes = NULL};
+    if (scratch)
+        survey->heads = himc_strike_heads(f.fall, f.count, heads);
+    if (survey->heads > 0) {
+        list_left_out(&f, &heads[0], survey);
+        keep_strikes(&f, survey);
+        qsort(survey->strikes, (size_t)survey->count, sizeof *survey->strikes, by_time);
     }
-    return found_all;
+    for (int i = 0; i < survey->heads; i++)
+        survey->head[i] = place_on(survey, i, &heads[i], scratch);
+    free(scratch);
+    free(f.fall);
+    if (survey->heads >= 0)
+        return true;
+    free(f.strike);
+    *survey = (himc_strike_survey){.strikes = NULL};
+    return false;
 }
 
 double himc_take_fastest_fall(const himc_take *take, const himc_take_tip *tip,

@@ -10,8 +10,6 @@
 #include <string.h>
 #include <strings.h>
 
-#define LISTED 12 // subjects named in an error; chosen
-
 // the subject of a point: letters before the last ':', or the name of its root; "" without one
 static void subject_of(const himc_take *take, int point, char subject[TAKE_NAME])
 {
@@ -28,28 +26,26 @@ static void subject_of(const himc_take *take, int point, char subject[TAKE_NAME]
     subject[length] = 0;
 }
 
-// the subjects in the file, at most LISTED; returns their number
-static int list_subjects(const himc_take *take, char found[LISTED][TAKE_NAME])
+// the names of the subjects in the file, up to 12 that fit, each after a blank; returns their number
+static int list_subjects(const himc_take *take, char text[256])
 {
+    char found[12][TAKE_NAME];
     int count = 0;
-    for (int i = 0; i < take->points; i++) {
-        char subject[TAKE_NAME];
+    size_t used = 0;
+    text[0] = 0;
+    for (int i = 0; i < take->points && count < 12; i++) {
+        char *subject = found[count];
         subject_of(take, i, subject);
         bool known = !subject[0];
         for (int k = 0; k < count; k++)
             known = known || !strcasecmp(found[k], subject);
-        if (!known && count < LISTED)
-            memcpy(found[count++], subject, TAKE_NAME);
+        if (known)
+            continue;
+        count++;
+        if (used < 200)
+            used += himc_format(text + used, 256 - used, " %s", subject);
     }
     return count;
-}
-
-static void join(char text[256], char found[LISTED][TAKE_NAME], int count)
-{
-    size_t used = 0;
-    text[0] = 0;
-    for (int i = 0; i < count && used < 200; i++)
-        used += himc_format(text + used, 256 - used, " %s", found[i]);
 }
 
 // keeps the points `kept` (count, rising), in place: what is read is never behind what is written
@@ -77,9 +73,8 @@ static void keep_points(himc_take *take, const int *kept, int count)
 
 bool himc_take_choose_subject(himc_take *take, const char *wanted, himc_error *error)
 {
-    char found[LISTED][TAKE_NAME], subject[TAKE_NAME], text[256];
-    int subjects = list_subjects(take, found), count = 0;
-    join(text, found, subjects);
+    char subject[TAKE_NAME], text[256];
+    int subjects = list_subjects(take, text), count = 0;
     if (!wanted) {
         if (subjects > 1)
             himc_take_note(take, "subjects: %d in the file, --subject chooses one:%s", subjects,

@@ -71,6 +71,8 @@ bool himc_span_word(himc_span *rest, himc_span *word)
 
 himc_span himc_span_cell(himc_span *rest, char separator)
 {
+    if (!rest->at)
+        return (himc_span){"", 0};
     size_t length = 0;
     while (length < rest->length && rest->at[length] != separator)
         length++;
@@ -125,21 +127,6 @@ static size_t take_digits(himc_span s, size_t i, uint64_t *m, int *e, int step)
     return i;
 }
 
-// reads the exponent after "e"; false if there are no digits
-static bool take_exponent(himc_span s, size_t i, int *e)
-{
-    bool minus = i < s.length && s.at[i] == '-';
-    if (i < s.length && (s.at[i] == '-' || s.at[i] == '+'))
-        i++;
-    if (!is_digit(s, i))
-        return false;
-    int value = 0;
-    for (; is_digit(s, i); i++)
-        value = value < 100000 ? value * 10 + (s.at[i] - '0') : value;
-    *e += minus ? -value : value;
-    return i == s.length;
-}
-
 static double scaled(uint64_t m, int e)
 {
     if (m == 0 || e < -400)
@@ -169,10 +156,20 @@ bool himc_span_number(himc_span s, double *value)
     }
     if (digits == 0)
         return false;
-    if (i < s.length) {
-        if (lower(s.at[i]) != 'e' || !take_exponent(s, i + 1, &e))
+    if (i < s.length && lower(s.at[i]) == 'e') {
+        i++;
+        bool down = i < s.length && s.at[i] == '-';
+        if (i < s.length && (s.at[i] == '-' || s.at[i] == '+'))
+            i++;
+        if (!is_digit(s, i))
             return false;
+        int exponent = 0;
+        for (; is_digit(s, i); i++)
+            exponent = exponent < 100000 ? exponent * 10 + (s.at[i] - '0') : exponent;
+        e += down ? -exponent : exponent;
     }
+    if (i < s.length)
+        return false;
     *value = minus ? -scaled(m, e) : scaled(m, e);
     return true;
 }
@@ -196,10 +193,11 @@ void himc_text_put_number(FILE *file, double value, int digits)
     fputs(text, file);
 }
 
-void himc_text_put_row(FILE *file, const double *value, int count, int digits, char separator)
+void himc_text_put_vec3(FILE *file, himc_vec3 x, int digits, char separator)
 {
-    for (int i = 0; i < count; i++) {
+    double value[3] = {x.x, x.y, x.z};
+    for (int axis = 0; axis < 3; axis++) {
         fputc(separator, file);
-        himc_text_put_number(file, value[i], digits);
+        himc_text_put_number(file, value[axis], digits);
     }
 }

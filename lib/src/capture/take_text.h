@@ -2,7 +2,7 @@
 #ifndef HIMC_TAKE_TEXT_H
 #define HIMC_TAKE_TEXT_H
 
-#include "himc/base.h"
+#include "himc/vec.h"
 
 #include <stdio.h>
 
@@ -28,7 +28,7 @@ himc_span himc_span_trim(himc_span span);
 /// Takes the first word off `rest`; false if only blanks are left.
 bool himc_span_word(himc_span *rest, himc_span *word);
 /// Takes the cell up to the next `separator` off `rest`, trimmed. After the last one `rest->at` is
-/// NULL, and `rest` is not to be used any more.
+/// NULL, and further cells are empty.
 himc_span himc_span_cell(himc_span *rest, char separator);
 /// Compares with a word; upper and lower case are equal.
 bool himc_span_is(himc_span span, const char *word);
@@ -41,9 +41,9 @@ bool himc_span_number(himc_span span, double *value);
 /// Reads a whole number.
 bool himc_span_integer(himc_span span, long low, long high, long *value);
 
-/// Writes numbers with a decimal point, each after the separator.
-void himc_text_put_row(FILE *file, const double *value, int count, int digits, char separator);
-/// Writes one number with a decimal point.
+/// Writes a number with a decimal point.
 void himc_text_put_number(FILE *file, double value, int digits);
+/// Writes x, y, z, each after the separator.
+void himc_text_put_vec3(FILE *file, himc_vec3 x, int digits, char separator);
 
 #endif

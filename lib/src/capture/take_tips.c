@@ -46,24 +46,17 @@ int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_op
     return found >= 0 && other && himc_take_find(take, other) == found ? -1 : found;
 }
 
-static bool refuse_gap(const himc_take *take, himc_hand hand, int point, himc_take_gap g,
-                       double longest, himc_error *error)
-{
-    bool never = g.end - g.begin == take->frames;
-    return himc_error_set(
-        error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), expected gaps up to %g s",
-        take->file, himc_hand_name(hand), take->names[point], never ? "never seen" : "missing",
-        take->first_frame + g.begin, take->first_frame + g.end - 1, (g.end - g.begin) / take->rate,
-        longest);
-}
-
 static bool fill_tip(himc_take *take, himc_hand hand, int point, double longest, himc_take_tip *tip,
                      himc_error *error)
 {
     himc_take_gap g;
     tip->filled = himc_take_fill(take, point, longest, take->tip[hand], &g);
     if (tip->filled < 0)
-        return refuse_gap(take, hand, point, g, longest, error);
+        return himc_error_set(
+            error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), expected gaps up to %g s",
+            take->file, himc_hand_name(hand), take->names[point],
+            g.end - g.begin == take->frames ? "never seen" : "missing", take->first_frame + g.begin,
+            take->first_frame + g.end - 1, (g.end - g.begin) / take->rate, longest);
     snprintf(tip->name, sizeof tip->name, "%s", take->names[point]);
     tip->x = take->tip[hand];
     tip->point = point;
@@ -86,14 +79,6 @@ static void list_points(const himc_take *take, char *text, size_t size)
     }
 }
 
-static bool refuse_name(const himc_take *take, himc_hand hand, const char *name, himc_error *error)
-{
-    char points[96];
-    list_points(take, points, sizeof points);
-    return himc_error_set(error, "%s: %s tip: no point \"%.40s\", expected %s", take->file,
-                          himc_hand_name(hand), name, points);
-}
-
 bool himc_take_tips(himc_take *take, const himc_take_options *options,
                     himc_take_tip tips[HIMC_HANDS], himc_error *error)
 {
@@ -102,29 +87,29 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
     if (!himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error))
         return false;
     int found = 0;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+    char points[96];
+    list_points(take, points, sizeof points);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
         const char *name = hand == HIMC_LEFT ? options->left_tip : options->right_tip;
-        int point = himc_take_find_tip(take, (himc_hand)hand, options);
+        int point = himc_take_find_tip(take, hand, options);
         tips[hand] = (himc_take_tip){.present = false};
         if (point < 0 && name)
-            return refuse_name(take, (himc_hand)hand, name, error);
+            return himc_error_set(error, "%s: %s tip: no point \"%.40s\", expected %s", take->file,
+                                  himc_hand_name(hand), name, points);
         if (point < 0)
             continue;
         if (found && tips[HIMC_LEFT].point == point)
             return himc_error_set(error,
                                   "%s: %s is named as both tips, expected one point for each tip",
                                   take->file, take->names[point]);
-        if (!fill_tip(take, (himc_hand)hand, point, options->longest_gap, &tips[hand], error))
+        if (!fill_tip(take, hand, point, options->longest_gap, &tips[hand], error))
             return false;
         found++;
     }
-    if (found)
-        return true;
-    char points[96];
-    list_points(take, points, sizeof points);
-    return himc_error_set(
-        error,
-        "%s: no point has a stick tip's name (RTIP, STICK_L, RightStick_end, bead, ...), name it "
-        "with --left-tip or --right-tip, expected %s",
-        take->file, points);
+    return found || himc_error_set(error,
+                                   "%s: no point has a stick tip's name (RTIP, STICK_L, "
+                                   "RightStick_end, bead, ...), name it with --left-tip or "
+                                   "--right-tip, expected %s",
+                                   take->file, points);
 }

@@ -11,8 +11,6 @@
 
 #include <string.h>
 
-#define TIME_TOLERANCE 0.01 // chosen: relative, above the rounding of the column
-
 typedef struct trc {
     himc_take *take;
     himc_text text;
@@ -37,6 +35,15 @@ static char find_separator(himc_span line)
     return *candidates ? *candidates : '\t';
 }
 
+// the next cell; with `packed` the next that is not empty
+static himc_span next_cell(himc_span *line, char separator, bool packed)
+{
+    himc_span cell = himc_span_cell(line, separator);
+    while (packed && line->at && cell.length == 0)
+        cell = himc_span_cell(line, separator);
+    return cell;
+}
+
 static int count_filled(himc_span line, char separator)
 {
     int count = 0;
@@ -45,24 +52,16 @@ static int count_filled(himc_span line, char separator)
     return count;
 }
 
-static himc_span filled_cell(himc_span *line, char separator)
-{
-    himc_span cell = {"", 0};
-    while (line->at && cell.length == 0)
-        cell = himc_span_cell(line, separator);
-    return cell;
-}
-
 // the value under a key of line 2, in line 3; empty if there is none. Some programs put several
 // separators between values: with as many values as keys, empty cells do not count
 static himc_span header_value(himc_span keys, himc_span values, char separator, const char *key)
 {
     bool packed = count_filled(keys, separator) == count_filled(values, separator);
     while (keys.at && values.at) {
-        himc_span k = packed ? filled_cell(&keys, separator) : himc_span_cell(&keys, separator);
-        himc_span v = packed ? filled_cell(&values, separator) : himc_span_cell(&values, separator);
-        if (himc_span_is(k, key))
-            return v;
+        himc_span name = next_cell(&keys, separator, packed);
+        himc_span value = next_cell(&values, separator, packed);
+        if (himc_span_is(name, key))
+            return value;
     }
     return (himc_span){"", 0};
 }
@@ -101,28 +100,6 @@ static bool read_header(trc *r)
     return true;
 }
 
-// true if the row has a cell that is not blank
-static bool is_filled(const trc *r, himc_span row)
-{
-    bool filled = false;
-    while (row.at && !filled)
-        filled = himc_span_cell(&row, r->separator).length > 0;
-    return filled;
-}
-
-// counts the filled rows from here on, without moving in the text
-static int count_rows(const trc *r, himc_span *first)
-{
-    himc_text text = r->text;
-    himc_span row;
-    int rows = 0;
-    while (himc_text_line(&text, &row)) {
-        if (is_filled(r, row) && rows++ == 0)
-            *first = row;
-    }
-    return rows;
-}
-
 // the name of marker i is above its first column, 2 + 3 i
 static bool read_names(trc *r)
 {
@@ -147,51 +124,41 @@ static bool read_names(trc *r)
                           r->take->file, r->markers, given);
 }
 
-static bool read_row(trc *r, himc_span row, int frame, double *time)
+static bool read_rows(trc *r)
 {
-    himc_span number = himc_span_cell(&row, r->separator), second = {"", 0};
-    if (row.at)
-        second = himc_span_cell(&row, r->separator);
-    long label;
-    if (!himc_span_integer(number, -2000000000, 2000000000, &label))
-        return refuse_value(r, "Frame#", number, "a whole number");
-    if (frame == 0)
-        r->take->first_frame = (int)label;
-    if (!himc_marker_number(second, r->separator, time))
-        *time = NAN;
-    marker_row cells = {r->take, r->text.line, r->separator, r->error};
-    for (int point = 0; point < r->take->points; point++)
-        if (!himc_marker_row_point(&cells, &row, frame, point))
-            return false;
-    while (row.at) {
-        himc_span cell = himc_span_cell(&row, r->separator);
-        if (cell.length > 0)
-            return refuse_value(r, "the cell after the last marker", cell, "an empty cell");
-    }
-    return true;
-}
-
-static bool read_rows(trc *r, double *first, double *last)
-{
+    himc_take *take = r->take;
     himc_span row;
-    for (int frame = 0; frame < r->take->frames && himc_text_line(&r->text, &row);) {
-        if (!is_filled(r, row))
+    double first = NAN, last = NAN;
+    for (int frame = 0; frame < take->frames && himc_text_line(&r->text, &row);) {
+        if (!himc_marker_row_is_filled(row, r->separator))
             continue;
-        if (!read_row(r, row, frame, frame ? last : first))
-            return false;
+        himc_span number = himc_span_cell(&row, r->separator);
+        himc_span time = himc_span_cell(&row, r->separator);
+        long label;
+        if (!himc_span_integer(number, -2000000000, 2000000000, &label))
+            return refuse_value(r, "Frame#", number, "a whole number");
+        if (frame == 0)
+            take->first_frame = (int)label;
+        if (!himc_marker_number(time, r->separator, frame ? &last : &first))
+            *(frame ? &last : &first) = NAN;
+        marker_row cells = {take, r->text.line, r->separator, r->error};
+        for (int point = 0; point < take->points; point++)
+            if (!himc_marker_row_point(&cells, &row, frame, point))
+                return false;
+        while (row.at) {
+            himc_span cell = himc_span_cell(&row, r->separator);
+            if (cell.length > 0)
+                return refuse_value(r, "the cell after the last marker", cell, "an empty cell");
+        }
         frame++;
     }
-    return true;
-}
-
-// the Time column is not used; a note says if it disagrees with the rate
-static void check_time(trc *r, double first, double last)
-{
-    double step = (last - first) / (r->take->frames - 1), said = 1 / r->rate;
-    if (r->take->frames > 1 && isfinite(step) && fabs(step - said) > TIME_TOLERANCE * said)
-        himc_take_note(r->take,
+    // the Time column is not used; a note says if it disagrees by more than its rounding
+    double step = (last - first) / (take->frames - 1), said = 1 / r->rate;
+    if (take->frames > 1 && isfinite(step) && fabs(step - said) > 0.01 * said)
+        himc_take_note(take,
                        "rate: the Time column steps by %.6g s, DataRate means %.6g s and is used",
                        step, said);
+    return true;
 }
 
 bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
@@ -199,12 +166,14 @@ bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *
     trc r = {.take = take, .text = himc_text_open(bytes, size), .error = error};
     memcpy(take->format, "TRC", 4);
     take->format_up = himc_vec3_make(0, 1, 0);
-    himc_span axes, row = {"", 0};
+    himc_span line;
     if (!read_header(&r))
         return false;
-    if (!himc_text_line(&r.text, &axes))
+    if (!himc_text_line(&r.text, &line))
         return refuse_line(&r, "the file ends before its first row");
-    int rows = count_rows(&r, &row);
+    int rows = 0;
+    for (himc_text rest = r.text; himc_text_line(&rest, &line);)
+        rows += himc_marker_row_is_filled(line, r.separator);
     if (rows != r.frames)
         return himc_error_set(error, "%s: the header says %ld frames, the file has %d rows",
                               take->file, r.frames, rows);
@@ -212,25 +181,8 @@ bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *
     if (size / (size_t)r.markers < (size_t)rows)
         return himc_error_set(error, "%s:3: NumMarkers is %ld, more than the rows have cells for",
                               take->file, r.markers);
-    double first = NAN, last = NAN;
-    if (!himc_take_allocate(take, r.rate, rows, (int)r.markers, false, error) || !read_names(&r) ||
-        !read_rows(&r, &first, &last))
-        return false;
-    check_time(&r, first, last);
-    return true;
-}
-
-#define MILLIMETRES 1000.0
-
-static void put_marker_names(FILE *file, const himc_take *take)
-{
-    fputs("Frame#\tTime", file);
-    for (int i = 0; i < take->points; i++)
-        fprintf(file, "\t%s\t\t", take->names[i]);
-    fputs("\n\t", file);
-    for (int i = 1; i <= take->points; i++)
-        fprintf(file, "\tX%d\tY%d\tZ%d", i, i, i);
-    fputc('\n', file);
+    return himc_take_allocate(take, r.rate, rows, (int)r.markers, false, error) && read_names(&r) &&
+           read_rows(&r);
 }
 
 bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error)
@@ -245,17 +197,20 @@ bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error)
     himc_text_put_number(file, take->rate, 6);
     fprintf(file, "\t%d\t%d\tmm\t", take->frames, take->points);
     himc_text_put_number(file, take->rate, 6);
-    fprintf(file, "\t1\t%d\n", take->frames);
-    put_marker_names(file, take);
+    fprintf(file, "\t1\t%d\nFrame#\tTime", take->frames);
+    for (int i = 0; i < take->points; i++)
+        fprintf(file, "\t%s\t\t", take->names[i]);
+    fputs("\n\t", file);
+    for (int i = 1; i <= take->points; i++)
+        fprintf(file, "\tX%d\tY%d\tZ%d", i, i, i);
+    fputc('\n', file);
     for (int frame = 0; frame < take->frames; frame++) {
         fprintf(file, "%d\t", frame + 1);
         himc_text_put_number(file, frame / take->rate, 6);
         for (int i = 0; i < take->points; i++) {
-            himc_vec3 x =
-                himc_vec3_scale(himc_take_y_up(*himc_take_at(take, frame, i)), MILLIMETRES);
-            double place[3] = {x.x, x.y, x.z};
+            himc_vec3 x = himc_take_y_up(*himc_take_at(take, frame, i));
             if (himc_vec3_finite(x))
-                himc_text_put_row(file, place, 3, 4, '\t');
+                himc_text_put_vec3(file, himc_vec3_scale(x, 1000), 4, '\t');
             else
                 fputs("\t\t\t", file);
         }
