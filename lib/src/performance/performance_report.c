@@ -164,7 +164,6 @@ static void fill_dynamics(const performance_body *b, himc_motion_row *row)
         himc_add_force(&b->plant, &state, i, push_point(b, &state, i, row->time), row->push[i],
                        load);
     himc_articulate(&b->plant, &state, &art);
-    himc_articulate_legs(&b->plant, &state, &art);
     himc_forward_dynamics(&b->plant, &state, &art, load, row->tip_force, row->acceleration);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         row->torque[j] = b->torque[j];
