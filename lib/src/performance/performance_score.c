@@ -803,63 +803,16 @@ bool himc_performance_load_text(himc_performance *p, const char *text, const cha
     return himc_job_carry_out(job_new(p, text, name, error), error);
 }
 
-// the strokes of a score that is not installed, in the order of add_strokes(); a drum that there is
-// not yet leaves the reason empty
-static bool plan_aside(himc_performance *p, himc_planner *aside, const himc_score *score,
-                       himc_error *error)
+bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *other)
 {
-    bool good = himc_planner_set_tempi(aside, score->tempi, score->tempo_count, error);
-    for (int i = 0; i < 2 * score->stroke_count && good; i++) {
-        himc_stroke stroke = score->strokes[i % score->stroke_count];
-        int drum = stroke.drum[0] ? himc_drums_find(&p->drums, stroke.drum) : 0;
-        bool own = i < score->stroke_count, rolls = stroke.ornament >= HIMC_ROLL_SINGLE;
-        himc_performance_name_drum(p, &stroke, drum);
-        if (drum < 0 || (rolls && has_changes(score, NULL))) // a roll depends on the first pitch
-            good = false;
-        else if (!own && stroke.ornament != HIMC_PLAIN)
-            himc_planner_add_ornament(aside, &stroke, drum,
-                                      himc_drum_pitch(p->drums.slot[drum].drum));
-        else if (own && !rolls) {
-            stroke.ornament = HIMC_PLAIN;
-            good = himc_planner_add(aside, &stroke, drum, error);
-        }
-    }
-    return good;
-}
-
-// the score's nudges in place of those of the take
-static bool exchange_nudges(himc_performance *p, const himc_score *score, himc_error *error)
-{
-    himc_nudge list[HIMC_NUDGES];
-    int count = 0;
-    for (int i = 0; i < score->line_count; i++)
-        if (score->lines[i].command.id == HIMC_COMMAND_NUDGE) {
-            if (count == HIMC_NUDGES)
-                return himc_error_set(error, "nudge: one too many, expected %d", HIMC_NUDGES);
-            list[count++] = himc_performance_nudge(&score->lines[i].command);
-        }
-    return himc_track_exchange(p->motion->track, list, count, step_time(p) - p->motion->track_start,
-                               error);
-}
-
-bool himc_performance_exchange_strokes(himc_performance *p, const char *text, const char *name,
-                                       himc_error *error)
-{
-    himc_planner_config config = himc_planner_default();
-    error->text[0] = 0;
-    himc_score *score = himc_score_parse(text, name, error);
-    himc_planner *aside = score ? himc_planner_new(&config, error) : NULL;
-    planned_push list[HIMC_PUSHES];
-    int pushes;
-    bool good = aside && pushes_of(score, name, 0, list, &pushes, error) &&
-                himc_body_may_exchange_pushes(p->body, list, pushes) &&
-                (p->motion->track ? exchange_nudges(p, score, error)
-                                  : plan_aside(p, aside, score, error) &&
-                                        himc_planner_exchange(p->motion->planner, aside));
+    const performance_body *with = other->body;
+    himc_track *track = p->motion->track;
+    bool good = himc_body_may_exchange_pushes(p->body, with->planned, with->planned_count) &&
+                (track ? himc_track_exchange(track, other->motion->track,
+                                             step_time(p) - p->motion->track_start)
+                       : himc_planner_exchange(p->motion->planner, other->motion->planner));
     if (good)
-        himc_body_plan_pushes(p->body, list, pushes, PUSHES_INSTEAD, error);
+        himc_body_plan_pushes(p->body, with->planned, with->planned_count, PUSHES_INSTEAD, NULL);
     himc_performance_find_end(p);
-    himc_planner_free(aside);
-    himc_score_free(score);
     return good;
 }
