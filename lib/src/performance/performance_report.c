@@ -373,7 +373,9 @@ typedef struct drum_sink {
 static void describe_drum(void *user, const char *line)
 {
     const drum_sink *sink = user;
-    himc_tell(sink->to, "drum %s%s", line, sink->silent);
+    char text[640];
+    snprintf(text, sizeof text, "drum %s%s", line, sink->silent);
+    sink->to->line(sink->to->user, text);
 }
 
 void himc_performance_inform(const himc_performance *p, himc_line_sink to)
