@@ -55,8 +55,8 @@ static void measure(himc_performance *p, double t, bool tick)
     }
 }
 
-// Inverse kinematics, inverse dynamics, forward dynamics; contact is solved inside the same step. In
-// `ik` the body is moved by inverse kinematics; only the ends of the sticks are in contact.
+// Inverse kinematics, inverse dynamics, forward dynamics; contact is solved inside the same step.
+// In `ik` the body is moved by inverse kinematics; only the ends of the sticks are in contact.
 static void step_body(himc_performance *p, int n, double t, double h, bool tick)
 {
     contact_scene scene = scene_of(p);
