@@ -184,8 +184,9 @@ static void fill_row(himc_performance *p, double t, himc_motion_row *row)
 
 static void note_written(himc_performance *p, const himc_recording *file)
 {
-    himc_events_note(&p->events, "recorded %.2f s in %s",
-                     himc_recording_frames(file) / p->clock.task_rate, himc_recording_path(file));
+    int frames = himc_recording_frames(file);
+    himc_events_note(&p->events, frames ? "recorded %.2f s in %s" : "recorded %.2f s: no file %s",
+                     frames / p->clock.task_rate, himc_recording_path(file));
 }
 
 void himc_performance_tell_tick(himc_performance *p, double t)
@@ -213,12 +214,19 @@ void himc_performance_tell_tick(himc_performance *p, double t)
                      himc_recording_path(r->file), t);
 }
 
+// one that was stopped before its first frame has no file
+static bool write_frames(himc_recording *file, himc_error *error)
+{
+    return himc_recording_frames(file) == 0 || himc_recording_write(file, error) ||
+           himc_error_prefix(error, "record");
+}
+
 bool himc_performance_end_recording(himc_performance *p, himc_error *error)
 {
     if (!p->recording.file)
         return true;
-    if (!himc_recording_write(p->recording.file, error))
-        return himc_error_prefix(error, "record");
+    if (!write_frames(p->recording.file, error))
+        return false;
     note_written(p, p->recording.file);
     himc_performance_drop_recording(p);
     return true;
@@ -260,8 +268,7 @@ static himc_job_state begin_recording(himc_job *job, himc_error *error)
 
 static bool write_recording(himc_job *job, himc_error *error)
 {
-    return himc_recording_write(((record_job *)job)->file, error) ||
-           himc_error_prefix(error, "record");
+    return write_frames(((record_job *)job)->file, error);
 }
 
 static himc_job_state end_recording(himc_job *job, himc_error *error)
