@@ -1,4 +1,5 @@
 /// describe.c: a take and its player in lines for a person, one per fact: `himc info`.
+#include "base/format.h"
 #include "base/line.h"
 #include "capture/player.h"
 #include "capture/take.h"
@@ -27,38 +28,35 @@ static void tell_names(const char *what, char (*names)[TAKE_NAME], int count, co
     himc_tell(to, "%s", text);
 }
 
-// "gap: NAME is missing in 92 frames: 1-40 77-128", at most GAP_RANGES of them
-static void tell_gap(const himc_take *take, int point, int missing, const himc_line_sink *to)
-{
-    char text[200] = "";
-    size_t used = 0;
-    int shown = 0;
-    for (int i = 0, begin = -1; i <= take->frames && shown <= GAP_RANGES; i++) {
-        bool seen = i == take->frames || himc_vec3_finite(*himc_take_at(take, i, point));
-        if (!seen && begin < 0)
-            begin = i;
-        if (seen && begin >= 0) {
-            int first = take->first_frame + begin, last = take->first_frame + i - 1;
-            used += shown == GAP_RANGES ? (size_t)snprintf(text + used, sizeof text - used, " ...")
-                    : first == last
-                        ? (size_t)snprintf(text + used, sizeof text - used, " %d", first)
-                        : (size_t)snprintf(text + used, sizeof text - used, " %d-%d", first, last);
-            begin = -1;
-            shown++;
-        }
-    }
-    himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
-}
-
+// "gap: NAME is missing in 92 frames: 1-40 77-128", for 40 points and GAP_RANGES gaps at most
 static void tell_gaps(const himc_take *take, const himc_line_sink *to)
 {
     int points = 0, all = 0;
-    for (int i = 0; i < take->points; i++) {
-        int missing = himc_take_missing(take, i);
+    for (int point = 0; point < take->points; point++) {
+        int missing = himc_take_missing(take, point), shown = 0;
         points += missing > 0;
         all += missing;
-        if (missing > 0 && points <= 40) // listed, chosen
-            tell_gap(take, i, missing, to);
+        if (missing == 0 || points > 40)
+            continue;
+        char text[200] = "";
+        size_t used = 0;
+        for (int i = 0, begin = -1; i <= take->frames && shown <= GAP_RANGES; i++) {
+            bool seen = i == take->frames || himc_vec3_finite(*himc_take_at(take, i, point));
+            if (!seen && begin < 0)
+                begin = i;
+            if (!seen || begin < 0)
+                continue;
+            int first = take->first_frame + begin, last = take->first_frame + i - 1;
+            if (shown == GAP_RANGES)
+                used += himc_format(text + used, sizeof text - used, " ...");
+            else if (first == last)
+                used += himc_format(text + used, sizeof text - used, " %d", first);
+            else
+                used += himc_format(text + used, sizeof text - used, " %d-%d", first, last);
+            begin = -1;
+            shown++;
+        }
+        himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
     }
     himc_tell(to, "gaps: %d frames in %d points", all, points);
 }
@@ -166,15 +164,15 @@ static void tell_measures(const himc_player *player, const himc_line_sink *to)
     // "upper-arm 0.281 0.283": left and right
     char text[220] = "";
     size_t used = 0;
-    for (int i = 0; i < HIMC_SEGMENTS && used < sizeof text; i++) {
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
         const char *name = himc_segment_name(i);
         bool paired = i >= HIMC_LEFT_UPPER_ARM;
         if (c->length[i] <= 0)
             continue;
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s %.3f", used ? "," : "",
-                                 paired ? name + strlen("left-") : name, c->length[i]);
-        if (paired && used < sizeof text)
-            used += (size_t)snprintf(text + used, sizeof text - used, " %.3f", c->length[++i]);
+        used += himc_format(text + used, sizeof text - used, "%s %s %.3f", used ? "," : "",
+                            paired ? name + strlen("left-") : name, c->length[i]);
+        if (paired)
+            used += himc_format(text + used, sizeof text - used, " %.3f", c->length[++i]);
     }
     if (used)
         himc_tell(to, "lengths (m):%s", text);
@@ -214,8 +212,8 @@ void himc_player_describe(const himc_player *player, const himc_head_frame *drum
     char text[220] = "";
     size_t used = 0;
     for (int j = 0; j < HIMC_JOINTS; j++)
-        if (player->known[j] && used < sizeof text)
-            used += (size_t)snprintf(text + used, sizeof text - used, " %s", himc_joint_name(j));
+        if (player->known[j])
+            used += himc_format(text + used, sizeof text - used, " %s", himc_joint_name(j));
     himc_tell(&to, "posture:%s%s",
               used ? " known joints" : " natural, because the take shows no joint", text);
     for (int i = 0; i < player->note_count; i++)
