@@ -151,22 +151,7 @@ static himc_span *model_labels(const c3d *r, size_t *count)
     return found;
 }
 
-// the points' labels from POINT:LABELS, LABELS2, ...; those that have none stay empty
-static void read_labels(c3d *r)
-{
-    char name[24] = "LABELS";
-    int point = 0;
-    for (int k = 2; k < 256; k++) {
-        const c3d_parameter *labels = himc_c3d_find(&r->parameters, "POINT", name);
-        if (!labels || labels->type != -1 || labels->dimensions == 0 || labels->size[0] == 0)
-            return;
-        for (int i = 0; point < r->points; i++, point++)
-            if (!himc_c3d_string(labels, i, &r->label[point].at, &r->label[point].length))
-                break;
-        snprintf(name, sizeof name, "LABELS%d", k);
-    }
-}
-
+// labels the points, from POINT:LABELS, LABELS2, ..., and keeps those that are positions
 static bool choose_points(c3d *r, int *count)
 {
     size_t models;
@@ -177,7 +162,16 @@ static bool choose_points(c3d *r, int *count)
         free(model);
         return himc_error_set(r->error, "%s: no memory", r->take->file);
     }
-    read_labels(r);
+    char name[24] = "LABELS";
+    for (int k = 2, point = 0; k < 256; k++) {
+        const c3d_parameter *labels = himc_c3d_find(&r->parameters, "POINT", name);
+        if (!labels || labels->type != -1 || labels->dimensions == 0 || labels->size[0] == 0)
+            break;
+        for (int i = 0; point < r->points; i++, point++)
+            if (!himc_c3d_string(labels, i, &r->label[point].at, &r->label[point].length))
+                break;
+        snprintf(name, sizeof name, "LABELS%d", k);
+    }
     *count = 0;
     for (int i = 0; i < r->points; i++) {
         himc_span label = himc_span_trim(r->label[i]);
@@ -517,23 +511,6 @@ static void put_parameters(bytes *b, const himc_take *take, int blocks)
     b->at = begin + (size_t)blocks * C3D_BLOCK;
 }
 
-static void put_header(bytes *b, const himc_take *take, int blocks)
-{
-    unsigned char *begin = b->at;
-    put_byte(b, 2);
-    put_byte(b, 0x50);
-    put_word(b, (unsigned)take->points);
-    put_word(b, 0);
-    put_word(b, 1);
-    put_word(b, take->frames < 65535 ? (unsigned)take->frames : 65535);
-    put_word(b, 0);
-    put_real(b, -1);
-    put_word(b, (unsigned)(2 + blocks));
-    put_word(b, 0);
-    put_real(b, take->rate);
-    b->at = begin + C3D_BLOCK;
-}
-
 bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
 {
     if (take->points > MOST_LABELS)
@@ -545,7 +522,18 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
     if (!buffer)
         return himc_error_set(error, "%s: no memory", take->file);
     bytes b = {buffer, buffer + before};
-    put_header(&b, take, blocks);
+    put_byte(&b, 2);
+    put_byte(&b, 0x50);
+    put_word(&b, (unsigned)take->points);
+    put_word(&b, 0);
+    put_word(&b, 1);
+    put_word(&b, take->frames < 65535 ? (unsigned)take->frames : 65535);
+    put_word(&b, 0);
+    put_real(&b, -1);
+    put_word(&b, (unsigned)(2 + blocks));
+    put_word(&b, 0);
+    put_real(&b, take->rate);
+    b.at = buffer + C3D_BLOCK;
     put_parameters(&b, take, blocks);
     fwrite(buffer, 1, before, file);
     for (int frame = 0; frame < take->frames; frame++) {

@@ -1,4 +1,5 @@
 /// describe.c: a take and its player in lines for a person, one per fact: `himc info`.
+#include "base/format.h"
 #include "base/line.h"
 #include "capture/player.h"
 #include "capture/take.h"
@@ -7,10 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GAP_LINES 40    // chosen: points with gaps that are listed
-#define STRIKE_LINES 64 // chosen: strikes that are listed
-#define GAP_RANGES 6    // chosen: gaps of one point that are listed
-#define ONE_DRUM 0.45   // radius of a large timpano's head (m)
+#define GAP_RANGES 6  // chosen: gaps of one point that are listed
+#define ONE_DRUM 0.45 // radius of a large timpano's head (m)
 
 // names in lines of at most 100 characters
 static void tell_names(const char *what, char (*names)[TAKE_NAME], int count, const char *between,
@@ -29,47 +28,35 @@ static void tell_names(const char *what, char (*names)[TAKE_NAME], int count, co
     himc_tell(to, "%s", text);
 }
 
-static void tell_analog(const himc_take *take, const himc_line_sink *to)
-{
-    if (!take->analog)
-        return;
-    himc_tell(to, "analog: %d channels of %d samples at %g Hz", take->analog_channels,
-              take->analog_samples, take->analog_rate);
-    tell_names("channels", take->analog_names, take->analog_channels, ",", to);
-}
-
-// "gap: NAME is missing in 92 frames: 1-40 77-128", at most GAP_RANGES of them
-static void tell_gap(const himc_take *take, int point, int missing, const himc_line_sink *to)
-{
-    char text[200] = "";
-    size_t used = 0;
-    int shown = 0;
-    for (int i = 0, begin = -1; i <= take->frames && shown <= GAP_RANGES; i++) {
-        bool seen = i == take->frames || himc_vec3_finite(*himc_take_at(take, i, point));
-        if (!seen && begin < 0)
-            begin = i;
-        if (seen && begin >= 0) {
-            int first = take->first_frame + begin, last = take->first_frame + i - 1;
-            used += shown == GAP_RANGES ? (size_t)snprintf(text + used, sizeof text - used, " ...")
-                    : first == last
-                        ? (size_t)snprintf(text + used, sizeof text - used, " %d", first)
-                        : (size_t)snprintf(text + used, sizeof text - used, " %d-%d", first, last);
-            begin = -1;
-            shown++;
-        }
-    }
-    himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
-}
-
+// "gap: NAME is missing in 92 frames: 1-40 77-128", for 40 points and GAP_RANGES gaps at most
 static void tell_gaps(const himc_take *take, const himc_line_sink *to)
 {
     int points = 0, all = 0;
-    for (int i = 0; i < take->points; i++) {
-        int missing = himc_take_missing(take, i);
+    for (int point = 0; point < take->points; point++) {
+        int missing = himc_take_missing(take, point), shown = 0;
         points += missing > 0;
         all += missing;
-        if (missing > 0 && points <= GAP_LINES)
-            tell_gap(take, i, missing, to);
+        if (missing == 0 || points > 40)
+            continue;
+        char text[200] = "";
+        size_t used = 0;
+        for (int i = 0, begin = -1; i <= take->frames && shown <= GAP_RANGES; i++) {
+            bool seen = i == take->frames || himc_vec3_finite(*himc_take_at(take, i, point));
+            if (!seen && begin < 0)
+                begin = i;
+            if (!seen || begin < 0)
+                continue;
+            int first = take->first_frame + begin, last = take->first_frame + i - 1;
+            if (shown == GAP_RANGES)
+                used += himc_format(text + used, sizeof text - used, " ...");
+            else if (first == last)
+                used += himc_format(text + used, sizeof text - used, " %d", first);
+            else
+                used += himc_format(text + used, sizeof text - used, " %d-%d", first, last);
+            begin = -1;
+            shown++;
+        }
+        himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
     }
     himc_tell(to, "gaps: %d frames in %d points", all, points);
 }
@@ -96,18 +83,6 @@ static void tell_heads(const himc_strike_survey *s, const himc_line_sink *to)
                   far, ONE_DRUM);
 }
 
-// a capture blunts the fall, so the speed at the head is that of the fall before, carried on
-static void tell_strike(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                        const himc_take_strike *s, const himc_line_sink *to)
-{
-    char carried[64] = "";
-    double seen = himc_take_fastest_fall(take, &tips[s->hand], s);
-    if (s->velocity > HIMC_TAKE_CARRIED_ON * seen)
-        snprintf(carried, sizeof carried, ", extrapolated from %.2f in the take", seen);
-    himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down%s", s->time,
-              himc_hand_name(s->hand), s->x.x, s->x.y, s->x.z, s->velocity, carried);
-}
-
 static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                          const himc_line_sink *to)
 {
@@ -118,8 +93,17 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
     }
     himc_tell(to, "strikes: %d%s", s.count,
               s.count ? "" : ", no tip falls onto a head; --up says which axis is up");
-    for (int i = 0; i < s.count && i < STRIKE_LINES; i++)
-        tell_strike(take, tips, &s.strikes[i], to);
+    for (int i = 0; i < s.count && i < 64; i++) { // listed, chosen
+        const himc_take_strike *strike = &s.strikes[i];
+        // a capture blunts the fall, so the speed at the head is that of the fall before, carried on
+        char carried[64] = "";
+        double seen = himc_take_fastest_fall(take, &tips[strike->hand], strike);
+        if (strike->velocity > HIMC_TAKE_CARRIED_ON * seen)
+            snprintf(carried, sizeof carried, ", extrapolated from %.2f in the take", seen);
+        himc_tell(to, "strike: %.4f s %s at %.3f %.3f %.3f m, %.2f m/s down%s", strike->time,
+                  himc_hand_name(strike->hand), strike->x.x, strike->x.y, strike->x.z,
+                  strike->velocity, carried);
+    }
     if (s.left_out > 0)
         himc_tell(
             to,
@@ -131,25 +115,12 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
     free(s.strikes);
 }
 
-static void tell_tips(himc_take *take, const himc_take_options *options, const himc_line_sink *to)
-{
-    himc_take_tip tips[HIMC_HANDS];
-    himc_error error = {""};
-    if (!himc_take_tips(take, options, tips, &error)) {
-        himc_tell(to, "tips: %.249s", error.text);
-        return;
-    }
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (tips[hand].present)
-            himc_tell(to, "tip: %s is %s, %d frames in gaps are filled",
-                      himc_hand_name((himc_hand)hand), tips[hand].name, tips[hand].filled);
-    tell_strikes(take, tips, to);
-}
-
 void himc_take_describe(himc_take *take, const himc_take_options *options,
                         void (*line)(void *, const char *), void *user)
 {
     himc_line_sink to = {line, user};
+    himc_take_tip tips[HIMC_HANDS];
+    himc_error error = {""};
     himc_tell(&to, "format: %s", take->format);
     himc_tell(&to, "length: %d frames at %g Hz, %.3f s, from frame %d", take->frames, take->rate,
               take->frames / take->rate, take->first_frame);
@@ -160,29 +131,22 @@ void himc_take_describe(himc_take *take, const himc_take_options *options,
     for (int i = 0; i < take->note_count; i++)
         himc_tell(&to, "note: %s", take->notes[i]);
     tell_gaps(take, &to);
-    tell_analog(take, &to);
+    if (take->analog) {
+        himc_tell(&to, "analog: %d channels of %d samples at %g Hz", take->analog_channels,
+                  take->analog_samples, take->analog_rate);
+        tell_names("channels", take->analog_names, take->analog_channels, ",", &to);
+    }
     for (int i = 0; i < take->event_count; i++)
         himc_tell(&to, "event: %.3f s %s", take->events[i].time, take->events[i].label);
-    tell_tips(take, options, &to);
-}
-
-// "upper-arm 0.281 0.283": left and right
-static void tell_lengths(const himc_skeleton_config *c, const himc_line_sink *to)
-{
-    char text[220] = "";
-    size_t used = 0;
-    for (int i = 0; i < HIMC_SEGMENTS && used < sizeof text; i++) {
-        const char *name = himc_segment_name(i);
-        bool paired = i >= HIMC_LEFT_UPPER_ARM;
-        if (c->length[i] <= 0)
-            continue;
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s %.3f", used ? "," : "",
-                                 paired ? name + strlen("left-") : name, c->length[i]);
-        if (paired && used < sizeof text)
-            used += (size_t)snprintf(text + used, sizeof text - used, " %.3f", c->length[++i]);
+    if (!himc_take_tips(take, options, tips, &error)) {
+        himc_tell(&to, "tips: %.249s", error.text);
+        return;
     }
-    if (used)
-        himc_tell(to, "lengths (m):%s", text);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (tips[hand].present)
+            himc_tell(&to, "tip: %s is %s, %d frames in gaps are filled",
+                      himc_hand_name((himc_hand)hand), tips[hand].name, tips[hand].filled);
+    tell_strikes(take, tips, &to);
 }
 
 static void tell_measures(const himc_player *player, const himc_line_sink *to)
@@ -197,46 +161,42 @@ static void tell_measures(const himc_player *player, const himc_line_sink *to)
                   "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f; the "
                   "command player says otherwise)",
                   c->height, from, c->mass, c->mass / (c->height * c->height));
-    tell_lengths(c, to);
-}
-
-static void tell_posture(const himc_player *player, const himc_line_sink *to)
-{
+    // "upper-arm 0.281 0.283": left and right
     char text[220] = "";
     size_t used = 0;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        if (player->known[j] && used < sizeof text)
-            used += (size_t)snprintf(text + used, sizeof text - used, " %s", himc_joint_name(j));
-    himc_tell(to, "posture:%s%s",
-              used ? " known joints" : " natural, because the take shows no joint", text);
-}
-
-// how the seat follows from the take
-static void seat_text(const himc_player *player, char *text, size_t size)
-{
-    double seat = himc_skeleton_seat(&player->config), moved = player->offset.z;
-    if (!player->placed)
-        snprintf(text, size, "by the tips");
-    else if (fabs(moved) < 5e-4)
-        snprintf(text, size, "as the take shows");
-    else if (seat <= PLAYER_LOWEST_SEAT || seat >= PLAYER_HIGHEST_SEAT)
-        snprintf(text, size, "the %s allowed", seat <= PLAYER_LOWEST_SEAT ? "least" : "most");
-    else
-        snprintf(text, size, "%s by %.3f m so that the strikes meet the head",
-                 moved > 0 ? "raised" : "lowered", fabs(moved));
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        const char *name = himc_segment_name(i);
+        bool paired = i >= HIMC_LEFT_UPPER_ARM;
+        if (c->length[i] <= 0)
+            continue;
+        used += himc_format(text + used, sizeof text - used, "%s %s %.3f", used ? "," : "",
+                            paired ? name + strlen("left-") : name, c->length[i]);
+        if (paired)
+            used += himc_format(text + used, sizeof text - used, " %.3f", c->length[++i]);
+    }
+    if (used)
+        himc_tell(to, "lengths (m):%s", text);
 }
 
 // in the world, with its origin on the floor under the player, and in the take
 static void tell_places(const himc_player *player, const himc_head_frame *drum,
                         const himc_line_sink *to)
 {
-    char seat[80];
+    double seat = himc_skeleton_seat(&player->config), moved = player->offset.z;
+    char how[80]; // the seat follows from the take
+    if (!player->placed)
+        snprintf(how, sizeof how, "by the tips");
+    else if (fabs(moved) < 5e-4)
+        snprintf(how, sizeof how, "as the take shows");
+    else if (seat <= PLAYER_LOWEST_SEAT || seat >= PLAYER_HIGHEST_SEAT)
+        snprintf(how, sizeof how, "the %s allowed", seat <= PLAYER_LOWEST_SEAT ? "least" : "most");
+    else
+        snprintf(how, sizeof how, "%s by %.3f m so that the strikes meet the head",
+                 moved > 0 ? "raised" : "lowered", fabs(moved));
     const char *held = player->walks ? ", without the walk," : "";
-    himc_vec3 floor = himc_vec3_scale(player->offset, -1), c = drum->center;
-    himc_vec3 head = himc_vec3_add(c, floor), hips = player->hips;
-    seat_text(player, seat, sizeof seat);
+    himc_vec3 c = drum->center, head = himc_vec3_sub(c, player->offset), hips = player->hips;
     himc_tell(to, "seat: hip joints %.3f m above the floor, %s; in the take%s at %.3f %.3f %.3f m",
-              himc_skeleton_seat(&player->config), seat, held, hips.x, hips.y, hips.z);
+              seat, how, held, hips.x, hips.y, hips.z);
     himc_tell(to,
               "drumhead: centre %.3f m %s the player, %.3f m to the %s, %.3f m high; in the take%s "
               "at %.3f %.3f %.3f m",
@@ -249,7 +209,13 @@ void himc_player_describe(const himc_player *player, const himc_head_frame *drum
 {
     himc_line_sink to = {line, user};
     tell_measures(player, &to);
-    tell_posture(player, &to);
+    char text[220] = "";
+    size_t used = 0;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (player->known[j])
+            used += himc_format(text + used, sizeof text - used, " %s", himc_joint_name(j));
+    himc_tell(&to, "posture:%s%s",
+              used ? " known joints" : " natural, because the take shows no joint", text);
     for (int i = 0; i < player->note_count; i++)
         himc_tell(&to, "note: %.240s", player->notes[i]);
     if (player->seated && drum)

@@ -25,47 +25,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REFERENCE_HEIGHT 1.741 // de Leva 1996 (m)
-#define LEAST_STICK 0.2        // range of himc_skeleton_config (m)
-#define MOST_STICK 0.6
-#define USUAL_BREADTH 0.37 // between the shoulder joints of that man (m)
-#define LEAST_BREADTH 0.2  // range of himc_skeleton_config (m)
-#define USUAL_HEAD 0.85    // chosen: height of a timpano's head, for the natural pose (m)
-#define HAND_REACH 0.2     // chosen: a hand is shorter, a stick in it reaches farther (m)
-#define WALK 0.15          // chosen: a seated player's hips sway by less, RMS (m)
-
-static void measure_limb(const player_points *p, const player_measure *m, himc_player *player)
-{
-    double length[HIMC_HANDS];
-    himc_skeleton_config *c = &player->config;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        length[hand] = himc_player_plausible(
-            himc_player_distance(p, (int)m->from + hand, (int)m->to + hand, 0.5), m->usual);
-        player->lengths += length[hand] > 0;
-    }
-    double both =
-        length[0] > 0 && length[1] > 0 ? 0.5 * (length[0] + length[1]) : fmax(length[0], length[1]);
-    if (both > 0 && m->segment == HIMC_LEFT_STICK) // both sticks are alike
-        c->stick_length = fmin(fmax(c->grip + both + c->mallet_radius, LEAST_STICK), MOST_STICK);
-    for (int hand = 0; hand < HIMC_HANDS && both > 0 && m->segment != HIMC_LEFT_STICK; hand++)
-        c->length[m->segment + hand] = length[hand] > 0 ? length[hand] : both;
-}
-
 static void measure_lengths(const player_points *p, himc_player *player)
 {
-    for (size_t i = 0; i < PLAYER_LIMBS; i++)
-        measure_limb(p, &himc_player_limbs[i], player);
-    for (size_t i = 0; i < PLAYER_SPINE; i++) {
-        double l = himc_player_plausible(
-            himc_player_distance(p, himc_player_spine[i].from, himc_player_spine[i].to, 0.5),
-            himc_player_spine[i].usual);
-        player->lengths += l > 0;
-        if (l > 0)
-            player->config.length[himc_player_spine[i].segment] = l;
+    himc_skeleton_config *c = &player->config;
+    for (const player_measure *m = himc_player_limbs; m < himc_player_limbs + PLAYER_LIMBS; m++) {
+        double l[HIMC_HANDS];
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            l[hand] = himc_player_plausible(
+                himc_player_distance(p, (int)m->from + hand, (int)m->to + hand, 0.5), m->usual);
+            player->lengths += l[hand] > 0;
+        }
+        double both = l[0] > 0 && l[1] > 0 ? 0.5 * (l[0] + l[1]) : fmax(l[0], l[1]);
+        if (both <= 0)
+            continue;
+        // both sticks are alike, within the range of himc_skeleton_config
+        if (m->segment == HIMC_LEFT_STICK)
+            c->stick_length = fmin(fmax(c->grip + both + c->mallet_radius, 0.2), 0.6);
+        for (int hand = 0; hand < HIMC_HANDS && m->segment != HIMC_LEFT_STICK; hand++)
+            c->length[m->segment + hand] = l[hand] > 0 ? l[hand] : both;
     }
+    for (const player_measure *m = himc_player_spine; m < himc_player_spine + PLAYER_SPINE; m++) {
+        double l = himc_player_plausible(himc_player_distance(p, m->from, m->to, 0.5), m->usual);
+        player->lengths += l > 0;
+        c->length[m->segment] = l;
+    }
+    // 0.37 m between the shoulder joints of de Leva's man, at least 0.2 m by himc_skeleton_config
     double breadth = himc_player_distance(p, POINT_SHOULDER, POINT_SHOULDER + 1, 0.5);
-    player->config.shoulders =
-        breadth >= LEAST_BREADTH ? himc_player_plausible(breadth, USUAL_BREADTH) : 0;
+    c->shoulders = breadth >= 0.2 ? himc_player_plausible(breadth, 0.37) : 0;
 }
 
 // a tip within a hand's length of the wrist is no stick's: the body's stick is then to be put there
@@ -75,7 +61,7 @@ static void note_hands(const player_points *p, himc_player *player)
         double far = himc_player_distance(p, POINT_WRIST + hand, POINT_TIP + hand, 0.5);
         int node = p->node[POINT_TIP + hand];
         bool shown = p->x[POINT_WRIST + hand] && p->x[POINT_TIP + hand] && node >= 0;
-        if (shown && far < HAND_REACH)
+        if (shown && far < 0.2) // chosen: a hand is shorter, a stick in it reaches farther
             himc_player_note(player,
                              "%s is %.2f m from the wrist: a hand, not the tip of a stick; the "
                              "arms are bent until a stick's tip is there",
@@ -114,7 +100,7 @@ static bool find_height(const player_points *p, himc_player *player, himc_error 
         c->height = p->take->height;
         from = "the file";
     } else if (ratio > 0) {
-        c->height = ratio * REFERENCE_HEIGHT;
+        c->height = ratio * 1.741; // de Leva 1996
     } else {
         from = "";
     }
@@ -136,31 +122,16 @@ static himc_vec3 mean_position(const player_points *p, int which)
     return sum;
 }
 
-// POINT_HIPS is the centre between the hip joints if both are there: a point called hips may be
-// elsewhere
-static bool center_hips(player_points *p)
-{
-    himc_vec3 *left = p->x[POINT_HIP], *right = p->x[POINT_HIP + 1];
-    if (!left || !right)
-        return true;
-    if (!p->x[POINT_HIPS])
-        p->x[POINT_HIPS] = malloc((size_t)p->frames * sizeof(himc_vec3));
-    if (!p->x[POINT_HIPS])
-        return false;
-    for (int i = 0; i < p->frames; i++)
-        p->x[POINT_HIPS][i] = himc_vec3_scale(himc_vec3_add(left[i], right[i]), 0.5);
-    return true;
-}
-
-// a held pelvis replaces one that sways a little, not one that walks
-static bool find_walk(const player_points *p, himc_vec3 mean, himc_player *player)
+// a held pelvis replaces one that sways a little, not one that walks; false without memory
+static bool find_walk(const player_points *p, himc_player *player)
 {
     double square = 0;
+    himc_vec3 mean = mean_position(p, POINT_HIPS);
     for (int i = 0; i < p->frames; i++) {
         himc_vec3 d = himc_vec3_sub(p->x[POINT_HIPS][i], mean);
         square += himc_vec3_dot(d, d) / p->frames;
     }
-    player->walks = sqrt(square) > WALK;
+    player->walks = sqrt(square) > 0.15; // chosen: a seated player's hips sway by less
     if (!player->walks)
         return true;
     himc_player_note(
@@ -185,7 +156,7 @@ static bool find_place(const player_points *p, const himc_skeleton *s, himc_play
         player->hips =
             waist ? himc_vec3_sub(mean_position(p, POINT_WAIST), up) : mean_position(p, POINT_HIPS);
         player->placed = true;
-        return find_walk(p, mean_position(p, POINT_HIPS), player);
+        return find_walk(p, player);
     }
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         if (!p->x[POINT_SHOULDER + hand])
@@ -202,29 +173,21 @@ static bool find_place(const player_points *p, const himc_skeleton *s, himc_play
     return true;
 }
 
-// the pose of a body of which the take shows nothing
-static himc_pose natural_pose(const himc_skeleton *skeleton)
-{
-    himc_posture posture;
-    himc_posture_init(&posture, skeleton, USUAL_HEAD);
-    himc_pose pose = posture.rest;
-    pose.joint[HIMC_TRUNK - 1] =
-        himc_quat_exp(himc_vec3_make(0, posture.trunk_posture.value[HIMC_TRUNK_POSTURE_LEAN], 0));
-    return pose;
-}
-
 static bool read_player(himc_player *player, player_points *p, himc_error *error)
 {
     himc_skeleton skeleton;
-    if (!center_hips(p))
-        return himc_error_set(error, "%s: no memory", p->take->file);
+    himc_posture natural;
     if (!himc_player_check(p, player, error))
         return false;
     measure_lengths(p, player);
     note_hands(p, player);
     if (!find_height(p, player, error) || !himc_skeleton_init(&skeleton, &player->config, error))
         return false;
-    player->mean = natural_pose(&skeleton);
+    // what the take does not show is in the natural pose, before a timpano's head
+    himc_posture_init(&natural, &skeleton, 0.85);
+    double lean = natural.trunk_posture.value[HIMC_TRUNK_POSTURE_LEAN];
+    player->mean = natural.rest;
+    player->mean.joint[HIMC_TRUNK - 1] = himc_quat_exp(himc_vec3_make(0, lean, 0));
     bool found = find_place(p, &skeleton, player);
     himc_vec3 waist = himc_vec3_add(player->hips, skeleton.segment[HIMC_TRUNK].origin);
     if (!found || !himc_player_read_poses(player, p, &skeleton, p->x[POINT_HIPS] ? &waist : NULL))
@@ -267,18 +230,8 @@ void himc_player_free(himc_player *player)
 
 // The seat.
 
-#define ON_HEAD 0.97 // chosen: share of the radius within which strikes meet the head
-#define DENT 0.012   // chosen: dent of a struck head; a smaller change of the seat is not made (m)
-#define REST_OVER_HEAD 0.085 // of resting sticks (m), as the planner has them
-#define APPROACH_PARTS 20    // of the way from there, in which it is looked at
-#define OVER_HEAD 0.05       // chosen: height of the lowest position if nothing is struck (m)
-#define LOWEST_HEAD 0.1      // chosen: of the drum above the floor (m)
-#define BESIDE_HEAD 0.05     // chosen: a tip so near beside the head counts as over it (m)
-#define REACH_STEPS 50       // chosen: most moves of a take that is partly out of reach ...
-#define REACH_FRAMES 1000    // ... chosen: frames looked at in each
-#define REACH_OVERSHOOT 1.01 // chosen: each a little farther than missing
-#define LEAST_AWAY 0.1       // chosen: nearer to the player's axis a strike has no direction (m)
-#define REACH_MISSING 1e-3   // chosen: less out of reach is in reach (m)
+#define OVER_HEAD 0.05   // chosen: height of the lowest position if nothing is struck (m)
+#define BESIDE_HEAD 0.05 // chosen: a tip so near beside the head counts as over it (m)
 
 // the centre of the take's strikes, if there are any; false without memory
 static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], bool *any,
@@ -291,16 +244,6 @@ static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HA
     *any = survey.heads > 0;
     *place = survey.head[0];
     return true;
-}
-
-static himc_vec3 lowest_place(const himc_take *take, const himc_take_tip tips[HIMC_HANDS])
-{
-    const himc_vec3 *x = tips[HIMC_RIGHT].present ? tips[HIMC_RIGHT].x : tips[HIMC_LEFT].x;
-    int lowest = 0;
-    for (int i = 1; i < himc_take_frames(take); i++)
-        if (x[i].z < x[lowest].z)
-            lowest = i;
-    return x[lowest];
 }
 
 static void usual_place(const himc_head_frame *drum, double *x, double *aside)
@@ -322,24 +265,16 @@ bool himc_strike_offset(const himc_take *take, const himc_take_tip tips[HIMC_HAN
     himc_vec3 spot = himc_vec3_madd(himc_head_frame_to_world(drum, x, 0), mallet_radius,
                                     himc_head_frame_normal(drum));
     if (!strikes) {
-        struck = lowest_place(take, tips);
+        const himc_vec3 *tip = tips[HIMC_RIGHT].present ? tips[HIMC_RIGHT].x : tips[HIMC_LEFT].x;
+        struck = tip[0];
+        for (int i = 1; i < himc_take_frames(take); i++)
+            struck = tip[i].z < struck.z ? tip[i] : struck;
         spot.z += OVER_HEAD;
     }
     if (!tips[HIMC_LEFT].present || !tips[HIMC_RIGHT].present)
         spot.y += tips[HIMC_LEFT].present ? aside : -aside;
     *offset = himc_vec3_sub(spot, struck);
     return true;
-}
-
-// puts the drum under a strike place, on the line from the player through it
-static void move_drum_under(himc_head_frame *drum, himc_vec3 spot)
-{
-    double x, aside, far = hypot(spot.x, spot.y);
-    usual_place(drum, &x, &aside);
-    himc_vec3 away =
-        far > LEAST_AWAY ? himc_vec3_make(spot.x / far, spot.y / far, 0) : himc_vec3_make(1, 0, 0);
-    drum->center.x = spot.x - x * away.x;
-    drum->center.y = spot.y - x * away.y;
 }
 
 // a strike place on the head as seen from above: x, y in the drum's frame, z 0
@@ -351,49 +286,30 @@ static himc_vec3 seen_on_head(const himc_head_frame *drum, himc_vec3 spot)
     return himc_head_frame_from_world(&level, spot);
 }
 
+// sets the seat so that the strikes meet the head; the drum is moved if they would miss it there,
+// or if no seat is low or high enough
 static void seat_player(himc_player *player, himc_vec3 struck, himc_head_frame *drum)
 {
     himc_vec3 spot = himc_vec3_sub(struck, player->hips), local = seen_on_head(drum, spot);
-    if (hypot(local.x, local.y) > ON_HEAD * drum->radius) {
-        move_drum_under(drum, spot);
+    if (hypot(local.x, local.y) > 0.97 * drum->radius) { // chosen: strikes near the rim miss
+        // under the strikes, on the line from the player; chosen: from 0.1 m on that has a direction
+        double x, aside, far = hypot(spot.x, spot.y);
+        usual_place(drum, &x, &aside);
+        drum->center.x = spot.x - x * (far > 0.1 ? spot.x / far : 1);
+        drum->center.y = spot.y - x * (far > 0.1 ? spot.y / far : 0);
         local = seen_on_head(drum, spot);
     }
     double head =
         drum->center.z + local.x * tan(drum->tilt) + player->config.mallet_radius / cos(drum->tilt);
     double seat = head - spot.z, kept = fmin(fmax(seat, PLAYER_LOWEST_SEAT), PLAYER_HIGHEST_SEAT);
-    if (fabs(kept - player->hips.z) < DENT)
+    if (fabs(kept - player->hips.z) < 0.012) // chosen: no more than the dent of a struck head
         kept = seat = player->hips.z;
     drum->center.z += kept - seat;
     player->config.seat = kept;
-    player->offset = himc_vec3_make(-player->hips.x, -player->hips.y, kept - player->hips.z);
 }
 
-// a player without strikes keeps the captured height above the floor
-static void keep_player(himc_player *player)
-{
-    double seat = fmin(fmax(player->hips.z, PLAYER_LOWEST_SEAT), PLAYER_HIGHEST_SEAT);
-    player->config.seat = seat;
-    player->offset = himc_vec3_make(-player->hips.x, -player->hips.y, seat - player->hips.z);
-}
-
-// the shift that brings the farthest position of the tips, moved by `offset`, into reach
-static himc_vec3 back_into_reach(const himc_posture *posture, const himc_take *take,
-                                 const himc_take_tip tips[HIMC_HANDS], himc_vec3 offset)
-{
-    himc_vec3 back = {0, 0, 0};
-    int frames = himc_take_frames(take), step = frames / REACH_FRAMES + 1;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int i = 0; tips[hand].present && i < frames; i += step) {
-            himc_vec3 x = himc_vec3_add(tips[hand].x[i], offset);
-            himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
-            himc_vec3 shift = himc_vec3_sub(near, x);
-            if (himc_vec3_length(shift) > himc_vec3_length(back))
-                back = shift;
-        }
-    return back;
-}
-
-// finds an offset with all positions in reach if there is one, else one with little out of reach
+// finds an offset with all positions in reach if there is one, else one with little out of reach:
+// moves the take by what its farthest position misses, again and again
 static bool bring_into_reach(himc_player *player, const himc_take *take,
                              const himc_take_tip tips[HIMC_HANDS], const himc_head_frame *drum,
                              himc_error *error)
@@ -405,27 +321,39 @@ static bool bring_into_reach(himc_player *player, const himc_take *take,
     if (!himc_skeleton_init(&skeleton, &player->config, error))
         return false;
     himc_posture_init(&posture, &skeleton, drum->center.z + player->config.mallet_radius);
-    for (int i = 0; i < REACH_STEPS && least > REACH_MISSING; i++) {
-        himc_vec3 back = back_into_reach(&posture, take, tips, player->offset);
+    // chosen: 50 moves at most, each by some 1000 frames, until less than 1 mm is missing
+    int frames = himc_take_frames(take), step = frames / 1000 + 1;
+    for (int move = 0; move < 50 && least > 1e-3; move++) {
+        himc_vec3 back = {0, 0, 0};
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            for (int i = 0; tips[hand].present && i < frames; i += step) {
+                himc_vec3 x = himc_vec3_add(tips[hand].x[i], player->offset);
+                himc_vec3 near = himc_posture_reachable(&posture, (himc_hand)hand, x);
+                himc_vec3 shift = himc_vec3_sub(near, x);
+                if (himc_vec3_length(shift) > himc_vec3_length(back))
+                    back = shift;
+            }
         if (himc_vec3_length(back) < least) {
             least = himc_vec3_length(back);
             best = player->offset;
         }
-        player->offset = himc_vec3_add(player->offset, himc_vec3_scale(back, REACH_OVERSHOOT));
+        player->offset =
+            himc_vec3_madd(player->offset, 1.01, back); // a little farther than missing
     }
     player->offset = best;
     return true;
 }
 
-// how far a head is to be lowered for a stick that comes from rest over it to the take's first
-// place `first`, in the head's frame (m)
+// how far a head is to be lowered for a stick that comes from rest over it, where the planner has
+// it, to the take's first place `first`, in the head's frame (m)
 static double under_approach(const himc_head_frame *drum, himc_hand hand, himc_vec3 first)
 {
+    const int parts = 20;
     double under = 0, x, aside;
     usual_place(drum, &x, &aside);
-    const himc_vec3 rest = himc_vec3_make(x, hand == HIMC_LEFT ? aside : -aside, REST_OVER_HEAD);
-    for (int i = 1; i <= APPROACH_PARTS; i++) {
-        double part = (double)i / APPROACH_PARTS;
+    const himc_vec3 rest = himc_vec3_make(x, hand == HIMC_LEFT ? aside : -aside, 0.085);
+    for (int i = 1; i <= parts; i++) {
+        double part = (double)i / parts;
         himc_vec3 at = himc_vec3_madd(rest, part, himc_vec3_sub(first, rest));
         if (hypot(at.x, at.y) < drum->radius + BESIDE_HEAD)
             under = fmax(under, (OVER_HEAD - at.z) / part);
@@ -446,12 +374,17 @@ static void clear_drum(himc_head_frame *drum, const himc_take *take,
             if (hypot(x.x, x.y) < drum->radius + BESIDE_HEAD)
                 under = fmax(under, OVER_HEAD - x.z);
         }
-    drum->center.z = fmax(drum->center.z - under / cos(drum->tilt), LOWEST_HEAD);
+    // chosen: 0.1 m above the floor at least
+    drum->center.z = fmax(drum->center.z - under / cos(drum->tilt), 0.1);
 }
 
-// takes the hips' motion over the floor out of the take
-static void hold_hips(himc_player *player, himc_take *take)
+bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
+                     himc_head_frame *drum, himc_error *error)
 {
+    himc_vec3 struck, *hips = &player->hips, offset = player->offset;
+    himc_take_tip tips[HIMC_HANDS];
+    bool strikes;
+    // takes the hips' motion over the floor out of the take
     for (int i = 0; player->walk && i < take->frames; i++)
         for (int k = 0; k < take->points; k++) {
             himc_vec3 *x = himc_take_at(take, i, k);
@@ -460,15 +393,6 @@ static void hold_hips(himc_player *player, himc_take *take)
         }
     free(player->walk);
     player->walk = NULL;
-}
-
-bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_options *options,
-                     himc_head_frame *drum, himc_error *error)
-{
-    himc_vec3 struck, offset = player->offset;
-    himc_take_tip tips[HIMC_HANDS];
-    bool strikes;
-    hold_hips(player, take);
     if (!himc_take_tips(take, options, tips, error))
         return false;
     if (!strike_place(take, tips, &strikes, &struck) ||
@@ -476,18 +400,20 @@ bool himc_player_sit(himc_player *player, himc_take *take, const himc_take_optio
          !himc_strike_offset(take, tips, drum, player->config.mallet_radius, &offset)))
         return himc_error_set(error, "%s: out of memory", take->file);
     player->offset = offset;
-    if (player->placed && strikes)
-        seat_player(player, struck, drum);
-    else if (player->placed)
-        keep_player(player);
-    else if (!strikes && !bring_into_reach(player, take, tips, drum, error))
-        return false;
+    if (player->placed) {
+        // without strikes the captured height above the floor is kept
+        player->config.seat = fmin(fmax(hips->z, PLAYER_LOWEST_SEAT), PLAYER_HIGHEST_SEAT);
+        if (strikes)
+            seat_player(player, struck, drum);
+        player->offset = himc_vec3_make(-hips->x, -hips->y, player->config.seat - hips->z);
+    } else {
+        if (!strikes && !bring_into_reach(player, take, tips, drum, error))
+            return false;
+        himc_vec3 root = {0, 0, himc_skeleton_seat(&player->config)};
+        *hips = himc_vec3_sub(root, player->offset);
+    }
     if (!strikes)
         clear_drum(drum, take, tips, player->offset);
-    if (!player->placed) {
-        himc_vec3 root = {0, 0, himc_skeleton_seat(&player->config)};
-        player->hips = himc_vec3_sub(root, player->offset);
-    }
     player->seated = true;
     return true;
 }

@@ -8,7 +8,7 @@
 /// shoulder's centre by 10.4 % of the upper arm (de Leva, J. Biomech. 29(9), 1996, joint centre
 /// positions): 3 cm. Markers on the pelvis are above the hip joints by 8 cm.
 ///
-/// The check: bones keep their length. Two centres with a distance that varies by more than VARIES
+/// The check: bones keep their length. Two centres with a distance that varies by more than 25 %
 /// of a usual bone's length between its 10 % and 90 % quantiles are not the ends of a bone, for
 /// example because names are permuted; the farther one is dropped. Bones are of human size: if most
 /// are not, the file's unit is wrong. A player's left shoulder is on the side of the left hip.
@@ -30,7 +30,6 @@
 // how far a segment's length may be from the usual one; chosen: adults differ by less
 #define LEAST_LENGTH 0.5 // of the usual length
 #define MOST_LENGTH 1.6
-#define VARIES 0.25 // chosen: markers on skin move by far less than this share of a bone's length
 
 typedef struct row {
     int point; // a player_point
@@ -146,36 +145,19 @@ void himc_player_note(himc_player *player, const char *format, ...)
     va_end(args);
 }
 
-static int find_sided(const himc_take *take, const char *name, int hand)
+// the point of that name on the side of the hand; HIMC_HANDS: without a side
+static int find_named(const himc_take *take, const char *name, int hand)
 {
-    static const char *const forms[HIMC_HANDS][4] = {{"Left%s", "L%s", "%sLeft", "%sL"},
-                                                     {"Right%s", "R%s", "%sRight", "%sR"}};
+    static const char *const forms[HIMC_HANDS + 1][4] = {
+        {"Left%s", "L%s", "%sLeft", "%sL"}, {"Right%s", "R%s", "%sRight", "%sR"}, {"%s"}};
     char text[TAKE_NAME];
     int found = -1;
-    for (int i = 0; i < 4 && found < 0; i++) {
+    for (int i = 0; i < 4 && forms[hand][i] && found < 0; i++) {
         const char *form = forms[hand][i], *at = strchr(form, '%');
         snprintf(text, sizeof text, "%.*s%s%s", (int)(at - form), form, name, at + 2);
         found = himc_take_find(take, text);
     }
     return found;
-}
-
-// finds the points of a row; returns their number, 0 unless all are there. Hand HIMC_HANDS: names
-// without side
-static int find_row(const himc_take *take, const row *r, int hand, int point[MARKERS])
-{
-    bool sided = hand < HIMC_HANDS;
-    int count = 0;
-    for (; count < MARKERS && r->name[count]; count++) {
-        point[count] =
-            sided ? find_sided(take, r->name[count], hand) : himc_take_find(take, r->name[count]);
-        if (point[count] < 0)
-            return 0;
-    }
-    if (r->beside &&
-        (sided ? find_sided(take, r->beside, hand) : himc_take_find(take, r->beside)) < 0)
-        return 0;
-    return count;
 }
 
 // the mean of the markers, gaps filled; false without memory
@@ -209,17 +191,20 @@ static bool add_centre(player_points *p, int which, const int *point, int count,
     return memory;
 }
 
-// a centre by the first row that is in the take
+// a centre by the first row with all points in the take; hand HIMC_HANDS: names without side
 static bool find_centre(player_points *p, int which, int hand, const himc_take_options *options,
                         himc_player *player)
 {
-    for (size_t i = 0; i < ROWS; i++) {
-        int point[MARKERS];
-        const row *r = &rows[i];
+    for (const row *r = rows; r < rows + ROWS; r++) {
         if (which != r->point && !(r->sided && which == r->point + 1))
             continue;
-        int count = find_row(p->take, r, hand, point);
-        if (count > 0)
+        int point[MARKERS], count = 0;
+        bool all = !r->beside || find_named(p->take, r->beside, hand) >= 0;
+        for (; all && count < MARKERS && r->name[count]; count++) {
+            point[count] = find_named(p->take, r->name[count], hand);
+            all = point[count] >= 0;
+        }
+        if (all)
             return add_centre(p, which, point, count, r->below, options, player);
     }
     return true;
@@ -267,7 +252,15 @@ bool himc_player_points_find(player_points *p, himc_take *take, const himc_take_
         if (paired && hand == lone && !p->x[i] && !find_centre(p, i, HIMC_HANDS, options, player))
             return false;
     }
-    return true;
+    // a point called hips may not be between the hip joints
+    const himc_vec3 *left = p->x[POINT_HIP], *right = p->x[POINT_HIP + 1];
+    if (!left || !right)
+        return true;
+    if (!p->x[POINT_HIPS])
+        p->x[POINT_HIPS] = malloc((size_t)p->frames * sizeof(himc_vec3));
+    for (int i = 0; p->x[POINT_HIPS] && i < p->frames; i++)
+        p->x[POINT_HIPS][i] = himc_vec3_scale(himc_vec3_add(left[i], right[i]), 0.5);
+    return p->x[POINT_HIPS] != NULL;
 }
 
 void himc_player_points_free(player_points *p)
@@ -307,22 +300,6 @@ double himc_player_plausible(double length, double usual)
     return length >= LEAST_LENGTH * usual && length <= MOST_LENGTH * usual ? length : 0;
 }
 
-static void drop_loose_end(player_points *p, const player_measure *m, int hand, himc_player *player)
-{
-    int from = (int)m->from + hand, to = (int)m->to + hand;
-    double low = himc_player_distance(p, from, to, 0.1),
-           high = himc_player_distance(p, from, to, 0.9);
-    if (high - low <= VARIES * m->usual)
-        return;
-    himc_player_note(
-        player,
-        "%s: its length varies from %.3f to %.3f m, a bone's does not: are the points' names "
-        "right?",
-        himc_segment_name(m->segment + hand), low, high);
-    free(p->x[to]);
-    p->x[to] = NULL;
-}
-
 // if most of the limbs are not of human size the file's unit is not the stated one
 static bool check_size(const player_points *p, himc_error *error)
 {
@@ -351,28 +328,36 @@ static bool check_size(const player_points *p, himc_error *error)
                           LEAST_LENGTH * first->usual, MOST_LENGTH * first->usual);
 }
 
-static bool check_sides(const player_points *p, himc_error *error)
-{
-    himc_vec3 *const *x = p->x;
-    double same = 0;
-    if (!x[POINT_SHOULDER] || !x[POINT_SHOULDER + 1] || !x[POINT_HIP] || !x[POINT_HIP + 1])
-        return true;
-    for (int i = 0; i < p->frames; i++)
-        same += himc_vec3_dot(himc_vec3_sub(x[POINT_SHOULDER][i], x[POINT_SHOULDER + 1][i]),
-                              himc_vec3_sub(x[POINT_HIP][i], x[POINT_HIP + 1][i]));
-    return same >= 0 ||
-           himc_error_set(error,
-                          "%s: player: the left shoulder is over the right hip, expected "
-                          "over the left one: are left and right exchanged?",
-                          p->take->file);
-}
-
 bool himc_player_check(player_points *p, himc_player *player, himc_error *error)
 {
-    if (!check_size(p, error) || !check_sides(p, error))
+    if (!check_size(p, error))
         return false;
+    const himc_vec3 *left = p->x[POINT_SHOULDER], *right = p->x[POINT_SHOULDER + 1],
+                    *left_hip = p->x[POINT_HIP], *right_hip = p->x[POINT_HIP + 1];
+    double same = 0;
+    for (int i = 0; left && right && left_hip && right_hip && i < p->frames; i++)
+        same += himc_vec3_dot(himc_vec3_sub(left[i], right[i]),
+                              himc_vec3_sub(left_hip[i], right_hip[i]));
+    if (!(same >= 0))
+        return himc_error_set(error,
+                              "%s: player: the left shoulder is over the right hip, expected "
+                              "over the left one: are left and right exchanged?",
+                              p->take->file);
     for (int i = 0; i < PLAYER_LIMBS; i++)
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            drop_loose_end(p, &himc_player_limbs[i], hand, player);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            const player_measure *m = &himc_player_limbs[i];
+            int from = (int)m->from + hand, to = (int)m->to + hand;
+            double low = himc_player_distance(p, from, to, 0.1),
+                   high = himc_player_distance(p, from, to, 0.9);
+            if (high - low <= 0.25 * m->usual) // chosen: markers on skin move by far less
+                continue;
+            himc_player_note(
+                player,
+                "%s: its length varies from %.3f to %.3f m, a bone's does not: are the points' "
+                "names right?",
+                himc_segment_name(m->segment + hand), low, high);
+            free(p->x[to]);
+            p->x[to] = NULL;
+        }
     return true;
 }

@@ -24,11 +24,6 @@
 
 #include <stdlib.h>
 
-#define SIDEWAYS 0.5 // chosen: sideways share of an arm's direction that makes a zero pose a T-pose
-#define STRAIGHT 0.1 // chosen: weight of the mean bend plane beside a frame's own
-#define OPPOSITE -0.999999 // chosen: cosine from which two directions count as opposite
-#define MEAN_STEPS 20      // chosen: most iterations of the mean rotation, which stops at 1e-9 rad
-
 typedef struct limb {
     int segment; // left
     player_point from, to;
@@ -69,7 +64,7 @@ static himc_quat smallest_rotation(himc_vec3 from, himc_vec3 to)
 {
     double c = himc_vec3_dot(from, to);
     himc_vec3 axis = himc_vec3_cross(from, to);
-    if (c < OPPOSITE) {
+    if (c < -0.999999) { // opposite
         himc_vec3 other = fabs(from.x) < 0.5 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
         axis = himc_vec3_unit(himc_vec3_cross(from, other));
         return (himc_quat){0, axis.x, axis.y, axis.z};
@@ -95,25 +90,6 @@ static bool zero_direction(const himc_take *take, int from, int to, himc_vec3 *d
     return i == from && i >= 0 && himc_vec3_length(sum) > 1e-6;
 }
 
-static void align_limb(const reader *r, const limb *l, int hand, limb_frame *f)
-{
-    const int *node = r->points->node;
-    int from = node[(int)l->from + hand], to = node[(int)l->to + hand];
-    himc_vec3 zero;
-    f->node = -1;
-    // in some files stick and hand are one segment
-    if (l->from == POINT_GRIP && from < 0)
-        from = node[POINT_WRIST + hand];
-    if (l->to == POINT_GRIP && to < 0)
-        to = node[POINT_TIP + hand];
-    if (!r->node || from < 0 || to < 0 || !zero_direction(r->points->take, from, to, &zero))
-        return;
-    f->node = from;
-    f->align = smallest_rotation(himc_vec3_make(0, 0, -1), zero);
-    if (l->is_hand && fabs(zero.y) > SIDEWAYS)
-        f->align = himc_quat_from_limb(zero, himc_vec3_make(hand == HIMC_LEFT ? -1 : 1, 0, 0));
-}
-
 // normal of the plane in which elbow or knee bends, its length the sine of the angle; 0 elsewhere
 static himc_vec3 bend_plane(const reader *r, const limb *l, int hand, int frame)
 {
@@ -127,18 +103,33 @@ static himc_vec3 bend_plane(const reader *r, const limb *l, int hand, int frame)
     return leg ? himc_vec3_cross(upper, lower) : himc_vec3_cross(lower, upper);
 }
 
+// finds the source of a limb's rotation about its axis: a skeleton's node, else the bend plane
 static void prepare_limb(reader *r, int i, int hand)
 {
     const limb *l = &limbs[i];
+    const int *node = r->points->node;
     limb_frame *f = &r->frame[i][hand];
-    himc_vec3 *const *x = r->points->x, sum = {0, 0, 0};
+    himc_vec3 *const *x = r->points->x, sum = {0, 0, 0}, zero;
     f->shown = x[(int)l->from + hand] && x[(int)l->to + hand];
     if (!f->shown)
         return;
-    align_limb(r, l, hand, f);
+    int from = node[(int)l->from + hand], to = node[(int)l->to + hand];
+    // in some files stick and hand are one segment
+    if (l->from == POINT_GRIP && from < 0)
+        from = node[POINT_WRIST + hand];
+    if (l->to == POINT_GRIP && to < 0)
+        to = node[POINT_TIP + hand];
+    f->node = -1;
+    if (r->node && from >= 0 && to >= 0 && zero_direction(r->points->take, from, to, &zero)) {
+        f->node = from;
+        f->align = smallest_rotation(himc_vec3_make(0, 0, -1), zero);
+        // chosen: an arm whose direction is so much sideways is a T-pose's
+        if (l->is_hand && fabs(zero.y) > 0.5)
+            f->align = himc_quat_from_limb(zero, himc_vec3_make(hand == HIMC_LEFT ? -1 : 1, 0, 0));
+    }
     for (int k = 0; k < r->points->frames && !l->is_hand; k++)
         sum = himc_vec3_add(sum, bend_plane(r, l, hand, k));
-    f->plane = himc_vec3_scale(himc_vec3_unit(sum), STRAIGHT);
+    f->plane = himc_vec3_scale(himc_vec3_unit(sum), 0.1); // chosen: its weight beside a frame's own
 }
 
 // horizontal, to the left of the line from elbow to tip: a raised stick itself may point up or back
@@ -191,26 +182,6 @@ static bool trunk_rotation(const reader *r, int frame, himc_quat *q)
     return true;
 }
 
-// world rotations of the file's joints
-static void rotate_nodes(reader *r, int frame)
-{
-    const himc_take *take = r->points->take;
-    for (int i = 0; r->node && i < himc_take_points(take); i++) {
-        int parent = himc_take_parent(take, i);
-        himc_quat q = himc_take_rotation(take, frame, i);
-        r->node[i] = parent < 0 ? q : himc_quat_unit(himc_quat_mul(r->node[parent], q));
-    }
-}
-
-// an end site has no rotation of its own
-static bool has_child(const himc_take *take, int node)
-{
-    for (int i = node + 1; i < himc_take_points(take); i++)
-        if (himc_take_parent(take, i) == node)
-            return true;
-    return false;
-}
-
 // neck, head and feet: the skeleton's rotation, or a line and a marker beside the joint
 static const struct {
     int segment;
@@ -234,65 +205,60 @@ static himc_quat frame_of(himc_vec3 own, himc_vec3 along, himc_vec3 side)
     return himc_quat_mul(himc_quat_from_mat3(world), himc_quat_conj(himc_quat_from_mat3(body)));
 }
 
-// the direction from a segment's joint to the next, in its frame
-static himc_vec3 own_direction(const himc_skeleton *skeleton, int segment)
-{
-    if (segment == HIMC_LEFT_FOOT || segment == HIMC_RIGHT_FOOT) {
-        himc_vec3 toes = skeleton->segment[segment + 2].origin;
-        toes.y = 0;
-        return himc_vec3_unit(toes);
-    }
-    return skeleton->segment[segment].axis;
-}
-
 static bool other_rotation(const reader *r, int segment, int frame, himc_quat *q)
 {
     himc_vec3 *const *x = r->points->x;
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        int from = others[i].from, to = others[i].to, beside = POINT_BESIDE + segment;
-        int node = r->node ? r->points->node[from] : -1;
-        if (others[i].segment != segment)
-            continue;
-        if (node >= 0 && has_child(r->points->take, node)) {
+    size_t i = 0;
+    while (i < sizeof others / sizeof others[0] && others[i].segment != segment)
+        i++;
+    if (i == sizeof others / sizeof others[0])
+        return false;
+    int from = others[i].from, to = others[i].to, beside = POINT_BESIDE + segment;
+    int node = r->node ? r->points->node[from] : -1;
+    // an end site has no rotation of its own
+    for (int k = node + 1; node >= 0 && k < himc_take_points(r->points->take); k++)
+        if (himc_take_parent(r->points->take, k) == node) {
             *q = r->node[node];
             return true;
         }
-        if (r->node || !x[from] || !x[to] || !x[beside])
-            return false;
-        *q = frame_of(own_direction(r->skeleton, segment), between_points(r, from, to, frame),
-                      between_points(r, from, beside, frame));
-        return true;
+    if (r->node || !x[from] || !x[to] || !x[beside])
+        return false;
+    // the direction from the segment's joint to the next, in its frame
+    himc_vec3 own = r->skeleton->segment[segment].axis;
+    if (segment == HIMC_LEFT_FOOT || segment == HIMC_RIGHT_FOOT) {
+        himc_vec3 toes = r->skeleton->segment[segment + 2].origin;
+        own = himc_vec3_unit(himc_vec3_make(toes.x, 0, toes.z));
     }
-    return false;
-}
-
-static int limb_of(int segment)
-{
-    for (int i = 0; i < LIMBS; i++)
-        if (segment == limbs[i].segment || segment == limbs[i].segment + 1)
-            return i;
-    return -1;
+    *q = frame_of(own, between_points(r, from, to, frame), between_points(r, from, beside, frame));
+    return true;
 }
 
 // a segment in the world; false if the take does not show it
 static bool segment_rotation(const reader *r, int segment, int frame, himc_quat *q)
 {
-    int i = limb_of(segment);
     if (segment == HIMC_TRUNK)
         return trunk_rotation(r, frame, q);
-    if (i < 0)
-        return other_rotation(r, segment, frame, q);
-    bool shown = r->frame[i][segment - limbs[i].segment].shown;
-    if (shown)
-        *q = limb_rotation(r, i, segment - limbs[i].segment, frame);
-    return shown;
+    for (int i = 0; i < LIMBS; i++) {
+        int hand = segment - limbs[i].segment;
+        if (hand != HIMC_LEFT && hand != HIMC_RIGHT)
+            continue;
+        if (r->frame[i][hand].shown)
+            *q = limb_rotation(r, i, hand, frame);
+        return r->frame[i][hand].shown;
+    }
+    return other_rotation(r, segment, frame, q);
 }
 
 static void read_frame(reader *r, int frame)
 {
     himc_quat world[HIMC_SEGMENTS] = {himc_quat_identity()};
     himc_pose *pose = &r->player->pose[frame];
-    rotate_nodes(r, frame);
+    const himc_take *take = r->points->take;
+    for (int i = 0; r->node && i < himc_take_points(take); i++) {
+        int parent = himc_take_parent(take, i);
+        himc_quat q = himc_take_rotation(take, frame, i);
+        r->node[i] = parent < 0 ? q : himc_quat_unit(himc_quat_mul(r->node[parent], q));
+    }
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         himc_quat parent = world[r->skeleton->segment[i].parent], q;
         bool shown = segment_rotation(r, i, frame, &q);
@@ -304,30 +270,13 @@ static void read_frame(reader *r, int frame)
 }
 
 #define ANGLES (3 * HIMC_ARM_JOINTS)
-#define FIT_STEPS 5        // of Gauss-Newton: quadratic convergence from some centimetres
-#define TIP_WEIGHT 1e4     // chosen: the tip, which plays, before the centres, of weight 1
-#define ROTATION_COST 1e-4 // s, chosen: 1 rad costs as much as 1 cm of one centre (m^2)
-#define LARGEST_MISS 0.1   // chosen: keeps the linearisation of a step valid (m)
+#define LARGEST_MISS 0.1 // chosen: keeps the linearisation of a step valid (m)
 
 typedef struct arm {
     himc_quat parent[HIMC_ARM_JOINTS];     // world rotations of the joints' parents
     himc_vec3 at[HIMC_ARM_JOINTS + 1];     // the joints and the tip (m)
     himc_vec3 center[HIMC_ARM_JOINTS + 1]; // where they were captured (m)
 } arm;
-
-static void place_arm(const himc_skeleton *skeleton, const himc_pose *pose, himc_vec3 waist,
-                      himc_hand hand, arm *a)
-{
-    himc_quat q = pose->joint[HIMC_TRUNK - 1];
-    himc_vec3 at = waist;
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        a->at[k] = at = himc_vec3_add(at, himc_quat_rotate(q, skeleton->segment[j + 1].origin));
-        a->parent[k] = q;
-        q = himc_quat_mul(q, pose->joint[j]);
-    }
-    a->at[HIMC_ARM_JOINTS] = himc_vec3_add(at, himc_quat_rotate(q, skeleton->tip));
-}
 
 // adds w J'J and w J'e of one point, moved by the first `joints` joints
 static void add_point(const arm *a, int joints, double weight, double *matrix, double *right)
@@ -351,32 +300,38 @@ static void add_point(const arm *a, int joints, double weight, double *matrix, d
     }
 }
 
-static void rotate_arm(const arm *a, himc_hand hand, const double *theta, himc_pose *pose)
-{
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        himc_quat *q = &pose->joint[himc_arm_joint(hand, k)];
-        himc_vec3 rotation = himc_vec3_make(theta[3 * k], theta[3 * k + 1], theta[3 * k + 2]);
-        rotation = himc_quat_rotate(himc_quat_conj(a->parent[k]), rotation);
-        *q = himc_quat_unit(himc_quat_mul(himc_quat_exp(rotation), *q));
-    }
-}
-
 static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand hand,
                     const himc_vec3 center[HIMC_ARM_JOINTS + 1], himc_pose *pose)
 {
     arm a;
     for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
         a.center[k] = center[k];
-    for (int step = 0; step < FIT_STEPS; step++) {
+    // Gauss-Newton, of quadratic convergence from some centimetres
+    for (int step = 0; step < 5; step++) {
         double matrix[ANGLES * ANGLES] = {0}, theta[ANGLES] = {0};
-        place_arm(skeleton, pose, waist, hand, &a);
+        himc_quat q = pose->joint[HIMC_TRUNK - 1];
+        himc_vec3 at = waist;
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint(hand, k);
+            a.at[k] = at = himc_vec3_add(at, himc_quat_rotate(q, skeleton->segment[j + 1].origin));
+            a.parent[k] = q;
+            q = himc_quat_mul(q, pose->joint[j]);
+        }
+        a.at[HIMC_ARM_JOINTS] = himc_vec3_add(at, himc_quat_rotate(q, skeleton->tip));
+        // chosen: the tip, which plays, counts more than the centres
         for (int joints = 1; joints <= HIMC_ARM_JOINTS; joints++)
-            add_point(&a, joints, joints < HIMC_ARM_JOINTS ? 1 : TIP_WEIGHT, matrix, theta);
+            add_point(&a, joints, joints < HIMC_ARM_JOINTS ? 1 : 1e4, matrix, theta);
+        // s, chosen: 1 rad costs as much as 1 cm of one centre
         for (int i = 0; i < ANGLES; i++)
-            matrix[ANGLES * i + i] += ROTATION_COST;
+            matrix[ANGLES * i + i] += 1e-4;
         if (himc_linear_solve(ANGLES, matrix, theta) != HIMC_LINEAR_SOLVED)
             return;
-        rotate_arm(&a, hand, theta, pose);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            himc_quat *joint = &pose->joint[himc_arm_joint(hand, k)];
+            himc_vec3 rotation = himc_vec3_make(theta[3 * k], theta[3 * k + 1], theta[3 * k + 2]);
+            rotation = himc_quat_rotate(himc_quat_conj(a.parent[k]), rotation);
+            *joint = himc_quat_unit(himc_quat_mul(himc_quat_exp(rotation), *joint));
+        }
     }
 }
 
@@ -404,7 +359,7 @@ static void fit_arms(himc_player *player, const player_points *points,
 static himc_quat mean_rotation(const himc_pose *pose, int frames, int j)
 {
     himc_quat mean = pose[0].joint[j];
-    for (int step = 0; step < MEAN_STEPS; step++) {
+    for (int step = 0; step < 20; step++) {
         himc_vec3 sum = {0, 0, 0};
         for (int i = 0; i < frames; i++)
             sum = himc_vec3_add(

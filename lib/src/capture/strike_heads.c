@@ -14,7 +14,8 @@
 /// and the plane is then that of the head at rest.
 ///
 /// The random numbers begin with the same seed each time, and no loop depends on the data but by
-/// the number of falls.
+/// the number of falls. The numbers are chosen by 400 synthetic takes
+/// (tests/capture/test_take_mixed.c).
 #include "capture/strike_heads.h"
 
 #include "base/random.h"
@@ -23,15 +24,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// chosen by 400 synthetic takes (tests/capture/test_take_mixed.c), where nothing else is said
-#define TRIPLES 300          // planes tried
-#define STEEPEST 0.15        // slope of a plane through three seeds; a tilted timpano's is 0.1
-#define LEAST_SEEDS 3        // with fewer all sharp falls are seeds; no fewer make another drum
-#define REFITS 5             // rounds of acceptance and fit
-#define USUAL_SLOPE 0.3      // one deviation of the slopes of drumheads
-#define BLUNT_SHARE 0.5      // of the tolerance, for falls that are not sharp
-#define OTHER_DRUM 0.2       // share of all seeds off the heads so far that is another drum's ...
-#define OTHER_DRUM_AGREE 0.6 // ... if this share of those is on one plane
+#define LEAST_SEEDS 3 // with fewer all sharp falls are seeds; no fewer make another drum
 
 typedef struct seeds {
     const himc_fall **fall;
@@ -86,7 +79,7 @@ static himc_strike_head through(himc_vec3 a, himc_vec3 b, himc_vec3 c)
     himc_vec3 n = himc_vec3_cross(himc_vec3_sub(b, a), himc_vec3_sub(c, a));
     himc_strike_head head = {
         .x0 = a.x, .y0 = a.y, .height = a.z, .slope_x = -n.x / n.z, .slope_y = -n.y / n.z};
-    if (!(hypot(head.slope_x, head.slope_y) < STEEPEST)) // NaN in line
+    if (!(hypot(head.slope_x, head.slope_y) < 0.15)) // a tilted timpano's is 0.1; NaN in line
         head.slope_x = head.slope_y = 0;
     return head;
 }
@@ -96,14 +89,14 @@ static const himc_fall *any_seed(const seeds *s, uint64_t *random)
     return s->fall[himc_random_bits(random) % (uint64_t)s->count];
 }
 
-// RANSAC: planes through three seeds, and level ones through one. Their score is that of the seeds
+// RANSAC: 300 planes through three seeds, and level ones through one. Their score is that of the seeds
 // that are on no head yet; fast ones count more, so that they decide between few
 static himc_strike_head best_plane(const seeds *s)
 {
     uint64_t random = 1;
     double most = -1;
     himc_strike_head best = {0};
-    for (int i = 0; i < TRIPLES; i++) {
+    for (int i = 0; i < 300; i++) {
         himc_vec3 a = any_seed(s, &random)->x, b = any_seed(s, &random)->x,
                   c = any_seed(s, &random)->x;
         himc_strike_head tried = i % 2 ? through(a, b, c) : through(a, a, a);
@@ -123,34 +116,30 @@ static himc_strike_head best_plane(const seeds *s)
 
 static bool lies_on(const himc_strike_head *head, const himc_fall *f)
 {
-    return off(head, f) < f->within * (f->sharp ? 1 : BLUNT_SHARE);
-}
-
-typedef struct sums {
-    double w, x, y, z, xx, xy, yy, xz, yz;
-} sums;
-
-static void add(sums *s, double w, himc_vec3 x)
-{
-    s->w += w;
-    s->x += w * x.x, s->y += w * x.y, s->z += w * x.z;
-    s->xx += w * x.x * x.x, s->xy += w * x.x * x.y, s->yy += w * x.y * x.y;
-    s->xz += w * x.x * x.z, s->yz += w * x.y * x.z;
+    return off(head, f) < f->within * (f->sharp ? 1 : 0.5);
 }
 
 // least squares over the falls on head `index`, weighted by their tolerances. A slope is expected
-// to be 0 within USUAL_SLOPE, so that strikes on one spot say nothing about it
+// to be 0 with a deviation of 0.3, so that strikes on one spot say nothing about it
 static void fit(himc_strike_head *head, const himc_fall *falls, int count, int index)
 {
-    sums s = {0};
+    struct {
+        double w, x, y, z, xx, xy, yy, xz, yz;
+    } s = {0};
     himc_vec3 middle = {head->x0, head->y0, head->height};
-    for (int i = 0; i < count; i++)
-        if (falls[i].head == index)
-            add(&s, 1 / (falls[i].within * falls[i].within),
-                himc_vec3_sub(end_on(head, &falls[i]), middle));
+    for (int i = 0; i < count; i++) {
+        if (falls[i].head != index)
+            continue;
+        double w = 1 / (falls[i].within * falls[i].within);
+        himc_vec3 d = himc_vec3_sub(end_on(head, &falls[i]), middle);
+        s.w += w;
+        s.x += w * d.x, s.y += w * d.y, s.z += w * d.z;
+        s.xx += w * d.x * d.x, s.xy += w * d.x * d.y, s.yy += w * d.y * d.y;
+        s.xz += w * d.x * d.z, s.yz += w * d.y * d.z;
+    }
     if (s.w <= 0)
         return;
-    double x = s.x / s.w, y = s.y / s.w, z = s.z / s.w, rest = 1 / (USUAL_SLOPE * USUAL_SLOPE);
+    double x = s.x / s.w, y = s.y / s.w, z = s.z / s.w, rest = 1 / (0.3 * 0.3);
     double xx = s.xx - s.x * x + rest, xy = s.xy - s.x * y, yy = s.yy - s.y * y + rest,
            xz = s.xz - s.x * z, yz = s.yz - s.y * z, det = xx * yy - xy * xy;
     head->x0 += x, head->y0 += y, head->height += z;
@@ -161,7 +150,7 @@ static void fit(himc_strike_head *head, const himc_fall *falls, int count, int i
 // gives the head the free falls near it, and fits it to them, in turn
 static void settle(himc_strike_head *head, himc_fall *falls, int count, int index)
 {
-    for (int round = 0; round < REFITS; round++) {
+    for (int round = 0; round < 5; round++) {
         head->strikes = 0;
         for (int i = 0; i < count; i++) {
             himc_fall *f = &falls[i];
@@ -198,19 +187,20 @@ static int seeds_on(const seeds *s, int head)
     return n;
 }
 
+// a good part of the seeds off the heads so far is another drum's if most of them agree on a plane
 static int find_heads(himc_fall *falls, int count, const seeds *s,
                       himc_strike_head heads[HIMC_STRIKE_HEADS])
 {
     int n = 0;
     for (; n < HIMC_STRIKE_HEADS; n++) {
         int rest = seeds_on(s, -1);
-        if (rest == 0 || (n > 0 && rest <= OTHER_DRUM * s->count))
+        if (rest == 0 || (n > 0 && rest <= 0.2 * s->count))
             break;
         heads[n] = best_plane(s);
         settle(&heads[n], falls, count, n);
         settle_at_rest(&heads[n], falls, count, n);
         int on = seeds_on(s, n);
-        if (n > 0 && (on < LEAST_SEEDS || on < OTHER_DRUM_AGREE * rest)) {
+        if (n > 0 && (on < LEAST_SEEDS || on < 0.6 * rest)) {
             for (int i = 0; i < count; i++)
                 falls[i].head = falls[i].head == n ? -1 : falls[i].head;
             break;

@@ -309,9 +309,17 @@ static int find_pairs(const himc_take *take, pair *pairs, int capacity)
     return count > 0 ? count : find_pairs_of(take, side_words, pairs, capacity);
 }
 
-// the axis along which heads are above hips, if it is clear; names the points in axes_text
-static bool up_from_data(himc_take *take, himc_vec3 *up)
+static himc_vec3 find_up(himc_take *take, himc_up asked)
 {
+    if (asked != HIMC_UP_AUTO) {
+        snprintf(take->axes_text, sizeof take->axes_text, "set by the user");
+        return asked == HIMC_UP_Y ? himc_vec3_make(0, 1, 0) : himc_vec3_make(0, 0, 1);
+    }
+    if (himc_vec3_length(take->file_up) > 0) {
+        snprintf(take->axes_text, sizeof take->axes_text, "stated by the file");
+        return take->file_up;
+    }
+    // the axis along which heads are above hips; chosen: with 0.8 of the distance it is clear
     int high = -1, low = -1;
     char rest[TAKE_NAME];
     himc_vec3 d;
@@ -321,31 +329,16 @@ static bool up_from_data(himc_take *take, himc_vec3 *up)
         if (low < 0 && named(take, i, low_words, rest) >= 0)
             low = i;
     }
-    if (high < 0 || low < 0 || !mean_difference(take, low, high, &d))
-        return false;
-    double clear = 0.8 * himc_vec3_length(d); // chosen: so much along one axis is that axis
-    *up = himc_vec3_make(copysign(fabs(d.x) > clear, d.x), copysign(fabs(d.y) > clear, d.y),
-                         copysign(fabs(d.z) > clear, d.z));
-    if (himc_vec3_length(*up) != 1)
-        return false;
-    snprintf(take->axes_text, sizeof take->axes_text, "because %.40s is above %.40s",
-             take->names[high], take->names[low]);
-    return true;
-}
-
-static himc_vec3 find_up(himc_take *take, himc_up asked)
-{
-    himc_vec3 up;
-    if (asked != HIMC_UP_AUTO) {
-        snprintf(take->axes_text, sizeof take->axes_text, "set by the user");
-        return asked == HIMC_UP_Y ? himc_vec3_make(0, 1, 0) : himc_vec3_make(0, 0, 1);
+    if (high >= 0 && low >= 0 && mean_difference(take, low, high, &d)) {
+        double clear = 0.8 * himc_vec3_length(d);
+        himc_vec3 up = {copysign(fabs(d.x) > clear, d.x), copysign(fabs(d.y) > clear, d.y),
+                        copysign(fabs(d.z) > clear, d.z)};
+        if (himc_vec3_length(up) == 1) {
+            snprintf(take->axes_text, sizeof take->axes_text, "because %.40s is above %.40s",
+                     take->names[high], take->names[low]);
+            return up;
+        }
     }
-    if (himc_vec3_length(take->file_up) > 0) {
-        snprintf(take->axes_text, sizeof take->axes_text, "stated by the file");
-        return take->file_up;
-    }
-    if (up_from_data(take, &up))
-        return up;
     snprintf(take->axes_text, sizeof take->axes_text, "as usual in %.4s files", take->format);
     return take->format_up;
 }

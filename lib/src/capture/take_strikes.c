@@ -182,19 +182,6 @@ static bool is_peak(const track *t, int i, int h)
     return true;
 }
 
-// the fastest fall before frame i and the fastest rise after it
-static candidate candidate_at(const track *t, int i, int h)
-{
-    int w = frames_of(t, STRIKE_WINDOW, 3) + h, n = frames_of(t, SPEED_TIME, 1);
-    int before = i < w ? 0 : i - w, after = i + w < t->frames ? i + w : t->frames - 1;
-    candidate s = {i, bend(t, i, h), -INFINITY, -INFINITY};
-    for (int k = before; k + n <= i; k++)
-        s.down = fmax(s.down, -speed(t, k, k + n));
-    for (int k = i; k + n <= after; k++)
-        s.up = fmax(s.up, speed(t, k, k + n));
-    return s;
-}
-
 // the frame of the largest bend by differences of h frames, near `frame`; chosen: within 8 ms
 static int sharpest(const track *t, int frame, int h)
 {
@@ -269,7 +256,8 @@ static double above_intersection(const himc_take_strike *s)
 
 static void find_falls(const track *t, himc_hand hand, found *f)
 {
-    int h = difference(t);
+    int h = difference(t), n = frames_of(t, SPEED_TIME, 1);
+    int window = frames_of(t, STRIKE_WINDOW, 3) + h;
     // chosen: slower touches are not strokes, nor those that a noisy track's speeds hide
     double least = fmax(0.25, NOISE_DEVIATIONS * sqrt(2) * t->noise / SPEED_TIME);
     // chosen: most of D / A, between a head's 18 ms and the air's 55; and in frames
@@ -277,7 +265,11 @@ static void find_falls(const track *t, himc_hand hand, found *f)
     for (int i = h; i + h < t->frames; i++) {
         if (!is_peak(t, i, h))
             continue;
-        candidate s = candidate_at(t, i, h);
+        candidate s = {i, bend(t, i, h), -INFINITY, -INFINITY};
+        for (int k = i < window ? 0 : i - window; k + n <= i; k++)
+            s.down = fmax(s.down, -speed(t, k, k + n));
+        for (int k = i; k + n < t->frames && k + n <= i + window; k++)
+            s.up = fmax(s.up, speed(t, k, k + n));
         double width = (s.down + s.up) / s.bend;
         // chosen: a fall may go on at 0.3 of its speed, and be 1.6 times less sharp than a blow
         bool ends = s.down > least && s.up > -0.3 * s.down && width < 1.6 * widest;

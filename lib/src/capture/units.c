@@ -13,34 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// chosen: a stroke falls for 0.2 to 0.4 s; longer or shorter is another motion (s)
-#define LONGEST_FALL 0.5
-#define SHORTEST_FALL 0.03
-#define LONGEST_RISE 0.5    // chosen: of the way up to the apex (s)
-#define LONGEST_REBOUND 0.4 // chosen (s)
-#define BLUNT 0.008         // chosen: time before the touch that a capture's filter blunts (s)
-#define TOP 0.985           // chosen: share of the height at which the fall begins
-#define LEAST_HEIGHT 0.02   // chosen: lower ones are noise or rolls (m)
-#define RESTITUTION 0.85    // chosen: rebound speed over landing speed of a mallet on a head
-#define RIDGE 1e-9          // chosen: keeps the normal equations regular, far below their entries
-#define UNKNOWNS 5          // a, s, b0, b1, b2
-
-// a fall is monotone and between its ends, within this
-#define MOST_EXCESS 0.02  // chosen (heights, heights per fall)
-#define LEAST_LANDING 0.5 // chosen (heights per fall)
-#define MOST_LANDING 4.0
-
-// ranges of the motion around the fall, chosen: those of the built-in strokes and somewhat more
-#define LEAST_REBOUND_HEIGHT 0.2 // (heights)
-#define MOST_REBOUND_HEIGHT 1.2
-#define CLEAR_REBOUND 0.005 // a lower rebound has no duration (m)
-#define LEAST_PULL 0.7      // (rebound height / rebound speed)
-#define MOST_PULL 2.4
-#define USUAL_PULL 2.0
-#define LEAST_LIFT 0.15 // (s)
-#define MOST_LIFT 0.4
-#define RISE_NOISE 1e-4 // (m)
-#define MOST_DEPTH 0.25 // (m)
+#define SHORTEST_FALL 0.03 // chosen: a shorter one is another motion (s)
+#define BLUNT 0.008        // chosen: time before the touch that a capture's filter blunts (s)
+#define UNKNOWNS 5         // a, s, b0, b1, b2
 
 typedef struct terms {
     double value[3][1 + UNKNOWNS]; // of A, B, C and the three bends; then derivatives
@@ -80,7 +55,7 @@ void himc_unit_at(const himc_unit *unit, double share, double landing, double fa
 static bool solve(double a[UNKNOWNS][UNKNOWNS + 1])
 {
     for (int k = 0; k < UNKNOWNS; k++) {
-        a[k][k] += RIDGE;
+        a[k][k] += 1e-9; // chosen: keeps the equations regular, far below their entries
         for (int i = 0; i < UNKNOWNS; i++) {
             double f = i == k ? 0 : a[i][k] / a[k][k];
             for (int j = k; j <= UNKNOWNS; j++)
@@ -91,17 +66,6 @@ static bool solve(double a[UNKNOWNS][UNKNOWNS + 1])
         if (!isfinite(a[k][UNKNOWNS] /= a[k][k]))
             return false;
     return true;
-}
-
-static bool is_fall(const himc_unit *unit, double landing)
-{
-    double fall[3];
-    for (int i = 1; i <= 32; i++) {
-        himc_unit_at(unit, i / 33.0, landing, fall);
-        if (fall[1] > MOST_EXCESS || fall[0] > 1 + MOST_EXCESS || fall[0] < -MOST_EXCESS)
-            return false;
-    }
-    return landing > LEAST_LANDING && landing < MOST_LANDING;
 }
 
 // the capture of one hand around one strike
@@ -141,53 +105,56 @@ static bool fit_fall(const cut *c, int first, himc_unit *unit)
     for (int i = 0; i < 3; i++)
         unit->bend[i] = a[2 + i][UNKNOWNS];
     unit->speed = landing * unit->height / unit->down;
-    return is_fall(unit, landing);
+    // monotone and between its ends, within `excess` (heights, heights per fall; chosen)
+    const double excess = 0.02;
+    for (int i = 1; i <= 32; i++) {
+        double fall[3];
+        himc_unit_at(unit, i / 33.0, landing, fall);
+        if (fall[1] > excess || fall[0] > 1 + excess || fall[0] < -excess)
+            return false;
+    }
+    return landing > 0.5 && landing < 4; // heights per fall, chosen
 }
 
-// the rise after the touch, up to its top or the next fall
-static void measure_rebound(const cut *c, himc_unit *unit)
-{
-    int first = c->strike->frame, top = first;
-    for (int i = first;
-         i < c->frames && i / c->rate < fmin(c->strike->time + LONGEST_REBOUND, c->after); i++)
-        if (height(c, i) > height(c, top))
-            top = i;
-    double high = height(c, top), time = top / c->rate - c->strike->time;
-    unit->rebound = fmin(fmax(high / unit->height, LEAST_REBOUND_HEIGHT), MOST_REBOUND_HEIGHT);
-    double pull = time * RESTITUTION * unit->speed / high;
-    unit->pull = high > CLEAR_REBOUND ? fmin(fmax(pull, LEAST_PULL), MOST_PULL) : USUAL_PULL;
-}
-
-static void measure_lift(const cut *c, int top, himc_unit *unit)
-{
-    int low = top;
-    while (low > 0 && low / c->rate > fmax(c->before, top / c->rate - LONGEST_RISE) &&
-           height(c, low - 1) <= height(c, low) + RISE_NOISE)
-        low--;
-    unit->lift = fmin(fmax((top - low) / c->rate, LEAST_LIFT), MOST_LIFT);
-    unit->depth = 0;
-    for (int i = low; i < c->strike->frame; i++)
-        unit->depth =
-            fmax(unit->depth, hypot(c->x[i].x - c->strike->x.x, c->x[i].y - c->strike->x.y));
-    unit->depth = fmin(unit->depth, MOST_DEPTH);
-}
-
+// false if the stroke is no clear fall. The ranges of the motion around it are those of the
+// built-in strokes and somewhat more, chosen
 static bool cut_unit(const cut *c, himc_unit *unit)
 {
-    int last = (int)floor((c->strike->time - BLUNT) * c->rate), top = last;
-    double earliest = fmax(fmax(c->before + SHORTEST_FALL, c->strike->time - LONGEST_FALL), 0);
+    double touch = c->strike->time;
+    int last = (int)floor((touch - BLUNT) * c->rate), top = last;
+    // chosen: a stroke falls for 0.2 to 0.4 s, and begins where its height is 1.5 % less
+    double earliest = fmax(fmax(c->before + SHORTEST_FALL, touch - 0.5), 0);
     for (int i = last; i >= 0 && i / c->rate > earliest; i--)
         if (height(c, i) > height(c, top))
             top = i;
     int begin = top;
-    while (begin < last && height(c, begin + 1) > TOP * height(c, top))
+    while (begin < last && height(c, begin + 1) > 0.985 * height(c, top))
         begin++;
-    bool clear = height(c, top) > LEAST_HEIGHT && c->strike->time - begin / c->rate > SHORTEST_FALL;
     *unit = (himc_unit){.hand = c->strike->hand, .spot = HIMC_SPOT_XY};
+    // chosen: lower ones than 2 cm are noise or rolls
+    bool clear = height(c, top) > 0.02 && touch - begin / c->rate > SHORTEST_FALL;
     if (!clear || !fit_fall(c, begin, unit))
         return false;
-    measure_rebound(c, unit);
-    measure_lift(c, top, unit);
+    // the rise after the touch, up to its top or the next fall; below 5 mm it has no duration
+    int first = c->strike->frame, high = first;
+    for (int i = first; i < c->frames && i / c->rate < fmin(touch + 0.4, c->after); i++)
+        if (height(c, i) > height(c, high))
+            high = i;
+    double rise = height(c, high);
+    unit->rebound = fmin(fmax(rise / unit->height, 0.2), 1.2);
+    unit->pull = 2;
+    if (rise > 0.005) // 0.85, chosen: rebound speed over landing speed of a mallet on a head
+        unit->pull = fmin(fmax((high / c->rate - touch) * 0.85 * unit->speed / rise, 0.7), 2.4);
+    // the rise before the apex, but for noise
+    int low = top;
+    while (low > 0 && low / c->rate > fmax(c->before, top / c->rate - 0.5) &&
+           height(c, low - 1) <= height(c, low) + 1e-4)
+        low--;
+    unit->lift = fmin(fmax((top - low) / c->rate, 0.15), 0.4);
+    for (int i = low; i < c->strike->frame; i++)
+        unit->depth =
+            fmax(unit->depth, hypot(c->x[i].x - c->strike->x.x, c->x[i].y - c->strike->x.y));
+    unit->depth = fmin(unit->depth, 0.25);
     return true;
 }
 
