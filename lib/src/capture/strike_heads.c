@@ -89,8 +89,8 @@ static const himc_fall *any_seed(const seeds *s, uint64_t *random)
     return s->fall[himc_random_bits(random) % (uint64_t)s->count];
 }
 
-// RANSAC: 300 planes through three seeds, and level ones through one. Their score is that of the seeds
-// that are on no head yet; fast ones count more, so that they decide between few
+// RANSAC: 300 planes through three seeds, and level ones through one. Their score is that of the
+// seeds that are on no head yet; fast ones count more, so that they decide between few
 static himc_strike_head best_plane(const seeds *s)
 {
     uint64_t random = 1;
