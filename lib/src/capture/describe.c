@@ -95,7 +95,7 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
               s.count ? "" : ", no tip falls onto a head; --up says which axis is up");
     for (int i = 0; i < s.count && i < 64; i++) { // listed, chosen
         const himc_take_strike *strike = &s.strikes[i];
-        // a capture blunts the fall, so the speed at the head is that of the fall before, carried on
+        // a capture blunts the fall: the speed at the head is that of the fall before, carried on
         char carried[64] = "";
         double seen = himc_take_fastest_fall(take, &tips[strike->hand], strike);
         if (strike->velocity > HIMC_TAKE_CARRIED_ON * seen)
