@@ -303,14 +303,13 @@ typedef struct himc_articulation {
     himc_mat3 parent_coupling[HIMC_SEGMENTS]; ///< moment on the parent per acceleration of joint
 } himc_articulation;
 
-/// Computes the articulated inertias (Featherstone 2008, chapter 7) of all segments except the
-/// legs, which hang on the fixed pelvis and do not act on the arms.
+/// Computes the articulated inertias (Featherstone 2008, chapter 7) of all segments.
 HIMC_RT void himc_articulate(const himc_skeleton *skeleton, const himc_body_state *state,
                              himc_articulation *articulation);
 
 /// Forward dynamics: the relative accelerations (rad/s^2) of the joints under `torque` (N m)
 /// (HIMC_JOINTS), gravity and a force on each drumstick tip (N) (HIMC_HANDS; NULL for none).
-/// Entries of the legs' joints are not written.
+/// Only those of the articulation are written.
 HIMC_RT void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state *state,
                                    const himc_articulation *articulation, const himc_vec3 *torque,
                                    const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS]);

@@ -183,8 +183,6 @@ bool himc_command_check(himc_command *out, himc_receiver receiver, const himc_co
 
 /// Deep copy (the symbols of `out` point into its own storage).
 HIMC_RT void himc_command_copy(himc_command *out, const himc_command *in);
-/// Its size (bytes) up to the end of its texts: all of it that is copied.
-HIMC_RT size_t himc_command_size(const himc_command *command);
 
 /// A word, by value.
 typedef struct himc_word {

@@ -13,9 +13,6 @@
 
 HIMC_BEGIN
 
-/// A head of masses and springs, read from a file. Opaque, counts references.
-typedef struct himc_grid himc_grid;
-
 /// The material of a head, with its modes and air.
 typedef struct himc_head {
     double radius;         ///< a (m), 0.05 .. 1
@@ -62,21 +59,6 @@ typedef struct himc_mode {
 /// HIMC_MODES_AUTO, lugs 1.6 % off (uniformity 0.2).
 himc_head himc_head_default(void);
 
-/// Kind of a head's outline.
-typedef enum himc_outline {
-    HIMC_CIRCLE,    ///< modes by Bessel functions; the only one with air
-    HIMC_RECTANGLE, ///< modes by sines
-    HIMC_GRID       ///< any outline: masses and springs from a file, modes by their eigenvectors
-} himc_outline;
-
-/// A head's outline. Its size is the head's radius, that of the circle around it.
-typedef struct himc_shape {
-    himc_outline kind; ///< decides which fields below count
-    double length;     ///< of a rectangle along x (m); only the ratio to `width` counts
-    double width;      ///< of a rectangle along y (m)
-    himc_grid *grid;   ///< of HIMC_GRID, borrowed
-} himc_shape;
-
 /// Kind of a pickup.
 typedef enum himc_pickup_kind {
     HIMC_PICKUP_AIR,  ///< pressure far away; a sound of 1.0 is HIMC_PICKUP_PRESSURE
@@ -110,8 +92,6 @@ himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error 
 /// Frees it. NULL is allowed.
 void himc_membrane_free(himc_membrane *membrane);
 
-/// Its outline, borrowed.
-HIMC_RT const himc_shape *himc_membrane_shape(const himc_membrane *membrane);
 /// Replaces the pickups by these `count` (1 .. HIMC_PICKUPS); their sound changes over in 5 ms.
 bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
                                himc_error *error);

@@ -131,18 +131,18 @@ typedef struct himc_strike {
 /// Something that has happened; the fields of its kind are valid.
 typedef struct himc_event {
     himc_event_kind kind; ///< which fields are valid
+    bool minor;           ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
+    bool refused; ///< of HIMC_EVENT_NOTE: a command that could not be carried out on its sample
+    double beat;  ///< of HIMC_EVENT_BEAT ...
+    double time;  ///< ... and when it began (s, as of a strike)
     /// Of HIMC_EVENT_STRIKE, and of HIMC_EVENT_MISSED: as planned, velocity, force, impulse and
     /// duration 0, the beat NaN of a hit.
     himc_strike strike;
-    double beat;  ///< of HIMC_EVENT_BEAT ...
-    double time;  ///< ... and when it began (s, as of a strike)
-    bool minor;   ///< of HIMC_EVENT_NOTE: about how strokes are played, all of which are
-    bool refused; ///< of HIMC_EVENT_NOTE: a command that could not be carried out on its sample
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE; of _MISSED, why
 } himc_event;
 
-/// Takes the oldest event; false if none waits. 1024 without a text may wait, or about 700 notes;
-/// of more the oldest are dropped and counted.
+/// Takes the oldest event; false if none waits. At most 1024 wait, of notes fewer if their
+/// mean text is longer than 200 characters; the oldest are dropped and counted.
 HIMC_RT bool himc_performance_event(himc_performance *performance, himc_event *event);
 
 /// Energies, and works since the rows began or since a reset (J). Step for step

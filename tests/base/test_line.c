@@ -170,7 +170,7 @@ static void test_lines_about_files_are_cleaned_too(void)
     himc_word heard;
     himc_event event;
     planner_notes notes = {0};
-    performance_events events = {.lost = 0};
+    performance_events events = {.count = 0};
     himc_player player = {.note_count = 0};
     himc_tell(&(himc_line_sink){keep, &heard}, "tip %s", "\x1B[31m");
     TEST_ASSERT_EQUAL_STRING("tip ?[31m", heard.text);

@@ -327,6 +327,12 @@ static void test_an_arm_at_rest_gets_the_other_arms_weights_mirrored(void)
                                  error.text);
         TEST_ASSERT_TRUE_MESSAGE(
             himc_posture_regression_fit(&regression.player, &captured[0], 1, &error), error.text);
+        for (int c = 0; c < ANGLES; c++) // turns about y stay in a mirror, the others change sign
+            for (int d = 0; d < ANGLES; d++) {
+                double own = regression.residual_covariance[hand][c][d];
+                double other = regression.residual_covariance[1 - hand][c][d];
+                TEST_ASSERT_EQUAL_DOUBLE((c % 3 == 1) != (d % 3 == 1) ? -other : other, own);
+            }
         for (int i = 0; i < 250; i += 10) {
             himc_vec3 tip[2][OFFSETS][HIMC_HANDS];
             himc_pose played[2] = {captured[0].pose[i], captured[0].pose[i]};

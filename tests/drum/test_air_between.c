@@ -216,7 +216,9 @@ static void test_exchange_is_mutual_and_takes_the_modes_own_losses(void)
     double t = himc_membrane_interval(RATE) / RATE;
     for (int i = 0; i < count; i++) {
         const himc_shared_mode *mode = himc_membrane_shared(head(i), &shared);
+        TEST_ASSERT_EQUAL_INT(5, shared); // (0,1), and both of (1,1) and of (2,1)
         for (int k = 0; k < shared; k++, n++) {
+            TEST_ASSERT_EQUAL_INT(1, himc_membrane_mode(head(i), mode[k].index).n);
             double lost = 2 * t * mode[k].decay; // by the trapezoidal rule:
             mass[n] = mode[k].mass;
             TEST_ASSERT_DOUBLE_WITHIN(0.02 * lost, -lost / (1 + lost / 2), air.change[n][n]);

@@ -6,6 +6,7 @@
 #include "head/pickup.h"
 
 #include "unity.h"
+#include "exact_shape.h"
 #include "heads.h"
 
 #include <math.h>
@@ -139,10 +140,10 @@ static void test_membrane_static_displacement_under_a_force_follows_from_stiffne
         himc_membrane_push(membrane, -0.1, 0.07, 10);
         run(1);
     }
-    himc_modes *modes = himc_modes_new(himc_membrane_shape(membrane), head.modes, NULL);
+    himc_modes *modes = himc_modes_new(&himc_membrane_config_of(membrane)->shape, head.modes, NULL);
     double sag = 0;
     for (int i = 0; i < head.modes; i++) {
-        double phi = himc_modes_shape_at(modes, head.radius, i, -0.1, 0.07);
+        double phi = exact_shape(modes, &head, i, -0.1, 0.07);
         sag += 10 * phi * phi / himc_modes_get(modes, &head, i).stiffness;
     }
     himc_modes_free(modes);
@@ -265,7 +266,7 @@ static double rayleigh(const himc_mode *mode, const himc_pickup *p, double *quar
 {
     const int rings = 400, sectors = 192;
     double k = 2 * HIMC_PI * mode->frequency / 344.0, re = 0, im = 0;
-    himc_modes *modes = himc_modes_new(himc_membrane_shape(membrane), 60, NULL);
+    himc_modes *modes = himc_modes_new(&himc_membrane_config_of(membrane)->shape, 60, NULL);
     int index = 0;
     while (himc_modes_get(modes, &head, index).m != mode->m ||
            himc_modes_get(modes, &head, index).n != mode->n ||
@@ -274,8 +275,8 @@ static double rayleigh(const himc_mode *mode, const himc_pickup *p, double *quar
     for (int i = 0; i < rings; i++) {
         for (int j = 0; j < sectors; j++) {
             double r = (i + 0.5) / rings * head.radius, th = 2 * HIMC_PI * (j + 0.5) / sectors;
-            double w = himc_modes_shape_at(modes, head.radius, index, r * cos(th), r * sin(th)) *
-                       r * (head.radius / rings) * (2 * HIMC_PI / sectors);
+            double w = exact_shape(modes, &head, index, r * cos(th), r * sin(th)) * r *
+                       (head.radius / rings) * (2 * HIMC_PI / sectors);
             double nearer = r * cos(th - p->azimuth) * cos(p->elevation);
             re += w * cos(k * nearer);
             im += w * sin(k * nearer);
@@ -349,7 +350,7 @@ static void test_membrane_sounds_at_a_metre_as_rayleighs_integral_within_a_decib
     slack.tension = 1200;
     slack.uniformity = 1;
     himc_membrane *m = himc_membrane_new(&slack, RATE, NULL);
-    himc_modes *modes = himc_modes_new(himc_membrane_shape(m), 60, NULL);
+    himc_modes *modes = himc_modes_new(&himc_membrane_config_of(m)->shape, 60, NULL);
     himc_air air = himc_air_around(&slack, himc_air_kettle(slack.radius));
     himc_mixture mix = himc_air_mixture(&air);
     himc_modes_mix_as(modes, &mix);

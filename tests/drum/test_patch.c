@@ -115,7 +115,7 @@ static void test_patch_compliance_of_3500_modes_is_its_closed_form(void)
         membrane = himc_membrane_new(&head, 96000, NULL); // all modes below half the rate
         for (int k = 0; k < 4; k++) {
             double r0 = place_of[k] * RADIUS, sum = 0;
-            double exact = himc_patch_compliance(&head, r0, b);
+            double exact = himc_kind_round.compliance(&head, r0, 0, b);
             const strike_point *s = himc_membrane_strike_point(membrane, 0.6 * r0, 0.8 * r0, b);
             for (int m = 0; m < head.modes; m++)
                 sum += s->shape[m] * s->shape[m] / himc_membrane_mode(membrane, m).stiffness;
@@ -125,7 +125,7 @@ static void test_patch_compliance_of_3500_modes_is_its_closed_form(void)
     printf("3500 modes against the closed form: %.2f %%\n", 100 * worst);
     TEST_ASSERT_TRUE(worst < 0.004);
     head.tension = 3762;
-    TEST_ASSERT_DOUBLE_WITHIN(0.1e-6, 115.6e-6, himc_patch_compliance(&head, SPOT, b));
+    TEST_ASSERT_DOUBLE_WITHIN(0.1e-6, 115.6e-6, himc_kind_round.compliance(&head, SPOT, 0, b));
 }
 
 static void test_residual_has_what_the_modes_lack_of_compliance_and_inverse_mass(void)
@@ -140,7 +140,8 @@ static void test_residual_has_what_the_modes_lack_of_compliance_and_inverse_mass
     }
     himc_residual r = himc_strike_point_residual(s);
     double compliance = r.root * r.root, film = head.density * HIMC_PI * b * b;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_patch_compliance(&head, SPOT, b) - sum, compliance);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, himc_kind_round.compliance(&head, SPOT, 0, b) - sum,
+                              compliance);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1 / film - per_mass, compliance * r.omega * r.omega);
     TEST_ASSERT_TRUE(per_mass > 0.2 / film && compliance > 0.1 * sum);
 }
@@ -158,7 +159,7 @@ static void test_a_resting_stick_sinks_in_as_the_closed_form_says_with_any_numbe
         stick.head.relaxation = 5e-3; // it comes to rest
         for (int n = 0; n < 24000; n++)
             himc_contact_step(membrane, sticks, 1);
-        double c = himc_patch_compliance(&head, SPOT, stick.patch);
+        double c = himc_kind_round.compliance(&head, SPOT, 0, stick.patch);
         TEST_ASSERT_TRUE(stick.touching && stick.patch > 1e-3);
         double force = 100 * stick.mass;
         TEST_ASSERT_DOUBLE_WITHIN(1e-3 * force * c, -force * c, stick.dent);
@@ -251,7 +252,7 @@ static void test_a_patch_without_losses_keeps_energy(void)
         lossless.relaxation = 0;
         remake();
         himc_membrane_config config = *himc_membrane_config_of(membrane);
-        config.shape = (himc_shape){.kind = HIMC_RECTANGLE, .length = 0.5, .width = 0.4};
+        config.shape = (himc_shape){.kind = &himc_kind_rectangle, .length = 0.5, .width = 0.4};
         TEST_ASSERT_TRUE(himc_membrane_become(membrane, &config, NULL));
         place(&lossless, 0.05, 4);
         double start = energy(), worst = 0, most = 0, widest = 0;

@@ -1,4 +1,5 @@
 /// test_timpano.c: a drum in air: pitch, decays, pedal, damping hand, pickups.
+#include "drum/membrane_state.h"
 #include "head/air.h"
 #include "head/pickup.h"
 #include "himc/drum.h"
@@ -149,8 +150,8 @@ static double share_of_inner_circles(double hz)
     snprintf(text, sizeof text, "strike %.6f 0 2", -0.75 * head->radius);
     says(text);
     himc_drum_advance(drum, RATE / 40, NULL, NULL, NULL);
-    himc_modes *modes =
-        himc_modes_new(himc_membrane_shape(himc_drum_membrane(drum)), head->modes, &error);
+    himc_modes *modes = himc_modes_new(&himc_membrane_config_of(himc_drum_membrane(drum))->shape,
+                                       head->modes, &error);
     double all = 0, most = 0;
     for (int i = 0; i < head->modes; i++) {
         double energy = sounding(modes, i);

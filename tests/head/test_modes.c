@@ -3,6 +3,7 @@
 #include "head/modes.h"
 
 #include "unity.h"
+#include "exact_shape.h"
 #include "heads.h"
 
 #include <math.h>
@@ -11,7 +12,7 @@
 
 static himc_head head;
 static himc_error error;
-static const himc_shape circle = {.kind = HIMC_CIRCLE};
+static const himc_shape circle = {.kind = &himc_kind_round};
 
 void setUp(void)
 {
@@ -129,8 +130,7 @@ static void test_modes_list_that_ends_within_a_pair_has_the_cosine(void)
     TEST_ASSERT_FALSE(mode.sine);
     double shapes[2];
     himc_modes_shapes(modes, head.radius, 0.1, 0.05, shapes);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-8, himc_modes_shape_at(modes, head.radius, 1, 0.1, 0.05),
-                              shapes[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, exact_shape(modes, &head, 1, 0.1, 0.05), shapes[1]);
     himc_modes_free(modes);
 }
 
@@ -139,7 +139,7 @@ static void test_modes_three_three_has_a_node_at_three_quarters(void)
     himc_modes *modes = himc_modes_new(&circle, 200, &error);
     for (int i = 0; i < 200; i++) {
         himc_mode mode = himc_modes_get(modes, &head, i);
-        double at = fabs(himc_modes_shape_at(modes, head.radius, i, -0.75 * head.radius, 0));
+        double at = fabs(exact_shape(modes, &head, i, -0.75 * head.radius, 0));
         if (mode.m == 3 && mode.n == 3) {
             TEST_ASSERT_TRUE(at < 1e-4);
         } else if (mode.m == 1 && mode.n == 1 && !mode.sine) {
@@ -158,8 +158,7 @@ static void test_modes_fast_shapes_agree_with_exact_ones(void)
         himc_modes_shapes(modes, head.radius, r * cos(angle), r * sin(angle), shapes);
         for (int i = 0; i < 2000; i += 3)
             TEST_ASSERT_DOUBLE_WITHIN(
-                1e-8, himc_modes_shape_at(modes, head.radius, i, r * cos(angle), r * sin(angle)),
-                shapes[i]);
+                1e-8, exact_shape(modes, &head, i, r * cos(angle), r * sin(angle)), shapes[i]);
     }
     free(shapes);
     himc_modes_free(modes);

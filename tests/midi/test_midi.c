@@ -172,6 +172,21 @@ static void test_tracks_of_format_2_follow_each_other(void)
     himc_midi_file_free(&file);
 }
 
+static void test_a_last_track_without_a_byte_is_a_track(void)
+{
+    builder b;
+    midi_file file;
+    begin(&b);
+    event(&b, QUARTER, 0x99, 36, 90);
+    end(&b);
+    b.bytes[11] = 2;
+    put(&b, "MTrk\0\0\0\0", 8);
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, b.bytes, b.size, &error), error.text);
+    TEST_ASSERT_EQUAL_INT(2, file.tracks);
+    TEST_ASSERT_EQUAL_INT(0, file.missing);
+    himc_midi_file_free(&file);
+}
+
 static void test_a_note_ends_at_its_note_off_or_with_the_file(void)
 {
     builder b;
@@ -571,6 +586,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_reader_finds_the_notes_that_mido_finds);
     RUN_TEST(test_tracks_of_format_2_follow_each_other);
+    RUN_TEST(test_a_last_track_without_a_byte_is_a_track);
     RUN_TEST(test_a_note_ends_at_its_note_off_or_with_the_file);
     RUN_TEST(test_a_file_cut_anywhere_is_read_up_to_there_or_refused_in_a_line);
     RUN_TEST(test_a_bad_file_is_refused_in_one_line);

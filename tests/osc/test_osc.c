@@ -7,6 +7,8 @@
 #include "drum/drum_state.h"
 #include "performance/performance_state.h"
 
+#include <fcntl.h>
+
 static void test_pose_comes_33_times_a_second_with_20_bodies(void)
 {
     subscribe("pose");
@@ -227,6 +229,14 @@ static void test_a_socket_may_be_descriptor_0(void)
     close(input);
 }
 
+// a browser or a player that the program starts does not keep its port
+static void test_a_socket_is_not_inherited_by_another_program(void)
+{
+    int socket = himc_udp_open(AF_INET, 65536);
+    TEST_ASSERT_EQUAL_INT(FD_CLOEXEC, fcntl(socket, F_GETFD) & FD_CLOEXEC);
+    himc_udp_close(socket);
+}
+
 static void test_waiting_ends_with_a_packet_and_not_before_its_time_without(void)
 {
     himc_udp_address to = {
@@ -285,6 +295,7 @@ int main(void)
     RUN_TEST(test_vmc_bones_lead_to_the_wrist_mirrored);
     RUN_TEST(test_a_taken_port_gives_one_clear_line);
     RUN_TEST(test_a_socket_may_be_descriptor_0);
+    RUN_TEST(test_a_socket_is_not_inherited_by_another_program);
     RUN_TEST(test_waiting_ends_with_a_packet_and_not_before_its_time_without);
     RUN_TEST(test_the_network_thread_serves_a_subscription);
     return UNITY_END();

@@ -299,6 +299,18 @@ static void test_bad_names_and_places_are_refused_in_a_line(void)
     himc_performance_free(p);
 }
 
+static void test_a_recording_stopped_at_once_is_over_without_a_file(void)
+{
+    himc_performance *p = session_new();
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/himc-recording-%d-none.bvh", (int)getpid());
+    session_do(p, "record %s", path);
+    session_do(p, "record stop");
+    TEST_ASSERT_EQUAL_INT(-1, access(path, F_OK));
+    session_do(p, "rate task 200"); // nothing is being recorded
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -308,6 +320,7 @@ int main(void)
     RUN_TEST(test_soft_strokes_beside_loud_ones_play_back);
     RUN_TEST(test_strikes_beside_the_drum_leave_no_jump);
     RUN_TEST(test_any_body_is_read_back_point_by_point);
+    RUN_TEST(test_a_recording_stopped_at_once_is_over_without_a_file);
     RUN_TEST(test_gaps_of_markers_are_saved_as_gaps);
     RUN_TEST(test_what_a_format_cannot_hold_is_refused_and_leaves_no_file);
     RUN_TEST(test_a_long_path_keeps_its_end_in_an_error);

@@ -17,7 +17,7 @@ static void test_two_thousand_modes_are_retuned_in_a_few_milliseconds(void)
 {
     enum { ROUNDS = 20 };
     himc_head head = dry_head();
-    himc_shape round_head = {.kind = HIMC_CIRCLE};
+    himc_shape round_head = {.kind = &himc_kind_round};
     himc_modes *modes = himc_modes_new(&round_head, 2000, NULL);
     TEST_ASSERT_NOT_NULL(modes);
     double sum = 0, begun = cpu_ms();

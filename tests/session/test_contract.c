@@ -95,7 +95,6 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_command_table, himc_command_table(3))                                                \
     CALL(himc_command_find, himc_command_find(HIMC_DRUM, "strike"))                                \
     CALL(himc_command_copy, himc_command_copy(&copy, &command))                                    \
-    CALL(himc_command_size, himc_command_size(&command))                                           \
     CALL(himc_command_word, himc_command_word(HIMC_COMMAND_LAW, 0, 1))                             \
     CALL(himc_command_file, himc_command_file(&command, &whole))                                   \
     CALL(himc_drum_head_frame, himc_drum_head_frame(drum))                                         \
@@ -115,7 +114,6 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_drum_technique, himc_drum_technique(drum))                                           \
     CALL(himc_drum_get_driver, himc_drum_get_driver(drum))                                         \
     CALL(himc_loader_busy, himc_loader_busy(loader))                                               \
-    CALL(himc_membrane_shape, himc_membrane_shape(head))                                           \
     CALL(himc_membrane_head, himc_membrane_head(head))                                             \
     CALL(himc_membrane_pickups, himc_membrane_pickups(head, &whole))                               \
     CALL(himc_membrane_rate, himc_membrane_rate(head))                                             \

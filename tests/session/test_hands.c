@@ -171,9 +171,39 @@ static void test_a_note_at_the_end_counts_the_strokes_not_played_as_written(void
     himc_performance_free(p);
 }
 
+// no arm folds itself up in front of the chest, whatever the hand and the way
+static void test_ways_between_far_drums_go_round_the_body(void)
+{
+    static const double place[][2] = {
+        {0.251, 0.843}, {0.832, 0.287}, {0.763, -0.439}, {0.251, -0.843}};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int from = 0; from < 4; from++)
+            for (int to = 0; to < 4; to++) {
+                himc_performance *p = session_new();
+                heard h = {0};
+                for (int i = 0; i < 4; i++) {
+                    session_do(p, "drum d%d 26", i);
+                    session_do(p, "d%d place %g %g 0.85", i, place[i][0], place[i][1]);
+                }
+                session_do(p, "stroke 2 %s legato mf d%d", hand ? "right" : "left", from);
+                session_do(p, "stroke 4 %s legato mf d%d", hand ? "right" : "left", to);
+                session_do(p, "play");
+                session_play(p, 3, &h);
+                himc_performance_stats s = himc_performance_measure(p);
+                char what[64];
+                snprintf(what, sizeof what, "hand %d from %d to %d: %.3g rad/s, %.4g N m", hand,
+                         from, to, s.peak_rate, s.peak_torque);
+                TEST_ASSERT_EQUAL_INT_MESSAGE(2, s.played, what);
+                TEST_ASSERT_TRUE_MESSAGE(s.peak_rate < 50 && s.peak_torque < 500, what);
+                heard_free(&h);
+                himc_performance_free(p);
+            }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_ways_between_far_drums_go_round_the_body);
     RUN_TEST(test_stroke_without_time_is_reassigned_to_the_other_hand);
     RUN_TEST(test_stroke_that_neither_hand_can_play_is_given_up_and_missed);
     RUN_TEST(test_stroke_out_of_reach_is_reassigned_to_the_nearer_hand);

@@ -292,7 +292,7 @@ static void test_score_with_too_many_drums_changes_nothing(void)
     for (int i = 0; i <= HIMC_DRUMS; i++)
         snprintf(text + strlen(text), sizeof text - strlen(text), "drum other%d;\n", i);
     TEST_ASSERT_FALSE(load_text(p, text));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ":17: drum other16: "), error.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, ":16: drum other15: "), error.text);
     TEST_ASSERT_NULL(himc_performance_drum(p, 1));
     himc_performance_free(p);
 }

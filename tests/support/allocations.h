@@ -14,8 +14,9 @@
 // volatile: a compiler knows malloc and thinks it touches neither
 static _Thread_local volatile bool watching;
 static _Thread_local volatile int allocations;
-static _Thread_local volatile int until_failure; // allocations up to the one that fails; 0: none
-static _Thread_local volatile long held;         // blocks that this thread has made and not freed
+static _Thread_local volatile size_t bytes_asked; // while watching; never given back
+static _Thread_local volatile int until_failure;  // allocations up to the one that fails; 0: none
+static _Thread_local volatile long held;          // blocks that this thread has made and not freed
 
 // allocations that never fail here: of code from one address to below another, of that size or more
 static struct spared_allocations {
@@ -61,9 +62,10 @@ static inline bool fails(const void *caller, size_t size)
     return until_failure > 0 && --until_failure == 0;
 }
 
-static inline void *allocated(void *block)
+static inline void *allocated(void *block, size_t size)
 {
     allocations += watching;
+    bytes_asked += watching ? size : 0;
     held += block != NULL;
     return block;
 }
@@ -71,19 +73,19 @@ static inline void *allocated(void *block)
 void *malloc(size_t size)
 {
     bool fail = fails(__builtin_return_address(0), size);
-    return allocated(fail ? NULL : __libc_malloc(size));
+    return allocated(fail ? NULL : __libc_malloc(size), size);
 }
 
 void *calloc(size_t count, size_t size)
 {
     bool fail = fails(__builtin_return_address(0), count * size);
-    return allocated(fail ? NULL : __libc_calloc(count, size));
+    return allocated(fail ? NULL : __libc_calloc(count, size), count * size);
 }
 
 void *realloc(void *old, size_t size)
 {
     bool fail = fails(__builtin_return_address(0), size);
-    void *block = allocated(fail ? NULL : __libc_realloc(old, size));
+    void *block = allocated(fail ? NULL : __libc_realloc(old, size), size);
     held -= block && old;
     return block;
 }
@@ -91,7 +93,7 @@ void *realloc(void *old, size_t size)
 void *aligned_alloc(size_t alignment, size_t size)
 {
     bool fail = fails(__builtin_return_address(0), size);
-    return allocated(fail ? NULL : __libc_memalign(alignment, size));
+    return allocated(fail ? NULL : __libc_memalign(alignment, size), size);
 }
 
 void free(void *old)
@@ -108,6 +110,7 @@ void free(void *old)
 static inline void watch_allocations(void)
 {
     allocations = 0;
+    bytes_asked = 0;
     watching = true;
 }
 

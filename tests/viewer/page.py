@@ -822,6 +822,23 @@ def test_a_film_of_what_the_page_refuses_says_why():
     assert done.stderr.count("\n") == 1 and not os.path.exists(bad + ".png"), done
 
 
+def test_a_camera_finds_the_head_before_it_is_drawn():
+    """As in a film that begins later than at 0: its pictures before are not drawn."""
+    said = browser.run(
+        """
+        const { playback: p, actions, view } = viewer;
+        viewer.held = true;
+        actions.camera("head"), p.play(false), p.seek(2600);
+        for (const drum of viewer.drums.values()) drum.head.matrixWorld.identity();
+        viewer.step(10, false);
+        const { x, y, z } = view.goal.target;
+        actions.camera("stage"), p.setSpeed(1), viewer.resume();
+        return [x, y, z];
+        """
+    )
+    assert said[2] > 0.5, said
+
+
 def test_a_still_is_a_picture_of_that_size():
     still = made_by_film("png", "--at", "2", "--camera", "hands")
     assert still[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", still[16:24]) == (96, 64)

@@ -73,7 +73,7 @@ BEGIN {
     # a host's process and its terminal are not the library's
     only["^(exit|_exit|abort|printf|puts|putchar|perror|__printf_chk)$"] = "^$"
     # these may be embedded anywhere: they and all that they call need libm and the C library alone
-    alone = "^(drum/(membrane|contact)|bank/|head/modes)"
+    alone = "^(drum/(membrane|contact)|bank/|head/(modes|round|rectangle|grid_kind))"
 }
 
 FILENAME == "-" {

@@ -14,7 +14,6 @@
 #include "body/posture.h"
 #include "control/controller.h"
 #include "control/setpoint.h"
-#include "control/still_legs.h"
 #include "body/character.h"
 #include "bank/bank.h"
 #include "himc/membrane.h"
@@ -222,7 +221,6 @@ typedef struct bench_body {
     himc_setpoint_course between;
     himc_body_state state;
     himc_controller controller;
-    himc_still_legs legs;
     himc_reference reference;
     himc_character *character;
 } bench_body;
@@ -245,8 +243,6 @@ static bool make_body(bench_body *b, himc_error *error)
     himc_pose_to_state(&b->skeleton, &pose, NULL, &b->state);
     himc_controller_config control = himc_controller_config_default();
     himc_controller_init(&b->controller, &control, &b->skeleton, &b->state);
-    b->controller.legs = &b->legs;
-    b->legs.known = false;
     b->character = himc_character_new(&b->skeleton, error);
     if (b->character)
         himc_character_place(b->character, &b->state);

@@ -149,13 +149,35 @@ typedef struct order {
     uint32_t size; // of the text, with its final 0
 } order;
 
+static bool load(player *p, const char *text, const char *record, himc_error *error)
+{
+    himc_performance_config config = himc_performance_default();
+    himc_score *score = himc_score_parse(text, p->of->name, error);
+    bool drums = score && cli_first_drum(score);
+    himc_score_free(score);
+    p->performance = score ? himc_performance_new(&config, error) : NULL;
+    if (!p->performance)
+        return false;
+    himc_performance_make_drums(p->performance, true);
+    himc_performance_take_options(p->performance, p->of->options);
+    return (drums || cli_add_drum(p->performance, RATE, error)) &&
+           cli_tell(p->performance, CLI_LISTENER, NULL, error) &&
+           himc_performance_load_text(p->performance, text, p->of->name, error) &&
+           cli_tell(p->performance, "loop 0", NULL, error) &&
+           (!record || cli_tell(p->performance, "record", record, error));
+}
+
 // plays on with another text, or says why not
 static void resume(player *p, const char *text)
 {
     himc_error error;
     double time = (double)p->ending.samples / RATE;
-    if (!himc_performance_exchange_strokes(p->performance, text, p->of->name, &error))
-        leave(p, error.text[0] ? "fail" : "late", error.text);
+    player fresh = {.of = p->of};
+    if (!load(&fresh, text, NULL, &error))
+        leave(p, "fail", error.text);
+    if (!himc_performance_exchange_strokes(p->performance, fresh.performance))
+        leave(p, "late", "");
+    himc_performance_free(fresh.performance);
     put_frame(p->to, "from", &time, sizeof time);
 }
 
@@ -207,24 +229,6 @@ static void play_on(player *p)
         cli_say("himc edit: %s\n", error.text);
     himc_performance_free(p->performance);
     leave(p, "over", "");
-}
-
-static bool load(player *p, const char *text, const char *record, himc_error *error)
-{
-    himc_performance_config config = himc_performance_default();
-    himc_score *score = himc_score_parse(text, p->of->name, error);
-    bool drums = score && cli_first_drum(score);
-    himc_score_free(score);
-    p->performance = score ? himc_performance_new(&config, error) : NULL;
-    if (!p->performance)
-        return false;
-    himc_performance_make_drums(p->performance, true);
-    himc_performance_take_options(p->performance, p->of->options);
-    return (drums || cli_add_drum(p->performance, RATE, error)) &&
-           cli_tell(p->performance, CLI_LISTENER, NULL, error) &&
-           himc_performance_load_text(p->performance, text, p->of->name, error) &&
-           cli_tell(p->performance, "loop 0", NULL, error) &&
-           (!record || cli_tell(p->performance, "record", record, error));
 }
 
 // closes the ends of its pipes that the process that gives orders has, and, if it is not its `own`

@@ -484,6 +484,12 @@ addEventListener("drop", e => {
 for (const gesture of ["pointerdown", "keydown"])
     addEventListener(gesture, () => sound.wake() && playback?.resound(), true);
 
+// where an object is, also before it is drawn
+function placeOf(object) {
+    object.updateWorldMatrix(true, false);
+    return object.getWorldPosition(new THREE.Vector3());
+}
+
 // the middle of the first performer's hands; the head that was struck last
 view.follow = name => {
     const p = [...performers.values()].find(q => q.group.visible && !q.ghostly),
@@ -491,7 +497,7 @@ view.follow = name => {
     if (name === "hands" && p) return p.hands();
     if (name !== "head" || !all.length) return null;
     const last = all.reduce((a, b) => (b.mark > a.mark ? b : a));
-    return last.head.getWorldPosition(new THREE.Vector3());
+    return placeOf(last.head);
 };
 view.points = () => [
     ...[...performers.values()]
@@ -499,7 +505,7 @@ view.points = () => [
         .flatMap(p => p.points()),
     ...[...drums.values()]
         .filter(d => d.group.visible)
-        .map(d => d.head.getWorldPosition(new THREE.Vector3())),
+        .map(d => placeOf(d.head)),
 ];
 stage.resize(view);
 panel.shown(shown);

@@ -13,11 +13,6 @@
 #include <stdio.h>
 #include <string.h>
 
-// principal mode (Hz); chosen: wider than any head's range, which do_tune tells
-#define TUNE_LOW 1
-#define TUNE_HIGH 20000
-#define LISTENER_FARTHEST 15 // on each axis (m); chosen: the far end of a recital's room
-
 // in the order of himc_hand, himc_nuance, himc_spot
 static const char *const hands[] = {"left", "right", NULL};
 static const char *const hit_hands[] = {"left", "right", "any", NULL}; // any: HIMC_HAND_ANY
@@ -60,8 +55,9 @@ static const himc_argument arguments[] = {
     {"SPAN", "nudge", HIMC_ARGUMENT_NUMBER, 0.05, 10, "s", NULL},
     {"X", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},
     {"Y", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},
-    {"X", "listener", HIMC_ARGUMENT_NUMBER, -LISTENER_FARTHEST, LISTENER_FARTHEST, "m", NULL},
-    {"Y", "listener", HIMC_ARGUMENT_NUMBER, -LISTENER_FARTHEST, LISTENER_FARTHEST, "m", NULL},
+    // chosen: the far end of a recital's room
+    {"X", "listener", HIMC_ARGUMENT_NUMBER, -15, 15, "m", NULL},
+    {"Y", "listener", HIMC_ARGUMENT_NUMBER, -15, 15, "m", NULL},
     {"X", NULL, HIMC_ARGUMENT_NUMBER, -1, 1, "m", NULL},
     {"Y", NULL, HIMC_ARGUMENT_NUMBER, -1, 1, "m", NULL},
     {"Z", NULL, HIMC_ARGUMENT_NUMBER, 0, 3, "m", NULL},
@@ -75,12 +71,13 @@ static const himc_argument arguments[] = {
     {"HZ", "physics", HIMC_ARGUMENT_NUMBER, HIMC_PHYSICS_RATE_MIN, HIMC_PHYSICS_RATE_MAX, "Hz",
      NULL},
     {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
-    {"HZ", "tune", HIMC_ARGUMENT_NUMBER, TUNE_LOW, TUNE_HIGH, "Hz", NULL},
+    // principal mode; chosen: wider than any head's range, which do_tune tells
+    {"HZ", "tune", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
     {"PORT", "listen", HIMC_ARGUMENT_COUNT, 0, 65535, "", NULL},
     {"PORT", NULL, HIMC_ARGUMENT_COUNT, 1, 65535, "", NULL},
-    {"NOTE", NULL, HIMC_ARGUMENT_NOTE, TUNE_LOW, TUNE_HIGH, "Hz", NULL},
+    {"NOTE", NULL, HIMC_ARGUMENT_NOTE, 1, 20000, "Hz", NULL},
     {"HEIGHT", NULL, HIMC_ARGUMENT_NUMBER, 1.2, 2.2, "m", NULL},
     {"MASS", "player", HIMC_ARGUMENT_NUMBER, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", NULL},
     {"MASS", NULL, HIMC_ARGUMENT_NUMBER, 0.001, 1, "kg", NULL},
@@ -179,29 +176,26 @@ static bool is_name(const char *word)
            !himc_command_find(HIMC_PERFORMER, word);
 }
 
-static bool accepts_word(const himc_argument *argument, const char *word)
-{
-    double hz;
-    switch (argument->kind) {
-    case HIMC_ARGUMENT_NAME: return is_name(word);
-    case HIMC_ARGUMENT_TEXT: return strlen(word) >= argument->low && strlen(word) <= argument->high;
-    case HIMC_ARGUMENT_NOTE:
-        return himc_note_frequency(word, &hz) && hz >= argument->low && hz <= argument->high;
-    default: return find_word(argument->words, word) >= 0;
-    }
-}
-
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
 {
-    if (atom->kind == HIMC_ATOM_SYMBOL)
-        return accepts_word(argument, atom->symbol);
-    if (argument->kind != HIMC_ARGUMENT_NUMBER && argument->kind != HIMC_ARGUMENT_COUNT)
-        return false;
+    const char *word = atom->kind == HIMC_ATOM_SYMBOL ? atom->symbol : NULL;
     double value = atom->number;
-    if (argument->kind == HIMC_ARGUMENT_COUNT && value != floor(value))
-        return false;
-    return isfinite(value) && (float)value >= (float)argument->low &&
-           (float)value <= (float)argument->high;
+    switch (argument->kind) {
+    case HIMC_ARGUMENT_NAME: return word && is_name(word);
+    case HIMC_ARGUMENT_TEXT:
+        return word && strlen(word) >= argument->low && strlen(word) <= argument->high;
+    case HIMC_ARGUMENT_NOTE:
+        return word && himc_note_frequency(word, &value) && value >= argument->low &&
+               value <= argument->high;
+    case HIMC_ARGUMENT_WORD: return word && find_word(argument->words, word) >= 0;
+    default:
+        if (word)
+            return find_word(argument->words, word) >= 0;
+        if (argument->kind == HIMC_ARGUMENT_COUNT && value != floor(value))
+            return false;
+        return isfinite(value) && (float)value >= (float)argument->low &&
+               (float)value <= (float)argument->high;
+    }
 }
 
 double himc_argument_number(const himc_argument *argument, double number)
@@ -211,21 +205,14 @@ double himc_argument_number(const himc_argument *argument, double number)
     return (float)number == (float)argument->high ? argument->high : (float)number;
 }
 
-// the words of an argument with spaces between them
-static void list_words(const himc_argument *argument, char *text, size_t size)
-{
-    size_t used = 0;
-    text[0] = '\0';
-    for (int i = 0; argument->words && argument->words[i] && used < size; i++)
-        used +=
-            (size_t)snprintf(text + used, size - used, "%s%s", i ? " " : "", argument->words[i]);
-}
-
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size)
 {
     const char *space = argument->unit[0] ? " " : "";
-    char words[128];
-    list_words(argument, words, sizeof words);
+    char words[128] = "";
+    size_t used = 0;
+    for (int i = 0; argument->words && argument->words[i] && used < sizeof words; i++)
+        used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? " " : "",
+                                 argument->words[i]);
     switch (argument->kind) {
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", words); break;
     case HIMC_ARGUMENT_NAME:

@@ -17,7 +17,6 @@
 
 #define WORD_SIZE 64
 #define EXPECTED_SIZE 256
-#define LOUDEST 7.0 // dynamic word k of ppp .. fff is k / 7
 
 /// A command's atoms as the grammar understands them.
 typedef struct reading {
@@ -68,31 +67,9 @@ static himc_word cut_word(const char *token, int index)
     return word;
 }
 
-/// Index of `word` in "a|b|c", or -1.
-static int find_word(const char *token, const char *word)
-{
-    for (int i = 0;; i++) {
-        himc_word choice = cut_word(token, i);
-        if (!choice.text[0])
-            return -1;
-        if (strcmp(choice.text, word) == 0)
-            return i;
-    }
-}
-
 static bool is_argument(const char *token)
 {
     return isupper((unsigned char)token[0]);
-}
-
-/// SPOT as two numbers.
-static bool is_place(const walk *w)
-{
-    const himc_argument *x = himc_argument_find("X", "stroke");
-    return w->at + 1 < w->count && w->atom[w->at].kind == HIMC_ATOM_NUMBER &&
-           w->atom[w->at + 1].kind == HIMC_ATOM_NUMBER &&
-           himc_argument_accepts(x, &w->atom[w->at]) &&
-           himc_argument_accepts(x, &w->atom[w->at + 1]);
 }
 
 /// Takes the next atom as this argument, or as a literal word if `argument` is NULL.
@@ -111,54 +88,56 @@ static void take_atom(walk *w, const himc_argument *argument, int choice)
 static bool take_word(walk *w, const char *token, char expected[EXPECTED_SIZE])
 {
     const himc_atom *atom = &w->atom[w->at];
-    int choice = atom->kind == HIMC_ATOM_SYMBOL ? find_word(token, atom->symbol) : -1;
+    himc_word word;
     snprintf(expected, EXPECTED_SIZE, "%s", token);
     for (char *s = expected; *s; s++)
         *s = *s == '|' ? ' ' : *s;
-    if (choice < 0)
+    if (atom->kind != HIMC_ATOM_SYMBOL)
         return false;
-    w->context = atom->symbol;
-    w->literal = true;
-    take_atom(w, NULL, choice);
-    return true;
-}
-
-/// Takes all that is left: words and finite numbers.
-static bool take_rest(walk *w, char expected[EXPECTED_SIZE])
-{
-    const himc_argument *word = himc_argument_find("COMMAND", NULL);
-    snprintf(expected, EXPECTED_SIZE, "words and finite numbers");
-    for (; w->at < w->count && w->at < HIMC_COMMAND_ATOMS; w->at++) {
-        const himc_atom *atom = &w->atom[w->at];
-        bool number = atom->kind == HIMC_ATOM_NUMBER;
-        if (number ? !isfinite((float)atom->number) : !himc_argument_accepts(word, atom))
-            return false;
-        w->out->number[w->at] = number ? (float)atom->number : 0;
-    }
-    return true;
+    for (int choice = 0; (word = cut_word(token, choice)).text[0]; choice++)
+        if (strcmp(word.text, atom->symbol) == 0) {
+            w->context = atom->symbol;
+            w->literal = true;
+            take_atom(w, NULL, choice);
+            return true;
+        }
+    return false;
 }
 
 /// Takes the atoms that fit the token; false, and `expected` filled, if the next one does not.
 static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
 {
-    if (strcmp(token, "...") == 0)
-        return take_rest(w, expected);
+    if (strcmp(token, "...") == 0) { // all that is left
+        const himc_argument *word = himc_argument_find("COMMAND", NULL);
+        snprintf(expected, EXPECTED_SIZE, "words and finite numbers");
+        for (; w->at < w->count && w->at < HIMC_COMMAND_ATOMS; w->at++) {
+            const himc_atom *atom = &w->atom[w->at];
+            bool number = atom->kind == HIMC_ATOM_NUMBER;
+            if (number ? !isfinite((float)atom->number) : !himc_argument_accepts(word, atom))
+                return false;
+            w->out->number[w->at] = number ? (float)atom->number : 0;
+        }
+        return true;
+    }
     if (!is_argument(token))
         return take_word(w, token, expected);
     const himc_argument *argument = himc_argument_find(token, w->context);
-    bool spot = strcmp(token, "SPOT") == 0;
+    const himc_atom *atom = &w->atom[w->at];
     himc_argument_describe(argument, expected, EXPECTED_SIZE);
-    if (spot)
-        strncat(expected, " or X Y, both -1 .. 1 m", EXPECTED_SIZE - strlen(expected) - 1);
-    if (spot && is_place(w)) {
+    if (strcmp(token, "SPOT") == 0) {
         const himc_argument *x = himc_argument_find("X", "stroke");
-        take_atom(w, x, -1);
-        take_atom(w, x, -1);
-        return true;
+        strncat(expected, " or X Y, both -1 .. 1 m", EXPECTED_SIZE - strlen(expected) - 1);
+        if (w->at + 1 < w->count && atom[0].kind == HIMC_ATOM_NUMBER &&
+            atom[1].kind == HIMC_ATOM_NUMBER && himc_argument_accepts(x, &atom[0]) &&
+            himc_argument_accepts(x, &atom[1])) {
+            take_atom(w, x, -1);
+            take_atom(w, x, -1);
+            return true;
+        }
     }
-    if (!himc_argument_accepts(argument, &w->atom[w->at]))
+    if (!himc_argument_accepts(argument, atom))
         return false;
-    take_atom(w, argument, himc_argument_choice(argument, &w->atom[w->at]));
+    take_atom(w, argument, himc_argument_choice(argument, atom));
     return true;
 }
 
@@ -191,65 +170,36 @@ static const char *follow(const char *grammar, walk w, attempt *result)
     return *grammar ? grammar + 2 : NULL;
 }
 
-static void print_value(char *out, size_t size, const himc_atom *atom)
-{
-    if (atom->kind == HIMC_ATOM_SYMBOL)
-        himc_text_shorten(out, size, atom->symbol);
-    else
-        snprintf(out, size, isfinite(atom->number) ? "%g" : "%g is not a finite number",
-                 atom->number);
-}
-
-// True if the first atom is a word that fits none of several forms, of which `best` is only some.
-static bool fits_no_form(const himc_command_row *row, const himc_atom *atoms, const attempt *best)
-{
-    int forms = 1;
-    for (const char *s = row->atoms; (s = strstr(s, " | ")); s += 3)
-        forms++;
-    return best->at == 0 && best->forms < forms && !is_argument(best->name) &&
-           atoms[0].kind == HIMC_ATOM_SYMBOL;
-}
-
 static bool refuse(const himc_command_row *row, const himc_atom *atoms, const attempt *best,
                    himc_error *error)
 {
-    char value[WORD_SIZE] = "";
-    if (best->end != MISSING)
-        print_value(value, sizeof value, &atoms[best->at]);
+    char value[WORD_SIZE];
     bool named = is_argument(best->name);
     const char *space = row->atoms[0] ? " " : "";
     if (best->end == MISSING)
         return himc_error_set(error, "%s: %s missing, expected %s %s", row->name,
-                              best->at > 0 || is_argument(best->name) ? best->name : "atoms",
-                              row->name, row->atoms);
-    if (best->end == WRONG && fits_no_form(row, atoms, best))
-        return himc_error_set(error, "%s: %s, expected %s %s", row->name, value, row->name,
-                              row->atoms);
+                              best->at > 0 || named ? best->name : "atoms", row->name, row->atoms);
+    const himc_atom *atom = &atoms[best->at];
+    if (atom->kind == HIMC_ATOM_SYMBOL)
+        himc_text_shorten(value, sizeof value, atom->symbol);
+    else
+        snprintf(value, sizeof value, isfinite(atom->number) ? "%g" : "%g is not a finite number",
+                 atom->number);
     if (best->end == TOO_MANY)
         return himc_error_set(error, "%s: %s is one atom too many, expected %s%s%s", row->name,
                               value, row->name, space, row->atoms);
+    // the first atom may be a word that fits none of several forms, of which `best` is only some
+    int forms = 1;
+    for (const char *s = row->atoms; (s = strstr(s, " | ")); s += 3)
+        forms++;
+    if (best->at == 0 && best->forms < forms && !named && atom->kind == HIMC_ATOM_SYMBOL)
+        return himc_error_set(error, "%s: %s, expected %s %s", row->name, value, row->name,
+                              row->atoms);
     return himc_error_set(error, "%s: %s%s%s, expected %s", row->name, named ? best->name : "",
                           named ? ": " : "", value, best->expected);
 }
 
-/// Of two failures the closer one; of two equally close wrong atoms, the expected values of both.
-static void keep_closer(attempt *best, const attempt *other)
-{
-    if (other->rank > best->rank || (other->rank == best->rank && best->end == TOO_MANY)) {
-        *best = *other;
-    } else if (other->rank == best->rank && other->end == WRONG && best->end == WRONG) {
-        best->forms++;
-        if (strcmp(other->expected, best->expected) == 0)
-            return;
-        size_t used = strlen(best->expected);
-        int room = (int)(sizeof best->expected - used);
-        snprintf(best->expected + used, (size_t)room, " or %.*s", room - 5 > 0 ? room - 5 : 0,
-                 other->expected);
-        best->name[0] = '\0';
-    }
-}
-
-/// Finds the first form that fits.
+/// Finds the first form that fits; if none does, the error is about the closest.
 static bool check(const himc_command_row *row, const himc_atom *atoms, int count, reading *out,
                   himc_error *error)
 {
@@ -262,7 +212,19 @@ static bool check(const himc_command_row *row, const himc_atom *atoms, int count
         grammar = follow(grammar, start, &now);
         if (now.end == FITS)
             return true;
-        keep_closer(&best, &now);
+        if (now.rank > best.rank || (now.rank == best.rank && best.end == TOO_MANY)) {
+            best = now;
+        } else if (now.rank == best.rank && now.end == WRONG && best.end == WRONG) {
+            // two equally close wrong atoms: the expected values of both
+            best.forms++;
+            if (strcmp(now.expected, best.expected) == 0)
+                continue;
+            size_t used = strlen(best.expected);
+            int room = (int)(sizeof best.expected - used);
+            snprintf(best.expected + used, (size_t)room, " or %.*s", room - 5 > 0 ? room - 5 : 0,
+                     now.expected);
+            best.name[0] = '\0';
+        }
     }
     return refuse(row, atoms, &best, error);
 }
@@ -316,7 +278,7 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
 
 static double read_dynamic(const himc_command *c, int i)
 {
-    return c->choice[i] >= 0 ? c->choice[i] / LOUDEST : c->atom[i].number;
+    return c->choice[i] >= 0 ? c->choice[i] / 7.0 : c->atom[i].number; // word 7 is fff
 }
 
 /// What the commands that hold a stroke make of it; -1 for the others.
@@ -333,19 +295,6 @@ static int ornament_of(himc_command_id id)
     }
 }
 
-/// Length, kind and dynamics of a roll, which begins with the right hand; returns the next atom.
-static int read_roll(const himc_command *c, int i, himc_stroke *stroke)
-{
-    enum { TWO_DYNAMICS };
-    stroke->hand = HIMC_RIGHT;
-    stroke->nuance = HIMC_LEGATO;
-    stroke->length = c->atom[i++].number;
-    stroke->ornament = (himc_ornament)(HIMC_ROLL_SINGLE + c->choice[i++]);
-    stroke->dynamic = read_dynamic(c, i++);
-    stroke->last_dynamic = c->form == TWO_DYNAMICS ? read_dynamic(c, i++) : stroke->dynamic;
-    return i;
-}
-
 /// The stroke in the checked atoms of a command that holds one.
 static himc_stroke read_stroke(const himc_command *c)
 {
@@ -355,7 +304,13 @@ static himc_stroke read_stroke(const himc_command *c)
     if (c->id != HIMC_COMMAND_HIT)
         stroke.beat = c->atom[i++].number;
     if (c->id == HIMC_COMMAND_ROLL) {
-        i = read_roll(c, i, &stroke);
+        enum { TWO_DYNAMICS }; // the first form
+        stroke.hand = HIMC_RIGHT;
+        stroke.nuance = HIMC_LEGATO;
+        stroke.length = c->atom[i++].number;
+        stroke.ornament = (himc_ornament)(HIMC_ROLL_SINGLE + c->choice[i++]);
+        stroke.dynamic = read_dynamic(c, i++);
+        stroke.last_dynamic = c->form == TWO_DYNAMICS ? read_dynamic(c, i++) : stroke.dynamic;
     } else {
         stroke.hand = (himc_hand)c->choice[i++];
         if (stroke.hand == HIMC_HANDS) // of a hit, the word after the hands
@@ -375,24 +330,6 @@ static himc_stroke read_stroke(const himc_command *c)
     return stroke;
 }
 
-// `preset NAME` is `score NAME.txt`, for whoever looks for the file and allows it
-static bool parse_preset(himc_command *out, const char *name, himc_error *error)
-{
-    char file[HIMC_NAME_SIZE + 8];
-    snprintf(file, sizeof file, "%s.txt", name);
-    return himc_command_parse(out, HIMC_PERFORMER, "score", &(himc_atom){HIMC_ATOM_SYMBOL, 0, file},
-                              1, error);
-}
-
-// DRUM COMMAND ...: no drum has the name of a performer's command
-static bool is_for_drum(const char *name, const himc_atom *atoms, int count)
-{
-    const himc_atom drum = {HIMC_ATOM_SYMBOL, 0, name};
-    return count > 0 && atoms[0].kind == HIMC_ATOM_SYMBOL &&
-           himc_command_find(HIMC_DRUM, atoms[0].symbol) &&
-           himc_argument_accepts(himc_argument_find("NAME", NULL), &drum);
-}
-
 bool himc_command_doubt_drum(const char *name, himc_error *error)
 {
     himc_nearest nearest = {.word = name};
@@ -405,44 +342,44 @@ bool himc_command_doubt_drum(const char *name, himc_error *error)
     return false;
 }
 
-static bool parse_for_drum(himc_command *out, const char *name, const himc_atom *atoms, int count,
-                           himc_error *error)
+/// The command of a drum that an atom names, or NULL.
+static const himc_command_row *drum_command(const himc_atom *atoms, int count, int index)
 {
-    if (!himc_command_parse(out, HIMC_DRUM, atoms[0].symbol, atoms + 1, count - 1, error))
-        return himc_command_doubt_drum(name, error);
-    snprintf(out->drum, sizeof out->drum, "%s", name);
-    return true;
-}
-
-// BEAT COMMAND ...: what acts at a beat, without the drum before it
-static bool misses_drum(const himc_command_row *row, const himc_atom *atoms, int count)
-{
-    if (row->id != HIMC_COMMAND_AT || count < 2 || atoms[0].kind != HIMC_ATOM_NUMBER ||
-        atoms[1].kind != HIMC_ATOM_SYMBOL)
-        return false;
-    const himc_command_row *act = himc_command_find(HIMC_DRUM, atoms[1].symbol);
-    bool named = count > 2 && atoms[2].kind == HIMC_ATOM_SYMBOL &&
-                 himc_command_find(HIMC_DRUM, atoms[2].symbol);
-    return act && (act->marks & HIMC_AT_BEAT) && !named;
+    bool word = index < count && atoms[index].kind == HIMC_ATOM_SYMBOL;
+    return word ? himc_command_find(HIMC_DRUM, atoms[index].symbol) : NULL;
 }
 
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
                         const himc_atom *atoms, int count, himc_error *error)
 {
     const himc_command_row *row = himc_command_find(receiver, name);
-    reading read = {.form = 0};
-    if (!row && receiver == HIMC_PERFORMER && is_for_drum(name, atoms, count))
-        return parse_for_drum(out, name, atoms, count, error);
+    const himc_atom drum = {HIMC_ATOM_SYMBOL, 0, name};
+    // DRUM COMMAND ...: no drum has the name of a performer's command
+    if (!row && receiver == HIMC_PERFORMER && drum_command(atoms, count, 0) &&
+        himc_argument_accepts(himc_argument_find("NAME", NULL), &drum)) {
+        if (!himc_command_parse(out, HIMC_DRUM, atoms[0].symbol, atoms + 1, count - 1, error))
+            return himc_command_doubt_drum(name, error);
+        snprintf(out->drum, sizeof out->drum, "%s", name);
+        return true;
+    }
     if (!row)
         return refuse_name(receiver, name, error);
-    if (misses_drum(row, atoms, count))
+    // BEAT COMMAND ...: what acts at a beat, without the drum before it
+    bool beat = row->id == HIMC_COMMAND_AT && count > 0 && atoms[0].kind == HIMC_ATOM_NUMBER;
+    const himc_command_row *act = beat ? drum_command(atoms, count, 1) : NULL;
+    if (act && (act->marks & HIMC_AT_BEAT) && !drum_command(atoms, count, 2))
         return himc_error_set(error, "at: DRUM missing before %s, expected at BEAT DRUM %s %s",
-                              atoms[1].symbol, atoms[1].symbol,
-                              himc_command_find(HIMC_DRUM, atoms[1].symbol)->atoms);
+                              act->name, act->name, act->atoms);
+    reading read = {.form = 0};
     if (!check(row, atoms, count, &read, error))
         return false;
-    if (row->id == HIMC_COMMAND_PRESET)
-        return parse_preset(out, atoms[0].symbol, error);
+    if (row->id == HIMC_COMMAND_PRESET) {
+        // `preset NAME` is `score NAME.txt`, for whoever looks for the file and allows it
+        char file[HIMC_NAME_SIZE + 8];
+        snprintf(file, sizeof file, "%s.txt", atoms[0].symbol);
+        return himc_command_parse(out, HIMC_PERFORMER, "score",
+                                  &(himc_atom){HIMC_ATOM_SYMBOL, 0, file}, 1, error);
+    }
     out->id = row->id;
     store(out, atoms, count, &read);
     if (ornament_of(row->id) >= 0)
@@ -488,21 +425,11 @@ bool himc_command_parse_text(himc_command *out, himc_receiver receiver, const ch
     return himc_command_parse(out, receiver, atoms[0].symbol, atoms + 1, known - 1, error);
 }
 
-size_t himc_command_size(const himc_command *c)
-{
-    const char *end = c->folder ? c->folder + strlen(c->folder) + 1 : c->storage;
-    for (int i = 0; i < c->count; i++) {
-        bool longer = c->atom[i].kind == HIMC_ATOM_SYMBOL && c->atom[i].symbol >= end;
-        end = longer ? c->atom[i].symbol + strlen(c->atom[i].symbol) + 1 : end;
-    }
-    return (size_t)(end - (const char *)c);
-}
-
 void himc_command_copy(himc_command *out, const himc_command *in)
 {
     if (out == in)
         return;
-    memcpy(out, in, himc_command_size(in));
+    *out = *in;
     for (int i = 0; i < out->count; i++)
         if (out->atom[i].kind == HIMC_ATOM_SYMBOL)
             out->atom[i].symbol = out->storage + (in->atom[i].symbol - in->storage);

@@ -19,8 +19,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#define MOST_TRIES 100 // of a name that nobody has; chosen
-
 // what stands under a name instead of a regular file; NULL for a regular one
 static const char *other_kind(const struct stat *status)
 {
@@ -31,23 +29,18 @@ static const char *other_kind(const struct stat *status)
                                        : "a device";
 }
 
-static bool is_null_device(const struct stat *status)
-{
-    struct stat device;
-    return S_ISCHR(status->st_mode) && stat("/dev/null", &device) == 0 &&
-           status->st_rdev == device.st_rdev;
-}
-
 // opens without waiting and looks at what was opened. -1 with one line
 static int open_regular(const char *path, int flags, himc_error *error)
 {
     const char *fault = flags & O_CREAT ? "cannot be written" : "cannot be read";
-    struct stat status;
+    struct stat status, null;
     int file = himc_system_open(path, flags | O_BINARY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     int why = errno;
     bool known = file < 0 ? stat(path, &status) == 0 : fstat(file, &status) == 0;
     const char *kind = known ? other_kind(&status) : NULL;
-    if (file >= 0 && known && (!kind || (flags & O_CREAT && is_null_device(&status))))
+    bool nowhere = flags & O_CREAT && known && S_ISCHR(status.st_mode) &&
+                   stat("/dev/null", &null) == 0 && status.st_rdev == null.st_rdev;
+    if (file >= 0 && known && (!kind || nowhere))
         return file;
     if (file >= 0)
         close(file);
@@ -73,17 +66,9 @@ FILE *himc_file_read(const char *path, himc_error *error)
     return stream_of(path, open_regular(path, O_RDONLY, error), "rb", error);
 }
 
-// -1 with one line, the same whatever stands there, so that it tells nothing about the disk
-static int open_inside(const char *folder, const char *name, himc_error *error)
+static bool cannot_write(const char *path, himc_error *error)
 {
-    struct stat status;
-    int file = himc_system_open_inside(folder, name);
-    if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode))
-        return file;
-    if (file >= 0)
-        close(file);
-    himc_error_set(error, "%.200s: no such file in the folder given by --files", name);
-    return -1;
+    return himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno ? errno : EIO));
 }
 
 FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *error)
@@ -93,7 +78,7 @@ FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *e
     FILE *stream = stream_of(path, open_regular(path, flags, error), replace ? "wb" : "a+b", error);
     // cut last, when all else is there; a device cannot be cut, and has nothing to lose
     if (stream && replace && ftruncate(fileno(stream), 0) != 0 && errno != EINVAL) {
-        himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno));
+        cannot_write(path, error);
         fclose(stream);
         return NULL;
     }
@@ -102,18 +87,13 @@ FILE *himc_file_write(const char *path, himc_file_write_mode mode, himc_error *e
     return stream;
 }
 
-static bool cannot_write(const char *path, himc_error *error)
-{
-    return himc_error_set(error, "%s: cannot be written: %s", path, strerror(errno ? errno : EIO));
-}
-
 // a new file, with the permissions of the one that it is to replace; -1 with errno
 static int open_beside(himc_file_draft *draft, const struct stat *old)
 {
     static atomic_uint made;
     int file = -1;
-    for (int tries = 0; file < 0 && tries < MOST_TRIES && (tries == 0 || errno == EEXIST);
-         tries++) {
+    // chosen: a hundred tries of a name that nobody has
+    for (int tries = 0; file < 0 && tries < 100 && (tries == 0 || errno == EEXIST); tries++) {
         int length = snprintf(draft->temp, sizeof draft->temp, "%s.%06x", draft->path,
                               ((unsigned)getpid() * 0x9e37u + made++) & 0xffffffu);
         errno = ENAMETOOLONG;
@@ -227,7 +207,14 @@ static char *read_all(FILE *stream, size_t most, size_t *size)
 char *himc_file_load_in(const char *folder, const char *path, size_t most, size_t *size,
                         himc_error *error)
 {
-    int file = folder ? open_inside(folder, path, error) : open_regular(path, O_RDONLY, error);
+    struct stat status;
+    int file = folder ? himc_system_open_inside(folder, path) : open_regular(path, O_RDONLY, error);
+    if (folder && (file < 0 || fstat(file, &status) != 0 || !S_ISREG(status.st_mode))) {
+        if (file >= 0)
+            close(file);
+        himc_error_set(error, "%.200s: no such file in the folder given by --files", path);
+        return NULL;
+    }
     FILE *stream = stream_of(path, file, "rb", error);
     if (!stream)
         return NULL;
@@ -279,23 +266,18 @@ static void free_lines(himc_job *job)
     free(job);
 }
 
-// an ending of its own, so that no other file is replaced by mistake
-static bool is_text_name(const char *command, const char *path, himc_error *error)
-{
-    size_t length = strlen(path);
-    if (himc_line_is_clean(path) && length > 4 && strcmp(path + length - 4, ".txt") == 0)
-        return true;
-    return himc_error_set(error, "%s: FILE: %.80s, expected a name that ends with .txt", command,
-                          path);
-}
-
 himc_job *himc_file_write_job(const char *command, const char *path, himc_text_lines *lines,
                               himc_error *error)
 {
     write_job *j = NULL;
+    size_t length = strlen(path);
     if (lines->failed)
         himc_error_set(error, "%s: out of memory", command);
-    else if (is_text_name(command, path, error) && !(j = calloc(1, sizeof *j)))
+    // an ending of its own, so that no other file is replaced by mistake
+    else if (!himc_line_is_clean(path) || length <= 4 || strcmp(path + length - 4, ".txt") != 0)
+        himc_error_set(error, "%s: FILE: %.80s, expected a name that ends with .txt", command,
+                       path);
+    else if (!(j = calloc(1, sizeof *j)))
         himc_error_set(error, "%s: out of memory", command);
     if (!j) {
         free(lines->bytes);

@@ -8,8 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define MOST_DIGITS 9      // after the point, or significant; 1e9 times 1e9 fits a uint64_t
-#define LARGEST_FIXED 1e9L // of %f
+#define MOST_DIGITS 9 // after the point, or significant; 1e9 times 1e9 fits a uint64_t
 
 typedef struct text {
     char *out;
@@ -40,13 +39,6 @@ static void put_whole(text *t, uint64_t n, int least)
         digit[count++] = '0';
     while (count > 0)
         put(t, digit[--count]);
-}
-
-static void put_signed(text *t, int64_t n)
-{
-    if (n < 0)
-        put(t, '-');
-    put_whole(t, n < 0 ? 0 - (uint64_t)n : (uint64_t)n, 1);
 }
 
 // 10^n
@@ -113,7 +105,7 @@ static void put_number(text *t, double value, char kind, int digits)
         put(t, '-');
     if (!isfinite(value))
         put_text(t, isnan(value) ? "nan" : "inf", -1);
-    else if (kind == 'f' && x < LARGEST_FIXED)
+    else if (kind == 'f' && x < ten(MOST_DIGITS))
         put_decimals(t, (uint64_t)rintl(scaled(x, digits)), digits, false);
     else if (x > 0)
         put_general(t, x, kind == 'f' ? 6 : digits > 0 ? digits : 1);
@@ -121,50 +113,45 @@ static void put_number(text *t, double value, char kind, int digits)
         put(t, '0');
 }
 
-// the number after the point of a conversion, -1 if there is none
-static int read_precision(const char **format, va_list *args)
-{
-    int n = 0;
-    if (**format != '.')
-        return -1;
-    if (*++*format == '*') {
-        ++*format;
-        return va_arg(*args, int);
-    }
-    for (; isdigit((unsigned char)**format); ++*format)
-        n = 10 * n + (**format - '0');
-    return n;
-}
-
-static void convert(text *t, const char **format, va_list *args)
-{
-    int precision = read_precision(format, args);
-    char length = **format == 'l' || **format == 'z' ? *(*format)++ : 0;
-    switch (*(*format)++) {
-    case 'c': put(t, (char)va_arg(*args, int)); break;
-    case 's': put_text(t, va_arg(*args, const char *), precision); break;
-    case 'd': put_signed(t, length == 'l' ? va_arg(*args, long) : va_arg(*args, int)); break;
-    case 'u':
-        put_whole(t, length == 'z' ? va_arg(*args, size_t) : va_arg(*args, unsigned), 1);
-        break;
-    case 'g': put_number(t, va_arg(*args, double), 'g', precision); break;
-    case 'f': put_number(t, va_arg(*args, double), 'f', precision); break;
-    default: put(t, (*format)[-1]); break; // %%
-    }
-}
-
 size_t himc_format_list(char *out, size_t size, const char *format, va_list args)
 {
     text t = {out, 0, size};
-    va_list rest;
-    va_copy(rest, args);
     while (*format) {
-        if (*format != '%')
+        if (*format != '%') {
             put(&t, *format++);
-        else if (*++format)
-            convert(&t, &format, &rest);
+            continue;
+        }
+        int precision = -1;
+        long whole;
+        format++;
+        if (format[0] == '.' && format[1] == '*') {
+            precision = va_arg(args, int);
+            format += 2;
+        } else if (format[0] == '.') {
+            precision = 0;
+            for (format++; isdigit((unsigned char)*format); format++)
+                precision = 10 * precision + (*format - '0');
+        }
+        char length = *format == 'l' || *format == 'z' ? *format++ : 0;
+        char kind = *format ? *format++ : 0;
+        switch (kind) {
+        case 0: break; // a format that ends too early
+        case 'c': put(&t, (char)va_arg(args, int)); break;
+        case 's': put_text(&t, va_arg(args, const char *), precision); break;
+        case 'd':
+            whole = length == 'l' ? va_arg(args, long) : va_arg(args, int);
+            if (whole < 0)
+                put(&t, '-');
+            put_whole(&t, whole < 0 ? 0 - (uint64_t)whole : (uint64_t)whole, 1);
+            break;
+        case 'u':
+            put_whole(&t, length == 'z' ? va_arg(args, size_t) : va_arg(args, unsigned), 1);
+            break;
+        case 'g':
+        case 'f': put_number(&t, va_arg(args, double), kind, precision); break;
+        default: put(&t, kind); break; // %%
+        }
     }
-    va_end(rest);
     out[t.used] = '\0';
     return t.used;
 }

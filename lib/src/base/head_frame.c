@@ -9,22 +9,12 @@
 #include "base/head_frame.h"
 #include "himc/command.h"
 
-#define NORMAL_FRACTION 0.75 // of the radius: players and textbooks, about 3/4
-#define RIM_FRACTION 0.92    // of the radius: players and textbooks, about 9/10
-#define HAND_OFFSET 0.015    // chosen: half a mallet's width, so the two mallets do not collide (m)
-
-// horizontal unit vector from the performer to the head; forward if the head is at the origin
-static himc_vec3 outwards(const himc_head_frame *frame)
-{
-    double distance = hypot(frame->center.x, frame->center.y);
-    if (distance < 1e-9)
-        return himc_vec3_make(1, 0, 0);
-    return himc_vec3_make(frame->center.x / distance, frame->center.y / distance, 0);
-}
-
 himc_head_axes himc_head_axes_of(const himc_head_frame *frame)
 {
-    himc_vec3 e = outwards(frame);
+    double distance = hypot(frame->center.x, frame->center.y);
+    himc_vec3 e = {1, 0, 0}; // for a head at the origin, forward
+    if (distance >= 1e-9)
+        e = himc_vec3_make(frame->center.x / distance, frame->center.y / distance, 0);
     bool level = frame->tilt == 0; // most are
     double c = level ? 1 : cos(frame->tilt), s = level ? 0 : sin(frame->tilt);
     return (himc_head_axes){{c * e.x, c * e.y, s}, {-e.y, e.x, 0}, {-s * e.x, -s * e.y, c}};
@@ -54,18 +44,24 @@ himc_vec3 himc_head_frame_from_world(const himc_head_frame *frame, himc_vec3 poi
                           himc_vec3_dot(d, axes.normal));
 }
 
+bool himc_head_frame_contains(const himc_head_frame *frame, double x, double y)
+{
+    return hypot(x, y) < frame->radius;
+}
+
 void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, double *y)
 {
-    static const double fraction[] = {[HIMC_SPOT_CENTER] = 0,
-                                      [HIMC_SPOT_NORMAL] = NORMAL_FRACTION,
-                                      [HIMC_SPOT_RIM] = RIM_FRACTION};
+    // of the radius, by players and textbooks: normal about 3/4, rim about 9/10
+    static const double fraction[] = {
+        [HIMC_SPOT_CENTER] = 0, [HIMC_SPOT_NORMAL] = 0.75, [HIMC_SPOT_RIM] = 0.92};
     if (stroke->spot == HIMC_SPOT_XY) {
         *x = stroke->x;
         *y = stroke->y;
         return;
     }
     *x = -fraction[stroke->spot] * radius;
-    *y = stroke->hand == HIMC_LEFT ? HAND_OFFSET : -HAND_OFFSET;
+    // half a mallet's width (m), so the two mallets do not collide; chosen
+    *y = stroke->hand == HIMC_LEFT ? 0.015 : -0.015;
 }
 
 bool himc_head_frame_equal(const himc_head_frame *a, const himc_head_frame *b)

@@ -39,19 +39,15 @@ static bool is_plain(uint32_t code)
            !(code >= 0x2066 && code <= 0x2069);
 }
 
-// bytes of the plain character at `s`, 0 if there is none
-static size_t take_plain(const char *s)
-{
-    uint32_t code;
-    size_t n = decode((const unsigned char *)s, &code);
-    return n > 0 && is_plain(code) ? n : 0;
-}
-
 bool himc_line_is_clean(const char *text)
 {
-    for (size_t n; *text; text += n)
-        if ((n = take_plain(text)) == 0)
+    while (*text) {
+        uint32_t code;
+        size_t n = decode((const unsigned char *)text, &code);
+        if (n == 0 || !is_plain(code))
             return false;
+        text += n;
+    }
     return true;
 }
 

@@ -91,7 +91,6 @@ HIMC_RT static inline himc_target himc_quintic_at(const himc_quintic *q, double 
     // Horner's rule for the value and its first two derivatives; the second comes out halved
     himc_target s = {q->c[5], {0, 0, 0}, {0, 0, 0}};
     for (int i = 4; i >= 0; i--) {
-        // Horner's rule for the value and its first two derivatives (a / 2)
         s.a = himc_vec3_madd(s.v, t, s.a);
         s.v = himc_vec3_madd(s.x, t, s.v);
         s.x = himc_vec3_madd(q->c[i], t, s.x);

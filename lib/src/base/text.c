@@ -97,18 +97,6 @@ static void skip_space(const char **text, int *line)
         *line += **text == '\n';
 }
 
-static void add_word(himc_text_statement *statement, const char *word)
-{
-    statement->overflow = statement->overflow || !word;
-    if (statement->count < statement->capacity) {
-        himc_atom *atom = &statement->atom[statement->count];
-        *atom = (himc_atom){HIMC_ATOM_SYMBOL, 0, word ? word : ""};
-        if (himc_text_number(atom->symbol, &atom->number))
-            atom->kind = HIMC_ATOM_NUMBER;
-    }
-    statement->count++;
-}
-
 bool himc_text_check(const char *text, size_t size, const char *name, himc_error *error)
 {
     const char *zero = memchr(text, 0, size);
@@ -128,7 +116,15 @@ bool himc_text_next(const char **text, int *line, himc_text_statement *statement
     if (!**text)
         return false;
     while (**text && **text != ';') {
-        add_word(statement, read_word(text, line, statement, &used));
+        const char *word = read_word(text, line, statement, &used);
+        statement->overflow = statement->overflow || !word;
+        if (statement->count < statement->capacity) {
+            himc_atom *atom = &statement->atom[statement->count];
+            *atom = (himc_atom){HIMC_ATOM_SYMBOL, 0, word ? word : ""};
+            if (himc_text_number(atom->symbol, &atom->number))
+                atom->kind = HIMC_ATOM_NUMBER;
+        }
+        statement->count++;
         skip_space(text, line);
     }
     *text += **text == ';';
@@ -143,7 +139,6 @@ void himc_text_shorten(char *out, size_t size, const char *word)
 }
 
 #define LONGEST_NAME 40 // that is compared; chosen: longer than a drum's name
-#define SHORT_NAME 4    // chosen: of so few letters two would make another word
 
 static int smaller(int a, int b)
 {
@@ -180,7 +175,8 @@ void himc_nearest_try(himc_nearest *nearest, const char *name)
     size_t length = strlen(nearest->word), other = strlen(name);
     if (length > LONGEST_NAME || other > LONGEST_NAME)
         return;
-    int allowed = length <= SHORT_NAME && other <= SHORT_NAME ? 1 : 2;
+    // chosen: in words of up to four letters two errors make another word
+    int allowed = length <= 4 && other <= 4 ? 1 : 2;
     int distance = edit_distance(nearest->word, name);
     bool other_word = distance >= smaller((int)length, (int)other);
     if (distance > allowed || other_word || (nearest->name && distance >= nearest->distance))
@@ -213,23 +209,20 @@ void himc_state_word(himc_state_line *line, const char *word)
     }
 }
 
-static void add_number(himc_state_line *line, double number)
-{
-    static const char *const format[] = {"%.6g", "%.7g", "%.8g", "%.9g"};
-    char text[32];
-    double back = 0;
-    for (int i = 0; i < 4; i++) {
-        himc_format(text, sizeof text, format[i], (double)(float)number);
-        if (himc_text_number(text, &back) && (float)back == (float)number)
-            break;
-    }
-    himc_state_word(line, text);
-}
-
 void himc_state_numbers(himc_state_line *line, int count, const double *numbers)
 {
-    for (int i = 0; i < count; i++)
-        add_number(line, numbers[i]);
+    static const char *const format[] = {"%.6g", "%.7g", "%.8g", "%.9g"};
+    for (int i = 0; i < count; i++) {
+        char text[32];
+        double back = 0;
+        float number = (float)numbers[i];
+        for (int k = 0; k < 4; k++) {
+            himc_format(text, sizeof text, format[k], (double)number);
+            if (himc_text_number(text, &back) && (float)back == number)
+                break;
+        }
+        himc_state_word(line, text);
+    }
 }
 
 void himc_state_end(const himc_state_line *line, const himc_line_sink *to)

@@ -42,7 +42,7 @@ struct himc_character {
     bool articulated;       // the articulation belongs to this state
     bool given;             // ODE's bodies have this state
     bool sound;             // the engines take this state
-    int still;              // steps in which no leg moved
+    int still;              // steps in which no leg moved; above STILL_STEPS legs sleep
     segment_forces resting; // on the legs, in the last of these steps
     dWorldID world;
     dBodyID body[HIMC_SEGMENTS]; // [0], the pelvis, is NULL: the world
@@ -67,11 +67,11 @@ static void make_joint(himc_character *c, int i, const himc_body_state *state)
     dJointSetBallAnchor(joint, state->origin[i].x, state->origin[i].y, state->origin[i].z);
 }
 
-// false for any state on which ODE's own checks would abort the process
-static bool is_sound(const segment_states *s)
+// false if ODE's own checks would abort the process on one of segments 1 .. end - 1
+static bool is_sound(const segment_states *s, int end)
 {
     double sum = 0;
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = 1; i < end; i++) {
         himc_vec3 w = s->joints.spin[i], x = s->position[i], v = s->velocity[i];
         himc_quat q = s->joints.orientation[i];
         sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v);
@@ -222,7 +222,7 @@ bool himc_character_place(himc_character *c, const himc_body_state *state)
 {
     double before = c->work ? energy(c) : 0;
     set_state(c, state);
-    c->sound = is_sound(&c->state);
+    c->sound = is_sound(&c->state, HIMC_SEGMENTS);
     if (c->work && isfinite(before))
         c->work->placed += energy(c) - before;
     memset(c->push, 0, sizeof c->push);
@@ -278,8 +278,10 @@ void himc_character_observe(const himc_character *c, himc_body_state *s)
 
 const himc_articulation *himc_character_articulation(himc_character *c)
 {
+    bool asleep = c->engine == HIMC_ENGINE_TREE && c->still > STILL_STEPS;
     if (!c->articulated)
-        himc_articulate(&c->skeleton, &c->state.joints, &c->articulation);
+        (asleep ? himc_articulate_upper : himc_articulate)(&c->skeleton, &c->state.joints,
+                                                           &c->articulation);
     c->articulated = true;
     return &c->articulation;
 }
@@ -359,9 +361,9 @@ static void note_legs(himc_character *c, const segment_forces *f)
 static void step_tree(himc_character *c, const segment_forces *f, double h)
 {
     bool rest = legs_rest(c, f);
+    c->articulated = c->articulated && rest == (c->still > STILL_STEPS);
+    c->still = rest ? STILL_STEPS + 1 : c->still < STILL_STEPS ? c->still : STILL_STEPS;
     himc_character_articulation(c);
-    if (!rest)
-        himc_articulate_legs(&c->skeleton, &c->state.joints, &c->articulation);
     himc_tree_step(&c->skeleton, &c->articulation, f, JOINT_ERP, h, &c->state);
     if (!rest)
         note_legs(c, f);
@@ -383,8 +385,6 @@ static void step_accounted(himc_character *c, const himc_step_forces *sources,
     memcpy(before.joints.rotation, c->state.joints.rotation, sizeof before.joints.rotation);
     memcpy(before.velocity, c->state.velocity, sizeof before.velocity);
     himc_character_articulation(c);
-    if (c->engine == HIMC_ENGINE_ODE)
-        himc_articulate_legs(&c->skeleton, &c->state.joints, &c->articulation);
     step_engine(c, f, h);
     himc_body_work_add(c->work, &c->skeleton, &c->articulation, sources, &before, &c->state, h);
 }
@@ -407,7 +407,7 @@ bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
     memset(c->turn, 0, sizeof c->turn);
     changed(c);
     c->given = c->engine == HIMC_ENGINE_ODE;
-    c->sound = is_sound(&c->state);
+    c->sound = is_sound(&c->state, c->still > STILL_STEPS ? HIMC_LEGS : HIMC_SEGMENTS);
     if (c->work && !c->sound)
         *c->work = before;
     return c->sound;

@@ -40,8 +40,8 @@ HIMC_RT void himc_character_account(himc_character *character, himc_body_work *w
 HIMC_RT double himc_character_kinetic(const himc_character *character);
 HIMC_RT double himc_character_potential(const himc_character *character);
 
-/// The articulated inertias at the present state, without the legs: computed at most once a step,
-/// and valid until the next one.
+/// The articulated inertias at the present state: computed at most once a step, and valid until
+/// the next one. Legs at rest take no part, but their entries hold.
 HIMC_RT const himc_articulation *himc_character_articulation(himc_character *character);
 
 /// Adds a force (world frame, N) that acts at `from_center` (world frame, m) from a segment's

@@ -4,19 +4,19 @@
 
 #include "himc/body.h"
 
-/// Articulated inertias of all segments, legs included, where each joint resists its own relative
-/// acceleration by `resistance` about the child's axes (kg m^2). This models a servo integrated
-/// implicitly over a step, D = h Kd + h^2 Kp (Tan, Liu & Turk 2011). himc_forward_dynamics then
-/// writes the legs' joints too; himc_effective_mass does not allow such an articulation.
+/// Articulated inertias where each joint resists its own relative acceleration by `resistance`
+/// about the child's axes (kg m^2). This models a servo integrated implicitly over a step,
+/// D = h Kd + h^2 Kp (Tan, Liu & Turk 2011). himc_effective_mass does not allow such an
+/// articulation.
 HIMC_RT void himc_articulate_resisting(const himc_skeleton *skeleton, const himc_body_state *state,
                                        const himc_vec3 resistance[HIMC_JOINTS],
                                        himc_articulation *articulation);
 
 #define HIMC_LEGS HIMC_LEFT_UPPER_LEG ///< segments 1 .. HIMC_LEGS - 1 are trunk, neck, head, arms
 
-/// Adds the legs to what himc_articulate has made of this state.
-HIMC_RT void himc_articulate_legs(const himc_skeleton *skeleton, const himc_body_state *state,
-                                  himc_articulation *articulation);
+/// himc_articulate without the legs: their entries stay, and they take no part.
+HIMC_RT void himc_articulate_upper(const himc_skeleton *skeleton, const himc_body_state *state,
+                                   himc_articulation *articulation);
 
 /// What moves a segment on its joint (world frame).
 typedef struct tree_load {
@@ -78,13 +78,11 @@ HIMC_RT void himc_add_force(const himc_skeleton *skeleton, const himc_body_state
                             int segment, himc_vec3 at, himc_vec3 force,
                             himc_vec3 torque[HIMC_JOINTS]);
 
-/// himc_inverse_dynamics of a moving body, of segments `begin` .. `end` - 1: 1 .. HIMC_LEGS - 1,
-/// the legs, or all. Only their joints' torques are written. `articulation` is of these segments in
-/// this state, or NULL: its centres and inertias need not be found again.
+/// himc_inverse_dynamics of a moving body, with the centres and inertias of this articulation;
+/// NULL: they are found.
 HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
                                       const himc_articulation *articulation,
-                                      const himc_vec3 *relative, int begin, int end,
-                                      himc_vec3 torque[HIMC_JOINTS]);
+                                      const himc_vec3 *relative, himc_vec3 torque[HIMC_JOINTS]);
 
 /// Acceleration of a drumstick tip (m/s^2) under the joints' relative accelerations (rad/s^2)
 /// (HIMC_JOINTS; NULL for zero).

@@ -6,14 +6,13 @@
 /// the children's mass matrices A_c, moved to this joint),
 ///     J alpha + H a = -n,   f = M a + H' alpha + p   =>   A = M - H' J^-1 H,   b = p - H' J^-1 n,
 /// where n and p sum up centripetal terms, gravity, torques and forces (Featherstone 2008, chapter
-/// 7, for joints with three rotational freedoms); J^-1 H is called the response. The legs hang on
-/// the fixed pelvis, so the arms do not act on them, and they are left out.
+/// 7, for joints with three rotational freedoms); J^-1 H is called the response.
 ///
 /// A joint that resists its own relative acceleration with D (alpha - alpha_p) (a servo integrated
 /// implicitly, D = h Kd + h^2 Kp) transmits moments too. With K = (J + D)^-1
 ///     alpha = K (-n - H a + D alpha_p),
 /// so the parent is subject, beside A and b, to the inertia E = D - D K D, the coupling G = D K H
-/// and the moment D K n. Then all segments take part, since the legs have servos as well.
+/// and the moment D K n.
 #include "body/dynamics.h"
 
 static himc_vec3 column(const himc_mat3 *a, int i)
@@ -155,16 +154,15 @@ static void add_to_parent(const himc_articulation *art, int i, block *parent)
     add_to(&parent->h, &ra, 1);
 }
 
-// segments begin .. end - 1, with all their children
-static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, int begin, int end,
+static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, int end,
                        const himc_vec3 *resistance, himc_articulation *art)
 {
     block own[HIMC_SEGMENTS];
     art->end = end;
     art->resists = resistance;
-    for (int i = begin; i < end; i++)
+    for (int i = 1; i < end; i++)
         place_segment(skeleton, s, i, art, &own[i]);
-    for (int i = end - 1; i >= begin; i--) {
+    for (int i = end - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
         if (resistance) {
             himc_symmetric d = himc_world_tensor(&s->rotation[i], resistance[i - 1]);
@@ -184,19 +182,19 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
 void himc_articulate(const himc_skeleton *skeleton, const himc_body_state *s,
                      himc_articulation *art)
 {
-    articulate(skeleton, s, 1, HIMC_LEGS, NULL, art);
+    articulate(skeleton, s, HIMC_SEGMENTS, NULL, art);
 }
 
-void himc_articulate_legs(const himc_skeleton *skeleton, const himc_body_state *s,
-                          himc_articulation *art)
+void himc_articulate_upper(const himc_skeleton *skeleton, const himc_body_state *s,
+                           himc_articulation *art)
 {
-    articulate(skeleton, s, HIMC_LEGS, HIMC_SEGMENTS, NULL, art);
+    articulate(skeleton, s, HIMC_LEGS, NULL, art);
 }
 
 void himc_articulate_resisting(const himc_skeleton *skeleton, const himc_body_state *s,
                                const himc_vec3 resistance[HIMC_JOINTS], himc_articulation *art)
 {
-    articulate(skeleton, s, 1, HIMC_SEGMENTS, resistance, art);
+    articulate(skeleton, s, HIMC_SEGMENTS, resistance, art);
 }
 
 // inwards: n and p of all segments further out; alpha is that of a joint at rest

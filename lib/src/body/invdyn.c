@@ -19,12 +19,11 @@ static inline himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_ve
 }
 
 static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
-                     const himc_vec3 *relative, const himc_vec3 *spin, int begin, int end,
-                     motion m[HIMC_SEGMENTS])
+                     const himc_vec3 *relative, const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
 {
     // gravity acts like an upward acceleration of the pelvis
     m[0] = (motion){.linear = {0, 0, HIMC_GRAVITY}};
-    for (int i = begin; i < end; i++) {
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = skeleton->segment[i].parent;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
         m[i].angular = relative ? himc_vec3_add(m[p].angular, relative[i - 1]) : m[p].angular;
@@ -34,12 +33,12 @@ static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
 
 static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s,
                          const himc_articulation *art, const himc_vec3 *relative,
-                         const himc_vec3 *spin, int begin, int end, himc_vec3 torque[HIMC_JOINTS])
+                         const himc_vec3 *spin, himc_vec3 torque[HIMC_JOINTS])
 {
     motion m[HIMC_SEGMENTS];
     himc_vec3 force[HIMC_SEGMENTS] = {{0, 0, 0}}, moment[HIMC_SEGMENTS] = {{0, 0, 0}};
-    outwards(skeleton, s, relative, spin, begin, end, m);
-    for (int i = end - 1; i >= begin; i--) {
+    outwards(skeleton, s, relative, spin, m);
+    for (int i = HIMC_SEGMENTS - 1; i > 0; i--) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 c = art ? art->center[i] : himc_mat3_apply(&s->rotation[i], segment->center);
         himc_symmetric inertia =
@@ -49,13 +48,13 @@ static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s
         himc_vec3 l = himc_symmetric_apply(&inertia, spin[i]);
         himc_vec3 rotational = himc_symmetric_apply(&inertia, m[i].angular);
         rotational = himc_vec3_add(rotational, himc_vec3_cross(spin[i], l));
-        moment[i] = himc_vec3_add(moment[i], himc_vec3_add(rotational, himc_vec3_cross(c, own)));
-        force[i] = himc_vec3_add(force[i], own);
-        torque[i - 1] = moment[i];
-        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[segment->parent]);
-        force[segment->parent] = himc_vec3_add(force[segment->parent], force[i]);
-        moment[segment->parent] = himc_vec3_add(
-            moment[segment->parent], himc_vec3_add(moment[i], himc_vec3_cross(r, force[i])));
+        himc_vec3 n = himc_vec3_add(rotational, himc_vec3_cross(c, own));
+        himc_vec3 f = himc_vec3_add(force[i], own);
+        int p = segment->parent;
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
+        n = torque[i - 1] = himc_vec3_add(moment[i], n);
+        force[p] = himc_vec3_add(force[p], f);
+        moment[p] = himc_vec3_add(moment[p], himc_vec3_add(n, himc_vec3_cross(r, f)));
     }
 }
 
@@ -71,14 +70,14 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
                            const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
 {
     static const himc_vec3 no_spin[HIMC_SEGMENTS];
-    find_torques(skeleton, s, NULL, relative, still ? no_spin : s->spin, 1, HIMC_SEGMENTS, torque);
+    find_torques(skeleton, s, NULL, relative, still ? no_spin : s->spin, torque);
 }
 
 void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *s,
-                              const himc_articulation *art, const himc_vec3 *relative, int begin,
-                              int end, himc_vec3 torque[HIMC_JOINTS])
+                              const himc_articulation *art, const himc_vec3 *relative,
+                              himc_vec3 torque[HIMC_JOINTS])
 {
-    find_torques(skeleton, s, art, relative, s->spin, begin, end, torque);
+    find_torques(skeleton, s, art, relative, s->spin, torque);
 }
 
 // with the relative accelerations of the joints before segment `end`

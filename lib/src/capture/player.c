@@ -292,7 +292,7 @@ static void seat_player(himc_player *player, himc_vec3 struck, himc_head_frame *
 {
     himc_vec3 spot = himc_vec3_sub(struck, player->hips), local = seen_on_head(drum, spot);
     if (hypot(local.x, local.y) > 0.97 * drum->radius) { // chosen: strikes near the rim miss
-        // under the strikes, on the line from the player; chosen: 0.1 m have a direction
+        // under the strikes, on the line from the player, known from 0.1 m on (chosen)
         double x, aside, far = hypot(spot.x, spot.y);
         usual_place(drum, &x, &aside);
         drum->center.x = spot.x - x * (far > 0.1 ? spot.x / far : 1);

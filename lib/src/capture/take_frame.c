@@ -343,7 +343,7 @@ static himc_vec3 find_up(himc_take *take, himc_up asked)
     return take->format_up;
 }
 
-// the rotation that makes `up` z, and x what is forward: the right of the screen if that is known
+// the rotation that makes `up` z, and x what is forward: to the screen's right if that is known
 static himc_mat3 upright_axes(himc_vec3 up, himc_vec3 right)
 {
     himc_vec3 x = right;

@@ -26,7 +26,7 @@ static void subject_of(const himc_take *take, int point, char subject[TAKE_NAME]
     subject[length] = 0;
 }
 
-// the names of the subjects in the file, each after a blank; returns their number, 12 at most
+// the names of subjects in the file, up to 12 that fit, each after a blank; returns their number
 static int list_subjects(const himc_take *take, char text[256])
 {
     char found[12][TAKE_NAME];

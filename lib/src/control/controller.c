@@ -7,22 +7,11 @@
 #include "body/dynamics.h"
 #include "control/law.h"
 #include "control/limit_torque.h"
-#include "control/still_legs.h"
 #include "control/strength.h"
 #include "control/tracking_error.h"
 
 #define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over servo_frequency's table
 #define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
-
-// of all joints; of legs at rest from the step before
-static void joint_errors(const himc_controller *c, const himc_skeleton *skeleton,
-                         const himc_body_state *s, const himc_posture_motion *target,
-                         tracking_error *e)
-{
-    himc_tracking_error_joints(skeleton, s, target, 0, c->legs ? HIMC_LEGS - 1 : HIMC_JOINTS, e);
-    if (c->legs)
-        himc_still_legs_errors(c->legs, skeleton, s, target, e);
-}
 
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_reference *reference,
@@ -30,7 +19,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
 {
     tracking_error e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
-    joint_errors(c, skeleton, s, &reference->posture, &e);
+    himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian[hand]);
         if (c->config.mode == HIMC_PIPELINE_HIMC)

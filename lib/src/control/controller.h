@@ -55,9 +55,6 @@ typedef struct himc_controller_config {
     double strength[HIMC_JOINTS]; ///< largest torque of each joint (N m); 0: no maximum
 } himc_controller_config;
 
-/// What control keeps of legs at rest (still_legs.h).
-typedef struct himc_still_legs himc_still_legs;
-
 /// A configuration in force for one body; made by himc_controller_init.
 typedef struct himc_controller {
     himc_controller_config config;
@@ -67,9 +64,8 @@ typedef struct himc_controller {
     himc_gain gain[HIMC_JOINTS];        ///< in force: the user's, else the default
     const himc_limits *limits;          ///< borrowed; NULL (default) for none
     himc_saturation_counts *saturation; ///< borrowed, counted up at each step; may be NULL
-    himc_still_legs *legs;              ///< borrowed, of this body and configuration; may be NULL
-    const himc_articulation *articulation; ///< borrowed, of this body without the legs in the state
-                                           ///< of the next call; may be NULL
+    const himc_articulation *articulation; ///< borrowed, of this body in the state of the next
+                                           ///< call; may be NULL
 } himc_controller;
 
 /// The present targets of the body.

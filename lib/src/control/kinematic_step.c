@@ -31,7 +31,7 @@ void himc_controller_kinematic_step(const himc_controller *c, const himc_skeleto
 {
     tracking_error e;
     extrapolate(skeleton, c->step, s, pose);
-    himc_tracking_error_joints(skeleton, s, &reference->posture, 0, HIMC_JOINTS, &e);
+    himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian jacobian;
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian);

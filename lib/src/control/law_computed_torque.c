@@ -9,7 +9,6 @@
 #include "control/ik.h"
 #include "control/law.h"
 #include "control/limit_torque.h"
-#include "control/still_legs.h"
 
 static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
                     himc_vec3 normal, double remain)
@@ -68,16 +67,6 @@ static void wanted_accelerations(const himc_controller *c, const himc_body_state
     }
 }
 
-static void wanted_torques(const himc_controller *c, const himc_skeleton *skeleton,
-                           const himc_body_state *s, const himc_vec3 *wanted,
-                           himc_vec3 torque[HIMC_JOINTS])
-{
-    himc_inverse_dynamics_of(skeleton, s, c->legs ? c->articulation : NULL, wanted, 1,
-                             c->legs ? HIMC_LEGS : HIMC_SEGMENTS, torque);
-    if (c->legs)
-        himc_still_legs_torques(c->legs, skeleton, s, wanted, torque);
-}
-
 void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS])
 {
     const himc_controller *c = in->controller;
@@ -85,5 +74,5 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS]
     wanted_accelerations(c, in->state, in->error, wanted);
     release_acceleration(in->skeleton, in->state, in->reference, in->jacobian, wanted);
     himc_limits_compliance(c, in->skeleton, in->state, in->jacobian, wanted);
-    wanted_torques(c, in->skeleton, in->state, wanted, torque);
+    himc_inverse_dynamics_of(in->skeleton, in->state, c->articulation, wanted, torque);
 }

@@ -20,10 +20,9 @@ static himc_vec3 mix(himc_vec3 a, himc_vec3 b, double share)
 
 // errors to the joint targets, from the parent's frame into the world
 void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
-                                const himc_posture_motion *target, int begin, int end,
-                                tracking_error *e)
+                                const himc_posture_motion *target, tracking_error *e)
 {
-    for (int j = begin; j < end; j++) {
+    for (int j = 0; j < HIMC_JOINTS; j++) {
         int p = skeleton->segment[j + 1].parent;
         himc_quat q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
         himc_vec3 missing = himc_quat_log(himc_quat_mul(target->joint[j], himc_quat_conj(q)));

@@ -12,10 +12,9 @@ typedef struct tracking_error {
     himc_vec3 acceleration[HIMC_JOINTS]; ///< q''_t (rad/s^2)
 } tracking_error;
 
-/// Of joints `begin` .. `end` - 1 to their targets.
+/// Of all joints to their targets.
 HIMC_RT void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_state *s,
-                                        const himc_posture_motion *target, int begin, int end,
-                                        tracking_error *e);
+                                        const himc_posture_motion *target, tracking_error *e);
 
 /// Replaces the errors of an arm's joints by those that bring its tip to `asked`, or to the nearest
 /// place in reach; the old errors move into the null space.

@@ -62,7 +62,7 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     himc_head head = himc_head_default();
     head.radius = inches * METRES_PER_INCH / 2;
     head.uniformity_seed = seed_of(name);
-    himc_drum_settings settings = {.head = {.shape = {.kind = HIMC_CIRCLE},
+    himc_drum_settings settings = {.head = {.shape = {.kind = &himc_kind_round},
                                             .head = head,
                                             .pickups = {himc_pickup_default()},
                                             .pickup_count = 1,
@@ -155,7 +155,7 @@ bool himc_drum_set(himc_drum *drum, const himc_drum_settings *to, himc_model **m
     there.radius = drum->set.place.radius;
     bool moves = !himc_head_frame_equal(&drum->set.place, &there);
     bool grows = drum->set.place.radius != to->place.radius ||
-                 himc_membrane_shape(drum->membrane)->kind != to->head.shape.kind;
+                 himc_membrane_config_of(drum->membrane)->shape.kind != to->head.shape.kind;
     bool exchanges = made && *made;
     if (!set_head(drum, &to->head, made, error))
         return false;

@@ -91,13 +91,8 @@ static bool set_head(himc_drum_settings *s, const himc_head *head, himc_error *e
 static himc_head usual_head(const himc_shape *shape, const himc_head *usual)
 {
     himc_head head = *usual;
-    if (shape->kind == HIMC_RECTANGLE)
-        head.radius = 0.5 * hypot(shape->length, shape->width);
-    if (shape->kind == HIMC_GRID) {
-        head.radius = shape->grid->radius;
-        head.tension = shape->grid->tension;
-        head.density = shape->grid->density;
-    }
+    if (shape->kind->fit)
+        shape->kind->fit(shape, &head);
     return head;
 }
 
@@ -166,11 +161,10 @@ static bool do_noise(himc_drum_settings *s, const himc_command *c, himc_error *e
 static bool do_uniformity(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     himc_head head = s->head.head;
-    bool round = s->head.shape.kind == HIMC_CIRCLE;
     head.uniformity = himc_argument_usual(number(c, 0), s->usual.uniformity);
     if (c->count == 2)
         head.uniformity_seed = (int)number(c, 1);
-    if (head.uniformity < 1 && !round)
+    if (head.uniformity < 1 && !s->head.shape.kind->air)
         return himc_error_set(error, "uniformity: %.6g, expected 1 on a head that is not round",
                               head.uniformity);
     return set_head(s, &head, error);
@@ -290,14 +284,19 @@ static bool do_kettle(himc_drum_settings *s, const himc_command *c, himc_error *
 }
 
 // takes the outline and its reference
-static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_head *head,
-                          himc_error *error)
+static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *error)
 {
     himc_membrane_config config = s->head;
     himc_grid *before = config.shape.grid;
-    head->air = head->air && shape.kind == HIMC_CIRCLE;
+    himc_head *head = &config.head;
+    // those of a file or of a rectangle were not said
+    head->radius = himc_argument_usual(as_said("RADIUS", head->radius), s->usual.radius);
+    head->tension = himc_argument_usual(as_said("TENSION", head->tension), s->usual.tension);
+    head->density = himc_argument_usual(as_said("DENSITY", head->density), s->usual.density);
+    *head = usual_head(&shape, head);
+    // one that may be in air again is in air again
+    head->air = shape.kind->air && (head->air || !s->head.shape.kind->air);
     config.shape = shape;
-    config.head = *head;
     bool good = set_config(s, &config, error);
     himc_grid_release(good ? before : shape.grid);
     return good;
@@ -305,15 +304,8 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_head *he
 
 static bool load_shape(himc_drum_settings *s, const char *path, himc_error *error)
 {
-    himc_head head = s->head.head;
-    himc_shape shape = {.kind = HIMC_GRID, .grid = himc_grid_load(path, error)};
-    if (!shape.grid)
-        return false;
-    head.radius = shape.grid->radius;
-    head.tension = shape.grid->tension;
-    head.density = shape.grid->density;
-    head.modes = head.modes < shape.grid->modes ? head.modes : shape.grid->modes;
-    return replace_shape(s, shape, &head, error) || himc_error_prefix(error, "%s", path);
+    himc_shape shape = {.kind = &himc_kind_grid, .grid = himc_grid_load(path, error)};
+    return shape.grid && (replace_shape(s, shape, error) || himc_error_prefix(error, "%s", path));
 }
 
 // the word of a misspelt outline looks like no file's name
@@ -325,25 +317,18 @@ static bool refuse_shape(const char *word, himc_error *error)
                           word);
 }
 
-// only a round head may be in air; one that becomes round again is in air again
 static bool do_shape(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    enum { CIRCLE, RECTANGLE, FROM_FILE };
-    himc_head head = s->head.head;
-    himc_shape shape = {.kind = HIMC_CIRCLE};
+    static const himc_kind *const kinds[] = {&himc_kind_round, &himc_kind_rectangle}; // by form
+    enum { FROM_FILE = sizeof kinds / sizeof *kinds };
     if (c->form == FROM_FILE)
         return load_shape(s, c->atom[0].symbol, error) || refuse_shape(c->atom[0].symbol, error);
-    // those of a file or of a rectangle were not said
-    head.radius = himc_argument_usual(as_said("RADIUS", head.radius), s->usual.radius);
-    head.tension = himc_argument_usual(as_said("TENSION", head.tension), s->usual.tension);
-    head.density = himc_argument_usual(as_said("DENSITY", head.density), s->usual.density);
-    if (c->form == CIRCLE) {
-        head.air = head.air || s->head.shape.kind != HIMC_CIRCLE;
-        return replace_shape(s, shape, &head, error);
+    himc_shape shape = {.kind = kinds[c->form]};
+    if (c->count == 3) {
+        shape.length = number(c, 1);
+        shape.width = number(c, 2);
     }
-    shape = (himc_shape){HIMC_RECTANGLE, number(c, 1), number(c, 2), NULL};
-    head.radius = 0.5 * hypot(shape.length, shape.width);
-    return replace_shape(s, shape, &head, error);
+    return replace_shape(s, shape, error);
 }
 
 static bool do_gain(himc_drum_settings *s, const himc_command *c, himc_error *error)
@@ -431,16 +416,11 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
 
 static void dump_outline(const himc_drum *drum, const himc_line_sink *to)
 {
-    const himc_shape *shape = himc_membrane_shape(drum->membrane);
+    const himc_shape *shape = &himc_membrane_config_of(drum->membrane)->shape;
     himc_state_line line = himc_state_begin("shape");
-    if (shape->kind == HIMC_CIRCLE)
-        himc_state_word(&line, "circle");
-    if (shape->kind == HIMC_RECTANGLE)
-        himc_state_word(&line, "rectangle");
-    if (shape->kind == HIMC_RECTANGLE)
+    himc_state_word(&line, shape->kind->name ? shape->kind->name : shape->grid->path);
+    if (shape->length > 0)
         himc_state_numbers(&line, 2, (double[]){shape->length, shape->width});
-    if (shape->kind == HIMC_GRID)
-        himc_state_word(&line, shape->grid->path);
     himc_state_end(&line, to);
 }
 
@@ -464,7 +444,7 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
         himc_state_tell(to, "kettle", NULL, 1, (double[]){head->kettle});
     himc_state_tell(to, "glide", NULL, 1, (double[]){head->glide});
     himc_state_tell(to, "damp", NULL, 1, (double[]){head->damp});
-    if (himc_membrane_shape(drum->membrane)->kind == HIMC_CIRCLE) {
+    if (himc_membrane_config_of(drum->membrane)->shape.kind->air) {
         himc_state_numbers(&seeded, 1, &head->uniformity);
         if (head->uniformity < 1) // its usual one is of the drum's name, which another may not have
             himc_state_numbers(&seeded, 1, (double[]){head->uniformity_seed});

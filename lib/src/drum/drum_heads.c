@@ -229,8 +229,8 @@ static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int cha
                    : command.id == HIMC_COMMAND_DAMP  ? DAMP
                                                       : PITCH;
         if (!(set & sets))
-            good = himc_drum_find_head(himc_membrane_shape(drum->membrane), &drum->set.usual,
-                                       &command, head, error) &&
+            good = himc_drum_find_head(&himc_membrane_config_of(drum->membrane)->shape,
+                                       &drum->set.usual, &command, head, error) &&
                    good;
         set |= sets;
     }
@@ -290,8 +290,8 @@ bool himc_drum_heads_begin_again(himc_drum_heads *heads, himc_drum *drum, double
     bool good = true;
     for (int i = from; i < heads->count; i++) {
         himc_command command = command_of(&heads->change[i]);
-        good = himc_drum_find_head(himc_membrane_shape(drum->membrane), &drum->set.usual, &command,
-                                   &head, error) &&
+        good = himc_drum_find_head(&himc_membrane_config_of(drum->membrane)->shape,
+                                   &drum->set.usual, &command, &head, error) &&
                good;
     }
     good = give(heads, drum, &head, error) && good;

@@ -33,7 +33,7 @@ himc_membrane *himc_membrane_new_of(himc_model *model, himc_error *error)
 
 himc_membrane *himc_membrane_new(const himc_head *head, double rate, himc_error *error)
 {
-    himc_membrane_config config = {.shape = {.kind = HIMC_CIRCLE},
+    himc_membrane_config config = {.shape = {.kind = &himc_kind_round},
                                    .head = *head,
                                    .pickups = {himc_pickup_default()},
                                    .pickup_count = 1,

@@ -57,7 +57,7 @@ bool himc_membrane_config_check(const himc_membrane_config *config, himc_error *
     if (!himc_head_check(head, error) ||
         !himc_check_range("sample rate", config->rate, 4000, 480000, "Hz", error))
         return false;
-    if (head->air && config->shape.kind != HIMC_CIRCLE)
+    if (head->air && !config->shape.kind->air)
         return himc_error_set(error, "air: 1, expected 0 on a head that is not round");
     return (!head->air || head->kettle == 0 || himc_air_check(head->kettle, head->radius, error)) &&
            himc_modes_check(&config->shape, head->modes, error);
@@ -97,14 +97,14 @@ static double principal_of(const himc_head *head, double zero)
 
 double himc_head_principal(const himc_head *head, const himc_shape *shape)
 {
-    return principal_of(head, himc_shape_principal(shape));
+    return principal_of(head, shape->kind->principal(shape));
 }
 
 double himc_head_tension(const himc_head *head, const himc_shape *shape, double frequency)
 {
     himc_head trial = *head;
     double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
-    double zero = himc_shape_principal(shape);
+    double zero = shape->kind->principal(shape);
     for (int i = 0; i < BISECTIONS; i++) {
         trial.tension = exp(0.5 * (low + high));
         if (principal_of(&trial, zero) < frequency)

@@ -10,11 +10,6 @@ const himc_membrane_config *himc_membrane_config_of(const himc_membrane *membran
     return &membrane->model->config;
 }
 
-const himc_shape *himc_membrane_shape(const himc_membrane *membrane)
-{
-    return himc_modes_shape(membrane->model->modes);
-}
-
 const himc_head *himc_membrane_head(const himc_membrane *membrane)
 {
     return &membrane->model->config.head;
@@ -48,7 +43,7 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
 {
-    return himc_head_principal(head, himc_membrane_shape(membrane));
+    return himc_head_principal(head, &membrane->model->config.shape);
 }
 
 int himc_membrane_audible(const himc_membrane *membrane)
@@ -92,7 +87,7 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, const doubl
     for (int i = 0; i < count; i++) {
         himc_mode mode = himc_modes_get(modes, &membrane->model->config.head, i);
         displacement[i] = coordinate(membrane, count, modal, i);
-        if (mode.m <= 0 || himc_membrane_shape(membrane)->kind != HIMC_CIRCLE)
+        if (mode.m <= 0 || !membrane->model->config.shape.kind->air)
             continue;
         const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
         bool whole = i + 1 < himc_modes_count(modes) &&

@@ -41,7 +41,7 @@ static const double *weights(himc_membrane *m, double b)
 static himc_residual find_residual(const himc_membrane *m, const strike_point *s, double b)
 {
     const himc_model *c = m->model;
-    double compliance = himc_patch_compliance(&m->model->config.head, hypot(s->x, s->y), b);
+    double compliance = c->config.shape.kind->compliance(&c->config.head, s->x, s->y, b);
     double per_mass = 1 / (m->model->config.head.density * HIMC_PI * b * b);
     for (int i = 0; i < himc_bank_count(c->bank); i++) {
         double square = s->shape[i] * s->shape[i];
@@ -54,15 +54,16 @@ static himc_residual find_residual(const himc_membrane *m, const strike_point *s
 // spreads a force at the point over its patch
 static void spread(himc_membrane *m, strike_point *s)
 {
-    bool round = himc_modes_shape(m->model->modes)->kind == HIMC_CIRCLE;
-    double b = round ? fmin(s->b, m->model->config.head.radius - hypot(s->x, s->y)) : s->b;
+    const himc_membrane_config *c = &m->model->config;
+    const himc_kind *kind = c->shape.kind;
+    double b = kind->patch ? kind->patch(&c->head, s->x, s->y, s->b) : 0;
     s->residual = (himc_residual){0};
     if (!(b > 0))
         return;
     const double *weight = weights(m, b);
     for (int i = 0; i < himc_modes_count(m->model->modes); i++)
         s->shape[i] *= weight[i];
-    if (round)
+    if (kind->compliance)
         s->residual = find_residual(m, s, b);
 }
 
@@ -268,7 +269,7 @@ double himc_membrane_energy(const himc_membrane *membrane)
 
 himc_bank_bounds himc_membrane_bounds(himc_membrane *membrane)
 {
-    if (himc_modes_shape(membrane->model->modes)->kind == HIMC_GRID)
+    if (!membrane->model->config.shape.kind->largest)
         return (himc_bank_bounds){INFINITY, INFINITY};
     return himc_bank_bounds_of(membrane->model->bank, membrane->model->most);
 }

@@ -10,7 +10,6 @@
 #include "drum/model.h"
 
 #include "head/pickup.h"
-#include "head/statistical.h"
 #include "system/aligned.h"
 
 #include <math.h>
@@ -27,9 +26,8 @@ _Static_assert(HIMC_BANK_ALIKE == HIMC_RAYS, "the rays are alike");
 // Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as
 // it should whatever its angle w t in one, unless that is near pi, where its velocity would be met
 // at the same phase again and again.
-#define INTERVAL 0.00075     // (s) chosen: 32 samples of 44.1 and 48 kHz
-#define LARGEST_BESSEL 0.582 // of |J_m| with m > 0
-#define SHARED_ANGLE 2.0     // most of w t of a mode that is shared; chosen: up to 477 Hz
+#define INTERVAL 0.00075 // (s) chosen: 32 samples of 44.1 and 48 kHz
+#define SHARED_ANGLE 2.0 // most of w t of a mode that is shared; chosen: up to 477 Hz
 
 // Young's modulus, Poisson's ratio and density of polyester film (Mylar), typical values; the
 // thickness of a head follows from its mass
@@ -87,7 +85,7 @@ static void share_memory(himc_model *c)
     for (int i = 0; i < HIMC_RAYS; i++) {
         c->rays.gain[i] = take(&memory, padded);
         c->rays.readout[i] = &c->outputs[HIMC_PICKUPS + i].readout;
-        if (c->config.shape.kind == HIMC_CIRCLE)
+        if (c->config.shape.kind->form)
             c->rays.readout[i]->alike = &c->rays;
     }
     for (int i = 0; i < HIMC_PATCHES; i++)
@@ -156,10 +154,10 @@ bool himc_model_has_room(const himc_model *model, const himc_membrane_config *co
 double himc_model_film_stiffness(const himc_model *m)
 {
     const himc_shape *shape = &m->config.shape;
-    if (shape->kind == HIMC_GRID && shape->grid->free)
-        return 0; // no film, and nothing that it could be stretched between
-    double thickness = m->config.head.density / FILM;
-    double area = himc_modes_area(m->modes, m->config.head.radius);
+    double thickness = m->config.head.density / FILM, radius = m->config.head.radius;
+    double area = radius * radius * shape->kind->film(shape);
+    if (!(area > 0))
+        return 0;
     return m->config.head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);
 }
 
@@ -174,16 +172,14 @@ int himc_model_substeps(const himc_model *model)
 static void find_oscillators(himc_model *m)
 {
     double root = sqrt(2 * himc_model_film_stiffness(m));
-    himc_outline kind = m->config.shape.kind;
+    const himc_kind *kind = m->config.shape.kind;
     himc_air_load load = {0};
     for (int i = 0; i < HIMC_PATCHES; i++)
         m->patches[i].b = 0;
     for (int i = 0; i < himc_modes_count(m->modes); i++) {
         himc_mode mode = himc_modes_get(m->modes, &m->config.head, i);
-        m->most[i] = mode.m < 0 ? HIMC_STATISTICAL_MOST : 1;
-        if (kind == HIMC_CIRCLE && mode.m > 0)
-            m->most[i] = LARGEST_BESSEL;
-        m->wave[i] = kind != HIMC_GRID ? mode.zero / m->config.head.radius : 0;
+        m->most[i] = kind->largest ? kind->largest(&mode) : INFINITY;
+        m->wave[i] = mode.zero / m->config.head.radius;
         double stretch = root * mode.stiffness / m->config.head.tension;
         m->per_stiffness[i] = 1 / mode.stiffness;
         m->per_mass[i] = 1 / mode.mass;
@@ -269,12 +265,12 @@ static void find_output(himc_model *m, int index)
     find_responses(m, &m->outputs[index], m->on_force);
 }
 
-// what all rays of a round head have in common
+// what all its rays have in common
 static void find_form(himc_model *m)
 {
     for (int i = 0; i < himc_modes_count(m->modes); i++) {
         himc_mode mode = sounding_mode(m, i);
-        pickup_weights w = himc_pickup_form(&mode);
+        pickup_weights w = m->config.shape.kind->form(&mode);
         m->on_q[i] = w.displacement;
         m->on_v[i] = w.velocity;
         m->on_force[i] = w.force;
@@ -291,7 +287,7 @@ void himc_model_find_outputs(himc_model *m, int first, int end, bool muted)
             find_output(m, i);
     if (first < HIMC_PICKUPS)
         m->stale = muted;
-    if (end > HIMC_PICKUPS && m->config.rays)
+    if (end > HIMC_PICKUPS && m->config.rays && m->config.shape.kind->form)
         find_form(m);
 }
 

@@ -56,12 +56,12 @@ typedef struct himc_model {
     himc_oscillator *oscillators;     ///< (modes)
     double *memory;                   ///< all arrays (padded) here
     double *stretch;                  ///< a_i of the film's stretching
-    double *most;                     ///< largest size of a mode's shape; not of a grid's
-    double *wave;                     ///< wave numbers of the bare modes (1/m); 0 of a grid's
+    double *most;                     ///< largest size of a mode's shape; INFINITY: not known
+    double *wave;                     ///< wave numbers of the bare modes (1/m)
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     himc_output outputs[HIMC_OUTPUTS];
     bool stale;      ///< the pickups' outputs are not of these modes: they were muted
-    himc_alike rays; ///< of a round head
+    himc_alike rays; ///< of a kind whose rays have a form
     // room for what a membrane has of so many modes: its state, and what it keeps of pure functions
     // of the model
     himc_bank *bank;

@@ -9,14 +9,8 @@
 /// that touch as Hertz's do, c = b^2 (1/R - F/(2 pi T b^2)), so
 ///     b^2 = R (c + F/(2 pi T)).
 /// b is fixed for a blow, at the force-weighted mean of that. Its largest force comes from the
-/// energy at impact, m v^2/2 = V(c) + C(b) f(c)^2/2: felt and head in series, as if they had time.
-/// A few Newton steps on the logarithms solve it.
-///
-/// Compliance. The mean over disc and disc of Green's function of a disc of radius a, at r0 from
-/// its centre (the mean of -ln|x - y| is 1/4 - ln b; the image is harmonic, so its mean is its
-/// value at the centre):
-///     C(b) = [ln((a^2 - r0^2)/(a b)) + 1/4]/(2 pi T).
-/// Without a patch, a sum over modes grows for ever with their number.
+/// energy at impact, m v^2/2 = V(c) + C(b) f(c)^2/2 (C: round.c): felt and head in series, as if
+/// they had time. A few Newton steps on the logarithms solve it.
 ///
 /// Residual. The modes that a list lacks yield, too. All together move like one oscillator with the
 /// compliance and the inverse mass that they have together,
@@ -30,6 +24,7 @@
 
 #include "drum/felt.h"
 #include "head/bessel.h"
+#include "head/kind.h"
 
 #include <math.h>
 
@@ -50,12 +45,6 @@ double himc_patch_weight(double z)
     return sum;
 }
 
-double himc_patch_compliance(const himc_head *head, double distance, double b)
-{
-    double a = head->radius, inside = (a - distance) * (a + distance);
-    return (log(inside / (a * b)) + 0.25) / (2 * HIMC_PI * head->tension);
-}
-
 double himc_patch_radius(const himc_head *head, const himc_mallet_head *mallet, double mass,
                          double distance, double speed)
 {
@@ -69,7 +58,7 @@ double himc_patch_radius(const himc_head *head, const himc_mallet_head *mallet, 
         double force = himc_felt_static(&f), potential = himc_felt_potential(&f);
         double bent = force / (2 * HIMC_PI * head->tension);
         b = fmin(WEIGHTED_MEAN * sqrt(mallet->radius * (c + bent)), most);
-        double pressed = himc_patch_compliance(head, distance, b) * force * force;
+        double pressed = himc_kind_round.compliance(head, distance, 0, b) * force * force;
         double work = force * c, held = potential + 0.5 * pressed;
         double power = (work + pressed * (work / potential - 1)) / held; // d ln held/d ln c
         c *= pow(energy / held, 1 / power);

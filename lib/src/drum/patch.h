@@ -14,10 +14,6 @@ HIMC_RT double himc_patch_radius(const himc_head *head, const himc_mallet_head *
 /// number times the patch's radius.
 HIMC_RT double himc_patch_weight(double z);
 
-/// Static compliance (m/N) of a round head under a patch of radius b > 0 (m) that lies inside it,
-/// `distance` from the centre (m): mean displacement per newton spread evenly.
-HIMC_RT double himc_patch_compliance(const himc_head *head, double distance, double b);
-
 /// An oscillator that yields as all modes together that a list lacks. All 0 for none.
 typedef struct himc_residual {
     double root;  ///< of its compliance ((m/N)^1/2)

@@ -9,7 +9,7 @@
 /// positive), the standard problem of L^-1 K L^-T, its eigenvalues. A membrane's K grows
 /// with its tension and its M with its density, so w = z/radius sqrt(T/sigma) with z = radius
 /// sqrt(w0^2 sigma0/T0) serves any other tension and density, as a Bessel zero does for a round
-/// head (modes.c).
+/// head (round.c).
 #include "head/grid.h"
 
 #include "base/file.h"

@@ -11,7 +11,7 @@
 /// A matrix is a Matrix Market file (coordinate or array, real or integer, general or symmetric) or
 /// N rows of N numbers. A free body, for example a bar, also has motions without bending; they
 /// make no sound and are left out, as if it lay on something soft. Between places a shape is
-/// interpolated linearly (modes.c), so list the rim.
+/// interpolated linearly (grid_kind.c), so list the rim.
 #ifndef HIMC_GRID_H
 #define HIMC_GRID_H
 

@@ -7,14 +7,13 @@
 #ifndef HIMC_MODES_H
 #define HIMC_MODES_H
 
-#include "head/grid.h"
+#include "head/kind.h"
 #include "head/lugs.h"
-#include "himc/membrane.h"
 
 /// The tension (N/m) at which the principal mode (1,1) of the bare head sounds at `frequency` (Hz).
 double himc_head_tension_for(const himc_head *head, double frequency);
 
-typedef struct himc_modes himc_modes;
+#define HIMC_USUAL_MODES 200 ///< of a head that is not round, if not given; chosen
 
 /// The lowest `count` modes of a head of that outline: 1 .. HIMC_MODES_MAX, of a grid (retained) as
 /// many as it has; or HIMC_MODES_AUTO. Modes of a rectangle have m and n half waves along x and y,
@@ -27,9 +26,6 @@ bool himc_modes_check(const himc_shape *shape, int count, himc_error *error);
 /// own. NULL without memory.
 himc_modes *himc_modes_copy(const himc_modes *modes, himc_error *error);
 void himc_modes_free(himc_modes *modes);
-
-/// Of the principal mode: j_11 of a round head, else the lowest mode's radius times wavenumber.
-HIMC_RT double himc_shape_principal(const himc_shape *shape);
 
 HIMC_RT int himc_modes_count(const himc_modes *modes);
 HIMC_RT const himc_shape *himc_modes_shape(const himc_modes *modes);
@@ -58,28 +54,12 @@ HIMC_RT const himc_mixture *himc_modes_mixture(const himc_modes *modes);
 /// Makes of one number for each bare shape, linear in the shapes, those of the mixed ones.
 HIMC_RT void himc_modes_mix(const himc_modes *modes, double *numbers);
 
-/// Area of the head (m^2).
-HIMC_RT double himc_modes_area(const himc_modes *modes, double radius);
-
 /// Mode `index` (0 .. count - 1) of that head, without air.
 HIMC_RT himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int index);
 
-/// Its bare shape at (x, y) (m); 0 outside the head. Exact; himc_modes_shapes is faster.
-double himc_modes_shape_at(const himc_modes *modes, double radius, int index, double x, double y);
-
-/// All bare shapes at (x, y) (m) into `shapes` (count), from a table, within 1e-8.
+/// All bare shapes at (x, y) (m) into `shapes` (count), within 1e-8; 0 outside the head.
 HIMC_RT void himc_modes_shapes(const himc_modes *modes, double radius, double x, double y,
                                double *shapes);
-
-/// For a head that is not round: the integrals over the head of a shape times cos and sin of kx x +
-/// ky y (k in rad/m, result in m^2).
-HIMC_RT void himc_modes_transform(const himc_modes *modes, double radius, int index, double kx,
-                                  double ky, double *even, double *odd);
-
-/// Amplitude of the pressure of a statistical mode far away, over rho radius^2/distance and its
-/// acceleration; `across` is radius times wavenumber in air times cos(elevation).
-HIMC_RT double himc_modes_pressure(const himc_modes *modes, int index, double across,
-                                   double azimuth);
 
 /// True if every field of `head` is in its range; else an error with the field, the value and the
 /// range.

@@ -26,6 +26,7 @@
 
 #include "head/air.h"
 #include "head/bessel.h"
+#include "head/mode_list.h"
 
 #include <math.h>
 
@@ -104,19 +105,20 @@ double himc_pickup_pressure(const himc_pickup *pickup, const himc_head *head,
     double angle = mode->m * (pickup->azimuth - mode->axis),
            scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
     if (mode->m < 0)
-        return scale * himc_modes_pressure(modes, index, x, pickup->azimuth);
+        return scale * himc_statistical_pressure(modes->statistical, index - modes->exact, x,
+                                                 pickup->azimuth);
     return scale * whole_overlap(head, modes, mode, x) * (mode->sine ? sin(angle) : cos(angle));
 }
 
-// the weights of a head that is not round: the integral itself, in phase and a quarter of a period
-// apart
-static pickup_weights of_outline(const himc_pickup *pickup, const himc_head *head,
-                                 const himc_modes *modes, int index, const himc_mode *mode)
+pickup_weights himc_pickup_of_outline(const himc_pickup *pickup, const himc_head *head,
+                                      const himc_modes *modes, int index, const himc_mode *mode)
 {
-    double even, odd, omega = 2 * HIMC_PI * mode->frequency;
+    double even, odd, omega = 2 * HIMC_PI * mode->frequency, a = head->radius;
     double k = omega / HIMC_AIR_SPEED * cos(pickup->elevation);
-    himc_modes_transform(modes, head->radius, index, k * cos(pickup->azimuth),
-                         k * sin(pickup->azimuth), &even, &odd);
+    modes->shape.kind->transform(modes, index, k * cos(pickup->azimuth) * a,
+                                 k * sin(pickup->azimuth) * a, &even, &odd);
+    even *= a * a;
+    odd *= a * a;
     double weight = HIMC_AIR_DENSITY / (2 * HIMC_PI * pickup->distance) * per_pascal(head);
     return (pickup_weights){.displacement = -weight * even * omega * omega,
                             .velocity = -weight * (2 * mode->decay * even + omega * odd),
@@ -141,17 +143,21 @@ pickup_weights himc_pickup_form(const himc_mode *mode)
     return of_gain(mode, 1);
 }
 
+pickup_weights himc_pickup_of_round(const himc_pickup *pickup, const himc_head *head,
+                                    const himc_modes *modes, int index, const himc_mode *mode)
+{
+    double weight = himc_pickup_pressure(pickup, head, modes, index, mode) * per_pascal(head);
+    double omega = 2 * HIMC_PI * mode->frequency;
+    weight *= near_field(mode->m,
+                         omega / HIMC_AIR_SPEED * fmax(pickup->distance, NEAREST * head->radius));
+    return of_gain(mode, weight);
+}
+
 pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *head,
                                    const himc_modes *modes, int index, const himc_mode *mode,
                                    double point_shape)
 {
     if (pickup->kind == HIMC_PICKUP_POINT)
         return (pickup_weights){.velocity = point_shape / HIMC_PICKUP_VELOCITY};
-    if (himc_modes_shape(modes)->kind != HIMC_CIRCLE)
-        return of_outline(pickup, head, modes, index, mode);
-    double weight = himc_pickup_pressure(pickup, head, modes, index, mode) * per_pascal(head);
-    double omega = 2 * HIMC_PI * mode->frequency;
-    weight *= near_field(mode->m,
-                         omega / HIMC_AIR_SPEED * fmax(pickup->distance, NEAREST * head->radius));
-    return of_gain(mode, weight);
+    return modes->shape.kind->far(pickup, head, modes, index, mode);
 }

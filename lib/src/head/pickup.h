@@ -4,17 +4,15 @@
 
 #include "head/modes.h"
 
-/// Sound per unit of a mode's state, in the units of himc/membrane.h (HIMC_PICKUP_PRESSURE,
-/// HIMC_PICKUP_VELOCITY).
-typedef struct pickup_weights {
-    double displacement; ///< per metre of q
-    double velocity;     ///< per m/s of q'
-    double force;        ///< per newton of modal force phi f
-    double gain;         ///< of himc_pickup_form; 0 of those that have none
-} pickup_weights;
-
-/// The weights of a mode of a round head at any pickup of kind AIR, but for its gain.
+/// `form` and `far` of a round head (kind.h).
 HIMC_RT pickup_weights himc_pickup_form(const himc_mode *mode);
+HIMC_RT pickup_weights himc_pickup_of_round(const himc_pickup *pickup, const himc_head *head,
+                                            const himc_modes *modes, int index,
+                                            const himc_mode *mode);
+/// `far` of any other outline: its transform, in phase and a quarter of a period apart.
+HIMC_RT pickup_weights himc_pickup_of_outline(const himc_pickup *pickup, const himc_head *head,
+                                              const himc_modes *modes, int index,
+                                              const himc_mode *mode);
 
 /// True if the pickup's fields are in range; else an error with the field, the value and the range.
 bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_error *error);

@@ -8,8 +8,9 @@
 /// air between the heads takes the power instead (air_between.c). Where air.h knows less of a
 /// mode's loss than that, its sound counts for less.
 ///
-/// One mode of each m and sign: what two of them send out in all directions is orthogonal, so that
-/// a drum alone loses what air.h says, and its modes stay apart.
+/// They are the five lowest, (0,1), (1,1) and (2,1), one of each m and sign: what two of them send
+/// out in all directions is orthogonal, so that a drum alone loses what air.h says, and its modes
+/// stay apart.
 #include "head/shared.h"
 
 #include "head/pickup.h"
@@ -23,11 +24,6 @@ const double himc_shared_sine[HIMC_SHARED_RINGS] = {0.0337652428984240, 0.169395
 const double himc_shared_part[HIMC_SHARED_RINGS] = {0.0856622461895852, 0.1803807865240693,
                                                     0.2339569672863455, 0.2339569672863455,
                                                     0.1803807865240693, 0.0856622461895852};
-
-static bool is_shared(const himc_mode *mode)
-{
-    return mode->m >= 0 && mode->m <= 2 && mode->n == 1;
-}
 
 // what it sends at all elevations; returns C
 static double find_amplitudes(const himc_head *head, const himc_modes *modes, const himc_mode *mode,
@@ -55,8 +51,6 @@ int himc_shared_find(const himc_head *head, const himc_modes *modes, const himc_
     int count = 0;
     for (int i = 0; i < himc_modes_count(modes) && count < HIMC_SHARED; i++) {
         himc_mode bare = himc_modes_get(modes, head, i);
-        if (!is_shared(&bare))
-            continue;
         himc_mode mode = himc_air_mode(air, head, &bare);
         himc_shared_mode *s = &shared[count];
         if (mode.frequency > highest)

@@ -8,72 +8,49 @@
 #include "midi/import.h"
 
 #include "base/format.h"
+#include "base/text.h"
 #include "midi/part.h"
 #include "plan/gesture.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MOST_STROKES 100000 // chosen: more than two hours of rolls
-#define LEAST_RING 0.15     // from a stroke to the hand that damps it (s); chosen
-#define DAMPING_HAND \
-    0.25 // lies on the head so long (s); chosen: twice the decay time of a damped head
-#define MOST_CHANGES 9900  // lines of a score besides strokes are 10000
-#define PEDAL_STEPS 4      // of a pedal that moves, at most; chosen: heard as a slide
-#define LEAD_IN 1.0        // before the first stroke (s); chosen: sticks rise and fall twice
-#define TIMPANI_PROGRAM 47 // "48 Timpani" of General MIDI, which counts from 1
+#define MOST_CHANGES 9900   // lines of a score besides strokes are 10000
+#define PEDAL_STEPS 4       // of a pedal that moves, at most; chosen: heard as a slide
 
-// velocities as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal
-// steps
-#define SOFTEST 16
-#define LOUDEST 128
+static void put(himc_text_lines *text, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-#define LOUDNESS_EXPONENT 1.1 // amplitude grows so with the mallet's speed ...
-#define FFF_SPEED 1.39        // ... which at fff is so many times that at f
-
-// text
-
-typedef struct text {
-    char *bytes; ///< owned; NULL after memory ran out
-    size_t size, room;
-    bool lost;
-} text;
-
-static void put(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void put(text *t, const char *format, ...)
+static void put(himc_text_lines *text, const char *format, ...)
 {
     char line[256];
     va_list args;
     va_start(args, format);
     size_t length = himc_format_list(line, sizeof line, format, args);
     va_end(args);
-    if (t->size + length + 1 > t->room) {
-        size_t room = 2 * t->room + sizeof line;
-        char *bigger = t->lost ? NULL : realloc(t->bytes, room);
-        t->lost |= !bigger;
-        if (t->lost)
-            return;
-        t->bytes = bigger;
-        t->room = room;
+    if (!himc_text_reserve(text, length)) {
+        text->failed = true;
+        return;
     }
-    memcpy(t->bytes + t->size, line, length + 1);
-    t->size += length;
+    memcpy(text->bytes + text->size, line, length + 1);
+    text->size += length;
 }
-
-// velocities
 
 double himc_midi_dynamic(int velocity, double range)
 {
+    // as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
     if (range == 0)
-        return fmax(0, fmin((velocity - SOFTEST) / (double)(LOUDEST - SOFTEST), 1));
+        return fmax(0, fmin((velocity - 16) / 112.0, 1));
     // Dannenberg 2006: amplitude = (m v + b)^2, 1 at 127, and `range` less at 1
     double root = sqrt(pow(10, range / 20)), b = 127 / (126 * root) - 1.0 / 126, m = (1 - b) / 127;
     double amplitude = pow(m * velocity + b, 2);
-    return himc_gesture_dynamic(pow(amplitude, 1 / LOUDNESS_EXPONENT) * FFF_SPEED);
+    // it grows with the power 1.1 of the mallet's speed, which at fff is 1.39 times that at f
+    return himc_gesture_dynamic(pow(amplitude, 1 / 1.1) * 1.39);
 }
 
 // which notes
@@ -85,66 +62,50 @@ static bool is_drum(const midi_note *note)
 
 static bool is_timpani(const midi_note *note)
 {
-    return !is_drum(note) && (note->program == TIMPANI_PROGRAM || note->timpani);
+    const int program = 47; // "48 Timpani" of General MIDI, which counts from 1
+    return !is_drum(note) && (note->program == program || note->timpani);
 }
 
-static bool wants_timpani(const midi_file *file, midi_choice choice)
+// the notes of the part as strokes with heads and hands
+static bool make_part(midi_part *part, const midi_file *file, const midi_options *options,
+                      himc_error *error)
 {
-    if (choice != MIDI_ANY)
-        return choice == MIDI_TIMPANI;
-    for (int i = 0; i < file->note_count; i++)
-        if (is_timpani(&file->notes[i]))
-            return true;
-    return false;
-}
-
-// the notes of the part as strokes
-static bool collect(midi_part *part, const midi_file *file, const midi_options *options,
-                    himc_error *error)
-{
-    part->timpani = wants_timpani(file, options->choice);
+    part->timpani = options->choice == MIDI_TIMPANI;
+    for (int i = 0; i < file->note_count && options->choice == MIDI_ANY; i++)
+        part->timpani |= is_timpani(&file->notes[i]);
     part->stroke = calloc((size_t)file->note_count + 1, sizeof *part->stroke);
     if (!part->stroke)
         return himc_error_set(error, "out of memory for %d notes", file->note_count);
     for (int i = 0; i < file->note_count; i++) {
         const midi_note *note = &file->notes[i];
         bool timpani = is_timpani(note), drum = is_drum(note);
+        double damped = note->seconds + 0.15; // by a hand at the earliest (s); chosen
         if (part->timpani ? timpani : drum)
             part->stroke[part->count++] =
                 (midi_stroke){.note = note,
                               .key = note->key,
                               .spot = HIMC_SPOT_NORMAL,
                               .dynamic = himc_midi_dynamic(note->velocity, options->range),
-                              .end = fmax(note->off, note->seconds + LEAST_RING)};
+                              .end = fmax(note->off, damped)};
         else
             part->fate[timpani || drum ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT]++;
     }
-    return part->count <= MOST_STROKES ||
-           himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
-}
-
-// strokes that are played and damped, as many as a score has lines for
-static void count_damped(midi_part *part)
-{
-    int most = (MOST_CHANGES - PEDAL_STEPS * part->pedals) / 2;
-    for (int i = 0; i < part->count; i++) {
-        midi_stroke *s = &part->stroke[i];
-        s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most;
-        part->damped += s->damped;
-    }
-}
-
-static bool assign(midi_part *part, himc_error *error)
-{
+    if (part->count > MOST_STROKES)
+        return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
     if (part->timpani && !himc_midi_tune(part, error))
         return false;
     if (!part->timpani)
         himc_midi_kit(part);
     if (!himc_midi_stick(part, error))
         return false;
-    for (int i = 0; i < part->count; i++)
-        part->fate[part->stroke[i].fate]++;
-    count_damped(part);
+    // a score has lines for so many damped strokes
+    int most_damped = (MOST_CHANGES - PEDAL_STEPS * part->pedals) / 2;
+    for (int i = 0; i < part->count; i++) {
+        midi_stroke *s = &part->stroke[i];
+        part->fate[s->fate]++;
+        s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most_damped;
+        part->damped += s->damped;
+    }
     if (part->timpani)
         himc_midi_find_rolls(part);
     return true;
@@ -152,13 +113,13 @@ static bool assign(midi_part *part, himc_error *error)
 
 // the report
 
-static void report_kind(text *t, int count, const char *one, const char *many)
+static void report_kind(himc_text_lines *t, int count, const char *one, const char *many)
 {
     if (count > 0)
         put(t, "%d %s\n", count, count == 1 ? one : many);
 }
 
-static void report(text *t, const midi_file *file, const midi_part *part)
+static void report(himc_text_lines *t, const midi_file *file, const midi_part *part)
 {
     static const char *const why[MIDI_FATES][2] = {
         [MIDI_TOGETHER] = {"note is one stroke with another at the same time on its head",
@@ -199,74 +160,26 @@ static void report(text *t, const midi_file *file, const midi_part *part)
 
 // the score
 
-// a file's name as a comment's words; what ends a word or a line in Pure Data becomes _
-static void put_name(text *t, const char *name)
-{
-    const char *slash = strrchr(name, '/');
-    char shown[64];
-    size_t n = 0;
-    for (const char *s = slash ? slash + 1 : name; *s && n + 1 < sizeof shown; s++)
-        shown[n++] = isalnum((unsigned char)*s) || strchr("-_.", *s) ? *s : '_';
-    shown[n] = '\0';
-    put(t, "comment made of %s by himc import;\n", shown);
-}
-
-static void put_comments(text *t, const char *lines)
-{
-    for (const char *end; (end = strchr(lines, '\n')); lines = end + 1)
-        put(t, "comment %.*s;\n", (int)(end - lines), lines);
-}
-
-// whole beats before the file's first, so that there is time before the first stroke
-static double lead_in(const midi_file *file, const midi_part *part)
-{
-    for (int i = 0; i < part->count; i++)
-        if (part->stroke[i].fate == MIDI_PLAYED)
-            return ceil(fmax(0, LEAD_IN - part->stroke[i].note->seconds) * file->tempi[0].bpm / 60);
-    return 0;
-}
-
 static double frequency(int key)
 {
     return 440 * pow(2, (key - 69) / 12.0);
 }
 
-static void put_drums(text *t, const midi_part *part)
+static void put_strokes(himc_text_lines *t, const midi_part *part, double lead)
 {
-    for (int i = 0; i < part->heads; i++) {
-        const midi_head *head = &part->head[i];
-        if (head->key < 0)
+    for (int i = 0; i < part->count; i++) {
+        const midi_stroke *s = &part->stroke[i];
+        if (s->fate != MIDI_PLAYED || s->in_roll)
             continue;
-        put(t, "drum %s %g;\n%s place %g %g %g;\n%s tune %.6g;\n", head->name, head->inches,
-            head->name, head->x, head->y, head->z, head->name, frequency(head->key));
+        const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
+        double beat = s->note->beat + lead;
+        if (s->roll.length > 0)
+            put(t, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length, s->dynamic,
+                s->roll.last_dynamic, spot, drum);
+        else
+            put(t, "stroke %.9g %s legato %.3g %s %s;\n", beat, himc_hand_name(s->hand), s->dynamic,
+                spot, drum);
     }
-}
-
-static void put_tempi(text *t, const midi_file *file, double lead, double last)
-{
-    for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
-        double beat = file->tempi[i].beat;
-        put(t, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);
-    }
-}
-
-static void put_stroke(text *t, const midi_part *part, const midi_stroke *s, double lead)
-{
-    const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
-    double beat = s->note->beat + lead;
-    if (s->roll.length > 0)
-        put(t, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length, s->dynamic,
-            s->roll.last_dynamic, spot, drum);
-    else
-        put(t, "stroke %.9g %s legato %.3g %s %s;\n", beat, himc_hand_name(s->hand), s->dynamic,
-            spot, drum);
-}
-
-static void put_strokes(text *t, const midi_part *part, double lead)
-{
-    for (int i = 0; i < part->count; i++)
-        if (part->stroke[i].fate == MIDI_PLAYED && !part->stroke[i].in_roll)
-            put_stroke(t, part, &part->stroke[i], lead);
 }
 
 /// A line of a drum's head.
@@ -283,40 +196,32 @@ static int by_time(const void *a, const void *b)
     return (x->seconds > y->seconds) - (x->seconds < y->seconds);
 }
 
-// when the hand leaves the head: before its next stroke, and before its pedal moves; `pedal` is the
-// first that begins after the stroke
-static double let_go(const midi_part *part, int index, int pedal)
+static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_part *part,
+                        double lead)
 {
-    const midi_stroke *s = &part->stroke[index];
-    double until = s->end + DAMPING_HAND;
-    for (int i = index + 1; i < part->count && part->stroke[i].note->seconds < until; i++)
-        if (part->stroke[i].fate == MIDI_PLAYED && part->stroke[i].head == s->head)
-            until = part->stroke[i].note->seconds;
-    for (; pedal < part->pedals && part->pedal[pedal].seconds < until; pedal++)
-        if (part->pedal[pedal].head == s->head && part->pedal[pedal].seconds > s->end)
-            until = part->pedal[pedal].seconds;
-    return until;
-}
-
-static int add_damping(change *list, const midi_part *part)
-{
+    change *list = malloc(MOST_CHANGES * sizeof *list);
+    if (!list)
+        return false;
     int count = 0, pedal = 0;
+    // a damping hand lies on the head for 0.25 s (chosen: twice the decay time of a damped head),
+    // and is off before the head's next stroke and before its pedal moves
     for (int i = 0; i < part->count; i++) {
         const midi_stroke *s = &part->stroke[i];
         if (!s->damped)
             continue;
+        double until = s->end + 0.25;
+        for (int k = i + 1; k < part->count && part->stroke[k].note->seconds < until; k++)
+            if (part->stroke[k].fate == MIDI_PLAYED && part->stroke[k].head == s->head)
+                until = part->stroke[k].note->seconds;
         while (pedal < part->pedals && part->pedal[pedal].seconds < s->note->seconds)
             pedal++;
+        for (int k = pedal; k < part->pedals && part->pedal[k].seconds < until; k++)
+            if (part->pedal[k].head == s->head && part->pedal[k].seconds > s->end)
+                until = part->pedal[k].seconds;
         list[count++] = (change){s->end, s->head, -1, 1};
-        list[count++] = (change){let_go(part, i, pedal), s->head, -1, 0};
+        list[count++] = (change){until, s->head, -1, 0};
     }
-    return count;
-}
-
-// a pedal goes through semitones between, as an undamped drum lets hear
-static int add_pedals(change *list, const midi_part *part)
-{
-    int count = 0;
+    // a pedal goes through semitones between, as an undamped drum lets hear
     for (int k = 0; k < part->pedals; k++) {
         const midi_pedal *p = &part->pedal[k];
         int way = p->to - p->from, steps = abs(way) < PEDAL_STEPS ? abs(way) : PEDAL_STEPS;
@@ -324,16 +229,6 @@ static int add_pedals(change *list, const midi_part *part)
             list[count++] =
                 (change){p->seconds + p->length * i / steps, p->head, p->from + way * i / steps, 0};
     }
-    return count;
-}
-
-static bool put_changes(text *t, const midi_file *file, const midi_part *part, double lead)
-{
-    change *list = malloc(MOST_CHANGES * sizeof *list);
-    if (!list)
-        return false;
-    int count = add_damping(list, part);
-    count += add_pedals(list + count, part);
     qsort(list, (size_t)count, sizeof *list, by_time);
     for (int i = 0; i < count; i++) {
         const change *c = &list[i];
@@ -351,21 +246,44 @@ static bool put_changes(text *t, const midi_file *file, const midi_part *part, d
 static bool write_score(midi_score *made, const midi_file *file, const midi_part *part,
                         const char *name, himc_error *error)
 {
-    text score = {0}, said = {0};
-    double lead = lead_in(file, part);
+    himc_text_lines score = {0}, said = {0};
+    // whole beats before the file's first, so that the first stroke comes 1 s later at the earliest
+    // (chosen: sticks rise and fall twice)
+    int first = 0;
+    while (part->stroke[first].fate != MIDI_PLAYED)
+        first++;
+    double wait = fmax(0, 1.0 - part->stroke[first].note->seconds);
+    double lead = ceil(wait * file->tempi[0].bpm / 60);
+    double last = part->stroke[part->count - 1].note->beat;
     report(&said, file, part);
-    put_name(&score, name);
-    if (!said.lost)
-        put_comments(&score, said.bytes);
+    // the file's name as a word: what ends a word or a line in Pure Data becomes _
+    const char *slash = strrchr(name, '/');
+    char shown[64];
+    snprintf(shown, sizeof shown, "%s", slash ? slash + 1 : name);
+    for (char *s = shown; *s; s++)
+        *s = isalnum((unsigned char)*s) || strchr("-_.", *s) ? *s : '_';
+    put(&score, "comment made of %s by himc import;\n", shown);
+    const char *line = said.failed ? "" : said.bytes;
+    for (const char *end; (end = strchr(line, '\n')); line = end + 1)
+        put(&score, "comment %.*s;\n", (int)(end - line), line);
     put(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
-    put_drums(&score, part);
-    put_tempi(&score, file, lead, part->stroke[part->count - 1].note->beat);
+    for (int i = 0; i < part->heads; i++) {
+        const midi_head *head = &part->head[i];
+        if (head->key >= 0)
+            put(&score, "drum %s %g;\n%s place %g %g %g;\n%s tune %.6g;\n", head->name,
+                head->inches, head->name, head->x, head->y, head->z, head->name,
+                frequency(head->key));
+    }
+    for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
+        double beat = file->tempi[i].beat;
+        put(&score, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);
+    }
     put_strokes(&score, part, lead);
-    score.lost |= !put_changes(&score, file, part, lead);
+    score.failed |= !put_changes(&score, file, part, lead);
     *made = (midi_score){score.bytes, said.bytes,
                          part->count - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER] +
                              file->cut + file->missing};
-    if (!score.lost && !said.lost)
+    if (!score.failed && !said.failed)
         return true;
     himc_midi_score_free(made);
     return himc_error_set(error, "out of memory for the score");
@@ -381,7 +299,7 @@ bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const ch
     options = options ? options : &usual;
     if (!himc_midi_file_read(&file, bytes, size, error))
         return false;
-    bool good = collect(&part, &file, options, error) && assign(&part, error);
+    bool good = make_part(&part, &file, options, error);
     if (good && part.fate[MIDI_PLAYED] == 0)
         good = himc_error_set(error, "nothing to play: %d note%s, none %s", file.note_count,
                               file.note_count == 1 ? "" : "s",

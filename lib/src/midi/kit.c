@@ -8,8 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#define TOGETHER_TIME 0.01 // two notes within this are one stroke (s); chosen: no flam is as close
-
 enum { BASS = 1, FLOOR, TOM, SNARE, BONGO }; // 0: no head
 
 static const midi_head heads[MIDI_HEADS] = {
@@ -19,16 +17,6 @@ static const midi_head heads[MIDI_HEADS] = {
     [SNARE - 1] = {"snare", 14, .52, -.16, .85, .178, 57},
     [BONGO - 1] = {"bongo", 12, .30, .78, .85, .152, 64},
 };
-
-/// The head of a key of General MIDI's percussion map, -1 if it is none.
-static int head_of(int key)
-{
-    static const int8_t head[] = {
-        [35] = BASS,  [36] = BASS,  [37] = SNARE, [38] = SNARE, [40] = SNARE, [41] = FLOOR,
-        [43] = FLOOR, [45] = FLOOR, [47] = TOM,   [48] = TOM,   [50] = TOM,   [60] = BONGO,
-        [61] = BONGO, [62] = BONGO, [63] = BONGO, [64] = BONGO, [65] = BONGO, [66] = BONGO};
-    return key < (int)sizeof head ? head[key] - 1 : -1;
-}
 
 void himc_midi_join(midi_part *part)
 {
@@ -40,7 +28,8 @@ void himc_midi_join(midi_part *part)
         if (s->fate != MIDI_PLAYED)
             continue;
         midi_stroke *first = *before >= 0 ? &part->stroke[*before] : NULL;
-        if (first && s->note->seconds - first->note->seconds < TOGETHER_TIME) {
+        // two notes within 0.01 s are one stroke; chosen: no flam is as close
+        if (first && s->note->seconds - first->note->seconds < 0.01) {
             first->dynamic = fmax(first->dynamic, s->dynamic);
             s->fate = MIDI_TOGETHER;
         } else {
@@ -52,13 +41,18 @@ void himc_midi_join(midi_part *part)
 void himc_midi_kit(midi_part *part)
 {
     enum { SIDE_STICK = 37 };
+    // of the keys of General MIDI's percussion map
+    static const int8_t head[] = {
+        [35] = BASS,  [36] = BASS,  [37] = SNARE, [38] = SNARE, [40] = SNARE, [41] = FLOOR,
+        [43] = FLOOR, [45] = FLOOR, [47] = TOM,   [48] = TOM,   [50] = TOM,   [60] = BONGO,
+        [61] = BONGO, [62] = BONGO, [63] = BONGO, [64] = BONGO, [65] = BONGO, [66] = BONGO};
     for (part->heads = 0; part->heads < MIDI_HEADS; part->heads++) {
         part->head[part->heads] = heads[part->heads];
         part->head[part->heads].key = -1;
     }
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
-        s->head = head_of(s->key);
+        s->head = s->key < (int)sizeof head ? head[s->key] - 1 : -1;
         s->spot = s->key == SIDE_STICK ? HIMC_SPOT_RIM : HIMC_SPOT_NORMAL;
         if (s->head < 0)
             s->fate = MIDI_NOT_A_HEAD;

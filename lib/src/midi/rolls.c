@@ -5,6 +5,7 @@
 /// least, with no other drum between them, become a `roll` from the first to the end of the last.
 /// Where the dynamics do not lie on a line, another roll begins. The drum channel has no rolls:
 /// there such rows are fills, whose rhythm counts.
+#include "base/argument.h"
 #include "midi/part.h"
 
 #include <math.h>
@@ -12,11 +13,8 @@
 #define SLOWEST 9.0     // strokes of a roll (1/s)
 #define LEAST_NOTES 4   // of a roll
 #define MOST_NOTES 1000 // of a roll; chosen: a minute of a fast one
-// (s); chosen: the score's limit less a last stroke that lasts into the slowest tempo
-#define LONGEST 60.0
+#define LONGEST 60.0    // (s) chosen: the score's limit less a last stroke at the slowest tempo
 #define MOVE_TIME 0.5 // from its last stroke to one on another drum (s); chosen: sticking.c's need
-#define LEAST_BEATS 0.05   // of a score's LENGTH
-#define MOST_BEATS 1000.0  // of it
 #define MOST_OFF_LINE 0.06 // of the dynamics from a straight line; chosen: less than half a step
 
 /// The next stroke that is played, -1 after the last.
@@ -42,33 +40,26 @@ static bool is_straight(const midi_part *part, int first, int last)
     return true;
 }
 
-static bool goes_on(const midi_part *part, int first, int last, int next)
-{
-    const midi_stroke *a = &part->stroke[first], *b = &part->stroke[last], *c = &part->stroke[next];
-    return c->head == a->head && c->note->seconds - b->note->seconds <= 1 / SLOWEST &&
-           c->note->seconds - a->note->seconds <= LONGEST && is_straight(part, first, next);
-}
-
-// the roll that may begin with a stroke; its last stroke, and how many they are
-static int follow(const midi_part *part, int first, int *notes)
-{
-    int last = first, next;
-    for (*notes = 1; *notes < MOST_NOTES && (next = next_played(part, last)) >= 0 &&
-                     goes_on(part, first, last, next);
-         ++*notes)
-        last = next;
-    return last;
-}
-
-// The roll ends early enough for a hand to go to the next drum: the strokes after it keep the hands
-// that sticking.c gave them, one of which may go ahead. Its last stroke then.
-static int leave_time(const midi_part *part, int first, int last, int *notes)
+// The roll that may begin with a stroke: its last stroke, and how many strokes they are. It ends
+// early enough for a hand to go to the next drum: the strokes after it keep the hands that
+// sticking.c gave them, one of which may go ahead.
+static int find_roll(const midi_part *part, int first, int *notes)
 {
     const midi_stroke *s = part->stroke;
-    int next = last, end = first;
+    int last = first, next, count = 1;
+    while (count < MOST_NOTES && (next = next_played(part, last)) >= 0 &&
+           s[next].head == s[first].head &&
+           s[next].note->seconds - s[last].note->seconds <= 1 / SLOWEST &&
+           s[next].note->seconds - s[first].note->seconds <= LONGEST &&
+           is_straight(part, first, next)) {
+        last = next;
+        count++;
+    }
+    next = last;
     while (next >= 0 && s[next].head == s[first].head)
         next = next_played(part, next);
     double until = next >= 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
+    int end = first;
     *notes = 1;
     for (int k = next_played(part, first); k >= 0 && k <= last && s[k].note->seconds <= until;
          k = next_played(part, k)) {
@@ -78,20 +69,16 @@ static int leave_time(const midi_part *part, int first, int last, int *notes)
     return end;
 }
 
-// beats from the first stroke to the end of the last, which lasts as long as the others
-static double length_of(const midi_part *part, int first, int last, int notes)
-{
-    double beats = part->stroke[last].note->beat - part->stroke[first].note->beat;
-    return beats * notes / (notes - 1);
-}
-
 void himc_midi_find_rolls(midi_part *part)
 {
+    const himc_argument *range = himc_argument_find("LENGTH", "roll");
     int notes, last;
     for (int i = next_played(part, -1); i >= 0; i = next_played(part, last)) {
-        last = leave_time(part, i, follow(part, i, &notes), &notes);
-        double length = notes >= LEAST_NOTES ? length_of(part, i, last, notes) : 0;
-        if (length < LEAST_BEATS || length > MOST_BEATS) {
+        last = find_roll(part, i, &notes);
+        // the last stroke lasts as long as the others
+        double beats = part->stroke[last].note->beat - part->stroke[i].note->beat;
+        double length = notes >= LEAST_NOTES ? beats * notes / (notes - 1) : 0;
+        if (length < range->low || length > range->high) {
             last = i;
             continue;
         }

@@ -9,33 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SCORE_BYTES_MAX ((size_t)64 << 20)
-
-static himc_score *import(const char *bytes, size_t size, const char *path, himc_error *error)
-{
-    midi_score made;
-    if (size > HIMC_MIDI_BYTES_MAX) {
-        himc_error_set(error, "%s: too long, expected %zu MiB of MIDI", path,
-                       HIMC_MIDI_BYTES_MAX >> 20);
-        return NULL;
-    }
-    if (!himc_midi_import(&made, bytes, size, path, NULL, error)) {
-        himc_error_prefix(error, "%s", path);
-        return NULL;
-    }
-    himc_score *score = himc_score_parse(made.text, path, error);
-    if (score) {
-        free(score->report);
-        score->report = made.report;
-        score->left_out = made.left_out;
-        made.report = NULL;
-    }
-    himc_midi_score_free(&made);
-    return score;
-}
-
-// what a file is that is neither a score nor MIDI, by its first bytes; NULL if it may be a score
-static const char *other_kind(const char *bytes, size_t size)
+bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_error *error)
 {
     static const struct {
         const char *begin, *is;
@@ -54,22 +28,21 @@ static const char *other_kind(const char *bytes, size_t size)
                  {"<", "XML or a web page: export MusicXML as MIDI"},
                  {"{", "JSON"},
                  {"version https://git-lfs", "a pointer to Git's large files: run git lfs pull"}};
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+    const char *kind = NULL;
+    for (size_t i = 0; i < sizeof known / sizeof known[0] && !kind; i++)
         if (size >= strlen(known[i].begin) &&
             !memcmp(bytes, known[i].begin, strlen(known[i].begin)))
-            return known[i].is;
-    return memchr(bytes, 0, size) ? "not a text file" : NULL;
-}
-
-bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_error *error)
-{
-    const char *kind = other_kind(bytes, size);
+            kind = known[i].is;
+    if (!kind && memchr(bytes, 0, size))
+        kind = "not a text file";
     return !kind ||
            himc_error_set(error, "%s: %s; expected a score, a MIDI file or a take", name, kind);
 }
 
 himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
 {
+    const size_t most = (size_t)64 << 20; // (bytes) as himc/score.h says
+    midi_score made = {0};
     size_t size;
     himc_score *score = NULL;
     if (himc_take_is_capture(path)) {
@@ -79,11 +52,25 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
                        path);
         return NULL;
     }
-    char *bytes = himc_file_load_in(folder, path, SCORE_BYTES_MAX, &size, error);
-    if (bytes && himc_midi_is_file(bytes, size))
-        score = import(bytes, size, path, error);
-    else if (bytes && himc_score_is_text(bytes, size, path, error))
-        score = himc_score_parse(bytes, path, error);
+    char *bytes = himc_file_load_in(folder, path, most, &size, error);
+    if (bytes && !himc_midi_is_file(bytes, size)) {
+        if (himc_score_is_text(bytes, size, path, error))
+            score = himc_score_parse(bytes, path, error);
+    } else if (bytes && size > HIMC_MIDI_BYTES_MAX) {
+        himc_error_set(error, "%s: too long, expected %zu MiB of MIDI", path,
+                       HIMC_MIDI_BYTES_MAX >> 20);
+    } else if (bytes && !himc_midi_import(&made, bytes, size, path, NULL, error)) {
+        himc_error_prefix(error, "%s", path);
+    } else if (bytes) {
+        score = himc_score_parse(made.text, path, error);
+    }
+    if (score && made.text) {
+        free(score->report);
+        score->report = made.report;
+        score->left_out = made.left_out;
+        made.report = NULL;
+    }
+    himc_midi_score_free(&made);
     free(bytes);
     return score;
 }

@@ -9,15 +9,13 @@
 /// say.
 #include "midi/smf.h"
 
+#include "base/argument.h"
+
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define USUAL_TEMPO 500000 // of a file that says nothing (microseconds per quarter note)
-#define MOST_BEATS 1e6     // of a score's BEAT
-#define MOST_TEMPI 10000   // of a score
-#define CONVERTED_BPM 120.0
-#define HEADER_BYTES 14
 
 typedef enum event_kind { NOTE_OFF, NOTE_ON, PROGRAM, TEMPO } event_kind;
 
@@ -116,36 +114,6 @@ static bool names_timpani(const uint8_t *text, size_t size)
     return false;
 }
 
-static bool read_meta(reader *r)
-{
-    enum { NAME = 0x03, END = 0x2f, SET_TEMPO = 0x51 };
-    uint8_t type = next_byte(r);
-    uint32_t length;
-    if (!next_length(r, &length))
-        return false;
-    r->cut |= length > (size_t)(r->end - r->at);
-    if (r->cut)
-        return true;
-    const uint8_t *data = r->at;
-    r->at += length;
-    r->over = type == END;
-    if (type == NAME)
-        r->timpani[r->track] |= names_timpani(data, length);
-    if (type != SET_TEMPO || length < 3)
-        return true;
-    return add_event(r, &(event){.kind = TEMPO, .tempo = number_of(data, 3)});
-}
-
-static bool skip_exclusive(reader *r)
-{
-    uint32_t length;
-    if (!next_length(r, &length))
-        return false;
-    r->cut |= length > (size_t)(r->end - r->at);
-    r->at += r->cut ? 0 : length;
-    return true;
-}
-
 // a message to a channel, of one data byte or two; `first` has been read
 static bool read_message(reader *r, uint8_t first)
 {
@@ -166,7 +134,9 @@ static bool read_message(reader *r, uint8_t first)
 
 static bool read_event(reader *r)
 {
-    uint32_t delta;
+    enum { EXCLUSIVE = 0xf0, ESCAPE = 0xf7, META = 0xff };
+    enum { NAME = 0x03, END = 0x2f, SET_TEMPO = 0x51 }; // types of META
+    uint32_t delta, length;
     if (!next_length(r, &delta))
         return false;
     r->tick += delta;
@@ -178,22 +148,21 @@ static bool read_event(reader *r)
     r->status = byte < 0xf0 ? byte : 0;
     if (byte < 0xf0)
         return read_message(r, next_byte(r));
-    if (byte == 0xff)
-        return read_meta(r);
-    return byte == 0xf0 || byte == 0xf7 ? skip_exclusive(r)
-                                        : wrong(r, "a status byte that files do not have");
-}
-
-static bool read_track(reader *r)
-{
-    r->tick = r->from;
-    r->status = 0;
-    r->cut = r->over = false;
-    while (r->at < r->end && !r->over && !r->cut)
-        if (!read_event(r))
-            return false;
-    // the tracks of format 2 follow each other
-    r->from = r->format == 2 ? r->tick : 0;
+    if (byte != META && byte != EXCLUSIVE && byte != ESCAPE)
+        return wrong(r, "a status byte that files do not have");
+    uint8_t type = byte == META ? next_byte(r) : 0;
+    if (!next_length(r, &length))
+        return false;
+    r->cut |= length > (size_t)(r->end - r->at);
+    if (r->cut)
+        return true;
+    const uint8_t *data = r->at;
+    r->at += length;
+    r->over = type == END;
+    if (type == NAME)
+        r->timpani[r->track] |= names_timpani(data, length);
+    if (type == SET_TEMPO && length >= 3)
+        return add_event(r, &(event){.kind = TEMPO, .tempo = number_of(data, 3)});
     return true;
 }
 
@@ -211,16 +180,20 @@ static bool read_tracks(reader *r, midi_file *file, const uint8_t *at, const uin
         if (!track)
             continue;
         r->track = file->tracks++;
-        if (!read_track(r))
-            return false;
+        r->tick = r->from;
+        r->status = 0;
+        r->cut = r->over = false;
+        while (r->at < r->end && !r->over && !r->cut)
+            if (!read_event(r))
+                return false;
+        // the tracks of format 2 follow each other
+        r->from = r->format == 2 ? r->tick : 0;
         bool cut = r->cut || (longer && !r->over);
         if (cut && (file->cut++ == 0 || r->tick < r->cut_at))
             r->cut_at = r->tick;
     }
     return file->tracks > 0 || himc_error_set(r->error, "a MIDI file without a track");
 }
-
-// from events to notes
 
 static int by_tick(const void *a, const void *b)
 {
@@ -244,82 +217,53 @@ static double seconds_at(const tempo_clock *c, int64_t tick)
                : c->seconds + (double)(tick - c->tick) * c->tempo / (1e6 * c->quarter);
 }
 
-// ticks per quarter note, or frames per second (as a negative byte) and ticks per frame
-static bool read_division(tempo_clock *c, const uint8_t *bytes, himc_error *error)
-{
-    bool frames = bytes[0] & 0x80;
-    int rate = 256 - bytes[0], ticks = frames ? bytes[1] : (int)number_of(bytes, 2);
-    *c = (tempo_clock){.tempo = USUAL_TEMPO, .quarter = ticks};
-    if (frames) // 29 stands for 29.97
-        c->per_second = (rate == 29 ? 30000.0 / 1001 : rate) * ticks;
-    return ticks > 0 || himc_error_set(error, "a division of 0 ticks, expected 1 or more");
-}
-
-static void take_tempo(midi_file *file, tempo_clock *c, const event *e)
-{
-    double beat = (double)e->tick / c->quarter, bpm = 60e6 / (e->tempo ? e->tempo : 1);
-    c->seconds = seconds_at(c, e->tick);
-    c->tick = e->tick;
-    c->tempo = e->tempo;
-    bool again = file->tempi[file->tempo_count - 1].beat == beat;
-    file->converted |= bpm < HIMC_BPM_MIN || bpm > HIMC_BPM_MAX || file->tempo_count > MOST_TEMPI;
-    file->tempo_count += !again;
-    file->tempi[file->tempo_count - 1] = (himc_tempo_change){beat, bpm};
-}
-
 /// What has to be remembered of each channel.
 typedef struct channels {
     uint8_t program[16];
     int sounding[16][128]; ///< index of the note, + 1
 } channels;
 
-static void end_note(midi_file *file, channels *c, const event *e, double seconds)
-{
-    int *sounding = &c->sounding[e->channel][e->first];
-    if (*sounding > 0)
-        file->notes[*sounding - 1].off = seconds;
-    *sounding = 0;
-}
-
-static void begin_note(midi_file *file, channels *c, const event *e, const tempo_clock *clock,
-                       const bool *timpani)
-{
-    double seconds = seconds_at(clock, e->tick);
-    end_note(file, c, e, seconds);
-    file->notes[file->note_count++] = (midi_note){.beat = (double)e->tick / clock->quarter,
-                                                  .seconds = seconds,
-                                                  .off = -1,
-                                                  .track = e->track,
-                                                  .channel = e->channel,
-                                                  .key = e->first,
-                                                  .velocity = e->second,
-                                                  .program = c->program[e->channel],
-                                                  .timpani = timpani[e->track]};
-    c->sounding[e->channel][e->first] = file->note_count;
-}
-
 static void take_event(midi_file *file, channels *c, tempo_clock *clock, const event *e,
                        const bool *timpani)
 {
+    double beat = (double)e->tick / clock->quarter, seconds = seconds_at(clock, e->tick);
+    int *sounding = &c->sounding[e->channel][e->first];
     switch (e->kind) {
-    case NOTE_ON: begin_note(file, c, e, clock, timpani); break;
-    case NOTE_OFF: end_note(file, c, e, seconds_at(clock, e->tick)); break;
+    case NOTE_ON:
+    case NOTE_OFF:
+        if (*sounding > 0)
+            file->notes[*sounding - 1].off = seconds;
+        *sounding = 0;
+        if (e->kind == NOTE_OFF)
+            break;
+        file->notes[file->note_count++] = (midi_note){.beat = beat,
+                                                      .seconds = seconds,
+                                                      .off = -1,
+                                                      .track = e->track,
+                                                      .channel = e->channel,
+                                                      .key = e->first,
+                                                      .velocity = e->second,
+                                                      .program = c->program[e->channel],
+                                                      .timpani = timpani[e->track]};
+        *sounding = file->note_count;
+        break;
     case PROGRAM: c->program[e->channel] = e->first; break;
-    default:
-        if (clock->per_second == 0)
-            take_tempo(file, clock, e);
+    case TEMPO:
+        if (clock->per_second > 0)
+            break;
+        clock->seconds = seconds;
+        clock->tick = e->tick;
+        clock->tempo = e->tempo;
+        double bpm = 60e6 / (e->tempo ? e->tempo : 1);
+        bool again = file->tempi[file->tempo_count - 1].beat == beat;
+        // a score has lines for 10000 changes
+        file->converted |= bpm < HIMC_BPM_MIN || bpm > HIMC_BPM_MAX || file->tempo_count > 10000;
+        file->tempo_count += !again;
+        file->tempi[file->tempo_count - 1] = (himc_tempo_change){beat, bpm};
     }
 }
 
-// beats that a score can have, where the file's cannot be kept
-static void convert(midi_file *file)
-{
-    for (int i = 0; i < file->note_count; i++)
-        file->notes[i].beat = file->notes[i].seconds * CONVERTED_BPM / 60;
-    file->tempi[0] = (himc_tempo_change){0, CONVERTED_BPM};
-    file->tempo_count = 1;
-}
-
+// from events to notes and tempi
 static bool collect(midi_file *file, reader *r, tempo_clock *clock)
 {
     channels c = {0};
@@ -340,20 +284,24 @@ static bool collect(midi_file *file, reader *r, tempo_clock *clock)
     file->cut_at = clock->per_second > 0 ? (double)r->cut_at / clock->per_second
                                          : himc_score_seconds(file->tempi, file->tempo_count, beat);
     file->converted |= clock->per_second > 0;
-    if (file->converted)
-        convert(file);
-    const midi_note *last = file->notes + file->note_count - 1;
-    return file->note_count == 0 || last->beat <= MOST_BEATS ||
-           himc_error_set(r->error, "a note at beat %.9g, expected up to %g", last->beat,
-                          MOST_BEATS);
+    if (file->converted) {
+        const double bpm = 120; // beats that a score can have: half seconds
+        for (int i = 0; i < file->note_count; i++)
+            file->notes[i].beat = file->notes[i].seconds * bpm / 60;
+        file->tempi[0] = (himc_tempo_change){0, bpm};
+        file->tempo_count = 1;
+    }
+    double last = file->note_count > 0 ? file->notes[file->note_count - 1].beat : 0;
+    double most = himc_argument_find("BEAT", NULL)->high;
+    return last <= most ||
+           himc_error_set(r->error, "a note at beat %.9g, expected up to %g", last, most);
 }
 
 bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_error *error)
 {
     const uint8_t *at = bytes;
-    tempo_clock clock;
     *file = (midi_file){0};
-    if (size < HEADER_BYTES || !himc_midi_is_file(bytes, size))
+    if (size < 14 || !himc_midi_is_file(bytes, size))
         return himc_error_set(error, "not a MIDI file: it does not begin with MThd and 6 bytes");
     size_t header = number_of(at + 4, 4);
     reader r = {.format = (int)number_of(at + 8, 2), .error = error};
@@ -361,10 +309,19 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
         return himc_error_set(error, "a header of %zu bytes, expected 6 .. %zu", header, size - 8);
     if (r.format > 2)
         return himc_error_set(error, "MIDI format %d, expected 0 .. 2", r.format);
+    // the division: ticks per quarter note, or frames per second (as a negative byte) and ticks per
+    // frame; 29 frames stand for 29.97
+    const uint8_t *division = at + 12;
+    bool frames = division[0] & 0x80;
+    int rate = 256 - division[0], ticks = frames ? division[1] : (int)number_of(division, 2);
+    if (ticks == 0)
+        return himc_error_set(error, "a division of 0 ticks, expected 1 or more");
+    tempo_clock clock = {.tempo = USUAL_TEMPO, .quarter = ticks};
+    if (frames)
+        clock.per_second = (rate == 29 ? 30000.0 / 1001 : rate) * ticks;
     r.timpani = calloc(UINT16_MAX, sizeof *r.timpani);
     bool good = r.timpani || himc_error_set(error, "out of memory");
-    good = good && read_division(&clock, at + 12, error) &&
-           read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r, &clock);
+    good = good && read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r, &clock);
     int promised = (int)number_of(at + 10, 2);
     file->missing = promised > file->tracks ? promised - file->tracks : 0;
     free(r.timpani);

@@ -13,12 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define WIDTH 64
-#define LEAST_GAP 0.055  // of one hand on a spot (s); the planner refuses 0.04
-#define MOVE_MARGIN 1.45 // the planner's (hand.c) for a stroke's swing, and a little more
-#define NORMAL_SPOT 0.75 // radii from the centre, towards the player
-#define OMIT_COST 45.0
-#define OMIT_LOUD_COST 20.0 // at fff
+#define WIDTH 64 // states kept; chosen
 
 /// One hand.
 typedef struct hand_state {
@@ -40,17 +35,6 @@ typedef struct step {
     int8_t from, choice;
 } step;
 
-static hand_state place_of(const midi_part *part, const midi_stroke *s)
-{
-    const midi_head *head = &part->head[s->head];
-    return (hand_state){s->note->seconds, head->x - NORMAL_SPOT * head->radius, head->y};
-}
-
-static double least_gap(double way)
-{
-    return fmax(LEAST_GAP, MOVE_MARGIN * himc_move_time(way, HIMC_HARDEST_MOVE));
-}
-
 // of a stroke by that hand; infinite if it is not possible
 static double stroke_cost(const state *now, const hand_state *to, int hand)
 {
@@ -60,7 +44,9 @@ static double stroke_cost(const state *now, const hand_state *to, int hand)
                        .inwards = hand == HIMC_LEFT ? other->y - to->y : to->y - other->y,
                        .other_gap = to->at - other->at};
     s.same_spot = s.way == 0;
-    if (s.gap < least_gap(s.way))
+    // on one spot 0.055 s, as the planner refuses 0.04 s; the margin is the planner's (hand.c) for
+    // a stroke's swing, and a little more
+    if (s.gap < fmax(0.055, 1.45 * himc_move_time(s.way, HIMC_HARDEST_MOVE)))
         return HUGE_VAL;
     return himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);
 }
@@ -83,31 +69,56 @@ static int keep(state *best, int count, const state *made)
     return count < WIDTH ? count + 1 : count;
 }
 
-static int advance(const midi_part *part, const state *now, int count, int index, state *next)
+// The states after each stroke that is played; returns the best after the last. Both arrays are of
+// WIDTH states, `steps` of WIDTH for each stroke.
+static int search(const midi_part *part, state *now, state *next, step *steps)
 {
-    const midi_stroke *s = &part->stroke[index];
-    hand_state to = place_of(part, s);
-    int kept = 0;
-    for (int i = 0; i < count; i++)
-        for (int choice = 0; choice <= OMIT; choice++) {
-            state made = now[i];
-            made.from = (int8_t)i;
-            made.choice = (int8_t)choice;
-            made.cost += choice == OMIT ? OMIT_COST + OMIT_LOUD_COST * s->dynamic
-                                        : stroke_cost(&now[i], &to, choice);
-            if (choice != OMIT) {
-                made.hand[choice] = to;
-                made.last[choice] = index;
+    const double omit = 45, omit_loud = 20; // costs of a stroke left out: of any, more of fff
+    // at first each hand is before its own side
+    int count = 1;
+    now[0] = (state){.hand = {{-1e3, 0.5, 0.2}, {-1e3, 0.5, -0.2}}, .last = {-1, -1}};
+    for (int k = 0; k < part->count; k++, steps += WIDTH) {
+        const midi_stroke *s = &part->stroke[k];
+        if (s->fate != MIDI_PLAYED)
+            continue;
+        const midi_head *head = &part->head[s->head];
+        // the normal spot, towards the player from the centre
+        hand_state to = {s->note->seconds, head->x - 0.75 * head->radius, head->y};
+        int kept = 0;
+        for (int i = 0; i < count; i++)
+            for (int choice = 0; choice <= OMIT; choice++) {
+                state made = now[i];
+                made.from = (int8_t)i;
+                made.choice = (int8_t)choice;
+                made.cost += choice == OMIT ? omit + omit_loud * s->dynamic
+                                            : stroke_cost(&now[i], &to, choice);
+                if (choice != OMIT) {
+                    made.hand[choice] = to;
+                    made.last[choice] = k;
+                }
+                if (isfinite(made.cost))
+                    kept = keep(next, kept, &made);
             }
-            if (isfinite(made.cost))
-                kept = keep(next, kept, &made);
-        }
-    return kept;
+        for (int i = 0; i < kept; i++)
+            steps[i] = (step){next[i].from, next[i].choice};
+        state *other = now;
+        now = next;
+        next = other;
+        count = kept;
+    }
+    int best = 0;
+    for (int i = 1; i < count; i++)
+        best = now[i].cost < now[best].cost ? i : best;
+    return best;
 }
 
-static void walk_back(midi_part *part, const step *steps, int at)
+bool himc_midi_stick(midi_part *part, himc_error *error)
 {
-    for (int i = part->count - 1; i >= 0; i--) {
+    state *states = malloc(2 * WIDTH * sizeof *states);
+    step *steps = malloc(((size_t)part->count * WIDTH + 1) * sizeof *steps);
+    bool good = states && steps;
+    int at = good ? search(part, states, states + WIDTH, steps) : 0;
+    for (int i = part->count - 1; i >= 0 && good; i--) {
         midi_stroke *s = &part->stroke[i];
         if (s->fate != MIDI_PLAYED)
             continue;
@@ -118,36 +129,6 @@ static void walk_back(midi_part *part, const step *steps, int at)
         else
             s->hand = (himc_hand)chosen->choice;
     }
-}
-
-static void search(midi_part *part, state *now, state *next, step *steps)
-{
-    // at first each hand is before its own side
-    int count = 1;
-    now[0] = (state){.hand = {{-1e3, 0.5, 0.2}, {-1e3, 0.5, -0.2}}, .last = {-1, -1}};
-    for (int i = 0; i < part->count; i++) {
-        if (part->stroke[i].fate != MIDI_PLAYED)
-            continue;
-        count = advance(part, now, count, i, next);
-        for (int k = 0; k < count; k++)
-            steps[(size_t)i * WIDTH + (size_t)k] = (step){next[k].from, next[k].choice};
-        state *other = now;
-        now = next;
-        next = other;
-    }
-    int best = 0;
-    for (int k = 1; k < count; k++)
-        best = now[k].cost < now[best].cost ? k : best;
-    walk_back(part, steps, best);
-}
-
-bool himc_midi_stick(midi_part *part, himc_error *error)
-{
-    state *states = malloc(2 * WIDTH * sizeof *states);
-    step *steps = malloc(((size_t)part->count * WIDTH + 1) * sizeof *steps);
-    bool good = states && steps;
-    if (good)
-        search(part, states, states + WIDTH, steps);
     free(states);
     free(steps);
     return good || himc_error_set(error, "out of memory for %d strokes", part->count);

@@ -14,26 +14,9 @@
 #include <string.h>
 
 #define DRUMS 4
-#define WIDTH 64
-#define LOWEST 36  // C2
-#define HIGHEST 59 // B3
-#define CHANGE_COST 1.0
-#define SEMITONE_COST 0.1
-#define DRUM_COST 0.5     // of the first note of a drum: no more drums than the piece needs
-#define MIDDLE_COST 0.001 // a semitone from the middle of the range: of equal ways the natural one
-#define MOST_OUTSIDE 4    // semitones past its usual range that a drum may be tuned to ...
-#define OUTSIDE_COST 0.02 // ... for this on each note: slack or overstretched heads sound poorer
-#define OMIT_COST 30.0
-#define RING_TIME 1.0      // after a stroke an undamped drum may be retuned (s)
-#define DAMP_TIME 0.2      // after the end of its note a damped one may be (s)
-#define PEDAL_TIME 0.15    // a change takes this (s) ...
-#define SEMITONE_TIME 0.05 // ... and this a semitone ...
-#define LONGEST_PEDAL 0.6  // ... and no more
-#define MOST_PEDALS 2000   // chosen: an hour of a busy foot, and a score has room for them
-#define FOOT_TIME 0.3      // from one pedal to the next (s)
-#define DAMPED_SHARE 0.7 // a note that ends before this share of the time to the next is damped ...
-#define LEAST_DAMPED 0.3 // ... if the drum then rests so long (s) ...
-#define FREE_HAND 0.2    // ... and the hands so (s)
+#define WIDTH 64         // states kept; chosen
+#define RING_TIME 1.0    // after a stroke an undamped drum may be retuned (s)
+#define MOST_PEDALS 2000 // chosen: an hour of a busy foot, and a score has room for them
 
 /// From low on the left to high on the right, as in an orchestra; 23 to 32 inches.
 static const struct {
@@ -46,21 +29,15 @@ static const struct {
     {{"high", 23, .251, -.843, .85, .292, -1}, 50, 59},
 };
 
-static int max(int a, int b)
-{
-    return a > b ? a : b;
-}
-
 /// The drums after a note.
 typedef struct state {
     double cost;
-    int8_t key[DRUMS];    ///< -1: not tuned yet
-    double ready[DRUMS];  ///< may be retuned from then on (s)
-    double struck[DRUMS]; ///< last (s)
-    double foot;          ///< is free from then on (s)
-    int32_t from;         ///< the state before, of the note before
-    int8_t drum;          ///< of the note, -1: left out
-    double pedal;         ///< begins (s); infinite if it does not move
+    int8_t key[DRUMS];   ///< -1: not tuned yet
+    double ready[DRUMS]; ///< may be retuned from then on (s)
+    double foot;         ///< is free from then on (s)
+    int32_t from;        ///< the state before, of the note before
+    int8_t drum;         ///< of the note, -1: left out
+    double pedal;        ///< begins (s); infinite if it does not move
 } state;
 
 /// What is remembered of each state to walk back.
@@ -69,9 +46,10 @@ typedef struct step {
     float pedal; ///< how long before the note it begins (s); 0: it does not move
 } step;
 
+// of a change by so many semitones (s)
 static double pedal_time(int semitones)
 {
-    return fmin(PEDAL_TIME + SEMITONE_TIME * abs(semitones), LONGEST_PEDAL);
+    return fmin(0.15 + 0.05 * abs(semitones), 0.6);
 }
 
 // the state after the note on that drum; false if the drum cannot play it
@@ -79,26 +57,28 @@ static bool play(const state *before, int from, const midi_stroke *s, int drum, 
 {
     double at = s->note->seconds;
     int key = before->key[drum], way = abs(s->key - key);
-    int outside = max(timpano[drum].low - s->key, s->key - timpano[drum].high);
-    if (outside > MOST_OUTSIDE)
+    int low = timpano[drum].low, high = timpano[drum].high;
+    // semitones past the usual range: slack or overstretched heads sound poorer
+    int outside = s->key < low ? low - s->key : s->key > high ? s->key - high : 0;
+    if (outside > 4)
         return false;
     *after = *before;
     after->from = from;
     after->drum = (int8_t)drum;
     after->pedal = HUGE_VAL;
-    after->cost += MIDDLE_COST * fabs(s->key - 0.5 * (timpano[drum].low + timpano[drum].high)) +
-                   OUTSIDE_COST * max(outside, 0);
-    after->cost += key < 0 ? DRUM_COST : 0;
+    // of equal ways the natural one: in the middle of the range
+    after->cost += 0.001 * fabs(s->key - 0.5 * (low + high)) + 0.02 * outside;
+    if (key < 0)
+        after->cost += 0.5; // no more drums than the piece needs
     if (key >= 0 && way > 0) {
         after->pedal = fmax(before->ready[drum], before->foot);
         if (after->pedal + pedal_time(way) > at)
             return false;
-        after->foot = after->pedal + pedal_time(way) + FOOT_TIME;
-        after->cost += CHANGE_COST + SEMITONE_COST * way;
+        after->foot = after->pedal + pedal_time(way) + 0.3; // s to the next pedal
+        after->cost += 1 + 0.1 * way;
     }
     after->key[drum] = (int8_t)s->key;
-    after->struck[drum] = at;
-    after->ready[drum] = fmin(at + RING_TIME, s->end + DAMP_TIME);
+    after->ready[drum] = fmin(at + RING_TIME, s->end + 0.2); // damped, 0.2 s after its note's end
     return true;
 }
 
@@ -123,38 +103,47 @@ static int keep(state *best, int count, const state *made)
     return count;
 }
 
-static int advance(const state *now, int count, const midi_stroke *s, state *next)
+// The states after each note that is played; returns the best after the last. Both arrays are of
+// WIDTH states, `steps` of WIDTH for each note.
+static int search(const midi_part *part, state *now, state *next, step *steps)
 {
-    int kept = 0;
-    state made;
-    for (int i = 0; i < count; i++) {
-        for (int drum = 0; drum < DRUMS; drum++)
-            if (play(&now[i], i, s, drum, &made))
-                kept = keep(next, kept, &made);
-        made = now[i];
-        made.cost += OMIT_COST;
-        made.from = i;
-        made.drum = -1;
-        made.pedal = HUGE_VAL;
-        kept = keep(next, kept, &made);
+    int count = 1;
+    now[0] = (state){.key = {-1, -1, -1, -1}};
+    for (int k = 0; k < part->count; k++, steps += WIDTH) {
+        const midi_stroke *s = &part->stroke[k];
+        if (s->fate != MIDI_PLAYED)
+            continue;
+        int kept = 0;
+        for (int i = 0; i < count; i++) {
+            state made;
+            for (int drum = 0; drum < DRUMS; drum++)
+                if (play(&now[i], i, s, drum, &made))
+                    kept = keep(next, kept, &made);
+            made = now[i];
+            made.cost += 30; // the note is left out
+            made.from = i;
+            made.drum = -1;
+            made.pedal = HUGE_VAL;
+            kept = keep(next, kept, &made);
+        }
+        for (int i = 0; i < kept; i++)
+            steps[i] =
+                (step){(int8_t)next[i].from, next[i].drum,
+                       isfinite(next[i].pedal) ? (float)(s->note->seconds - next[i].pedal) : 0};
+        state *other = now;
+        now = next;
+        next = other;
+        count = kept;
     }
-    return kept;
+    int best = 0;
+    for (int i = 1; i < count; i++)
+        best = now[i].cost < now[best].cost ? i : best;
+    return best;
 }
 
-static void move_by_octaves(midi_part *part)
-{
-    for (int i = 0; i < part->count; i++) {
-        midi_stroke *s = &part->stroke[i];
-        while (s->key < LOWEST)
-            s->key += 12;
-        while (s->key > HIGHEST)
-            s->key -= 12;
-        part->moved += s->key != s->note->key;
-    }
-}
-
-// the strokes that are still to be played get their drums; the last state's way is walked back
-static void walk_back(midi_part *part, const step *steps, int state_index)
+// The strokes that are still to be played get their drums, and the part its pedals, in the order of
+// time, with the pitch from which each comes; the way of the last state is walked back.
+static void assign(midi_part *part, const step *steps, int state_index)
 {
     for (int i = part->count - 1; i >= 0; i--) {
         midi_stroke *s = &part->stroke[i];
@@ -169,11 +158,6 @@ static void walk_back(midi_part *part, const step *steps, int state_index)
             part->pedal[part->pedals++] = (midi_pedal){
                 .seconds = s->note->seconds - (double)at->pedal, .head = at->drum, .to = s->key};
     }
-}
-
-// the pedals in the order of time, with the pitch from which each comes
-static void order_pedals(midi_part *part)
-{
     for (int i = 0, j = part->pedals - 1; i < j; i++, j--) {
         midi_pedal swapped = part->pedal[i];
         part->pedal[i] = part->pedal[j];
@@ -212,50 +196,34 @@ static void find_damped(midi_part *part)
             continue;
         for (; pedal > 0 && part->pedal[pedal - 1].seconds >= at; pedal--)
             moves[part->pedal[pedal - 1].head] = part->pedal[pedal - 1].seconds;
-        bool early = off - at < DAMPED_SHARE * (next[s->head] - at);
-        bool time = next[s->head] - off > LEAST_DAMPED && any - off > FREE_HAND;
+        bool early = off - at < 0.7 * (next[s->head] - at);
+        bool time = next[s->head] - off > 0.3 && any - off > 0.2; // drum and hands rest so long (s)
         s->damped = (early && time && isfinite(next[s->head])) || moves[s->head] < at + RING_TIME;
         next[s->head] = any = at;
         moves[s->head] = HUGE_VAL;
     }
 }
 
-static void search(midi_part *part, state *now, state *next, step *steps)
-{
-    int count = 1;
-    now[0] = (state){.key = {-1, -1, -1, -1}};
-    for (int i = 0; i < part->count; i++) {
-        const midi_stroke *s = &part->stroke[i];
-        if (s->fate != MIDI_PLAYED)
-            continue;
-        count = advance(now, count, s, next);
-        for (int k = 0; k < count; k++)
-            steps[(size_t)i * WIDTH + (size_t)k] =
-                (step){(int8_t)next[k].from, next[k].drum,
-                       isfinite(next[k].pedal) ? (float)(s->note->seconds - next[k].pedal) : 0};
-        state *other = now;
-        now = next;
-        next = other;
-    }
-    int best = 0;
-    for (int k = 1; k < count; k++)
-        best = now[k].cost < now[best].cost ? k : best;
-    walk_back(part, steps, best);
-}
-
 bool himc_midi_tune(midi_part *part, himc_error *error)
 {
+    const int lowest = timpano[0].low, highest = timpano[DRUMS - 1].high; // C2, B3
     state *states = malloc(2 * WIDTH * sizeof *states);
     step *steps = malloc(((size_t)part->count * WIDTH + 1) * sizeof *steps);
     part->pedal = malloc(((size_t)part->count + 1) * sizeof *part->pedal);
     bool good = states && steps && part->pedal;
     for (part->heads = 0; part->heads < DRUMS; part->heads++)
         part->head[part->heads] = timpano[part->heads].head;
+    for (int i = 0; i < part->count && good; i++) {
+        midi_stroke *s = &part->stroke[i];
+        while (s->key < lowest)
+            s->key += 12;
+        while (s->key > highest)
+            s->key -= 12;
+        part->moved += s->key != s->note->key;
+    }
     if (good) {
-        move_by_octaves(part);
         himc_midi_join(part);
-        search(part, states, states + WIDTH, steps);
-        order_pedals(part);
+        assign(part, steps, search(part, states, states + WIDTH, steps));
         find_damped(part);
     }
     free(states);

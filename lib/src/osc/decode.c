@@ -14,7 +14,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define BUNDLE_DEPTH 4                 // chosen: bundles in bundles; nobody needs more than one
 #define ATOMS (2 * HIMC_COMMAND_ATOMS) // read; more than any command has, and the parser says so
 
 // --- packets
@@ -78,24 +77,20 @@ static osc_verdict read_message(const char *data, size_t size, osc_request *requ
     return OSC_WRONG;
 }
 
-static void decode_message(const char *data, size_t size, osc_sink *sink, void *object)
-{
-    osc_request request = {.drum = ""};
-    himc_error error;
-    osc_verdict verdict = read_message(data, size, &request, &error);
-    sink(object, verdict, &request, &error);
-}
-
 static void decode_element(const char *data, size_t size, int depth, osc_sink *sink, void *object)
 {
     if (size < 16 || memcmp(data, "#bundle", 8) != 0) {
-        decode_message(data, size, sink, object);
+        osc_request request = {.drum = ""};
+        himc_error error;
+        osc_verdict verdict = read_message(data, size, &request, &error);
+        sink(object, verdict, &request, &error);
         return;
     }
+    const int most = 4; // bundles in bundles; chosen: nobody needs more than one
     for (size_t at = 16; at < size;) {
         uint32_t length = size - at >= 4 ? himc_osc_get32(data + at) : 0;
         at += 4;
-        if (length == 0 || length % 4 || at > size || length > size - at || depth == BUNDLE_DEPTH) {
+        if (length == 0 || length % 4 || at > size || length > size - at || depth == most) {
             sink(object, OSC_MALFORMED, NULL, NULL);
             return;
         }

@@ -20,8 +20,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define BUNDLE_HEAD 16      // "#bundle" and the time tag (OSC 1.0) (bytes)
-#define FULL_VELOCITY 200.0 // chosen: force of a strike that is a note of full velocity (N)
+#define BUNDLE_HEAD 16 // "#bundle" and the time tag (OSC 1.0) (bytes)
 
 // --- packets
 
@@ -40,30 +39,22 @@ void himc_osc_encode_begin(osc_packets *p, size_t limit, bool bundle, double wal
     p->time_tag = himc_osc_time_tag(wall);
 }
 
-static bool open_packet(osc_packets *p)
-{
-    if (p->count == PACKETS)
-        return false;
-    p->size[p->count] = 0;
-    if (p->bundle) {
-        unsigned char *at = p->data[p->count];
-        memcpy(at, "#bundle", 8);
-        himc_osc_put32(at + 8, (uint32_t)(p->time_tag >> 32));
-        himc_osc_put32(at + 12, (uint32_t)p->time_tag);
-        p->size[p->count] = BUNDLE_HEAD;
-    }
-    p->count++;
-    return true;
-}
-
 static void add_message(osc_packets *p, const osc_message *message)
 {
     size_t size = himc_osc_message_size(message), length = p->bundle ? 4 : 0;
     if (size == 0 || size + BUNDLE_HEAD + 4 > p->limit)
         return;
-    if (p->count == 0 || !p->bundle || p->size[p->count - 1] + length + size > p->limit)
-        if (!open_packet(p))
+    if (p->count == 0 || !p->bundle || p->size[p->count - 1] + length + size > p->limit) {
+        if (p->count == PACKETS)
             return;
+        unsigned char *head = p->data[p->count];
+        p->size[p->count++] = p->bundle ? BUNDLE_HEAD : 0;
+        if (p->bundle) {
+            memcpy(head, "#bundle", 8);
+            himc_osc_put32(head + 8, (uint32_t)(p->time_tag >> 32));
+            himc_osc_put32(head + 12, (uint32_t)p->time_tag);
+        }
+    }
     unsigned char *at = p->data[p->count - 1] + p->size[p->count - 1];
     if (p->bundle)
         himc_osc_put32(at, (uint32_t)size);
@@ -280,15 +271,6 @@ static himc_quat rotation(const osc_pose *pose, int segment)
     return (himc_quat){q[3], q[0], q[1], q[2]};
 }
 
-// the beginning of a bone and its rotation away from the T, in our world
-static void locate_bone(const osc_pose *pose, const bone *b, himc_vec3 *x, himc_quat *q)
-{
-    *x = vector(pose->origin[b->segment]);
-    *x = himc_vec3_madd(*x, b->along, himc_vec3_sub(vector(pose->origin[b->towards]), *x));
-    himc_quat from_t = himc_quat_exp(himc_vec3_make(-b->arm * HIMC_PI / 2, 0, 0));
-    *q = himc_quat_mul(rotation(pose, b->segment), from_t);
-}
-
 // a position and a rotation in Unity's world
 static void add_transform(osc_packets *p, const char *path, const char *name, himc_vec3 x,
                           himc_quat q)
@@ -306,7 +288,12 @@ void himc_osc_encode_vmc_pose(osc_packets *p, const osc_pose *pose, double time)
     add_transform(p, "/VMC/Ext/Root/Pos", "root", (himc_vec3){0, 0, 0}, himc_quat_identity());
     for (int i = 0; i < BONES; i++) {
         const bone *b = &bones[i];
-        locate_bone(pose, b, &x[i], &q[i]);
+        // its beginning, and its rotation away from the T, in our world
+        himc_vec3 joint = vector(pose->origin[b->segment]);
+        himc_vec3 way = himc_vec3_sub(vector(pose->origin[b->towards]), joint);
+        himc_quat from_t = himc_quat_exp(himc_vec3_make(-b->arm * HIMC_PI / 2, 0, 0));
+        x[i] = himc_vec3_madd(joint, b->along, way);
+        q[i] = himc_quat_mul(rotation(pose, b->segment), from_t);
         himc_vec3 offset = x[i];
         himc_quat relative = q[i];
         if (b->parent >= 0) {
@@ -323,8 +310,8 @@ void himc_osc_encode_vmc_pose(osc_packets *p, const osc_pose *pose, double time)
 
 void himc_osc_encode_vmc_strike(osc_packets *p, const himc_strike *strike, double hz)
 {
-    // MIDI: key 69 is A4, 440 Hz
-    double key = round(69 + 12 * log2(hz / 440)), velocity = strike->force / FULL_VELOCITY;
+    // MIDI: key 69 is A4, 440 Hz; a force of 200 N is full velocity, chosen
+    double key = round(69 + 12 * log2(hz / 440)), velocity = strike->force / 200;
     int note = key < 0 ? 0 : key > 127 ? 127 : (int)key;
     velocity = velocity > 1 ? 1 : velocity;
     add(p, "/VMC/Ext/Midi/Note", "iiif", 1, (int)strike->hand, note, velocity);

@@ -116,27 +116,23 @@ static size_t text_size(const char *at, size_t rest)
     return end ? filled_up(at, length, padded(length), rest) : 0;
 }
 
-// the same of a blob, which begins with its length
-static size_t blob_size(const char *at, size_t rest)
-{
-    size_t length = rest < 4 ? rest : himc_osc_get32(at);
-    return length < rest ? filled_up(at, 4 + length, (length + 7) / 4 * 4, rest) : 0;
-}
-
 // bytes of an atom; false if that type is unknown or the atom ends too late
 static bool atom_size(char type, const char *at, size_t rest, size_t *size)
 {
     *size = 0;
-    if (type == 's' || type == 'S')
+    if (type == 'b') { // its length, then as many bytes, filled up
+        size_t length = rest < 4 ? rest : himc_osc_get32(at);
+        if (length < rest)
+            *size = filled_up(at, 4 + length, (length + 7) / 4 * 4, rest);
+    } else if (type == 's' || type == 'S') {
         *size = text_size(at, rest);
-    else if (type == 'b')
-        *size = blob_size(at, rest);
-    else if (type && strchr("ifmc", type))
+    } else if (strchr("ifmc", type)) {
         *size = 4;
-    else if (type && strchr("htd", type))
+    } else if (strchr("htd", type)) {
         *size = 8;
-    else
-        return type && strchr("TFNI", type);
+    } else {
+        return strchr("TFNI", type);
+    }
     return *size > 0 && *size <= rest;
 }
 

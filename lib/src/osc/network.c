@@ -17,7 +17,6 @@
 #include <string.h>
 
 #define RECEIVE_BUFFER (1 << 20) // (bytes) chosen: 0.1 s of the 100,000 packets/s of the storm test
-#define SEND_ATTEMPTS 3 // the first failures may report earlier packets; there are 3 sockets
 
 // --- addresses
 
@@ -133,7 +132,7 @@ bool himc_osc_network_open(osc_network *n, const char *bind_to, int port, osc_co
 {
     osc_address address;
     himc_udp_address at;
-    *n = (osc_network){.in = -1, .out = {-1, -1}, .counts = counts};
+    *n = (osc_network){.socket = {-1, -1, -1}, .counts = counts};
     bind_to = bind_to ? bind_to : "127.0.0.1";
     if (port < 0)
         return true;
@@ -144,67 +143,55 @@ bool himc_osc_network_open(osc_network *n, const char *bind_to, int port, osc_co
                               bind_to);
     n->in_v6 = address.v6;
     n->in_loopback = himc_osc_address_loopback(&address);
-    n->in = himc_udp_open(n->in_v6 ? AF_INET6 : AF_INET, RECEIVE_BUFFER);
+    n->socket[0] = himc_udp_open(n->in_v6 ? AF_INET6 : AF_INET, RECEIVE_BUFFER);
     socklen_t size = to_socket(&address, &at);
-    if (n->in < 0 || !himc_udp_bind(n->in, &at, size)) {
+    if (n->socket[0] < 0 || !himc_udp_bind(n->socket[0], &at, size)) {
         if (errno == EADDRINUSE)
             return himc_error_set(error, "port %d is taken by another program, expected a free one",
                                   port);
         return himc_error_set(error, "%.80s port %d: %s", bind_to, port, strerror(errno));
     }
     size = sizeof at;
-    getsockname(n->in, &at.any, &size);
+    getsockname(n->socket[0], &at.any, &size);
     n->port = from_socket(&at).port;
     return true;
 }
 
 void himc_osc_network_close(osc_network *n)
 {
-    int fd[] = {n->in, n->out[0], n->out[1]};
-    for (int i = 0; i < 3; i++)
-        if (fd[i] >= 0)
-            himc_udp_close(fd[i]);
-    n->in = n->out[0] = n->out[1] = -1;
+    for (int i = 0; i < OSC_SOCKETS; i++) {
+        if (n->socket[i] >= 0)
+            himc_udp_close(n->socket[i]);
+        n->socket[i] = -1;
+    }
 }
 
 void himc_osc_network_wait(osc_network *n, int milliseconds)
 {
-    himc_udp_wait((int[]){n->in, n->out[0], n->out[1]}, 3, milliseconds);
-}
-
-// the socket that packets to this address leave from, -1 if there is none
-static int socket_to(osc_network *n, const osc_address *to)
-{
-    if (n->in >= 0 && to->v6 == n->in_v6 && (!n->in_loopback || himc_osc_address_loopback(to)))
-        return n->in;
-    int *out = &n->out[to->v6];
-    if (*out < 0)
-        *out = himc_udp_open(to->v6 ? AF_INET6 : AF_INET, RECEIVE_BUFFER);
-    return *out;
+    himc_udp_wait(n->socket, OSC_SOCKETS, milliseconds);
 }
 
 bool himc_osc_network_send(osc_network *n, const osc_address *to, const void *data, size_t size)
 {
-    int fd = socket_to(n, to);
     himc_udp_address at;
     socklen_t length = to_socket(to, &at);
     long sent = -1;
-    for (int i = 0; fd >= 0 && sent < 0 && i < SEND_ATTEMPTS; i++)
-        sent = himc_udp_send(fd, &at, length, data, size);
+    bool listens = n->socket[0] >= 0 && to->v6 == n->in_v6 &&
+                   (!n->in_loopback || himc_osc_address_loopback(to));
+    int *from = &n->socket[listens ? 0 : 1 + to->v6];
+    if (*from < 0)
+        *from = himc_udp_open(to->v6 ? AF_INET6 : AF_INET, RECEIVE_BUFFER);
+    // the first failures may report earlier packets, of each socket
+    for (int i = 0; *from >= 0 && sent < 0 && i < OSC_SOCKETS; i++)
+        sent = himc_udp_send(*from, &at, length, data, size);
     bool good = sent == (long)size;
     himc_osc_add(n->counts, good ? COUNT_SENT : COUNT_UNSENT, 1);
     return good;
 }
 
-// socket 0 is the listening one, 1 and 2 are those for sending
-static int socket_of(const osc_network *n, int socket)
-{
-    return socket == 0 ? n->in : n->out[socket - 1];
-}
-
 static long receive(osc_network *n, int socket, osc_address *from, void *data, size_t size)
 {
-    int fd = socket_of(n, socket);
+    int fd = n->socket[socket];
     himc_udp_address at = {0};
     uint32_t dropped = n->overrun[socket];
     long got = fd < 0 ? -1 : himc_udp_receive(fd, &at, data, size, &dropped);
@@ -235,8 +222,8 @@ bool himc_osc_network_discard(osc_network *n)
 bool himc_osc_network_unreachable(osc_network *n, osc_address *to)
 {
     himc_udp_address at = {0};
-    for (int i = 0; i < 3; i++)
-        if (socket_of(n, i) >= 0 && himc_udp_unreachable(socket_of(n, i), &at)) {
+    for (int i = 0; i < OSC_SOCKETS; i++)
+        if (n->socket[i] >= 0 && himc_udp_unreachable(n->socket[i], &at)) {
             *to = from_socket(&at);
             return true;
         }

@@ -26,12 +26,15 @@ bool himc_osc_address_same_host(const osc_address *a, const osc_address *b);
 bool himc_osc_address_loopback(const osc_address *a);
 void himc_osc_address_print(const osc_address *a, char text[80]);
 
+enum { OSC_SOCKETS = 3 };
+
 typedef struct osc_network {
-    int in, out[2]; ///< listening, or -1; sending only, IPv4 and IPv6, opened when needed
-    bool in_v6, in_loopback;
-    int port;             ///< listened at, or 0
-    uint32_t overrun[3];  ///< packets dropped by the system, as last reported: in, out[0], out[1]
-    osc_counters *counts; ///< borrowed
+    /// listening; sending only, IPv4 and IPv6, opened when needed; -1: none
+    int socket[OSC_SOCKETS];
+    bool in_v6, in_loopback;       ///< the listening one's address
+    int port;                      ///< listened at, or 0
+    uint32_t overrun[OSC_SOCKETS]; ///< packets dropped by the system, as last reported
+    osc_counters *counts;          ///< borrowed
 } osc_network;
 
 /// Listens at `port` (0 any free one, -1 does not listen) of the numeric address `bind`, NULL is

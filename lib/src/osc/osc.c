@@ -16,21 +16,8 @@
 #include <string.h>
 #include <time.h>
 
-#define RECORDS 1024         // chosen: poses of 4 s at 250 Hz
-#define COMMANDS_WAITING 512 // chosen: half a second of 1000 points
-#define LINES 64             // chosen: the host reads them after each block
-#define PACKETS_AT_ONCE 256  // read in one pass; chosen: then states are sent again
-#define PACKET_SIZE 65536    // largest of UDP (bytes)
-#define WAIT_SUBSCRIBED 2    // (ms) chosen: a strike leaves within it
-#define WAIT_IDLE 20         // (ms) chosen: a packet ends the wait, only a local subscription waits
-#define REST 1000000         // after the share of packets (ns) chosen: a strike leaves within 2 ms
-
-#define PACKETS_PER_SECOND 8000.0 // chosen: far more than players send
-#define POINTS_PER_SECOND 1000.0  // of commands; chosen: 4 targets at 250 Hz
-#define POINTS_AT_ONCE 4000.0     // chosen: a score of 1000 strokes, sent one by one
-#define LINES_PER_SECOND 50.0     // of answers; chosen: a stranger gets no more than he sends
-#define WORK_SHARE 0.1    // of the host's time, for commands; chosen: the sound needs the rest
-#define WORK_AT_ONCE 0.05 // (s) chosen: two heads of 2000 modes
+#define RECORDS 1024          // chosen: poses of 4 s at 250 Hz
+#define LINES_PER_SECOND 50.0 // of answers; chosen: a stranger gets no more than he sends
 
 himc_osc_counts himc_osc_count(const himc_osc *osc)
 {
@@ -68,28 +55,22 @@ static bool send_line(himc_osc *osc, const osc_address *to, bool error, const ch
     return good;
 }
 
-// tells the user a refusal of a stranger, each line once
-static void tell_refusal(himc_osc *osc, const char *line)
-{
-    uint32_t hash = 2166136261u; // Fowler, Noll and Vo, FNV-1a
-    for (const char *c = line; *c; c++)
-        hash = (hash ^ (unsigned char)*c) * 16777619u;
-    for (int i = 0; i < osc->refusals; i++)
-        if (osc->refusal[i] == hash)
-            return;
-    if (osc->refusals == OSC_REFUSALS)
-        return;
-    osc->refusal[osc->refusals++] = hash;
-    himc_osc_tell(&osc->lines, "refused: %s%s", line,
-                  osc->refusals == OSC_REFUSALS ? " (further ones are counted alone)" : "");
-}
-
-// to its sender, to the user, and to the subscribers of refusals
+// to its sender, to the user (each line once), and to the subscribers of refusals
 static void send_refusal(himc_osc *osc, const osc_address *to, const char *line)
 {
     const osc_subscription *one = NULL;
     send_line(osc, to, true, line, false);
-    tell_refusal(osc, line);
+    uint32_t hash = 2166136261u; // Fowler, Noll and Vo, FNV-1a
+    for (const char *c = line; *c; c++)
+        hash = (hash ^ (unsigned char)*c) * 16777619u;
+    int known = 0;
+    while (known < osc->refusals && osc->refusal[known] != hash)
+        known++;
+    if (known == osc->refusals && known < OSC_REFUSALS) {
+        osc->refusal[osc->refusals++] = hash;
+        himc_osc_tell(&osc->lines, "refused: %s%s", line,
+                      osc->refusals == OSC_REFUSALS ? " (further ones are counted alone)" : "");
+    }
     while ((one = himc_osc_errors_next(&osc->subscriptions, one)))
         if (!himc_osc_address_same(&one->to, to) &&
             himc_osc_afford(&osc->answers, himc_osc_now(osc), 1))
@@ -112,129 +93,103 @@ static void subscribe(himc_osc *osc, const osc_change *change)
         refuse(osc, change->local ? NULL : &change->from, error.text);
 }
 
-static void hand_on(himc_osc *osc, const osc_address *from, const osc_request *request)
+static void take_message(void *object, osc_verdict verdict, osc_request *request,
+                         const himc_error *error)
 {
-    osc_order *slot = himc_osc_ring_slot(&osc->orders);
-    if (!slot) {
-        himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
-        return;
-    }
-    slot->from = *from;
-    himc_osc_request_copy(&slot->request, request);
-    himc_osc_ring_push(&osc->orders);
-    himc_osc_add(&osc->counts, COUNT_COMMANDS, 1);
-}
-
-static void take_request(himc_osc *osc, const osc_address *from, osc_request *request)
-{
-    himc_error error;
-    osc_change change = {.from = *from};
-    if (!himc_osc_afford(&osc->points, himc_osc_now(osc), himc_osc_request_cost(request))) {
+    const osc_sender *s = object;
+    himc_osc *osc = s->osc;
+    himc_error why;
+    osc_change change = {.from = *s->address};
+    if (verdict == OSC_MALFORMED || verdict == OSC_FOREIGN) {
+        himc_osc_add(&osc->counts, verdict == OSC_FOREIGN ? COUNT_FOREIGN : COUNT_MALFORMED, 1);
+    } else if (verdict == OSC_WRONG) {
+        refuse(osc, s->address, error->text);
+    } else if (!himc_osc_afford(&osc->points, himc_osc_now(osc), himc_osc_request_cost(request))) {
         himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
     } else if (request->receiver == HIMC_PERFORMER &&
                himc_osc_change_from(&change, &request->command)) {
         himc_osc_add(&osc->counts, COUNT_COMMANDS, 1);
         subscribe(osc, &change);
-    } else if (!himc_osc_request_admit(request, osc->files, &error)) {
-        refuse(osc, from, error.text);
+    } else if (!himc_osc_request_admit(request, osc->files, &why)) {
+        refuse(osc, s->address, why.text);
     } else {
-        hand_on(osc, from, request);
+        osc_order *slot = himc_osc_ring_slot(&osc->orders);
+        if (slot) {
+            slot->from = *s->address;
+            himc_osc_request_copy(&slot->request, request);
+            himc_osc_ring_push(&osc->orders);
+        }
+        himc_osc_add(&osc->counts, slot ? COUNT_COMMANDS : COUNT_FREQUENT, 1);
     }
-}
-
-static void take_message(void *object, osc_verdict verdict, osc_request *request,
-                         const himc_error *error)
-{
-    osc_sender *s = object;
-    switch (verdict) {
-    case OSC_REQUEST: take_request(s->osc, s->address, request); break;
-    case OSC_MALFORMED: himc_osc_add(&s->osc->counts, COUNT_MALFORMED, 1); break;
-    case OSC_FOREIGN: himc_osc_add(&s->osc->counts, COUNT_FOREIGN, 1); break;
-    case OSC_WRONG: refuse(s->osc, s->address, error->text); break;
-    }
-}
-
-// false if none waits
-static bool take_packet(himc_osc *osc)
-{
-    char data[PACKET_SIZE];
-    osc_address from;
-    long size = himc_osc_network_receive(&osc->network, &from, data, sizeof data);
-    if (size < 0)
-        return himc_osc_network_discard(&osc->network);
-    himc_osc_decode(data, (size_t)size, take_message, &(osc_sender){.osc = osc, .address = &from});
-    return true;
 }
 
 // true if the share of packets is used up; the others wait in the sockets
 static bool take_packets(himc_osc *osc)
 {
-    for (int i = 0; i < PACKETS_AT_ONCE; i++) {
+    // chosen: so many in one pass, then states are sent again
+    for (int i = 0; i < 256; i++) {
+        char data[65536]; // the largest packet of UDP (bytes)
+        osc_address from;
         if (!himc_osc_afford(&osc->packets, himc_osc_now(osc), 1))
             return true;
-        if (take_packet(osc))
-            continue;
-        osc->packets.level += 1; // none was read
-        return false;
+        long size = himc_osc_network_receive(&osc->network, &from, data, sizeof data);
+        if (size >= 0) {
+            himc_osc_decode(data, (size_t)size, take_message,
+                            &(osc_sender){.osc = osc, .address = &from});
+        } else if (!himc_osc_network_discard(&osc->network)) {
+            osc->packets.level += 1; // none was read
+            return false;
+        }
     }
     return false;
 }
 
-// a refusal, or the first line of an answer; this pays for the line of a cut in addition
-static bool send_first(himc_osc *osc, const osc_line *line, bool stranger)
-{
-    const osc_address *to = &line->to;
-    if (!himc_osc_afford(&osc->answers, himc_osc_now(osc), stranger && !line->error ? 2 : 1))
-        return false;
-    if (line->error)
-        send_refusal(osc, to, line->text);
-    return line->error ||
-           (allows(osc, to, SMALL_PACKET) && send_line(osc, to, false, line->text, false));
-}
-
-// each line to a stranger is paid for, so that a short command brings no flood to a forged address
+// Each line to a stranger is paid for, so that a short command brings no flood to a forged address;
+// the first line of an answer pays for the line of a cut in addition.
 static void send_answer(himc_osc *osc, const osc_line *line)
 {
     char text[HIMC_OSC_LINE];
-    bool stranger = !himc_osc_trusted(&osc->subscriptions, &line->to), sent;
+    const osc_address *to = &line->to;
+    bool stranger = !himc_osc_trusted(&osc->subscriptions, to), sent = false;
     if (!line->further) {
-        osc->answered = sent = send_first(osc, line, stranger);
+        double cost = stranger && !line->error ? 2 : 1;
+        bool afforded = himc_osc_afford(&osc->answers, himc_osc_now(osc), cost);
+        if (afforded && line->error)
+            send_refusal(osc, to, line->text);
+        sent = afforded && (line->error || (allows(osc, to, SMALL_PACKET) &&
+                                            send_line(osc, to, false, line->text, false)));
+        osc->answered = sent;
         osc->cut = !sent;
         return;
     }
     if (osc->cut)
         return;
     sent = !line->error && (!stranger || himc_osc_afford(&osc->answers, himc_osc_now(osc), 1)) &&
-           send_line(osc, &line->to, false, line->text, false);
+           send_line(osc, to, false, line->text, false);
     osc->answered += sent;
     osc->cut = !sent;
     if (sent)
         return;
     snprintf(text, sizeof text, OSC_CUT "expected at most %g lines and 500 kB a second",
              osc->answered, LINES_PER_SECOND);
-    send_line(osc, &line->to, true, line->error ? line->text : text, true);
-}
-
-static void send_record(himc_osc *osc, const osc_record *r)
-{
-    himc_osc_counts counts;
-    switch (r->kind) {
-    case RECORD_STATE:
-        counts = himc_osc_count(osc);
-        himc_osc_deliver(&osc->subscriptions, &r->state, &counts, himc_osc_now(osc));
-        break;
-    case RECORD_LINE: send_answer(osc, &r->line); break;
-    case RECORD_CHANGE: subscribe(osc, &r->change); break;
-    }
+    send_line(osc, to, true, line->error ? line->text : text, true);
 }
 
 bool himc_osc_step(himc_osc *osc)
 {
-    const osc_record *record;
+    const osc_record *r;
+    himc_osc_counts counts;
     bool flood = take_packets(osc);
     himc_osc_subscribe_found(&osc->subscriptions, himc_osc_now(osc));
-    for (int i = 0; i < RECORDS && (record = himc_osc_ring_peek(&osc->records)); i++) {
-        send_record(osc, record);
+    for (int i = 0; i < RECORDS && (r = himc_osc_ring_peek(&osc->records)); i++) {
+        switch (r->kind) {
+        case RECORD_STATE:
+            counts = himc_osc_count(osc);
+            himc_osc_deliver(&osc->subscriptions, &r->state, &counts, himc_osc_now(osc));
+            break;
+        case RECORD_LINE: send_answer(osc, &r->line); break;
+        case RECORD_CHANGE: subscribe(osc, &r->change); break;
+        }
         himc_osc_ring_pop(&osc->records);
     }
     himc_osc_forget(&osc->subscriptions, himc_osc_now(osc));
@@ -247,11 +202,12 @@ static void *run(void *object)
     bool flood = false;
     himc_system_give_way();
     while (!atomic_load_explicit(&osc->stop, memory_order_acquire)) {
+        // Times are chosen: a strike leaves within 2 ms, also after the share of packets. When idle
+        // a packet ends the wait, only a local subscription waits.
         if (flood)
-            nanosleep(&(struct timespec){0, REST}, NULL);
+            nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
         else
-            himc_osc_network_wait(&osc->network,
-                                  osc->subscriptions.count > 0 ? WAIT_SUBSCRIBED : WAIT_IDLE);
+            himc_osc_network_wait(&osc->network, osc->subscriptions.count > 0 ? 2 : 20);
         flood = himc_osc_step(osc);
     }
     return NULL;
@@ -283,40 +239,37 @@ static double system_wall(void *user)
     return read_clock(CLOCK_REALTIME);
 }
 
-static bool set_files(himc_osc *osc, const char *folder, himc_error *error)
+static osc_bucket full_bucket(double rate, double size, double now)
 {
-    struct stat about;
-    if (!folder)
-        return true;
-    osc->files = himc_system_real_path(folder);
-    if (!osc->files || stat(folder, &about) != 0 || !S_ISDIR(about.st_mode))
-        return himc_error_set(error, "files: %.200s is no folder", folder);
-    return true;
-}
-
-static void fill_buckets(himc_osc *osc)
-{
-    double now = himc_osc_now(osc);
-    osc->packets = (osc_bucket){PACKETS_PER_SECOND, PACKETS_PER_SECOND, PACKETS_PER_SECOND, now};
-    osc->points = (osc_bucket){POINTS_AT_ONCE, POINTS_PER_SECOND, POINTS_AT_ONCE, now};
-    osc->answers = (osc_bucket){LINES_PER_SECOND, LINES_PER_SECOND, LINES_PER_SECOND, now};
-    osc->host.work = (osc_bucket){WORK_AT_ONCE, WORK_SHARE, WORK_AT_ONCE, now};
+    return (osc_bucket){.level = size, .rate = rate, .size = size, .last = now};
 }
 
 static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *error)
 {
     osc_subscriptions *s = &osc->subscriptions;
-    fill_buckets(osc);
+    struct stat about;
+    double now = himc_osc_now(osc);
+    osc->packets = full_bucket(8000, 8000, now); // chosen: far more than players send
+    // points of commands; chosen: 4 targets at 250 Hz; a score of 1000 strokes, sent one by one
+    osc->points = full_bucket(1000, 4000, now);
+    osc->answers = full_bucket(LINES_PER_SECOND, LINES_PER_SECOND, now);
+    // the host's time for commands (s); chosen: the sound needs the rest; two heads of 2000 modes
+    osc->host.work = full_bucket(0.1, 0.05, now);
     s->network = &osc->network;
     s->counts = &osc->counts;
     s->lines = &osc->lines;
+    // chosen: commands of half a second of 1000 points; the host reads the lines after each block
     if (!himc_osc_ring_init(&osc->records, sizeof(osc_record), RECORDS) ||
-        !himc_osc_ring_init(&osc->orders, sizeof(osc_order), COMMANDS_WAITING) ||
-        !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, LINES))
+        !himc_osc_ring_init(&osc->orders, sizeof(osc_order), 512) ||
+        !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, 64))
         return himc_error_set(error, "osc: out of memory");
     osc->host.loader = config->loader;
-    if (!set_files(osc, config->files, error) ||
-        !himc_osc_network_open(&osc->network, config->bind, config->port, &osc->counts, error) ||
+    if (config->files) {
+        osc->files = himc_system_real_path(config->files);
+        if (!osc->files || stat(config->files, &about) != 0 || !S_ISDIR(about.st_mode))
+            return himc_error_set(error, "files: %.200s is no folder", config->files);
+    }
+    if (!himc_osc_network_open(&osc->network, config->bind, config->port, &osc->counts, error) ||
         !himc_osc_allow(s, config->allow, error))
         return false;
     osc->running = !osc->stepped && himc_system_start_thread(&osc->thread, run, osc);
@@ -331,7 +284,7 @@ static himc_osc *make(const himc_osc_config *config, const osc_clock *clock, boo
         himc_error_set(error, "osc: out of memory");
         return NULL;
     }
-    osc->network = (osc_network){.in = -1, .out = {-1, -1}};
+    osc->network = (osc_network){.socket = {-1, -1, -1}};
     osc->clock = *clock;
     osc->stepped = stepped;
     if (prepare(osc, config, error))
@@ -369,25 +322,6 @@ static void put_change(himc_osc *osc, const osc_change *change)
     himc_osc_ring_push(&osc->records);
 }
 
-// the subscriptions of the old one, and the changes that still wait in its ring, after the end of
-// its thread
-static void hand_over(himc_osc *old, himc_osc *osc)
-{
-    const osc_record *r;
-    const osc_subscription *one = old->subscriptions.subscription;
-    for (int i = 0; i < SUBSCRIPTIONS; i++, one++)
-        if (one->used)
-            put_change(osc, &(osc_change){.stream = one->stream,
-                                          .hz = one->hz,
-                                          .granted = true,
-                                          .from = one->to,
-                                          .expires = one->expires});
-    for (; (r = himc_osc_ring_peek(&old->records)); himc_osc_ring_pop(&old->records))
-        if (r->kind == RECORD_CHANGE)
-            put_change(osc, &r->change);
-    osc->host.strikes = old->host.strikes;
-}
-
 himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_error *error)
 {
     if (!old)
@@ -396,7 +330,20 @@ himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_err
     if (!osc)
         return NULL;
     stop_thread(old);
-    hand_over(old, osc);
+    // the subscriptions of the old one, and the changes that still wait in its ring
+    const osc_subscription *one = old->subscriptions.subscription;
+    for (int i = 0; i < SUBSCRIPTIONS; i++, one++)
+        if (one->used)
+            put_change(osc, &(osc_change){.stream = one->stream,
+                                          .hz = one->hz,
+                                          .granted = true,
+                                          .from = one->to,
+                                          .expires = one->expires});
+    const osc_record *r;
+    for (; (r = himc_osc_ring_peek(&old->records)); himc_osc_ring_pop(&old->records))
+        if (r->kind == RECORD_CHANGE)
+            put_change(osc, &r->change);
+    osc->host.strikes = old->host.strikes;
     himc_osc_free(old);
     return osc;
 }

@@ -17,11 +17,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define RECORDS_OF_STATES 64 // that no answer takes; chosen: poses of 0.25 s
-
-#define OFFSET_TIME 1.0   // (s) time constant; chosen: longer than the bursts of a host
-#define OFFSET_JUMP 0.1   // (s) chosen: sound was off, not late
-#define BLOCK_WORK 2e-4   // no further command in a block once they took so long (s); chosen
 #define STATUS_PERIOD 1.0 // (s) chosen: as often as a user reads it
 
 // --- states out
@@ -66,15 +61,20 @@ static bool due(double *next, int hz, double t)
     return true;
 }
 
-// with `reset` the time of the samples begins again, and the wall clock goes on
-static void begin_again(osc_host *h)
+void himc_osc_tick(void *object, const himc_tick *tick)
 {
-    h->offset += h->time;
-    h->time = 0;
-}
-
-static void put_pose(osc_pose *pose, const himc_tick *tick)
-{
+    himc_osc *osc = object;
+    int hz = atomic_load_explicit(&osc->subscriptions.pose_hz, memory_order_relaxed);
+    if (tick->time == 0) { // with `reset` it begins again, and the wall clock goes on
+        osc->host.offset += osc->host.time;
+        osc->host.time = 0;
+    }
+    if (!due(&osc->host.next_pose, hz, tick->time))
+        return;
+    osc_state *state = begin(osc, STATE_POSE, tick->time);
+    if (!state)
+        return;
+    osc_pose *pose = &state->pose;
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
         himc_quat q = tick->body->orientation[i];
         put(pose->origin[i], tick->body->origin[i]);
@@ -85,20 +85,6 @@ static void put_pose(osc_pose *pose, const himc_tick *tick)
         put(pose->target[hand], tick->target[hand]);
         put(pose->tip[hand], tick->body->tip[hand]);
     }
-}
-
-void himc_osc_tick(void *object, const himc_tick *tick)
-{
-    himc_osc *osc = object;
-    int hz = atomic_load_explicit(&osc->subscriptions.pose_hz, memory_order_relaxed);
-    if (tick->time == 0)
-        begin_again(&osc->host);
-    if (!due(&osc->host.next_pose, hz, tick->time))
-        return;
-    osc_state *state = begin(osc, STATE_POSE, tick->time);
-    if (!state)
-        return;
-    put_pose(&state->pose, tick);
     end(osc);
 }
 
@@ -189,24 +175,14 @@ static void put_drum(himc_osc *osc, himc_drum *drum, double time)
     end(osc);
 }
 
-static void put_status(himc_osc *osc, const himc_performance_stats *stats, double elapsed)
-{
-    osc_state *state = begin(osc, STATE_STATUS, stats->seconds);
-    if (!state)
-        return;
-    state->status.stats = *stats;
-    state->status.strikes = osc->host.strikes;
-    state->status.load = elapsed > 0 ? osc->host.busy / elapsed : 0;
-    end(osc);
-}
-
 void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
 {
     osc_host *h = &osc->host;
     himc_performance_stats stats = himc_performance_measure(performance);
     double now = osc->clock.wall(osc->clock.user), t = stats.seconds, apart = now - t - h->offset;
-    double follow = fmin(fmax(t - h->time, 0) / OFFSET_TIME, 1);
-    h->offset += fabs(apart) > OFFSET_JUMP ? apart : follow * apart;
+    // chosen: a time constant of 1 s is longer than the bursts of a host; 0.1 s: the sound was off
+    double follow = fmin(fmax(t - h->time, 0), 1);
+    h->offset += fabs(apart) > 0.1 ? apart : follow * apart;
     h->time = t;
     h->published = t + h->offset;
     h->busy += busy;
@@ -224,7 +200,13 @@ void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
     }
     if (!status)
         return;
-    put_status(osc, &stats, h->status_sent ? now - h->next_status + STATUS_PERIOD : 0);
+    double elapsed = h->status_sent ? now - h->next_status + STATUS_PERIOD : 0;
+    osc_state *state = begin(osc, STATE_STATUS, t);
+    if (state) {
+        double load = elapsed > 0 ? h->busy / elapsed : 0;
+        state->status = (osc_status){.stats = stats, .load = load, .strikes = h->strikes};
+        end(osc);
+    }
     h->status_sent = true;
     h->busy = 0;
     h->next_status = now + STATUS_PERIOD;
@@ -246,11 +228,12 @@ bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *er
     return true;
 }
 
-// leaves room in the ring for states; the line that ends a long answer is in that room
+// leaves room in the ring for 64 states (chosen: poses of 0.25 s); the line that ends a long answer
+// is in that room
 static void answer(void *object, const char *line)
 {
     osc_sender *s = object;
-    bool full = s->lines > 0 && himc_osc_ring_room(&s->osc->records) <= RECORDS_OF_STATES;
+    bool full = s->lines > 0 && himc_osc_ring_room(&s->osc->records) <= 64;
     osc_record *r = s->cut ? NULL : himc_osc_ring_slot(&s->osc->records);
     s->cut = full || !r;
     if (!r)
@@ -302,45 +285,29 @@ static himc_drum *find_drum(himc_performance *performance, const char *name, him
     return NULL;
 }
 
-static bool load(himc_osc *osc, const himc_load_target *to, const osc_order *order,
-                 himc_error *error)
-{
-    osc_host *h = &osc->host;
-    bool good = himc_loader_command(h->loader, to, &order->request.command, error);
-    h->loading = good && himc_loader_busy(h->loader);
-    h->loading_for = order->from;
-    snprintf(h->loading_drum, sizeof h->loading_drum, "%s", to->drum ? order->request.drum : "");
-    return good;
-}
-
 static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_order *order,
                       himc_error *error)
 {
+    osc_host *h = &osc->host;
     const osc_request *request = &order->request;
     himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
+    bool good;
     if (request->receiver != HIMC_PERFORMER) {
         to.drum = find_drum(performance, request->drum, error);
         if (!to.drum)
             return false;
     }
-    bool good = osc->host.loader ? load(osc, &to, order, error)
-                : to.drum        ? himc_drum_command(to.drum, &request->command, error)
-                          : himc_performance_command(performance, &request->command, 0, error);
+    if (h->loader) {
+        good = himc_loader_command(h->loader, &to, &request->command, error);
+        h->loading = good && himc_loader_busy(h->loader);
+        h->loading_for = order->from;
+        snprintf(h->loading_drum, sizeof h->loading_drum, "%s", to.drum ? request->drum : "");
+    } else if (to.drum) {
+        good = himc_drum_command(to.drum, &request->command, error);
+    } else {
+        good = himc_performance_command(performance, &request->command, 0, error);
+    }
     return good || (to.drum && himc_error_prefix(error, "%s", request->drum));
-}
-
-static void begin_dump(himc_osc *osc, const osc_address *to)
-{
-    osc_dump *d = &osc->host.dump;
-    *d = (osc_dump){.tells = true, .to = *to};
-    d->from = (osc_sender){.osc = osc, .address = &d->to};
-}
-
-static void dump_on(himc_osc *osc, himc_performance *performance)
-{
-    osc_dump *d = &osc->host.dump;
-    d->tells =
-        himc_performance_describe_on(performance, &d->place, answer, &d->from) && !d->from.cut;
 }
 
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
@@ -348,6 +315,7 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
     himc_error error = {""};
     const osc_request *request = &order->request;
     osc_sender from = {.osc = osc, .address = &order->from};
+    osc_dump *dump = &osc->host.dump;
     himc_command_id id = request->command.id;
     const himc_drum *drum = NULL;
     if (id == HIMC_COMMAND_DRUM_DUMP || id == HIMC_COMMAND_DRUM_INFO)
@@ -355,7 +323,8 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
     if (id == HIMC_COMMAND_INFO)
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
     else if (id == HIMC_COMMAND_DUMP)
-        begin_dump(osc, &order->from);
+        *dump = (osc_dump){
+            .tells = true, .to = order->from, .from = {.osc = osc, .address = &dump->to}};
     else if (drum)
         himc_drum_describe(drum,
                            id == HIMC_COMMAND_DRUM_INFO ? HIMC_DESCRIBE_INFO : HIMC_DESCRIBE_STATE,
@@ -369,15 +338,19 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
 void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
 {
     osc_host *h = &osc->host;
+    osc_dump *dump = &h->dump;
     const osc_order *order = NULL;
     double spent = 0;
-    for (int i = 0; h->dump.tells || (i < most && (order = himc_osc_ring_peek(&osc->orders)));) {
-        if (h->loading || spent > BLOCK_WORK || !himc_osc_afford(&h->work, himc_osc_now(osc), 0))
+    const double block = 2e-4; // no further command in a block once they took so long (s); chosen
+    for (int i = 0; dump->tells || (i < most && (order = himc_osc_ring_peek(&osc->orders)));) {
+        if (h->loading || spent > block || !himc_osc_afford(&h->work, himc_osc_now(osc), 0))
             return;
         double start = himc_osc_now(osc);
-        if (h->dump.tells)
-            dump_on(osc, performance);
-        else {
+        if (dump->tells) {
+            bool more =
+                himc_performance_describe_on(performance, &dump->place, answer, &dump->from);
+            dump->tells = more && !dump->from.cut;
+        } else {
             obey(osc, performance, order);
             himc_osc_ring_pop(&osc->orders);
             i++;

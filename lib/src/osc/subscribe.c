@@ -22,17 +22,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEFAULT_HZ 33.0       // chosen: one pose a frame of 30 a second
-#define FORGET_AFTER 60.0     // (s) chosen: long enough to restart a receiver
-#define RETRY_PERIOD 1.0      // (s) chosen
-#define REACHED_AFTER 2.5     // (s) without a report; chosen: two tries and a half
-#define UNKNOWN_DRUM_HZ 110.0 // (Hz) chosen: A2, for a strike before its drum is known
-#define RENEWED_WITHIN 60.0   // (s) chosen: a receiver that subscribes twice a minute keeps it
-#define HOST_BYTES 500e3      // a second; chosen: the largest stream, vmc at 250 Hz, has 468,000
-#define HOST_BURST 0.25       // of a second's bytes at once; chosen: poses come in bursts of blocks
-#define OF_A_HOST 32          // subscriptions of a stranger; chosen: four receivers of all streams
-#define OF_STRANGERS 192      // chosen: the user, this machine and --allow keep a quarter of all
-#define REPORTS_AT_ONCE 192   // read at a time; chosen: 64 for each socket
+#define FORGET_AFTER 60.0   // (s) chosen: long enough to restart a receiver
+#define RETRY_PERIOD 1.0    // (s) chosen
+#define RENEWED_WITHIN 60.0 // (s) chosen: a receiver that subscribes twice a minute keeps it
+#define HOST_BYTES 500e3    // a second; chosen: the largest stream, vmc at 250 Hz, has 468,000
+#define HOST_BURST 0.25     // of a second's bytes at once; chosen: poses come in bursts of blocks
+#define OF_A_HOST 32        // subscriptions of a stranger; chosen: four receivers of all streams
 
 void himc_osc_tell(osc_ring *lines, const char *format, ...)
 {
@@ -61,7 +56,8 @@ bool himc_osc_change_from(osc_change *change, const himc_command *c)
         change->stream = c->form == VMC ? STREAM_VMC : (osc_stream)c->choice[next];
     if (change->stream != STREAM_ANY)
         next++;
-    change->hz = next < c->count ? c->atom[next].number : DEFAULT_HZ;
+    // chosen: 33 Hz, one pose a frame of 30 a second
+    change->hz = next < c->count ? c->atom[next].number : 33;
     change->remove = c->id == HIMC_COMMAND_UNSUBSCRIBE;
     return true;
 }
@@ -78,12 +74,13 @@ static bool refuse(const osc_change *change, himc_error *error, const char *why)
                           change->port, why);
 }
 
-static bool is_allowed(const osc_subscriptions *s, const osc_change *change, const osc_address *to)
+// true if the host is one of --allow
+static bool is_listed(const osc_subscriptions *s, const osc_address *host)
 {
-    bool good = change->local || himc_osc_address_same_host(to, &change->from);
-    for (int i = 0; i < s->allowed_count && !good; i++)
-        good = himc_osc_address_same_host(to, &s->allowed[i]);
-    return good;
+    for (int i = 0; i < s->allowed_count; i++)
+        if (himc_osc_address_same_host(host, &s->allowed[i]))
+            return true;
+    return false;
 }
 
 static bool sends_poses(const osc_subscription *one)
@@ -117,35 +114,9 @@ static void update(osc_subscriptions *s)
     atomic_store(&s->count, count);
 }
 
-static bool unsubscribe(osc_subscriptions *s, const osc_change *change, const osc_address *to,
-                        himc_error *error)
-{
-    int removed = 0;
-    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
-        if (one->used && (change->stream == STREAM_ANY || one->stream == change->stream) &&
-            himc_osc_address_same(&one->to, to)) {
-            one->used = false;
-            removed++;
-        }
-    update(s);
-    return removed || refuse(change, error, "not subscribed");
-}
-
 bool himc_osc_trusted(const osc_subscriptions *s, const osc_address *host)
 {
-    bool trusted = himc_osc_address_loopback(host);
-    for (int i = 0; i < s->allowed_count && !trusted; i++)
-        trusted = himc_osc_address_same_host(host, &s->allowed[i]);
-    return trusted;
-}
-
-// when the subscription ends unless renewed; 0: never
-static double expiry_of(const osc_subscriptions *s, const osc_change *change, const osc_address *to,
-                        double now)
-{
-    if (change->granted)
-        return change->expires;
-    return change->local || himc_osc_trusted(s, to) ? 0 : now + RENEWED_WITHIN;
+    return himc_osc_address_loopback(host) || is_listed(s, host);
 }
 
 // false if strangers have as many as they may
@@ -160,7 +131,8 @@ static bool has_room(const osc_subscriptions *s, const osc_change *change, const
             own += himc_osc_address_same_host(&one->to, to);
             all++;
         }
-    if (own < OF_A_HOST && all < OF_STRANGERS)
+    // chosen: the user, this machine and --allow keep a quarter of all
+    if (own < OF_A_HOST && all < SUBSCRIPTIONS * 3 / 4)
         return true;
     himc_osc_address_print(to, host);
     if (own < OF_A_HOST)
@@ -172,11 +144,24 @@ static bool has_room(const osc_subscriptions *s, const osc_change *change, const
     return refuse(change, error, why);
 }
 
+static bool unsubscribe(osc_subscriptions *s, const osc_change *change, const osc_address *to,
+                        himc_error *error)
+{
+    int removed = 0;
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && (change->stream == STREAM_ANY || one->stream == change->stream) &&
+            himc_osc_address_same(&one->to, to)) {
+            one->used = false;
+            removed++;
+        }
+    update(s);
+    return removed || refuse(change, error, "not subscribed");
+}
+
 static bool make_change(osc_subscriptions *s, const osc_change *change, const osc_address *to,
                         double now, himc_error *error)
 {
     osc_subscription *place = NULL;
-    double expires = expiry_of(s, change, to, now);
     if (change->remove)
         return unsubscribe(s, change, to, error);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
@@ -189,6 +174,11 @@ static bool make_change(osc_subscriptions *s, const osc_change *change, const os
     }
     if (!place)
         return refuse(change, error, "256 subscriptions already, expected no more");
+    double expires = 0; // never
+    if (change->granted)
+        expires = change->expires;
+    else if (!change->local && !himc_osc_trusted(s, to))
+        expires = now + RENEWED_WITHIN;
     if (!place->used && expires > 0 && !has_room(s, change, to, error))
         return false;
     *place = (osc_subscription){.used = true,
@@ -201,30 +191,30 @@ static bool make_change(osc_subscriptions *s, const osc_change *change, const os
     return true;
 }
 
-static bool look_up(osc_subscriptions *s, const osc_change *change)
-{
-    for (struct osc_pending *p = s->pending; p < s->pending + LOOKUPS; p++)
-        if (!p->lookup) {
-            p->change = *change;
-            p->lookup = himc_osc_lookup_start(change->host, change->port);
-            return p->lookup != NULL;
-        }
-    return false;
-}
-
 bool himc_osc_subscribe(osc_subscriptions *s, const osc_change *change, double now,
                         himc_error *error)
 {
     osc_address to;
     if (change->granted)
         return make_change(s, change, &change->from, now, error);
-    if (himc_osc_address_parse(change->host, change->port, &to))
-        return is_allowed(s, change, &to)
-                   ? make_change(s, change, &to, now, error)
-                   : refuse(change, error, "expected your own address, or one given by --allow");
+    if (himc_osc_address_parse(change->host, change->port, &to)) {
+        bool own = change->local || himc_osc_address_same_host(&to, &change->from);
+        if (own || is_listed(s, &to))
+            return make_change(s, change, &to, now, error);
+        return refuse(change, error, "expected your own address, or one given by --allow");
+    }
     if (!change->local)
         return refuse(change, error, "expected a numeric address over the network");
-    return look_up(s, change) || refuse(change, error, "too many names are being looked up");
+    struct osc_pending *p = s->pending;
+    while (p < s->pending + LOOKUPS && p->lookup)
+        p++;
+    if (p < s->pending + LOOKUPS) {
+        p->change = *change;
+        p->lookup = himc_osc_lookup_start(change->host, change->port);
+        if (p->lookup)
+            return true;
+    }
+    return refuse(change, error, "too many names are being looked up");
 }
 
 void himc_osc_subscribe_found(osc_subscriptions *s, double now)
@@ -296,15 +286,15 @@ static void mark_unreachable(osc_subscriptions *s, const osc_address *to, double
     }
 }
 
-// one line for each address
-static bool forget_expired(osc_subscriptions *s, double now)
+void himc_osc_forget(osc_subscriptions *s, double now)
 {
+    osc_address to;
     char text[80];
     bool forgotten = false;
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
         if (!one->used || one->expires <= 0 || now < one->expires)
             continue;
-        if (one->first || one->stream == STREAM_VMC) {
+        if (one->first || one->stream == STREAM_VMC) { // one line for each address
             himc_osc_address_print(&one->to, text);
             himc_osc_tell(s->lines, "%s: not subscribed again within %g s, forgotten", text,
                           RENEWED_WITHIN);
@@ -312,14 +302,8 @@ static bool forget_expired(osc_subscriptions *s, double now)
         one->used = false;
         forgotten = true;
     }
-    return forgotten;
-}
-
-void himc_osc_forget(osc_subscriptions *s, double now)
-{
-    osc_address to;
-    bool forgotten = forget_expired(s, now);
-    for (int i = 0; i < REPORTS_AT_ONCE && himc_osc_network_unreachable(s->network, &to); i++)
+    // chosen: 64 reports of each socket at a time
+    for (int i = 0; i < 64 * OSC_SOCKETS && himc_osc_network_unreachable(s->network, &to); i++)
         mark_unreachable(s, &to, now);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
         if (!one->used || one->unreachable_since <= 0)
@@ -327,7 +311,7 @@ void himc_osc_forget(osc_subscriptions *s, double now)
         if (now - one->unreachable_since > FORGET_AFTER) {
             one->used = false;
             forgotten = true;
-        } else if (now - one->unreachable_last > REACHED_AFTER) {
+        } else if (now - one->unreachable_last > 2.5 * RETRY_PERIOD) { // chosen
             one->unreachable_since = 0;
         }
     }
@@ -337,10 +321,12 @@ void himc_osc_forget(osc_subscriptions *s, double now)
 
 // --- states out
 
-// true if the host may get so many bytes more
-static bool has_left(osc_subscriptions *s, const osc_address *to, double bytes, double now)
+bool himc_osc_allows(osc_subscriptions *s, const osc_address *to, double bytes, int packets,
+                     double now)
 {
     osc_allowance *a = NULL, *full = NULL;
+    if (himc_osc_address_loopback(to))
+        return true;
     for (int i = 0; i < SUBSCRIPTIONS && !a; i++) {
         osc_allowance *one = &s->allowance[i];
         if (himc_osc_address_same_host(&one->host, to))
@@ -348,26 +334,20 @@ static bool has_left(osc_subscriptions *s, const osc_address *to, double bytes, 
         else if (!full && (one->last == 0 || now - one->last >= HOST_BURST)) // as a new one
             full = one;
     }
-    if (!a && !full)
-        return false;
-    if (!a) {
+    if (!a && full) {
         a = full;
         *a = (osc_allowance){.host = *to, .left = HOST_BURST * HOST_BYTES, .last = now};
     }
-    a->left = fmin(a->left + HOST_BYTES * (now - a->last), HOST_BURST * HOST_BYTES);
-    a->last = now;
-    if (a->left < bytes)
+    if (a) {
+        a->left = fmin(a->left + HOST_BYTES * (now - a->last), HOST_BURST * HOST_BYTES);
+        a->last = now;
+    }
+    if (!a || a->left < bytes) {
+        himc_osc_add(s->counts, COUNT_CAPPED, packets);
         return false;
+    }
     a->left -= bytes;
     return true;
-}
-
-bool himc_osc_allows(osc_subscriptions *s, const osc_address *to, double bytes, int packets,
-                     double now)
-{
-    bool good = himc_osc_address_loopback(to) || has_left(s, to, bytes, now);
-    himc_osc_add(s->counts, COUNT_CAPPED, good ? 0 : packets);
-    return good;
 }
 
 static void send_packets(osc_subscriptions *s, const osc_address *to, const osc_packets *p,
@@ -440,21 +420,24 @@ const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
     return NULL;
 }
 
-static double principal_mode(const osc_subscriptions *s, const char *drum)
+// index of the drum, or their number
+static int find_drum(const osc_subscriptions *s, const char *name)
 {
-    for (int i = 0; i < s->drums; i++)
-        if (strcmp(s->drum[i].name, drum) == 0)
-            return s->drum[i].hz;
-    return UNKNOWN_DRUM_HZ;
+    int i = 0;
+    while (i < s->drums && strcmp(s->drum[i].name, name) != 0)
+        i++;
+    return i;
 }
 
 static void deliver_strike(osc_subscriptions *s, const osc_state *state, osc_packets *p, double now)
 {
     const himc_strike *strike = &state->strike.strike;
     osc_packets vmc;
+    int drum = find_drum(s, strike->drum);
+    double hz = drum < s->drums ? s->drum[drum].hz : 110; // chosen: A2 until the drum is known
     himc_osc_encode_strike(p, &state->strike);
     himc_osc_encode_begin(&vmc, SMALL_PACKET, true, state->wall);
-    himc_osc_encode_vmc_strike(&vmc, strike, principal_mode(s, strike->drum));
+    himc_osc_encode_vmc_strike(&vmc, strike, hz);
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
         if (one->used && one->stream == STREAM_STRIKES)
             send_packets(s, &one->to, p, now);
@@ -476,38 +459,31 @@ static void deliver_head(osc_subscriptions *s, const osc_head *head, osc_packets
     }
 }
 
-static void deliver_sound(osc_subscriptions *s, const osc_sound *sound, osc_packets *p, double now)
-{
-    himc_osc_encode_sound(p, sound);
-    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
-        if (one->used && one->stream == STREAM_SOUND)
-            send_packets(s, &one->to, p, now);
-}
-
-static void deliver_drum(osc_subscriptions *s, const osc_drum *drum, osc_packets *p, double now)
-{
-    int i = 0;
-    while (i < s->drums && strcmp(s->drum[i].name, drum->name) != 0)
-        i++;
-    if (i == HIMC_DRUMS)
-        return;
-    s->drums += i == s->drums;
-    s->drum[i] = *drum;
-    himc_osc_encode_drum(p, drum);
-    send_once(s, p, now);
-}
-
 void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_osc_counts *counts,
                       double now)
 {
     osc_packets p;
+    int drum;
     himc_osc_encode_begin(&p, SMALL_PACKET, true, state->wall);
     switch (state->kind) {
     case STATE_POSE: deliver_pose(s, state, &p, now); break;
     case STATE_STRIKE: deliver_strike(s, state, &p, now); break;
     case STATE_HEAD: deliver_head(s, &state->head, &p, now); break;
-    case STATE_SOUND: deliver_sound(s, &state->sound, &p, now); break;
-    case STATE_DRUM: deliver_drum(s, &state->drum, &p, now); break;
+    case STATE_SOUND:
+        himc_osc_encode_sound(&p, &state->sound);
+        for (int i = 0; i < SUBSCRIPTIONS; i++)
+            if (s->subscription[i].used && s->subscription[i].stream == STREAM_SOUND)
+                send_packets(s, &s->subscription[i].to, &p, now);
+        break;
+    case STATE_DRUM:
+        drum = find_drum(s, state->drum.name);
+        if (drum == HIMC_DRUMS)
+            break;
+        s->drums += drum == s->drums;
+        s->drum[drum] = state->drum;
+        himc_osc_encode_drum(&p, &state->drum);
+        send_once(s, &p, now);
+        break;
     case STATE_BEAT:
         himc_osc_encode_beat(&p, state->beat);
         send_once(s, &p, now);

@@ -55,57 +55,31 @@ static void measure(himc_performance *p, double t, bool tick)
     }
 }
 
-// hits in their last milliseconds, from where the sticks are
-static void correct_hits(himc_performance *p, double t)
+// Inverse kinematics, inverse dynamics, forward dynamics; contact is solved inside the same step.
+// In `ik` the body is moved by inverse kinematics; only the ends of the sticks are in contact.
+static void step_body(himc_performance *p, int n, double t, double h, bool tick)
 {
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_target measured = {
-            p->body->state.tip[hand], p->body->state.tip_velocity[hand], {0, 0, 0}};
+    contact_scene scene = scene_of(p);
+    performance_body *b = p->body;
+    bool kinematic = p->settings.control.mode == HIMC_PIPELINE_IK;
+    if (!(kinematic ? himc_body_follow(b, &p->motion->reference, h) : himc_body_observe(b, tick)))
+        recover(p, t);
+    if (tick)
+        himc_performance_take_energy(p);
+    himc_contacts_finish(&p->contacts, &scene, t);
+    // hits in their last milliseconds, from where the sticks are
+    for (int hand = 0; hand < HIMC_HANDS && !kinematic; hand++) {
+        himc_target measured = {b->state.tip[hand], b->state.tip_velocity[hand], {0, 0, 0}};
         if (!p->contacts.hand[hand].touching)
             himc_motion_correct(p->motion, &p->settings, (himc_hand)hand, t, &measured);
     }
-}
-
-// inverse kinematics, inverse dynamics, forward dynamics; contact is solved inside the same step
-static void step_dynamics(himc_performance *p, int n, double t, double h, bool tick)
-{
-    contact_scene scene = scene_of(p);
-    if (!himc_body_observe(p->body, tick))
-        recover(p, t);
-    if (tick)
-        himc_performance_take_energy(p);
-    himc_contacts_finish(&p->contacts, &scene, t);
-    correct_hits(p, t);
-    himc_body_control(p->body, &p->motion->reference, h);
-    himc_contacts_advance(&p->contacts, &scene, n, p->body->tip_force);
+    if (!kinematic)
+        himc_body_control(b, &p->motion->reference, h);
+    himc_contacts_advance(&p->contacts, &scene, n, b->tip_force);
     measure(p, t, tick);
-    himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, p->body->torque);
-    if (!himc_body_simulate(p->body, t, h))
+    himc_statistics_joints(&p->statistics, &b->skeleton, &b->state, kinematic ? NULL : b->torque);
+    if (!kinematic && !himc_body_simulate(b, t, h))
         recover(p, t);
-}
-
-// the body moved by inverse kinematics; only the ends of the sticks are in contact with the head
-static void step_kinematics(himc_performance *p, int n, double t, double h, bool tick)
-{
-    contact_scene scene = scene_of(p);
-    if (!himc_body_follow(p->body, &p->motion->reference, h))
-        recover(p, t);
-    if (tick)
-        himc_performance_take_energy(p);
-    himc_contacts_finish(&p->contacts, &scene, t);
-    himc_contacts_advance(&p->contacts, &scene, n, p->body->tip_force);
-    measure(p, t, tick);
-    himc_statistics_joints(&p->statistics, &p->body->skeleton, &p->body->state, NULL);
-}
-
-// a joint faster than any person's, whatever the cause; once
-static void tell_too_fast(himc_performance *p, double t)
-{
-    int joint;
-    double rate;
-    if (himc_statistics_too_fast(&p->statistics, &joint, &rate))
-        himc_events_note(&p->events, "at %.2f s %s turns at %.0f rad/s, a person's at %.0f at most",
-                         t, himc_joint_name(joint), rate, HIMC_FASTEST_JOINT);
 }
 
 static void tell_planner_notes(himc_performance *p)
@@ -134,24 +108,14 @@ static void watch(himc_performance *p, double t)
     himc_motion_foresee(p->motion, himc_clock_next_tick(&p->clock));
 }
 
-// what the score has at a beat
-static void keep_to_score(himc_performance *p, double t)
-{
-    double beat = himc_motion_score_beat(p->motion, t);
-    himc_planner *planner = p->motion->planner;
-    himc_drums_turn_heads(&p->drums, beat, p->motion->track ? 0 : himc_planner_round(planner, t),
-                          himc_planner_length(planner), &p->events);
-    himc_body_begin_pushes(p->body, beat,
-                           himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
-}
-
 static void performance_step(himc_performance *p)
 {
     himc_performance_run_due_commands(p);
     himc_performance_notice_drums(p);
     contact_scene scene = scene_of(p);
     int n = himc_clock_step_samples(&p->clock);
-    double t = step_time(p), h = n / p->clock.sample_rate;
+    int joint;
+    double t = step_time(p), h = n / p->clock.sample_rate, rate;
     bool tick = himc_clock_is_tick(&p->clock);
     if (tick || p->motion->replan) {
         double next = himc_clock_next_tick(&p->clock);
@@ -160,18 +124,26 @@ static void performance_step(himc_performance *p)
         if (!himc_motion_is_finite(p->motion))
             recover(p, t);
     }
-    if (tick)
-        keep_to_score(p, t);
+    if (tick) { // what the score has at a beat
+        double beat = himc_motion_score_beat(p->motion, t);
+        himc_planner *planner = p->motion->planner;
+        himc_drums_turn_heads(&p->drums, beat,
+                              p->motion->track ? 0 : himc_planner_round(planner, t),
+                              himc_planner_length(planner), &p->events);
+        himc_body_begin_pushes(
+            p->body, beat, himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
+    }
     himc_motion_think(p->motion, h, himc_contacts_busy(&p->contacts));
     himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);
-    if (p->settings.control.mode == HIMC_PIPELINE_IK)
-        step_kinematics(p, n, t, h, tick);
-    else
-        step_dynamics(p, n, t, h, tick);
+    step_body(p, n, t, h, tick);
     if (tick) {
         himc_performance_tell_tick(p, t);
-        tell_too_fast(p, t);
+        // a joint faster than any person's, whatever the cause; once
+        if (himc_statistics_too_fast(&p->statistics, &joint, &rate))
+            himc_events_note(&p->events,
+                             "at %.2f s %s turns at %.0f rad/s, a person's at %.0f at most", t,
+                             himc_joint_name(joint), rate, HIMC_FASTEST_JOINT);
     }
     watch(p, t);
     himc_clock_step(&p->clock, n);

@@ -79,7 +79,6 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
     b->character = parts->character;
     b->skeleton = parts->skeleton;
     b->plant = parts->plant;
-    b->legs.known = false;
     b->shares = same_segments(&b->skeleton, &b->plant);
 }
 
@@ -122,8 +121,6 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
     himc_pose_to_state(&b->skeleton, rest, NULL, &state);
     himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
     b->controller.saturation = &b->saturation;
-    b->controller.legs = &b->legs;
-    b->legs.known = false;
     himc_character_use(b->character, s->engine);
 }
 

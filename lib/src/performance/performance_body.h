@@ -5,7 +5,6 @@
 
 #include "body/character.h"
 #include "control/setpoint.h"
-#include "control/still_legs.h"
 #include "performance/performance_settings.h"
 
 /// A push of a score.
@@ -36,9 +35,8 @@ typedef struct performance_body {
     himc_vec3 tip_force[HIMC_HANDS]; ///< of the last step (N)
     bool accounting;                 ///< `work` is added up
     himc_body_work work;
-    himc_controller controller; ///< borrows `limits`, `saturation` and `legs`
-    himc_still_legs legs;
-    himc_limits limits; ///< in force
+    himc_controller controller; ///< borrows `limits` and `saturation`
+    himc_limits limits;         ///< in force
     himc_saturation_counts saturation;
     body_push push[HIMC_SEGMENTS];
     double push_end;                   ///< of all pushes (s)

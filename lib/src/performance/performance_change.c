@@ -28,18 +28,6 @@ void himc_performance_find_end(himc_performance *p)
     himc_planner_last_until(p->motion->planner, end);
 }
 
-/// Tells that the beat is past, and will not come again before the next `play`.
-static void tell_past(const change_job *j, double now)
-{
-    himc_performance *p = j->performance;
-    const himc_score_line *line = &j->line;
-    if (now <= line->beat || (!p->motion->track && himc_planner_is_looped(p->motion->planner)))
-        return;
-    himc_events_note(&p->events, "at %g %s%s%s: given up, that beat is past", line->beat,
-                     line->drum, line->drum[0] ? " " : "",
-                     himc_command_table((int)line->command.id)->name);
-}
-
 /// The pushes of the score with one more, in the order of beats.
 static bool add_push(change_job *j, himc_error *error)
 {
@@ -108,14 +96,18 @@ static himc_job_state install(himc_job *job, himc_error *error)
 {
     change_job *j = (change_job *)job;
     himc_performance *p = j->performance;
+    const himc_score_line *line = &j->line;
     himc_error why = {""};
     double now = himc_motion_score_beat(p->motion, step_time(p));
     error = error ? error : &why;
     himc_job_state state = j->insertion         ? add_head(j, now, error)
                            : add_push(j, error) ? HIMC_JOB_DONE
                                                 : HIMC_JOB_FAILED;
-    if (state == HIMC_JOB_DONE)
-        tell_past(j, now);
+    bool comes_again = !p->motion->track && himc_planner_is_looped(p->motion->planner);
+    if (state == HIMC_JOB_DONE && now > line->beat && !comes_again) // before the next `play`
+        himc_events_note(&p->events, "at %g %s%s%s: given up, that beat is past", line->beat,
+                         line->drum, line->drum[0] ? " " : "",
+                         himc_command_table((int)line->command.id)->name);
     himc_performance_find_end(p);
     himc_motion_stir(p->motion);
     return state;

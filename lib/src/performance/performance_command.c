@@ -108,19 +108,6 @@ static bool do_nudge(himc_performance *p, const himc_command *c, himc_error *err
 
 // the settings
 
-// a body of other size; a take is loaded again for it
-static bool change_body(himc_performance *p, const performance_settings *s, himc_error *error)
-{
-    performance_settings before = p->settings;
-    if (!p->motion->track || p->written.take_command.count == 0)
-        return himc_performance_rebuild(p, s, error);
-    p->settings = *s; // the take's lengths stay
-    if (himc_job_carry_out(himc_performance_take_again_job(p, error), error))
-        return true;
-    p->settings = before;
-    return false;
-}
-
 // what follows from a command that has changed a setting
 static void follow(himc_performance *p, const himc_command *c, himc_pipeline before)
 {
@@ -161,8 +148,16 @@ static bool do_setting(himc_performance *p, const himc_command *c, himc_error *e
     if (!himc_performance_allows(p->recording.file, c, error) ||
         !himc_settings_read(&s, &p->host.usual, c, error))
         return false;
-    if (himc_settings_effect(c->id) == AFTER_BODY)
-        return change_body(p, &s, error);
+    if (himc_settings_effect(c->id) == AFTER_BODY) {
+        performance_settings old = p->settings;
+        if (!p->motion->track || p->written.take_command.count == 0)
+            return himc_performance_rebuild(p, &s, error);
+        p->settings = s; // a take is loaded again for a body of other size: its lengths stay
+        if (himc_job_carry_out(himc_performance_take_again_job(p, error), error))
+            return true;
+        p->settings = old;
+        return false;
+    }
     himc_performance_adopt(p, &s);
     follow(p, c, before);
     return true;

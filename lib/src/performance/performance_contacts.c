@@ -149,7 +149,7 @@ static int head_under(const stick_contact *c, const contact_scene *s, himc_hand 
     for (int i = 0; i < s->drums->count; i++) {
         himc_vec3 at = over_head(s, i, s->body->state.tip[hand]);
         double lowest = c->touching && c->drum == i ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
-        if (hypot(at.x, at.y) < frame_of(s, i)->radius && at.z > lowest && at.z < least) {
+        if (himc_head_frame_contains(frame_of(s, i), at.x, at.y) && at.z > lowest && at.z < least) {
             least = at.z;
             under = i;
         }
@@ -210,30 +210,6 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
         go_on_from_here(c, s, hand, t);
 }
 
-// in `ik` the contact moves the end of the stick, and the arm follows
-static void follow_stick(const stick_contact *c, const contact_scene *s, himc_hand hand, double t)
-{
-    himc_target tip = s->motion->reference.tip[hand];
-    himc_vec3 n = s->motion->reference.normal[hand];
-    double height = over_head(s, c->drum, tip.x).z;
-    tip.x = himc_vec3_madd(tip.x, c->stick.height - height, n);
-    tip.v = himc_vec3_madd(tip.v, c->stick.velocity - himc_vec3_dot(n, tip.v), n);
-    tip.a = himc_vec3_madd(tip.a, -himc_vec3_dot(n, tip.a), n);
-    himc_motion_move_tip(s->motion, s->settings, hand, &tip, t);
-}
-
-// the hand's acceleration of a stick along the normal (m/s^2)
-static double hand_acceleration(const stick_contact *c, const contact_scene *s, himc_hand hand)
-{
-    if (c->bounce.on)
-        return himc_bounce_acceleration(&c->bounce, height_of(c, s, hand), velocity_of(c, s, hand));
-    if (!c->touching || !c->pressed)
-        return 0;
-    himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
-    return himc_grip_press(&s->motion->reference.tip[hand], &tip, normal_of(s, c->drum),
-                           c->stick.mass);
-}
-
 static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
     planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
@@ -247,12 +223,28 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
     }
     int drum = is_free(c) ? c->drum : next.drum;
     c->released = is_free(c) || (due && !rests_after(s, hand, next.drum, next.time));
-    c->hand = hand_acceleration(c, s, hand);
+    c->hand = 0; // the hand's acceleration of the stick along the normal
+    if (c->bounce.on) {
+        c->hand =
+            himc_bounce_acceleration(&c->bounce, height_of(c, s, hand), velocity_of(c, s, hand));
+    } else if (c->touching && c->pressed) {
+        himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
+        c->hand = himc_grip_press(&s->motion->reference.tip[hand], &tip, normal_of(s, c->drum),
+                                  c->stick.mass);
+    }
     himc_motion_release(s->motion, hand, c->released, c->hand);
     if (drum < s->drums->count)
         himc_motion_set_normal(s->motion, hand, normal_of(s, drum));
-    if (is_free(c) && is_kinematic(s))
-        follow_stick(c, s, hand, t);
+    if (!is_free(c) || !is_kinematic(s))
+        return;
+    // in `ik` the contact moves the end of the stick, and the arm follows
+    himc_target tip = s->motion->reference.tip[hand];
+    himc_vec3 n = s->motion->reference.normal[hand];
+    double height = over_head(s, c->drum, tip.x).z;
+    tip.x = himc_vec3_madd(tip.x, c->stick.height - height, n);
+    tip.v = himc_vec3_madd(tip.v, c->stick.velocity - himc_vec3_dot(n, tip.v), n);
+    tip.a = himc_vec3_madd(tip.a, -himc_vec3_dot(n, tip.a), n);
+    himc_motion_move_tip(s->motion, s->settings, hand, &tip, t);
 }
 
 void himc_contacts_release(performance_contacts *c, const contact_scene *s, double t)
@@ -275,7 +267,8 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
     double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
     double highest = c->bounce.on && c->drum == drum ? HIGHEST_BOUNCE : NEAR_HEAD;
     *local = at;
-    return at.x * at.x + at.y * at.y < radius * radius && at.z < highest && at.z > lowest;
+    return himc_head_frame_contains(frame_of(s, drum), at.x, at.y) && at.z < highest &&
+           at.z > lowest;
 }
 
 // the drum below a tip, or -1; of two drums at one place, the planned one
@@ -304,14 +297,6 @@ static double bounded(double x, double most)
     return x > most ? most : x < -most ? -most : x;
 }
 
-// effective mass of the body's stick at its end, held at the grip
-static double own_mass(const himc_skeleton *skeleton, himc_hand hand)
-{
-    const himc_segment *stick = &skeleton->segment[HIMC_LEFT_STICK + hand];
-    double turned = stick->inertia.x + stick->mass * stick->center.z * stick->center.z;
-    return turned / (skeleton->tip.z * skeleton->tip.z);
-}
-
 // the stick as a point on the head's normal, at the beginning of the step
 static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
                        const himc_articulation *art, const himc_vec3 *relative)
@@ -321,7 +306,10 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     if (!c->stick.touching) // mallets are changed in the air
         c->stick.head = *himc_drum_mallet(s->drums->slot[c->drum].drum);
     double body = himc_effective_mass(&b->plant, &b->state, art, hand, n);
-    double added = c->stick.head.mass - own_mass(&b->skeleton, hand);
+    // effective mass of the body's own stick at its end, held at the grip
+    const himc_segment *own = &b->skeleton.segment[HIMC_LEFT_STICK + hand];
+    double turned = own->inertia.x + own->mass * own->center.z * own->center.z;
+    double added = c->stick.head.mass - turned / (b->skeleton.tip.z * b->skeleton.tip.z);
     c->stick.mass = fmax(body + added, LEAST_STICK * body);
     c->share = body / c->stick.mass;
     c->stick.one_way = s->settings->coupling == HIMC_COUPLING_ONE_WAY;
@@ -336,16 +324,6 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
         return;
     c->stick.height = local.z + c->offset;
     c->stick.velocity = bounded(himc_vec3_dot(n, b->state.tip_velocity[hand]), FASTEST_TIP);
-}
-
-// once: a stroke of a score, or a hit, lands beside its place
-static void tell_aside(const contact_scene *s, const himc_strike *strike, double off)
-{
-    char name[HIMC_PLANNER_NAME];
-    if (off > PLAYED_PLACE && !s->motion->track && himc_statistics_aside(s->statistics) == 0 &&
-        name_stroke(s, strike->hand, strike->time, name))
-        himc_events_note(s->events, "%s: landed at %.3g %.3g, %.2g m from its place", name,
-                         strike->x, strike->y, off);
 }
 
 static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double time,
@@ -386,7 +364,11 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     if (isfinite(next.speed))
         himc_statistics_impact(s->statistics, -velocity, next.speed);
     himc_statistics_yields(s->statistics, next.yields);
-    tell_aside(s, &c->strike, off);
+    char name[HIMC_PLANNER_NAME];
+    if (off > PLAYED_PLACE && !s->motion->track && himc_statistics_aside(s->statistics) == 0 &&
+        name_stroke(s, hand, time, name)) // once: a stroke of a score, or a hit
+        himc_events_note(s->events, "%s: landed at %.3g %.3g, %.2g m from its place", name,
+                         c->strike.x, c->strike.y, off);
 }
 
 // adds the forces of a step's `n` samples to the strike; returns the impulse (N s)
@@ -448,18 +430,6 @@ static void find_near(performance_contacts *c, const contact_scene *s, near_stic
     himc_forward_dynamics(&b->plant, &b->state, near->art, b->torque, NULL, near->relative);
 }
 
-static void load_sticks(performance_contacts *c, const contact_scene *s, near_sticks *near)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        stick_contact *contact = &c->hand[hand];
-        if (near->below[hand] < 0)
-            continue;
-        contact->drum = near->below[hand];
-        load_stick(contact, s, (himc_hand)hand, near->local[hand], near->art, near->relative);
-        near->velocity[hand] = contact->stick.velocity;
-    }
-}
-
 // n samples from sample `done` of the step on
 static void advance_drum(performance_contacts *c, const contact_scene *s, int drum, int done, int n,
                          const near_sticks *near)
@@ -518,7 +488,14 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         memset(c->force[hand], 0, (size_t)n * sizeof(double));
     c->force_count = n;
     c->quiet += n / s->clock->sample_rate;
-    load_sticks(c, s, &near);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        stick_contact *contact = &c->hand[hand];
+        if (near.below[hand] < 0)
+            continue;
+        contact->drum = near.below[hand];
+        load_stick(contact, s, (himc_hand)hand, near.local[hand], near.art, near.relative);
+        near.velocity[hand] = contact->stick.velocity;
+    }
     himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
     advance_drums(c, s, n, &near);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -548,18 +525,6 @@ static void tell(stick_contact *c, const contact_scene *s)
     c->told = true;
 }
 
-static void end_contact(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
-{
-    tell(c, s);
-    if (c->bounce.on)
-        himc_bounce_separated(&c->bounce, t, t - c->last_force, height_of(c, s, hand),
-                              velocity_of(c, s, hand));
-    else if (!c->pressed)
-        go_on_from_here(c, s, hand, t);
-    c->touching = false;
-    c->left = t;
-}
-
 // the hand takes up a stick that has bounced, also when the next stroke is near
 static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
@@ -574,15 +539,6 @@ static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand
     c->pressed = true; // a contact that goes on is no stroke
 }
 
-static bool has_separated(const stick_contact *c, const contact_scene *s, double t, double height)
-{
-    // both are whole samples; half of one, so that the rounding of times does not decide
-    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
-    if (c->pressed)
-        return quiet > ANY_GAP && (height > LIFTED_HEIGHT || c->stick.velocity > LIFTED_SPEED);
-    return (quiet > RISING_GAP && c->stick.velocity > 0) || quiet > ANY_GAP;
-}
-
 static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t,
                         double kept)
 {
@@ -590,17 +546,26 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
         c->offset *= kept;
         return;
     }
-    double height = over_head(s, c->drum, s->body->state.tip[hand]).z;
+    // both are whole samples; half of one, so that the rounding of times does not decide
+    double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
+    double height = over_head(s, c->drum, s->body->state.tip[hand]).z, rise = c->stick.velocity;
+    bool lifted = height > LIFTED_HEIGHT || rise > LIFTED_SPEED;
+    bool late = !c->bounce.on && t >= c->strike.time + LONGEST_RELEASE;
+    bool separated =
+        quiet > ANY_GAP ? !c->pressed || lifted : !c->pressed && quiet > RISING_GAP && rise > 0;
     if (!is_kinematic(s))
         c->offset = c->stick.height - height;
-    if (has_separated(c, s, t, height)) {
-        end_contact(c, s, hand, t);
-    } else if (!c->bounce.on && t >= c->strike.time + LONGEST_RELEASE) {
-        tell(c, s);
-        if (!c->pressed)
-            go_on_from_here(c, s, hand, t);
-        c->pressed = true;
-    }
+    if (!separated && !late)
+        return;
+    tell(c, s);
+    if (separated && c->bounce.on)
+        himc_bounce_separated(&c->bounce, t, t - c->last_force, height_of(c, s, hand),
+                              velocity_of(c, s, hand));
+    else if (!c->pressed)
+        go_on_from_here(c, s, hand, t);
+    c->pressed = c->pressed || !separated;
+    c->touching = !separated;
+    c->left = separated ? t : c->left;
 }
 
 void himc_contacts_finish(performance_contacts *c, const contact_scene *s, double t)

@@ -280,29 +280,6 @@ void himc_drums_drop_heads(performance_drums *d)
         himc_drum_heads_free(himc_drums_set_heads(d, i, NULL));
 }
 
-// the heads of a round that begins, or of another `play`
-static void begin_round(performance_drums *d, int index, long round, double end, himc_error *why)
-{
-    drum_slot *slot = &d->slot[index];
-    himc_drums_catch_up_one(d, index);
-    if (round > d->round)
-        himc_drum_heads_begin_again(slot->heads, slot->drum, end, why);
-    else
-        himc_drum_heads_begin_anew(slot->heads);
-}
-
-// A change of a head under a stick would pluck it: it waits until the stick has left, some ticks.
-static bool is_due(performance_drums *d, int index, double beat)
-{
-    drum_slot *slot = &d->slot[index];
-    bool due = himc_drum_heads_due(slot->heads, beat);
-    if (due)
-        himc_drums_catch_up_one(d, index);
-    bool waits = due && slot->waited < LONGEST_WAIT && himc_drum_is_touched(slot->drum);
-    slot->waited = waits ? slot->waited + 1 : 0;
-    return due && !waits;
-}
-
 void himc_drums_turn_heads(performance_drums *d, double beat, long round, double end,
                            performance_events *events)
 {
@@ -314,8 +291,18 @@ void himc_drums_turn_heads(performance_drums *d, double beat, long round, double
         if (!slot->heads || beat < 0)
             continue;
         if (round != d->round)
-            begin_round(d, i, round, end, &why);
-        if (is_due(d, i, beat))
+            himc_drums_catch_up_one(d, i);
+        if (round > d->round) // the heads of a round that begins
+            himc_drum_heads_begin_again(slot->heads, slot->drum, end, &why);
+        else if (round < d->round) // or of another `play`
+            himc_drum_heads_begin_anew(slot->heads);
+        bool due = himc_drum_heads_due(slot->heads, beat);
+        if (due)
+            himc_drums_catch_up_one(d, i);
+        // a change of a head under a stick would pluck it: it waits until the stick has left
+        bool waits = due && slot->waited < LONGEST_WAIT && himc_drum_is_touched(slot->drum);
+        slot->waited = waits ? slot->waited + 1 : 0;
+        if (due && !waits)
             himc_drum_heads_turn(slot->heads, slot->drum, beat, &why);
         if (why.text[0])
             himc_events_note(events, "at: %s %s", himc_drum_name(slot->drum), why.text);

@@ -40,16 +40,6 @@ static void add_dynamic(himc_state_line *line, double dynamic)
     himc_state_numbers(line, 1, &dynamic);
 }
 
-static void add_spot(himc_state_line *line, const himc_stroke *stroke)
-{
-    if (stroke->spot == HIMC_SPOT_XY)
-        himc_state_numbers(line, 2, (double[]){stroke->x, stroke->y});
-    else
-        himc_state_word(line, himc_spot_name(stroke->spot));
-    if (stroke->drum[0])
-        himc_state_word(line, stroke->drum);
-}
-
 void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
 {
     // in the order of himc_ornament
@@ -68,7 +58,12 @@ void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
         himc_state_word(&line, himc_nuance_name(stroke->nuance));
         add_dynamic(&line, stroke->dynamic);
     }
-    add_spot(&line, stroke);
+    if (stroke->spot == HIMC_SPOT_XY)
+        himc_state_numbers(&line, 2, (double[]){stroke->x, stroke->y});
+    else
+        himc_state_word(&line, himc_spot_name(stroke->spot));
+    if (stroke->drum[0])
+        himc_state_word(&line, stroke->drum);
     himc_text_add(lines, line.text);
 }
 

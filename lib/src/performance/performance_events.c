@@ -1,38 +1,50 @@
-/// performance_events.c: events in a ring. `reset` leaves the host's waiting events.
+/// performance_events.c: events in a ring of bytes. An event has a strike there if its kind has
+/// one, and its text up to the final 0. `reset` leaves the host's waiting events.
 #include "performance/performance_events.h"
 
 #include "base/format.h"
 #include "base/line.h"
 
 #include <stdarg.h>
+#include <stddef.h>
 #include <string.h>
 
-static size_t size_of(const himc_event *event)
+static bool has_strike(himc_event_kind kind)
 {
-    return EVENT_SIZE + strlen(event->text);
+    return kind == HIMC_EVENT_STRIKE || kind == HIMC_EVENT_MISSED;
 }
 
-// the event that begins at byte `at`
-static himc_event event_at(const performance_events *e, size_t at)
+// bytes in the ring
+static size_t size_of(const himc_event *event)
 {
-    himc_event event;
-    size_t room = sizeof e->waiting, first = room - at < sizeof event ? room - at : sizeof event;
-    memcpy(&event, e->waiting + at, first);
-    memcpy((char *)&event + first, e->waiting, sizeof event - first);
-    return event;
+    size_t strike = has_strike(event->kind) ? 0 : sizeof event->strike;
+    return offsetof(himc_event, text) - strike + strlen(event->text) + 1;
+}
+
+// copies an event into the ring at byte `at`, or out of it
+static void pass(performance_events *e, size_t at, himc_event *event, bool in)
+{
+    unsigned char *byte = (unsigned char *)event;
+    for (size_t i = 0; i < sizeof *event; i++, at++) {
+        if (i == offsetof(himc_event, strike) && !has_strike(event->kind))
+            i = offsetof(himc_event, text);
+        unsigned char *cell = &e->ring[at % sizeof e->ring];
+        *(in ? cell : byte + i) = *(in ? byte + i : cell);
+        if (i >= offsetof(himc_event, text) && byte[i] == '\0')
+            return;
+    }
 }
 
 void himc_events_add(performance_events *e, const himc_event *event)
 {
-    size_t size = size_of(event), room = sizeof e->waiting;
-    himc_event oldest;
-    while (e->used + size > room && himc_events_take(e, &oldest))
-        e->lost++;
-    e->last = (e->first + e->used) % room;
-    size_t first = room - e->last < size ? room - e->last : size;
-    memcpy(e->waiting + e->last, event, first);
-    memcpy(e->waiting, (const char *)event + first, size - first);
+    himc_event added = *event, oldest;
+    size_t size = size_of(event);
+    for (; e->count == EVENTS_WAITING || e->used + size > sizeof e->ring; e->lost++)
+        himc_events_take(e, &oldest);
+    e->last = (e->first + e->used) % sizeof e->ring;
+    pass(e, e->last, &added, true);
     e->used += size;
+    e->count++;
 }
 
 static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
@@ -40,10 +52,12 @@ static void add_note(performance_events *e, himc_event event, const char *format
 
 static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
 {
-    himc_event last = event_at(e, e->last);
+    himc_event last = {.kind = HIMC_EVENT_DONE};
+    if (e->count > 0)
+        pass(e, e->last, &last, false);
     himc_line_print(event.text, sizeof event.text, format, args);
     // a score that plays, and then its host: one cause, one line
-    if (e->used == 0 || last.kind != HIMC_EVENT_NOTE || strcmp(last.text, event.text) != 0)
+    if (last.kind != HIMC_EVENT_NOTE || strcmp(last.text, event.text) != 0)
         himc_events_add(e, &event);
 }
 
@@ -84,11 +98,13 @@ void himc_events_missed(performance_events *e, const himc_strike *missed, const 
 
 bool himc_events_take(performance_events *e, himc_event *event)
 {
-    if (e->used == 0)
+    if (e->count == 0)
         return false;
-    *event = event_at(e, e->first);
-    e->first = (e->first + size_of(event)) % sizeof e->waiting;
+    *event = (himc_event){.kind = HIMC_EVENT_DONE};
+    pass(e, e->first, event, false);
+    e->first = (e->first + size_of(event)) % sizeof e->ring;
     e->used -= size_of(event);
+    e->count--;
     return true;
 }
 

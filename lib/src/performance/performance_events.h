@@ -7,15 +7,14 @@
 
 #include <stddef.h>
 
-#define EVENTS_WAITING \
-    1024 // without a text; chosen: a minute of a roll with a host that takes none
-#define EVENT_SIZE (offsetof(himc_event, text) + 1) // of one with an empty text
+#define EVENTS_WAITING 1024 // chosen: a minute of a roll with a host that takes none
+#define EVENT_BYTES 232     // mean, of one that waits; a missed stroke with the longest reason
 
 typedef struct performance_events {
-    unsigned char waiting[EVENTS_WAITING * EVENT_SIZE]; ///< ring of events up to their text's end
-    size_t first, used;                                 ///< bytes: the oldest one's, of all
-    size_t last;                                        ///< the latest one's, if any waits
-    long lost;                                          ///< dropped because the host took none
+    unsigned char ring[EVENTS_WAITING * EVENT_BYTES]; ///< oldest first, each as long as its kind
+    size_t first, last, used; ///< place of the oldest one, of the latest one; all of them (bytes)
+    int count;
+    long lost; ///< dropped because the host took none
     void (*on_motion)(void *, const himc_motion_row *);
     void *motion_user;
     void (*on_tick)(void *, const himc_tick *);

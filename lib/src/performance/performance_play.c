@@ -24,19 +24,6 @@
 #define MOST_BOUNCE 0.5   // (s)
 #define LEAST_ROLL 0.01   // (beats)
 
-static bool check_bounces(const himc_stroke *s, himc_error *error)
-{
-    bool rolls = s->ornament >= HIMC_ROLL_SINGLE;
-    if ((unsigned)s->ornament > HIMC_ROLL_PRESS || s->bounces < HIMC_BUZZ || s->bounces > 1)
-        return himc_error_set(error, "stroke: no such ornament, or %d bounces", s->bounces);
-    return himc_check_range("stroke: early", s->early, 0, 1, "s", error) &&
-           himc_check_range("stroke: bounce_time", s->bounces ? s->bounce_time : LEAST_BOUNCE,
-                            LEAST_BOUNCE, MOST_BOUNCE, "s", error) &&
-           himc_check_range("roll: LENGTH", rolls ? s->length : LEAST_ROLL, LEAST_ROLL, LATEST_BEAT,
-                            "beats", error) &&
-           himc_check_range("roll: DYNAMIC", rolls ? s->last_dynamic : 0, 0, 1, "", error);
-}
-
 static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
 {
     bool hand = (unsigned)s->hand < HIMC_HANDS || (any_hand && s->hand == HIMC_HAND_ANY);
@@ -44,10 +31,20 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
     if (!hand || (unsigned)s->nuance >= HIMC_NUANCES || (unsigned)s->spot > HIMC_SPOT_XY ||
         !memchr(s->drum, 0, sizeof s->drum))
         return himc_error_set(error, "stroke: no such hand, nuance or spot, or no drum's name");
+    bool rolls = s->ornament >= HIMC_ROLL_SINGLE;
+    bool bounces =
+        (unsigned)s->ornament <= HIMC_ROLL_PRESS && s->bounces >= HIMC_BUZZ && s->bounces <= 1;
     return himc_check_range("stroke: DYNAMIC", s->dynamic, 0, 1, "", error) &&
            himc_check_range("stroke: X", placed ? s->x : 0, -1, 1, "m", error) &&
            himc_check_range("stroke: Y", placed ? s->y : 0, -1, 1, "m", error) &&
-           check_bounces(s, error);
+           (bounces ||
+            himc_error_set(error, "stroke: no such ornament, or %d bounces", s->bounces)) &&
+           himc_check_range("stroke: early", s->early, 0, 1, "s", error) &&
+           himc_check_range("stroke: bounce_time", s->bounces ? s->bounce_time : LEAST_BOUNCE,
+                            LEAST_BOUNCE, MOST_BOUNCE, "s", error) &&
+           himc_check_range("roll: LENGTH", rolls ? s->length : LEAST_ROLL, LEAST_ROLL, LATEST_BEAT,
+                            "beats", error) &&
+           himc_check_range("roll: DYNAMIC", rolls ? s->last_dynamic : 0, 0, 1, "", error);
 }
 
 void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, int drum)
@@ -237,7 +234,8 @@ static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
         const himc_head_frame *frame = himc_drums_frame(&p->drums, i);
         himc_vec3 local = himc_head_frame_from_world(frame, *x);
         double under = p->body->skeleton.mallet_radius - local.z;
-        if (hypot(local.x, local.y) >= frame->radius || under < 0 || under > UNDER_THE_HEAD)
+        if (!himc_head_frame_contains(frame, local.x, local.y) || under < 0 ||
+            under > UNDER_THE_HEAD)
             continue;
         *x = himc_vec3_madd(*x, fmax(under - DEEPEST_TARGET, 0), himc_head_frame_normal(frame));
         return frame;

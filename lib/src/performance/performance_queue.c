@@ -2,28 +2,19 @@
 /// first one dropped is an error; the rest are counted and reported after the storm.
 #include "performance/performance_queue.h"
 
-static waiting_command *waiting_at(performance_queue *q, size_t at)
-{
-    return (waiting_command *)(q->waiting + at);
-}
-
-static size_t size_of(const himc_command *command)
-{
-    size_t align = _Alignof(waiting_command);
-    size_t size = offsetof(waiting_command, command) + himc_command_size(command);
-    return (size + align - 1) / align * align;
-}
+#include <assert.h>
+#include <string.h>
 
 void himc_queue_clear(performance_queue *q)
 {
-    q->used = 0;
+    q->count = 0;
     q->acting = -1;
     q->dropped = 0;
 }
 
 bool himc_queue_has_room(const performance_queue *q)
 {
-    return q->used + sizeof(waiting_command) <= sizeof q->waiting;
+    return q->count < WAITING_COMMANDS;
 }
 
 bool himc_queue_drop(performance_queue *q, himc_error *error)
@@ -35,37 +26,51 @@ bool himc_queue_drop(performance_queue *q, himc_error *error)
 
 void himc_queue_add(performance_queue *q, const himc_command *command, int64_t due)
 {
-    waiting_command *w = waiting_at(q, q->used);
+    waiting_command *w = &q->waiting[q->count++];
+    char *text = w->text;
     w->due = due;
-    himc_command_copy(&w->command, command);
-    q->used += size_of(command);
+    memcpy(w->fields, command, sizeof w->fields);
+    for (int i = 0; i < command->count; i++) {
+        if (command->atom[i].kind != HIMC_ATOM_SYMBOL)
+            continue;
+        size_t size = strlen(command->atom[i].symbol) + 1;
+        assert(size <= (size_t)(w->text + sizeof w->text - text));
+        text = (char *)memcpy(text, command->atom[i].symbol, size) + size;
+    }
+}
+
+static void take_out(const waiting_command *w, himc_command *command)
+{
+    const char *symbol = command->storage;
+    memcpy(command, w->fields, sizeof w->fields);
+    memcpy(command->storage, w->text, sizeof w->text);
+    command->folder = NULL;
+    for (int i = 0; i < command->count; i++)
+        if (command->atom[i].kind == HIMC_ATOM_SYMBOL) {
+            command->atom[i].symbol = symbol;
+            symbol += strlen(symbol) + 1;
+        }
 }
 
 void himc_queue_run(performance_queue *q, int64_t sample, performance_action *act,
                     himc_performance *performance, performance_events *events)
 {
-    size_t kept = 0, size;
-    for (size_t at = 0; at < q->used; at += size) {
+    int kept = 0;
+    for (int i = 0; i < q->count; i++) {
         himc_error error;
-        waiting_command *w = waiting_at(q, at);
-        size = size_of(&w->command);
-        q->acting = w->due;
-        if (w->due <= sample) {
-            if (!act(performance, &w->command, &error))
-                himc_events_refuse(events, "%s", error.text);
+        himc_command command;
+        q->acting = q->waiting[i].due;
+        if (q->waiting[i].due > sample) {
+            q->waiting[kept++] = q->waiting[i];
             continue;
         }
-        if (kept < at) { // it moves up, to where only commands are that have acted
-            waiting_command up = {.due = w->due};
-            himc_command_copy(&up.command, &w->command);
-            waiting_at(q, kept)->due = up.due;
-            himc_command_copy(&waiting_at(q, kept)->command, &up.command);
-        }
-        kept += size;
+        take_out(&q->waiting[i], &command);
+        if (!act(performance, &command, &error))
+            himc_events_refuse(events, "%s", error.text);
     }
     q->acting = -1;
-    q->used = kept;
-    if (q->dropped > 0 && kept < sizeof q->waiting / 2) {
+    q->count = kept;
+    if (q->dropped > 0 && kept < WAITING_COMMANDS / 2) {
         himc_events_note(events, "%ld commands dropped: more than %d waited", q->dropped,
                          WAITING_COMMANDS);
         q->dropped = 0;

@@ -9,19 +9,18 @@
 #include <stdint.h>
 
 #define WAITING_COMMANDS 256 // chosen: one every 32 samples of the longest delay
-#define USUAL_TEXT 48 // (bytes) of a command, so that so many have room; a file's may be longer
+#define WAITING_TEXT 128     // of its symbols (bytes); a drum's or a segment's name and short words
 
+/// A command that acts at a sample; it names no file, so its words are few.
 typedef struct waiting_command {
-    int64_t due; ///< sample
-    himc_command command;
+    int64_t due;                                           ///< sample
+    unsigned char fields[offsetof(himc_command, storage)]; ///< all but its text
+    char text[WAITING_TEXT];                               ///< its symbols, one after the other
 } waiting_command;
 
 typedef struct performance_queue {
-    /// in their order of arrival, each up to the end of its text; the last one may be the longest
-    _Alignas(waiting_command) unsigned char waiting
-        [WAITING_COMMANDS * (offsetof(waiting_command, command.storage) + USUAL_TEXT) +
-         sizeof(waiting_command)];
-    size_t used;    ///< bytes
+    waiting_command waiting[WAITING_COMMANDS]; ///< in their order of arrival
+    int count;
     int64_t acting; ///< sample for which the command was meant that acts now; -1: none acts
     long dropped;   ///< because the queue was full
 } performance_queue;

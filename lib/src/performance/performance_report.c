@@ -106,50 +106,11 @@ static void fill_hands(himc_performance *p, himc_motion_row *row)
     }
 }
 
-static void fill_joints(const himc_performance *p, himc_motion_row *row)
-{
-    const performance_body *b = p->body;
-    himc_pose pose = himc_pose_from_state(&b->skeleton, &b->state);
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_quat target = p->motion->reference.posture.joint[j];
-        row->rotation[j] = pose.joint[j];
-        row->joint[j] = himc_quat_log(pose.joint[j]);
-        row->joint_error[j] =
-            himc_vec3_length(himc_quat_log(himc_quat_mul(himc_quat_conj(target), pose.joint[j])));
-        row->limit[j] = b->controller.limits ? b->saturation.measure[j] : 0;
-        row->rate[j] = himc_relative_spin(&b->skeleton, &b->state, j);
-    }
-}
-
 static himc_vec3 push_point(const performance_body *b, const himc_body_state *state, int i,
                             double t)
 {
     return himc_vec3_add(state->origin[i],
                          himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
-}
-
-static void fill_segments(const performance_body *b, double t, himc_motion_row *row)
-{
-    for (int i = 0; i < HIMC_SEGMENTS; i++) {
-        row->segment[i] = b->state.origin[i];
-        row->orientation[i] = b->state.orientation[i];
-        row->center[i] = himc_segment_center(&b->plant, &b->state, i);
-        row->push[i] = himc_body_pushed(b, i, t);
-        row->push_at[i] = push_point(b, &b->state, i, t);
-    }
-}
-
-// the state of the row's pose and rates: without the joints' gaps, which are the engine's
-static void state_of(const performance_body *b, const himc_motion_row *row, himc_body_state *out)
-{
-    himc_pose pose;
-    himc_vec3 rate[HIMC_JOINTS];
-    memcpy(pose.joint, row->rotation, sizeof pose.joint);
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        int parent = b->plant.segment[j + 1].parent;
-        rate[j] = himc_mat3_apply_transposed(&b->state.rotation[parent], row->rate[j]);
-    }
-    himc_pose_to_state(&b->plant, &pose, rate, out);
 }
 
 // torques, and the accelerations that they, the tips' forces and the pushes make
@@ -158,13 +119,20 @@ static void fill_dynamics(const performance_body *b, himc_motion_row *row)
     himc_articulation art;
     himc_body_state state;
     himc_vec3 load[HIMC_JOINTS];
+    himc_pose pose;
+    himc_vec3 rate[HIMC_JOINTS];
+    // the state of the row's pose and rates: without the joints' gaps, which are the engine's
+    memcpy(pose.joint, row->rotation, sizeof pose.joint);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        int parent = b->plant.segment[j + 1].parent;
+        rate[j] = himc_mat3_apply_transposed(&b->state.rotation[parent], row->rate[j]);
+    }
+    himc_pose_to_state(&b->plant, &pose, rate, &state);
     memcpy(load, b->torque, sizeof load);
-    state_of(b, row, &state);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         himc_add_force(&b->plant, &state, i, push_point(b, &state, i, row->time), row->push[i],
                        load);
     himc_articulate(&b->plant, &state, &art);
-    himc_articulate_legs(&b->plant, &state, &art);
     himc_forward_dynamics(&b->plant, &state, &art, load, row->tip_force, row->acceleration);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         row->torque[j] = b->torque[j];
@@ -188,30 +156,57 @@ static void fill_no_dynamics(himc_motion_row *row)
 
 static void fill_row(himc_performance *p, double t, himc_motion_row *row)
 {
+    const performance_body *b = p->body;
+    himc_pose pose = himc_pose_from_state(&b->skeleton, &b->state);
     *row = (himc_motion_row){.time = t, .energy = p->energy};
-    fill_joints(p, row);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_quat target = p->motion->reference.posture.joint[j];
+        row->rotation[j] = pose.joint[j];
+        row->joint[j] = himc_quat_log(pose.joint[j]);
+        row->joint_error[j] =
+            himc_vec3_length(himc_quat_log(himc_quat_mul(himc_quat_conj(target), pose.joint[j])));
+        row->limit[j] = b->controller.limits ? b->saturation.measure[j] : 0;
+        row->rate[j] = himc_relative_spin(&b->skeleton, &b->state, j);
+    }
     fill_hands(p, row);
-    fill_segments(p->body, t, row);
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        row->segment[i] = b->state.origin[i];
+        row->orientation[i] = b->state.orientation[i];
+        row->center[i] = himc_segment_center(&b->plant, &b->state, i);
+        row->push[i] = himc_body_pushed(b, i, t);
+        row->push_at[i] = push_point(b, &b->state, i, t);
+    }
     if (p->settings.control.mode == HIMC_PIPELINE_IK)
         fill_no_dynamics(row);
     else
-        fill_dynamics(p->body, row);
+        fill_dynamics(b, row);
 }
 
-static void tell_body(const himc_performance *p, double t, const himc_motion_row *row)
+static void note_written(himc_performance *p, const himc_recording *file)
 {
+    int frames = himc_recording_frames(file);
+    himc_events_note(&p->events, frames ? "recorded %.2f s in %s" : "recorded %.2f s: no file %s",
+                     frames / p->clock.task_rate, himc_recording_path(file));
+}
+
+void himc_performance_tell_tick(himc_performance *p, double t)
+{
+    himc_motion_row row;
     himc_posture_motion captured;
-    himc_tick tick = {.time = t, .body = &p->body->state, .row = row};
-    if (himc_motion_captured_joints(p->motion, t, &captured))
-        tick.captured = captured.joint;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        tick.target[hand] = p->motion->reference.tip[hand].x;
-    p->events.on_tick(p->events.tick_user, &tick);
-}
-
-static void record(himc_performance *p, double t)
-{
     performance_recording *r = &p->recording;
+    if (p->events.on_motion)
+        fill_row(p, t, &row);
+    if (p->events.on_tick) {
+        himc_tick tick = {
+            .time = t, .body = &p->body->state, .row = p->events.on_motion ? &row : NULL};
+        if (himc_motion_captured_joints(p->motion, t, &captured))
+            tick.captured = captured.joint;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            tick.target[hand] = p->motion->reference.tip[hand].x;
+        p->events.on_tick(p->events.tick_user, &tick);
+    }
+    if (p->events.on_motion)
+        p->events.on_motion(p->events.motion_user, &row);
     if (!r->file || himc_recording_add(r->file, &p->body->state) || r->full)
         return;
     r->full = true;
@@ -219,30 +214,19 @@ static void record(himc_performance *p, double t)
                      himc_recording_path(r->file), t);
 }
 
-static void note_written(himc_performance *p, const himc_recording *file)
+// one that was stopped before its first frame has no file
+static bool write_frames(himc_recording *file, himc_error *error)
 {
-    himc_events_note(&p->events, "recorded %.2f s in %s",
-                     himc_recording_frames(file) / p->clock.task_rate, himc_recording_path(file));
-}
-
-void himc_performance_tell_tick(himc_performance *p, double t)
-{
-    himc_motion_row row;
-    if (p->events.on_motion)
-        fill_row(p, t, &row);
-    if (p->events.on_tick)
-        tell_body(p, t, p->events.on_motion ? &row : NULL);
-    if (p->events.on_motion)
-        p->events.on_motion(p->events.motion_user, &row);
-    record(p, t);
+    return himc_recording_frames(file) == 0 || himc_recording_write(file, error) ||
+           himc_error_prefix(error, "record");
 }
 
 bool himc_performance_end_recording(himc_performance *p, himc_error *error)
 {
     if (!p->recording.file)
         return true;
-    if (!himc_recording_write(p->recording.file, error))
-        return himc_error_prefix(error, "record");
+    if (!write_frames(p->recording.file, error))
+        return false;
     note_written(p, p->recording.file);
     himc_performance_drop_recording(p);
     return true;
@@ -284,8 +268,7 @@ static himc_job_state begin_recording(himc_job *job, himc_error *error)
 
 static bool write_recording(himc_job *job, himc_error *error)
 {
-    return himc_recording_write(((record_job *)job)->file, error) ||
-           himc_error_prefix(error, "record");
+    return write_frames(((record_job *)job)->file, error);
 }
 
 static himc_job_state end_recording(himc_job *job, himc_error *error)
@@ -348,10 +331,16 @@ static himc_word word(himc_command_id id, int choice)
     return himc_command_word(id, 0, choice);
 }
 
-static void describe_control(const himc_performance *p, himc_line_sink to)
+static void describe_body(const himc_performance *p, himc_line_sink to)
 {
     const performance_settings *s = &p->settings;
     const himc_controller_config *c = &s->control;
+    const himc_saturation_counts *counts = &p->body->saturation;
+    bool weak = false;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        weak = weak || c->strength[j] > 0;
+    himc_tell(&to, "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom",
+              s->skeleton.height, s->skeleton.mass);
     himc_tell(&to, "mode %s%s, solver %s, damping %g m, law %s, coupling %s",
               word(HIMC_COMMAND_MODE, (int)c->mode).text,
               s->bend ? "" : " (in id, arms as captured)",
@@ -361,69 +350,49 @@ static void describe_control(const himc_performance *p, himc_line_sink to)
     himc_tell(&to, "rate physics %g Hz, task %g Hz, sound %g Hz, engine %s", p->clock.physics_rate,
               p->clock.task_rate, p->clock.sample_rate,
               word(HIMC_COMMAND_ENGINE, (int)s->engine).text);
-}
-
-static const char *strength_word(const himc_controller_config *c)
-{
-    bool any = false;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        any = any || c->strength[j] > 0;
-    return c->human_strength ? "human" : any ? "as set" : "off";
-}
-
-static void describe_limits(const himc_performance *p, himc_line_sink to)
-{
-    const himc_saturation_counts *s = &p->body->saturation;
     himc_tell(&to, "limits %s%s, hit %ld times, strength %s",
-              word(HIMC_COMMAND_LIMITS, (int)p->settings.limits).text,
-              p->settings.limits == HIMC_LIMITS_OFF ? ""
-              : p->motion->has_learned              ? " of the take"
-                                                    : " of table 1",
-              himc_body_limit_hits(p->body), strength_word(&p->settings.control));
+              word(HIMC_COMMAND_LIMITS, (int)s->limits).text,
+              s->limits == HIMC_LIMITS_OFF ? ""
+              : p->motion->has_learned     ? " of the take"
+                                           : " of table 1",
+              himc_body_limit_hits(p->body),
+              c->human_strength ? "human"
+              : weak            ? "as set"
+                                : "off");
     for (int j = 0; j < HIMC_JOINTS; j++)
-        if (s->hits[j] > 0)
+        if (counts->hits[j] > 0)
             himc_tell(&to, "limit %s: hit %ld times, up to %.2f degrees beyond", himc_joint_name(j),
-                      s->hits[j], s->farthest[j] * 180 / HIMC_PI);
-}
-
-static void describe_strength(const himc_performance *p, himc_line_sink to)
-{
-    const himc_saturation_counts *s = &p->body->saturation;
+                      counts->hits[j], counts->farthest[j] * 180 / HIMC_PI);
     for (int j = 0; j < HIMC_JOINTS; j++)
-        if (s->weak[j] > 0)
+        if (counts->weak[j] > 0)
             himc_tell(&to, "strength %s %g N m: too weak in %.3g %% of steps, %.1f N m asked",
-                      himc_joint_name(j), p->settings.control.strength[j],
-                      100.0 * (double)s->weak[j] / (double)s->steps, s->torque[j]);
+                      himc_joint_name(j), c->strength[j],
+                      100.0 * (double)counts->weak[j] / (double)counts->steps, counts->torque[j]);
 }
 
-// of a drum, to `user`, a sink
+// of a drum
+typedef struct drum_sink {
+    const himc_line_sink *to;
+    const char *silent; ///< what follows its line
+} drum_sink;
+
 static void describe_drum(void *user, const char *line)
 {
+    const drum_sink *sink = user;
     char text[640];
-    himc_line_sink *to = user;
-    snprintf(text, sizeof text, "drum %s", line);
-    to->line(to->user, text);
+    snprintf(text, sizeof text, "drum %s%s", line, sink->silent);
+    sink->to->line(sink->to->user, text);
 }
 
-static void describe_silent_drum(void *user, const char *line)
-{
-    char text[600];
-    snprintf(text, sizeof text, "%s (silent)", line);
-    describe_drum(user, text);
-}
-
-static void describe_drums(const himc_performance *p, himc_line_sink to)
-{
-    for (int i = 0; i < p->drums.count; i++) {
-        const drum_slot *slot = &p->drums.slot[i];
-        himc_drum_describe(slot->drum, HIMC_DESCRIBE_INFO,
-                           slot->source == DRUM_SILENT ? describe_silent_drum : describe_drum, &to);
-    }
-}
-
-static void describe_playing(const himc_performance *p, himc_line_sink to)
+void himc_performance_inform(const himc_performance *p, himc_line_sink to)
 {
     himc_performance_stats s = himc_performance_measure(p);
+    describe_body(p, to);
+    for (int i = 0; i < p->drums.count; i++) {
+        const drum_slot *slot = &p->drums.slot[i];
+        drum_sink sink = {&to, slot->source == DRUM_SILENT ? " (silent)" : ""};
+        himc_drum_describe(slot->drum, HIMC_DESCRIBE_INFO, describe_drum, &sink);
+    }
     himc_tell(
         &to, "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",
         word(HIMC_COMMAND_GRIP, (int)p->settings.grip).text, p->settings.servo ? " servo" : "",
@@ -436,11 +405,6 @@ static void describe_playing(const himc_performance *p, himc_line_sink to)
               "peak force %.1f N, recoveries %ld",
               p->motion->playing ? "playing" : "stopped", s.seconds, s.strokes, s.played,
               1e3 * s.tip_rms, s.peak_force, s.recoveries);
-}
-
-static void describe_peaks(const himc_performance *p, himc_line_sink to)
-{
-    himc_performance_stats s = himc_performance_measure(p);
     himc_tell(
         &to,
         "contacts: %d unplanned, the longest %.3f s; joints up to %.1f rad/s (%s) and %.1f N m "
@@ -454,16 +418,4 @@ static void describe_peaks(const himc_performance *p, himc_line_sink to)
               "strokes' height; strikes at %.3f of its speeds",
               1e3 * s.captured_rms, 1e3 * s.captured_most, s.captured_rms_percent,
               s.captured_most_percent, s.captured_speed_ratio);
-}
-
-void himc_performance_inform(const himc_performance *p, himc_line_sink to)
-{
-    himc_tell(&to, "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom",
-              p->settings.skeleton.height, p->settings.skeleton.mass);
-    describe_control(p, to);
-    describe_limits(p, to);
-    describe_strength(p, to);
-    describe_drums(p, to);
-    describe_playing(p, to);
-    describe_peaks(p, to);
 }

@@ -164,8 +164,6 @@ bool himc_performance_reset(himc_performance *p, himc_error *error)
     made_parts fresh, old = {p->motion, p->body};
     if (!make_parts(&fresh, &p->host.usual, error))
         return himc_error_prefix(error, "reset");
-    if (p->recording.file && himc_recording_frames(p->recording.file) == 0)
-        himc_performance_drop_recording(p); // nothing to write
     if (!himc_performance_end_recording(p, error)) {
         free_parts(&fresh);
         return himc_error_prefix(error, "reset");

@@ -126,12 +126,6 @@ bool himc_performance_learn_limits(const himc_player *player, himc_limits *learn
     return true;
 }
 
-static bool lacks_stick(const himc_player *player, const himc_track *track, himc_hand hand)
-{
-    int known = himc_player_known_arm(player, hand);
-    return himc_track_present(track, hand) && known > 0 && known < HIMC_ARM_JOINTS;
-}
-
 // the natural posture of the take's tips at `t`, and the captured one bent to them
 static void postures_at(const himc_posture *posture, const himc_track *track, double t,
                         himc_pose pose[2])
@@ -153,8 +147,11 @@ static bool learn_bent(const himc_player *player, const himc_track *track,
                        const himc_posture *posture, himc_limits *learned, himc_error *error)
 {
     bool lacks[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        lacks[hand] = lacks_stick(player, track, (himc_hand)hand);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int known = himc_player_known_arm(player, (himc_hand)hand);
+        lacks[hand] =
+            himc_track_present(track, (himc_hand)hand) && known > 0 && known < HIMC_ARM_JOINTS;
+    }
     if (!lacks[HIMC_LEFT] && !lacks[HIMC_RIGHT])
         return true;
     himc_limits bent;
@@ -218,7 +215,7 @@ static bool count_strikes(take_job *j, himc_error *error)
     for (int i = 0; i < s.count; i++) {
         himc_vec3 at = himc_vec3_add(s.strikes[i].x, himc_track_offset(j->track));
         himc_vec3 local = himc_head_frame_from_world(&j->frame, at);
-        j->outside += hypot(local.x, local.y) > j->frame.radius;
+        j->outside += !himc_head_frame_contains(&j->frame, local.x, local.y);
         j->fastest = fmax(j->fastest, s.strikes[i].velocity);
         j->seen = fmax(j->seen,
                        himc_take_fastest_fall(j->take, &j->tips[s.strikes[i].hand], &s.strikes[i]));
@@ -254,17 +251,6 @@ static bool fit_regression(take_job *j, const himc_skeleton *skeleton, himc_erro
     return memory || himc_error_set(error, "%s", j->unfitted.text);
 }
 
-// if left and right are exchanged in a capture, its drum is behind the player
-static bool check_side(const himc_player *player, const himc_head_frame *frame, himc_error *error)
-{
-    if (!player->placed || player->walks || frame->center.x >= 0)
-        return true;
-    return himc_error_set(error,
-                          "the sticks strike %.2f m behind the player, expected in front: are left "
-                          "and right exchanged?",
-                          -frame->center.x);
-}
-
 // the drum's place, or that of one that is made for the take
 static bool find_place(take_job *j, himc_error *error)
 {
@@ -284,9 +270,14 @@ static bool make_track(take_job *j, himc_error *error)
 {
     himc_skeleton skeleton;
     himc_player *player = j->player;
-    if (!find_place(j, error) || !himc_player_sit(player, j->take, &j->options, &j->frame, error) ||
-        !check_side(player, &j->frame, error))
+    if (!find_place(j, error) || !himc_player_sit(player, j->take, &j->options, &j->frame, error))
         return false;
+    // if left and right are exchanged in a capture, its drum is behind the player
+    if (player->placed && !player->walks && j->frame.center.x < 0)
+        return himc_error_set(error,
+                              "the sticks strike %.2f m behind the player, expected in front: are "
+                              "left and right exchanged?",
+                              -j->frame.center.x);
     himc_track_free(j->track);
     j->track = himc_track_new_played(j->take, &j->options, &j->frame, player, error);
     const himc_skeleton_config *body = player->lengths > 0 ? &player->config : &j->body;
@@ -338,31 +329,6 @@ static void move_drum(const take_job *j)
     himc_events_note(&p->events, "%s: the %s is moved to %.3f %.3f %.3f, %s", j->name,
                      himc_drum_name(p->drums.slot[0].drum), to.x, to.y, to.z,
                      strikes ? "under the take's strikes" : "out of the take's way");
-}
-
-// the settings with the body of the take's player, if the take shows one
-static performance_settings settings_of(const take_job *j)
-{
-    performance_settings s = j->performance->settings;
-    memset(s.captured.known, 0, sizeof s.captured.known);
-    if (j->player->lengths > 0) {
-        s.skeleton = j->player->config;
-        s.skeleton.seat = himc_skeleton_seat(&s.skeleton); // as captured, whatever the drum
-        s.captured = captured_of(j->player);
-    }
-    return s;
-}
-
-static void adopt_player(const take_job *j, const performance_settings *s, const body_parts *parts)
-{
-    himc_performance *p = j->performance;
-    if (j->player->lengths == 0) {
-        himc_performance_adopt(p, s);
-        return;
-    }
-    himc_performance_embody(p, s, parts);
-    himc_events_note(&p->events, "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
-                     j->name, j->player->lengths, s->skeleton.height, s->skeleton.mass);
 }
 
 // notes on the repairs made while reading the take, and on the parts that cannot be played
@@ -456,11 +422,18 @@ static himc_job_state install(himc_job *job, himc_error *error)
     take_job *j = (take_job *)job;
     himc_performance *p = j->performance;
     body_parts parts = {.character = NULL};
-    performance_settings s = settings_of(j);
+    performance_settings s = p->settings;
     j->tries++;
     if (!drum_as_seen(j)) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;
+    }
+    // the settings with the body of the take's player, if the take shows one
+    memset(s.captured.known, 0, sizeof s.captured.known);
+    if (j->player->lengths > 0) {
+        s.skeleton = j->player->config;
+        s.skeleton.seat = himc_skeleton_seat(&s.skeleton); // as captured, whatever the drum
+        s.captured = captured_of(j->player);
     }
     // in this thread: the engine keeps data for each
     if (j->player->lengths > 0 && !himc_body_make_parts(&parts, &s, error)) {
@@ -470,7 +443,14 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_performance_keep_drum(p, &j->drum);
     j->drum.fresh = NULL;
     move_drum(j);
-    adopt_player(j, &s, &parts);
+    if (j->player->lengths > 0) {
+        himc_performance_embody(p, &s, &parts);
+        himc_events_note(&p->events,
+                         "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
+                         j->name, j->player->lengths, s.skeleton.height, s.skeleton.mass);
+    } else {
+        himc_performance_adopt(p, &s);
+    }
     himc_performance_notice_drums(p);
     note_repairs(j);
     himc_track *dropped = himc_performance_drop_track(p);
@@ -496,44 +476,36 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-static take_job *take_job_new(himc_performance *p, const char *name, bool again, himc_error *error)
+// of the file that the command names; else `name` begins errors
+static take_job *job_of(himc_performance *p, const himc_command *command, const char *name,
+                        bool again, himc_error *error)
 {
-    take_job *j = himc_job_new(sizeof *j, name, (himc_job){prepare, install, free_job}, error);
+    take_job *j = himc_job_new(sizeof *j, "take", (himc_job){prepare, install, free_job}, error);
     if (!j)
         return NULL;
     j->performance = p;
-    j->name = name;
+    if (command)
+        himc_command_copy(&j->command, command);
+    j->name = command ? j->command.atom[0].symbol : name;
     j->again = again;
     copy_performance(j);
     return j;
 }
 
-static himc_job *job_of(himc_performance *p, const himc_command *command, bool again,
-                        himc_error *error)
-{
-    take_job *j = take_job_new(p, command->atom[0].symbol, again, error);
-    if (!j)
-        return NULL;
-    himc_command_copy(&j->command, command);
-    j->name = j->command.atom[0].symbol;
-    return &j->job;
-}
-
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
-    return job_of(p, command, false, error);
+    return (himc_job *)job_of(p, command, NULL, false, error);
 }
 
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error)
 {
-    return job_of(p, &p->written.take_command, true, error);
+    return (himc_job *)job_of(p, &p->written.take_command, NULL, true, error);
 }
 
 himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error)
 {
-    take_job *j = take_job_new(p, "take", false, error);
-    return j ? &j->job : NULL;
+    return (himc_job *)job_of(p, NULL, "take", false, error);
 }
 
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
@@ -554,7 +526,7 @@ bool himc_performance_try_take(himc_job *job, const himc_command *command,
 bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_player *player,
                                   const char *name, himc_error *error)
 {
-    take_job *j = player ? take_job_new(p, name, false, error) : NULL;
+    take_job *j = player ? job_of(p, NULL, name, false, error) : NULL;
     if (!j)
         return false;
     j->given = true;

@@ -22,11 +22,10 @@ bool himc_performance_set_weights(himc_performance *performance, const double *f
 bool himc_performance_load_text(himc_performance *performance, const char *text, const char *name,
                                 himc_error *error);
 
-/// While a score or its take plays: takes the strokes, or the nudges, and the pushes of this one in
-/// their place, as if they had been there from the start. All other lines must be the same. False,
-/// and nothing changed, with the reason if the text is no score; with an empty reason if what has
-/// been played, or is being prepared, may rest on a stroke that differs.
-bool himc_performance_exchange_strokes(himc_performance *performance, const char *text,
-                                       const char *name, himc_error *error);
+/// While a score or its take plays: takes the strokes, or the nudges, and the pushes of `other` in
+/// place of its own, as if they had been there from the start. `other` has loaded a score that is
+/// the same in all other lines, and has not played; it is to be freed. False, and nothing changed,
+/// if what has been played, or is being prepared, may rest on a stroke that differs.
+bool himc_performance_exchange_strokes(himc_performance *performance, himc_performance *other);
 
 #endif

@@ -85,6 +85,13 @@
 #define BREAK_OFF 5.0           // a stroke broken off with more acceleration is halted (m/s^2)
 #define HOME_WAIT 0.5           // a wait at home lasts this long at least (s)
 
+/// A tip's way leads through the body if it comes nearer to its axis (m); it then goes by a point
+/// farther away, with so much of its mean speed. Chosen: a mallet between chest and elbows; no arm
+/// follows it there.
+#define THROUGH_BODY 0.36
+#define BESIDE_BODY 0.45
+#define PASSING_SPEED 1.6
+
 /// A unit's fall is so many quintics. Chosen: more than its shape has numbers (himc_unit.bend).
 #define UNIT_KNOTS 5
 /// Segments of one spline for one stroke, at most: sink 3, rise 2, dwell, fall UNIT_KNOTS, contact,
@@ -133,6 +140,22 @@ static double coast_off(const stroke_plan *s, double T, himc_vec3 x)
     return himc_vec3_length(himc_vec3_madd(coast, -share, way));
 }
 
+/// Where the straight way to x leads through the body, whose axis is the world's: a point beside it
+/// in front. False where it does not.
+static bool leads_through_body(const stroke_plan *s, himc_vec3 x, himc_vec3 *beside)
+{
+    himc_vec3 from = s->path.x, way = himc_vec3_sub(x, from);
+    double square = way.x * way.x + way.y * way.y;
+    double share = square > 0 ? -(from.x * way.x + from.y * way.y) / square : 0;
+    himc_vec3 nearest = himc_vec3_madd(from, share, way);
+    double away = hypot(nearest.x, nearest.y);
+    *beside = himc_vec3_make(BESIDE_BODY, 0, nearest.z);
+    if (away > 0)
+        *beside = himc_vec3_make(nearest.x * BESIDE_BODY / away, nearest.y * BESIDE_BODY / away,
+                                 nearest.z);
+    return share > 0 && share < 1 && away < THROUGH_BODY;
+}
+
 /// The tangential path to rest at x. A tip that is fast elsewhere and has time halts first: one
 /// long quintic would carry it far off.
 static void path_to(stroke_plan *s, double t, himc_vec3 x)
@@ -144,6 +167,17 @@ static void path_to(stroke_plan *s, double t, himc_vec3 x)
         double speed = himc_vec3_length(s->path.v);
         double halt = fmin(fmin(HALT_TIME, HALT_SHARE * T), 2 * HALT_WAY / speed);
         path_segment(s, s->path_end + halt, himc_vec3_madd(s->path.x, 0.5 * halt, s->path.v));
+    }
+    himc_vec3 beside;
+    if (leads_through_body(s, x, &beside)) {
+        himc_vec3 way = himc_vec3_sub(x, s->path.x);
+        double left = t - s->path_end, first = himc_vec3_length(himc_vec3_sub(beside, s->path.x));
+        double at =
+            s->path_end + left * first / (first + himc_vec3_length(himc_vec3_sub(x, beside)));
+        himc_target passing = {.x = beside, .v = himc_vec3_scale(way, PASSING_SPEED / left)};
+        himc_spline_add(&s->plan->tangential_path, s->path_end, &s->path, at, &passing);
+        s->path_end = at;
+        s->path = passing;
     }
     path_segment(s, t, x);
 }

@@ -466,9 +466,7 @@ static void fit_height(const himc_track *track, himc_nudge *n)
     n->fall = fmax(n->fall, 0);
 }
 
-// a nudge as it acts on this take
-static bool accept_nudge(const himc_track *track, const himc_nudge *nudge, int count,
-                         himc_nudge *out, himc_error *error)
+bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error)
 {
     double length = himc_track_take_length(track);
     if (!track->hand[nudge->hand].present)
@@ -477,18 +475,11 @@ static bool accept_nudge(const himc_track *track, const himc_nudge *nudge, int c
     if (nudge->time - nudge->span < 0 || nudge->time + nudge->span > length)
         return himc_error_set(error, "nudge: TIME: %g s, %g s before and after, expected 0 .. %g s",
                               nudge->time, nudge->span, length);
-    if (count >= HIMC_NUDGES)
+    if (track->nudges >= HIMC_NUDGES)
         return himc_error_set(error, "nudge: one too many, expected %d", HIMC_NUDGES);
-    *out = *nudge;
-    fit_height(track, out);
+    track->nudge[track->nudges] = *nudge;
+    fit_height(track, &track->nudge[track->nudges++]);
     return true;
-}
-
-bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error)
-{
-    bool good = accept_nudge(track, nudge, track->nudges, &track->nudge[track->nudges], error);
-    track->nudges += good;
-    return good;
 }
 
 const himc_nudge *himc_track_nudges(const himc_track *track, int *count)
@@ -503,24 +494,20 @@ static bool same_nudge(const himc_nudge *a, const himc_nudge *b)
            himc_vec3_length(himc_vec3_sub(a->way, b->way)) == 0;
 }
 
-bool himc_track_exchange(himc_track *track, const himc_nudge *list, int count, double t,
-                         himc_error *error)
+bool himc_track_exchange(himc_track *track, const himc_track *other, double t)
 {
-    himc_nudge fresh[HIMC_NUDGES];
+    const himc_track *both[] = {track, other};
     double at[3];
     int same = 0;
-    for (int i = 0; i < count; i++)
-        if (!accept_nudge(track, &list[i], i, &fresh[i], error))
-            return false;
     himc_track_warp(himc_track_take_length(track), t, at);
-    while (same < count && same < track->nudges && same_nudge(&list[same], &track->nudge[same]))
+    while (same < track->nudges && same < other->nudges &&
+           same_nudge(&track->nudge[same], &other->nudge[same]))
         same++;
-    for (int i = same; i < count || i < track->nudges; i++)
-        if ((i < count && fresh[i].time - fresh[i].span < at[0] + LOOKED_AHEAD) ||
-            (i < track->nudges &&
-             track->nudge[i].time - track->nudge[i].span < at[0] + LOOKED_AHEAD))
-            return false;
-    memcpy(track->nudge, fresh, (size_t)count * sizeof *fresh);
-    track->nudges = count;
+    for (int k = 0; k < 2; k++)
+        for (int i = same; i < both[k]->nudges; i++)
+            if (both[k]->nudge[i].time - both[k]->nudge[i].span < at[0] + LOOKED_AHEAD)
+                return false;
+    memcpy(track->nudge, other->nudge, sizeof track->nudge);
+    track->nudges = other->nudges;
     return true;
 }

@@ -48,10 +48,9 @@ int himc_track_strikes(const himc_track *track, himc_hand hand);
 /// up where a strike is at its very time. False with the reason: that hand is not in the take, not
 /// in its time, or too many nudges.
 bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error);
-/// Replaces all nudges (count, 0 .. HIMC_NUDGES) while the take is played at `t`. False, and
-/// nothing changed, with the reason if one is not allowed, without if one differs that has begun.
-bool himc_track_exchange(himc_track *track, const himc_nudge *list, int count, double t,
-                         himc_error *error);
+/// Takes the nudges of another track of the same take while it is played at `t`. False, and nothing
+/// changed, if one differs that has begun.
+bool himc_track_exchange(himc_track *track, const himc_track *other, double t);
 /// The nudges (*count), borrowed.
 const himc_nudge *himc_track_nudges(const himc_track *track, int *count);
 
