@@ -184,6 +184,8 @@ static void test_wrong_tables_are_refused_where_they_are_wrong(void)
     refused("a.csv", "time,A_x_m,A_y_m,A_z_m\n0,1,2,3\n", "a.csv:1: one row: no rate");
     refused("a.csv", "time,A_x_m,A_y_m,A_z_m\n0,1,2,3\nx,1,2,3\n",
             "a.csv:3: the time is \"x\", expected a number");
+    refused("a.csv", "A_x_m,A_y_m,A_z_m,time\n1,2,3,0\n1,2,3\n",
+            "a.csv:3: the time is \"\", expected a number");
     refused("a.csv", "time,A_x_m,A_y_m,A_z_m,B_x_mm,B_y_mm,B_z_mm\n",
             "a.csv:1: markers in several units, expected one");
 }

@@ -214,19 +214,6 @@ static void read_points(const c3d *r)
     }
 }
 
-static bool read_unit(const c3d *r)
-{
-    char text[44];
-    himc_span unit = string(r, "POINT", "UNITS", 0);
-    const char *nul = memchr(unit.at, 0, unit.length); // some fill with it
-    if (nul)
-        unit = himc_span_trim((himc_span){unit.at, (size_t)(nul - unit.at)});
-    r->take->file_unit = himc_take_unit(himc_span_text(unit, text));
-    return unit.length == 0 || r->take->file_unit > 0 ||
-           himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", expected mm, cm, m, in or ft",
-                          r->take->file, text);
-}
-
 // "+X", "-Z", "Y" as a unit vector; 0 for anything else
 static himc_vec3 read_axis(const c3d *r, const char *name)
 {
@@ -357,8 +344,17 @@ static bool read_all(c3d *r)
     double rate =
         parameter(r, "POINT", "RATE", 0, himc_c3d_real(r->parameters.processor, r->bytes + 20));
     if (!read_layout(r) || !count_frames(r, &frames) || !choose_points(r, &points) ||
-        !himc_take_allocate(r->take, rate, frames, points, false, r->error) || !read_unit(r))
+        !himc_take_allocate(r->take, rate, frames, points, false, r->error))
         return false;
+    char text[44];
+    himc_span unit = string(r, "POINT", "UNITS", 0);
+    const char *nul = memchr(unit.at, 0, unit.length); // some fill with it
+    if (nul)
+        unit = himc_span_trim((himc_span){unit.at, (size_t)(nul - unit.at)});
+    r->take->file_unit = himc_take_unit(himc_span_text(unit, text));
+    if (unit.length > 0 && r->take->file_unit == 0)
+        return himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", expected mm, cm, m, in or ft",
+                              r->take->file, text);
     static const char *const processors[] = {"Intel", "DEC", "MIPS"};
     snprintf(r->take->format, sizeof r->take->format, "C3D (%s, %s)",
              processors[r->parameters.processor - C3D_INTEL], r->is_float ? "floats" : "integers");

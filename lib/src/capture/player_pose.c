@@ -132,23 +132,11 @@ static void prepare_limb(reader *r, int i, int hand)
     f->plane = himc_vec3_scale(himc_vec3_unit(sum), 0.1); // chosen: its weight beside a frame's own
 }
 
-// horizontal, to the left of the line from elbow to tip: a raised stick itself may point up or back
-static himc_vec3 across_stroke(const reader *r, int hand, int frame)
-{
-    himc_vec3 *const *x = r->points->x;
-    int from = POINT_ELBOW + hand, to = POINT_TIP + hand;
-    while (from < POINT_GRIP + hand && !x[from])
-        from += 2;
-    while (to > POINT_WRIST + hand && !x[to])
-        to -= 2;
-    himc_vec3 d = between_points(r, from, to, frame);
-    return himc_vec3_make(-d.y, d.x, 0);
-}
-
 static himc_quat limb_rotation(const reader *r, int i, int hand, int frame)
 {
     const limb *l = &limbs[i];
     const limb_frame *f = &r->frame[i][hand];
+    himc_vec3 *const *x = r->points->x;
     himc_vec3 along = between_points(r, (int)l->from + hand, (int)l->to + hand, frame);
     if (f->node >= 0) {
         himc_quat q = himc_quat_mul(r->node[f->node], f->align);
@@ -156,11 +144,19 @@ static himc_quat limb_rotation(const reader *r, int i, int hand, int frame)
         return himc_quat_unit(himc_quat_mul(smallest_rotation(now, along), q));
     }
     int beside = POINT_BESIDE + l->segment + hand;
-    if (r->points->x[beside])
+    if (x[beside])
         return himc_quat_from_limb(along, between_points(r, (int)l->from + hand, beside, frame));
-    if (l->is_hand)
-        return himc_quat_from_limb(along, across_stroke(r, hand, frame));
-    return himc_quat_from_limb(along, himc_vec3_add(bend_plane(r, l, hand, frame), f->plane));
+    if (!l->is_hand)
+        return himc_quat_from_limb(along, himc_vec3_add(bend_plane(r, l, hand, frame), f->plane));
+    // across the stroke: horizontal, to the left of the line from elbow to tip, since a raised
+    // stick itself may point up or back
+    int from = POINT_ELBOW + hand, to = POINT_TIP + hand;
+    while (from < POINT_GRIP + hand && !x[from])
+        from += 2;
+    while (to > POINT_WRIST + hand && !x[to])
+        to -= 2;
+    himc_vec3 d = between_points(r, from, to, frame);
+    return himc_quat_from_limb(along, himc_vec3_make(-d.y, d.x, 0));
 }
 
 static bool trunk_rotation(const reader *r, int frame, himc_quat *q)

@@ -209,20 +209,6 @@ static int find_heads(himc_fall *falls, int count, const seeds *s,
     return n;
 }
 
-// the most struck first
-static void order(himc_fall *falls, int count, himc_strike_head *heads, int n)
-{
-    for (int i = 1; i < n; i++)
-        for (int k = i; k > 0 && heads[k].strikes > heads[k - 1].strikes; k--) {
-            himc_strike_head head = heads[k];
-            heads[k] = heads[k - 1];
-            heads[k - 1] = head;
-            for (int j = 0; j < count; j++)
-                if (falls[j].head == k || falls[j].head == k - 1)
-                    falls[j].head = 2 * k - 1 - falls[j].head;
-        }
-}
-
 int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_STRIKE_HEADS])
 {
     double *speeds = calloc((size_t)count + 1, sizeof *speeds);
@@ -235,8 +221,17 @@ int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_S
         if (s.count < LEAST_SEEDS)
             find_seeds(falls, count, 0, &s);
         n = find_heads(falls, count, &s, heads);
-        order(falls, count, heads, n);
     }
+    // the most struck first
+    for (int i = 1; i < n; i++)
+        for (int k = i; k > 0 && heads[k].strikes > heads[k - 1].strikes; k--) {
+            himc_strike_head head = heads[k];
+            heads[k] = heads[k - 1];
+            heads[k - 1] = head;
+            for (int j = 0; j < count; j++)
+                if (falls[j].head == k || falls[j].head == k - 1)
+                    falls[j].head = 2 * k - 1 - falls[j].head;
+        }
     free(speeds);
     free((void *)(uintptr_t)s.fall);
     return n;

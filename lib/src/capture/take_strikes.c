@@ -75,16 +75,6 @@ static double noise_bend(const track *t, int h)
     return NOISE_DEVIATIONS * sqrt(6) * t->noise * s * s;
 }
 
-// frames of the differences in which strikes are looked for; chosen: about a contact in quiet
-// tracks, and longer in noisy ones, up to 12 ms, while noise bends by more than 100 m/s^2
-static int difference(const track *t)
-{
-    int h = frames_of(t, 0.006, 1), longest = frames_of(t, 0.012, 1);
-    while (h < longest && noise_bend(t, h) > 100)
-        h++;
-    return h;
-}
-
 // least squares over n samples origin, origin + step, ...; fewer than 3 at the take's edges give a
 // line or a constant
 static parabola fit(const track *t, int origin, int step, int n)
@@ -256,8 +246,12 @@ static double above_intersection(const himc_take_strike *s)
 
 static void find_falls(const track *t, himc_hand hand, found *f)
 {
-    int h = difference(t), n = frames_of(t, SPEED_TIME, 1);
-    int window = frames_of(t, STRIKE_WINDOW, 3) + h;
+    // chosen: differences of about a contact in quiet tracks, and of up to 12 ms in noisy ones,
+    // until noise bends them by less than 100 m/s^2
+    int h = frames_of(t, 0.006, 1);
+    while (h < frames_of(t, 0.012, 1) && noise_bend(t, h) > 100)
+        h++;
+    int n = frames_of(t, SPEED_TIME, 1), window = frames_of(t, STRIKE_WINDOW, 3) + h;
     // chosen: slower touches are not strokes, nor those that a noisy track's speeds hide
     double least = fmax(0.25, NOISE_DEVIATIONS * sqrt(2) * t->noise / SPEED_TIME);
     // chosen: most of D / A, between a head's 18 ms and the air's 55; and in frames
