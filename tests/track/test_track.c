@@ -183,7 +183,7 @@ static void test_after_rewind_the_track_is_the_same_bit_by_bit(void)
     himc_target now[HIMC_HANDS] = {measured, measured};
     himc_track_stop(track, 1.3, now);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.7, himc_track_length(track));
-    himc_track_rewind(track);
+    himc_track_rewind(track, 0);
     for (int i = 0; i < N; i++) {
         himc_target again = at(i * 1e-3);
         TEST_ASSERT_EQUAL_MEMORY(&first[i], &again, sizeof again);
@@ -258,7 +258,7 @@ static void test_playing_allocates_nothing(void)
     himc_track_current(track, HIMC_RIGHT, 0.2, &time, &x, &y);
     himc_track_separated(track, HIMC_RIGHT, time + 0.007, &s);
     himc_track_stop(track, 2, both);
-    himc_track_rewind(track);
+    himc_track_rewind(track, 0);
     TEST_ASSERT_EQUAL_INT(0, allocations_seen());
 }
 

@@ -97,7 +97,7 @@ static void test_from_far_off_rejoining_is_slow_and_no_throw_is_followed(void)
     himc_track_separated(track, HIMC_RIGHT, time, &off);
     for (double t = time; t < time + 0.09; t += 0.0005)
         hardest = fmax(hardest, himc_vec3_length(at(t).a));
-    himc_track_rewind(track);
+    himc_track_rewind(track, 0);
     thrown.v = himc_vec3_make(-40, 0, 0);
     himc_track_separated(track, HIMC_RIGHT, time, &thrown);
     for (double t = time; t < time + 0.02; t += 0.0005)
@@ -121,7 +121,7 @@ static void test_rejoining_ends_before_the_next_strike_begins(void)
     make_take(rolled, 1000, 1000);
     double time = contact_after(0.2);
     for (double late = 0.0065; late < 0.032; late += 0.006) {
-        himc_track_rewind(track);
+        himc_track_rewind(track, 0);
         himc_target s = as_measured(time + late);
         himc_track_separated(track, HIMC_RIGHT, time + late, &s);
         goes_on_from(&s, time + late);
@@ -161,7 +161,7 @@ static void test_a_stick_that_leaves_too_late_changes_nothing(void)
     double time = contact_after(0.2);
     for (double late = 0.035; late < 0.040; late += 0.001) {
         himc_vec3 before[20];
-        himc_track_rewind(track);
+        himc_track_rewind(track, 0);
         himc_target s = as_measured(time + late);
         for (int i = 0; i < 20; i++)
             before[i] = at(time + late + 1e-3 * i).x;

@@ -163,7 +163,7 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         const stick_contact *c = &contacts->hand[i];
-        planned_contact stroke = himc_motion_next(s->motion, s->drums, hand, t);
+        himc_source_contact stroke = himc_motion_next(s->motion, s->drums, hand, t);
         // the plan of a stroke that rebounds dips into the head, and nothing follows it there
         bool rebounds = c->bounce.on  ? true
                         : c->touching ? !c->pressed
@@ -185,12 +185,12 @@ static bool name_stroke(const contact_scene *s, himc_hand hand, double t,
 // gives up a planned contact that has not come; the plan continues from the stick, or `beside` all
 // heads as it was
 static void give_up(const stick_contact *c, const contact_scene *s, himc_hand hand, double t,
-                    const planned_contact *next, bool beside)
+                    const himc_source_contact *next, bool beside)
 {
     char name[HIMC_PLANNER_NAME];
     bool known = next->drum < s->drums->count;
     const char *drum = known ? himc_drum_name(s->drums->slot[next->drum].drum) : "drum";
-    planned_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
+    himc_source_stroke stroke = himc_motion_stroke(s->motion, s->drums, hand, t);
     himc_strike missed = {.time = next->time,
                           .hand = hand,
                           .x = stroke.x,
@@ -212,7 +212,7 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
 
 static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
-    planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
+    himc_source_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool due = next.any && t >= next.time && !is_free(c);
     // nothing would stop a stick that is let go beside all heads; the take goes on by itself
     bool beside = due && himc_motion_tracks(s->motion, hand) && head_under(c, s, hand) < 0;
@@ -281,7 +281,7 @@ static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand 
         if (!is_over(c, s, hand, i, &at))
             continue;
         if (below >= 0) { // which one is meant matters here alone
-            planned_contact next =
+            himc_source_contact next =
                 himc_motion_next(s->motion, s->drums, hand, himc_clock_time(s->clock));
             if (i != (is_free(c) ? c->drum : next.any ? next.drum : -1))
                 continue;
@@ -329,7 +329,7 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
 static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double time,
                          double velocity)
 {
-    planned_stroke next = himc_motion_stroke(s->motion, s->drums, hand, time);
+    himc_source_stroke next = himc_motion_stroke(s->motion, s->drums, hand, time);
     // so soon after a contact an early one is a rebound
     double earliest = time < c->left + RESTING_TIME ? EARLY_STROKE : SAME_STROKE;
     bool bounced = c->bounce.on, planned = !bounced && next.any && time - next.time < SAME_STROKE &&
@@ -528,7 +528,7 @@ static void tell(stick_contact *c, const contact_scene *s)
 // the hand takes up a stick that has bounced, also when the next stroke is near
 static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
-    planned_contact next = himc_motion_next(s->motion, s->drums, hand, t);
+    himc_source_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool near = next.any && t > next.time - LEAST_PREPARATION;
     bool presses = c->touching && t < c->strike.time + RESTING_CONTACT;
     if (!near && (presses || !himc_bounce_is_over(&c->bounce, t, velocity_of(c, s, hand))))

@@ -49,6 +49,15 @@
 static const double rests_at[] = {0.06, 0.09}; // (s)
 #define RESTS_BELOW 0.002                      // (m)
 
+// the take moves the hands that it has, while it plays
+static void choose_sources(performance_motion *m)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        m->source[hand] = himc_motion_tracks(m, (himc_hand)hand)
+                              ? (hand_source){&himc_track_source, m->track}
+                              : (hand_source){&himc_planner_source, m->planner};
+}
+
 performance_motion *himc_motion_new(himc_error *error)
 {
     performance_motion *m = calloc(1, sizeof *m);
@@ -66,6 +75,7 @@ performance_motion *himc_motion_new(himc_error *error)
     }
     m->body.posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
     m->track_start = INFINITY;
+    choose_sources(m);
     m->last_beat = -1;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         m->answered[hand] = -INFINITY;
@@ -151,6 +161,7 @@ static void take_hands_back(performance_motion *m, double t)
             tracked = true;
         }
     m->track_start = INFINITY;
+    choose_sources(m);
     m->crossfade_due = m->crossfade_due || tracked;
     m->replan = true;
 }
@@ -179,9 +190,7 @@ himc_track *himc_motion_set_track(performance_motion *m, himc_track *track,
 
 himc_target himc_motion_planned(const performance_motion *m, himc_hand hand, double t)
 {
-    if (himc_motion_tracks(m, hand))
-        return himc_track_target(m->track, hand, t - m->track_start);
-    return himc_planner_target(m->planner, hand, t);
+    return m->source[hand].kind->target(m->source[hand].of, hand, t);
 }
 
 static bool is_coming(const performance_motion *m, himc_hand hand, double time)
@@ -189,44 +198,19 @@ static bool is_coming(const performance_motion *m, himc_hand hand, double time)
     return time > m->answered[hand] + REPLANNED && isfinite(time);
 }
 
-planned_contact himc_motion_next(const performance_motion *m, const performance_drums *drums,
-                                 himc_hand hand, double t)
+himc_source_contact himc_motion_next(const performance_motion *m, const performance_drums *drums,
+                                     himc_hand hand, double t)
 {
-    planned_contact next = {.any = false, .drum = 0};
-    double x, y;
-    if (himc_motion_tracks(m, hand)) {
-        next.any = himc_track_current(m->track, hand, t - m->track_start, &next.time, &x, &y);
-        next.time += m->track_start;
-    } else if (himc_planner_current(m->planner, hand, t, NULL, &next.drum, &next.time)) {
-        next.any = next.drum < drums->count;
-    }
-    next.any = next.any && is_coming(m, hand, next.time);
+    himc_source_contact next = m->source[hand].kind->next(m->source[hand].of, hand, t);
+    next.any = next.any && next.drum < drums->count && is_coming(m, hand, next.time);
     return next;
 }
 
-planned_stroke himc_motion_stroke(const performance_motion *m, const performance_drums *drums,
-                                  himc_hand hand, double t)
+himc_source_stroke himc_motion_stroke(const performance_motion *m, const performance_drums *drums,
+                                      himc_hand hand, double t)
 {
-    planned_stroke next = {.any = false, .drum = 0, .speed = NAN};
-    himc_stroke stroke;
-    if (himc_motion_tracks(m, hand)) {
-        next.any =
-            himc_track_current(m->track, hand, t - m->track_start, &next.time, &next.x, &next.y);
-        next.time += m->track_start;
-        next.speed = himc_track_captured_speed(m->track, hand, t - m->track_start);
-        next.beat = NAN;
-        strcpy(next.nuance, "none");
-    } else if (himc_planner_current(m->planner, hand, t, &stroke, &next.drum, &next.time)) {
-        next.any = next.drum < drums->count;
-        if (next.any)
-            himc_stroke_spot(&stroke, himc_drums_frame(drums, next.drum)->radius, &next.x, &next.y);
-        strcpy(next.nuance, himc_nuance_name(stroke.nuance));
-        next.yields = himc_planner_yields(m->planner, hand, t);
-        next.beat = stroke.beat;
-        next.bounces = stroke.bounces;
-        next.bounce_time = stroke.bounce_time;
-    }
-    next.any = next.any && is_coming(m, hand, next.time);
+    himc_source_stroke next = m->source[hand].kind->stroke(m->source[hand].of, hand, t);
+    next.any = next.any && next.drum < drums->count && is_coming(m, hand, next.time);
     return next;
 }
 
@@ -238,18 +222,16 @@ void himc_motion_answer(performance_motion *m, himc_hand hand, double planned_ti
 void himc_motion_correct(performance_motion *m, const performance_settings *s, himc_hand hand,
                          double t, const himc_target *measured)
 {
-    if (himc_laws[s->control.law].lands_exactly && !himc_motion_tracks(m, hand) &&
-        himc_planner_correct(m->planner, hand, t, measured))
+    const hand_source *source = &m->source[hand];
+    if (himc_laws[s->control.law].lands_exactly && source->kind->correct &&
+        source->kind->correct(source->of, hand, t, measured))
         m->replan = true;
 }
 
 void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
                             const himc_target *measured)
 {
-    if (himc_motion_tracks(m, hand))
-        himc_track_separated(m->track, hand, t - m->track_start, measured);
-    else
-        himc_planner_separated(m->planner, hand, t, measured);
+    m->source[hand].kind->separated(m->source[hand].of, hand, t, measured);
     m->replan = true;
 }
 
@@ -267,7 +249,7 @@ static void enliven(performance_motion *m, const performance_drums *drums, doubl
 {
     himc_next_stroke next = {.in = INFINITY, .since = INFINITY};
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        planned_stroke s = himc_motion_stroke(m, drums, (himc_hand)hand, t);
+        himc_source_stroke s = himc_motion_stroke(m, drums, (himc_hand)hand, t);
         next.since = fmin(next.since, t - m->answered[hand]);
         if (!s.any || s.time < t || s.time - t >= next.in)
             continue;
@@ -281,7 +263,7 @@ static void enliven(performance_motion *m, const performance_drums *drums, doubl
 static himc_free_hand free_hand(const performance_motion *m, const performance_drums *drums,
                                 himc_hand hand, double t)
 {
-    planned_stroke next = himc_motion_stroke(m, drums, hand, t);
+    himc_source_stroke next = himc_motion_stroke(m, drums, hand, t);
     himc_free_hand free = {m->answered[hand], next.any ? next.time : INFINITY};
     if (m->live[hand].time > 0 && m->live[hand].time > free.from)
         free.until = free.from;
@@ -327,7 +309,7 @@ static void set_course(performance_motion *m, const performance_settings *s,
 {
     himc_vec3 place[HIMC_HANDS];
     for (int hand = 0; hand < HIMC_HANDS; hand++) { // its next strike point, or its position
-        planned_stroke next = himc_motion_stroke(m, drums, (himc_hand)hand, t);
+        himc_source_stroke next = himc_motion_stroke(m, drums, (himc_hand)hand, t);
         place[hand] =
             next.any && next.time <= t + TRUNK_FORESIGHT
                 ? himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y)
@@ -530,6 +512,7 @@ void himc_motion_recover(performance_motion *m, const performance_settings *s, d
             m->track_start = INFINITY;
         m->live[hand] = (live_target){.time = 0};
     }
+    choose_sources(m);
     m->crossfade_due = false;
     himc_posture_crossfade_cancel(&m->crossfade);
     begin_clear(m, s, t);
@@ -622,14 +605,15 @@ void himc_motion_move_tip(performance_motion *m, const performance_settings *s, 
 
 static void start_track(performance_motion *m, double t)
 {
-    himc_track_rewind(m->track);
+    m->track_start = t + HIMC_APPROACH;
+    himc_track_rewind(m->track, m->track_start);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (himc_track_present(m->track, (himc_hand)hand)) {
             himc_target now = m->reference.tip[hand];
             himc_track_approach(m->track, (himc_hand)hand, &now, HIMC_APPROACH);
         }
     himc_track_approach_posture(m->track, &m->reference.posture);
-    m->track_start = t + HIMC_APPROACH;
+    choose_sources(m);
 }
 
 void himc_motion_play(performance_motion *m, double t)

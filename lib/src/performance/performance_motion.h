@@ -19,31 +19,17 @@ typedef struct live_target {
     bool eased;  ///< it comes down to a head more slowly than asked
 } live_target;
 
-/// The present or next contact of a hand.
-typedef struct planned_contact {
-    bool any;
-    double time; ///< (s)
-    int drum;    ///< slot
-} planned_contact;
-
-/// The stroke of that contact.
-typedef struct planned_stroke {
-    bool any;
-    double time;   ///< of contact (s)
-    int drum;      ///< slot
-    double x, y;   ///< on the head (m)
-    double yields; ///< so far from where it was asked for, as the hands would have met (m)
-    double beat;   ///< in the score, NaN of a take
-    double speed;  ///< captured, NaN of a score (m/s)
-    char nuance[HIMC_NAME_SIZE];
-    int bounces;        ///< of a stroke that bounces (himc_stroke)
-    double bounce_time; ///< (s)
-} planned_stroke;
+/// What moves a hand now.
+typedef struct hand_source {
+    const himc_source *kind;
+    void *of; ///< borrowed
+} hand_source;
 
 typedef struct performance_motion {
-    himc_planner *planner; ///< owned
-    himc_track *track;     ///< owned; instead of the planner when a take is loaded
-    double track_start;    ///< (s); infinite while the planner moves the hands
+    himc_planner *planner;          ///< owned
+    himc_track *track;              ///< owned; instead of the planner when a take is loaded
+    double track_start;             ///< (s); infinite while the planner moves the hands
+    hand_source source[HIMC_HANDS]; ///< the planner, or the track while it plays that hand
     bool has_learned;
     himc_limits learned;    ///< joint limits of the take's player
     himc_planned_body body; ///< its posture, and the course towards that for the next strokes
@@ -110,10 +96,13 @@ HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
 
 /// Planned state of a tip.
 HIMC_RT himc_target himc_motion_planned(const performance_motion *motion, himc_hand hand, double t);
-HIMC_RT planned_contact himc_motion_next(const performance_motion *motion,
-                                         const performance_drums *drums, himc_hand hand, double t);
-HIMC_RT planned_stroke himc_motion_stroke(const performance_motion *motion,
-                                          const performance_drums *drums, himc_hand hand, double t);
+/// The hand's contact at `t` or after it, but for one that is answered.
+HIMC_RT himc_source_contact himc_motion_next(const performance_motion *motion,
+                                             const performance_drums *drums, himc_hand hand,
+                                             double t);
+HIMC_RT himc_source_stroke himc_motion_stroke(const performance_motion *motion,
+                                              const performance_drums *drums, himc_hand hand,
+                                              double t);
 /// Ends the stroke planned for that time: struck or given up.
 HIMC_RT void himc_motion_answer(performance_motion *motion, himc_hand hand, double planned_time);
 /// Corrects the last milliseconds of a hit from that state of the tip. Only control that feeds the

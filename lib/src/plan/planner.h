@@ -10,6 +10,7 @@
 
 #include "base/quintic.h"
 #include "body/avoidance.h"
+#include "body/source.h"
 #include "himc/score.h"
 #include "capture/units.h"
 #include "plan/human.h"
@@ -35,6 +36,7 @@ typedef struct himc_planner_config {
 himc_planner_config himc_planner_default(void);
 
 typedef struct himc_planner himc_planner;
+extern const himc_source himc_planner_source; ///< of a himc_planner
 
 /// A stroke that is asked for while it happens.
 typedef struct himc_hit {

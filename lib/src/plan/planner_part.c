@@ -1,6 +1,6 @@
 /// planner_part.c: the list of a hand's strokes, sorted by beat, grace notes before the stroke on
 /// their beat.
-#include "plan/planner_part.h"
+#include "plan/planner_score.h"
 
 #include <math.h>
 

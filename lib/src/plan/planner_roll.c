@@ -32,7 +32,6 @@
 /// even in -w/2 .. w/2 and 0 on the beat. From j to j + i it changes by 2 a i j + a i^2 (mod 1), so
 /// for every i the differences are even too: the strokes add up in energy, in long rolls and short.
 #include "plan/hand.h"
-#include "plan/planner_part.h"
 #include "plan/planner_roll.h"
 #include "plan/sticking.h"
 

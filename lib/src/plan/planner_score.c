@@ -6,7 +6,6 @@
 /// where it is. In a loop with rounds of length L, beat b of round k is at origin + k S(L) +
 /// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
 /// strictly, so every time has one beat.
-#include "plan/planner_part.h"
 #include "plan/planner_roll.h"
 #include "plan/score.h"
 

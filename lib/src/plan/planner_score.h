@@ -220,4 +220,11 @@ HIMC_RT double himc_planner_score_time(const planner_score *score, int round, do
 /// Beat at `t`, in its round.
 HIMC_RT double himc_planner_score_beat_at(const planner_score *score, double t);
 
+// planner_part.c: a hand's strokes, sorted
+
+/// The first stroke after `beat`, or with `from` the first at it or after it.
+HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool from);
+/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
+HIMC_RT int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke);
+
 #endif

@@ -252,8 +252,9 @@ void himc_track_stop(himc_track *track, double t, const himc_target now[HIMC_HAN
         track->hand[hand].settle = come_to_rest(&track->head, &now[hand]);
 }
 
-void himc_track_rewind(himc_track *track)
+void himc_track_rewind(himc_track *track, double start)
 {
+    track->start = start;
     track->stop = INFINITY;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         hand_track *h = &track->hand[hand];

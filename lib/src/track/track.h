@@ -9,10 +9,12 @@
 
 #include "himc/mocap.h"
 #include "body/posture.h"
+#include "body/source.h"
 
 #include "track/nudge.h"
 
 typedef struct himc_track himc_track;
+extern const himc_source himc_track_source; ///< of a himc_track
 
 /// Builds the track of a take for a drumhead at `head`; the take is moved (not turned or scaled) so
 /// that its strikes fall on the head's usual spot. The take may be freed afterwards. NULL, with the
@@ -33,8 +35,9 @@ HIMC_RT void himc_track_approach(himc_track *track, himc_hand hand, const himc_t
 HIMC_RT void himc_track_approach_posture(himc_track *track, const himc_posture_motion *now);
 /// At `t` the tips, in the states `now`, leave the take and come to rest.
 HIMC_RT void himc_track_stop(himc_track *track, double t, const himc_target now[HIMC_HANDS]);
-/// Back to the state before the first strike, to play the take again.
-HIMC_RT void himc_track_rewind(himc_track *track);
+/// Back to the state before the first strike: its first frame comes at `start` (s) of the
+/// performance.
+HIMC_RT void himc_track_rewind(himc_track *track, double start);
 /// Difference of the world's coordinates and the take's (m).
 himc_vec3 himc_track_offset(const himc_track *track);
 /// True if the take has that hand's tip.

@@ -54,7 +54,8 @@ struct himc_track {
     int frames;
     himc_vec3 offset;
     himc_head_frame head;
-    double stop; ///< time at which the take is left (s); infinite if it is not
+    double start; ///< of its first frame in the performance (s)
+    double stop;  ///< time at which the take is left (s); infinite if it is not
     hand_track hand[HIMC_HANDS];
     himc_nudge nudge[HIMC_NUDGES];
     int nudges;

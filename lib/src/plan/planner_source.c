@@ -1,0 +1,45 @@
+/// planner_source.c: the planner as a source of motion (source.h).
+#include "plan/planner_state.h"
+
+#include <string.h>
+
+static himc_target target(const void *source, himc_hand hand, double t)
+{
+    return himc_planner_target(source, hand, t);
+}
+
+static himc_source_contact next(const void *source, himc_hand hand, double t)
+{
+    himc_source_contact next = {.any = false};
+    next.any = himc_planner_current(source, hand, t, NULL, &next.drum, &next.time);
+    return next;
+}
+
+static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
+{
+    const himc_planner *planner = source;
+    himc_stroke current;
+    himc_source_stroke next = {.speed = NAN};
+    if (!himc_planner_current(planner, hand, t, &current, &next.drum, &next.time))
+        return next;
+    next.any = true;
+    himc_stroke_spot(&current, planner->drum[next.drum].radius, &next.x, &next.y);
+    strcpy(next.nuance, himc_nuance_name(current.nuance));
+    next.yields = himc_planner_yields(planner, hand, t);
+    next.beat = current.beat;
+    next.bounces = current.bounces;
+    next.bounce_time = current.bounce_time;
+    return next;
+}
+
+static void separated(void *source, himc_hand hand, double t, const himc_target *measured)
+{
+    himc_planner_separated(source, hand, t, measured);
+}
+
+static bool correct(void *source, himc_hand hand, double t, const himc_target *measured)
+{
+    return himc_planner_correct(source, hand, t, measured);
+}
+
+const himc_source himc_planner_source = {target, next, stroke, separated, correct};
