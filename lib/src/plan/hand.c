@@ -85,10 +85,10 @@
 #define BREAK_OFF 5.0           // a stroke broken off with more acceleration is halted (m/s^2)
 #define HOME_WAIT 0.5           // a wait at home lasts this long at least (s)
 
-/// A tip's way leads through the body if it comes nearer to its axis (m); it then goes by a point
-/// farther away, with so much of its mean speed. Chosen: a mallet between chest and elbows; no arm
-/// follows it there.
-#define THROUGH_BODY 0.36
+/// A tip's way leads through the body if it comes so near to its axis, from far and to far (m); it
+/// then goes by a point in front, with so much of its mean speed. Chosen: no arm folds up so much;
+/// the mallet in front of the chest.
+#define THROUGH_BODY 0.19
 #define BESIDE_BODY 0.45
 #define PASSING_SPEED 1.6
 
@@ -153,7 +153,8 @@ static bool leads_through_body(const stroke_plan *s, himc_vec3 x, himc_vec3 *bes
     if (away > 0)
         *beside = himc_vec3_make(nearest.x * BESIDE_BODY / away, nearest.y * BESIDE_BODY / away,
                                  nearest.z);
-    return share > 0 && share < 1 && away < THROUGH_BODY;
+    double nearer = fmin(hypot(from.x, from.y), hypot(x.x, x.y));
+    return share > 0 && share < 1 && away < THROUGH_BODY && nearer > BESIDE_BODY;
 }
 
 /// The tangential path to rest at x. A tip that is fast elsewhere and has time halts first: one
