@@ -41,7 +41,7 @@ static void put_whole(text *t, uint64_t n, int least)
         put(t, digit[--count]);
 }
 
-// 10^n
+// 10^|n|
 static long double ten(int n)
 {
     long double power = 1, base = 10;

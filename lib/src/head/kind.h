@@ -1,5 +1,6 @@
 /// kind.h: a kind of instrument is one file with a table of functions: round.c, rectangle.c,
-/// grid_kind.c. Modes, pickups, heads and drums ask the kind of their shape and know none by name.
+/// grid_kind.c. Modes, pickups and models ask the kind of their shape; drum_command.c alone lists
+/// the kinds, as words, and a new drum is round.
 ///
 /// Whatever bends is tuned like a membrane: a mode has z, a pure number, and sounds at z/(2 pi
 /// radius) sqrt(T/sigma). Force and displacement use the same shapes, so energy never grows.

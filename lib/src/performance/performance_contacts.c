@@ -326,6 +326,8 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.velocity = bounded(himc_vec3_dot(n, b->state.tip_velocity[hand]), FASTEST_TIP);
 }
 
+// A contact begins at `time` (s) with that velocity along the normal, up positive (m/s): what was
+// planned for it is answered, and its report begins.
 static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand hand, double time,
                          double velocity)
 {

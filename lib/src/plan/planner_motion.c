@@ -227,7 +227,7 @@ static void take(himc_planner *planner, const timed_stroke *s)
 
 void himc_planner_give_up_hit(himc_planner *planner, const timed_stroke *s, double t)
 {
-    himc_planner_notes_hit(&planner->notes, t, HUGE_VAL);
+    himc_planner_notes_hit(&planner->notes, t, HUGE_VAL); // as late as never: it is counted as lost
     himc_planner_notes_miss(
         &planner->notes,
         &(himc_planner_miss){s->stroke, s->drum, true, s->goal.time, "no hand has the time"});
