@@ -44,11 +44,6 @@ himc_vec3 himc_head_frame_from_world(const himc_head_frame *frame, himc_vec3 poi
                           himc_vec3_dot(d, axes.normal));
 }
 
-bool himc_head_frame_contains(const himc_head_frame *frame, double x, double y)
-{
-    return hypot(x, y) < frame->radius;
-}
-
 void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, double *y)
 {
     // of the radius, by players and textbooks: normal about 3/4, rim about 9/10

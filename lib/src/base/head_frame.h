@@ -9,7 +9,10 @@
 HIMC_RT bool himc_head_frame_equal(const himc_head_frame *a, const himc_head_frame *b);
 /// True if (x, y) (m) is on the surface that a performer strikes: the disc of the head's radius,
 /// whatever its outline; beside the outline the modes do not move.
-HIMC_RT bool himc_head_frame_contains(const himc_head_frame *frame, double x, double y);
+static inline bool himc_head_frame_contains(const himc_head_frame *frame, double x, double y)
+{
+    return x * x + y * y < frame->radius * frame->radius;
+}
 /// The axes of a head's frame.
 typedef struct himc_head_axes {
     himc_vec3 x, y, normal;
