@@ -401,7 +401,8 @@ static void use_bad(himc_character *c, int what, himc_engine engine)
     himc_character_use(c, engine);
     if (himc_character_place(c, &s) || himc_character_step(c, no_torque, NULL, 0, 1e-4))
         _exit(1);
-    if (!himc_character_seat(c, skeleton.root.z + 0.1) || himc_character_seat(c, NAN))
+    if (!himc_character_seat(c, skeleton.segment[HIMC_PELVIS].origin.z + 0.1) ||
+        himc_character_seat(c, NAN))
         _exit(2);
     if (!himc_character_step(c, no_torque, NULL, 0, 1e-4))
         _exit(3);

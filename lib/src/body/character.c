@@ -245,7 +245,7 @@ bool himc_character_seat(himc_character *c, double height)
     if (!isfinite(height))
         return false;
     himc_body_state state = c->state.joints;
-    c->skeleton.root.z = height;
+    c->skeleton.segment[HIMC_PELVIS].origin.z = height;
     if (!c->sound)
         himc_pose_to_state(&c->skeleton, &zero, NULL, &state);
     himc_character_place(c, &state);

@@ -105,8 +105,9 @@ void himc_body_place(performance_body *b, const himc_setpoint *at)
 
 void himc_body_seat(performance_body *b, double height)
 {
-    if (b->skeleton.root.z != height && himc_character_seat(b->character, height))
-        b->skeleton.root.z = b->plant.root.z = height;
+    if (b->skeleton.segment[HIMC_PELVIS].origin.z != height &&
+        himc_character_seat(b->character, height))
+        b->skeleton.segment[HIMC_PELVIS].origin.z = b->plant.segment[HIMC_PELVIS].origin.z = height;
 }
 
 void himc_body_take_up(performance_body *b)
