@@ -78,8 +78,8 @@ HIMC_RT void himc_add_force(const himc_skeleton *skeleton, const himc_body_state
                             int segment, himc_vec3 at, himc_vec3 force,
                             himc_vec3 torque[HIMC_JOINTS]);
 
-/// himc_inverse_dynamics of a moving body, with the centres and inertias of this articulation; NULL:
-/// they are found.
+/// himc_inverse_dynamics of a moving body, with the centres and inertias of this articulation; they
+/// are found if it is NULL.
 HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
                                       const himc_articulation *articulation,
                                       const himc_vec3 *relative, himc_vec3 torque[HIMC_JOINTS]);
