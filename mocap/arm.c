@@ -18,7 +18,7 @@
 
 static himc_vec3 shoulder_of(const himc_skeleton *skeleton, himc_quat trunk, himc_hand hand)
 {
-    himc_vec3 waist = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    himc_vec3 waist = himc_skeleton_waist(skeleton);
     himc_vec3 away =
         himc_quat_rotate(trunk, skeleton->segment[HIMC_LEFT_UPPER_ARM + (int)hand].origin);
     return himc_vec3_add(waist, away);
@@ -93,7 +93,7 @@ void himc_mocap_flexion(himc_quat trunk, const himc_quat joint[HIMC_ARM_JOINTS],
 himc_vec3 himc_mocap_stick_point(const himc_skeleton *skeleton, himc_quat trunk, himc_hand hand,
                                  const himc_quat joint[HIMC_ARM_JOINTS], double back)
 {
-    himc_vec3 x = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    himc_vec3 x = himc_skeleton_waist(skeleton);
     himc_quat q = trunk;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int segment = himc_arm_joint(hand, k) + 1;

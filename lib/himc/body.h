@@ -86,13 +86,21 @@ himc_skeleton_config himc_skeleton_default(void);
 /// Height of the hip joints above the floor for this config (m).
 double himc_skeleton_seat(const himc_skeleton_config *config);
 
+/// How a segment hangs on its parent.
+typedef enum himc_joint_kind {
+    HIMC_JOINT_FIXED, ///< not at all movable; the root, from the world to the pelvis
+    HIMC_JOINT_BALL   ///< three rotational freedoms; all other joints
+} himc_joint_kind;
+
 /// A rigid segment. Vectors are in its own frame unless stated.
 typedef struct himc_segment {
-    int parent;        ///< index of the parent segment, -1 for the pelvis
-    double mass;       ///< (kg)
-    double length;     ///< (m)
-    double radius;     ///< of its capsule (m)
-    himc_vec3 origin;  ///< its joint, in the parent's frame (m)
+    int parent;            ///< index of the parent segment, -1 for the pelvis: the world
+    himc_joint_kind joint; ///< to the parent; the pelvis's is the root
+    double mass;           ///< (kg)
+    double length;         ///< (m)
+    double radius;         ///< of its capsule (m)
+    himc_vec3 origin;  ///< its joint, in the parent's frame (m); the root's is the midpoint of the
+                       ///< hip joints
     himc_vec3 axis;    ///< unit vector from the joint towards the far end
     himc_vec3 center;  ///< centre of mass (m)
     himc_vec3 inertia; ///< about the centre of mass, about x, y, z (kg m^2)
@@ -101,7 +109,6 @@ typedef struct himc_segment {
 /// The body: constant after himc_skeleton_init.
 typedef struct himc_skeleton {
     himc_segment segment[HIMC_SEGMENTS]; ///< by himc_segment_id
-    himc_vec3 root;                      ///< midpoint of the hip joints, fixed in the world (m)
     himc_vec3 tip;        ///< tip of the stick (centre of the mallet) in the stick's frame (m)
     double mallet_radius; ///< (m)
     double height;        ///< (m)
@@ -125,6 +132,13 @@ int himc_joint_find(const char *name);
 static inline int himc_arm_joint(himc_hand hand, int k)
 {
     return HIMC_LEFT_UPPER_ARM - 1 + 2 * k + (int)hand;
+}
+
+/// The waist above a root that is fixed (m).
+static inline himc_vec3 himc_skeleton_waist(const himc_skeleton *skeleton)
+{
+    return himc_vec3_add(skeleton->segment[HIMC_PELVIS].origin,
+                         skeleton->segment[HIMC_TRUNK].origin);
 }
 
 /// Index of the stick segment of a hand.

@@ -12,6 +12,7 @@
 #include "himc/body.h"
 #include "body/posture.h"
 
+#include "step_with_tips.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -23,7 +24,7 @@
 
 static himc_skeleton skeleton;
 static himc_character *character;
-static const himc_vec3 no_torque[HIMC_JOINTS], no_force[HIMC_HANDS];
+static const himc_vec3 no_torque[HIMC_JOINTS];
 
 void setUp(void)
 {
@@ -76,7 +77,7 @@ static void asked_step(himc_body_state *s, const himc_vec3 *relative, double h)
 {
     himc_vec3 torque[HIMC_JOINTS];
     himc_inverse_dynamics(&skeleton, s, relative, false, torque);
-    himc_character_step(character, torque, no_force, h);
+    himc_character_step(character, torque, NULL, 0, h);
     himc_character_observe(character, s);
 }
 
@@ -160,7 +161,7 @@ static void test_body_is_still_when_torques_balance_gravity(void)
     himc_inverse_dynamics(&skeleton, &s, NULL, true, torque);
     himc_character_place(character, &s);
     for (int n = 0; n < 1000; n++) // an unstable balance: held for a tenth of a second
-        himc_character_step(character, torque, no_force, 1e-4);
+        himc_character_step(character, torque, NULL, 0, 1e-4);
     himc_character_observe(character, &after);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, distance(s.tip[hand], after.tip[hand]));
@@ -223,7 +224,7 @@ static void test_stiff_leg_swings_with_the_period_of_a_compound_pendulum(void)
             crossing[crossings++] = (n - spin / (spin - last)) * h;
         last = spin;
         stiffen(&s, torque);
-        himc_character_step(character, torque, no_force, h);
+        himc_character_step(character, torque, NULL, 0, h);
     }
     TEST_ASSERT_EQUAL_INT(3, crossings);
     double period = crossing[2] - crossing[0];
@@ -271,7 +272,7 @@ static void test_joints_hold_within_a_micrometre_over_a_second_of_strokes(void)
         }
         himc_character_observe(character, &s);
         himc_controller_torques(&controller, &skeleton, &s, &reference, torque);
-        himc_character_step(character, torque, no_force, 1e-4);
+        himc_character_step(character, torque, NULL, 0, 1e-4);
         worst = fmax(worst, joint_gap());
     }
     TEST_ASSERT_TRUE(worst < 1e-6); // measured 3e-8
@@ -284,7 +285,7 @@ static void test_body_without_torques_falls_and_its_joints_hold(void)
     moderate_state(&s, 2);
     himc_character_place(character, &s);
     for (int n = 0; n < 10000; n++) {
-        himc_character_step(character, no_torque, no_force, 1e-4);
+        himc_character_step(character, no_torque, NULL, 0, 1e-4);
         worst = fmax(worst, joint_gap());
     }
     himc_character_observe(character, &s);
@@ -301,7 +302,7 @@ static void run_free(himc_character *c, himc_body_state *s)
     for (int n = 0; n < 2000; n++) {
         for (int j = 0; j < HIMC_JOINTS; j++)
             torque[j] = random_vector(0.1);
-        himc_character_step(c, torque, force, 1e-4);
+        step_with_tips(c, &skeleton, torque, force, 1e-4);
     }
     memset(s, 0, sizeof *s);
     himc_character_observe(c, s);
@@ -336,10 +337,10 @@ static void test_force_on_a_tip_accelerates_the_effective_mass(void)
         force[hand] = himc_vec3_scale(normal, 20);
         himc_inverse_dynamics(&skeleton, &s, NULL, false, torque);
         himc_character_place(character, &s);
-        himc_character_step(character, torque, no_force, h);
+        himc_character_step(character, torque, NULL, 0, h);
         himc_character_observe(character, &free);
         himc_character_place(character, &s);
-        himc_character_step(character, torque, force, h);
+        step_with_tips(character, &skeleton, torque, force, h);
         himc_character_observe(character, &pushed);
         himc_vec3 dv = himc_vec3_sub(pushed.tip_velocity[hand], free.tip_velocity[hand]);
         himc_articulate(&skeleton, &s, &art);
@@ -362,10 +363,10 @@ static int survives(double torque)
             all[j] = himc_vec3_make(torque, -torque, torque);
         force[0] = force[1] = all[0];
         for (int n = 0; n < 20; n++)
-            himc_character_step(character, all, force, 1e-4);
+            step_with_tips(character, &skeleton, all, force, 1e-4);
         moderate_state(&s, 1);
         himc_character_place(character, &s);
-        himc_character_step(character, no_torque, no_force, 1e-4);
+        himc_character_step(character, no_torque, NULL, 0, 1e-4);
         himc_character_observe(character, &s);
         _exit(himc_body_state_finite(&s) ? 0 : 1);
     }
@@ -398,11 +399,12 @@ static void use_bad(himc_character *c, int what, himc_engine engine)
     else
         s.spin[HIMC_TRUNK].y = bad_spin[what - 5];
     himc_character_use(c, engine);
-    if (himc_character_place(c, &s) || himc_character_step(c, no_torque, no_force, 1e-4))
+    if (himc_character_place(c, &s) || himc_character_step(c, no_torque, NULL, 0, 1e-4))
         _exit(1);
-    if (!himc_character_seat(c, skeleton.root.z + 0.1) || himc_character_seat(c, NAN))
+    if (!himc_character_seat(c, skeleton.segment[HIMC_PELVIS].origin.z + 0.1) ||
+        himc_character_seat(c, NAN))
         _exit(2);
-    if (!himc_character_step(c, no_torque, no_force, 1e-4))
+    if (!himc_character_step(c, no_torque, NULL, 0, 1e-4))
         _exit(3);
     himc_character_observe(c, &s);
     if (!himc_body_state_finite(&s))

@@ -39,10 +39,12 @@ static void test_body_is_a_tree_of_20_segments_19_joints_57_degrees_of_freedom(v
     TEST_ASSERT_EQUAL_INT(19, HIMC_JOINTS);
     TEST_ASSERT_EQUAL_INT(57, HIMC_DOF);
     TEST_ASSERT_EQUAL_INT(-1, skeleton.segment[HIMC_PELVIS].parent);
+    TEST_ASSERT_EQUAL_INT(HIMC_JOINT_FIXED, skeleton.segment[HIMC_PELVIS].joint);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         // parents first: every sweep over the table relies on it
         TEST_ASSERT_TRUE(skeleton.segment[i].parent >= 0);
         TEST_ASSERT_TRUE(skeleton.segment[i].parent < i);
+        TEST_ASSERT_EQUAL_INT(HIMC_JOINT_BALL, skeleton.segment[i].joint);
     }
 }
 
@@ -295,10 +297,10 @@ static void test_measured_lengths_are_used_and_move_the_next_joint(void)
 static void test_seat_is_as_configured_or_from_the_height(void)
 {
     build();
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.42 * 1.75, skeleton.root.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.42 * 1.75, skeleton.segment[HIMC_PELVIS].origin.z);
     config.seat = 0.9;
     build();
-    TEST_ASSERT_EQUAL_DOUBLE(0.9, skeleton.root.z);
+    TEST_ASSERT_EQUAL_DOUBLE(0.9, skeleton.segment[HIMC_PELVIS].origin.z);
 }
 
 static void refused(double *field, double value, const char *name)

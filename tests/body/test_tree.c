@@ -11,6 +11,7 @@
 
 #include "session.h"
 #include "bodies.h"
+#include "step_with_tips.h"
 
 #define STEPS 1000
 #define STEP 1e-4     // of the default physics rate (s)
@@ -106,8 +107,12 @@ static void move(himc_character *c, const moves *m, int n, double h)
         bool on = part > 0 && part < 1;
         force[hand] = himc_vec3_scale(m->blow[hand].force, on ? sin(HIMC_PI * part) : 0);
     }
-    himc_character_push(c, m->pushed, m->push, himc_vec3_make(0, 0.01, -0.1));
-    TEST_ASSERT_TRUE(himc_character_step(c, m->torque, force, h));
+    world_contact contact[] = {
+        {m->pushed, himc_vec3_make(0, 0.01, -0.1), m->push, NULL},
+        himc_tip_contact(&skeleton, HIMC_LEFT, force[HIMC_LEFT], NULL),
+        himc_tip_contact(&skeleton, HIMC_RIGHT, force[HIMC_RIGHT], NULL),
+    };
+    TEST_ASSERT_TRUE(himc_character_step(c, m->torque, contact, 3, h));
 }
 
 // a stick's spin with the part about the line from grip to centre of mass, its lightest axis, as
@@ -184,8 +189,8 @@ static void test_tree_has_the_implicit_gyroscopic_moment_of_dworldstep(void)
     himc_pose_to_state(&skeleton, &pose, rate, &s);
     twins_new(&t, &s);
     for (int n = 0; n < 200; n++) {
-        himc_character_step(t.tree, torque, torque, STEP);
-        himc_character_step(t.ode, torque, torque, STEP);
+        himc_character_step(t.tree, torque, NULL, 0, STEP);
+        himc_character_step(t.ode, torque, NULL, 0, STEP);
     }
     TEST_ASSERT_TRUE(difference(&t) <= AGREED);
     himc_character_observe(t.ode, &s); // the spin has moved the axis
@@ -204,8 +209,8 @@ static void test_a_body_taken_apart_comes_together_as_by_dworldstep(void)
     hard[0] = random_vector(30);
     hard[1] = random_vector(30);
     for (int n = 0; n < 20; n++) {
-        himc_character_step(t.tree, torque, hard, n < 3 ? 0.01 : STEP);
-        himc_character_step(t.ode, torque, hard, n < 3 ? 0.01 : STEP);
+        step_with_tips(t.tree, &skeleton, torque, hard, n < 3 ? 0.01 : STEP);
+        step_with_tips(t.ode, &skeleton, torque, hard, n < 3 ? 0.01 : STEP);
     }
     TEST_ASSERT_TRUE(difference(&t) <= 1e-8); // spins of hundreds of rad/s
     twins_free(&t);

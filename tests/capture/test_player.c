@@ -12,8 +12,9 @@ static void test_measures_of_a_skeleton_take_are_those_of_the_body(void)
     for (int i = HIMC_LEFT_UPPER_ARM; i < HIMC_LEFT_STICK; i++)
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.segment[i].length, player->config.length[i]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.40, player->config.stick_length);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0,
-                              himc_vec3_length(himc_vec3_sub(player->hips, skeleton.root)));
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-6, 0,
+        himc_vec3_length(himc_vec3_sub(player->hips, skeleton.segment[HIMC_PELVIS].origin)));
 }
 
 static void test_mass_that_is_not_stated_keeps_the_body_mass_index(void)

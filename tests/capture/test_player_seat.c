@@ -10,7 +10,7 @@ static void test_a_player_at_the_origin_keeps_its_place(void)
     read_player();
     TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(player->offset));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.root.z, player->config.seat);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.segment[HIMC_PELVIS].origin.z, player->config.seat);
     TEST_ASSERT_EQUAL_MEMORY(&usual_drum, &drum, sizeof drum);
 }
 
@@ -30,7 +30,7 @@ static void test_a_distant_player_is_moved_to_the_drum(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -12, player->offset.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5, player->offset.y);
     TEST_ASSERT_DOUBLE_WITHIN(0.012, -0.3, player->offset.z);
-    TEST_ASSERT_DOUBLE_WITHIN(0.012, skeleton.root.z, player->config.seat);
+    TEST_ASSERT_DOUBLE_WITHIN(0.012, skeleton.segment[HIMC_PELVIS].origin.z, player->config.seat);
     TEST_ASSERT_EQUAL_MEMORY(&usual_drum, &drum, sizeof drum);
 }
 
@@ -82,7 +82,8 @@ static void test_a_player_who_strikes_nothing_keeps_the_height_above_the_floor(v
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2, player->offset.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -3, player->offset.y);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, player->offset.z);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.root.z + 0.1, player->config.seat);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, skeleton.segment[HIMC_PELVIS].origin.z + 0.1,
+                              player->config.seat);
 }
 
 // a take of tips alone: `shape` is a function of the time from 0 to 1

@@ -33,7 +33,6 @@ static void set_gain(int joint, double stiffness, double damping)
 static himc_character *character;
 static himc_reference reference;
 static himc_body_state state;
-static const himc_vec3 no_force[HIMC_HANDS];
 
 // the stroke at time t: hands in opposite phase, a little forward and back as they go
 static void stroke(double t, double rate, himc_target tip[HIMC_HANDS])
@@ -121,7 +120,7 @@ static result play(double rate, double settle, double end)
             widen(should, wanted.origin[HIMC_LEFT_FOREARM].z);
         }
         himc_controller_torques(&controller, &skeleton, &state, &reference, torque);
-        himc_character_step(character, torque, no_force, STEP);
+        himc_character_step(character, torque, NULL, 0, STEP);
         r.finite = r.finite && himc_body_state_finite(&state);
     }
     r.rms = sqrt(sum / (double)count) / HEIGHT;
@@ -314,7 +313,7 @@ static bool stands(himc_pipeline mode, himc_law law, double factor, double *away
         }
         himc_character_observe(character, &state);
         himc_controller_torques(&controller, &skeleton, &state, &reference, torque);
-        on = himc_character_step(character, torque, no_force, h) && himc_body_state_finite(&state);
+        on = himc_character_step(character, torque, NULL, 0, h) && himc_body_state_finite(&state);
     }
     *away = fmax(distance(state.tip[0], reference.tip[0].x),
                  distance(state.tip[1], reference.tip[1].x));

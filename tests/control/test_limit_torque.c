@@ -25,7 +25,6 @@ static himc_body_state state;
 static himc_limits limits;
 static himc_saturation_counts saturation;
 static himc_error error;
-static const himc_vec3 no_force[HIMC_HANDS];
 
 // a stroke at 2 Hz, hands in opposite phase, a little forward and back as they go
 static void stroke(double t, himc_target tip[HIMC_HANDS])
@@ -97,7 +96,7 @@ static void step(void)
     himc_vec3 torque[HIMC_JOINTS];
     himc_character_observe(character, &state);
     himc_controller_torques(&controller, &skeleton, &state, &reference, torque);
-    TEST_ASSERT_TRUE(himc_character_step(character, torque, no_force, STEP));
+    TEST_ASSERT_TRUE(himc_character_step(character, torque, NULL, 0, STEP));
 }
 
 // the largest measure over all joints

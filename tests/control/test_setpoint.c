@@ -5,6 +5,7 @@
 #include "body/dynamics.h"
 #include "control/setpoint.h"
 
+#include "step_with_tips.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -229,7 +230,8 @@ static void run_all_rt(himc_character *character, himc_setpoint tick[2])
                 reference.normal[HIMC_LEFT] = himc_vec3_make(0, 0, 1);
                 himc_character_observe(character, &state);
                 himc_controller_torques(&controller, &skeleton, &state, &reference, torque);
-                himc_character_step(character, torque, (himc_vec3[]){{0, 0, n}, {1, 0, 0}}, 1e-4);
+                step_with_tips(character, &skeleton, torque, (himc_vec3[]){{0, 0, n}, {1, 0, 0}},
+                               1e-4);
             }
     copy = state;
     pose = himc_pose_from_state(&skeleton, &copy);

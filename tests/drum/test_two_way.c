@@ -100,8 +100,9 @@ static result strike(double k, double radius, double rate, int samples, int step
             r.contact += stick.force > 0 ? 1 / rate : 0;
         }
         r.impulse += impulse;
-        himc_vec3 push[HIMC_HANDS] = {{0, 0, 0}, {0, 0, impulse * rate / n}};
-        himc_character_step(body, none, push, n / rate);
+        himc_vec3 push = {0, 0, impulse * rate / n};
+        world_contact tip = himc_tip_contact(&skeleton, HIMC_RIGHT, push, NULL);
+        himc_character_step(body, none, &tip, 1, n / rate);
         himc_character_observe(body, &state);
         double height = state.tip[HIMC_RIGHT].z - start.tip[HIMC_RIGHT].z;
         offset = stick.touching ? stick.height - height : 0.9 * offset;

@@ -173,7 +173,7 @@ static void test_a_child_gets_a_stool_that_fits(void)
     himc_performance_stats s = himc_performance_measure(p);
     TEST_ASSERT_EQUAL_INT(4, s.played);
     TEST_ASSERT_TRUE(s.tip_rms < 2e-5);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.53 * 1.2, p->body->skeleton.root.z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.53 * 1.2, p->body->skeleton.segment[HIMC_PELVIS].origin.z);
     heard_free(&h);
     himc_performance_free(p);
 }
@@ -181,7 +181,8 @@ static void test_a_child_gets_a_stool_that_fits(void)
 static void test_usual_body_and_drum_keep_the_usual_stool(void)
 {
     himc_performance *p = with_drum(0, 0.7, 0.85);
-    TEST_ASSERT_TRUE(p->body->skeleton.root.z == himc_skeleton_seat(&p->settings.skeleton));
+    TEST_ASSERT_TRUE(p->body->skeleton.segment[HIMC_PELVIS].origin.z ==
+                     himc_skeleton_seat(&p->settings.skeleton));
     himc_performance_free(p);
 }
 

@@ -260,7 +260,6 @@ static void solve(const bench_body *b, himc_solver solver, int i)
 
 static void do_row(bench_body *b, int part, int i)
 {
-    static const himc_vec3 none[HIMC_HANDS];
     himc_articulation articulation;
     himc_vec3 torque[HIMC_JOINTS] = {{0, 0, 0}}, relative[HIMC_JOINTS];
     if (part == 0)
@@ -277,7 +276,7 @@ static void do_row(bench_body *b, int part, int i)
     else if (part >= PARTS)
         solve(b, (himc_solver)(part - PARTS), i);
     else
-        himc_character_step(b->character, torque, none, 1.0 / PHYSICS);
+        himc_character_step(b->character, torque, NULL, 0, 1.0 / PHYSICS);
 }
 
 static bool time_rows(double row[ROWS], himc_error *error)

@@ -338,7 +338,8 @@ static void compare(void *user, const himc_motion_row *row)
     himc_pose pose = himc_mocap_pose(t->mocap, time);
     himc_body_state captured;
     himc_skeleton skeleton = *himc_mocap_skeleton(t->mocap);
-    skeleton.root = himc_vec3_add(skeleton.root, t->offset);
+    skeleton.segment[HIMC_PELVIS].origin =
+        himc_vec3_add(skeleton.segment[HIMC_PELVIS].origin, t->offset);
     himc_pose_to_state(&skeleton, &pose, NULL, &captured);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         compare_hand(t, row, &captured, (himc_hand)hand);

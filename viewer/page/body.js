@@ -1,7 +1,7 @@
 // Forward kinematics of a body. The default performer is the library's own table of segments
 // (skeleton.js, made by tools/research/skeleton/table.c when the viewer is built); a scene brings the measures
 // of its own.
-import { segments, root } from "./skeleton.js";
+import { segments } from "./skeleton.js";
 
 export const HANDS = ["left", "right"]; // in the library's order
 
@@ -17,7 +17,7 @@ export function bone(name) {
 }
 
 // each joint in its parent's frame, the pelvis in the world (m)
-const usual = Float64Array.from(segments.flatMap((s, i) => (i ? s.origin : root)));
+const usual = Float64Array.from(segments.flatMap(s => s.origin));
 
 // where a push acts, in the segment's frame: `along` its line from the joint through the centre of
 // mass (m), or if that is not said the centre of mass

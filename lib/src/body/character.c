@@ -35,9 +35,7 @@ struct himc_character {
     himc_skeleton skeleton;
     himc_engine engine;
     segment_states state;
-    himc_vec3 push[HIMC_SEGMENTS]; // in the next step (N) ...
-    himc_vec3 turn[HIMC_SEGMENTS]; // ... and its moment about the centre of mass (N m)
-    himc_body_work *work;          // borrowed, NULL when nobody asks
+    himc_body_work *work; // borrowed, NULL when nobody asks
     himc_articulation articulation;
     bool articulated;       // the articulation belongs to this state
     bool given;             // ODE's bodies have this state
@@ -225,8 +223,6 @@ bool himc_character_place(himc_character *c, const himc_body_state *state)
     c->sound = is_sound(&c->state, HIMC_SEGMENTS);
     if (c->work && isfinite(before))
         c->work->placed += energy(c) - before;
-    memset(c->push, 0, sizeof c->push);
-    memset(c->turn, 0, sizeof c->turn);
     c->still = 0;
     changed(c);
     return c->sound;
@@ -249,7 +245,7 @@ bool himc_character_seat(himc_character *c, double height)
     if (!isfinite(height))
         return false;
     himc_body_state state = c->state.joints;
-    c->skeleton.root.z = height;
+    c->skeleton.segment[HIMC_PELVIS].origin.z = height;
     if (!c->sound)
         himc_pose_to_state(&c->skeleton, &zero, NULL, &state);
     himc_character_place(c, &state);
@@ -286,22 +282,22 @@ const himc_articulation *himc_character_articulation(himc_character *c)
     return &c->articulation;
 }
 
-static void fill_forces(const himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
-                        const himc_vec3 tip_force[HIMC_HANDS], segment_forces *f)
+static void fill_forces(const himc_character *c, const himc_step_forces *sources, segment_forces *f)
 {
-    memcpy(f->force, c->push, sizeof f->force);
-    memcpy(f->torque, c->turn, sizeof f->torque);
+    f->torque[0] = himc_vec3_make(0, 0, 0);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = c->skeleton.segment[i].parent;
-        f->torque[i] = himc_vec3_add(f->torque[i], torque[i - 1]);
-        f->torque[p] = himc_vec3_sub(f->torque[p], torque[i - 1]);
+        f->force[i] = himc_vec3_make(0, 0, 0);
+        f->torque[i] = sources->torque[i - 1];
+        f->torque[p] = himc_vec3_sub(f->torque[p], sources->torque[i - 1]);
     }
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        int i = himc_stick_segment((himc_hand)hand);
-        himc_vec3 at = himc_vec3_sub(c->skeleton.tip, c->skeleton.segment[i].center);
+    for (int k = 0; k < sources->contacts; k++) {
+        const world_contact *contact = &sources->contact[k];
+        int i = contact->segment;
+        himc_vec3 at = himc_vec3_sub(contact->at, c->skeleton.segment[i].center);
         at = himc_mat3_apply(&c->state.joints.rotation[i], at);
-        f->force[i] = himc_vec3_add(f->force[i], tip_force[hand]);
-        f->torque[i] = himc_vec3_add(f->torque[i], himc_vec3_cross(at, tip_force[hand]));
+        f->force[i] = himc_vec3_add(f->force[i], contact->force);
+        f->torque[i] = himc_vec3_add(f->torque[i], himc_vec3_cross(at, contact->force));
     }
 }
 
@@ -311,14 +307,6 @@ static bool can_step(const himc_character *c, const segment_forces *f)
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         sum += himc_vec3_dot(f->force[i], f->force[i]) + himc_vec3_dot(f->torque[i], f->torque[i]);
     return c->sound && sum < LARGEST_SUM;
-}
-
-void himc_character_push(himc_character *c, int segment, himc_vec3 force, himc_vec3 from_center)
-{
-    if (segment <= 0 || segment >= HIMC_SEGMENTS)
-        return;
-    c->push[segment] = himc_vec3_add(c->push[segment], force);
-    c->turn[segment] = himc_vec3_add(c->turn[segment], himc_vec3_cross(from_center, force));
 }
 
 static void step_ode(himc_character *c, const segment_forces *f, double h)
@@ -390,21 +378,20 @@ static void step_accounted(himc_character *c, const himc_step_forces *sources,
 }
 
 bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
-                         const himc_vec3 tip_force[HIMC_HANDS], double h)
+                         const world_contact *contact, int contacts, double h)
 {
+    const himc_step_forces sources = {torque, contact, contacts};
     segment_forces forces;
-    fill_forces(c, torque, tip_force, &forces);
+    fill_forces(c, &sources, &forces);
     if (!can_step(c, &forces))
         return false;
     himc_body_work before;
     if (c->work) {
         before = *c->work;
-        step_accounted(c, &(himc_step_forces){torque, tip_force, c->push, c->turn}, &forces, h);
+        step_accounted(c, &sources, &forces, h);
     } else {
         step_engine(c, &forces, h);
     }
-    memset(c->push, 0, sizeof c->push);
-    memset(c->turn, 0, sizeof c->turn);
     changed(c);
     c->given = c->engine == HIMC_ENGINE_ODE;
     c->sound = is_sound(&c->state, c->still > STILL_STEPS ? HIMC_LEGS : HIMC_SEGMENTS);

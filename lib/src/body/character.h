@@ -44,18 +44,19 @@ HIMC_RT double himc_character_potential(const himc_character *character);
 /// the next one. Legs at rest take no part, but their entries hold.
 HIMC_RT const himc_articulation *himc_character_articulation(himc_character *character);
 
-/// Adds a force (world frame, N) that acts at `from_center` (world frame, m) from a segment's
-/// centre of mass during the next step only. Several forces add up; the pelvis is fixed and ignores
-/// them.
-HIMC_RT void himc_character_push(himc_character *character, int segment, himc_vec3 force,
-                                 himc_vec3 from_center);
+/// The contact of a drumstick's tip.
+static inline world_contact himc_tip_contact(const himc_skeleton *skeleton, himc_hand hand,
+                                             himc_vec3 force, double *work)
+{
+    return (world_contact){himc_stick_segment(hand), skeleton->tip, force, work};
+}
 
 /// One step of `h` seconds (1e-5 .. 0.01) under gravity, the `torque` of each joint on its child
-/// and its opposite on the parent (world frame, N m), and a `tip_force` on each drumstick tip (N).
+/// and its opposite on the parent (world frame, N m), and the contacts with the world (contacts).
 /// False, without a step, if a torque or a force is not finite; false also if the body's state is
 /// not finite afterwards, or a segment rotates faster than 3000 rad/s: the engine would end the
 /// process. Then there are no steps until himc_character_place.
 HIMC_RT bool himc_character_step(himc_character *character, const himc_vec3 torque[HIMC_JOINTS],
-                                 const himc_vec3 tip_force[HIMC_HANDS], double h);
+                                 const world_contact *contact, int contacts, double h);
 
 #endif

@@ -5,7 +5,7 @@
 ///     v+' M v+ / 2 - v' M v / 2 = u' M (v+ - v) = h u' F,
 /// and the turn that follows has the axis w+, so it changes the inertia about the world's axes but
 /// not the kinetic energy. So each force has the work h u' F, with u at the point where it acts:
-///     joint torque  h t . (u_child - u_parent),  tip force and push  h f . u.
+///     joint torque  h t . (u_child - u_parent),  contact with the world  h f . u.
 /// What remains is the integrator's own, `numerical`:
 ///     weight   the fall in the step is h v+, not h u: h m g (v+ - v) / 2 upwards, whose sum over a
 ///              motion between two rests is 0;
@@ -47,16 +47,15 @@ static himc_vec3 point_velocity(const step *s, int i, himc_vec3 r)
 
 static void begin(step *s, const himc_step_forces *forces)
 {
-    const himc_vec3 zero = {0, 0, 0};
-    s->spin[0] = s->velocity[0] = s->force[0] = zero;
-    memcpy(s->force, forces->push, sizeof s->force);
+    s->spin[0] = s->velocity[0] = himc_vec3_make(0, 0, 0);
+    memset(s->force, 0, sizeof s->force);
     for (int i = 1; i < s->art->end; i++) {
         s->spin[i] = mean(s->before->joints.spin[i], s->after->joints.spin[i]);
         s->velocity[i] = mean(s->before->velocity[i], s->after->velocity[i]);
     }
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_vec3 *f = &s->force[himc_stick_segment((himc_hand)hand)];
-        *f = himc_vec3_add(*f, forces->tip_force[hand]);
+    for (int k = 0; k < forces->contacts; k++) {
+        himc_vec3 *f = &s->force[forces->contact[k].segment];
+        *f = himc_vec3_add(*f, forces->contact[k].force);
     }
 }
 
@@ -88,15 +87,13 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
     for (int i = art->end - 1; i > 0; i--) {
         himc_vec3 relative = himc_vec3_sub(s.spin[i], s.spin[skeleton->segment[i].parent]);
         work->joint[i - 1] += h * himc_vec3_dot(forces->torque[i - 1], relative);
-        work->push += h * (himc_vec3_dot(forces->push[i], s.velocity[i]) +
-                           himc_vec3_dot(forces->turn[i], s.spin[i]));
         work->numerical += h * numerical_power(&s, i, joint);
     }
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        int i = himc_stick_segment((himc_hand)hand);
-        himc_vec3 tip = himc_mat3_apply(&before->joints.rotation[i], skeleton->tip);
-        work->contact[hand] +=
-            h * himc_vec3_dot(forces->tip_force[hand], point_velocity(&s, i, tip));
+    for (int k = 0; k < forces->contacts; k++) {
+        const world_contact *c = &forces->contact[k];
+        himc_vec3 at = himc_mat3_apply(&before->joints.rotation[c->segment], c->at);
+        if (c->work)
+            *c->work += h * himc_vec3_dot(c->force, point_velocity(&s, c->segment, at));
     }
 }
 

@@ -7,18 +7,17 @@
 /// Since the sums began (J).
 typedef struct himc_body_work {
     double joint[HIMC_JOINTS];  ///< of each joint's torque
-    double contact[HIMC_HANDS]; ///< of the forces on the tips
-    double push;                ///< of the forces on centres of mass
+    double contact[HIMC_HANDS]; ///< of the forces on the tips, from their world_contact
+    double push;                ///< of the other contacts with the world, from theirs
     double placed;              ///< energy given by putting the body elsewhere
     double numerical;           ///< given by the integrator
 } himc_body_work;
 
-/// The forces of one step, by their sources (world frame).
+/// The forces of one step, by their sources.
 typedef struct himc_step_forces {
-    const himc_vec3 *torque;    ///< of each joint on its child (N m) (HIMC_JOINTS)
-    const himc_vec3 *tip_force; ///< (N) (HIMC_HANDS)
-    const himc_vec3 *push;      ///< on segments (N) (HIMC_SEGMENTS) ...
-    const himc_vec3 *turn;      ///< ... and their moments about the centres of mass (N m)
+    const himc_vec3 *torque;      ///< of each joint on its child (world frame, N m) (HIMC_JOINTS)
+    const world_contact *contact; ///< (contacts)
+    int contacts;
 } himc_step_forces;
 
 /// Adds the work of a step of `h` seconds that led from `before`, of which spins, rotations and

@@ -171,7 +171,7 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
             art->inverse[i] = inverse(&own[i].j);
         }
         eliminate(art, i, &own[i]);
-        if (p == HIMC_PELVIS)
+        if (skeleton->segment[p].joint == HIMC_JOINT_FIXED)
             continue;
         add_to_parent(art, i, &own[p]);
         if (resistance)
@@ -205,7 +205,7 @@ static void sum_loads(const himc_skeleton *skeleton, const himc_articulation *ar
         int p = skeleton->segment[i].parent;
         himc_vec3 n = load[i].moment, gap = load[i].gap;
         alpha[i] = himc_vec3_scale(himc_symmetric_apply(&art->inverse[i], n), -1);
-        if (p == HIMC_PELVIS)
+        if (skeleton->segment[p].joint == HIMC_JOINT_FIXED)
             continue;
         himc_vec3 force = himc_vec3_add(load[i].force, himc_symmetric_apply(&art->mass[i], gap));
         force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->response[i], n));

@@ -9,6 +9,7 @@
 
 typedef struct motion {
     himc_vec3 angular, linear; // acceleration of the segment, and of its joint
+    himc_vec3 force, moment;   // that its children need
 } motion;
 
 static inline himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_vec3 spin,
@@ -26,8 +27,9 @@ static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = skeleton->segment[i].parent;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
-        m[i].angular = relative ? himc_vec3_add(m[p].angular, relative[i - 1]) : m[p].angular;
-        m[i].linear = add_centripetal(m[p].linear, m[p].angular, spin[p], r);
+        himc_vec3 linear = add_centripetal(m[p].linear, m[p].angular, spin[p], r);
+        himc_vec3 angular = himc_vec3_add(m[p].angular, relative[i - 1]);
+        m[i] = (motion){angular, linear, {0, 0, 0}, {0, 0, 0}};
     }
 }
 
@@ -36,7 +38,6 @@ static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s
                          const himc_vec3 *spin, himc_vec3 torque[HIMC_JOINTS])
 {
     motion m[HIMC_SEGMENTS];
-    himc_vec3 force[HIMC_SEGMENTS] = {{0, 0, 0}}, moment[HIMC_SEGMENTS] = {{0, 0, 0}};
     outwards(skeleton, s, relative, spin, m);
     for (int i = HIMC_SEGMENTS - 1; i > 0; i--) {
         const himc_segment *segment = &skeleton->segment[i];
@@ -49,12 +50,12 @@ static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s
         himc_vec3 rotational = himc_symmetric_apply(&inertia, m[i].angular);
         rotational = himc_vec3_add(rotational, himc_vec3_cross(spin[i], l));
         himc_vec3 n = himc_vec3_add(rotational, himc_vec3_cross(c, own));
-        himc_vec3 f = himc_vec3_add(force[i], own);
-        int p = segment->parent;
-        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
-        n = torque[i - 1] = himc_vec3_add(moment[i], n);
-        force[p] = himc_vec3_add(force[p], f);
-        moment[p] = himc_vec3_add(moment[p], himc_vec3_add(n, himc_vec3_cross(r, f)));
+        himc_vec3 f = himc_vec3_add(m[i].force, own);
+        motion *parent = &m[segment->parent];
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[segment->parent]);
+        n = torque[i - 1] = himc_vec3_add(m[i].moment, n);
+        parent->force = himc_vec3_add(parent->force, f);
+        parent->moment = himc_vec3_add(parent->moment, himc_vec3_add(n, himc_vec3_cross(r, f)));
     }
 }
 
@@ -69,8 +70,8 @@ void himc_add_force(const himc_skeleton *skeleton, const himc_body_state *s, int
 void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
                            const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
 {
-    static const himc_vec3 no_spin[HIMC_SEGMENTS];
-    find_torques(skeleton, s, NULL, relative, still ? no_spin : s->spin, torque);
+    static const himc_vec3 none[HIMC_SEGMENTS];
+    find_torques(skeleton, s, NULL, relative ? relative : none, still ? none : s->spin, torque);
 }
 
 void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *s,

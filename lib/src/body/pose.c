@@ -32,10 +32,10 @@ static void complete_tips(const himc_skeleton *skeleton, himc_body_state *s)
 
 void himc_body_state_complete(const himc_skeleton *skeleton, himc_body_state *s)
 {
-    s->origin[0] = skeleton->root;
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         s->rotation[i] = himc_mat3_from_quat(s->orientation[i]);
+        s->origin[i] = segment->origin; // the root's, in the world
         if (segment->parent >= 0)
             s->origin[i] =
                 himc_vec3_add(s->origin[segment->parent],

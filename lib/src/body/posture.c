@@ -85,7 +85,8 @@
 static void seat_legs(himc_pose *rest, const himc_skeleton *skeleton)
 {
     double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length;
-    double drop = skeleton->root.z - skeleton->segment[HIMC_LEFT_LOWER_LEG].length - ANKLE_HEIGHT;
+    double drop = skeleton->segment[HIMC_PELVIS].origin.z -
+                  skeleton->segment[HIMC_LEFT_LOWER_LEG].length - ANKLE_HEIGHT;
     double raise = acos(fmin(fmax(drop / thigh, THIGH_LIMIT), 1));
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_quat apart =
@@ -245,7 +246,7 @@ static arm arm_of(const himc_posture *posture, himc_hand hand)
              .raise = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_WRIST + hand],
              .aside = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_ASIDE + hand] *
                       (hand == HIMC_LEFT ? 1 : -1)};
-    himc_vec3 waist = himc_vec3_add(posture->skeleton.root, segment[HIMC_TRUNK].origin);
+    himc_vec3 waist = himc_skeleton_waist(&posture->skeleton);
     a.shoulder =
         himc_vec3_add(waist, himc_quat_rotate(a.trunk, segment[HIMC_LEFT_UPPER_ARM + hand].origin));
     return a;
@@ -413,7 +414,8 @@ double himc_posture_capsules(const himc_posture *posture, const himc_vec3 tip[HI
                              himc_capsule capsule[HIMC_SEGMENTS])
 {
     const himc_segment *s = posture->skeleton.segment;
-    himc_vec3 root = posture->skeleton.root, waist = himc_vec3_add(root, s[HIMC_TRUNK].origin);
+    himc_vec3 root = posture->skeleton.segment[HIMC_PELVIS].origin,
+              waist = himc_vec3_add(root, s[HIMC_TRUNK].origin);
     himc_quat trunk = trunk_of(&posture->trunk_posture);
     himc_vec3 up = himc_quat_rotate(trunk, himc_vec3_make(0, 0, 1));
     himc_vec3 top = himc_vec3_madd(waist, s[HIMC_TRUNK].length, up);
@@ -469,7 +471,8 @@ himc_vec3 himc_posture_reachable(const himc_posture *posture, himc_hand hand, hi
         return tip;
     // bisection on the line from a point in reach of every body
     double side = posture->skeleton.segment[HIMC_LEFT_UPPER_ARM + hand].origin.y;
-    double seat = posture->skeleton.root.z, high = HIGHEST_IMPACT * posture->skeleton.height;
+    double seat = posture->skeleton.segment[HIMC_PELVIS].origin.z,
+           high = HIGHEST_IMPACT * posture->skeleton.height;
     double level = fmin(fmax(posture->level, seat + LOWEST_IMPACT), seat + high);
     himc_vec3 from = {REACHED_AHEAD * posture->skeleton.height, 0.5 * side, level + REACHED_ABOVE};
     himc_vec3 line = himc_vec3_sub(tip, from);

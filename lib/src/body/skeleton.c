@@ -205,6 +205,7 @@ static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_co
     double scale = c->height / DE_LEVA_HEIGHT;
     bool stick = r.length == 0;
     s->parent = r.parent;
+    s->joint = r.parent < 0 ? HIMC_JOINT_FIXED : HIMC_JOINT_BALL;
     s->axis = himc_vec3_make(r.axis[0], r.axis[1], r.axis[2]);
     s->radius = stick ? r.radius : r.radius * scale;
     s->length = c->length[i] > 0 ? c->length[i] : r.length * scale;
@@ -238,7 +239,7 @@ bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *con
     merge_trunk(&skeleton->segment[HIMC_TRUNK]);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         build_stick(&skeleton->segment[HIMC_LEFT_STICK + hand], skeleton->tip, config);
-    skeleton->root = himc_vec3_make(0, 0, himc_skeleton_seat(config));
+    skeleton->segment[HIMC_PELVIS].origin = himc_vec3_make(0, 0, himc_skeleton_seat(config));
     return true;
 }
 

@@ -38,9 +38,8 @@ static himc_vec3 closing(const himc_articulation *art, const segment_states *s,
                          const himc_vec3 *velocity, int i, int p, double erp, double h)
 {
     const himc_body_state *b = &s->joints;
-    himc_vec3 r = art->lever[i];
-    himc_vec3 gap = himc_vec3_sub(himc_vec3_add(b->origin[p], r), b->origin[i]);
-    himc_vec3 there = himc_vec3_add(velocity[p], himc_vec3_cross(b->spin[p], r));
+    himc_vec3 gap = himc_vec3_sub(himc_vec3_add(b->origin[p], art->lever[i]), b->origin[i]);
+    himc_vec3 there = himc_vec3_add(velocity[p], himc_vec3_cross(b->spin[p], art->lever[i]));
     himc_vec3 rate = himc_vec3_sub(there, velocity[i]);
     return himc_vec3_scale(himc_vec3_madd(rate, erp / h, gap), 1 / h);
 }

@@ -18,6 +18,14 @@ typedef struct segment_forces {
     himc_vec3 torque[HIMC_SEGMENTS]; ///< about the centre of mass (N m)
 } segment_forces;
 
+/// A contact with the world in one step: a force on a segment.
+typedef struct world_contact {
+    int segment;     ///< 1 .. HIMC_SEGMENTS - 1
+    himc_vec3 at;    ///< where it acts, in the segment's frame (m)
+    himc_vec3 force; ///< in the world frame (N)
+    double *work;    ///< takes its work if the body's is added up (J); NULL: none does
+} world_contact;
+
 /// Moment of the implicit gyroscopic term of a segment (world frame, N m): of its inertia in the
 /// world and about its own axes, and its spin, in a step of `h` seconds.
 HIMC_RT himc_vec3 himc_gyroscopic_moment(const himc_symmetric *inertia, himc_vec3 own,

@@ -37,8 +37,8 @@ static double bounded(double x, double low, double high)
 static void look_at(const himc_posture *posture, himc_vec3 place, himc_trunk_posture *goal)
 {
     const himc_segment *s = posture->skeleton.segment;
-    double height = posture->skeleton.root.z + s[HIMC_TRUNK].origin.z + s[HIMC_NECK].origin.z +
-                    s[HIMC_NECK].length;
+    double height = posture->skeleton.segment[HIMC_PELVIS].origin.z + s[HIMC_TRUNK].origin.z +
+                    s[HIMC_NECK].origin.z + s[HIMC_NECK].length;
     double aside = atan2(place.y, place.x), far = hypot(place.x, place.y);
     double down = atan2(height - place.z, far) - goal->value[HIMC_TRUNK_POSTURE_LEAN];
     double turn = aside - goal->value[HIMC_TRUNK_POSTURE_TURN];

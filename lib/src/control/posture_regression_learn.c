@@ -85,7 +85,7 @@ himc_vec3 himc_posture_regression_tip(const himc_skeleton *skeleton, const himc_
     himc_vec3 x = skeleton->tip;
     for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
         x = himc_vec3_add(skeleton->segment[i].origin, himc_quat_rotate(pose->joint[i - 1], x));
-    return himc_vec3_add(skeleton->root, x);
+    return himc_vec3_add(skeleton->segment[HIMC_PELVIS].origin, x);
 }
 
 static void fit_hand(himc_posture_regression_player *player,
@@ -153,7 +153,7 @@ bool himc_posture_regression_fit(himc_posture_regression_player *player,
             return false;
     for (int j = 0; j < HIMC_JOINTS; j++)
         player->mean.joint[j] = mean_rotation(take, count, j);
-    player->waist = himc_vec3_add(take->skeleton->root, take->skeleton->segment[HIMC_TRUNK].origin);
+    player->waist = himc_skeleton_waist(take->skeleton);
     player->trunk = true;
     for (int n = 0; n < count; n++)
         player->trunk = player->trunk && !take[n].unseen_trunk;

@@ -45,7 +45,11 @@ void himc_setpoint_at(const himc_setpoint_course *course, double time, himc_refe
     himc_posture_motion *out = &reference->posture;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         reference->tip[hand] = himc_quintic_at(&course->tip[hand], t);
-    *out = course->posture;
+    for (int j = HIMC_MOVING_JOINTS; j < HIMC_JOINTS; j++) {
+        out->joint[j] = course->posture.joint[j];
+        out->rate[j] = course->posture.rate[j];
+        out->acceleration[j] = course->posture.acceleration[j];
+    }
     joint_states now;
     himc_joint_courses_at(&course->joints, &powers, &now);
     for (int j = 0; j < HIMC_MOVING_JOINTS; j++) {

@@ -105,8 +105,9 @@ void himc_body_place(performance_body *b, const himc_setpoint *at)
 
 void himc_body_seat(performance_body *b, double height)
 {
-    if (b->skeleton.root.z != height && himc_character_seat(b->character, height))
-        b->skeleton.root.z = b->plant.root.z = height;
+    if (b->skeleton.segment[HIMC_PELVIS].origin.z != height &&
+        himc_character_seat(b->character, height))
+        b->skeleton.segment[HIMC_PELVIS].origin.z = b->plant.segment[HIMC_PELVIS].origin.z = height;
 }
 
 void himc_body_take_up(performance_body *b)
@@ -253,12 +254,15 @@ himc_vec3 himc_body_pushed_at(const performance_body *b, int segment, double t)
 
 bool himc_body_simulate(performance_body *b, double t, double h)
 {
-    for (int i = 0; t < b->push_end && i < HIMC_SEGMENTS; i++) {
-        himc_vec3 away = himc_vec3_sub(himc_body_pushed_at(b, i, t), b->plant.segment[i].center);
-        himc_character_push(b->character, i, himc_body_pushed(b, i, t),
-                            himc_mat3_apply(&b->state.rotation[i], away));
-    }
-    return himc_character_step(b->character, b->torque, b->tip_force, h);
+    world_contact contact[HIMC_SEGMENTS + HIMC_HANDS];
+    int n = 0;
+    for (int i = HIMC_SEGMENTS - 1; t < b->push_end && i > 0; i--)
+        if (t < b->push[i].until)
+            contact[n++] = (world_contact){i, b->push[i].at, b->push[i].force, &b->work.push};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        contact[n++] = himc_tip_contact(&b->plant, (himc_hand)hand, b->tip_force[hand],
+                                        &b->work.contact[hand]);
+    return himc_character_step(b->character, b->torque, contact, n, h);
 }
 
 void himc_body_account(performance_body *b, bool on)

@@ -98,7 +98,7 @@ void himc_motion_replan(performance_motion *m)
 
 void himc_motion_seat(performance_motion *m, double height)
 {
-    m->body.posture.skeleton.root.z = height;
+    m->body.posture.skeleton.segment[HIMC_PELVIS].origin.z = height;
 }
 
 bool himc_motion_rests_elsewhere(const performance_motion *m)

@@ -59,7 +59,7 @@ static void fit_stool(performance_motion *motion, performance_body *body,
         highest = fmax(highest, level);
     }
     himc_body_seat(body, himc_posture_seat(&s->skeleton, lowest, highest));
-    himc_motion_seat(motion, body->skeleton.root.z);
+    himc_motion_seat(motion, body->skeleton.segment[HIMC_PELVIS].origin.z);
 }
 
 // body and motion begin together, at the targets of `t`

@@ -94,7 +94,7 @@ static arm arm_of(const himc_skeleton *skeleton, const himc_pose *pose, himc_han
 {
     arm a;
     himc_quat turned = pose->joint[HIMC_TRUNK - 1];
-    himc_vec3 at = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    himc_vec3 at = himc_skeleton_waist(skeleton);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
         at = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->segment[j + 1].origin));
@@ -273,7 +273,7 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
 
 static void bend_arm(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip, himc_pose *pose)
 {
-    himc_vec3 waist = himc_vec3_add(skeleton->root, skeleton->segment[HIMC_TRUNK].origin);
+    himc_vec3 waist = himc_skeleton_waist(skeleton);
     himc_vec3 up = skeleton->segment[himc_arm_joint(hand, 0) + 1].origin;
     himc_vec3 shoulder = himc_vec3_add(waist, himc_quat_rotate(pose->joint[HIMC_TRUNK - 1], up));
     himc_target asked = {.x = tip};

@@ -37,8 +37,7 @@ static void print_js(const himc_skeleton *k)
            "export const segments = [\n");
     for (int i = 0; i < HIMC_SEGMENTS; i++)
         print_segment(k, i);
-    printf("];\nexport const root = [%.6f, %.6f, %.6f]; // the pelvis\n", k->root.x, k->root.y,
-           k->root.z);
+    printf("];\n");
     printf("export const tip = %.6f; // of the stick, below its joint\n", -k->tip.z);
     printf("export const malletRadius = %.6f;\n", k->mallet_radius);
 }
@@ -54,11 +53,11 @@ static int children(const himc_skeleton *k, int parent, int from)
 static void print_body(const himc_skeleton *k, int i)
 {
     const himc_segment *s = &k->segment[i];
-    himc_vec3 at = i ? s->origin : k->root;
     printf("<body name=\"%s\" pos=\"%.6f %.6f %.6f\">%s<inertial pos=\"%.9f %.9f %.9f\" "
            "mass=\"%.9f\" diaginertia=\"%.9e %.9e %.9e\"/>\n",
-           himc_segment_name(i), at.x, at.y, at.z, i ? "<joint type=\"ball\"/>" : "", s->center.x,
-           s->center.y, s->center.z, s->mass, s->inertia.x, s->inertia.y, s->inertia.z);
+           himc_segment_name(i), s->origin.x, s->origin.y, s->origin.z,
+           s->joint == HIMC_JOINT_BALL ? "<joint type=\"ball\"/>" : "", s->center.x, s->center.y,
+           s->center.z, s->mass, s->inertia.x, s->inertia.y, s->inertia.z);
     for (int c = children(k, i, 0); c < HIMC_SEGMENTS; c = children(k, i, c + 1))
         print_body(k, c);
     puts("</body>");
