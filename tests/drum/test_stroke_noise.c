@@ -204,9 +204,38 @@ static void test_a_second_row_is_the_same_wherever_it_paused(void)
     TEST_ASSERT_EQUAL_MEMORY(two[0], two[1], sizeof two[0]);
 }
 
+// largest second difference of samples `from` .. `to` - 1 of the sound
+static double kink(int from, int to)
+{
+    static double x[LENGTH];
+    double most = 0;
+    himc_drum_read(drum, 0, LENGTH, x, NULL);
+    for (int i = from; i < to; i++)
+        most = fmax(most, fabs(x[i + 1] - 2 * x[i] + x[i - 1]));
+    return most;
+}
+
+// the noise moves with the pickup, not at once
+static void test_a_pickup_that_moves_while_noise_sounds_makes_no_click(void)
+{
+    static const char *const move[] = {"pickup air 0 0 0.3", "pickup 0.1 0.1"};
+    const int at = LENGTH / 4;
+    for (int k = 0; k < 2; k++) {
+        tearDown();
+        setUp();
+        TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, 0.2, 0.05, 4, &error));
+        advance(at);
+        says(move[k]);
+        advance(LENGTH - at);
+        // the sound there is up to 4 times as loud, and has more of the high modes
+        TEST_ASSERT_TRUE(kink(at - 10, at + 10) < 4 * kink(at - 400, at - 10));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_pickup_that_moves_while_noise_sounds_makes_no_click);
     RUN_TEST(test_noise_0_leaves_the_head_alone);
     RUN_TEST(test_noise_decays_in_the_lowest_octave_as_it_should_and_faster_above);
     RUN_TEST(test_hard_mallets_and_fast_blows_have_more_noise_for_their_force);

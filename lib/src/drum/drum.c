@@ -21,7 +21,8 @@
 #define RUN_BLOCK 64         // samples of a pass of the free head; chosen: bank.c's
 #define WATCHED HIMC_PICKUPS // index of the ring of displacements
 #define NOISE_UNIT (100 / HIMC_PICKUP_PRESSURE) // the noise was fitted where 1.0 was 100 Pa
-#define LEVEL_RAMP 0.010 // (s) of the head's own sound from on to off; chosen: no click
+#define LEVEL_RAMP 0.010  // (s) of the head's own sound from on to off; chosen: no click
+#define NOISE_MOVES 400.0 // of a pickup's nearness to noise (1/m in a second); chosen: no click
 #define METRES_PER_INCH 0.0254
 #define FIRST_WATCHED (-0.75) // x per radius: where strokes `normal` land
 
@@ -76,6 +77,20 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     return himc_drum_new_of(&settings, error);
 }
 
+static double nearness(const himc_pickup *pickup)
+{
+    return pickup->kind == HIMC_PICKUP_AIR ? 1 / pickup->distance : 0;
+}
+
+// without noise the pickups are where they are
+static void settle_noise(himc_drum *drum)
+{
+    int count;
+    const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
+    for (int k = 0; k < count && !drum->noise.sounds; k++)
+        drum->nearness[k] = nearness(&pickups[k]);
+}
+
 himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error)
 {
     himc_membrane *membrane =
@@ -95,6 +110,7 @@ himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *erro
     drum->rate = settings->head.rate;
     drum->noise = himc_stroke_noise_at(drum->rate);
     drum->noise.amount = settings->noise;
+    settle_noise(drum);
     drum->outside_x = FIRST_WATCHED * settings->place.radius;
     himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
     return drum;
@@ -163,6 +179,7 @@ bool himc_drum_set(himc_drum *drum, const himc_drum_settings *to, himc_model **m
                       memcmp(mallet, &to->mallet, sizeof *mallet) != 0;
     drum->set = *to;
     drum->noise.amount = to->noise;
+    settle_noise(drum);
     if (moves || exchanges)
         himc_drum_find_ways(drum);
     return true;
@@ -377,13 +394,22 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
     double noise[HIMC_NOISE_ROWS][RUN_BLOCK];
     int count;
     const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
-    if (!drum->noise.sounds && force == 0)
+    if (!drum->noise.sounds && force == 0) {
+        settle_noise(drum);
         return;
+    }
     bool rays = himc_membrane_config_of(drum->membrane)->rays;
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
     for (int k = 0; k < count && !himc_ears_alone(drum->ears); k++)
-        for (int i = 0; i < n && pickups[k].kind == HIMC_PICKUP_AIR; i++)
-            sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
+        for (int i = 0; i < n; i++) {
+            double *now = &drum->nearness[k], left = nearness(&pickups[k]) - *now;
+            double most = NOISE_MOVES / drum->rate;
+            *now += fmin(fmax(left, -most), most);
+            if (left != 0)
+                sound[k][i] += NOISE_UNIT * noise[0][i] * *now;
+            else if (pickups[k].kind == HIMC_PICKUP_AIR)
+                sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
+        }
     for (int k = 0; k < HIMC_RAYS && rays; k++)
         for (int i = 0; i < n; i++)
             sound[HIMC_PICKUPS + k][i] += NOISE_UNIT * noise[k == HIMC_RAY_RIGHT][i];
