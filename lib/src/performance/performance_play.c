@@ -6,6 +6,7 @@
 #include "capture/take.h"
 #include "plan/ornament.h"
 #include "plan/score.h"
+#include "plan/sticking.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -108,7 +109,7 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
         himc_events_note(
             &p->events, "%s at beat %g %s %s: no grace notes, the %s hand has another stroke there",
             himc_grace_name(own.ornament), own.beat, himc_hand_name(own.hand), own.drum,
-            himc_hand_name(own.hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT));
+            himc_hand_name(himc_other_hand(own.hand)));
 }
 
 /// Plays a hit; returns the time from the moment it was asked to its contact (s), infinite if it is

@@ -19,6 +19,7 @@
 #include "plan/bounce.h"
 #include "plan/planner_state.h"
 #include "plan/planner_roll.h"
+#include "plan/sticking.h"
 
 #define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
 
@@ -57,27 +58,17 @@ typedef struct addition {
     int drum, left_out;
 } addition;
 
-static void add(addition *to, const himc_stroke *stroke)
-{
-    himc_error unused;
-    to->left_out += himc_planner_score_room(&to->planner->score, stroke) < LEAST_ROOM ||
-                    !himc_planner_add(to->planner, stroke, to->drum, &unused);
-}
-
-/// Moves a written point to the hand's own side of it, unless that leads off the head.
-static void move_beside(const himc_head_frame *head, himc_stroke *grace)
-{
-    double y = grace->y + (grace->hand == HIMC_LEFT ? BESIDE : -BESIDE);
-    if (grace->spot == HIMC_SPOT_XY && hypot(grace->x, y) <= OUTERMOST * head->radius)
-        grace->y = y;
-}
-
 /// A grace note, or two: the second is a bounce.
 static void add_grace(addition *to, const himc_stroke *stroke, double early, double bounce_time)
 {
     himc_stroke grace = *stroke;
-    grace.hand = stroke->hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
-    move_beside(&to->planner->drum[to->drum], &grace);
+    himc_error unused;
+    grace.hand = himc_other_hand(stroke->hand);
+    // a written point is moved to the hand's own side of it, unless that leads off the head
+    double y = grace.y + (grace.hand == HIMC_LEFT ? BESIDE : -BESIDE);
+    if (grace.spot == HIMC_SPOT_XY &&
+        hypot(grace.x, y) <= OUTERMOST * to->planner->drum[to->drum].radius)
+        grace.y = y;
     double speed = GRACE_SPEED * himc_gesture_of(stroke->nuance, stroke->dynamic).speed;
     if (stroke->nuance != HIMC_STACCATO)
         grace.nuance = HIMC_LEGATO;
@@ -86,7 +77,8 @@ static void add_grace(addition *to, const himc_stroke *stroke, double early, dou
     grace.early = early;
     grace.bounces = bounce_time > 0;
     grace.bounce_time = bounce_time;
-    add(to, &grace);
+    to->left_out += himc_planner_score_room(&to->planner->score, &grace) < LEAST_ROOM ||
+                    !himc_planner_add(to->planner, &grace, to->drum, &unused);
 }
 
 static void add_graces(addition *to, const himc_stroke *stroke)

@@ -75,30 +75,6 @@ static void rebase(himc_planner *planner, double t)
     }
 }
 
-/// A stroke has been put into the hand's score at `index`: later ones move up by one.
-static void inserted(himc_planner *planner, himc_hand hand, int index)
-{
-    planner_hand *h = &planner->hand[hand];
-    for (int i = 0; i < h->planned_count; i++)
-        h->planned[i].index += !h->planned[i].roll && h->planned[i].index >= index;
-}
-
-/// A roll has been put into the score at that index.
-static void roll_inserted(himc_planner *planner, int roll)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            planner->hand[hand].planned[i].roll += planner->hand[hand].planned[i].roll > roll;
-}
-
-/// The planned strokes of a hand are no longer in its score.
-static void detach(himc_planner *planner, himc_hand hand)
-{
-    planner_hand *h = &planner->hand[hand];
-    for (int i = 0; i < h->planned_count; i++)
-        h->planned[i].index = -1, h->planned[i].roll = 0;
-}
-
 /// End of the last contact or bounce that waits or is planned (s); -infinity if there is none.
 static double last_contact(const himc_planner *planner)
 {
@@ -325,7 +301,9 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     double anchor = running ? before_change(planner, t) : 0;
     bool first = score->part[stroke->hand].count == 0;
     himc_planner_score_insert(score, at, stroke, drum);
-    inserted(planner, stroke->hand, at);
+    planner_hand *h = &planner->hand[stroke->hand];
+    for (int i = 0; i < h->planned_count; i++) // later ones move up by one
+        h->planned[i].index += !h->planned[i].roll && h->planned[i].index >= at;
     himc_planner_rest_again(planner);
     if (!running)
         return true;
@@ -366,7 +344,9 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     int at = himc_planner_roll_insert(score, roll, drum, rate, error);
     if (at < 0)
         return -1;
-    roll_inserted(planner, at);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int i = 0; i < planner->hand[hand].planned_count; i++)
+            planner->hand[hand].planned[i].roll += planner->hand[hand].planned[i].roll > at;
     for (int i = at > 1 ? at - 2 : 0; i <= at; i++) {
         const planner_roll *by = himc_planner_roll_cut_by(score, i);
         if (by)
@@ -445,15 +425,6 @@ static double part_time(const planner_score *score, const planner_part *part, in
                            : HUGE_VAL;
 }
 
-/// Time of the last stroke of the hand that has been looked at (s).
-static double last_look(const himc_planner *planner, himc_hand hand)
-{
-    int index;
-    double to = himc_planner_looked_to(planner, hand, &index),
-           time = part_time(&planner->score, &planner->score.part[hand], index);
-    return fmin(time, to);
-}
-
 /// True if a hand that has struck nothing waits over the same drum with the strokes of `fresh`.
 static bool rests_the_same(const himc_planner *planner, himc_hand hand, const planner_score *fresh)
 {
@@ -479,10 +450,12 @@ static bool may_exchange(const himc_planner *planner, himc_hand hand, const plan
         return false;
     if (same == index && time < to)
         return false;
-    // variation depends on the time to the neighbours in both hands
-    for (int i = 0; i < HIMC_HANDS && planner->human.amount > 0; i++)
-        if (time < last_look(planner, (himc_hand)i) + NEIGHBOUR_TIME)
+    // variation depends on the time to the neighbours in both hands: to the last ones looked at
+    for (int i = 0; i < HIMC_HANDS && planner->human.amount > 0; i++) {
+        to = himc_planner_looked_to(planner, (himc_hand)i, &index);
+        if (time < fmin(part_time(score, &score->part[i], index), to) + NEIGHBOUR_TIME)
             return false;
+    }
     return true;
 }
 
@@ -521,9 +494,11 @@ void himc_planner_clear(himc_planner *planner)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_planner_cut(planner, (himc_hand)hand, t);
         himc_planner_score_clear(&planner->score, (himc_hand)hand);
-        planner->hand[hand].struck = false;
-        planner->hand[hand].waiting_count = 0;
-        detach(planner, (himc_hand)hand);
+        planner_hand *h = &planner->hand[hand];
+        h->struck = false;
+        h->waiting_count = 0;
+        for (int i = 0; i < h->planned_count; i++) // they are no longer in the score
+            h->planned[i].index = -1, h->planned[i].roll = 0;
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     himc_planner_score_seek(score, 0);

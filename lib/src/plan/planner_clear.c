@@ -19,6 +19,7 @@
 /// on the speed of the machine. A plan that changes before the walk's place lets the walk begin
 /// again; lifts and other ways that have been found stay with their stroke.
 #include "plan/planner_state.h"
+#include "plan/sticking.h"
 
 #include <string.h>
 
@@ -78,12 +79,6 @@ static planner_rehearsal begin_walk(double t)
         .t = t, .after = -1, .met = true, .near = {0, HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0}};
 }
 
-static bool is_crossed(const himc_vec3 tip[HIMC_HANDS])
-{
-    himc_vec3 left = tip[HIMC_LEFT], right = tip[HIMC_RIGHT];
-    return left.x * right.y - left.y * right.x > CROSSED * hypot(left.x, left.y);
-}
-
 /// The part of a lift at t that is done (0 .. 1), as himc_hand_lift has it.
 static double lifted(const planner_lift *l, double t)
 {
@@ -93,19 +88,11 @@ static double lifted(const planner_lift *l, double t)
     return u * u * u * (10 - u * (15 - 6 * u));
 }
 
-/// Where the hand touches next, if that is soon; else its tip.
-static himc_vec3 next_place(const planner_hand *h, double t, himc_vec3 tip)
-{
-    const timed_stroke *s = himc_planner_current_planned(h, t);
-    bool soon = s && s->goal.time >= t && s->goal.time < t + PLACE_AHEAD;
-    return soon ? s->goal.spot : tip;
-}
-
 /// Both hands at a moment.
 typedef struct moment {
     double time, after;          // the moment before (s); negative: it is the first
     himc_vec3 tip[HIMC_HANDS];   // (m)
-    himc_vec3 place[HIMC_HANDS]; // of the next touch, or the tip (m)
+    himc_vec3 place[HIMC_HANDS]; // of the next touch, if that is soon, or the tip (m)
     const planner_hand *hand;    // their plans ...
     const planner_lift *lift;    // ... and a lift of one; NULL: the tips stay
 } moment;
@@ -126,17 +113,11 @@ static moment moment_at(const planner_rehearsal *walk, const planner_lift *lift,
     moment m = {.time = walk->t, .after = walk->after, .hand = hand, .lift = lift};
     for (int i = 0; i < HIMC_HANDS; i++) {
         m.tip[i] = tip_at(&m, (himc_hand)i, walk->t);
-        m.place[i] = next_place(&hand[i], walk->t, m.tip[i]);
+        const timed_stroke *s = himc_planner_current_planned(&hand[i], walk->t);
+        bool soon = s && s->goal.time >= walk->t && s->goal.time < walk->t + PLACE_AHEAD;
+        m.place[i] = soon ? s->goal.spot : m.tip[i];
     }
     return m;
-}
-
-/// The trunk by `time` (s), in steps of a tick.
-static void move_trunk(planner_rehearsal *r, double time)
-{
-    int steps = (int)ceil(time / TRUNK_STEP);
-    for (int i = 0; i < steps; i++)
-        r->trunk = himc_trunk_posture_approach(&r->trunk, &r->goal, time / steps);
 }
 
 /// One step of the avoidance, if it is due; the work.
@@ -167,7 +148,10 @@ static himc_clearance look(const himc_planned_body *b, const moment *at, planner
         r->avoidance = b->avoidance;
         r->since = b->time - b->avoided;
     }
-    move_trunk(r, at->after < 0 ? fmax(at->time - b->time, 0) : at->after);
+    double time = at->after < 0 ? fmax(at->time - b->time, 0) : at->after;
+    int steps = (int)ceil(time / TRUNK_STEP);
+    for (int i = 0; i < steps; i++)
+        r->trunk = himc_trunk_posture_approach(&r->trunk, &r->goal, time / steps);
     himc_posture then = b->posture;
     then.trunk_posture = r->trunk;
     himc_clearance clear = himc_avoidance_gaps(&r->avoidance, &then, &b->shells, at->tip);
@@ -207,7 +191,9 @@ bool himc_planner_meets_at(const himc_planner *planner, double t, himc_hand hand
 /// himc_clearance.
 static double lack_of(const himc_clearance *clear, const moment *at, int *order)
 {
-    double lack = NEAR_GAP - clear->sticks + (is_crossed(at->tip) ? CROSSED_GAP : 0);
+    himc_vec3 left = at->tip[HIMC_LEFT], right = at->tip[HIMC_RIGHT];
+    bool crossed = left.x * right.y - left.y * right.x > CROSSED * hypot(left.x, left.y);
+    double lack = NEAR_GAP - clear->sticks + (crossed ? CROSSED_GAP : 0);
     lack = fmax(lack, -fmin(clear->body, OVERREACH - clear->beyond));
     *order = clear->order;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -216,17 +202,6 @@ static double lack_of(const himc_clearance *clear, const moment *at, int *order)
             *order = hand == HIMC_LEFT ? 1 : -1;
         }
     return lack;
-}
-
-/// Notes what is near at a moment, for the time until the next one.
-static void note(near_time *n, double t, double after, double lack, int order)
-{
-    if (n->lack == 0)
-        n->from = t;
-    if (n->lack == 0 || n->order == 0)
-        n->order = order;
-    n->lack += after * lack;
-    n->to = t;
 }
 
 double himc_planner_least_gap(himc_clearance *clear, double speed_past)
@@ -260,9 +235,14 @@ static int walk_step(const himc_planner *planner, planner_rehearsal *walk, const
                            walk->t);
     walk->met = walk->met && gap < 0;
     if (at.time > ignored) {
-        walk->near.gap = walk->met ? walk->near.gap : fmin(walk->near.gap, gap);
-        if (lack > 0)
-            note(&walk->near, at.time, walk->after, lack, order);
+        near_time *n = &walk->near;
+        n->gap = walk->met ? n->gap : fmin(n->gap, gap);
+        if (lack > 0) { // until the next moment
+            n->from = n->lack == 0 ? at.time : n->from;
+            n->order = n->lack == 0 || n->order == 0 ? order : n->order;
+            n->lack += walk->after * lack;
+            n->to = at.time;
+        }
     }
     walk->t += walk->after;
     return clear.work;
@@ -274,11 +254,6 @@ static bool is_better(const near_time *a, const near_time *b)
 {
     double p = fmin(a->gap, SURE_GAP), q = fmin(b->gap, SURE_GAP);
     return p == q ? a->lack < b->lack : p > q;
-}
-
-static himc_hand other_hand(himc_hand hand)
-{
-    return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
 }
 
 static void try_nothing(planner_clear *c)
@@ -316,14 +291,6 @@ static himc_hand later_hand(const himc_planner *planner, const near_time *n)
                    himc_planner_touch_after(&planner->hand[HIMC_RIGHT], n->from - AT_TOUCH)
                ? HIMC_LEFT
                : HIMC_RIGHT;
-}
-
-/// Of hands over each other the upper one is lifted; else the one with more time.
-static himc_hand upper_hand(const himc_planner *planner, const near_time *n)
-{
-    if (n->order != 0)
-        return n->order > 0 ? HIMC_LEFT : HIMC_RIGHT;
-    return later_hand(planner, n);
 }
 
 /// Ways past the other hand: over it, over and outwards.
@@ -377,7 +344,7 @@ static double side_of(const himc_planner *planner, himc_hand hand, const timed_s
 {
     const himc_head_frame *head = &planner->drum[s->drum];
     himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
-    himc_target other = himc_hand_at(&planner->hand[other_hand(hand)].plan, s->goal.time);
+    himc_target other = himc_hand_at(&planner->hand[himc_other_hand(hand)].plan, s->goal.time);
     himc_vec3 tip = himc_head_frame_from_world(head, other.x);
     double side = at.y - tip.y;
     if (hypot(at.x - tip.x, side) > SAME_PLACE)
@@ -385,21 +352,6 @@ static double side_of(const himc_planner *planner, himc_hand hand, const timed_s
     if (fabs(side) < LEAST_SIDE)
         return hand == HIMC_LEFT ? 1 : -1;
     return copysign(1, side);
-}
-
-/// Whether the other hand may be asked to play the stroke.
-static bool may_pass_on(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
-{
-    return !s->reassigned && planner->clear.least.gap < 0 &&
-           himc_planner_reaches(planner, other_hand(hand), s->written.spot);
-}
-
-/// Whether the stroke may be left out: a leap to another drum, not one of a roll, where a gap would
-/// be worse than sticks that touch.
-static bool may_leave_out(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
-{
-    return planner->clear.least.gap < 0 &&
-           (s == planner->hand[hand].planned || s[-1].drum != s->drum);
 }
 
 /// The k-th way for the hand's stroke; false if it cannot be tried, or has been.
@@ -415,26 +367,35 @@ static bool make_way(himc_planner *planner, himc_hand hand, int k)
     way.touch = s->written.time;
     way.tried = k + 1;
     way.aside *= side_of(planner, hand, s);
+    bool meets = c->least.gap < 0;
+    bool other = way.other && meets && !s->reassigned &&
+                 himc_planner_reaches(planner, himc_other_hand(hand), s->written.spot);
+    // left out is a leap to another drum, not a stroke of a roll, where a gap would be worse than
+    // sticks that touch
+    bool leaves =
+        way.leaves && meets && (s == planner->hand[hand].planned || s[-1].drum != s->drum);
     if ((tried->touch == way.touch && k < tried->tried) ||
-        !(way.aside != 0 || way.waits || (way.other && may_pass_on(planner, hand, s)) ||
-          (way.leaves && may_leave_out(planner, hand, s))))
+        !(way.aside != 0 || way.waits || other || leaves))
         return false;
     c->way = way;
     return true;
 }
 
-/// First the lifts of either hand, then the ways of a stroke of either hand: that the other hand
+/// First the lifts of either hand (of hands over each other the upper one, else the one with more
+/// time), then the ways of a stroke of either hand: that the other hand
 /// plays it comes late, that it is left out last.
 static bool make_candidate(himc_planner *planner)
 {
     planner_clear *c = &planner->clear;
     int k = c->candidate, way = k - 2 * LIFT_TRIES, late = way - 2 * KEPT_WAYS;
-    himc_hand upper = upper_hand(planner, &c->plain), later = later_hand(planner, &c->plain);
+    himc_hand later = later_hand(planner, &c->plain), upper = c->plain.order > 0   ? HIMC_LEFT
+                                                              : c->plain.order < 0 ? HIMC_RIGHT
+                                                                                   : later;
     try_nothing(c);
     if (way < 0)
-        return make_lift(planner, k < LIFT_TRIES ? upper : other_hand(upper), k % LIFT_TRIES);
+        return make_lift(planner, k < LIFT_TRIES ? upper : himc_other_hand(upper), k % LIFT_TRIES);
     bool first = late < 0 ? way < KEPT_WAYS : late % 2 == 0;
-    return make_way(planner, first ? later : other_hand(later),
+    return make_way(planner, first ? later : himc_other_hand(later),
                     late < 0 ? way % KEPT_WAYS : KEPT_WAYS + late / 2);
 }
 
@@ -450,16 +411,6 @@ static bool goes_on(const himc_planner *planner)
            (c->least.gap < enough || (c->candidate < LIFT_TRIES && !due));
 }
 
-static void begin_search(planner_clear *c)
-{
-    c->searching = true;
-    c->trying = false;
-    c->plain = c->least = c->walk.near;
-    c->candidate = 0;
-    c->best_lift.end = 0;
-    c->best_way.touch = -HUGE_VAL;
-}
-
 static void say_meet(himc_planner *planner)
 {
     const near_time *n = &planner->clear.plain;
@@ -472,16 +423,6 @@ static void say_meet(himc_planner *planner)
                          himc_planner_name(planner, s, name));
     else
         himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
-}
-
-static bool lift_now(himc_planner *planner)
-{
-    const planner_lift *l = &planner->clear.best_lift;
-    planner_hand *h = &planner->hand[l->hand];
-    if (!(l->end > 0) || !himc_planner_lift_from(h, l, planner->now + LEAST_AHEAD))
-        return false;
-    h->lift = *l;
-    return true;
 }
 
 static void plan_way(himc_planner *planner, const planner_way *way)
@@ -510,6 +451,8 @@ static void try_way(himc_planner *planner)
 static void end_search(himc_planner *planner)
 {
     planner_clear *c = &planner->clear;
+    const planner_lift *lift = &c->best_lift;
+    planner_hand *h = &planner->hand[lift->hand];
     try_nothing(c);
     c->searching = false;
     c->searched = c->plain.to;
@@ -519,20 +462,10 @@ static void end_search(himc_planner *planner)
     if (c->best_way.touch > -HUGE_VAL) {
         plan_way(planner, &c->best_way);
         notice_change(planner);
-    } else if (lift_now(planner)) {
+    } else if (lift->end > 0 && himc_planner_lift_from(h, lift, planner->now + LEAST_AHEAD)) {
+        h->lift = *lift;
         walk_from(c, c->kept[1]);
     }
-}
-
-static void judge(planner_clear *c)
-{
-    c->trying = false;
-    c->candidate++;
-    if (!is_better(&c->trial_walk.near, &c->least))
-        return;
-    c->least = c->trial_walk.near;
-    c->best_lift = c->lift;
-    c->best_way = c->way;
 }
 
 /// Begins to try the next candidate; one that cannot be tried costs little.
@@ -567,8 +500,16 @@ static int try_on(himc_planner *planner)
     const planner_hand *hand = lifts ? planner->hand : c->with_way;
     double end = fmin(c->plain.to + (lifts ? BESIDE : AFTER_WAY), known_to(hand));
     int work = walk_step(planner, walk, &c->lift, hand, c->searched);
-    if (walk->t >= end || !is_better(&walk->near, &c->least))
-        judge(c);
+    bool better = is_better(&walk->near, &c->least);
+    if (better && walk->t < end)
+        return work;
+    c->trying = false;
+    c->candidate++;
+    if (better) {
+        c->least = walk->near;
+        c->best_lift = c->lift;
+        c->best_way = c->way;
+    }
     return work;
 }
 
@@ -582,7 +523,12 @@ static int walk_on(himc_planner *planner)
     bool near = c->walk.near.lack > 0;
     bool late = over && c->walk.near.from < planner->now + WAIT_FOR_MORE;
     if (near && (late || c->walk.t > c->walk.near.to + BESIDE)) {
-        begin_search(c);
+        c->searching = true;
+        c->trying = false;
+        c->plain = c->least = c->walk.near;
+        c->candidate = 0;
+        c->best_lift.end = 0;
+        c->best_way.touch = -HUGE_VAL;
         return 1;
     }
     if (over)

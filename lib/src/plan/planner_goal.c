@@ -166,15 +166,6 @@ void himc_planner_vary(const himc_planner *planner, timed_stroke *s)
         s->goal.time += v->late;
 }
 
-static himc_vec3 rest_over(const himc_planner *planner, himc_hand hand, int drum)
-{
-    const himc_head_frame *head = &planner->drum[drum];
-    double aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
-    himc_vec3 at = himc_planner_tip_at(planner, head, -REST_BACK * head->radius,
-                                       hand == HIMC_LEFT ? aside : -aside);
-    return himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
-}
-
 static double azimuth(const himc_head_frame *head)
 {
     return atan2(head->center.y, head->center.x);
@@ -187,24 +178,23 @@ static int own_drum(const himc_planner *planner, himc_hand hand)
     return h->struck ? h->drum : himc_planner_score_first_drum(score, hand, score->beat, h->drum);
 }
 
-/// The drum over which a hand rests: its own, but the hands do not rest crossed.
-static int rest_drum(const himc_planner *planner, himc_hand hand)
-{
-    int left = own_drum(planner, HIMC_LEFT), right = own_drum(planner, HIMC_RIGHT);
-    bool crossed = azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
-    return (hand == HIMC_LEFT) != crossed ? left : right;
-}
-
 static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_vec3 *place)
 {
-    *place = rest_over(planner, hand, drum);
+    const himc_head_frame *head = &planner->drum[drum];
+    double aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
+    himc_vec3 at = himc_planner_tip_at(planner, head, -REST_BACK * head->radius,
+                                       hand == HIMC_LEFT ? aside : -aside);
+    *place = himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
     return planner->known[drum] && himc_planner_reaches(planner, hand, *place);
 }
 
 himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand)
 {
     himc_vec3 place;
-    if (is_rest(planner, hand, rest_drum(planner, hand), &place))
+    // over its own drum, but the hands do not rest crossed
+    int left = own_drum(planner, HIMC_LEFT), right = own_drum(planner, HIMC_RIGHT);
+    bool crossed = azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
+    if (is_rest(planner, hand, (hand == HIMC_LEFT) != crossed ? left : right, &place))
         return place;
     for (int drum = 0; drum < HIMC_DRUMS; drum++)
         if (is_rest(planner, hand, drum, &place))

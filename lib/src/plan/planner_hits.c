@@ -213,20 +213,11 @@ static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hi
                        cost_of(HIMC_RIGHT, &c[HIMC_RIGHT], &c[HIMC_LEFT])
                    ? HIMC_LEFT
                    : HIMC_RIGHT;
-    himc_hand other = (himc_hand)(HIMC_HANDS - 1 - (int)best);
+    himc_hand other = himc_other_hand(best);
     if (c[other].late < c[best].late && (c[other].late == 0 || isinf(c[best].late)) && !hit->alone)
         best = other;
     *chosen = c[best];
     return best;
-}
-
-// once: who asked for a hand should know that it is not bound
-static void tell_hand(himc_planner *planner, himc_hand asked, himc_hand hand)
-{
-    if (asked != HIMC_HAND_ANY && asked != hand)
-        himc_planner_say(&planner->notes, PLANNER_OTHER_HAND,
-                         "hit %s: the %s hand plays it, which can be there in time",
-                         himc_hand_name(asked), himc_hand_name(hand));
 }
 
 static timed_stroke stroke_of(himc_planner *planner, const himc_hit *hit, himc_hand hand)
@@ -271,15 +262,6 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     return touch;
 }
 
-/// How long before its touch the last planned stroke may still change (s): one that falls already,
-/// and planned anew would be louder, not at all.
-static double gives_way_until(const planner_hand *h, double t)
-{
-    const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
-    bool soft = !last || lands_softly(h, t, &last->goal, last->goal.gesture.speed);
-    return soft ? GIVES_WAY : last->goal.time - t;
-}
-
 double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
 {
     chance chosen;
@@ -296,11 +278,20 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
     }
     if (chosen.reaches && chosen.late > 0)
         himc_planner_notes_hit(&planner->notes, t, chosen.late);
-    tell_hand(planner, hit->stroke->hand, hand);
+    // once: who asked for a hand should know that it is not bound
+    if (hit->stroke->hand != HIMC_HAND_ANY && hit->stroke->hand != hand)
+        himc_planner_say(&planner->notes, PLANNER_OTHER_HAND,
+                         "hit %s: the %s hand plays it, which can be there in time",
+                         himc_hand_name(hit->stroke->hand), himc_hand_name(hand));
     s.exact = true;
     s.goal.time += s.variation.late;
     s.latency = fmax(s.goal.time - t - GIVES_WAY, GIVES_WAY);
-    himc_planner_unplan(planner, hand, t, gives_way_until(&planner->hand[hand], t));
+    // the last planned stroke gives way, but not one that falls already, and planned anew would be
+    // louder
+    const planner_hand *h = &planner->hand[hand];
+    const timed_stroke *last = h->planned_count > 0 ? &h->planned[h->planned_count - 1] : NULL;
+    bool soft = !last || lands_softly(h, t, &last->goal, last->goal.gesture.speed);
+    himc_planner_unplan(planner, hand, t, soft ? GIVES_WAY : last->goal.time - t);
     himc_planner_cut(planner, hand, t);
     himc_planner_queue(planner, &s);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
@@ -361,13 +352,12 @@ void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_ve
 
 bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, himc_vec3 x, double at)
 {
-    planner_hand *h = &planner->hand[hand];
     if (!isfinite(t) || stroke_is_near(planner, hand, t) ||
         !himc_planner_reaches(planner, hand, x) || himc_planner_meets_at(planner, t, hand, x))
         return false;
     himc_planner_cut(planner, hand, t);
-    himc_hand_reach(&h->plan, x, at);
-    h->targeted = true;
+    himc_hand_reach(&planner->hand[hand].plan, x, at);
+    planner->hand[hand].targeted = true;
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
     return true;
 }

@@ -172,11 +172,6 @@ static himc_vec3 way_to(const planner_score *score, const planner_roll *from,
     return himc_vec3_sub(spot_of(score, stroke, drum), spot_of(score, &from->stroke, from->drum));
 }
 
-static himc_hand other_hand(himc_hand hand)
-{
-    return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
-}
-
 /// True if a hand on that way would cross the other one.
 static bool crosses(himc_hand hand, himc_vec3 way)
 {
@@ -230,7 +225,7 @@ static void listed_next(const planner_score *score, int i, int in_round, roll_ne
         int drum = listed[hand]->drum;
         bool trails = crosses(by, way_to(score, roll_of(score, i, by), s, drum));
         if (trails && !both)
-            by = other_hand(by);
+            by = himc_other_hand(by);
         const planner_roll *r = roll_of(score, i, by);
         if (time[hand] < next[by].time)
             next[by] = (roll_next){time[hand], leap_time(r, way_to(score, r, s, drum)), 2,
@@ -436,7 +431,7 @@ static roll_grid grid_of(const planner_score *score, int i, int in_round)
 
 static himc_hand hand_of(const roll_grid *g, int number)
 {
-    return number % 2 ? other_hand(g->lead) : g->lead;
+    return number % 2 ? himc_other_hand(g->lead) : g->lead;
 }
 
 /// The first number of a hand from that one on.
