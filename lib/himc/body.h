@@ -86,9 +86,9 @@ himc_skeleton_config himc_skeleton_default(void);
 /// Height of the hip joints above the floor for this config (m).
 double himc_skeleton_seat(const himc_skeleton_config *config);
 
-/// How a segment hangs on its parent.
+/// The freedoms of a segment on its parent.
 typedef enum himc_joint_kind {
-    HIMC_JOINT_FIXED, ///< not at all movable; the root, from the world to the pelvis
+    HIMC_JOINT_FIXED, ///< none; the root, from the world to the pelvis
     HIMC_JOINT_BALL   ///< three rotational freedoms; all other joints
 } himc_joint_kind;
 
@@ -323,7 +323,7 @@ HIMC_RT void himc_articulate(const himc_skeleton *skeleton, const himc_body_stat
 
 /// Forward dynamics: the relative accelerations (rad/s^2) of the joints under `torque` (N m)
 /// (HIMC_JOINTS), gravity and a force on each drumstick tip (N) (HIMC_HANDS; NULL for none).
-/// Only those of the articulation are written.
+/// Only the joints of the segments that the articulation has are written.
 HIMC_RT void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state *state,
                                    const himc_articulation *articulation, const himc_vec3 *torque,
                                    const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS]);

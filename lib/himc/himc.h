@@ -29,15 +29,16 @@
 ///
 ///     system       what operating systems do differently: sockets, names of files, threads
 ///     base         errors, files, vectors, the table and the parser of commands
-///     body         skeleton, pose, joint limits, dynamics
+///     body         skeleton, pose, joint limits, dynamics; what moves a hand (a source)
 ///     capture      motion captures and the player in them
-///     track        the trajectories of the drumstick tips, from a take
-///     plan         the same from a score
+///     track        a source: the trajectories of the drumstick tips, from a take
+///     plan         a source: the same from a score, hits and live targets
 ///     midi         a score made of a MIDI file
 ///     control      inverse kinematics and inverse dynamics
 ///     bank         many damped oscillators
-///     head         what a drumhead's modes are: membrane, air and kettle, uneven lugs, pickups
-///     drum         membrane, contact, stroke noise, ears, the air between drums
+///     head         kinds of instrument, a file each: modes, air and kettle, uneven lugs, pickups
+///     drum         a constant model, the membrane that moves, contact, stroke noise, ears, the air
+///                  between drums
 ///     performance  performer and drums under one sample clock
 ///     osc          the network
 #ifndef HIMC_H

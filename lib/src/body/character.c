@@ -284,7 +284,7 @@ const himc_articulation *himc_character_articulation(himc_character *c)
 
 static void fill_forces(const himc_character *c, const himc_step_forces *sources, segment_forces *f)
 {
-    f->torque[0] = himc_vec3_make(0, 0, 0);
+    f->force[0] = f->torque[0] = himc_vec3_make(0, 0, 0);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = c->skeleton.segment[i].parent;
         f->force[i] = himc_vec3_make(0, 0, 0);

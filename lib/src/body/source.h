@@ -8,14 +8,14 @@
 
 /// The present or next contact of a hand.
 typedef struct himc_source_contact {
-    bool any;
+    bool any;    ///< else there is none, and nothing else is valid
     double time; ///< (s)
     int drum;    ///< slot
 } himc_source_contact;
 
 /// The stroke of that contact.
 typedef struct himc_source_stroke {
-    bool any;
+    bool any;      ///< as of the contact
     double time;   ///< of contact (s)
     int drum;      ///< slot
     double x, y;   ///< on the head (m)
@@ -27,7 +27,7 @@ typedef struct himc_source_stroke {
     double bounce_time;          ///< (s)
 } himc_source_stroke;
 
-/// All times are of the performance (s), positions in the world (m). HIMC_RT.
+/// Times are of the performance (s), positions in the world (m). All functions are HIMC_RT.
 typedef struct himc_source {
     /// Planned state of the tip at t.
     himc_target (*target)(const void *source, himc_hand hand, double t);

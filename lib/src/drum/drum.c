@@ -77,12 +77,13 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
     return himc_drum_new_of(&settings, error);
 }
 
+// of a pickup to the noise (1/m): 0 on the head, which hears none
 static double nearness(const himc_pickup *pickup)
 {
     return pickup->kind == HIMC_PICKUP_AIR ? 1 / pickup->distance : 0;
 }
 
-// without noise the pickups are where they are
+// while no noise sounds, it is at once where the pickups are
 static void settle_noise(himc_drum *drum)
 {
     int count;
@@ -391,7 +392,7 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
 // rays to a listener
 static void add_noise(himc_drum *drum, int n, double force, double *const *sound)
 {
-    double noise[HIMC_NOISE_ROWS][RUN_BLOCK];
+    double noise[HIMC_NOISE_ROWS][RUN_BLOCK], most = NOISE_MOVES / drum->rate;
     int count;
     const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
     if (!drum->noise.sounds && force == 0) {
@@ -402,11 +403,10 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
     for (int k = 0; k < count && !himc_ears_alone(drum->ears); k++)
         for (int i = 0; i < n; i++) {
-            double *now = &drum->nearness[k], left = nearness(&pickups[k]) - *now;
-            double most = NOISE_MOVES / drum->rate;
-            *now += fmin(fmax(left, -most), most);
-            if (left != 0)
-                sound[k][i] += NOISE_UNIT * noise[0][i] * *now;
+            double left = nearness(&pickups[k]) - drum->nearness[k];
+            drum->nearness[k] += fmin(fmax(left, -most), most);
+            if (left != 0) // the pickup has moved
+                sound[k][i] += NOISE_UNIT * noise[0][i] * drum->nearness[k];
             else if (pickups[k].kind == HIMC_PICKUP_AIR)
                 sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
         }

@@ -336,9 +336,9 @@ static void describe_body(const himc_performance *p, himc_line_sink to)
     const performance_settings *s = &p->settings;
     const himc_controller_config *c = &s->control;
     const himc_saturation_counts *counts = &p->body->saturation;
-    bool weak = false;
+    bool bounded = false;
     for (int j = 0; j < HIMC_JOINTS; j++)
-        weak = weak || c->strength[j] > 0;
+        bounded = bounded || c->strength[j] > 0;
     himc_tell(&to, "player %.2f m, %.1f kg, 20 segments, 19 joints, 57 degrees of freedom",
               s->skeleton.height, s->skeleton.mass);
     himc_tell(&to, "mode %s%s, solver %s, damping %g m, law %s, coupling %s",
@@ -357,7 +357,7 @@ static void describe_body(const himc_performance *p, himc_line_sink to)
                                            : " of table 1",
               himc_body_limit_hits(p->body),
               c->human_strength ? "human"
-              : weak            ? "as set"
+              : bounded         ? "as set"
                                 : "off");
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (counts->hits[j] > 0)

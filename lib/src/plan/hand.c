@@ -140,25 +140,30 @@ static double coast_off(const stroke_plan *s, double T, himc_vec3 x)
     return himc_vec3_length(himc_vec3_madd(coast, -share, way));
 }
 
-/// Where the straight way to x leads through the body, whose axis is the world's: a point beside it
-/// in front. False where it does not.
-static bool leads_through_body(const stroke_plan *s, himc_vec3 x, himc_vec3 *beside)
+/// If the straight way to x leads through the body, whose axis is the world's z: the first part of
+/// one round it, to the point beside the body that is nearest to the straight way.
+static void go_beside_body(stroke_plan *s, double t, himc_vec3 x)
 {
     himc_vec3 from = s->path.x, way = himc_vec3_sub(x, from);
     double square = way.x * way.x + way.y * way.y;
     double share = square > 0 ? -(from.x * way.x + from.y * way.y) / square : 0;
-    himc_vec3 nearest = himc_vec3_madd(from, share, way);
-    double away = hypot(nearest.x, nearest.y);
-    *beside = himc_vec3_make(BESIDE_BODY, 0, nearest.z);
-    if (away > 0)
-        *beside = himc_vec3_make(nearest.x * BESIDE_BODY / away, nearest.y * BESIDE_BODY / away,
-                                 nearest.z);
-    double nearer = fmin(hypot(from.x, from.y), hypot(x.x, x.y));
-    return share > 0 && share < 1 && away < THROUGH_BODY && nearer > BESIDE_BODY;
+    himc_vec3 beside = himc_vec3_madd(from, share, way);
+    double away = hypot(beside.x, beside.y);
+    bool far = fmin(hypot(from.x, from.y), hypot(x.x, x.y)) > BESIDE_BODY;
+    if (!(share > 0 && share < 1 && away < THROUGH_BODY && far))
+        return;
+    beside.x = away > 0 ? beside.x * BESIDE_BODY / away : BESIDE_BODY;
+    beside.y = away > 0 ? beside.y * BESIDE_BODY / away : 0;
+    double T = t - s->path_end, first = himc_vec3_length(himc_vec3_sub(beside, from));
+    double at = s->path_end + T * first / (first + himc_vec3_length(himc_vec3_sub(x, beside)));
+    himc_target passing = {.x = beside, .v = himc_vec3_scale(way, PASSING_SPEED / T)};
+    himc_spline_add(&s->plan->tangential_path, s->path_end, &s->path, at, &passing);
+    s->path_end = at;
+    s->path = passing;
 }
 
 /// The tangential path to rest at x. A tip that is fast elsewhere and has time halts first: one
-/// long quintic would carry it far off.
+/// long quintic would carry it far off. No way leads through the body.
 static void path_to(stroke_plan *s, double t, himc_vec3 x)
 {
     double T = t - s->path_end;
@@ -169,17 +174,7 @@ static void path_to(stroke_plan *s, double t, himc_vec3 x)
         double halt = fmin(fmin(HALT_TIME, HALT_SHARE * T), 2 * HALT_WAY / speed);
         path_segment(s, s->path_end + halt, himc_vec3_madd(s->path.x, 0.5 * halt, s->path.v));
     }
-    himc_vec3 beside;
-    if (leads_through_body(s, x, &beside)) {
-        himc_vec3 way = himc_vec3_sub(x, s->path.x);
-        double left = t - s->path_end, first = himc_vec3_length(himc_vec3_sub(beside, s->path.x));
-        double at =
-            s->path_end + left * first / (first + himc_vec3_length(himc_vec3_sub(x, beside)));
-        himc_target passing = {.x = beside, .v = himc_vec3_scale(way, PASSING_SPEED / left)};
-        himc_spline_add(&s->plan->tangential_path, s->path_end, &s->path, at, &passing);
-        s->path_end = at;
-        s->path = passing;
-    }
+    go_beside_body(s, t, x);
     path_segment(s, t, x);
 }
 

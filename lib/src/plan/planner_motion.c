@@ -15,6 +15,7 @@
 /// does a reassigned stroke, which keeps its beat. Invariants: strokes of one hand are planned in
 /// the order of time; each is played once, or given up and counted.
 #include "plan/planner_state.h"
+#include "plan/sticking.h"
 #include "plan/bounce.h"
 #include "base/format.h"
 
@@ -107,11 +108,6 @@ static void lift_again(planner_hand *h, double t)
     bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
     if (l->end > t && same && l->end <= h->plan.end)
         himc_planner_lift_from(h, l, t);
-}
-
-static himc_hand other_hand(himc_hand hand)
-{
-    return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
 }
 
 double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
@@ -661,7 +657,7 @@ static bool can_take(himc_planner *planner, himc_hand hand, const timed_stroke *
 /// The other hand takes a stroke of the score, if it has nothing to do and is near enough.
 static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
 {
-    himc_hand other = other_hand(s->stroke.hand);
+    himc_hand other = himc_other_hand(s->stroke.hand);
     planner_hand *h = &planner->hand[other];
     double from = planner->now + PLANNER_AHEAD;
     timed_stroke taken = *s;
@@ -693,7 +689,7 @@ static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, pl
     settle(planner, s);
     himc_planner_say(&planner->notes, PLANNER_REASSIGNED, "%s: %s, the %s hand plays it",
                      himc_planner_name(planner, s, name), reason_of(planner, s, result, reason),
-                     himc_hand_name(other_hand(s->stroke.hand)));
+                     himc_hand_name(himc_other_hand(s->stroke.hand)));
 }
 
 void himc_planner_extend(himc_planner *planner, himc_hand hand, double until)

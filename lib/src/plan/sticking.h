@@ -13,8 +13,9 @@
 #ifndef HIMC_STICKING_H
 #define HIMC_STICKING_H
 
+#include "himc/base.h"
+
 #include <math.h>
-#include <stdbool.h>
 
 // chosen: five strokes on a drum between both hands are worth the other hand's way there, two are
 // not: two drums in turn are played by sides
@@ -22,6 +23,11 @@
 #define HIMC_STICKING_ANEW 2.0 ///< (s) chosen: after a longer rest the hands begin anew
 
 #define HIMC_STICKING_CROSS 0.05 ///< hands cross if one is so far past the other (m)
+
+static inline himc_hand himc_other_hand(himc_hand hand)
+{
+    return hand == HIMC_LEFT ? HIMC_RIGHT : HIMC_LEFT;
+}
 
 /// A hand on its way to a stroke.
 typedef struct himc_sticking {
