@@ -319,6 +319,7 @@ static void test_drums_of_any_rate_follow_one(void)
         }
     }
     TEST_ASSERT_EQUAL_DOUBLE(44100, himc_drum_rate(beside[1]));
+    TEST_ASSERT_EQUAL_DOUBLE(44100, himc_membrane_rate(himc_drum_membrane(beside[1])));
     himc_drum_release(drum);
     himc_drum_release(beside[0]);
     himc_drum_release(beside[1]);

@@ -200,9 +200,31 @@ static void test_ways_between_far_drums_go_round_the_body(void)
             }
 }
 
+// the last milliseconds are planned anew from where the stick is
+static void test_a_hit_that_a_push_has_moved_lands_on_its_time(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "drum kettle");
+    session_do(p, "latency 150");
+    session_play(p, 1, &h);
+    for (int i = 0; i < 8; i++) {
+        session_do(p, "hit left legato mf");
+        session_play(p, 0.11, &h);
+        session_do(p, "push left-forearm 0 0 %d 0.03", i % 2 ? 400 : -400);
+        session_play(p, 0.39, &h);
+    }
+    TEST_ASSERT_EQUAL_INT(8, h.strikes);
+    for (int i = 0; i < h.strikes; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, h.strike[i].planned_time, h.strike[i].time);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_hit_that_a_push_has_moved_lands_on_its_time);
     RUN_TEST(test_ways_between_far_drums_go_round_the_body);
     RUN_TEST(test_stroke_without_time_is_reassigned_to_the_other_hand);
     RUN_TEST(test_stroke_that_neither_hand_can_play_is_given_up_and_missed);
