@@ -155,10 +155,13 @@ static bool name_of(const himc_score *score, int i, named_drum *out)
     int change = i - score->line_count, stroke = change - score->change_count;
     if (stroke >= score->stroke_count)
         return false;
-    const himc_score_line *line = change < 0 ? &score->lines[i] : &score->changes[change];
-    *out = stroke < 0 ? (named_drum){line->drum, HIMC_SPOT_XY, line->line}
-                      : (named_drum){score->strokes[stroke].drum, score->strokes[stroke].spot,
-                                     score->stroke_lines[stroke]};
+    if (stroke >= 0) {
+        *out = (named_drum){score->strokes[stroke].drum, score->strokes[stroke].spot,
+                            score->stroke_lines[stroke]};
+    } else {
+        const himc_score_line *line = change < 0 ? &score->lines[i] : &score->changes[change];
+        *out = (named_drum){line->drum, HIMC_SPOT_XY, line->line};
+    }
     return true;
 }
 
