@@ -631,6 +631,11 @@ def test_sound_is_the_clock_of_a_playback():
             "viewer.resume(); return [off, p.at - before]"
         )
         assert abs(off) < 20 and passed >= 0, (off, passed)
+    late = browser.run(
+        "const s = viewer.sound, p = viewer.playback, heard = s.heard; p.seek(0);"
+        "s.heard = () => s.begun - 0.08; p.advance(0); s.heard = heard; return p.at"
+    )
+    assert late == 0, "a device that is late plays its first moment"
     browser.run("viewer.playback.play(false)")
     tracks = browser.run(
         "viewer.actions.film(); const tracks = viewer.recorder.film.stream.getAudioTracks().length;"

@@ -57,7 +57,7 @@ export class Sound {
         ((this.begun = this.context.currentTime), (this.from = at), (this.rate = rate), (this.loop = null));
         source.onended = () => source === this.source && (this.source = null);
         this.setLoop(loop);
-        source.start(this.begun, at);
+        source.start((this.started = this.begun), at);
     }
 
     // from now on; what sounds goes on without a gap
@@ -85,10 +85,11 @@ export class Sound {
         source.stop();
     }
 
-    // what is heard now (s of the scene); null while nothing sounds
+    // what is heard now (s of the scene), its first moment until that is at the loudspeaker; null while
+    // nothing sounds
     position() {
         if (!this.source || !this.ready) return null;
-        return this.place(this.heard());
+        return this.place(Math.max(this.heard(), this.started));
     }
 
     // the time of the context's clock that is at the loudspeaker now
