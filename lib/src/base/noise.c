@@ -15,6 +15,12 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+double himc_median(double *x, int count)
+{
+    qsort(x, (size_t)count, sizeof *x, by_size);
+    return 0.5 * (x[(count - 1) / 2] + x[count / 2]);
+}
+
 bool himc_noise(const himc_vec3 *x, int frames, double *noise)
 {
     int count = frames - 4;
@@ -27,9 +33,7 @@ bool himc_noise(const himc_vec3 *x, int frames, double *noise)
         himc_vec3 fourth = himc_vec3_madd(himc_vec3_madd(outer, -4, inner), 6, x[i + 2]);
         size[i] = himc_vec3_length(fourth);
     }
-    qsort(size, (size_t)count, sizeof *size, by_size);
-    double middle = 0.5 * (size[(count - 1) / 2] + size[count / 2]);
+    *noise = himc_median(size, count) / (1.5382 * sqrt(70));
     free(size);
-    *noise = middle / (1.5382 * sqrt(70));
     return true;
 }

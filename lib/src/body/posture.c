@@ -15,8 +15,8 @@
 /// since a player's trunk is slow.
 #include "body/posture.h"
 
-#include "base/difference.h"
 #include "base/limb_frame.h"
+#include "body/stretch.h"
 
 // Elevation of stick and hand over the tip's height. Chosen: at 0.3 m, a normal stroke, the stick
 // then stands at 40 degrees and the hand has risen by 20, the raised stick and wrist seen in
@@ -80,23 +80,6 @@
 #define GRIP_STEPS 60      // of himc_posture_tip_of_grip; chosen: to a millimetre in French grip
 #define BISECTIONS 40      // chosen: to 1e-12 of the distance
 
-// thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if the
-// seat is high
-static void seat_legs(himc_pose *rest, const himc_skeleton *skeleton)
-{
-    double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length;
-    double drop = skeleton->segment[HIMC_PELVIS].origin.z -
-                  skeleton->segment[HIMC_LEFT_LOWER_LEG].length - ANKLE_HEIGHT;
-    double raise = acos(fmin(fmax(drop / thigh, THIGH_LIMIT), 1));
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_quat apart =
-            himc_quat_exp(himc_vec3_make(0, 0, (hand == HIMC_LEFT ? KNEES_APART : -KNEES_APART)));
-        rest->joint[HIMC_LEFT_UPPER_LEG - 1 + hand] =
-            himc_quat_mul(apart, himc_quat_exp(himc_vec3_make(0, -raise, 0)));
-        rest->joint[HIMC_LEFT_LOWER_LEG - 1 + hand] = himc_quat_exp(himc_vec3_make(0, raise, 0));
-    }
-}
-
 void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, double level)
 {
     posture->skeleton = *skeleton;
@@ -106,7 +89,20 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     posture->rest.joint[HIMC_NECK - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->rest.joint[HIMC_HEAD - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->level = level;
-    seat_legs(&posture->rest, skeleton);
+    // thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if
+    // the seat is high
+    double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length;
+    double drop = skeleton->segment[HIMC_PELVIS].origin.z -
+                  skeleton->segment[HIMC_LEFT_LOWER_LEG].length - ANKLE_HEIGHT;
+    double raise = acos(fmin(fmax(drop / thigh, THIGH_LIMIT), 1));
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        double apart = i == HIMC_LEFT ? KNEES_APART : -KNEES_APART;
+        posture->rest.joint[HIMC_LEFT_UPPER_LEG - 1 + i] =
+            himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, apart)),
+                          himc_quat_exp(himc_vec3_make(0, -raise, 0)));
+        posture->rest.joint[HIMC_LEFT_LOWER_LEG - 1 + i] =
+            himc_quat_exp(himc_vec3_make(0, raise, 0));
+    }
 }
 
 double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest)
@@ -238,17 +234,14 @@ static himc_quat trunk_of(const himc_trunk_posture *trunk_posture)
 
 static arm arm_of(const himc_posture *posture, himc_hand hand)
 {
-    const himc_segment *segment = posture->skeleton.segment;
+    const double *value = posture->trunk_posture.value;
     arm a = {.trunk = trunk_of(&posture->trunk_posture),
-             .turn = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_TURN],
-             .french = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP],
-             .out = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_ELBOW + hand],
-             .raise = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_WRIST + hand],
-             .aside = posture->trunk_posture.value[HIMC_TRUNK_POSTURE_ASIDE + hand] *
-                      (hand == HIMC_LEFT ? 1 : -1)};
-    himc_vec3 waist = himc_skeleton_waist(&posture->skeleton);
-    a.shoulder =
-        himc_vec3_add(waist, himc_quat_rotate(a.trunk, segment[HIMC_LEFT_UPPER_ARM + hand].origin));
+             .turn = value[HIMC_TRUNK_POSTURE_TURN],
+             .french = value[HIMC_TRUNK_POSTURE_FRENCH_GRIP],
+             .out = value[HIMC_TRUNK_POSTURE_ELBOW + hand],
+             .raise = value[HIMC_TRUNK_POSTURE_WRIST + hand],
+             .aside = value[HIMC_TRUNK_POSTURE_ASIDE + hand] * (hand == HIMC_LEFT ? 1 : -1)};
+    a.shoulder = himc_shoulder(&posture->skeleton, a.trunk, hand);
     return a;
 }
 
@@ -279,16 +272,6 @@ static double smooth_step(double x)
     return x * x * x * (10 + x * (-15 + x * 6));
 }
 
-// the direction in which the elbow hangs: down, and backwards too when the wrist, in the direction
-// u from the shoulder, comes under or behind the shoulder
-static himc_vec3 downward(himc_vec3 u, double turn)
-{
-    double ahead = u.x * cos(turn) + u.y * sin(turn);
-    double x = (BACK_BEGINS - ahead) / (BACK_BEGINS - BACK_ENDS);
-    double back = BACK_MOST * smooth_step(x);
-    return himc_vec3_make(-back * cos(turn), -back * sin(turn), -1);
-}
-
 // the triangle shoulder - elbow - wrist; moves the wrist into reach and returns the distance (m)
 static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
 {
@@ -301,7 +284,10 @@ static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
     himc_vec3 u = distance > 0 ? himc_vec3_scale(d, 1 / distance) : himc_vec3_make(1, 0, 0);
     double along = (used * used + upper * upper - lower * lower) / (2 * used);
     double away = sqrt(fmax(upper * upper - along * along, 0));
-    himc_vec3 down = downward(u, a->turn);
+    // the elbow hangs down, and backwards too when the wrist comes under or behind the shoulder
+    double ahead = u.x * cos(a->turn) + u.y * sin(a->turn);
+    double back = BACK_MOST * smooth_step((BACK_BEGINS - ahead) / (BACK_BEGINS - BACK_ENDS));
+    himc_vec3 down = himc_vec3_make(-back * cos(a->turn), -back * sin(a->turn), -1);
     down = himc_vec3_unit(himc_vec3_madd(down, -himc_vec3_dot(down, u), u));
     himc_vec3 out = himc_vec3_cross(down, u);
     double elbow_out = blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french) + a->out;
@@ -312,14 +298,6 @@ static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
     return fabs(used - distance);
 }
 
-// the axis that the forearm's roll follows
-static himc_vec3 forearm_side(himc_vec3 hand, himc_vec3 elbow)
-{
-    double agree = himc_vec3_dot(hand, elbow);
-    return himc_vec3_madd(hand, ELBOW_SHARE * smooth_step((ROLL_AGREES - agree) / ROLL_PARTS),
-                          elbow);
-}
-
 static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
                          himc_pose *pose)
 {
@@ -328,10 +306,11 @@ static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 
     double missing = solve_elbow(posture, hand, &a);
     himc_vec3 upper = himc_vec3_unit(himc_vec3_sub(a.elbow, a.shoulder));
     himc_vec3 lower = himc_vec3_unit(himc_vec3_sub(a.wrist, a.elbow));
-    himc_vec3 flexion = himc_vec3_cross(lower, upper);
+    himc_vec3 flexion = himc_vec3_cross(lower, upper), elbow = himc_vec3_unit(flexion);
+    double apart = (ROLL_AGREES - himc_vec3_dot(a.side, elbow)) / ROLL_PARTS;
+    himc_vec3 forearm = himc_vec3_madd(a.side, ELBOW_SHARE * smooth_step(apart), elbow);
     himc_quat frame[HIMC_ARM_JOINTS + 1] = {
-        a.trunk, himc_quat_from_limb(upper, flexion),
-        himc_quat_from_limb(lower, forearm_side(a.side, himc_vec3_unit(flexion))),
+        a.trunk, himc_quat_from_limb(upper, flexion), himc_quat_from_limb(lower, forearm),
         himc_quat_from_limb(a.hand, a.side), himc_quat_from_limb(a.stick, a.side)};
     double roll = (hand == HIMC_LEFT ? FRENCH_ROLL : -FRENCH_ROLL) * a.french;
     for (int k = 2; k <= HIMC_ARM_JOINTS; k++)
@@ -342,28 +321,21 @@ static double arm_joints(const himc_posture *posture, himc_hand hand, himc_vec3 
     return missing;
 }
 
-// neck and head share the look
-static void look(const himc_posture *posture, himc_pose *pose)
-{
-    const double *value = posture->trunk_posture.value;
-    double left = value[HIMC_TRUNK_POSTURE_LOOK_LEFT], down = value[HIMC_TRUNK_POSTURE_LOOK_DOWN];
-    himc_quat half = himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, 0.5 * left)),
-                                   himc_quat_exp(himc_vec3_make(0, 0.5 * down, 0)));
-    if (left == 0 && down == 0)
-        return;
-    pose->joint[HIMC_NECK - 1] = himc_quat_mul(half, pose->joint[HIMC_NECK - 1]);
-    pose->joint[HIMC_HEAD - 1] = himc_quat_mul(half, pose->joint[HIMC_HEAD - 1]);
-}
-
 double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[HIMC_HANDS],
                        himc_pose *pose)
 {
     *pose = posture->rest;
     pose->joint[HIMC_TRUNK - 1] = trunk_of(&posture->trunk_posture);
-    look(posture, pose);
-    double left = arm_joints(posture, HIMC_LEFT, tip[HIMC_LEFT], pose);
-    double right = arm_joints(posture, HIMC_RIGHT, tip[HIMC_RIGHT], pose);
-    return fmax(left, right);
+    const double *value = posture->trunk_posture.value;
+    double left = value[HIMC_TRUNK_POSTURE_LOOK_LEFT], down = value[HIMC_TRUNK_POSTURE_LOOK_DOWN];
+    if (left != 0 || down != 0) { // neck and head share the look
+        himc_quat half = himc_quat_mul(himc_quat_exp(himc_vec3_make(0, 0, 0.5 * left)),
+                                       himc_quat_exp(himc_vec3_make(0, 0.5 * down, 0)));
+        pose->joint[HIMC_NECK - 1] = himc_quat_mul(half, pose->joint[HIMC_NECK - 1]);
+        pose->joint[HIMC_HEAD - 1] = himc_quat_mul(half, pose->joint[HIMC_HEAD - 1]);
+    }
+    double missing = arm_joints(posture, HIMC_LEFT, tip[HIMC_LEFT], pose);
+    return fmax(missing, arm_joints(posture, HIMC_RIGHT, tip[HIMC_RIGHT], pose));
 }
 
 // a segment's capsule from its joint to another point
@@ -435,6 +407,40 @@ double himc_posture_capsules(const himc_posture *posture, const himc_vec3 tip[HI
     return fmax(left, arm_capsules(posture, HIMC_RIGHT, tip[HIMC_RIGHT], capsule));
 }
 
+himc_quat himc_posture_joint_after(const himc_posture_motion *m, int j, double dt)
+{
+    himc_vec3 turn =
+        himc_vec3_madd(himc_vec3_scale(m->rate[j], dt), 0.5 * dt * dt, m->acceleration[j]);
+    return himc_quat_mul(himc_quat_exp(turn), m->joint[j]);
+}
+
+void himc_posture_differentiate(const himc_pose pose[3], double step, int first, int end,
+                                himc_posture_motion *motion)
+{
+    for (int j = first; j < end; j++) {
+        himc_quat now = motion->joint[j] = pose[1].joint[j], back = himc_quat_conj(now);
+        himc_vec3 to = himc_quat_log(himc_quat_mul(pose[2].joint[j], back)),
+                  from = himc_quat_log(himc_quat_mul(pose[0].joint[j], back));
+        motion->rate[j] = himc_vec3_scale(himc_vec3_sub(to, from), 0.5 / step);
+        motion->acceleration[j] = himc_vec3_scale(himc_vec3_add(to, from), 1 / (step * step));
+    }
+}
+
+himc_arm_levers himc_arm_levers_at(himc_vec3 waist, himc_quat trunk,
+                                   const himc_vec3 joint[HIMC_ARM_JOINTS], himc_vec3 stick,
+                                   const himc_pose *pose, himc_hand hand)
+{
+    himc_arm_levers a = {.frame = {trunk}, .tip = waist};
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        a.lever[k] = a.tip = himc_vec3_add(a.tip, himc_quat_rotate(a.frame[k], joint[k]));
+        a.frame[k + 1] = himc_quat_mul(a.frame[k], pose->joint[himc_arm_joint(hand, k)]);
+    }
+    a.tip = himc_vec3_add(a.tip, himc_quat_rotate(a.frame[HIMC_ARM_JOINTS], stick));
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        a.lever[k] = himc_vec3_sub(a.tip, a.lever[k]);
+    return a;
+}
+
 void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],
                          himc_posture_motion *motion)
 {
@@ -448,11 +454,7 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
             trunk_posture_after(&posture->trunk_posture, (k - 1) * HIMC_DIFFERENCE_STEP);
         himc_posture_at(&now, x, &pose[k]);
     }
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        motion->joint[j] = pose[1].joint[j];
-        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j],
-                           HIMC_DIFFERENCE_STEP, &motion->rate[j], &motion->acceleration[j]);
-    }
+    himc_posture_differentiate(pose, HIMC_DIFFERENCE_STEP, 0, HIMC_JOINTS, motion);
 }
 
 // whether the arm reaches the tip with the trunk turned towards it

@@ -8,6 +8,14 @@
 /// Share of the straight arm that counts as reach. Chosen: the Jacobian is still regular there.
 #define HIMC_STRETCH_SHARE 0.998
 
+/// The shoulder with the trunk in this orientation (m).
+static inline himc_vec3 himc_shoulder(const himc_skeleton *skeleton, himc_quat trunk,
+                                      himc_hand hand)
+{
+    himc_vec3 up = skeleton->segment[HIMC_LEFT_UPPER_ARM + hand].origin;
+    return himc_vec3_add(himc_skeleton_waist(skeleton), himc_quat_rotate(trunk, up));
+}
+
 /// The arm's reach: the largest distance from shoulder to tip (m).
 static inline double himc_stretch(const himc_skeleton *skeleton, himc_hand hand)
 {

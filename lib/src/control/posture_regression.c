@@ -11,7 +11,6 @@
 /// position is S J' (J S J')^-1 e: least squares, each joint weighted by its uncertainty.
 #include "control/posture_regression.h"
 
-#include "base/difference.h"
 #include "base/quintic.h"
 
 #include <string.h>
@@ -61,31 +60,9 @@ void himc_posture_regression_trunk_terms(const himc_posture_regression_player *p
     memcpy(term + TERMS, right + 1, (TERMS - 1) * sizeof *term);
 }
 
-/// An arm in the trunk's frame.
-typedef struct arm {
-    himc_quat frame[HIMC_ARM_JOINTS]; // orientations of the segments
-    himc_vec3 lever[HIMC_ARM_JOINTS]; // from each joint to the tip (m)
-    himc_vec3 tip;                    // from the waist (m)
-} arm;
-
-static void place_arm(const himc_posture_regression_player *player, himc_hand hand,
-                      const himc_pose *pose, arm *a)
-{
-    himc_quat q = himc_quat_identity();
-    himc_vec3 at = {0, 0, 0};
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        at = himc_vec3_add(at, himc_quat_rotate(q, player->joint[hand][k]));
-        a->frame[k] = q = himc_quat_mul(q, pose->joint[himc_arm_joint(hand, k)]);
-        a->lever[k] = at;
-    }
-    a->tip = himc_vec3_add(at, himc_quat_rotate(q, player->stick));
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        a->lever[k] = himc_vec3_sub(a->tip, a->lever[k]);
-}
-
 // rotation = S J' f
-static void apply_covariance(const double covariance[ANGLES][ANGLES], const arm *a, himc_vec3 f,
-                             himc_vec3 rotation[HIMC_ARM_JOINTS])
+static void apply_covariance(const double covariance[ANGLES][ANGLES], const himc_arm_levers *a,
+                             himc_vec3 f, himc_vec3 rotation[HIMC_ARM_JOINTS])
 {
     double g[ANGLES], sum[ANGLES];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
@@ -101,29 +78,23 @@ static void apply_covariance(const double covariance[ANGLES][ANGLES], const arm 
         rotation[k] = himc_vec3_make(sum[3 * k], sum[3 * k + 1], sum[3 * k + 2]);
 }
 
-// J x
-static himc_vec3 tip_displacement(const arm *a, const himc_vec3 rotation[HIMC_ARM_JOINTS])
-{
-    himc_vec3 moved = {0, 0, 0};
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        moved = himc_vec3_add(moved, himc_vec3_cross(rotation[k], a->lever[k]));
-    return moved;
-}
-
 // one step of the likeliest correction that brings the tip to `target` (from the waist, in the
 // trunk's frame)
 static void correct_tip(const himc_posture_regression *regression, himc_hand hand, himc_vec3 target,
                         himc_pose *pose)
 {
     const double(*covariance)[ANGLES] = regression->residual_covariance[hand];
-    arm a;
+    const himc_posture_regression_player *player = &regression->player;
+    himc_arm_levers a = himc_arm_levers_at(himc_vec3_make(0, 0, 0), himc_quat_identity(),
+                                           player->joint[hand], player->stick, pose, hand);
     himc_mat3 gram;
     himc_vec3 rotation[HIMC_ARM_JOINTS];
-    place_arm(&regression->player, hand, pose, &a);
     for (int c = 0; c < 3; c++) {
         himc_vec3 f = {c == 0, c == 1, c == 2};
         apply_covariance(covariance, &a, f, rotation);
-        himc_vec3 m = tip_displacement(&a, rotation);
+        himc_vec3 m = {0, 0, 0};
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) // J x
+            m = himc_vec3_add(m, himc_vec3_cross(rotation[k], a.lever[k]));
         gram.m[0][c] = m.x, gram.m[1][c] = m.y, gram.m[2][c] = m.z;
     }
     for (int i = 0; i < 3; i++)
@@ -135,7 +106,7 @@ static void correct_tip(const himc_posture_regression *regression, himc_hand han
     apply_covariance(covariance, &a, himc_mat3_apply(&inverse, e), rotation);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
-        himc_vec3 own = himc_quat_rotate(himc_quat_conj(a.frame[k]), rotation[k]);
+        himc_vec3 own = himc_quat_rotate(himc_quat_conj(a.frame[k + 1]), rotation[k]);
         pose->joint[j] = himc_quat_mul(pose->joint[j], himc_quat_exp(own));
     }
 }
@@ -149,16 +120,14 @@ void himc_posture_regression_default(himc_posture_regression *regression)
            sizeof regression->residual_covariance);
 }
 
-// the trunk rotated with the tips from its mean orientation `trunk`
-static himc_quat rotate_trunk(const himc_posture_regression *regression,
-                              const himc_vec3 tip[OFFSETS][HIMC_HANDS], himc_quat trunk)
+// the rotation vector of a row of three weights
+static himc_vec3 weighted(const double *weight, const double *term, int terms)
 {
-    double term[TRUNK_TERMS], u[3] = {0, 0, 0};
-    himc_posture_regression_trunk_terms(&regression->player, trunk, tip, term);
+    double u[3] = {0, 0, 0};
     for (int c = 0; c < 3; c++)
-        for (int t = 0; t < TRUNK_TERMS; t++)
-            u[c] += regression->trunk[c][t] * term[t];
-    return himc_quat_mul(trunk, himc_quat_exp(himc_vec3_make(u[0], u[1], u[2])));
+        for (int t = 0; t < terms; t++)
+            u[c] += weight[c * terms + t] * term[t];
+    return himc_vec3_make(u[0], u[1], u[2]);
 }
 
 // the joints of one arm by the weights, before the tip's correction
@@ -171,13 +140,9 @@ static void set_arm(const himc_posture_regression *regression, himc_hand hand,
     himc_posture_regression_terms(player, hand, pose->joint[TRUNK], tip, term);
     himc_posture_regression_frames(player, hand, frame);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        double u[3] = {0, 0, 0};
-        for (int c = 0; c < 3; c++)
-            for (int t = 0; t < TERMS; t++)
-                u[c] += regression->weight[hand][k][c][t] * term[t];
         int j = himc_arm_joint(hand, k);
-        himc_vec3 own =
-            himc_quat_rotate(himc_quat_conj(frame[k]), himc_vec3_make(u[0], u[1], u[2]));
+        himc_vec3 u = weighted(regression->weight[hand][k][0], term, TERMS);
+        himc_vec3 own = himc_quat_rotate(himc_quat_conj(frame[k]), u);
         pose->joint[j] = himc_quat_mul(player->mean.joint[j], himc_quat_exp(own));
     }
 }
@@ -186,8 +151,12 @@ void himc_posture_regression_at(const himc_posture_regression *regression,
                                 const himc_vec3 tip[OFFSETS][HIMC_HANDS], himc_pose *pose)
 {
     const himc_posture_regression_player *player = &regression->player;
-    if (player->trunk)
-        pose->joint[TRUNK] = rotate_trunk(regression, tip, pose->joint[TRUNK]);
+    if (player->trunk) { // it turns with the tips from its mean orientation
+        double term[TRUNK_TERMS];
+        himc_posture_regression_trunk_terms(player, pose->joint[TRUNK], tip, term);
+        himc_vec3 turn = weighted(regression->trunk[0], term, TRUNK_TERMS);
+        pose->joint[TRUNK] = himc_quat_mul(pose->joint[TRUNK], himc_quat_exp(turn));
+    }
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         if (!player->arm[hand])
             continue;
@@ -199,14 +168,6 @@ void himc_posture_regression_at(const himc_posture_regression *regression,
     }
 }
 
-// a joint of a motion `dt` seconds later, at constant acceleration
-static himc_quat joint_after(const himc_posture_motion *m, int j, double dt)
-{
-    himc_vec3 rotation =
-        himc_vec3_madd(himc_vec3_scale(m->rate[j], dt), 0.5 * dt * dt, m->acceleration[j]);
-    return himc_quat_mul(himc_quat_exp(rotation), m->joint[j]);
-}
-
 // the pose `dt` seconds from now: the player's mean with the natural posture's trunk motion and,
 // for arms that were not captured, its arms
 static himc_pose pose_after(const himc_posture_regression_player *player,
@@ -214,11 +175,11 @@ static himc_pose pose_after(const himc_posture_regression_player *player,
 {
     himc_pose pose = player->mean;
     himc_quat own = himc_quat_mul(himc_quat_conj(player->natural_trunk), player->mean.joint[TRUNK]);
-    pose.joint[TRUNK] = himc_quat_mul(joint_after(natural, TRUNK, dt), own);
+    pose.joint[TRUNK] = himc_quat_mul(himc_posture_joint_after(natural, TRUNK, dt), own);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int k = 0; k < HIMC_ARM_JOINTS && !player->arm[hand]; k++) {
             int j = himc_arm_joint((himc_hand)hand, k);
-            pose.joint[j] = joint_after(natural, j, dt);
+            pose.joint[j] = himc_posture_joint_after(natural, j, dt);
         }
     return pose;
 }
@@ -237,9 +198,5 @@ void himc_posture_regression_moving(const himc_posture_regression *regression,
                 then[k][hand] = himc_target_after(&tip[k][hand], dt).x;
         himc_posture_regression_at(regression, (const himc_vec3(*)[HIMC_HANDS])then, &pose[i]);
     }
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        motion->joint[j] = pose[1].joint[j];
-        himc_differentiate(pose[0].joint[j], pose[1].joint[j], pose[2].joint[j],
-                           HIMC_DIFFERENCE_STEP, &motion->rate[j], &motion->acceleration[j]);
-    }
+    himc_posture_differentiate(pose, HIMC_DIFFERENCE_STEP, 0, HIMC_JOINTS, motion);
 }

@@ -48,19 +48,6 @@ static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const
         h->frame[k] = himc_fit(x, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
 }
 
-// time of the approach from frame state `s` to the head, its acceleration fading to zero on the
-// way: the first root of height + v t + a t^2 / 3
-static double fall_time(const himc_head_frame *head, const himc_target *s, double mallet_radius)
-{
-    himc_vec3 n = himc_head_frame_normal(head);
-    double height = himc_head_frame_from_world(head, s->x).z - mallet_radius;
-    double v = himc_vec3_dot(n, s->v), a = himc_vec3_dot(n, s->a),
-           under = v * v - 4 / 3.0 * a * height;
-    if (v >= 0 || under < 0)
-        return LONGEST_APPROACH;
-    return fmin(2 * height / (-v + sqrt(under)), LONGEST_APPROACH);
-}
-
 static himc_target captured_at(const himc_track *track, const hand_track *h, double t)
 {
     double u = t * track->rate;
@@ -76,17 +63,23 @@ static himc_target captured_at(const himc_track *track, const hand_track *h, dou
     return himc_quintic_at(&q, (u - k) / track->rate);
 }
 
+// The approach falls from the last good frame to the head with an acceleration that fades to zero on
+// the way: for the first root of height + v t + a t^2 / 3.
 static void make_bridge(himc_track *track, hand_track *h, bridge *b, double mallet_radius)
 {
     himc_target before = h->frame[b->last];
-    double start = b->last / track->rate,
-           fall = fmax(fall_time(&track->head, &before, mallet_radius), 0);
+    himc_vec3 n = himc_head_frame_normal(&track->head);
+    double height = himc_head_frame_from_world(&track->head, before.x).z - mallet_radius;
+    double v = himc_vec3_dot(n, before.v), a = himc_vec3_dot(n, before.a),
+           under = v * v - 4 / 3.0 * a * height, fall = LONGEST_APPROACH;
+    if (v < 0 && under >= 0)
+        fall = fmax(fmin(2 * height / (-v + sqrt(under)), LONGEST_APPROACH), 0);
     b->approach = (himc_quintic){{before.x, before.v, himc_vec3_scale(before.a, 0.5)}};
     if (fall > 0)
         b->approach.c[3] = himc_vec3_scale(before.a, -1 / (6 * fall));
     himc_target touch = himc_quintic_at(&b->approach, fall);
-    b->from = b->restart = start;
-    b->contact = start + fall;
+    b->from = b->restart = b->last / track->rate;
+    b->contact = b->from + fall;
     b->to = fmax(b->next / track->rate, b->contact + LEAST_BRIDGE);
     b->to = fmin(b->to, himc_track_take_length(track));
     himc_target after = captured_at(track, h, b->to);
@@ -108,34 +101,7 @@ static himc_quintic come_to_rest(const himc_head_frame *head, const himc_target 
     return himc_quintic_make(s, &rest, HIMC_TRACK_HALT);
 }
 
-// true if the strike is none: a stick pulled up sharply may look like one
-static bool is_in_the_air(const himc_track *track, const himc_take_strike *strike)
-{
-    himc_vec3 x = himc_vec3_add(strike->x, track->offset);
-    return himc_head_frame_from_world(&track->head, x).z > AIRBORNE_HEIGHT;
-}
-
-// cuts the strikes of one hand out of its capture and fits the stretches between them
-static void cut_strikes(himc_track *track, himc_hand hand, const himc_vec3 *x,
-                        const himc_take_strike *strikes, int count)
-{
-    hand_track *h = &track->hand[hand];
-    int start = 0, cut = (int)ceil(CUT_TIME * track->rate);
-    for (int i = 0; i < count; i++) {
-        int frame = strikes[i].frame, clear = strikes[i].clear;
-        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
-            is_in_the_air(track, &strikes[i]))
-            continue;
-        bridge *b = &h->built[h->bridge_count++];
-        b->last = clear < frame && clear > frame - cut ? clear : frame - cut;
-        b->next = frame + cut;
-        b->speed = strikes[i].velocity;
-        fit_stretch(h, x, start, b->last, track);
-        start = b->next;
-    }
-    fit_stretch(h, x, start, track->frames - 1, track);
-}
-
+// a hand's capture with its strikes cut out: fits of the stretches between them, and the bridges
 static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captured,
                        const himc_take_strike *strikes, int count, double mallet_radius)
 {
@@ -145,49 +111,56 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     h->bridges = calloc((size_t)count + 1, sizeof *h->bridges);
     h->built = calloc((size_t)count + 1, sizeof *h->built);
     h->present = x && h->frame && h->bridges && h->built;
-    if (h->present) {
-        for (int i = 0; i < track->frames; i++)
-            x[i] = himc_vec3_add(captured[i], track->offset);
-        cut_strikes(track, hand, x, strikes, count);
-        for (int i = 0; i < h->bridge_count; i++)
-            make_bridge(track, h, &h->built[i], mallet_radius);
-        memcpy(h->bridges, h->built, (size_t)h->bridge_count * sizeof *h->bridges);
+    if (!h->present)
+        return false;
+    for (int i = 0; i < track->frames; i++)
+        x[i] = himc_vec3_add(captured[i], track->offset);
+    int start = 0, cut = (int)ceil(CUT_TIME * track->rate);
+    for (int i = 0; i < count; i++) {
+        int frame = strikes[i].frame, clear = strikes[i].clear;
+        himc_vec3 low = himc_vec3_add(strikes[i].x, track->offset);
+        // a stick pulled up sharply in the air may look like a strike
+        if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
+            himc_head_frame_from_world(&track->head, low).z > AIRBORNE_HEIGHT)
+            continue;
+        bridge *b = &h->built[h->bridge_count++];
+        b->last = clear < frame && clear > frame - cut ? clear : frame - cut;
+        b->next = frame + cut;
+        b->speed = strikes[i].velocity;
+        fit_stretch(h, x, start, b->last, track);
+        start = b->next;
     }
-    return h->present;
+    fit_stretch(h, x, start, track->frames - 1, track);
+    for (int i = 0; i < h->bridge_count; i++)
+        make_bridge(track, h, &h->built[i], mallet_radius);
+    memcpy(h->bridges, h->built, (size_t)h->bridge_count * sizeof *h->bridges);
+    return true;
 }
 
-static himc_track *build(himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                         const himc_head_frame *head, const himc_player *player,
-                         double mallet_radius)
+static bool build(himc_track *track, himc_take *take, const himc_take_tip tips[HIMC_HANDS],
+                  const himc_head_frame *head, const himc_player *player, double mallet_radius)
 {
     int count;
-    himc_track *track = calloc(1, sizeof *track);
     himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    bool seated = player && player->seated, ok = track && strikes;
-    if (ok) {
-        track->rate = himc_take_rate(take);
-        track->frames = himc_take_frames(take);
-        track->head = *head;
-        track->stop = INFINITY;
-        if (seated)
-            track->offset = player->offset;
-        else
-            ok = himc_strike_offset(take, tips, head, mallet_radius, &track->offset);
-    }
+    bool ok = strikes != NULL;
+    track->rate = himc_take_rate(take);
+    track->frames = himc_take_frames(take);
+    track->head = *head;
+    track->stop = INFINITY;
+    if (player && player->seated)
+        track->offset = player->offset;
+    else
+        ok = ok && himc_strike_offset(take, tips, head, mallet_radius, &track->offset);
     for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
         if (tips[hand].present) {
             double noise;
             ok = himc_noise(tips[hand].x, track->frames, &noise);
-            track->edge = ok ? himc_fit_edge(noise, track->rate) : 0;
+            track->edge = himc_fit_edge(noise, track->rate);
             ok = ok &&
                  build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
         }
-    ok = ok && (!player || himc_track_fit_postures(track, player));
     free(strikes);
-    if (ok)
-        return track;
-    himc_track_free(track);
-    return NULL;
+    return ok && (!player || himc_track_fit_postures(track, player));
 }
 
 static himc_track *track_new(himc_take *take, const himc_take_options *options,
@@ -202,10 +175,12 @@ static himc_track *track_new(himc_take *take, const himc_take_options *options,
                        LEAST_FRAMES);
         return NULL;
     }
-    himc_track *track = build(take, tips, head, player, mallet_radius);
-    if (!track)
-        himc_error_set(error, "out of memory");
-    return track;
+    himc_track *track = calloc(1, sizeof *track);
+    if (track && build(track, take, tips, head, player, mallet_radius))
+        return track;
+    himc_track_free(track);
+    himc_error_set(error, "out of memory");
+    return NULL;
 }
 
 himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
@@ -258,9 +233,8 @@ void himc_track_rewind(himc_track *track, double start)
     track->stop = INFINITY;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         hand_track *h = &track->hand[hand];
-        if (!h->present)
-            continue;
-        memcpy(h->bridges, h->built, (size_t)h->bridge_count * sizeof *h->bridges);
+        if (h->present)
+            memcpy(h->bridges, h->built, (size_t)h->bridge_count * sizeof *h->bridges);
     }
 }
 
@@ -319,23 +293,10 @@ static himc_target aside_at(const himc_track *track, himc_hand hand, double t)
     himc_target sum = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < track->nudges; i++) {
         const himc_nudge *n = &track->nudge[i];
-        if (n->hand != hand || fabs(t - n->time) >= n->span)
-            continue;
-        himc_target one = himc_nudge_at(n, t);
-        sum.x = himc_vec3_add(sum.x, one.x);
-        sum.v = himc_vec3_add(sum.v, one.v);
-        sum.a = himc_vec3_add(sum.a, one.a);
+        if (n->hand == hand && fabs(t - n->time) < n->span)
+            sum = himc_target_add(sum, himc_nudge_at(n, t));
     }
     return sum;
-}
-
-// `s` with the nudges once (1) or without them (-1)
-static himc_target nudged(himc_target s, himc_target aside, double sign)
-{
-    s.x = himc_vec3_madd(s.x, sign, aside.x);
-    s.v = himc_vec3_madd(s.v, sign, aside.v);
-    s.a = himc_vec3_madd(s.a, sign, aside.a);
-    return s;
 }
 
 himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
@@ -349,7 +310,7 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     if (t < -0.5 * HIMC_TRACK_RAMP && h->approach_time > 0)
         return himc_quintic_at(&h->approach, fmax(t + 0.5 * HIMC_TRACK_RAMP + h->approach_time, 0));
     himc_track_warp(himc_track_take_length(track), t, at);
-    himc_target s = nudged(played_at(track, h, at[0]), aside_at(track, hand, at[0]), 1);
+    himc_target s = himc_target_add(played_at(track, h, at[0]), aside_at(track, hand, at[0]));
     s.a = himc_vec3_madd(himc_vec3_scale(s.a, at[1] * at[1]), at[2], s.v);
     s.v = himc_vec3_scale(s.v, at[1]);
     return s;
@@ -422,13 +383,13 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     hand_track *h = &track->hand[hand];
     double at[3];
     himc_track_warp(himc_track_take_length(track), now, at);
+    double t = at[0];
     if (at[1] < SLOWEST_REJOIN)
         return;
-    double t = at[0];
     himc_target from = *measured;
     from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
     from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
-    from = nudged(from, aside_at(track, hand, t), -1);
+    from = himc_target_sub(from, aside_at(track, hand, t));
     int i = bridge_at(h->bridges, h->bridge_count, t);
     if (i == h->bridge_count || t < h->bridges[i].from) {
         if (i == 0 || h->bridges[i - 1].to < t - REJOIN_TIME)
@@ -453,20 +414,6 @@ void himc_track_separated(himc_track *track, himc_hand hand, double now,
     b->path = himc_quintic_make(&from, &back, b->to - t);
 }
 
-// the height rises after the strike before, and is back before the strike after
-static void fit_height(const himc_track *track, himc_nudge *n)
-{
-    const hand_track *h = &track->hand[n->hand];
-    n->rise = n->fall = n->span;
-    for (int i = 0; i < h->bridge_count; i++) {
-        const bridge *b = &h->built[i];
-        n->rise = b->contact <= n->time ? fmin(n->rise, n->time - b->to) : n->rise;
-        n->fall = b->contact > n->time ? fmin(n->fall, b->from - n->time) : n->fall;
-    }
-    n->rise = fmax(n->rise, 0);
-    n->fall = fmax(n->fall, 0);
-}
-
 bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error)
 {
     double length = himc_track_take_length(track);
@@ -478,8 +425,18 @@ bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *er
                               nudge->time, nudge->span, length);
     if (track->nudges >= HIMC_NUDGES)
         return himc_error_set(error, "nudge: one too many, expected %d", HIMC_NUDGES);
-    track->nudge[track->nudges] = *nudge;
-    fit_height(track, &track->nudge[track->nudges++]);
+    // the height rises after the strike before, and is back before the strike after
+    const hand_track *h = &track->hand[nudge->hand];
+    himc_nudge *n = &track->nudge[track->nudges++];
+    *n = *nudge;
+    n->rise = n->fall = n->span;
+    for (int i = 0; i < h->bridge_count; i++) {
+        const bridge *b = &h->built[i];
+        n->rise = b->contact <= n->time ? fmin(n->rise, n->time - b->to) : n->rise;
+        n->fall = b->contact > n->time ? fmin(n->fall, b->from - n->time) : n->fall;
+    }
+    n->rise = fmax(n->rise, 0);
+    n->fall = fmax(n->fall, 0);
     return true;
 }
 
@@ -489,21 +446,18 @@ const himc_nudge *himc_track_nudges(const himc_track *track, int *count)
     return track->nudge;
 }
 
-static bool same_nudge(const himc_nudge *a, const himc_nudge *b)
-{
-    return a->hand == b->hand && a->time == b->time && a->span == b->span &&
-           himc_vec3_length(himc_vec3_sub(a->way, b->way)) == 0;
-}
-
 bool himc_track_exchange(himc_track *track, const himc_track *other, double t)
 {
     const himc_track *both[] = {track, other};
     double at[3];
     int same = 0;
     himc_track_warp(himc_track_take_length(track), t, at);
-    while (same < track->nudges && same < other->nudges &&
-           same_nudge(&track->nudge[same], &other->nudge[same]))
-        same++;
+    for (; same < track->nudges && same < other->nudges; same++) {
+        const himc_nudge *a = &track->nudge[same], *b = &other->nudge[same];
+        if (a->hand != b->hand || a->time != b->time || a->span != b->span ||
+            himc_vec3_length(himc_vec3_sub(a->way, b->way)) != 0)
+            break;
+    }
     for (int k = 0; k < 2; k++)
         for (int i = same; i < both[k]->nudges; i++)
             if (both[k]->nudge[i].time - both[k]->nudge[i].span < at[0] + LOOKED_AHEAD)

@@ -38,35 +38,25 @@ fit_window himc_fit_window(int k, int lo, int hi, const fit_series *series)
     return w;
 }
 
-// weights fall to zero at the window's ends: else each frame that enters or leaves would shake the
-// fit, and with it the acceleration between neighbouring frames (Cleveland 1979)
-static double weight_at(const fit_window *w, double u)
-{
-    double share = w->reach > 0 ? u / (w->reach + 1) : 0, bell = 1 - share * share;
-    return bell * bell;
-}
-
-// weighted normal equations of the powers of u and the three coordinates
-static void normal_equations(const himc_vec3 *x, const fit_window *w, double a[4][7])
-{
-    for (int i = w->first; i <= w->last; i++) {
-        double u = i - w->k, p[4] = {1, u, u * u, u * u * u}, v[3] = {x[i].x, x[i].y, x[i].z};
-        double weight = weight_at(w, u);
-        for (int r = 0; r < 4; r++) {
-            for (int c = 0; c < 4; c++)
-                a[r][c] += weight * p[r] * p[c];
-            for (int c = 0; c < 3; c++)
-                a[r][4 + c] += weight * p[r] * v[c];
-        }
-    }
-}
-
 himc_target himc_fit(const himc_vec3 *x, fit_window w, double dt)
 {
     double a[4][7] = {{0}}, c[4][3] = {{0}};
     int span = w.last - w.first, most = span >= 5 ? 4 : span >= 3 ? 3 : span >= 1 ? 2 : 1;
     int order = w.order < most ? w.order : most;
-    normal_equations(x, &w, a);
+    // the normal equations of the powers of u and the three coordinates. Weights fall to zero at the
+    // window's ends: else each frame that enters or leaves would shake the fit, and with it the
+    // acceleration between neighbouring frames (Cleveland 1979)
+    for (int i = w.first; i <= w.last; i++) {
+        double u = i - w.k, p[4] = {1, u, u * u, u * u * u}, v[3] = {x[i].x, x[i].y, x[i].z};
+        double share = w.reach > 0 ? u / (w.reach + 1) : 0, bell = 1 - share * share;
+        double weight = bell * bell;
+        for (int r = 0; r < 4; r++) {
+            for (int k = 0; k < 4; k++)
+                a[r][k] += weight * p[r] * p[k];
+            for (int k = 0; k < 3; k++)
+                a[r][4 + k] += weight * p[r] * v[k];
+        }
+    }
     for (int r = 0; r < order; r++) {
         if (fabs(a[r][r]) < 1e-12)
             return (himc_target){.x = x[w.k]};

@@ -15,7 +15,7 @@
 #include "track/track_state.h"
 #include "track/track_time.h"
 
-#include "base/difference.h"
+#include "base/noise.h"
 #include "body/stretch.h"
 
 #include <stdlib.h>
@@ -45,28 +45,26 @@ static bool is_arm(int joint)
     return joint >= HIMC_LEFT_UPPER_ARM - 1;
 }
 
-static joint_state fit_joint(const himc_pose *pose, int j, fit_window w, double dt)
-{
-    himc_vec3 turned[LARGEST_WINDOW];
-    himc_quat middle = pose[w.k].joint[j], back = himc_quat_conj(middle);
-    for (int i = w.first; i <= w.last; i++)
-        turned[i - w.first] = himc_quat_log(himc_quat_mul(pose[i].joint[j], back));
-    fit_window shifted = {0, w.k - w.first, w.last - w.first, w.order, w.reach};
-    himc_target s = himc_fit(turned, shifted, dt);
-    // the angular velocity is the rotation vector's rate but for half its turn, w = v + r x v / 2
-    himc_vec3 half = himc_vec3_scale(s.x, 0.5);
-    return (joint_state){himc_quat_unit(himc_quat_mul(himc_quat_exp(s.x), middle)),
-                         himc_vec3_add(s.v, himc_vec3_cross(half, s.v)),
-                         himc_vec3_add(s.a, himc_vec3_cross(half, s.a))};
-}
-
 // fits frames lo .. hi without any others
 static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, int lo, int hi,
                         joint_state *joint)
 {
     fit_series series = {track->frames, track->edge, track->rate};
-    for (int k = lo; k <= hi; k++)
-        joint[k] = fit_joint(pose, j, himc_fit_window(k, lo, hi, &series), 1 / track->rate);
+    himc_vec3 turned[LARGEST_WINDOW];
+    for (int k = lo; k <= hi; k++) {
+        fit_window w = himc_fit_window(k, lo, hi, &series);
+        himc_quat middle = pose[k].joint[j], back = himc_quat_conj(middle);
+        for (int i = w.first; i <= w.last; i++)
+            turned[i - w.first] = himc_quat_log(himc_quat_mul(pose[i].joint[j], back));
+        fit_window shifted = {0, k - w.first, w.last - w.first, w.order, w.reach};
+        himc_target s = himc_fit(turned, shifted, 1 / track->rate);
+        // the angular velocity is the rotation vector's rate but for half its turn,
+        // w = v + r x v / 2
+        himc_vec3 half = himc_vec3_scale(s.x, 0.5);
+        joint[k] = (joint_state){himc_quat_unit(himc_quat_mul(himc_quat_exp(s.x), middle)),
+                                 himc_vec3_add(s.v, himc_vec3_cross(half, s.v)),
+                                 himc_vec3_add(s.a, himc_vec3_cross(half, s.a))};
+    }
 }
 
 // the joints of an arm stretch by stretch, as its tip is cut; others in one
@@ -83,35 +81,14 @@ static void fit_frames(himc_track *track, const himc_pose *pose, int j)
         fit_stretch(track, pose, j, 0, track->frames - 1, track->joints.uncut[j]);
 }
 
-// the levers of an arm in the world
-typedef struct arm {
-    himc_quat parent[HIMC_ARM_JOINTS]; // orientation of the joint's parent segment
-    himc_vec3 lever[HIMC_ARM_JOINTS];  // from the joint to the tip (m)
-    himc_vec3 tip;                     // (m)
-} arm;
-
-static arm arm_of(const himc_skeleton *skeleton, const himc_pose *pose, himc_hand hand)
+static himc_arm_levers levers_of(const himc_skeleton *skeleton, const himc_pose *pose,
+                                 himc_hand hand)
 {
-    arm a;
-    himc_quat turned = pose->joint[HIMC_TRUNK - 1];
-    himc_vec3 at = himc_skeleton_waist(skeleton);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        at = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->segment[j + 1].origin));
-        a.lever[k] = at;
-        a.parent[k] = turned;
-        turned = himc_quat_mul(turned, pose->joint[j]);
-    }
-    a.tip = himc_vec3_add(at, himc_quat_rotate(turned, skeleton->tip));
+    himc_vec3 joint[HIMC_ARM_JOINTS];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        a.lever[k] = himc_vec3_sub(a.tip, a.lever[k]);
-    return a;
-}
-
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+        joint[k] = skeleton->segment[himc_arm_joint(hand, k) + 1].origin;
+    return himc_arm_levers_at(himc_skeleton_waist(skeleton), pose->joint[HIMC_TRUNK - 1], joint,
+                              skeleton->tip, pose, hand);
 }
 
 // true if an arm that is not all known ends elsewhere than its tip in most frames
@@ -124,11 +101,10 @@ static bool is_empty(const himc_track *track, const himc_player *player,
         return false;
     for (int i = 0; i < SAMPLED_FRAMES; i++) {
         int f = (int)((double)(track->frames - 1) * i / (SAMPLED_FRAMES - 1));
-        himc_vec3 tip = arm_of(skeleton, &player->pose[f], hand).tip;
+        himc_vec3 tip = levers_of(skeleton, &player->pose[f], hand).tip;
         off[i] = himc_vec3_length(himc_vec3_sub(tip, track->hand[hand].frame[f].x));
     }
-    qsort(off, SAMPLED_FRAMES, sizeof *off, compare);
-    return off[SAMPLED_FRAMES / 2] > NO_STICK;
+    return himc_median(off, SAMPLED_FRAMES) > NO_STICK;
 }
 
 bool himc_track_fit_postures(himc_track *track, const himc_player *player)
@@ -183,6 +159,7 @@ static int gap_at(const hand_track *h, double u)
     return lo;
 }
 
+// at `t` of the take itself
 static joint_state captured_joint(const himc_track *track, int j, double t, bool cut)
 {
     const joint_state *joint = is_arm(j) && !cut ? track->joints.uncut[j] : track->joints.joint[j];
@@ -198,29 +175,21 @@ static joint_state captured_joint(const himc_track *track, int j, double t, bool
                                    &joint[from], &joint[to]);
 }
 
-static joint_state warped_joint(const himc_track *track, int j, double t, bool cut)
+// with the approach before the first frame
+static joint_state entered_joint(const himc_track *track, int j, double t, bool cut)
 {
-    double at[3];
+    double approach =
+        fmax(track->hand[HIMC_LEFT].approach_time, track->hand[HIMC_RIGHT].approach_time);
+    double since = t + 0.5 * HIMC_TRACK_RAMP + approach, at[3];
+    if (t < -0.5 * HIMC_TRACK_RAMP && approach > 0) {
+        joint_state first = {.q = track->joints.joint[j][0].q};
+        return himc_interpolate_joints(fmax(since, 0), approach, &track->joints.before[j], &first);
+    }
     himc_track_warp(himc_track_take_length(track), t, at);
     joint_state s = captured_joint(track, j, at[0], cut);
     s.acceleration = himc_vec3_madd(himc_vec3_scale(s.acceleration, at[1] * at[1]), at[2], s.rate);
     s.rate = himc_vec3_scale(s.rate, at[1]);
     return s;
-}
-
-static double approach_time(const himc_track *track)
-{
-    return fmax(track->hand[HIMC_LEFT].approach_time, track->hand[HIMC_RIGHT].approach_time);
-}
-
-// with the approach before the first frame
-static joint_state entered_joint(const himc_track *track, int j, double t, bool cut)
-{
-    double approach = approach_time(track), since = t + 0.5 * HIMC_TRACK_RAMP + approach;
-    if (t >= -0.5 * HIMC_TRACK_RAMP || approach <= 0)
-        return warped_joint(track, j, t, cut);
-    joint_state first = {.q = track->joints.joint[j][0].q};
-    return himc_interpolate_joints(fmax(since, 0), approach, &track->joints.before[j], &first);
 }
 
 // and the halt after a stop
@@ -247,7 +216,7 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
 {
     // chosen: a hand corrects a stick more than a shoulder does
     static const double share[HIMC_ARM_JOINTS] = {0.1, 0.2, 0.5, 1};
-    arm a = arm_of(skeleton, pose, hand);
+    himc_arm_levers a = levers_of(skeleton, pose, hand);
     himc_vec3 e = himc_vec3_sub(tip, a.tip);
     double far = himc_vec3_length(e);
     if (far > LARGEST_BEND)
@@ -265,52 +234,30 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_quat *q = &pose->joint[himc_arm_joint(hand, k)];
         himc_vec3 turn = himc_vec3_scale(himc_vec3_cross(a.lever[k], l), share[k]);
-        turn = himc_quat_rotate(himc_quat_conj(a.parent[k]), turn);
+        turn = himc_quat_rotate(himc_quat_conj(a.frame[k]), turn);
         *q = himc_quat_unit(himc_quat_mul(himc_quat_exp(turn), *q));
     }
     return far;
 }
 
-static void bend_arm(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip, himc_pose *pose)
-{
-    himc_vec3 waist = himc_skeleton_waist(skeleton);
-    himc_vec3 up = skeleton->segment[himc_arm_joint(hand, 0) + 1].origin;
-    himc_vec3 shoulder = himc_vec3_add(waist, himc_quat_rotate(pose->joint[HIMC_TRUNK - 1], up));
-    himc_target asked = {.x = tip};
-    tip = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, hand)).x;
-    double far = INFINITY;
-    for (int i = 0; i < BENDS || (i < MOST_BENDS && far > BENT_WITHIN); i++)
-        far = bend_once(skeleton, hand, tip, pose);
-}
-
-// the joints `dt` later at constant acceleration, the arms bent to the tips of that time
+// the joints `dt` later at constant acceleration, the arms bent to the tips of that time, or as near
+// as they reach
 static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_motion *m,
                             const himc_target tip[HIMC_HANDS], double dt)
 {
     himc_pose pose;
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_vec3 turn =
-            himc_vec3_madd(himc_vec3_scale(m->rate[j], dt), 0.5 * dt * dt, m->acceleration[j]);
-        pose.joint[j] = himc_quat_mul(himc_quat_exp(turn), m->joint[j]);
-    }
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_vec3 x = himc_target_after(&tip[hand], dt).x;
-        bend_arm(skeleton, (himc_hand)hand, x, &pose);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        pose.joint[j] = himc_posture_joint_after(m, j, dt);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        himc_vec3 shoulder = himc_shoulder(skeleton, pose.joint[HIMC_TRUNK - 1], hand);
+        himc_target asked = {.x = himc_target_after(&tip[i], dt).x};
+        himc_vec3 to = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, hand)).x;
+        double far = INFINITY;
+        for (int k = 0; k < BENDS || (k < MOST_BENDS && far > BENT_WITHIN); k++)
+            far = bend_once(skeleton, hand, to, &pose);
     }
     return pose;
-}
-
-static void bend_arms(const himc_skeleton *skeleton, const himc_target tip[HIMC_HANDS],
-                      himc_posture_motion *m)
-{
-    himc_pose before = pose_after(skeleton, m, tip, -BEND_DIFFERENCE),
-              now = pose_after(skeleton, m, tip, 0),
-              after = pose_after(skeleton, m, tip, BEND_DIFFERENCE);
-    for (int j = HIMC_LEFT_UPPER_ARM - 1; j < TRACK_JOINTS; j++) {
-        m->joint[j] = now.joint[j];
-        himc_differentiate(before.joint[j], now.joint[j], after.joint[j], BEND_DIFFERENCE,
-                           &m->rate[j], &m->acceleration[j]);
-    }
 }
 
 void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, double t,
@@ -324,6 +271,11 @@ void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, 
         motion->rate[j] = s.rate;
         motion->acceleration[j] = s.acceleration;
     }
-    if (tip)
-        bend_arms(skeleton, tip, motion);
+    if (!tip)
+        return;
+    himc_pose bent[3];
+    for (int k = 0; k < 3; k++)
+        bent[k] = pose_after(skeleton, motion, tip, (k - 1) * BEND_DIFFERENCE);
+    himc_posture_differentiate(bent, BEND_DIFFERENCE, HIMC_LEFT_UPPER_ARM - 1, TRACK_JOINTS,
+                               motion);
 }
