@@ -58,7 +58,7 @@ static void tick_at(double t, himc_setpoint *tick)
 {
     tick->time = t;
     path(t, tick->tip);
-    himc_setpoint_complete(tick, &posture);
+    himc_posture_moving(&posture, tick->tip, &tick->posture);
 }
 
 static void test_a_quintic_is_interpolated_exactly(void)
@@ -218,7 +218,7 @@ static void run_all_rt(himc_character *character, himc_setpoint tick[2])
     himc_controller_config control = himc_controller_config_default();
     himc_controller_init(&controller, &control, &skeleton, &state);
     himc_posture_reachable(&posture, HIMC_LEFT, himc_vec3_make(3, 0, 1));
-    himc_setpoint_complete(&tick[0], &posture);
+    himc_posture_moving(&posture, tick[0].tip, &tick[0].posture);
     interpolate(&tick[0], &tick[1], 0.001, &reference);
     himc_character_place(character, &state);
     for (int solver = HIMC_SOLVER_DLS; solver < HIMC_SOLVERS; solver++)
@@ -249,7 +249,7 @@ static void test_nothing_is_allocated_from_task_to_character(void)
     himc_setpoint tick[2] = {{.time = 0}, {.time = 0.004}};
     for (int k = 0; k < 2; k++) {
         path(tick[k].time, tick[k].tip);
-        himc_setpoint_complete(&tick[k], &posture);
+        himc_posture_moving(&posture, tick[k].tip, &tick[k].posture);
     }
     himc_character *character = himc_character_new(&skeleton, NULL);
     watch_allocations();

@@ -236,8 +236,8 @@ static bool make_body(bench_body *b, himc_error *error)
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         b->from.tip[hand].x = himc_vec3_make(0.48, hand == HIMC_LEFT ? 0.1 : -0.1, 1.0);
     memcpy(b->to.tip, b->from.tip, sizeof b->to.tip);
-    himc_setpoint_complete(&b->from, &b->posture);
-    himc_setpoint_complete(&b->to, &b->posture);
+    himc_posture_moving(&b->posture, b->from.tip, &b->from.posture);
+    himc_posture_moving(&b->posture, b->to.tip, &b->to.posture);
     himc_setpoint_course_make(&b->between, &b->from, &b->to);
     memcpy(pose.joint, b->from.posture.joint, sizeof pose.joint);
     himc_pose_to_state(&b->skeleton, &pose, NULL, &b->state);
@@ -265,7 +265,7 @@ static void do_row(bench_body *b, int part, int i)
     if (part == 0)
         himc_setpoint_at(&b->between, 0.001 + 1e-9 * i, &b->reference);
     else if (part == 1)
-        himc_setpoint_complete(&b->to, &b->posture);
+        himc_posture_moving(&b->posture, b->to.tip, &b->to.posture);
     else if (part == 2)
         himc_controller_torques(&b->controller, &b->skeleton, &b->state, &b->reference, torque);
     else if (part == 3) {

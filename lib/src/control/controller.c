@@ -10,7 +10,7 @@
 #include "control/strength.h"
 #include "control/tracking_error.h"
 
-#define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over servo_frequency's table
+#define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over the table of servos
 #define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
 
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
@@ -44,9 +44,7 @@ static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_
         if (up != joint + 1)
             continue;
         const himc_segment *segment = &skeleton->segment[i];
-        himc_vec3 c =
-            himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], segment->center));
-        himc_vec3 r = himc_vec3_sub(c, s->origin[joint + 1]);
+        himc_vec3 r = himc_vec3_sub(himc_segment_center(skeleton, s, i), s->origin[joint + 1]);
         for (int k = 0; k < 3; k++) {
             himc_vec3 axis = {axes->m[0][k], axes->m[1][k], axes->m[2][k]};
             himc_vec3 own = himc_mat3_apply_transposed(&s->rotation[i], axis);
@@ -56,15 +54,6 @@ static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_
         }
     }
     return himc_vec3_make(sum[0], sum[1], sum[2]);
-}
-
-// natural frequency of a joint's servo (Hz); chosen: the lighter the part, the faster
-static double servo_frequency(int joint)
-{
-    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18}, others = 5;
-    int k = (joint - (HIMC_LEFT_UPPER_ARM - 1)) / 2;
-    bool is_arm = joint >= HIMC_LEFT_UPPER_ARM - 1 && k < HIMC_ARM_JOINTS;
-    return PD_STIFFNESS * (is_arm ? arm[k] : others);
 }
 
 himc_controller_config himc_controller_config_default(void)
@@ -82,8 +71,12 @@ himc_controller_config himc_controller_config_default(void)
 
 himc_gain himc_controller_usual_gain(const himc_controller *c, int joint)
 {
+    // natural frequencies of the servos (Hz); chosen: the lighter the part, the faster
+    static const double arm[HIMC_ARM_JOINTS] = {8, 10, 14, 18}, others = 5;
+    int k = (joint - (HIMC_LEFT_UPPER_ARM - 1)) / 2;
+    bool is_arm = joint >= HIMC_LEFT_UPPER_ARM - 1 && k < HIMC_ARM_JOINTS;
+    double w = 2 * HIMC_PI * (PD_STIFFNESS * (is_arm ? arm[k] : others));
     himc_vec3 i = c->inertia[joint];
-    double w = 2 * HIMC_PI * servo_frequency(joint);
     return (himc_gain){himc_vec3_scale(i, w * w), himc_vec3_scale(i, 2 * w)};
 }
 

@@ -6,16 +6,6 @@
 // chosen: levers below about 1 cm across the direction: a straight arm along it
 #define RELEASE_MOST 1e4 // n' (J W J')^-1 n, largest that is released (1/m^2)
 
-static void add_weighted(himc_mat3 *g, double w, himc_vec3 r)
-{
-    g->m[0][0] += w * (r.y * r.y + r.z * r.z);
-    g->m[1][1] += w * (r.x * r.x + r.z * r.z);
-    g->m[2][2] += w * (r.x * r.x + r.y * r.y);
-    g->m[0][1] -= w * r.x * r.y;
-    g->m[0][2] -= w * r.x * r.z;
-    g->m[1][2] -= w * r.y * r.z;
-}
-
 void himc_arm_jacobian_at(const himc_body_state *s, himc_hand hand, himc_arm_jacobian *jacobian)
 {
     static const double equal[HIMC_ARM_JOINTS] = {1, 1, 1, 1};
@@ -28,9 +18,15 @@ void himc_arm_jacobian_weighted(const himc_body_state *s, himc_hand hand,
     himc_mat3 g = {{{0}}};
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         himc_vec3 r = himc_vec3_sub(s->tip[hand], s->origin[himc_arm_joint(hand, k) + 1]);
+        double w = weight[k];
         jacobian->lever[k] = r;
-        jacobian->weight[k] = weight[k];
-        add_weighted(&g, weight[k], r);
+        jacobian->weight[k] = w;
+        g.m[0][0] += w * (r.y * r.y + r.z * r.z);
+        g.m[1][1] += w * (r.x * r.x + r.z * r.z);
+        g.m[2][2] += w * (r.x * r.x + r.y * r.y);
+        g.m[0][1] -= w * r.x * r.y;
+        g.m[0][2] -= w * r.x * r.z;
+        g.m[1][2] -= w * r.y * r.z;
     }
     g.m[1][0] = g.m[0][1];
     g.m[2][0] = g.m[0][2];

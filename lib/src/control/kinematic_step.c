@@ -12,25 +12,18 @@ static himc_vec3 in_parent(const himc_skeleton *skeleton, const himc_body_state 
     return himc_mat3_apply_transposed(&s->rotation[skeleton->segment[j + 1].parent], v);
 }
 
-// the state `h` (s) later at constant rates
-static void extrapolate(const himc_skeleton *skeleton, double h, himc_body_state *s,
-                        himc_pose *pose)
-{
-    himc_vec3 rate[HIMC_JOINTS];
-    *pose = himc_pose_from_state(skeleton, s);
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        rate[j] = in_parent(skeleton, s, j, himc_relative_spin(skeleton, s, j));
-        pose->joint[j] = himc_quat_mul(himc_quat_exp(himc_vec3_scale(rate[j], h)), pose->joint[j]);
-    }
-    himc_pose_to_state(skeleton, pose, rate, s);
-}
-
 void himc_controller_kinematic_step(const himc_controller *c, const himc_skeleton *skeleton,
                                     const himc_reference *reference, himc_body_state *s,
                                     himc_pose *pose, himc_vec3 rate[HIMC_JOINTS])
 {
     tracking_error e;
-    extrapolate(skeleton, c->step, s, pose);
+    *pose = himc_pose_from_state(skeleton, s);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        rate[j] = in_parent(skeleton, s, j, himc_relative_spin(skeleton, s, j));
+        himc_quat rotate = himc_quat_exp(himc_vec3_scale(rate[j], c->step));
+        pose->joint[j] = himc_quat_mul(rotate, pose->joint[j]);
+    }
+    himc_pose_to_state(skeleton, pose, rate, s);
     himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian jacobian;

@@ -10,26 +10,15 @@
 #include "control/law.h"
 #include "control/limit_torque.h"
 
-static void release(himc_vec3 *all, himc_hand hand, const himc_arm_jacobian *jacobian,
-                    himc_vec3 normal, double remain)
-{
-    himc_vec3 arm[HIMC_ARM_JOINTS];
-    himc_arm_gather(all, hand, arm);
-    himc_ik_release(jacobian, normal, remain, arm);
-    himc_arm_scatter(arm, hand, all);
-}
-
 // in contact the tip has the hand's acceleration along the normal, for any gains of the joints
-static void release_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
-                                 const himc_reference *reference, const himc_arm_jacobian *jacobian,
-                                 himc_vec3 wanted[HIMC_JOINTS])
+static void release(const law_input *in, himc_hand hand, himc_vec3 wanted[HIMC_JOINTS])
 {
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (reference->released[hand]) {
-            himc_vec3 n = reference->normal[hand], a = himc_vec3_scale(n, reference->yield[hand]);
-            himc_vec3 left = himc_acceleration_left(skeleton, s, (himc_hand)hand, wanted, a);
-            release(wanted, (himc_hand)hand, &jacobian[hand], n, himc_vec3_dot(n, left));
-        }
+    himc_vec3 n = in->reference->normal[hand], arm[HIMC_ARM_JOINTS];
+    himc_vec3 a = himc_vec3_scale(n, in->reference->yield[hand]);
+    himc_vec3 left = himc_acceleration_left(in->skeleton, in->state, hand, wanted, a);
+    himc_arm_gather(wanted, hand, arm);
+    himc_ik_release(&in->jacobian[hand], n, himc_vec3_dot(n, left), arm);
+    himc_arm_scatter(arm, hand, wanted);
 }
 
 // stiffness and damping over inertia of one axis, as far as an implicit step lets them act
@@ -57,22 +46,19 @@ static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, in
                          himc_mat3_scale_along(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
 }
 
-// the accelerations of computed torque: q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq
-static void wanted_accelerations(const himc_controller *c, const himc_body_state *s,
-                                 tracking_error *e, himc_vec3 wanted[HIMC_JOINTS])
-{
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        e->rate[j] = himc_vec3_madd(e->rate[j], -0.5 * c->step, e->acceleration[j]);
-        wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, s, j, e));
-    }
-}
-
 void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS])
 {
     const himc_controller *c = in->controller;
+    tracking_error *e = in->error;
     himc_vec3 wanted[HIMC_JOINTS];
-    wanted_accelerations(c, in->state, in->error, wanted);
-    release_acceleration(in->skeleton, in->state, in->reference, in->jacobian, wanted);
+    // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        e->rate[j] = himc_vec3_madd(e->rate[j], -0.5 * c->step, e->acceleration[j]);
+        wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, in->state, j, e));
+    }
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (in->reference->released[hand])
+            release(in, (himc_hand)hand, wanted);
     himc_limits_compliance(c, in->skeleton, in->state, in->jacobian, wanted);
     himc_inverse_dynamics_of(in->skeleton, in->state, c->articulation, wanted, torque);
 }

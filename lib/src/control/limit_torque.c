@@ -80,41 +80,36 @@ static void place_joint(const himc_limits *limits, int j, himc_vec3 rotate, doub
     at->back = himc_mat3_apply(at->parent, back);
 }
 
-// Places a joint in its bounds as it is now. The angle beyond is computed where it may be more than
-// `least` (rad) or than before, else it is of no use.
-static void find_place(const himc_controller *c, int j, double least, joint_place *at)
-{
-    himc_saturation_counts *counts = c->saturation;
-    himc_limit_place place = himc_limit_locate(c->limits, j, at->q);
-    at->back = himc_vec3_make(0, 0, 0);
-    at->rotate = himc_vec3_make(place.measure > 1 ? INFINITY : 0, 0, 0);
-    at->room = place.room;
-    at->beyond = 0;
-    if (place.most_beyond > least || (counts && place.most_beyond > counts->farthest[j])) {
-        place_joint(c->limits, j, himc_vec3_make(0, 0, 0), 0, at);
-        at->beyond = himc_vec3_length(at->back);
-    }
-    if (!counts)
-        return;
-    counts->measure[j] = place.measure;
-    if (counts->farthest[j] < at->beyond)
-        counts->farthest[j] = at->beyond;
-    counts->held[j] = counts->held[j] && place.measure > FREE_MEASURE;
-}
-
+// Places the joints in their bounds as they are now. The angle beyond is computed where it may be
+// more than `least` (rad) or than before, else it is of no use.
 static void find_places(const himc_controller *c, const himc_skeleton *skeleton,
                         const himc_body_state *s, double least, joint_place at[HIMC_JOINTS])
 {
+    himc_saturation_counts *counts = c->saturation;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (!c->limits->joint[j].bound)
             continue;
         int p = skeleton->segment[j + 1].parent;
-        himc_vec3 spin = himc_vec3_sub(s->spin[j + 1], s->spin[p]);
+        himc_vec3 spin = himc_relative_spin(skeleton, s, j);
         himc_vec3 carried = himc_vec3_cross(s->spin[p], spin); // by the rotating parent
-        at[j].q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
-        at[j].parent = &s->rotation[p];
-        at[j].coast = himc_vec3_madd(himc_vec3_scale(spin, HORIZON), -HALF_SQUARE, carried);
-        find_place(c, j, least, &at[j]);
+        himc_quat q = himc_quat_mul(himc_quat_conj(s->orientation[p]), s->orientation[j + 1]);
+        himc_limit_place place = himc_limit_locate(c->limits, j, q);
+        at[j] = (joint_place){
+            .q = q,
+            .parent = &s->rotation[p],
+            .coast = himc_vec3_madd(himc_vec3_scale(spin, HORIZON), -HALF_SQUARE, carried),
+            .rotate = {place.measure > 1 ? INFINITY : 0, 0, 0},
+            .room = place.room};
+        if (place.most_beyond > least || (counts && place.most_beyond > counts->farthest[j])) {
+            place_joint(c->limits, j, himc_vec3_make(0, 0, 0), 0, &at[j]);
+            at[j].beyond = himc_vec3_length(at[j].back);
+        }
+        if (!counts)
+            continue;
+        counts->measure[j] = place.measure;
+        if (counts->farthest[j] < at[j].beyond)
+            counts->farthest[j] = at[j].beyond;
+        counts->held[j] = counts->held[j] && place.measure > FREE_MEASURE;
     }
 }
 

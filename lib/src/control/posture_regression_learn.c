@@ -61,24 +61,6 @@ static bool check_take(const himc_posture_regression_take *take, himc_error *err
     return true;
 }
 
-// true if all takes contain the arm
-static bool arm_captured(const himc_posture_regression_take *take, int count, int hand)
-{
-    for (int n = 0; n < count; n++)
-        if (take[n].unseen_arm[hand])
-            return false;
-    return true;
-}
-
-static himc_quat mean_rotation(const himc_posture_regression_take *take, int count, int joint)
-{
-    himc_rotations all = {{0}};
-    for (int n = 0; n < count; n++)
-        for (int i = 0; i < take[n].frames; i++)
-            himc_rotations_add(&all, take[n].pose[i].joint[joint]);
-    return himc_rotations_mean(&all);
-}
-
 himc_vec3 himc_posture_regression_tip(const himc_skeleton *skeleton, const himc_pose *pose,
                                       himc_hand hand)
 {
@@ -151,14 +133,21 @@ bool himc_posture_regression_fit(himc_posture_regression_player *player,
     for (int n = 0; n < count; n++)
         if (!check_take(&take[n], error))
             return false;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        player->mean.joint[j] = mean_rotation(take, count, j);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        himc_rotations all = {{0}};
+        for (int n = 0; n < count; n++)
+            for (int i = 0; i < take[n].frames; i++)
+                himc_rotations_add(&all, take[n].pose[i].joint[j]);
+        player->mean.joint[j] = himc_rotations_mean(&all);
+    }
     player->waist = himc_skeleton_waist(take->skeleton);
     player->trunk = true;
     for (int n = 0; n < count; n++)
         player->trunk = player->trunk && !take[n].unseen_trunk;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        player->arm[hand] = arm_captured(take, count, hand);
+        player->arm[hand] = true;
+        for (int n = 0; n < count; n++)
+            player->arm[hand] = player->arm[hand] && !take[n].unseen_arm[hand];
         player->trunk = player->trunk && player->arm[hand];
         fit_hand(player, take, count, (himc_hand)hand);
     }
@@ -194,45 +183,35 @@ static himc_vec3 tip_ahead(const himc_posture_regression_take *take, int i, doub
     return himc_vec3_madd(himc_vec3_scale(x, 1 - part), part, next);
 }
 
-// adds a take's rows to the problem of one arm
+// adds a take's rows to a problem: of an arm, or of the trunk
 static void add_rows(problem *p, const himc_posture_regression_player *player,
-                     const himc_posture_regression_take *take, himc_hand hand)
+                     const himc_posture_regression_take *take, int which)
 {
+    const himc_pose *mean = &player->mean;
+    himc_hand hand = (himc_hand)which;
     himc_quat frame[HIMC_ARM_JOINTS];
-    himc_posture_regression_frames(player, hand, frame);
+    if (which < HIMC_HANDS)
+        himc_posture_regression_frames(player, hand, frame);
     for (int i = 0; i < himc_posture_regression_known_frames(take); i++, p->rows++) {
         const himc_pose *pose = &take->pose[i];
-        himc_vec3 tip[OFFSETS][HIMC_HANDS];
+        double *term = p->term + p->terms * (size_t)p->rows;
+        himc_vec3 u[HIMC_ARM_JOINTS], tip[OFFSETS][HIMC_HANDS];
         for (int k = 0; k < OFFSETS; k++)
-            tip[k][hand] = tip_ahead(take, i, k * HIMC_REGRESSION_OFFSET_STEP, hand);
-        himc_posture_regression_terms(player, hand, pose->joint[TRUNK],
-                                      (const himc_vec3(*)[HIMC_HANDS])tip,
-                                      p->term + p->terms * (size_t)p->rows);
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-            int j = himc_arm_joint(hand, k);
-            himc_vec3 u =
-                himc_quat_log(himc_quat_mul(himc_quat_conj(player->mean.joint[j]), pose->joint[j]));
-            u = himc_quat_rotate(frame[k], u);
-            memcpy(p->angle + p->angles * (size_t)p->rows + 3 * k, &u, sizeof u);
+            for (int h = 0; h < HIMC_HANDS; h++)
+                tip[k][h] = tip_ahead(take, i, k * HIMC_REGRESSION_OFFSET_STEP, (himc_hand)h);
+        if (which == HIMC_HANDS)
+            himc_posture_regression_trunk_terms(player, mean->joint[TRUNK],
+                                                (const himc_vec3(*)[HIMC_HANDS])tip, term);
+        else
+            himc_posture_regression_terms(player, hand, pose->joint[TRUNK],
+                                          (const himc_vec3(*)[HIMC_HANDS])tip, term);
+        for (int k = 0; k < p->angles / 3; k++) {
+            int j = which == HIMC_HANDS ? TRUNK : himc_arm_joint(hand, k);
+            u[k] = himc_quat_log(himc_quat_mul(himc_quat_conj(mean->joint[j]), pose->joint[j]));
+            if (which < HIMC_HANDS)
+                u[k] = himc_quat_rotate(frame[k], u[k]);
         }
-    }
-}
-
-// adds a take's rows to the problem of the trunk
-static void add_trunk_rows(problem *p, const himc_posture_regression_player *player,
-                           const himc_posture_regression_take *take)
-{
-    himc_quat mean = player->mean.joint[TRUNK];
-    for (int i = 0; i < himc_posture_regression_known_frames(take); i++, p->rows++) {
-        himc_vec3 tip[OFFSETS][HIMC_HANDS];
-        for (int k = 0; k < OFFSETS; k++)
-            for (int hand = 0; hand < HIMC_HANDS; hand++)
-                tip[k][hand] = tip_ahead(take, i, k * HIMC_REGRESSION_OFFSET_STEP, (himc_hand)hand);
-        himc_posture_regression_trunk_terms(player, mean, (const himc_vec3(*)[HIMC_HANDS])tip,
-                                            p->term + p->terms * (size_t)p->rows);
-        himc_vec3 u =
-            himc_quat_log(himc_quat_mul(himc_quat_conj(mean), take->pose[i].joint[TRUNK]));
-        memcpy(p->angle + p->angles * (size_t)p->rows, &u, sizeof u);
+        memcpy(p->angle + p->angles * (size_t)p->rows, u, (size_t)p->angles * sizeof *p->angle);
     }
 }
 
@@ -319,15 +298,6 @@ static void measure_residuals(himc_posture_regression *regression, himc_hand han
         covariance[c][c] += LEAST_DEVIATION * LEAST_DEVIATION;
 }
 
-// number of takes from `from` on that belong to one player
-static int same_player(const himc_posture_regression_take *take, int from, int count)
-{
-    int n = 1;
-    while (from + n < count && take[from + n].skeleton == take[from].skeleton)
-        n++;
-    return n;
-}
-
 // fills the rows of all problems, player by player; `regression` gets the first player
 static bool fill_rows(himc_posture_regression *regression, problem p[PROBLEMS],
                       const himc_posture_regression_take *take, int count, himc_error *error)
@@ -336,16 +306,15 @@ static bool fill_rows(himc_posture_regression *regression, problem p[PROBLEMS],
         p[i].rows = 0;
     for (int from = 0, n; from < count; from += n) {
         himc_posture_regression_player player;
-        n = same_player(take, from, count);
+        for (n = 1; from + n < count && take[from + n].skeleton == take[from].skeleton;)
+            n++;
         if (!himc_posture_regression_fit(&player, take + from, n, error))
             return false;
         if (from == 0)
             regression->player = player;
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            for (int i = 0; player.arm[hand] && i < n; i++)
-                add_rows(&p[hand], &player, &take[from + i], (himc_hand)hand);
-        for (int i = 0; player.trunk && i < n; i++)
-            add_trunk_rows(&p[HIMC_HANDS], &player, &take[from + i]);
+        for (int k = 0; k < PROBLEMS; k++)
+            for (int i = 0; (k < HIMC_HANDS ? player.arm[k] : player.trunk) && i < n; i++)
+                add_rows(&p[k], &player, &take[from + i], k);
     }
     return true;
 }

@@ -8,11 +8,6 @@ static joint_state state_of(const himc_posture_motion *m, int j)
     return (joint_state){m->joint[j], m->rate[j], m->acceleration[j]};
 }
 
-void himc_setpoint_complete(himc_setpoint *tick, const himc_posture *posture)
-{
-    himc_posture_moving(posture, tick->tip, &tick->posture);
-}
-
 bool himc_setpoint_finite(const himc_setpoint *tick)
 {
     // doubles only; x - x is NaN if x is not finite, and so is the sum

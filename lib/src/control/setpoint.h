@@ -14,9 +14,6 @@ typedef struct himc_setpoint {
     himc_posture_motion posture;
 } himc_setpoint;
 
-/// Fills the posture of a tick from its tips.
-HIMC_RT void himc_setpoint_complete(himc_setpoint *tick, const himc_posture *posture);
-
 /// True if all of it is finite.
 HIMC_RT bool himc_setpoint_finite(const himc_setpoint *tick);
 

@@ -72,19 +72,14 @@ static himc_mat3 truncated(const himc_arm_jacobian *jacobian, double damping, hi
     return inverse;
 }
 
-static double nakamura_damping(const himc_mat3 *gram, double most)
-{
-    const double(*m)[3] = gram->m;
-    double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[1][2]) -
-                 m[0][1] * (m[0][1] * m[2][2] - m[1][2] * m[0][2]) +
-                 m[0][2] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
-    return most * fmax(1 - sqrt(fmax(det, 0)) / NAKAMURA_SINGULAR, 0);
-}
-
 static himc_mat3 nakamura(const himc_arm_jacobian *jacobian, double damping, himc_vec3 error)
 {
     (void)error;
-    return damp(&jacobian->gram, nakamura_damping(&jacobian->gram, damping));
+    const double(*m)[3] = jacobian->gram.m;
+    double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[1][2]) -
+                 m[0][1] * (m[0][1] * m[2][2] - m[1][2] * m[0][2]) +
+                 m[0][2] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
+    return damp(&jacobian->gram, damping * fmax(1 - sqrt(fmax(det, 0)) / NAKAMURA_SINGULAR, 0));
 }
 
 static double largest_component(himc_vec3 v)

@@ -19,33 +19,25 @@
 #define MEASURED_MASS 75.0 // of the man of the table (kg)
 #define FASTEST 20.0       // (rad/s) chosen: an elbow that has nothing to lift reaches about that
 
-// isometric maxima (N m), see above
-static double measured(int joint)
-{
-    static const double spine[3] = {250, 50, 50},     // waist, neck, head
-        limb[8] = {80, 70, 12, 5, 200, 200, 130, 15}; // shoulder .. grip, hip .. toes
-    return joint < 3 ? spine[joint] : limb[(joint - 3) / 2];
-}
-
 void himc_controller_set_human_strength(himc_controller_config *c, double mass)
 {
+    // isometric maxima (N m), see above
+    static const double spine[3] = {250, 50, 50},     // waist, neck, head
+        limb[8] = {80, 70, 12, 5, 200, 200, 130, 15}; // shoulder .. grip, hip .. toes
     c->human_strength = true;
     for (int j = 0; j < HIMC_JOINTS; j++)
-        c->strength[j] = measured(j) * mass / MEASURED_MASS;
+        c->strength[j] = (j < 3 ? spine[j] : limb[(j - 3) / 2]) * mass / MEASURED_MASS;
 }
 
-// what a muscle of that maximum has left at the joint's speed along the torque
-static double left_of(double most, himc_vec3 spin, himc_vec3 torque, double asked)
-{
-    double speed = himc_vec3_dot(spin, torque) / asked;
-    return most * fmin(fmax(1 - speed / FASTEST, 0), 1);
-}
-
-// shortens a torque that is above the joint's strength; true if it was
+// shortens a torque to what a muscle of this strength has left at the joint's speed along it; true
+// if it was above
 static bool shorten(double strength, himc_vec3 spin, himc_vec3 *torque)
 {
-    double asked = himc_vec3_length(*torque);
-    double most = asked > 0 ? left_of(strength, spin, *torque, asked) : strength;
+    double asked = himc_vec3_length(*torque), most = strength;
+    if (asked > 0) {
+        double speed = himc_vec3_dot(spin, *torque) / asked;
+        most = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
+    }
     if (asked > most)
         *torque = himc_vec3_scale(*torque, most / asked);
     return asked > most;

@@ -35,12 +35,6 @@ void himc_tracking_error_joints(const himc_skeleton *skeleton, const himc_body_s
     }
 }
 
-static himc_vec3 clamp_length(himc_vec3 v, double most)
-{
-    double length = himc_vec3_length(v);
-    return length > most ? himc_vec3_scale(v, most / length) : v;
-}
-
 typedef struct arm_tasks {
     const himc_controller *controller;
     const himc_arm_jacobian *jacobian;
@@ -48,16 +42,6 @@ typedef struct arm_tasks {
     himc_elbow_task elbow;
     himc_hand hand;
 } arm_tasks;
-
-static void begin_tasks(arm_tasks *tasks, const himc_body_state *s, himc_vec3 missing)
-{
-    const himc_controller_config *c = &tasks->controller->config;
-    int shoulder = himc_arm_joint(tasks->hand, 0) + 1, elbow = himc_arm_joint(tasks->hand, 1) + 1;
-    himc_vec3 upper_arm = himc_vec3_sub(s->origin[elbow], s->origin[shoulder]);
-    tasks->inverse = himc_solvers[c->solver].inverse(tasks->jacobian, c->damping, missing);
-    if (c->elbow)
-        himc_elbow_task_init(&tasks->elbow, tasks->jacobian, upper_arm, c->damping);
-}
 
 // The demand of the tip through the Jacobian, then the elbow's place and the posture in its null
 // space; the solution is linear in all of them. What the posture moves the tip by is taken back
@@ -109,6 +93,7 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
                              const himc_body_state *s, const himc_target *asked, himc_hand hand,
                              const himc_arm_jacobian *jacobian, tracking_error *e)
 {
+    const himc_controller_config *config = &c->config;
     himc_vec3 shoulder = s->origin[himc_arm_joint(hand, 0) + 1];
     himc_target target = himc_stretch_towards(asked, shoulder, himc_stretch(skeleton, hand));
     himc_vec3 way = himc_vec3_sub(target.x, s->tip[hand]);
@@ -116,11 +101,17 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
     tracking_error joints;
     if (away > JOINTS_BEGIN)
         joints = *e;
-    himc_vec3 missing = clamp_length(way, LARGEST_TIP_STEP);
+    himc_vec3 missing = way;
+    if (away > LARGEST_TIP_STEP)
+        missing = himc_vec3_scale(way, LARGEST_TIP_STEP / away);
     himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
     himc_vec3 a = himc_acceleration_left(skeleton, s, hand, e->acceleration, target.a);
     arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
-    begin_tasks(&tasks, s, missing);
+    tasks.inverse = himc_solvers[config->solver].inverse(jacobian, config->damping, missing);
+    if (config->elbow)
+        himc_elbow_task_init(&tasks.elbow, jacobian,
+                             himc_vec3_sub(s->origin[himc_arm_joint(hand, 1) + 1], shoulder),
+                             config->damping);
     solve_demand(&tasks, missing, e->angle);
     solve_demand(&tasks, slower, e->rate);
     solve_demand(&tasks, a, e->acceleration);
