@@ -83,18 +83,6 @@ static bool crosses(const himc_capsule *p, const himc_capsule *q, himc_capsule_n
     return s >= 0 && s <= 1 && t >= 0 && t <= 1; // false where they are parallel
 }
 
-// the order of two arms that cross beyond the elbows, 0 if they do not
-static int order_of(const himc_capsule capsule[HIMC_SEGMENTS])
-{
-    himc_capsule_near near;
-    for (int i = HIMC_ARM_JOINTS; i < HIMC_CAPSULE_ARM_PAIRS; i++) {
-        himc_capsule_pair p = himc_capsule_pairs[i];
-        if (p.other > HIMC_RIGHT_UPPER_ARM && crosses(&capsule[p.part], &capsule[p.other], &near))
-            return near.gap > 0 ? 1 : -1;
-    }
-    return 0;
-}
-
 // pushes a part of an arm at a share of its length; other parts do not give way
 static void push(field *f, int part, double share, double size, himc_vec3 n)
 {
@@ -177,17 +165,12 @@ static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
         }
 }
 
-static bool is_active(const himc_avoidance *a)
+// arms are not folded up, least of all those that avoid something
+static void unfold(field *f, const himc_avoidance *a, const himc_capsule capsule[HIMC_SEGMENTS])
 {
     bool active = false;
     for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
         active = active || fabs(a->goal[i]) > AVOIDS;
-    return active;
-}
-
-// arms are not folded up, least of all those that avoid something
-static void unfold(field *f, const himc_capsule capsule[HIMC_SEGMENTS], bool active)
-{
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_vec3 way =
             himc_vec3_sub(capsule[HIMC_LEFT_HAND + hand].a, capsule[HIMC_LEFT_UPPER_ARM + hand].a);
@@ -209,7 +192,7 @@ static field field_of(const himc_avoidance *a, const himc_capsule capsule[HIMC_S
         ball[i] = himc_capsule_ball(&capsule[i]);
     for (size_t i = 0; i < sizeof body_part / sizeof *body_part; i++)
         ball[body_part[i]] = himc_capsule_ball(&capsule[body_part[i]]);
-    unfold(&f, capsule, is_active(a));
+    unfold(&f, a, capsule);
     push_pairs(&f, capsule, ball, a->order);
     push_off_drums(&f, capsule, ball, shells);
     return f;
@@ -245,9 +228,15 @@ static void step(himc_avoidance *a, const double rate[HIMC_AVOIDANCE_PARTS], dou
 // posture has no time, so it decides nothing.
 static void foresee_order(himc_avoidance *a, himc_capsule capsule[HIMC_FORESEEN][HIMC_SEGMENTS])
 {
+    himc_capsule_near near;
     int order = 0;
-    for (int i = 0; i < HIMC_FORESEEN && order == 0; i++)
-        order = order_of(capsule[i]);
+    for (int k = 0; k < HIMC_FORESEEN; k++)
+        for (int i = HIMC_ARM_JOINTS; i < HIMC_CAPSULE_ARM_PAIRS && order == 0; i++) {
+            himc_capsule_pair p = himc_capsule_pairs[i];
+            if (p.other > HIMC_RIGHT_UPPER_ARM && // beyond the elbows
+                crosses(&capsule[k][p.part], &capsule[k][p.other], &near))
+                order = near.gap > 0 ? 1 : -1;
+        }
     if (order == 0 || a->order == 0)
         a->order = order;
 }

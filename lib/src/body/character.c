@@ -46,25 +46,6 @@ struct himc_character {
     dBodyID body[HIMC_SEGMENTS]; // [0], the pelvis, is NULL: the world
 };
 
-static void make_body(himc_character *c, int i)
-{
-    const himc_segment *segment = &c->skeleton.segment[i];
-    dMass mass;
-    c->body[i] = dBodyCreate(c->world);
-    dMassSetParameters(&mass, segment->mass, 0, 0, 0, segment->inertia.x, segment->inertia.y,
-                       segment->inertia.z, 0, 0, 0);
-    dBodySetMass(c->body[i], &mass);
-    dBodySetAutoDisableFlag(c->body[i], 0);
-    dBodySetGyroscopicMode(c->body[i], 1);
-}
-
-static void make_joint(himc_character *c, int i, const himc_body_state *state)
-{
-    dJointID joint = dJointCreateBall(c->world, 0);
-    dJointAttach(joint, c->body[i], c->body[c->skeleton.segment[i].parent]);
-    dJointSetBallAnchor(joint, state->origin[i].x, state->origin[i].y, state->origin[i].z);
-}
-
 // false if ODE's own checks would abort the process on one of segments 1 .. end - 1
 static bool is_sound(const segment_states *s, int end)
 {
@@ -126,15 +107,26 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
     dWorldSetGravity(c->world, 0, 0, -HIMC_GRAVITY);
     dWorldSetERP(c->world, JOINT_ERP);
     dWorldSetCFM(c->world, 0);
-    for (int i = 1; i < HIMC_SEGMENTS; i++)
-        make_body(c, i);
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        const himc_segment *segment = &skeleton->segment[i];
+        himc_vec3 inertia = segment->inertia;
+        dMass mass;
+        c->body[i] = dBodyCreate(c->world);
+        dMassSetParameters(&mass, segment->mass, 0, 0, 0, inertia.x, inertia.y, inertia.z, 0, 0, 0);
+        dBodySetMass(c->body[i], &mass);
+        dBodySetAutoDisableFlag(c->body[i], 0);
+        dBodySetGyroscopicMode(c->body[i], 1);
+    }
     himc_body_state state;
     himc_pose zero = himc_pose_zero();
     himc_pose_to_state(skeleton, &zero, NULL, &state);
     himc_character_place(c, &state);
     give_to_ode(c);
-    for (int i = 1; i < HIMC_SEGMENTS; i++)
-        make_joint(c, i, &state);
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        dJointID joint = dJointCreateBall(c->world, 0);
+        dJointAttach(joint, c->body[i], c->body[skeleton->segment[i].parent]);
+        dJointSetBallAnchor(joint, state.origin[i].x, state.origin[i].y, state.origin[i].z);
+    }
     // the engine allocates its working memory in the first step: make it here, not in the audio
     // callback
     dWorldStep(c->world, FIRST_STEP);
@@ -159,23 +151,6 @@ void himc_character_use(himc_character *c, himc_engine engine)
 himc_engine himc_character_engine(const himc_character *c)
 {
     return c->engine;
-}
-
-// velocity of each joint: the sum of w x r from the pelvis outwards
-static void origin_velocities(const himc_skeleton *skeleton, const himc_body_state *s,
-                              himc_vec3 v[HIMC_SEGMENTS])
-{
-    v[0] = himc_vec3_make(0, 0, 0);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        int p = skeleton->segment[i].parent;
-        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
-        v[i] = himc_vec3_add(v[p], himc_vec3_cross(s->spin[p], r));
-    }
-}
-
-static void changed(himc_character *c)
-{
-    c->articulated = c->given = false;
 }
 
 double himc_character_kinetic(const himc_character *c)
@@ -208,8 +183,11 @@ static void set_state(himc_character *c, const himc_body_state *state)
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         s->orientation[i] = himc_quat_unit(s->orientation[i]);
     himc_body_state_complete(&c->skeleton, s);
-    origin_velocities(&c->skeleton, s, v);
+    v[0] = himc_vec3_make(0, 0, 0); // of the joints: the sum of w x r from the pelvis outwards
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        int p = c->skeleton.segment[i].parent;
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
+        v[i] = himc_vec3_add(v[p], himc_vec3_cross(s->spin[p], r));
         himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
         c->state.position[i] = himc_vec3_add(s->origin[i], center);
         c->state.velocity[i] = himc_vec3_add(v[i], himc_vec3_cross(s->spin[i], center));
@@ -224,19 +202,8 @@ bool himc_character_place(himc_character *c, const himc_body_state *state)
     if (c->work && isfinite(before))
         c->work->placed += energy(c) - before;
     c->still = 0;
-    changed(c);
+    c->articulated = c->given = false;
     return c->sound;
-}
-
-// the joints of the pelvis are anchored in ODE's world
-static void anchor_pelvis(himc_character *c)
-{
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        himc_vec3 at = c->state.joints.origin[i];
-        for (int k = 0; k < dBodyGetNumJoints(c->body[i]); k++)
-            if (!dJointGetBody(dBodyGetJoint(c->body[i], k), 1))
-                dJointSetBallAnchor(dBodyGetJoint(c->body[i], k), at.x, at.y, at.z);
-    }
 }
 
 bool himc_character_seat(himc_character *c, double height)
@@ -250,13 +217,20 @@ bool himc_character_seat(himc_character *c, double height)
         himc_pose_to_state(&c->skeleton, &zero, NULL, &state);
     himc_character_place(c, &state);
     give_to_ode(c);
-    anchor_pelvis(c);
+    // the joints of the pelvis are anchored in ODE's world
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 at = c->state.joints.origin[i];
+        for (int k = 0; k < dBodyGetNumJoints(c->body[i]); k++)
+            if (!dJointGetBody(dBodyGetJoint(c->body[i], k), 1))
+                dJointSetBallAnchor(dBodyGetJoint(c->body[i], k), at.x, at.y, at.z);
+    }
     return true;
 }
 
-// the tips from the stick's centre; along the joints their drift would add up
-static void observe_tips(const himc_character *c, himc_body_state *s)
+void himc_character_observe(const himc_character *c, himc_body_state *s)
 {
+    *s = c->state.joints;
+    // the tips from the stick's centre; along the joints their drift would add up
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int i = himc_stick_segment((himc_hand)hand);
         himc_vec3 center = c->skeleton.segment[i].center;
@@ -264,12 +238,6 @@ static void observe_tips(const himc_character *c, himc_body_state *s)
         s->tip[hand] = himc_vec3_add(c->state.position[i], r);
         s->tip_velocity[hand] = himc_vec3_add(c->state.velocity[i], himc_vec3_cross(s->spin[i], r));
     }
-}
-
-void himc_character_observe(const himc_character *c, himc_body_state *s)
-{
-    *s = c->state.joints;
-    observe_tips(c, s);
 }
 
 const himc_articulation *himc_character_articulation(himc_character *c)
@@ -299,14 +267,6 @@ static void fill_forces(const himc_character *c, const himc_step_forces *sources
         f->force[i] = himc_vec3_add(f->force[i], contact->force);
         f->torque[i] = himc_vec3_add(f->torque[i], himc_vec3_cross(at, contact->force));
     }
-}
-
-static bool can_step(const himc_character *c, const segment_forces *f)
-{
-    double sum = 0;
-    for (int i = 1; i < HIMC_SEGMENTS; i++)
-        sum += himc_vec3_dot(f->force[i], f->force[i]) + himc_vec3_dot(f->torque[i], f->torque[i]);
-    return c->sound && sum < LARGEST_SUM;
 }
 
 static void step_ode(himc_character *c, const segment_forces *f, double h)
@@ -357,45 +317,37 @@ static void step_tree(himc_character *c, const segment_forces *f, double h)
         note_legs(c, f);
 }
 
-static void step_engine(himc_character *c, const segment_forces *f, double h)
-{
-    if (c->engine == HIMC_ENGINE_ODE)
-        step_ode(c, f, h);
-    else
-        step_tree(c, f, h);
-}
-
-static void step_accounted(himc_character *c, const himc_step_forces *sources,
-                           const segment_forces *f, double h)
-{
-    segment_states before; // what himc_body_work_add reads of it
-    memcpy(before.joints.spin, c->state.joints.spin, sizeof before.joints.spin);
-    memcpy(before.joints.rotation, c->state.joints.rotation, sizeof before.joints.rotation);
-    memcpy(before.velocity, c->state.velocity, sizeof before.velocity);
-    himc_character_articulation(c);
-    step_engine(c, f, h);
-    himc_body_work_add(c->work, &c->skeleton, &c->articulation, sources, &before, &c->state, h);
-}
-
 bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
                          const world_contact *contact, int contacts, double h)
 {
     const himc_step_forces sources = {torque, contact, contacts};
-    segment_forces forces;
-    fill_forces(c, &sources, &forces);
-    if (!can_step(c, &forces))
+    segment_forces f;
+    segment_states before; // what himc_body_work_add reads of it
+    himc_body_work work;
+    double sum = 0;
+    fill_forces(c, &sources, &f);
+    for (int i = 1; i < HIMC_SEGMENTS; i++)
+        sum += himc_vec3_dot(f.force[i], f.force[i]) + himc_vec3_dot(f.torque[i], f.torque[i]);
+    if (!c->sound || !(sum < LARGEST_SUM))
         return false;
-    himc_body_work before;
     if (c->work) {
-        before = *c->work;
-        step_accounted(c, &sources, &forces, h);
-    } else {
-        step_engine(c, &forces, h);
+        work = *c->work;
+        memcpy(before.joints.spin, c->state.joints.spin, sizeof before.joints.spin);
+        memcpy(before.joints.rotation, c->state.joints.rotation, sizeof before.joints.rotation);
+        memcpy(before.velocity, c->state.velocity, sizeof before.velocity);
+        himc_character_articulation(c);
     }
-    changed(c);
+    if (c->engine == HIMC_ENGINE_ODE)
+        step_ode(c, &f, h);
+    else
+        step_tree(c, &f, h);
+    if (c->work)
+        himc_body_work_add(c->work, &c->skeleton, &c->articulation, &sources, &before, &c->state,
+                           h);
+    c->articulated = false;
     c->given = c->engine == HIMC_ENGINE_ODE;
     c->sound = is_sound(&c->state, c->still > STILL_STEPS ? HIMC_LEGS : HIMC_SEGMENTS);
     if (c->work && !c->sound)
-        *c->work = before;
+        *c->work = work;
     return c->sound;
 }

@@ -19,8 +19,6 @@
 
 #include "base/rotations.h"
 
-#include <string.h>
-
 typedef struct step {
     const himc_skeleton *skeleton;
     const himc_articulation *art;
@@ -43,20 +41,6 @@ static himc_vec3 point_velocity(const step *s, int i, himc_vec3 r)
         return himc_vec3_make(0, 0, 0);
     himc_vec3 from_center = himc_vec3_sub(r, s->art->center[i]);
     return himc_vec3_add(s->velocity[i], himc_vec3_cross(s->spin[i], from_center));
-}
-
-static void begin(step *s, const himc_step_forces *forces)
-{
-    s->spin[0] = s->velocity[0] = himc_vec3_make(0, 0, 0);
-    memset(s->force, 0, sizeof s->force);
-    for (int i = 1; i < s->art->end; i++) {
-        s->spin[i] = mean(s->before->joints.spin[i], s->after->joints.spin[i]);
-        s->velocity[i] = mean(s->before->velocity[i], s->after->velocity[i]);
-    }
-    for (int k = 0; k < forces->contacts; k++) {
-        himc_vec3 *f = &s->force[forces->contact[k].segment];
-        *f = himc_vec3_add(*f, forces->contact[k].force);
-    }
 }
 
 // power that the step gives by itself, at segment i; `joint` has the forces in the joints beyond
@@ -83,7 +67,14 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
 {
     step s = {.skeleton = skeleton, .art = art, .before = before, .after = after, .h = h};
     himc_vec3 joint[HIMC_SEGMENTS] = {{0, 0, 0}};
-    begin(&s, forces);
+    for (int i = 1; i < art->end; i++) {
+        s.spin[i] = mean(before->joints.spin[i], after->joints.spin[i]);
+        s.velocity[i] = mean(before->velocity[i], after->velocity[i]);
+    }
+    for (int k = 0; k < forces->contacts; k++) {
+        himc_vec3 *f = &s.force[forces->contact[k].segment];
+        *f = himc_vec3_add(*f, forces->contact[k].force);
+    }
     for (int i = art->end - 1; i > 0; i--) {
         himc_vec3 relative = himc_vec3_sub(s.spin[i], s.spin[skeleton->segment[i].parent]);
         work->joint[i - 1] += h * himc_vec3_dot(forces->torque[i - 1], relative);

@@ -98,29 +98,22 @@ static void add_resistance(himc_articulation *art, int i, const himc_symmetric *
     art->parent_coupling[i] = himc_mat3_mul(&art->transfer[i], &own->h);
 }
 
-// [v]x a
-static himc_mat3 cross_columns(himc_vec3 v, const himc_mat3 *a)
-{
-    return himc_mat3_from_axes(himc_vec3_cross(v, column(a, 0)), himc_vec3_cross(v, column(a, 1)),
-                               himc_vec3_cross(v, column(a, 2)));
-}
-
-static void add_symmetric(himc_symmetric *a, const himc_mat3 *b)
-{
-    *a = sum(a, &(himc_symmetric){b->m[0][0], b->m[0][1], b->m[0][2], b->m[1][1], b->m[1][2],
-                                  b->m[2][2]});
-}
-
 // adds E and G of segment `i`, moved to its parent's joint, to the parent's J and H
 static void add_parent_moments(const himc_articulation *art, int i, block *parent)
 {
     himc_mat3 e = himc_mat3_mul(&art->transfer[i], &art->resistance[i]);
     himc_mat3 g = transpose(&art->parent_coupling[i]), all = art->resistance[i];
-    himc_mat3 back = cross_columns(art->lever[i], &g), moved = transpose(&back);
+    himc_vec3 r = art->lever[i]; // back is [r]x g
+    himc_mat3 back = himc_mat3_from_axes(himc_vec3_cross(r, column(&g, 0)),
+                                         himc_vec3_cross(r, column(&g, 1)),
+                                         himc_vec3_cross(r, column(&g, 2))),
+              moved = transpose(&back);
     add_to(&all, &e, -1);
     add_to(&all, &moved, 1);
     add_to(&all, &back, 1);
-    add_symmetric(&parent->j, &all);
+    himc_symmetric j = {all.m[0][0], all.m[0][1], all.m[0][2],
+                        all.m[1][1], all.m[1][2], all.m[2][2]};
+    parent->j = sum(&parent->j, &j);
     add_to(&parent->h, &art->parent_coupling[i], 1);
 }
 
@@ -197,10 +190,12 @@ void himc_articulate_resisting(const himc_skeleton *skeleton, const himc_body_st
     articulate(skeleton, s, HIMC_SEGMENTS, resistance, art);
 }
 
-// inwards: n and p of all segments further out; alpha is that of a joint at rest
-static void sum_loads(const himc_skeleton *skeleton, const himc_articulation *art,
-                      tree_load load[HIMC_SEGMENTS], himc_vec3 alpha[HIMC_SEGMENTS])
+void himc_articulation_solve(const himc_skeleton *skeleton, const himc_articulation *art,
+                             tree_load load[HIMC_SEGMENTS], himc_vec3 alpha[HIMC_SEGMENTS],
+                             himc_vec3 a[HIMC_SEGMENTS])
 {
+    alpha[0] = a[0] = himc_vec3_make(0, 0, 0);
+    // inwards: n and p of all segments further out; alpha is that of a joint at rest
     for (int i = art->end - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
         himc_vec3 n = load[i].moment, gap = load[i].gap;
@@ -217,14 +212,7 @@ static void sum_loads(const himc_skeleton *skeleton, const himc_articulation *ar
             load[p].moment = himc_vec3_add(load[p].moment, rotational);
         }
     }
-}
-
-void himc_articulation_solve(const himc_skeleton *skeleton, const himc_articulation *art,
-                             tree_load load[HIMC_SEGMENTS], himc_vec3 alpha[HIMC_SEGMENTS],
-                             himc_vec3 a[HIMC_SEGMENTS])
-{
-    alpha[0] = a[0] = himc_vec3_make(0, 0, 0);
-    sum_loads(skeleton, art, load, alpha);
+    // outwards
     for (int i = 1; i < art->end; i++) {
         int p = skeleton->segment[i].parent;
         a[i] = himc_vec3_add(a[p], himc_vec3_cross(alpha[p], art->lever[i]));

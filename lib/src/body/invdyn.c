@@ -19,10 +19,12 @@ static inline himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_ve
     return himc_vec3_add(base, himc_vec3_cross(spin, himc_vec3_cross(spin, r)));
 }
 
-static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
-                     const himc_vec3 *relative, const himc_vec3 *spin, motion m[HIMC_SEGMENTS])
+static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s,
+                         const himc_articulation *art, const himc_vec3 *relative,
+                         const himc_vec3 *spin, himc_vec3 torque[HIMC_JOINTS])
 {
-    // gravity acts like an upward acceleration of the pelvis
+    motion m[HIMC_SEGMENTS];
+    // outwards; gravity acts like an upward acceleration of the pelvis
     m[0] = (motion){.linear = {0, 0, HIMC_GRAVITY}};
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = skeleton->segment[i].parent;
@@ -31,14 +33,7 @@ static void outwards(const himc_skeleton *skeleton, const himc_body_state *s,
         himc_vec3 angular = himc_vec3_add(m[p].angular, relative[i - 1]);
         m[i] = (motion){angular, linear, {0, 0, 0}, {0, 0, 0}};
     }
-}
-
-static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s,
-                         const himc_articulation *art, const himc_vec3 *relative,
-                         const himc_vec3 *spin, himc_vec3 torque[HIMC_JOINTS])
-{
-    motion m[HIMC_SEGMENTS];
-    outwards(skeleton, s, relative, spin, m);
+    // inwards
     for (int i = HIMC_SEGMENTS - 1; i > 0; i--) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 c = art ? art->center[i] : himc_mat3_apply(&s->rotation[i], segment->center);

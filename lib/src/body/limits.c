@@ -52,14 +52,6 @@ static himc_vec3 divide(himc_vec3 a, himc_vec3 b)
     return himc_vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
 }
 
-static double box_measure(const himc_limit *l, himc_vec3 angle)
-{
-    himc_vec3 middle = himc_vec3_scale(himc_vec3_add(l->lower, l->upper), 0.5);
-    himc_vec3 half = at_least(himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5), THINNEST);
-    himc_vec3 z = divide(himc_vec3_sub(angle, middle), half);
-    return fmax(fabs(z.x), fmax(fabs(z.y), fabs(z.z)));
-}
-
 himc_vec3 himc_limit_closest_on_ellipsoid(himc_vec3 radius, himc_vec3 x)
 {
     // r and s = t in units of the thinnest semi-axis squared
@@ -85,13 +77,6 @@ static double clamp(double value, double low, double high)
 {
     double middle = 0.5 * (low + high), half = fmax(0.5 * (high - low), THINNEST);
     return fmin(fmax(value, middle - half), middle + half);
-}
-
-static himc_vec3 closest_in_box(const himc_limit *l, himc_vec3 angle)
-{
-    return himc_vec3_make(clamp(angle.x, l->lower.x, l->upper.x),
-                          clamp(angle.y, l->lower.y, l->upper.y),
-                          clamp(angle.z, l->lower.z, l->upper.z));
 }
 
 // distance along an axis to the ellipsoid, from a point z (by semi-axes) with |z|^2 = 1 + excess:
@@ -134,7 +119,10 @@ static himc_limit_place locate_in_box(const himc_limit *l, himc_quat rotation)
 {
     himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), rotation);
     himc_limit_place place = {.at = himc_euler_from_quat(away)};
-    place.measure = box_measure(l, place.at);
+    himc_vec3 middle = himc_vec3_scale(himc_vec3_add(l->lower, l->upper), 0.5);
+    himc_vec3 half = at_least(himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5), THINNEST);
+    himc_vec3 z = divide(himc_vec3_sub(place.at, middle), half);
+    place.measure = fmax(fabs(z.x), fmax(fabs(z.y), fabs(z.z)));
     if (place.measure > 1)
         place.most_beyond = HIMC_PI;
     return place;
@@ -153,9 +141,13 @@ himc_limit_place himc_limit_locate(const himc_limits *limits, int joint, himc_qu
 static himc_quat project(const himc_limits *limits, int joint, const himc_limit_place *place)
 {
     const himc_limit *l = &limits->joint[joint];
-    if (limits->kind == HIMC_LIMITS_EULER)
-        return himc_quat_mul(l->mean, himc_euler_to_quat(closest_in_box(l, place->at)));
-    himc_vec3 t = himc_limit_closest_on_ellipsoid(at_least(l->radius, THINNEST), place->at);
+    himc_vec3 t = place->at;
+    if (limits->kind == HIMC_LIMITS_EULER) {
+        t = himc_vec3_make(clamp(t.x, l->lower.x, l->upper.x), clamp(t.y, l->lower.y, l->upper.y),
+                           clamp(t.z, l->lower.z, l->upper.z));
+        return himc_quat_mul(l->mean, himc_euler_to_quat(t));
+    }
+    t = himc_limit_closest_on_ellipsoid(at_least(l->radius, THINNEST), t);
     return himc_quat_mul(l->mean, himc_quat_exp(himc_mat3_apply(&l->axes, t)));
 }
 
@@ -179,21 +171,6 @@ himc_quat himc_limit_closest(const himc_limits *limits, int joint, himc_quat rot
 {
     himc_limit_place place = himc_limit_locate(limits, joint, rotation);
     return place.measure > 1 ? project(limits, joint, &place) : rotation;
-}
-
-// the box around an ellipsoid
-static void enclose(himc_limit *l)
-{
-    double half[3];
-    const double r[3] = {l->radius.x, l->radius.y, l->radius.z};
-    for (int i = 0; i < 3; i++) {
-        double sum = 0;
-        for (int k = 0; k < 3; k++)
-            sum += l->axes.m[i][k] * l->axes.m[i][k] * r[k] * r[k];
-        half[i] = sqrt(sum);
-    }
-    l->upper = himc_vec3_make(half[0], half[1], half[2]);
-    l->lower = himc_vec3_scale(l->upper, -1);
 }
 
 /// A joint of the table: eigen values, and their axes as printed.
@@ -237,7 +214,15 @@ static himc_limit printed_limit(const printed *p, bool is_arm, bool right, himc_
     himc_limit l = {.bound = true, .mean = mean, .axes = himc_mat3_from_axes(e[0], e[1], e[2])};
     l.radius =
         himc_vec3_scale(himc_vec3_make(p->lambda[0], p->lambda[1], p->lambda[2]), 2 * DEGREE);
-    enclose(&l);
+    double half[3]; // of the box around the ellipsoid
+    for (int i = 0; i < 3; i++) {
+        const double *a = l.axes.m[i];
+        half[i] =
+            sqrt(a[0] * a[0] * l.radius.x * l.radius.x + a[1] * a[1] * l.radius.y * l.radius.y +
+                 a[2] * a[2] * l.radius.z * l.radius.z);
+    }
+    l.upper = himc_vec3_make(half[0], half[1], half[2]);
+    l.lower = himc_vec3_scale(l.upper, -1);
     return l;
 }
 

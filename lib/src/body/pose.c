@@ -13,23 +13,6 @@ himc_pose himc_pose_zero(void)
     return pose;
 }
 
-static void complete_tips(const himc_skeleton *skeleton, himc_body_state *s)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_vec3 velocity = {0, 0, 0};
-        int stick = himc_stick_segment((himc_hand)hand);
-        s->tip[hand] =
-            himc_vec3_add(s->origin[stick], himc_mat3_apply(&s->rotation[stick], skeleton->tip));
-        himc_vec3 end = s->tip[hand];
-        for (int i = stick; i >= 0; i = skeleton->segment[i].parent) {
-            himc_vec3 link = himc_vec3_sub(end, s->origin[i]);
-            velocity = himc_vec3_add(velocity, himc_vec3_cross(s->spin[i], link));
-            end = s->origin[i];
-        }
-        s->tip_velocity[hand] = velocity;
-    }
-}
-
 void himc_body_state_complete(const himc_skeleton *skeleton, himc_body_state *s)
 {
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
@@ -41,7 +24,18 @@ void himc_body_state_complete(const himc_skeleton *skeleton, himc_body_state *s)
                 himc_vec3_add(s->origin[segment->parent],
                               himc_mat3_apply(&s->rotation[segment->parent], segment->origin));
     }
-    complete_tips(skeleton, s);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int stick = himc_stick_segment((himc_hand)hand);
+        himc_vec3 velocity = {0, 0, 0};
+        himc_vec3 end = s->tip[hand] =
+            himc_vec3_add(s->origin[stick], himc_mat3_apply(&s->rotation[stick], skeleton->tip));
+        for (int i = stick; i >= 0; i = skeleton->segment[i].parent) {
+            himc_vec3 link = himc_vec3_sub(end, s->origin[i]);
+            velocity = himc_vec3_add(velocity, himc_vec3_cross(s->spin[i], link));
+            end = s->origin[i];
+        }
+        s->tip_velocity[hand] = velocity;
+    }
 }
 
 void himc_pose_to_state(const himc_skeleton *skeleton, const himc_pose *pose, const himc_vec3 *rate,

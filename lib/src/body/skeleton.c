@@ -189,15 +189,6 @@ static void build_stick(himc_segment *stick, himc_vec3 tip, const himc_skeleton_
     stick->inertia = himc_vec3_make(across, across, along);
 }
 
-// positions along the parent scale with its length, positions across it with the body's height
-static himc_vec3 joint_origin(const himc_skeleton *skeleton, const row *r, double scale)
-{
-    double stretch = scale;
-    if (r->parent >= 0)
-        stretch = skeleton->segment[r->parent].length / row_of(r->parent).length;
-    return himc_vec3_make(r->origin[0] * stretch, r->origin[1] * scale, r->origin[2] * stretch);
-}
-
 static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_config *c)
 {
     row r = row_of(i);
@@ -210,7 +201,11 @@ static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_co
     s->radius = stick ? r.radius : r.radius * scale;
     s->length = c->length[i] > 0 ? c->length[i] : r.length * scale;
     s->mass = c->mass * mass_share(i, c->anthropometry);
-    s->origin = joint_origin(skeleton, &r, scale);
+    // positions along the parent scale with its length, positions across it with the body's height
+    double stretch = scale;
+    if (r.parent >= 0)
+        stretch = skeleton->segment[r.parent].length / row_of(r.parent).length;
+    s->origin = himc_vec3_make(r.origin[0] * stretch, r.origin[1] * scale, r.origin[2] * stretch);
     if (c->shoulders > 0 && r.parent == HIMC_TRUNK && r.origin[1] != 0)
         s->origin.y = copysign(0.5 * c->shoulders, r.origin[1]);
     s->center = himc_vec3_scale(s->axis, r.center * s->length);

@@ -27,39 +27,27 @@ himc_vec3 himc_gyroscopic_moment(const himc_symmetric *inertia, himc_vec3 own, h
     return himc_vec3_scale(himc_vec3_cross(l, after), 1 / (det + h * h * himc_vec3_dot(l, il)));
 }
 
-// velocity of a segment's joint
-static himc_vec3 joint_velocity(const himc_articulation *art, const segment_states *s, int i)
-{
-    return himc_vec3_sub(s->velocity[i], himc_vec3_cross(s->joints.spin[i], art->center[i]));
-}
-
-// g
-static himc_vec3 closing(const himc_articulation *art, const segment_states *s,
-                         const himc_vec3 *velocity, int i, int p, double erp, double h)
-{
-    const himc_body_state *b = &s->joints;
-    himc_vec3 gap = himc_vec3_sub(himc_vec3_add(b->origin[p], art->lever[i]), b->origin[i]);
-    himc_vec3 there = himc_vec3_add(velocity[p], himc_vec3_cross(b->spin[p], art->lever[i]));
-    himc_vec3 rate = himc_vec3_sub(there, velocity[i]);
-    return himc_vec3_scale(himc_vec3_madd(rate, erp / h, gap), 1 / h);
-}
-
 static void fill_loads(const himc_skeleton *skeleton, const himc_articulation *art,
                        const segment_forces *f, const segment_states *s, double erp, double h,
                        tree_load load[HIMC_SEGMENTS])
 {
-    himc_vec3 velocity[HIMC_SEGMENTS];
+    const himc_body_state *b = &s->joints;
+    himc_vec3 velocity[HIMC_SEGMENTS]; // of the joints
     velocity[0] = himc_vec3_make(0, 0, 0);
     for (int i = 1; i < art->end; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 torque =
-            himc_gyroscopic_moment(&art->inertia[i], segment->inertia, s->joints.spin[i], h);
+            himc_gyroscopic_moment(&art->inertia[i], segment->inertia, b->spin[i], h);
         torque = himc_vec3_add(torque, f->torque[i]);
-        velocity[i] = joint_velocity(art, s, i);
+        int p = segment->parent;
+        velocity[i] = himc_vec3_sub(s->velocity[i], himc_vec3_cross(b->spin[i], art->center[i]));
+        himc_vec3 gap = himc_vec3_sub(himc_vec3_add(b->origin[p], art->lever[i]), b->origin[i]);
+        himc_vec3 there = himc_vec3_add(velocity[p], himc_vec3_cross(b->spin[p], art->lever[i]));
+        himc_vec3 rate = himc_vec3_sub(there, velocity[i]);
         load[i].force = himc_vec3_scale(f->force[i], -1);
         load[i].force.z += segment->mass * HIMC_GRAVITY;
         load[i].moment = himc_vec3_sub(himc_vec3_cross(art->center[i], load[i].force), torque);
-        load[i].gap = closing(art, s, velocity, i, segment->parent, erp, h);
+        load[i].gap = himc_vec3_scale(himc_vec3_madd(rate, erp / h, gap), 1 / h);
     }
 }
 
