@@ -7,17 +7,13 @@
 /// distribution, 3 degrees of freedom).
 #include "base/noise.h"
 
-#include <stdlib.h>
+#include "base/order.h"
 
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
+#include <stdlib.h>
 
 double himc_median(double *x, int count)
 {
-    qsort(x, (size_t)count, sizeof *x, by_size);
+    qsort(x, (size_t)count, sizeof *x, himc_order_doubles);
     return 0.5 * (x[(count - 1) / 2] + x[count / 2]);
 }
 

@@ -430,15 +430,26 @@ himc_arm_levers himc_arm_levers_at(himc_vec3 waist, himc_quat trunk,
                                    const himc_vec3 joint[HIMC_ARM_JOINTS], himc_vec3 stick,
                                    const himc_pose *pose, himc_hand hand)
 {
-    himc_arm_levers a = {.frame = {trunk}, .tip = waist};
+    himc_arm_levers a = {.frame = {trunk}};
+    himc_vec3 at = waist;
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        a.lever[k] = a.tip = himc_vec3_add(a.tip, himc_quat_rotate(a.frame[k], joint[k]));
+        a.at[k] = at = himc_vec3_add(at, himc_quat_rotate(a.frame[k], joint[k]));
         a.frame[k + 1] = himc_quat_mul(a.frame[k], pose->joint[himc_arm_joint(hand, k)]);
     }
-    a.tip = himc_vec3_add(a.tip, himc_quat_rotate(a.frame[HIMC_ARM_JOINTS], stick));
+    himc_vec3 tip = a.at[HIMC_ARM_JOINTS] =
+        himc_vec3_add(at, himc_quat_rotate(a.frame[HIMC_ARM_JOINTS], stick));
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        a.lever[k] = himc_vec3_sub(a.tip, a.lever[k]);
+        a.lever[k] = himc_vec3_sub(tip, a.at[k]);
     return a;
+}
+
+himc_arm_levers himc_arm_levers_of(const himc_skeleton *skeleton, himc_vec3 waist,
+                                   const himc_pose *pose, himc_hand hand)
+{
+    himc_vec3 joint[HIMC_ARM_JOINTS];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+        joint[k] = skeleton->segment[himc_arm_joint(hand, k) + 1].origin;
+    return himc_arm_levers_at(waist, pose->joint[HIMC_TRUNK - 1], joint, skeleton->tip, pose, hand);
 }
 
 void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],

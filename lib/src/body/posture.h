@@ -30,14 +30,17 @@ HIMC_RT void himc_posture_differentiate(const himc_pose pose[3], double step, in
 /// The joints of an arm and its tip.
 typedef struct himc_arm_levers {
     himc_quat frame[HIMC_ARM_JOINTS + 1]; ///< of the trunk and of the arm's segments
+    himc_vec3 at[HIMC_ARM_JOINTS + 1];    ///< the joints and the tip (m)
     himc_vec3 lever[HIMC_ARM_JOINTS];     ///< from each joint to the tip (m)
-    himc_vec3 tip;                        ///< (m)
 } himc_arm_levers;
 
 /// Those of the arm of a pose with the waist at `waist` (m) and the trunk in the orientation
 /// `trunk`: `joint` are the joints in their parents' frames, `stick` is the tip in the stick's (m).
 HIMC_RT himc_arm_levers himc_arm_levers_at(himc_vec3 waist, himc_quat trunk,
                                            const himc_vec3 joint[HIMC_ARM_JOINTS], himc_vec3 stick,
+                                           const himc_pose *pose, himc_hand hand);
+/// The same with the pose's trunk and the joints of a skeleton.
+HIMC_RT himc_arm_levers himc_arm_levers_of(const himc_skeleton *skeleton, himc_vec3 waist,
                                            const himc_pose *pose, himc_hand hand);
 
 /// The grip of the sticks. German: palms down, the wrist bends. French: thumbs up, the fingers

@@ -1,8 +1,11 @@
 /// marker_table.c: tables of markers as text: Vicon Nexus' ASCII export (.csv), OptiTrack Motive's
-/// export (.csv), Qualisys' TSV, and any CSV with columns NAME_x, NAME_y, NAME_z.
+/// export (.csv), Qualisys' TSV, Motion Analysis' and OpenSim's TRC, and any CSV with columns
+/// NAME_x, NAME_y, NAME_z.
 ///
 /// All are a head that says rate, unit and the column where each marker's three cells begin,
-/// then rows of numbers. A head is read into a plan; one loop reads the rows of all.
+/// then rows of numbers. A head is read into a plan; one loop reads the rows of all. Three cells
+/// that are empty, "nan" or 9999999 (Motion Analysis' own mark) are a gap; a point with only some
+/// of its coordinates is refused, because then columns are shifted.
 ///
 /// Nexus: sections "Devices", "Joints", "Trajectories", ...; of these "Trajectories" is read: the
 /// rate, a line of names each above its first column, "Frame,Sub Frame,X,Y,Z,...", a line of
@@ -16,11 +19,17 @@
 /// Qualisys: lines KEY<tab>VALUE, of which FREQUENCY and MARKER_NAMES are needed; mm; then rows,
 /// with Frame and Time first if the line before them says so.
 ///
+/// TRC: line 1 names the format; lines 2 and 3 are keys and values (DataRate, NumFrames,
+/// NumMarkers, Units); line 4 is "Frame#", "Time" and a marker's name over every third column; line
+/// 5 (X1 Y1 Z1 ...) is skipped; y up. Cells are split by tabs, else semicolons, else commas,
+/// whichever the row of names has. The header's counts must agree with the rows and names.
+///
 /// Any: one line of column names: time (s), and three columns for each marker, NAME_x NAME_y
 /// NAME_z with the unit at their end: NAME_x_mm, "NAME x [m]", "NAME.X (cm)"; the others are not
 /// read. So motion.csv of `himc render` is a take, too. Where a semicolon or a tab parts the
 /// cells, numbers may have a decimal comma.
-#include "capture/marker_cells.h"
+#include "capture/take.h"
+#include "capture/take_text.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,6 +40,7 @@
 typedef struct plan {
     himc_take *take;
     himc_text text; // its next line is the first row
+    size_t size;    // of the file (bytes)
     char separator;
     double rate; // (Hz), 0: by the time column
     int points;
@@ -38,12 +48,71 @@ typedef struct plan {
     himc_span *names;     // (points); owned
     int frame, time;      // columns, or NOT_THERE
     bool ends_with_blank; // an empty line ends the rows
+    bool strict;          // all rows have whole numbers of frames, and nothing behind the points
     himc_error *error;
 } plan;
 
 static bool refuse(const plan *p, const char *what)
 {
     return himc_error_set(p->error, "%s:%d: %s", p->take->file, p->text.line, what);
+}
+
+static bool refuse_value(const plan *p, const char *what, himc_span value, const char *expected)
+{
+    char text[44];
+    return himc_error_set(p->error, "%s:%d: %s is \"%s\", expected %s", p->take->file, p->text.line,
+                          what, himc_span_text(value, text), expected);
+}
+
+static int count_filled(himc_span line, char separator)
+{
+    int count = 0;
+    while (line.at)
+        count += himc_span_cell(&line, separator).length > 0;
+    return count;
+}
+
+static bool is_filled(himc_span row, char separator)
+{
+    bool filled = false;
+    while (row.at && !filled)
+        filled = himc_span_cell(&row, separator).length > 0;
+    return filled;
+}
+
+// the rows that are not blank
+static int count_rows(const plan *p)
+{
+    himc_span line;
+    int rows = 0;
+    for (himc_text rest = p->text; himc_text_line(&rest, &line);) {
+        bool filled = is_filled(line, p->separator);
+        if (!filled && p->ends_with_blank)
+            break;
+        rows += filled;
+    }
+    return rows;
+}
+
+// the first of the separators that the line has; else a comma
+static char find_separator(himc_span line, const char *separators)
+{
+    for (; *separators; separators++)
+        if (memchr(line.at, *separators, line.length))
+            return *separators;
+    return ',';
+}
+
+// a decimal number, with a comma instead of the point if no comma is between cells
+static bool cell_number(himc_span cell, char separator, double *value)
+{
+    char point[40];
+    const char *comma = memchr(cell.at, ',', cell.length);
+    if (separator == ',' || !comma || cell.length > sizeof point)
+        return himc_span_number(cell, value);
+    memcpy(point, cell.at, cell.length);
+    point[comma - cell.at] = '.';
+    return himc_span_number((himc_span){point, cell.length}, value);
 }
 
 static int count_cells(himc_span line, char separator)
@@ -249,6 +318,97 @@ static bool read_qualisys(plan *p)
     return refuse(p, "no rows, expected a TSV with MARKER_NAMES, then numbers");
 }
 
+// TRC
+
+// the next cell; with `packed` the next that is not empty
+static himc_span next_cell(himc_span *line, char separator, bool packed)
+{
+    himc_span cell = himc_span_cell(line, separator);
+    while (packed && line->at && cell.length == 0)
+        cell = himc_span_cell(line, separator);
+    return cell;
+}
+
+// the value under a key of line 2, in line 3; empty if there is none. Some programs put several
+// separators between values: with as many values as keys, empty cells do not count
+static himc_span header_value(himc_span keys, himc_span values, char separator, const char *key)
+{
+    bool packed = count_filled(keys, separator) == count_filled(values, separator);
+    while (keys.at && values.at) {
+        himc_span name = next_cell(&keys, separator, packed);
+        himc_span value = next_cell(&values, separator, packed);
+        if (himc_span_is(name, key))
+            return value;
+    }
+    return (himc_span){"", 0};
+}
+
+// the name of marker i is above its first column, 2 + 3 i
+static bool trc_names(plan *p, himc_span line, long markers)
+{
+    if (!make_room(p, (int)markers))
+        return false;
+    for (long column = 0; line.at; column++) {
+        himc_span cell = himc_span_cell(&line, p->separator);
+        if (cell.length == 0 || column < 2)
+            continue;
+        char text[44];
+        if ((column - 2) % 3 != 0 || (column - 2) / 3 >= markers)
+            return himc_error_set(
+                p->error,
+                "%s:4: marker \"%s\" is above column %ld, expected every third column, 3 .. %ld",
+                p->take->file, himc_span_text(cell, text), column + 1, 3 * markers);
+        add_point(p, cell, (int)column);
+    }
+    return p->points == markers ||
+           himc_error_set(p->error, "%s:4: the header says %ld markers, the file names %d",
+                          p->take->file, markers, p->points);
+}
+
+static bool read_trc(plan *p)
+{
+    himc_span keys, values, names;
+    long frames, markers;
+    char text[44];
+    memcpy(p->take->format, "TRC", 4);
+    p->take->format_up = himc_vec3_make(0, 1, 0);
+    if (!himc_text_line(&p->text, &keys) || !himc_text_line(&p->text, &keys) ||
+        !himc_text_line(&p->text, &values))
+        return refuse(p, "the file ends in its header");
+    char separator = find_separator(keys, "\t;,");
+    himc_span rate = header_value(keys, values, separator, "DataRate");
+    himc_span said_frames = header_value(keys, values, separator, "NumFrames");
+    himc_span said_markers = header_value(keys, values, separator, "NumMarkers");
+    himc_span unit = header_value(keys, values, separator, "Units");
+    if (!cell_number(rate, separator, &p->rate))
+        return refuse_value(p, "DataRate", rate, "a number (Hz)");
+    if (!himc_span_integer(said_frames, 1, TAKE_MOST_FRAMES, &frames))
+        return refuse_value(p, "NumFrames", said_frames, "1 .. 1000000");
+    if (!himc_span_integer(said_markers, 1, TAKE_MOST_POINTS, &markers))
+        return refuse_value(p, "NumMarkers", said_markers, "1 .. 65536");
+    p->take->file_unit = himc_take_unit(himc_span_text(unit, text));
+    if (unit.length > 0 && p->take->file_unit == 0)
+        return refuse_value(p, "Units", unit, "mm, cm, m, in or ft");
+    if (!himc_text_line(&p->text, &names))
+        return refuse(p, "the file ends before the markers' names");
+    if (!himc_text_line(&p->text, &keys))
+        return refuse(p, "the file ends before its first row");
+    p->separator = find_separator(names, "\t;,");
+    p->frame = 0;
+    p->time = 1;
+    p->strict = true;
+    int rows = count_rows(p);
+    if (rows != frames)
+        return himc_error_set(p->error, "%s: the header says %ld frames, the file has %d rows",
+                              p->take->file, frames, rows);
+    // rows may be shorter than their points, but a file has at least a byte for each point
+    if (p->size / (size_t)markers < (size_t)rows)
+        return himc_error_set(p->error,
+                              "%s:3: NumMarkers is %ld, more than the rows have cells for",
+                              p->take->file, markers);
+    return trc_names(p, names, markers);
+}
+
 // any CSV
 
 // takes the last word off: blanks, brackets, points and underscores are between words
@@ -287,9 +447,7 @@ static bool read_any(plan *p)
     memcpy(p->take->format, "CSV", 4);
     if (!himc_text_filled_line(&p->text, &line))
         return refuse(p, "the file has no line");
-    p->separator = memchr(line.at, ';', line.length)    ? ';'
-                   : memchr(line.at, '\t', line.length) ? '\t'
-                                                        : ',';
+    p->separator = find_separator(line, ";\t");
     if (!make_room(p, count_cells(line, p->separator)))
         return false;
     for (int column = 0, next = 0; line.at; column++) {
@@ -323,33 +481,65 @@ static bool read_any(plan *p)
 
 static bool read_number(const plan *p, himc_span cell, const char *column, double *value)
 {
-    char text[44];
-    return (himc_marker_number(cell, p->separator, value) && fabs(*value) <= TAKE_LARGEST) ||
-           himc_error_set(p->error, "%s:%d: %s is \"%s\", expected a number", p->take->file,
-                          p->text.line, column, himc_span_text(cell, text));
+    return (cell_number(cell, p->separator, value) && fabs(*value) <= TAKE_LARGEST) ||
+           refuse_value(p, column, cell, "a number");
 }
 
+// takes the three cells of a point off the row
+static bool read_point(const plan *p, himc_span *rest, int frame, int point)
+{
+    double v[3] = {0, 0, 0};
+    const char *name = p->take->names[point];
+    int seen = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        char what[TAKE_NAME + 2];
+        himc_span cell = himc_span_cell(rest, p->separator);
+        bool number = cell_number(cell, p->separator, &v[axis]);
+        if (cell.length == 0 || himc_span_is(cell, "nan") || himc_span_is(cell, "-nan") ||
+            v[axis] == 9999999)
+            continue;
+        snprintf(what, sizeof what, "%s %c", name, "XYZ"[axis]);
+        if (!number || !(fabs(v[axis]) <= TAKE_LARGEST))
+            return refuse_value(p, what, cell, "a number up to 1e8, or an empty cell for a gap");
+        seen++;
+    }
+    if (seen != 0 && seen != 3)
+        return himc_error_set(p->error,
+                              "%s:%d: %s has %d of its 3 coordinates, expected all or none",
+                              p->take->file, p->text.line, name, seen);
+    *himc_take_at(p->take, frame, point) =
+        seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
+    return true;
+}
+
+// `time` becomes NaN in a strict table if it is no number: it has a rate
 static bool read_row(const plan *p, himc_span line, int frame, double *time)
 {
-    marker_row row = {p->take, p->text.line, p->separator, p->error};
-    double number;
+    long label;
     int point = 0;
     for (int column = 0; point < p->points || column <= p->time;) {
         if (point < p->points && column == p->begin[point]) {
-            if (!himc_marker_row_point(&row, &line, frame, point++))
+            if (!read_point(p, &line, frame, point++))
                 return false;
             column += 3;
             continue;
         }
         himc_span cell = himc_span_cell(&line, p->separator);
-        if (column == p->frame && frame == 0) {
-            if (!read_number(p, cell, "the frame", &number))
-                return false;
-            p->take->first_frame = (int)number;
+        if (column == p->frame && (frame == 0 || p->strict)) {
+            if (!himc_span_integer(cell, -2000000000, 2000000000, &label))
+                return refuse_value(p, "Frame#", cell, "a whole number");
+            p->take->first_frame = frame == 0 ? (int)label : p->take->first_frame;
         }
-        if (column == p->time && !read_number(p, cell, "the time", time))
+        if (column == p->time && p->strict && !cell_number(cell, p->separator, time))
+            *time = NAN;
+        if (column == p->time && !p->strict && !read_number(p, cell, "the time", time))
             return false;
         column++;
+    }
+    while (p->strict && line.at) {
+        himc_span cell = himc_span_cell(&line, p->separator);
+        if (cell.length > 0)
+            return refuse_value(p, "the cell after the last marker", cell, "an empty cell");
     }
     return true;
 }
@@ -361,7 +551,7 @@ static bool find_rate(plan *p, int rows)
     double first = NAN, second = NAN, last = NAN;
     plan look = *p;
     for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
-        if (!himc_marker_row_is_filled(line, p->separator))
+        if (!is_filled(line, p->separator))
             continue;
         himc_span cell = {"", 0};
         for (int column = 0; column <= p->time; column++)
@@ -380,30 +570,34 @@ static bool find_rate(plan *p, int rows)
     return rows > 1 || refuse(p, "one row: no rate");
 }
 
-static bool read_table(plan *p, size_t size)
+static bool read_table(plan *p)
 {
     himc_span line;
-    int rows = 0;
-    for (himc_text rest = p->text; himc_text_line(&rest, &line);) {
-        bool filled = himc_marker_row_is_filled(line, p->separator);
-        if (!filled && p->ends_with_blank)
-            break;
-        rows += filled;
-    }
+    int rows = count_rows(p);
     if (rows == 0)
         return refuse(p, "no rows");
-    if (p->rate == 0 && !find_rate(p, rows))
+    if (p->rate == 0 && !p->strict && !find_rate(p, rows))
         return false;
-    if (size / (size_t)p->points < (size_t)rows)
+    if (p->size / (size_t)p->points < (size_t)rows)
         return refuse(p, "more markers than the rows have cells for");
     if (!himc_take_allocate(p->take, p->rate, rows, p->points, false, p->error))
         return false;
     for (int i = 0; i < p->points; i++)
         himc_take_set_name(p->take, i, p->names[i].at, p->names[i].length);
-    double time = NAN;
-    for (int frame = 0; frame < rows && himc_text_line(&p->text, &line);)
-        if (himc_marker_row_is_filled(line, p->separator) && !read_row(p, line, frame++, &time))
+    double first = NAN, last = NAN;
+    for (int frame = 0; frame < rows && himc_text_line(&p->text, &line);) {
+        if (!is_filled(line, p->separator))
+            continue;
+        if (!read_row(p, line, frame, &last))
             return false;
+        first = frame++ == 0 ? last : first;
+    }
+    // a time column beside a rate is not used; a note says if it disagrees by more than its rounding
+    double step = (last - first) / (rows - 1), said = 1 / p->rate;
+    if (p->strict && rows > 1 && isfinite(step) && fabs(step - said) > 0.01 * said)
+        himc_take_note(p->take,
+                       "rate: the Time column steps by %.6g s, DataRate means %.6g s and is used",
+                       step, said);
     return true;
 }
 
@@ -412,12 +606,13 @@ static bool read_as(himc_take *take, const void *bytes, size_t size, char separa
 {
     plan p = {.take = take,
               .text = himc_text_open(bytes, size),
+              .size = size,
               .separator = separator,
               .frame = NOT_THERE,
               .time = NOT_THERE,
               .error = error};
     take->format_up = himc_vec3_make(0, 0, 1);
-    bool good = head(&p) && read_table(&p, size);
+    bool good = head(&p) && read_table(&p);
     free(p.begin);
     free(p.names);
     return good;
@@ -445,4 +640,9 @@ bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *
     himc_text_line(&text, &line);
     bool qualisys = line.length > 6 && himc_span_is((himc_span){line.at, 6}, "NO_OF_");
     return read_as(take, bytes, size, '\t', qualisys ? read_qualisys : read_any, error);
+}
+
+bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
+{
+    return read_as(take, bytes, size, '\t', read_trc, error);
 }

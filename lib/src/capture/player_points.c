@@ -15,7 +15,7 @@
 #include "capture/player.h"
 
 #include "base/line.h"
-#include "capture/order.h"
+#include "base/order.h"
 
 #include "capture/take.h"
 

@@ -21,6 +21,7 @@
 
 #include "base/limb_frame.h"
 #include "base/linear.h"
+#include "body/posture.h"
 
 #include <stdlib.h>
 
@@ -268,16 +269,11 @@ static void read_frame(reader *r, int frame)
 #define ANGLES (3 * HIMC_ARM_JOINTS)
 #define LARGEST_MISS 0.1 // chosen: keeps the linearisation of a step valid (m)
 
-typedef struct arm {
-    himc_quat parent[HIMC_ARM_JOINTS];     // world rotations of the joints' parents
-    himc_vec3 at[HIMC_ARM_JOINTS + 1];     // the joints and the tip (m)
-    himc_vec3 center[HIMC_ARM_JOINTS + 1]; // where they were captured (m)
-} arm;
-
-// adds w J'J and w J'e of one point, moved by the first `joints` joints
-static void add_point(const arm *a, int joints, double weight, double *matrix, double *right)
+// adds w J'J and w J'e of one point, moved by the first `joints` joints and captured at `center`
+static void add_point(const himc_arm_levers *a, int joints, himc_vec3 center, double weight,
+                      double *matrix, double *right)
 {
-    himc_vec3 e = himc_vec3_sub(a->center[joints], a->at[joints]);
+    himc_vec3 e = himc_vec3_sub(center, a->at[joints]);
     double far = himc_vec3_length(e);
     e = himc_vec3_scale(e, far > LARGEST_MISS ? LARGEST_MISS / far : 1);
     for (int k = 0; k < joints; k++) {
@@ -299,24 +295,14 @@ static void add_point(const arm *a, int joints, double weight, double *matrix, d
 static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand hand,
                     const himc_vec3 center[HIMC_ARM_JOINTS + 1], himc_pose *pose)
 {
-    arm a;
-    for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
-        a.center[k] = center[k];
     // Gauss-Newton, of quadratic convergence from some centimetres
     for (int step = 0; step < 5; step++) {
         double matrix[ANGLES * ANGLES] = {0}, theta[ANGLES] = {0};
-        himc_quat q = pose->joint[HIMC_TRUNK - 1];
-        himc_vec3 at = waist;
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-            int j = himc_arm_joint(hand, k);
-            a.at[k] = at = himc_vec3_add(at, himc_quat_rotate(q, skeleton->segment[j + 1].origin));
-            a.parent[k] = q;
-            q = himc_quat_mul(q, pose->joint[j]);
-        }
-        a.at[HIMC_ARM_JOINTS] = himc_vec3_add(at, himc_quat_rotate(q, skeleton->tip));
+        himc_arm_levers a = himc_arm_levers_of(skeleton, waist, pose, hand);
         // chosen: the tip, which plays, counts more than the centres
         for (int joints = 1; joints <= HIMC_ARM_JOINTS; joints++)
-            add_point(&a, joints, joints < HIMC_ARM_JOINTS ? 1 : 1e4, matrix, theta);
+            add_point(&a, joints, center[joints], joints < HIMC_ARM_JOINTS ? 1 : 1e4, matrix,
+                      theta);
         // s, chosen: 1 rad costs as much as 1 cm of one centre
         for (int i = 0; i < ANGLES; i++)
             matrix[ANGLES * i + i] += 1e-4;
@@ -325,7 +311,7 @@ static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand ha
         for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
             himc_quat *joint = &pose->joint[himc_arm_joint(hand, k)];
             himc_vec3 rotation = himc_vec3_make(theta[3 * k], theta[3 * k + 1], theta[3 * k + 2]);
-            rotation = himc_quat_rotate(himc_quat_conj(a.parent[k]), rotation);
+            rotation = himc_quat_rotate(himc_quat_conj(a.frame[k]), rotation);
             *joint = himc_quat_unit(himc_quat_mul(himc_quat_exp(rotation), *joint));
         }
     }

@@ -19,7 +19,7 @@
 #include "capture/strike_heads.h"
 
 #include "base/random.h"
-#include "capture/order.h"
+#include "base/order.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -19,7 +19,7 @@
 /// zero pose, so that the zero pose looks along x in whichever direction the player faced: with A
 /// for the points and B for the zero pose, a root's rotation becomes A R B^T, that of other joints
 /// B R B^T, and offsets become B o; forward kinematics then gives A times the points.
-#include "capture/order.h"
+#include "base/order.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
 

@@ -19,11 +19,6 @@
 #define FASTEST 30.0   // chosen: four times the mallet of a hard blow (m/s)
 #define LEAST_JUMP 0.1 // chosen: noise of a tracker is far smaller (m)
 
-static bool is_zero(himc_vec3 x)
-{
-    return x.x == 0 && x.y == 0 && x.z == 0;
-}
-
 static bool is_far(const himc_take *take, int frame, int point, double far)
 {
     return frame >= 0 && frame < take->frames &&
@@ -37,7 +32,8 @@ void himc_take_drop_zeros(himc_take *take)
     int dropped = 0, first = -1;
     for (int i = 0; i < take->points; i++)
         for (int begin = 0, end; begin < take->frames; begin = end + 1) {
-            for (end = begin; end < take->frames && is_zero(*himc_take_at(take, end, i));)
+            for (end = begin;
+                 end < take->frames && himc_vec3_length(*himc_take_at(take, end, i)) == 0;)
                 end++;
             if (end == begin || (!is_far(take, begin - 1, i, far) && !is_far(take, end, i, far)))
                 continue;
@@ -117,13 +113,9 @@ void himc_take_drop_spikes(himc_take *take)
 
 static himc_take_gap next_gap(const himc_take *take, int point, int from)
 {
-    himc_take_gap g = {from, from};
-    while (g.begin < take->frames && himc_vec3_finite(*himc_take_at(take, g.begin, point)))
-        g.begin++;
-    for (g.end = g.begin;
-         g.end < take->frames && !himc_vec3_finite(*himc_take_at(take, g.end, point));)
-        g.end++;
-    return g;
+    while (from < take->frames && himc_vec3_finite(*himc_take_at(take, from, point)))
+        from++;
+    return (himc_take_gap){from, next_seen(take, point, from)};
 }
 
 // slope at the sample `edge`, from it and its neighbours in the direction `step`; false with fewer

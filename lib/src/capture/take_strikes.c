@@ -22,7 +22,6 @@
 #include "himc/mocap.h"
 
 #include "base/noise.h"
-#include "capture/order.h"
 #include "capture/strike_heads.h"
 #include "capture/take.h"
 
@@ -361,8 +360,7 @@ static bool hand_median(const himc_strike_survey *s, int head, int hand, int axi
     }
     if (n == 0)
         return false;
-    qsort(scratch, (size_t)n, sizeof *scratch, himc_order_doubles);
-    *middle = 0.5 * (scratch[(n - 1) / 2] + scratch[n / 2]);
+    *middle = himc_median(scratch, n);
     return true;
 }
 

@@ -99,7 +99,7 @@ static void correct_tip(const himc_posture_regression *regression, himc_hand han
     }
     for (int i = 0; i < 3; i++)
         gram.m[i][i] += REGULARISATION;
-    himc_vec3 e = himc_vec3_sub(target, a.tip);
+    himc_vec3 e = himc_vec3_sub(target, a.at[HIMC_ARM_JOINTS]);
     double distance = himc_vec3_length(e);
     e = himc_vec3_scale(e, distance > LARGEST_CORRECTION ? LARGEST_CORRECTION / distance : 1);
     himc_mat3 inverse = himc_mat3_inverse_symmetric(&gram);

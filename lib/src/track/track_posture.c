@@ -81,27 +81,19 @@ static void fit_frames(himc_track *track, const himc_pose *pose, int j)
         fit_stretch(track, pose, j, 0, track->frames - 1, track->joints.uncut[j]);
 }
 
-static himc_arm_levers levers_of(const himc_skeleton *skeleton, const himc_pose *pose,
-                                 himc_hand hand)
-{
-    himc_vec3 joint[HIMC_ARM_JOINTS];
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-        joint[k] = skeleton->segment[himc_arm_joint(hand, k) + 1].origin;
-    return himc_arm_levers_at(himc_skeleton_waist(skeleton), pose->joint[HIMC_TRUNK - 1], joint,
-                              skeleton->tip, pose, hand);
-}
-
 // true if an arm that is not all known ends elsewhere than its tip in most frames
 static bool is_empty(const himc_track *track, const himc_player *player,
                      const himc_skeleton *skeleton, himc_hand hand)
 {
     int known = himc_player_known_arm(player, hand);
     double off[SAMPLED_FRAMES];
+    himc_vec3 waist = himc_skeleton_waist(skeleton);
     if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
         return false;
     for (int i = 0; i < SAMPLED_FRAMES; i++) {
         int f = (int)((double)(track->frames - 1) * i / (SAMPLED_FRAMES - 1));
-        himc_vec3 tip = levers_of(skeleton, &player->pose[f], hand).tip;
+        himc_vec3 tip =
+            himc_arm_levers_of(skeleton, waist, &player->pose[f], hand).at[HIMC_ARM_JOINTS];
         off[i] = himc_vec3_length(himc_vec3_sub(tip, track->hand[hand].frame[f].x));
     }
     return himc_median(off, SAMPLED_FRAMES) > NO_STICK;
@@ -216,8 +208,8 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
 {
     // chosen: a hand corrects a stick more than a shoulder does
     static const double share[HIMC_ARM_JOINTS] = {0.1, 0.2, 0.5, 1};
-    himc_arm_levers a = levers_of(skeleton, pose, hand);
-    himc_vec3 e = himc_vec3_sub(tip, a.tip);
+    himc_arm_levers a = himc_arm_levers_of(skeleton, himc_skeleton_waist(skeleton), pose, hand);
+    himc_vec3 e = himc_vec3_sub(tip, a.at[HIMC_ARM_JOINTS]);
     double far = himc_vec3_length(e);
     if (far > LARGEST_BEND)
         e = himc_vec3_scale(e, LARGEST_BEND / far);
