@@ -1,6 +1,8 @@
 /// format.c: a number is scaled by a power of ten to a whole number of as many digits as asked for;
 /// these are its digits. In long double the scaled number is exact, or nearer than any rounding of
-/// up to 9 digits can tell.
+/// up to 9 digits can tell. A number is read the same way back: its digits are gathered in a whole
+/// number, which is scaled once. Not strtod: it follows the program's locale, which may have decimal
+/// commas, and reads hexadecimal, "inf" and "nan".
 #include "base/format.h"
 
 #include <ctype.h>
@@ -41,20 +43,14 @@ static void put_whole(text *t, uint64_t n, int least)
         put(t, digit[--count]);
 }
 
-// 10^|n|
-static long double ten(int n)
-{
-    long double power = 1, base = 10;
-    for (unsigned k = (unsigned)(n < 0 ? -n : n); k > 0; k /= 2, base *= base)
-        if (k % 2)
-            power *= base;
-    return power;
-}
-
 // x 10^n
 static long double scaled(long double x, int n)
 {
-    return n < 0 ? x / ten(n) : x * ten(n);
+    long double power = 10;
+    for (unsigned k = (unsigned)(n < 0 ? -n : n); k > 0; k /= 2, power *= power)
+        if (k % 2)
+            x = n < 0 ? x / power : x * power;
+    return x;
 }
 
 // a whole number of 10^-decimals; `trim` drops zeros at its end
@@ -62,7 +58,7 @@ static void put_decimals(text *t, uint64_t n, int decimals, bool trim)
 {
     for (; trim && decimals > 0 && n % 10 == 0; decimals--)
         n /= 10;
-    uint64_t unit = (uint64_t)ten(decimals);
+    uint64_t unit = (uint64_t)scaled(1, decimals);
     put_whole(t, n / unit, 1);
     if (decimals == 0)
         return;
@@ -75,9 +71,9 @@ static void put_general(text *t, long double x, int digits)
 {
     int exponent = (int)floorl(log10l(x));
     long double n = rintl(scaled(x, digits - 1 - exponent));
-    if (n < ten(digits - 1)) // the logarithm was a hair too large
+    if (n < scaled(1, digits - 1)) // the logarithm was a hair too large
         n = rintl(scaled(x, digits - 1 - --exponent));
-    if (n >= ten(digits))
+    if (n >= scaled(1, digits))
         n = rintl(scaled(x, digits - 1 - ++exponent));
     if (exponent >= -4 && exponent < digits && exponent >= 0) {
         put_decimals(t, (uint64_t)n, digits - 1 - exponent, true);
@@ -105,7 +101,7 @@ static void put_number(text *t, double value, char kind, int digits)
         put(t, '-');
     if (!isfinite(value))
         put_text(t, isnan(value) ? "nan" : "inf", -1);
-    else if (kind == 'f' && x < ten(MOST_DIGITS))
+    else if (kind == 'f' && x < scaled(1, MOST_DIGITS))
         put_decimals(t, (uint64_t)rintl(scaled(x, digits)), digits, false);
     else if (x > 0)
         put_general(t, x, kind == 'f' ? 6 : digits > 0 ? digits : 1);
@@ -163,4 +159,53 @@ size_t himc_format(char *out, size_t size, const char *format, ...)
     size_t length = himc_format_list(out, size, format, args);
     va_end(args);
     return length;
+}
+
+// the digits from `s` to `end` into *m; *e counts those that no longer fit, and with `fraction`
+// those behind the point. Returns where they end
+static const char *take_digits(const char *s, const char *end, uint64_t *m, int *e, bool fraction)
+{
+    for (; s < end && *s >= '0' && *s <= '9'; s++) {
+        if (*m < 1000000000000000000u) {
+            *m = *m * 10 + (uint64_t)(*s - '0');
+            *e -= fraction;
+        } else if (*e < 100000) {
+            *e += !fraction;
+        }
+    }
+    return s;
+}
+
+bool himc_format_read(const char *word, size_t length, double *number)
+{
+    const char *s = word, *end = word + length, *begin;
+    uint64_t m = 0, power = 0;
+    int e = 0, none = 0;
+    bool minus = length > 0 && *s == '-';
+    s += length > 0 && (*s == '-' || *s == '+');
+    begin = s;
+    s = take_digits(s, end, &m, &e, false);
+    size_t digits = (size_t)(s - begin);
+    if (s < end && *s == '.') {
+        begin = ++s;
+        s = take_digits(s, end, &m, &e, true);
+        digits += (size_t)(s - begin);
+    }
+    if (digits == 0)
+        return false;
+    if (s < end && (*s == 'e' || *s == 'E')) {
+        bool down = ++s < end && *s == '-';
+        s += s < end && (*s == '-' || *s == '+');
+        begin = s;
+        s = take_digits(s, end, &power, &none, false);
+        if (s == begin)
+            return false;
+        int shift = power < 100000 ? (int)power : 100000;
+        e += down ? -shift : shift;
+    }
+    if (s < end)
+        return false;
+    double value = m == 0 || e < -400 ? 0 : e > 400 ? INFINITY : (double)scaled((long double)m, e);
+    *number = minus ? -value : value;
+    return true;
 }

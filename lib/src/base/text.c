@@ -1,73 +1,12 @@
 /// text.c: Pure Data text: words between white space, `;` ends a statement, `\` quotes a character.
-///
-/// Numbers are not read by strtod: it follows the host program's locale and may expect "0,5".
-/// Digits are gathered in an integer and scaled once by a power of ten, exact to the last place of
-/// single precision, in which Pure Data holds numbers.
 #include "base/text.h"
 
 #include "base/format.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct decimal {
-    uint64_t digits;
-    int exponent;
-    int seen;
-} decimal;
-
-static const char *read_digits(const char *s, decimal *d, bool fraction)
-{
-    for (; isdigit((unsigned char)*s); s++) {
-        d->seen++;
-        if (d->digits < UINT64_C(100000000000000000)) {
-            d->digits = d->digits * 10 + (uint64_t)(*s - '0');
-            d->exponent -= fraction;
-        } else {
-            d->exponent += !fraction;
-        }
-    }
-    return s;
-}
-
-static const char *read_exponent(const char *s, decimal *d)
-{
-    if (*s != 'e' && *s != 'E')
-        return s;
-    const char *p = s + 1;
-    int sign = *p == '-' ? -1 : 1;
-    p += *p == '-' || *p == '+';
-    if (!isdigit((unsigned char)*p))
-        return s;
-    int value = 0;
-    for (; isdigit((unsigned char)*p); p++)
-        value = value < 10000 ? value * 10 + (*p - '0') : value;
-    d->exponent += sign * value;
-    return p;
-}
-
-bool himc_text_number(const char *word, double *number)
-{
-    decimal d = {0};
-    const char *s = word + (*word == '-' || *word == '+');
-    s = read_digits(s, &d, false);
-    if (*s == '.')
-        s = read_digits(s + 1, &d, true);
-    if (d.seen == 0)
-        return false;
-    s = read_exponent(s, &d);
-    if (*s)
-        return false;
-    double scale = pow(10, abs(d.exponent));
-    double value = d.digits == 0    ? 0
-                   : d.exponent < 0 ? (double)d.digits / scale
-                                    : (double)d.digits * scale;
-    *number = *word == '-' ? -value : value;
-    return true;
-}
 
 /// One word, backslashes resolved, into the statement's storage; NULL if it does not fit.
 static const char *read_word(const char **text, int *line, himc_text_statement *statement,
@@ -121,7 +60,7 @@ bool himc_text_next(const char **text, int *line, himc_text_statement *statement
         if (statement->count < statement->capacity) {
             himc_atom *atom = &statement->atom[statement->count];
             *atom = (himc_atom){HIMC_ATOM_SYMBOL, 0, word ? word : ""};
-            if (himc_text_number(atom->symbol, &atom->number))
+            if (himc_format_read(atom->symbol, strlen(atom->symbol), &atom->number))
                 atom->kind = HIMC_ATOM_NUMBER;
         }
         statement->count++;
@@ -218,7 +157,7 @@ void himc_state_numbers(himc_state_line *line, int count, const double *numbers)
         float number = (float)numbers[i];
         for (int k = 0; k < 4; k++) {
             himc_format(text, sizeof text, format[k], (double)number);
-            if (himc_text_number(text, &back) && (float)back == number)
+            if (himc_format_read(text, strlen(text), &back) && (float)back == number)
                 break;
         }
         himc_state_word(line, text);

@@ -5,10 +5,6 @@
 #include "base/line.h"
 #include "himc/command.h"
 
-/// True if the whole `word` is a decimal number (".5", "-3", "1e-3"); "nan", "inf" and "0x1" are
-/// words. The decimal point is a point in every locale.
-bool himc_text_number(const char *word, double *number);
-
 /// False with the line, from 1, of a zero byte, which would end the text before its end.
 bool himc_text_check(const char *text, size_t size, const char *name, himc_error *error);
 

@@ -1,10 +1,6 @@
 /// take_text.c: text takes, read line by line from bytes that may be anything, and written.
 ///
-/// Numbers: up to 19 significant digits are gathered in a 64-bit integer m and the decimal exponent
-/// e in an int; the value m 10^e is formed in long double by powers of ten, which is within one
-/// unit in the last place of a double. Not strtod: it obeys the program's locale (Pd's plug-in
-/// hosts may set one with decimal commas), and reads hexadecimal, "inf" and "nan". Invariant: no
-/// function reads outside [at, at + length).
+/// Invariant: no function reads outside [at, at + length).
 #include "capture/take_text.h"
 
 #include <math.h>
@@ -106,72 +102,6 @@ const char *himc_span_text(himc_span span, char text[44])
         text[length++] = '.';
     text[length] = 0;
     return text;
-}
-
-static bool is_digit(himc_span s, size_t i)
-{
-    return i < s.length && s.at[i] >= '0' && s.at[i] <= '9';
-}
-
-// reads digits from `i` on into *m; *e counts those that no longer fit. Returns their end
-static size_t take_digits(himc_span s, size_t i, uint64_t *m, int *e, int step)
-{
-    for (; is_digit(s, i); i++) {
-        if (*m < 1000000000000000000u) {
-            *m = *m * 10 + (uint64_t)(s.at[i] - '0');
-            *e -= step;
-        } else if (*e < 100000) {
-            *e += 1 - step;
-        }
-    }
-    return i;
-}
-
-static double scaled(uint64_t m, int e)
-{
-    if (m == 0 || e < -400)
-        return 0;
-    if (e > 400)
-        return INFINITY;
-    long double value = (long double)m, power = 10;
-    for (unsigned n = e < 0 ? (unsigned)-e : (unsigned)e; n; n >>= 1, power *= power)
-        if (n & 1)
-            value = e < 0 ? value / power : value * power;
-    return (double)value;
-}
-
-bool himc_span_number(himc_span s, double *value)
-{
-    size_t i = s.length > 0 && (s.at[0] == '-' || s.at[0] == '+') ? 1 : 0;
-    bool minus = i == 1 && s.at[0] == '-';
-    uint64_t m = 0;
-    int e = 0;
-    size_t start = i, digits = 0;
-    i = take_digits(s, i, &m, &e, 0);
-    digits = i - start;
-    if (i < s.length && s.at[i] == '.') {
-        start = ++i;
-        i = take_digits(s, i, &m, &e, 1);
-        digits += i - start;
-    }
-    if (digits == 0)
-        return false;
-    if (i < s.length && lower(s.at[i]) == 'e') {
-        i++;
-        bool down = i < s.length && s.at[i] == '-';
-        if (i < s.length && (s.at[i] == '-' || s.at[i] == '+'))
-            i++;
-        if (!is_digit(s, i))
-            return false;
-        int exponent = 0;
-        for (; is_digit(s, i); i++)
-            exponent = exponent < 100000 ? exponent * 10 + (s.at[i] - '0') : exponent;
-        e += down ? -exponent : exponent;
-    }
-    if (i < s.length)
-        return false;
-    *value = minus ? -scaled(m, e) : scaled(m, e);
-    return true;
 }
 
 bool himc_span_integer(himc_span s, long low, long high, long *value)

@@ -2,6 +2,7 @@
 #ifndef HIMC_TAKE_TEXT_H
 #define HIMC_TAKE_TEXT_H
 
+#include "base/format.h"
 #include "himc/vec.h"
 
 #include <stdio.h>
@@ -35,9 +36,11 @@ bool himc_span_is(himc_span span, const char *word);
 /// The span as a string for a message: cut to 40 characters, '?' for unprintable ones.
 const char *himc_span_text(himc_span span, char text[44]);
 
-/// Reads a decimal number with a point (never a comma), the whole span. Beyond double's range:
-/// infinity.
-bool himc_span_number(himc_span span, double *value);
+/// Reads a decimal number, the whole span (himc_format_read).
+static inline bool himc_span_number(himc_span span, double *value)
+{
+    return himc_format_read(span.at, span.length, value);
+}
 /// Reads a whole number.
 bool himc_span_integer(himc_span span, long low, long high, long *value);
 
