@@ -190,7 +190,7 @@ static void test_each_of_4200_strikes_is_found_tracked_and_cut(void)
     free(strikes);
 
     himc_head_frame place = {.center = himc_vec3_make(0.6, 0, 0.8), .radius = 0.3};
-    himc_track *track = himc_track_new(take, NULL, &place, 0.02, &error);
+    himc_track *track = himc_track_new(take, NULL, &place, NULL, 0.02, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     TEST_ASSERT_EQUAL_INT(4200, himc_track_strikes(track, HIMC_LEFT) +
                                     himc_track_strikes(track, HIMC_RIGHT));

@@ -43,7 +43,8 @@ static void check_track(himc_take *take, const himc_take_options *options,
 {
     himc_skeleton skeleton;
     himc_error error = {""};
-    himc_track *track = himc_track_new_played(take, options, drum, player, &error);
+    himc_track *track =
+        himc_track_new(take, options, drum, player, player->config.mallet_radius, &error);
     require(himc_skeleton_init(&skeleton, &player->config, NULL), "a player's body can be built");
     if (!track) {
         require_line(&error);

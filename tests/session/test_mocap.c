@@ -270,7 +270,7 @@ static double share_of_the_speed(himc_take *take, const himc_head_frame *head)
 {
     double played = 0, captured = 0;
     himc_take_options options = himc_take_default();
-    himc_track *track = himc_track_new(take, &options, head, 0.02, &error);
+    himc_track *track = himc_track_new(take, &options, head, NULL, 0.02, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         double before = 0, t, x, y;

@@ -57,14 +57,46 @@ static double stick_gap(const watched *w, const himc_capsule *capsule)
     return least;
 }
 
+/// The capsules of the segments of a state; a stick ends at its mallet's centre.
+static void capsules_of(const himc_skeleton *skeleton, const himc_body_state *s,
+                        himc_capsule capsule[HIMC_SEGMENTS])
+{
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        const himc_segment *segment = &skeleton->segment[i];
+        himc_vec3 along = himc_vec3_scale(segment->axis, segment->length);
+        bool stick = i == HIMC_LEFT_STICK || i == HIMC_RIGHT_STICK;
+        capsule[i].a = s->origin[i];
+        capsule[i].b = himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], along));
+        if (stick)
+            capsule[i].b = s->tip[i - HIMC_LEFT_STICK];
+        capsule[i].radius = stick ? HIMC_ROD_RADIUS : segment->radius;
+    }
+}
+
+/// The least gap of all pairs (m), and the pair.
+static double capsules_least(const himc_capsule capsule[HIMC_SEGMENTS],
+                             const himc_capsule_pair **pair)
+{
+    double least = INFINITY;
+    for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
+        const himc_capsule_pair *p = &himc_capsule_pairs[i];
+        double gap = himc_capsule_nearest(&capsule[p->part], &capsule[p->other]).gap;
+        if (gap < least) {
+            least = gap;
+            *pair = p;
+        }
+    }
+    return least;
+}
+
 static void watch(void *user, const himc_motion_row *row)
 {
     watched *w = user;
     himc_capsule capsule[HIMC_SEGMENTS];
-    const himc_capsule_pair *pair;
+    const himc_capsule_pair *pair = NULL;
     (void)row;
-    himc_capsules_of(&w->p->body->skeleton, &w->p->body->state, capsule);
-    double gap = himc_capsules_least(capsule, &pair);
+    capsules_of(&w->p->body->skeleton, &w->p->body->state, capsule);
+    double gap = capsules_least(capsule, &pair);
     if (gap < w->least) {
         w->least = gap;
         w->pair = pair;
@@ -335,7 +367,7 @@ static void test_gap_of_two_capsules_is_that_of_their_nearest_points(void)
                 himc_vec3 y = himc_vec3_madd(q.a, j / 200.0, himc_vec3_sub(q.b, q.a));
                 least = fmin(least, himc_vec3_length(himc_vec3_sub(x, y)));
             }
-        double gap = himc_capsule_gap(&p, &q) + p.radius + q.radius;
+        double gap = himc_capsule_nearest(&p, &q).gap + p.radius + q.radius;
         TEST_ASSERT_TRUE(gap <= least + 1e-12);
         TEST_ASSERT_DOUBLE_WITHIN(8e-3, least, gap); // the samples' distance
     }
@@ -357,12 +389,12 @@ static void test_posture_has_the_capsules_of_its_pose(void)
     posture.trunk_posture.value[HIMC_TRUNK_POSTURE_TURN] = 0.3;
     TEST_ASSERT_TRUE(himc_posture_at(&posture, tip, &pose) == 0);
     himc_pose_to_state(&skeleton, &pose, NULL, &state);
-    himc_capsules_of(&skeleton, &state, from_state);
+    capsules_of(&skeleton, &state, from_state);
     himc_posture_capsules(&posture, tip, from_posture);
     for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
         himc_capsule_pair pair = himc_capsule_pairs[i];
-        double a = himc_capsule_gap(&from_posture[pair.part], &from_posture[pair.other]);
-        double b = himc_capsule_gap(&from_state[pair.part], &from_state[pair.other]);
+        double a = himc_capsule_nearest(&from_posture[pair.part], &from_posture[pair.other]).gap;
+        double b = himc_capsule_nearest(&from_state[pair.part], &from_state[pair.other]).gap;
         if (pair.other != HIMC_HEAD) // it looks down a little
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, b, a);
     }

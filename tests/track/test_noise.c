@@ -76,7 +76,7 @@ static double hardest(double size, int *strikes, double *speed)
     noise = size;
     himc_take *take = read_motion(drumming, 250, FRAMES);
     himc_take_options options = z_up();
-    himc_track *track = himc_track_new(take, &options, &place, RADIUS, &error);
+    himc_track *track = himc_track_new(take, &options, &place, NULL, RADIUS, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     *strikes = himc_track_strikes(track, HIMC_RIGHT);
     for (double t = 0.1; t < FRAMES / 250.0 - 0.2; t += 2e-4) {

@@ -30,7 +30,7 @@ static void make_take_with(double speed, double noise, double raised)
     take = read_text(text, "a.trc", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
     himc_take_options options = himc_take_default();
-    track = himc_track_new(take, &options, &place, RADIUS, &error);
+    track = himc_track_new(take, &options, &place, NULL, RADIUS, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
 }
 
@@ -332,7 +332,7 @@ static void test_real_stroke_arrives_at_nine_metres_per_second_and_is_smooth(voi
     double time, x, y, jump[3];
     take = himc_take_load(path, &options, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
-    track = himc_track_new(take, &options, &place, RADIUS, &error);
+    track = himc_track_new(take, &options, &place, NULL, RADIUS, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     TEST_ASSERT_EQUAL_INT(1, himc_track_strikes(track, HIMC_RIGHT));
     TEST_ASSERT_TRUE(himc_track_current(track, HIMC_RIGHT, 0, &time, &x, &y));

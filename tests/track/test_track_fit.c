@@ -92,7 +92,8 @@ static void test_the_rate_of_a_noisy_joint_is_the_angular_velocity_of_its_fit(vo
                            0.1 * rand() / RAND_MAX};
         *q = himc_quat_mul(himc_quat_exp(shake), *q);
     }
-    himc_track *track = himc_track_new_played(take, NULL, &drum, player, &error);
+    himc_track *track =
+        himc_track_new(take, NULL, &drum, player, player->config.mallet_radius, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     for (int k = 50; k < 400; k++) {
         himc_posture_motion m;

@@ -46,7 +46,7 @@ static void make_played(double rate)
     player = himc_player_new(take, NULL, &given, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(player, error.text);
     TEST_ASSERT_TRUE(himc_player_sit(player, take, NULL, &drum, NULL));
-    track = himc_track_new_played(take, NULL, &drum, player, &error);
+    track = himc_track_new(take, NULL, &drum, player, player->config.mallet_radius, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     TEST_ASSERT_TRUE(himc_track_has_posture(track));
 }
@@ -221,7 +221,7 @@ static void test_joints_that_the_take_does_not_have_stay_as_they_are(void)
     himc_target tip[HIMC_HANDS];
     make_played(250);
     himc_track_free(track);
-    track = himc_track_new(take, NULL, &usual_drum, 0.0175, &error);
+    track = himc_track_new(take, NULL, &usual_drum, NULL, 0.0175, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
     TEST_ASSERT_FALSE(himc_track_has_posture(track));
     himc_posture_init(&natural, &skeleton, 0.87);
@@ -252,7 +252,7 @@ static void test_an_arm_without_a_stick_is_bent_from_its_present_state(void)
     for (int shown = 0; shown < 2; shown++) {
         player->known[grip] = shown;
         himc_head_frame drum = usual_drum;
-        track = himc_track_new_played(take, NULL, &drum, player, &error);
+        track = himc_track_new(take, NULL, &drum, player, player->config.mallet_radius, &error);
         TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
         m = posture_at(1);
         memcpy(pose.joint, m.joint, sizeof pose.joint);

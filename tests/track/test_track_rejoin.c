@@ -21,7 +21,7 @@ static void make_take(height_at *height, double rate, int frames)
                      i / rate, 600 + 20 * sin(4 * i / rate), 1000 + 1000 * height(i / rate));
     take = read_text(text, "a.trc", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
-    track = himc_track_new(take, NULL, &place, RADIUS, &error);
+    track = himc_track_new(take, NULL, &place, NULL, RADIUS, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(track, error.text);
 }
 

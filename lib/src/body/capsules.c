@@ -34,11 +34,6 @@ himc_capsule_near himc_capsule_nearest(const himc_capsule *p, const himc_capsule
                                himc_vec3_scale(apart, distance > 0 ? 1 / distance : 0)};
 }
 
-double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q)
-{
-    return himc_capsule_nearest(p, q).gap;
-}
-
 himc_ball himc_capsule_ball(const himc_capsule *p)
 {
     himc_vec3 half = himc_vec3_scale(himc_vec3_sub(p->b, p->a), 0.5);
@@ -70,21 +65,6 @@ himc_capsule_near himc_capsule_shell(const himc_capsule *p, const himc_head_fram
     return least;
 }
 
-void himc_capsules_of(const himc_skeleton *skeleton, const himc_body_state *s,
-                      himc_capsule capsule[HIMC_SEGMENTS])
-{
-    for (int i = 0; i < HIMC_SEGMENTS; i++) {
-        const himc_segment *segment = &skeleton->segment[i];
-        himc_vec3 along = himc_vec3_scale(segment->axis, segment->length);
-        bool stick = i == HIMC_LEFT_STICK || i == HIMC_RIGHT_STICK;
-        capsule[i].a = s->origin[i];
-        capsule[i].b = himc_vec3_add(s->origin[i], himc_mat3_apply(&s->rotation[i], along));
-        if (stick)
-            capsule[i].b = s->tip[i - HIMC_LEFT_STICK];
-        capsule[i].radius = stick ? HIMC_ROD_RADIUS : segment->radius;
-    }
-}
-
 #define ARMS(k, i)                                                    \
     {                                                                 \
         HIMC_LEFT_UPPER_ARM + 2 * (k), HIMC_RIGHT_UPPER_ARM + 2 * (i) \
@@ -107,18 +87,3 @@ void himc_capsules_of(const himc_skeleton *skeleton, const himc_body_state *s,
 const himc_capsule_pair himc_capsule_pairs[HIMC_CAPSULE_PAIRS] = {
     ARM_TO_ARM(0), ARM_TO_ARM(1),     ARM_TO_ARM(2),
     ARM_TO_ARM(3), ARM_TO_BODY(LEFT), ARM_TO_BODY(RIGHT)};
-
-double himc_capsules_least(const himc_capsule capsule[HIMC_SEGMENTS],
-                           const himc_capsule_pair **pair)
-{
-    double least = INFINITY;
-    for (int i = 0; i < HIMC_CAPSULE_PAIRS; i++) {
-        const himc_capsule_pair *p = &himc_capsule_pairs[i];
-        double gap = himc_capsule_gap(&capsule[p->part], &capsule[p->other]);
-        if (gap < least) {
-            least = gap;
-            *pair = p;
-        }
-    }
-    return least;
-}

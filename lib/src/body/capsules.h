@@ -15,10 +15,6 @@ typedef struct himc_capsule {
     double radius; ///< (m)
 } himc_capsule;
 
-/// Distance of the surfaces of two capsules (m), negative if they overlap: closest points of two
-/// segments after Ericson 2005, section 5.1.9.
-HIMC_RT double himc_capsule_gap(const himc_capsule *p, const himc_capsule *q);
-
 /// Where a capsule comes nearest to something.
 typedef struct himc_capsule_near {
     double gap;  ///< of the surfaces (m), negative if they overlap
@@ -26,6 +22,7 @@ typedef struct himc_capsule_near {
     himc_vec3 n; ///< unit vector from the other to the one
 } himc_capsule_near;
 
+/// Of two capsules: closest points of two segments after Ericson 2005, section 5.1.9.
 HIMC_RT himc_capsule_near himc_capsule_nearest(const himc_capsule *p, const himc_capsule *q);
 
 /// The smallest ball that a capsule fits into.
@@ -48,10 +45,6 @@ static inline bool himc_balls_are_far(const himc_ball *p, const himc_ball *q, do
 /// capsule.
 HIMC_RT himc_capsule_near himc_capsule_shell(const himc_capsule *p, const himc_head_frame *head);
 
-/// The capsules of the segments of a state; a stick ends at its mallet's centre.
-HIMC_RT void himc_capsules_of(const himc_skeleton *skeleton, const himc_body_state *state,
-                              himc_capsule capsule[HIMC_SEGMENTS]);
-
 /// Two segments that must not meet.
 typedef struct himc_capsule_pair {
     unsigned char part, other;
@@ -72,9 +65,5 @@ typedef struct himc_clearance {
     int order;                 ///< of crossed arms: 1 the left one is above, -1 below, 0 none
     int work;                  ///< postures that were looked at
 } himc_clearance;
-
-/// The least gap of all pairs (m), and the pair.
-HIMC_RT double himc_capsules_least(const himc_capsule capsule[HIMC_SEGMENTS],
-                                   const himc_capsule_pair **pair);
 
 #endif

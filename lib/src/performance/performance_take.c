@@ -279,7 +279,8 @@ static bool make_track(take_job *j, himc_error *error)
                               "left and right exchanged?",
                               -j->frame.center.x);
     himc_track_free(j->track);
-    j->track = himc_track_new_played(j->take, &j->options, &j->frame, player, error);
+    j->track = himc_track_new(j->take, &j->options, &j->frame, player, player->config.mallet_radius,
+                              error);
     const himc_skeleton_config *body = player->lengths > 0 ? &player->config : &j->body;
     if (!j->track || !learn_limits(player, j->track, &j->frame, &j->learned, error) ||
         !(same_place(j->frame.center, j->place.center) ||

@@ -163,9 +163,9 @@ static bool build(himc_track *track, himc_take *take, const himc_take_tip tips[H
     return ok && (!player || himc_track_fit_postures(track, player));
 }
 
-static himc_track *track_new(himc_take *take, const himc_take_options *options,
-                             const himc_head_frame *head, const himc_player *player,
-                             double mallet_radius, himc_error *error)
+himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
+                           const himc_head_frame *head, const himc_player *player,
+                           double mallet_radius, himc_error *error)
 {
     himc_take_tip tips[HIMC_HANDS];
     if (!himc_take_tips(take, options, tips, error))
@@ -181,19 +181,6 @@ static himc_track *track_new(himc_take *take, const himc_take_options *options,
     himc_track_free(track);
     himc_error_set(error, "out of memory");
     return NULL;
-}
-
-himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
-                           const himc_head_frame *head, double mallet_radius, himc_error *error)
-{
-    return track_new(take, options, head, NULL, mallet_radius, error);
-}
-
-himc_track *himc_track_new_played(himc_take *take, const himc_take_options *options,
-                                  const himc_head_frame *head, const himc_player *player,
-                                  himc_error *error)
-{
-    return track_new(take, options, head, player, player->config.mallet_radius, error);
 }
 
 void himc_track_free(himc_track *track)

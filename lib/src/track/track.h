@@ -17,15 +17,12 @@ typedef struct himc_track himc_track;
 extern const himc_source himc_track_source; ///< of a himc_track
 
 /// Builds the track of a take for a drumhead at `head`; the take is moved (not turned or scaled) so
-/// that its strikes fall on the head's usual spot. The take may be freed afterwards. NULL, with the
-/// reason, if it has no tips or too long a gap.
+/// that its strikes fall on the head's usual spot, or by player->offset if a player is seated.
+/// `player`, made from the same take, gives the postures; NULL: tips alone. The take may be freed
+/// afterwards. NULL, with the reason, if it has no tips or too long a gap.
 himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
-                           const himc_head_frame *head, double mallet_radius, himc_error *error);
-/// The same with the postures of a player made from the same take. If the player is seated, the
-/// take is moved by player->offset.
-himc_track *himc_track_new_played(himc_take *take, const himc_take_options *options,
-                                  const himc_head_frame *head, const himc_player *player,
-                                  himc_error *error);
+                           const himc_head_frame *head, const himc_player *player,
+                           double mallet_radius, himc_error *error);
 void himc_track_free(himc_track *track);
 
 /// Before its first frame the tip comes from `now` on a quintic of `duration` seconds.
