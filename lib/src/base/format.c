@@ -1,8 +1,8 @@
 /// format.c: a number is scaled by a power of ten to a whole number of as many digits as asked for;
 /// these are its digits. In long double the scaled number is exact, or nearer than any rounding of
 /// up to 9 digits can tell. A number is read the same way back: its digits are gathered in a whole
-/// number, which is scaled once. Not strtod: it follows the program's locale, which may have decimal
-/// commas, and reads hexadecimal, "inf" and "nan".
+/// number, which is scaled once. Not strtod: it follows the program's locale, which may have
+/// decimal commas, and reads hexadecimal, "inf" and "nan".
 #include "base/format.h"
 
 #include <ctype.h>

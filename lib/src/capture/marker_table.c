@@ -592,7 +592,8 @@ static bool read_table(plan *p)
             return false;
         first = frame++ == 0 ? last : first;
     }
-    // a time column beside a rate is not used; a note says if it disagrees by more than its rounding
+    // the time column beside a rate is not used; a note says if it disagrees by more than its
+    // rounding
     double step = (last - first) / (rows - 1), said = 1 / p->rate;
     if (p->strict && rows > 1 && isfinite(step) && fabs(step - said) > 0.01 * said)
         himc_take_note(p->take,

@@ -158,8 +158,8 @@ static inline himc_vec3 himc_take_y_up(himc_vec3 x)
     return himc_vec3_make(x.x, x.z, -x.y);
 }
 
-// Formats: bvh.c, c3d.c, marker_table.c, trc.c. A reader gets the bytes of the whole file. All return false with a
-// complete error line.
+// Formats: bvh.c, c3d.c, marker_table.c, trc.c. A reader gets the bytes of the whole file. All
+// return false with a complete error line.
 
 bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
 bool himc_c3d_read(himc_take *take, const void *bytes, size_t size, himc_error *error);

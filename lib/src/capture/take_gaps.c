@@ -56,19 +56,6 @@ static int next_seen(const himc_take *take, int point, int from)
     return from;
 }
 
-// the end of the run that begins at a seen frame; `*last` is its last seen frame
-static int run_end(const himc_take *take, int point, int begin, int *last)
-{
-    *last = begin;
-    for (int at = begin; (at = next_seen(take, point, at + 1)) < take->frames; *last = at) {
-        himc_vec3 way =
-            himc_vec3_sub(*himc_take_at(take, at, point), *himc_take_at(take, *last, point));
-        if (himc_vec3_length(way) > fmax(LEAST_JUMP, FASTEST * (at - *last) / take->rate))
-            return at;
-    }
-    return take->frames;
-}
-
 // finds a point's spikes, and with `drop` makes them gaps; returns the number of frames, `*first`
 // is the first of them
 static int spikes(himc_take *take, int point, bool drop, int *first)
@@ -76,7 +63,13 @@ static int spikes(himc_take *take, int point, bool drop, int *first)
     // chosen: a marker that stays elsewhere for more than 0.1 s was there
     int longest = (int)fmax(1, 0.1 * take->rate), count = 0, last;
     for (int begin = next_seen(take, point, 0), end; begin < take->frames; begin = end) {
-        end = run_end(take, point, begin, &last);
+        last = begin; // of the run that is seen: it ends where the point jumps
+        for (end = begin; (end = next_seen(take, point, end + 1)) < take->frames; last = end) {
+            himc_vec3 way =
+                himc_vec3_sub(*himc_take_at(take, end, point), *himc_take_at(take, last, point));
+            if (himc_vec3_length(way) > fmax(LEAST_JUMP, FASTEST * (end - last) / take->rate))
+                break;
+        }
         bool alone = begin == next_seen(take, point, 0) && end == take->frames;
         if (alone || last - begin + 1 > longest)
             continue;

@@ -63,8 +63,8 @@ static himc_target captured_at(const himc_track *track, const hand_track *h, dou
     return himc_quintic_at(&q, (u - k) / track->rate);
 }
 
-// The approach falls from the last good frame to the head with an acceleration that fades to zero on
-// the way: for the first root of height + v t + a t^2 / 3.
+// The approach falls from the last good frame to the head with an acceleration that fades to zero
+// on the way: its time is the first root of height + v t + a t^2 / 3.
 static void make_bridge(himc_track *track, hand_track *h, bridge *b, double mallet_radius)
 {
     himc_target before = h->frame[b->last];

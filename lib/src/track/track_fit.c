@@ -43,8 +43,8 @@ himc_target himc_fit(const himc_vec3 *x, fit_window w, double dt)
     double a[4][7] = {{0}}, c[4][3] = {{0}};
     int span = w.last - w.first, most = span >= 5 ? 4 : span >= 3 ? 3 : span >= 1 ? 2 : 1;
     int order = w.order < most ? w.order : most;
-    // the normal equations of the powers of u and the three coordinates. Weights fall to zero at the
-    // window's ends: else each frame that enters or leaves would shake the fit, and with it the
+    // the normal equations of the powers of u and the three coordinates. Weights fall to zero at
+    // the window's ends: else each frame that enters or leaves would shake the fit, and with it the
     // acceleration between neighbouring frames (Cleveland 1979)
     for (int i = w.first; i <= w.last; i++) {
         double u = i - w.k, p[4] = {1, u, u * u, u * u * u}, v[3] = {x[i].x, x[i].y, x[i].z};

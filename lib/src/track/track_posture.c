@@ -187,11 +187,11 @@ static joint_state entered_joint(const himc_track *track, int j, double t, bool 
 // and the halt after a stop
 static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
 {
+    joint_state left = entered_joint(track, j, fmin(t, track->stop), cut), rest = {.q = left.q};
     if (t < track->stop)
-        return entered_joint(track, j, t, cut);
-    joint_state left = entered_joint(track, j, track->stop, cut), rest = {.q = left.q};
-    rest.q = himc_quat_mul(
-        himc_quat_exp(himc_vec3_scale(left.rate, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT)), left.q);
+        return left;
+    himc_vec3 way = himc_vec3_scale(left.rate, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT);
+    rest.q = himc_quat_mul(himc_quat_exp(way), left.q);
     return himc_interpolate_joints(fmin(t - track->stop, HIMC_TRACK_HALT), HIMC_TRACK_HALT, &left,
                                    &rest);
 }
@@ -232,8 +232,8 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
     return far;
 }
 
-// the joints `dt` later at constant acceleration, the arms bent to the tips of that time, or as near
-// as they reach
+// the joints `dt` later at constant acceleration, the arms bent to the tips of that time, or as
+// near as they reach
 static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_motion *m,
                             const himc_target tip[HIMC_HANDS], double dt)
 {
