@@ -17,7 +17,9 @@
 
 static himc_vec3 tip_place(const himc_posture *posture, himc_hand hand, const himc_head_frame *head)
 {
-    himc_vec3 fingers = himc_head_frame_to_world(head, -FINGERS_BACK * head->radius, 0);
+    double x = -FINGERS_BACK * head->radius, y = 0;
+    himc_head_frame_keep_inside(head, FINGERS_BACK, &x, &y);
+    himc_vec3 fingers = himc_head_frame_to_world(head, x, y);
     fingers = himc_vec3_madd(fingers, FINGERS_OVER, himc_head_frame_normal(head));
     return himc_posture_tip_of_grip(posture, hand, fingers);
 }
