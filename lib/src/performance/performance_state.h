@@ -183,16 +183,16 @@ himc_job *himc_performance_take_job(himc_performance *p, const himc_command *com
 /// Loads the take once more, for the player of the settings, as if its drum still stood where the
 /// take found it. NULL without memory.
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error);
-/// The same for a `nudge` after a take that has been tried.
-bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error);
-/// What a `nudge` asks for.
-himc_nudge himc_performance_nudge(const himc_command *command);
+/// The command `nudge` for a take; NULL: there is none, and it is refused.
+bool himc_performance_nudge(himc_track *track, const himc_command *command, himc_error *error);
 /// A job to try takes with, as the performance is now; NULL without memory.
 himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error);
 /// True if it could play this command's take, the first drum being at `place`, which may be NULL:
 /// there is none. Touches the job alone.
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
                                const himc_head_frame *place, himc_error *error);
+/// The same for a `nudge` after it.
+bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error);
 /// Joint limits of a player with postures, as captured.
 bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
                                    himc_error *error);

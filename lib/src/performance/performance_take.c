@@ -540,18 +540,17 @@ himc_vec3 himc_performance_take_offset(const himc_performance *p)
     return p->motion->track ? himc_track_offset(p->motion->track) : himc_vec3_make(0, 0, 0);
 }
 
-himc_nudge himc_performance_nudge(const himc_command *c)
+bool himc_performance_nudge(himc_track *track, const himc_command *c, himc_error *error)
 {
-    return (himc_nudge){.hand = (himc_hand)c->choice[0],
+    himc_nudge nudge = {.hand = (himc_hand)c->choice[0],
                         .time = c->atom[1].number,
                         .span = c->atom[2].number,
                         .way = {c->atom[3].number, c->atom[4].number, c->atom[5].number}};
+    return track ? himc_track_nudge(track, &nudge, error)
+                 : himc_error_set(error, "nudge: no take is loaded");
 }
 
 bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error)
 {
-    himc_nudge nudge = himc_performance_nudge(command);
-    himc_track *track = ((take_job *)job)->track;
-    return track ? himc_track_nudge(track, &nudge, error)
-                 : himc_error_set(error, "nudge: no take is loaded");
+    return himc_performance_nudge(((take_job *)job)->track, command, error);
 }
