@@ -57,26 +57,25 @@ void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, 
 
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
-    wanted_drum drum;
+    int drum;
     if (!check_stroke(stroke, false, error) ||
-        !himc_performance_want_drum(p, stroke->drum, stroke->spot, &drum, error))
+        !himc_performance_index_drum(p, stroke->drum, stroke->spot, &drum, error))
         return false;
     bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
     int tempo_count;
     const himc_tempo_change *tempi = himc_planner_tempi(p->motion->planner, &tempo_count);
     if (rolls ? !himc_score_accepts_roll(tempi, tempo_count, stroke, error)
-              : !himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
-        himc_drum_release(drum.fresh);
+              : !himc_planner_accepts(p->motion->planner, stroke, drum, error))
         return false;
-    }
-    himc_performance_keep_drum(p, &drum);
+    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &drum, error))
+        return false;
     himc_motion_replan(p->motion);
     himc_stroke plain = *stroke;
     plain.ornament = HIMC_PLAIN;
-    himc_performance_name_drum(p, &plain, drum.index);
-    if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum.index, error))
+    himc_performance_name_drum(p, &plain, drum);
+    if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum, error))
         return false;
-    himc_performance_add_ornament(p, stroke, drum.index);
+    himc_performance_add_ornament(p, stroke, drum);
     himc_motion_go_on(p->motion, step_time(p));
     return true;
 }

@@ -591,8 +591,8 @@ static void tell_report(score_job *j)
 {
     const char *line = j->score->report ? j->score->report : "", *end;
     for (; (end = strchr(line, '\n')); line = end + 1)
-        himc_events_note_as(&j->performance->events, j->score->left_out == 0, "%.*s",
-                            (int)(end - line), line);
+        himc_events_note_as(&j->performance->events, j->score->left_out ? NOTE_USUAL : NOTE_MINOR,
+                            "%.*s", (int)(end - line), line);
 }
 
 static himc_job_state install(himc_job *job, himc_error *error)

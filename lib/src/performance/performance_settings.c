@@ -157,7 +157,7 @@ static bool read_gain(const reading *r)
             s->gain[joint] = (asked_gain){.frequency = c->atom[1].number};
         }
     } else if (c->form == JOINT) {
-        if (!himc_body_find_joint(c->atom[0].symbol, "gain", &joint, r->error))
+        if (!himc_body_find_joint(c->atom[0].symbol, "gain: JOINT", &joint, r->error))
             return false;
         s->control.gain_set[joint] = true;
         s->gain[joint] = (asked_gain){c->atom[1].number, c->atom[2].number, 0};
@@ -187,7 +187,7 @@ static bool read_strength(const reading *r)
     const himc_command *c = r->command;
     int joint;
     if (c->form == JOINT) {
-        if (!himc_body_find_joint(c->atom[0].symbol, "strength", &joint, r->error))
+        if (!himc_body_find_joint(c->atom[0].symbol, "strength: JOINT", &joint, r->error))
             return false;
         config->strength[joint] = c->atom[1].number;
     } else if (c->choice[0] == HUMAN) {

@@ -88,8 +88,8 @@ static void free_parts(made_parts *parts)
 static bool make_parts(made_parts *parts, const performance_settings *s, himc_error *error)
 {
     parts->motion = himc_motion_new(error);
-    parts->body = parts->motion ? himc_body_new(error) : NULL;
-    if (!parts->body || !himc_body_build(parts->body, s, error)) {
+    parts->body = parts->motion ? himc_body_new(s, error) : NULL;
+    if (!parts->body) {
         free_parts(parts);
         return false;
     }
@@ -106,7 +106,7 @@ static void begin(himc_performance *p, const made_parts *parts)
     himc_text_clear(&p->written.units);
     p->motion = parts->motion;
     p->body = parts->body;
-    himc_body_account(p->body, p->events.on_motion != NULL);
+    himc_body_account(p->body, p->host.on_motion != NULL);
     himc_statistics_clear(&p->statistics);
     p->events.lost = 0;
     himc_queue_clear(&p->queue);
@@ -299,35 +299,24 @@ bool himc_performance_find_drum(himc_performance *p, const char *name)
            (host->find_drum && host->find_drum(host->find_user, name));
 }
 
-bool himc_performance_want_drum(himc_performance *p, const char *name, himc_spot spot,
-                                wanted_drum *drum, himc_error *error)
+bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
+                                 himc_error *error)
 {
-    *drum = (wanted_drum){.index = 0};
-    if (name[0] && !himc_performance_find_drum(p, name))
-        return himc_drums_refuse(&p->drums, name, spot, error);
+    *index = 0;
     if (name[0])
-        drum->index = himc_drums_find(&p->drums, name);
-    else if (p->drums.count == 0)
-        drum->fresh = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
-    return drum->fresh || p->drums.count > 0;
-}
-
-void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum)
-{
-    int index;
-    if (drum->fresh)
-        himc_performance_adopt_drum(p, drum->fresh, DRUM_SILENT, &index, NULL);
+        *index = himc_performance_find_drum(p, name) ? himc_drums_find(&p->drums, name) : -1;
+    return *index >= 0 || himc_drums_refuse(&p->drums, name, spot, error);
 }
 
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error)
 {
-    wanted_drum drum;
-    if (!himc_performance_want_drum(p, name, spot, &drum, error))
+    if (!himc_performance_index_drum(p, name, spot, index, error))
         return false;
-    himc_performance_keep_drum(p, &drum);
-    *index = drum.index;
-    return true;
+    if (p->drums.count > 0)
+        return true;
+    himc_drum *first = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
+    return first && himc_performance_adopt_drum(p, first, DRUM_SILENT, index, error);
 }
 
 // the command `drum`

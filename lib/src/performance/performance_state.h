@@ -36,8 +36,12 @@
 typedef struct performance_host {
     himc_performance_config config; ///< given to himc_performance_new
     himc_take_options take_options;
-    performance_settings usual; ///< of `reset`
-    bool make_drums;            ///< `drum` makes one that sounds
+    performance_settings usual;                         ///< of `reset`
+    bool make_drums;                                    ///< `drum` makes one that sounds
+    void (*on_motion)(void *, const himc_motion_row *); ///< at each task tick; NULL: none
+    void *motion_user;
+    void (*on_tick)(void *, const himc_tick *); ///< as well
+    void *tick_user;
 } performance_host;
 
 typedef struct performance_recording {
@@ -125,21 +129,14 @@ HIMC_RT void himc_performance_restart_steps(himc_performance *p);
 HIMC_RT void himc_performance_renew_limits(himc_performance *p);
 /// Gives the drums that have changed to the planner.
 HIMC_RT void himc_performance_notice_drums(himc_performance *p);
-/// A drum that a command needs: one of the performance's, or a new one that it does not have yet.
-typedef struct wanted_drum {
-    int index;        ///< among the performance's, also of the new one
-    himc_drum *fresh; ///< owned until it is kept; NULL if there is one already
-} wanted_drum;
 /// True if the performance has the drum, or the host has one for it.
 bool himc_performance_find_drum(himc_performance *p, const char *name);
-/// Finds the drum of that name ("": the first, which may be a silent one, made for it). The name is
-/// the last word of a stroke on `spot`; if there is no such drum, and no spot was given, the word
-/// may be a misspelt spot.
-bool himc_performance_want_drum(himc_performance *p, const char *name, himc_spot spot,
-                                wanted_drum *drum, himc_error *error);
-/// Adds the new one. To refuse the command instead, release `fresh`.
-void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum);
-/// Both steps.
+/// Index of the drum of that name ("": the first, which may be still to be made). The name is the
+/// last word of a stroke on `spot`; if there is no such drum, and no spot was given, the word may be
+/// a misspelt spot.
+bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
+                                 himc_error *error);
+/// The same; without any drum a silent one is made for "".
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error);
 /// Adds a drum and its reference, which is given back if there is no place for it.

@@ -52,7 +52,7 @@ typedef struct take_job {
     bool own_regression;   ///< another one than a take's has been set
     himc_head_frame place; ///< of the drum
     // made from the take
-    wanted_drum drum;
+    himc_drum *drum; ///< owned; to be added, NULL if there is one
     himc_take *take;
     himc_player *player;
     himc_track *track;     ///< after `install` the one that it has replaced
@@ -254,15 +254,15 @@ static bool fit_regression(take_job *j, const himc_skeleton *skeleton, himc_erro
 // the drum's place, or that of one that is made for the take
 static bool find_place(take_job *j, himc_error *error)
 {
-    himc_drum_release(j->drum.fresh);
-    j->drum = (wanted_drum){.index = 0};
+    himc_drum_release(j->drum);
+    j->drum = NULL;
     j->frame = j->place;
     if (j->has_drum)
         return true;
-    j->drum.fresh = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, j->sample_rate, error);
-    if (j->drum.fresh)
-        j->frame = j->place = *himc_drum_head_frame(j->drum.fresh);
-    return j->drum.fresh;
+    j->drum = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, j->sample_rate, error);
+    if (j->drum)
+        j->frame = j->place = *himc_drum_head_frame(j->drum);
+    return j->drum;
 }
 
 // all that is made from take and player
@@ -423,6 +423,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_performance *p = j->performance;
     body_parts parts = {.character = NULL};
     performance_settings s = p->settings;
+    int first;
     j->tries++;
     if (!drum_as_seen(j)) {
         copy_performance(j);
@@ -440,8 +441,9 @@ static himc_job_state install(himc_job *job, himc_error *error)
         himc_take_name_error(j->name, error);
         return HIMC_JOB_FAILED;
     }
-    himc_performance_keep_drum(p, &j->drum);
-    j->drum.fresh = NULL;
+    if (j->drum)
+        himc_performance_adopt_drum(p, j->drum, DRUM_SILENT, &first, NULL);
+    j->drum = NULL;
     move_drum(j);
     if (j->player->lengths > 0) {
         himc_performance_embody(p, &s, &parts);
@@ -467,7 +469,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
 static void free_job(himc_job *job)
 {
     take_job *j = (take_job *)job;
-    himc_drum_release(j->drum.fresh);
+    himc_drum_release(j->drum);
     himc_track_free(j->track);
     if (!j->given) {
         himc_player_free(j->player);
