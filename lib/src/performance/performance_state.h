@@ -174,7 +174,8 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
                                  himc_error *error);
 
 // performance_take.c
-/// The command `take` as a job; NULL with the reason.
+/// The command `take` as a job; without a command one to try takes with, as the performance is now.
+/// NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
 /// Loads the take once more, for the player of the settings, as if its drum still stood where the
@@ -182,9 +183,7 @@ himc_job *himc_performance_take_job(himc_performance *p, const himc_command *com
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error);
 /// The command `nudge` for a take; NULL: there is none, and it is refused.
 bool himc_performance_nudge(himc_track *track, const himc_command *command, himc_error *error);
-/// A job to try takes with, as the performance is now; NULL without memory.
-himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error);
-/// True if it could play this command's take, the first drum being at `place`, which may be NULL:
+/// True if a job could play this command's take, the first drum being at `place`, which may be NULL:
 /// there is none. Touches the job alone.
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
                                const himc_head_frame *place, himc_error *error);

@@ -29,12 +29,6 @@
 #define OUT_OF_REACH 1e-3     // a tip further from its target is out of reach (m)
 #define SAME_PLACE 1e-6       // a drum as near as this is not moved (m)
 
-/// The part of a take that its player's arms do not reach.
-typedef struct take_reach {
-    int count, far;  ///< places looked at, and those out of reach
-    double farthest; ///< (m)
-} take_reach;
-
 typedef struct take_job {
     himc_job job;
     himc_performance *performance; ///< borrowed
@@ -44,8 +38,7 @@ typedef struct take_job {
     bool again;       ///< of the loaded take: the drum counts as not moved by it
     // of the performance, when the job was made
     himc_take_options options;
-    himc_skeleton_config body;
-    double asked_height, asked_mass; ///< by `player`, instead of those measured; 0: not asked
+    performance_settings settings;
     himc_posture posture;
     double sample_rate;    ///< (Hz)
     bool has_drum;         ///< else a silent one is made
@@ -59,7 +52,8 @@ typedef struct take_job {
     himc_head_frame frame; ///< the drum under the strikes
     himc_limits learned;
     himc_take_tip tips[HIMC_HANDS];
-    take_reach reach;
+    int placed, far;      ///< tips that were looked at, and those out of reach ...
+    double farthest;      ///< ... by so much at most (m)
     int strikes, outside; ///< of the take, and those beside the drum
     double fastest, seen; ///< of the strikes, as found and between frames of the take (m/s)
     int left_out;         ///< motions as sharp as strikes, but off the head
@@ -74,35 +68,23 @@ static bool same_place(himc_vec3 a, himc_vec3 b)
     return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
 }
 
-// the natural posture of the take's player before its drum
-static himc_posture posture_of(const take_job *j, const himc_skeleton *skeleton,
-                               const captured_player *captured)
-{
-    himc_posture posture = j->posture;
-    if (j->player->lengths > 0)
-        himc_motion_init_posture(&posture, skeleton, captured, posture.level);
-    if (!same_place(j->frame.center, j->place.center))
-        posture.level = j->frame.center.z + skeleton->mallet_radius;
-    return posture;
-}
-
 // the part of the take out of reach; there the arm stretches towards the tips
-static take_reach find_reach(const himc_track *track, const himc_posture *posture)
+static void find_reach(take_job *j, const himc_posture *posture)
 {
-    take_reach r = {0, 0, 0};
-    double length = himc_track_length(track);
+    double length = himc_track_length(j->track);
+    j->placed = j->far = 0;
+    j->farthest = 0;
     for (double t = 0; t < length; t += REACH_CHECK_STEP)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            if (!himc_track_present(track, (himc_hand)hand))
+            if (!himc_track_present(j->track, (himc_hand)hand))
                 continue;
-            himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
+            himc_vec3 x = himc_track_target(j->track, (himc_hand)hand, t).x;
             himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
             double missing = himc_vec3_length(himc_vec3_sub(x, near));
-            r.count++;
-            r.far += missing > OUT_OF_REACH;
-            r.farthest = fmax(r.farthest, missing);
+            j->placed++;
+            j->far += missing > OUT_OF_REACH;
+            j->farthest = fmax(j->farthest, missing);
         }
-    return r;
 }
 
 static himc_trunk_posture mean_trunk(const himc_player *player)
@@ -251,26 +233,21 @@ static bool fit_regression(take_job *j, const himc_skeleton *skeleton, himc_erro
     return memory || himc_error_set(error, "%s", j->unfitted.text);
 }
 
-// the drum's place, or that of one that is made for the take
-static bool find_place(take_job *j, himc_error *error)
-{
-    himc_drum_release(j->drum);
-    j->drum = NULL;
-    j->frame = j->place;
-    if (j->has_drum)
-        return true;
-    j->drum = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, j->sample_rate, error);
-    if (j->drum)
-        j->frame = j->place = *himc_drum_head_frame(j->drum);
-    return j->drum;
-}
-
 // all that is made from take and player
 static bool make_track(take_job *j, himc_error *error)
 {
     himc_skeleton skeleton;
     himc_player *player = j->player;
-    if (!find_place(j, error) || !himc_player_sit(player, j->take, &j->options, &j->frame, error))
+    himc_drum_release(j->drum);
+    j->drum = NULL;
+    if (!j->has_drum) {
+        j->drum = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, j->sample_rate, error);
+        if (!j->drum)
+            return false;
+        j->place = *himc_drum_head_frame(j->drum);
+    }
+    j->frame = j->place;
+    if (!himc_player_sit(player, j->take, &j->options, &j->frame, error))
         return false;
     // if left and right are exchanged in a capture, its drum is behind the player
     if (player->placed && !player->walks && j->frame.center.x < 0)
@@ -280,15 +257,21 @@ static bool make_track(take_job *j, himc_error *error)
                               -j->frame.center.x);
     himc_track_free(j->track);
     j->track = himc_track_new_played(j->take, &j->options, &j->frame, player, error);
-    const himc_skeleton_config *body = player->lengths > 0 ? &player->config : &j->body;
+    bool moves = !same_place(j->frame.center, j->place.center);
     if (!j->track || !learn_limits(player, j->track, &j->frame, &j->learned, error) ||
-        !(same_place(j->frame.center, j->place.center) ||
-          himc_drum_check_place(j->frame.center, error)) ||
-        !himc_skeleton_init(&skeleton, body, error) || !count_strikes(j, error))
+        (moves && !himc_drum_check_place(j->frame.center, error)) ||
+        !himc_skeleton_init(&skeleton,
+                            player->lengths > 0 ? &player->config : &j->settings.skeleton, error) ||
+        !count_strikes(j, error))
         return false;
+    // the natural posture of the player before the drum
     captured_player captured = captured_of(player);
-    himc_posture posture = posture_of(j, &skeleton, &captured);
-    j->reach = find_reach(j->track, &posture);
+    himc_posture posture = j->posture;
+    if (player->lengths > 0)
+        himc_motion_init_posture(&posture, &skeleton, &captured, posture.level);
+    if (moves)
+        posture.level = j->frame.center.z + skeleton.mallet_radius;
+    find_reach(j, &posture);
     return fit_regression(j, &skeleton, error);
 }
 
@@ -307,10 +290,10 @@ static bool prepare(himc_job *job, himc_error *error)
             j->take = himc_take_load_in(j->command.folder, j->name, &j->options, error);
         if (!j->take)
             return false;
-        j->player = himc_player_new(j->take, &j->options, &j->body, error);
-        if (j->player && j->asked_height > 0) {
-            j->player->config.height = j->asked_height;
-            j->player->config.mass = j->asked_mass;
+        j->player = himc_player_new(j->take, &j->options, &j->settings.skeleton, error);
+        if (j->player && j->settings.asked_height > 0) { // by `player`, not those measured
+            j->player->config.height = j->settings.asked_height;
+            j->player->config.mass = j->settings.asked_mass;
         }
     }
     return (j->player && make_track(j, error)) || himc_take_name_error(j->name, error);
@@ -353,10 +336,10 @@ static void note_repairs(const take_job *j)
         if (j->tips[hand].present && j->tips[hand].filled > 0)
             himc_events_note(&p->events, "%s: %s is missing in %d frames, which are filled",
                              j->name, j->tips[hand].name, j->tips[hand].filled);
-    if (j->reach.far > 0)
+    if (j->far > 0)
         himc_events_note(&p->events,
                          "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", j->name,
-                         100.0 * j->reach.far / j->reach.count, j->reach.farthest);
+                         100.0 * j->far / j->placed, j->farthest);
     if (j->left_out > 0)
         himc_events_note(&p->events, "%s: %d motions as sharp as strikes end off the head", j->name,
                          j->left_out);
@@ -396,9 +379,7 @@ static void copy_performance(take_job *j)
 {
     const himc_performance *p = j->performance;
     j->options = p->host.take_options;
-    j->body = p->settings.skeleton;
-    j->asked_height = p->settings.asked_height;
-    j->asked_mass = p->settings.asked_mass;
+    j->settings = p->settings;
     j->posture = p->motion->body.posture;
     j->sample_rate = p->clock.sample_rate;
     j->own_regression = has_own_regression(p);
@@ -497,17 +478,12 @@ static take_job *job_of(himc_performance *p, const himc_command *command, const 
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
-    return (himc_job *)job_of(p, command, NULL, false, error);
+    return (himc_job *)job_of(p, command, "take", false, error);
 }
 
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error)
 {
     return (himc_job *)job_of(p, &p->written.take_command, NULL, true, error);
-}
-
-himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error)
-{
-    return (himc_job *)job_of(p, NULL, "take", false, error);
 }
 
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
