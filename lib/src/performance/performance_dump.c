@@ -146,17 +146,23 @@ static void dump_hearing(const performance_drums *d, const himc_line_sink *to)
 
 // drums
 
-typedef struct named_sink {
+typedef struct drum_sink {
     const himc_line_sink *to;
-    const char *name;
-} named_sink;
+    const char *before, *after;
+} drum_sink;
 
-static void tell_named(void *object, const char *text)
+static void tell_of_drum(void *object, const char *text)
 {
-    const named_sink *named = object;
-    himc_state_line line = himc_state_begin(named->name);
-    line.used = himc_format(line.text, sizeof line.text, "%s %s", named->name, text);
-    himc_state_end(&line, named->to);
+    const drum_sink *sink = object;
+    char line[LINE_ROOM];
+    himc_format(line, sizeof line, "%s %s%s", sink->before, text, sink->after);
+    sink->to->line(sink->to->user, line);
+}
+
+void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
+                                    const char *before, const char *after, const himc_line_sink *to)
+{
+    himc_drum_describe(drum, what, tell_of_drum, &(drum_sink){to, before, after});
 }
 
 // no line can be for the silent drum of strokes without a drum's name, whose name is a command's
@@ -181,9 +187,8 @@ static bool dump_drum(const himc_performance *p, size_t *at, const himc_line_sin
     if (*at >= (size_t)p->drums.count)
         return false;
     const himc_drum *drum = p->drums.slot[(*at)++].drum;
-    named_sink named = {to, himc_drum_name(drum)};
     if (can_be_named(drum))
-        himc_drum_describe(drum, HIMC_DESCRIBE_STATE, tell_named, &named);
+        himc_performance_describe_drum(drum, HIMC_DESCRIBE_STATE, himc_drum_name(drum), "", to);
     return true;
 }
 

@@ -111,20 +111,6 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
             himc_hand_name(himc_other_hand(own.hand)));
 }
 
-/// Plays a hit; returns the time from the moment it was asked to its contact (s), infinite if it is
-/// given up.
-static double hit(himc_performance *p, const himc_hit *asked)
-{
-    // a command that acts in this step was meant for its sample, up to a step before
-    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
-    double now = step_time(p), from = (double)sample / p->clock.sample_rate;
-    himc_hit timed = *asked;
-    timed.at = from + p->settings.latency;
-    if (p->settings.latency > 0)
-        return himc_planner_hit_at(p->motion->planner, now, &timed) - from;
-    return himc_planner_hit(p->motion->planner, now, asked->stroke, asked->drum) - now;
-}
-
 /// Leaves a hit to the hands that no take moves; false if there is none.
 static bool give_to_free_hands(himc_performance *p, himc_stroke *stroke, bool *alone)
 {
@@ -185,6 +171,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
 {
     himc_stroke own = *stroke;
     himc_hit asked = {.stroke = &own};
+    himc_planner *planner = p->motion->planner;
     if (!check_stroke(stroke, true, error))
         return false;
     if (!give_to_free_hands(p, &own, &asked.alone))
@@ -193,7 +180,14 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return false;
     himc_performance_name_drum(p, &own, asked.drum);
     tell_places(p);
-    double latency = hit(p, &asked);
+    // a command that acts in this step was meant for its sample, up to a step before
+    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
+    double now = step_time(p), from = (double)sample / p->clock.sample_rate;
+    asked.at = from + p->settings.latency;
+    // to the contact, from the moment it was asked; infinite if it is given up
+    double latency = p->settings.latency > 0
+                         ? himc_planner_hit_at(planner, now, &asked) - from
+                         : himc_planner_hit(planner, now, &own, asked.drum) - now;
     himc_performance_tell_misses(p);
     if (isfinite(latency))
         himc_statistics_hit(&p->statistics, latency);

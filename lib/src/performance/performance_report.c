@@ -363,28 +363,14 @@ static void describe_body(const himc_performance *p, himc_line_sink to)
                       100.0 * (double)counts->weak[j] / (double)counts->steps, counts->torque[j]);
 }
 
-// of a drum
-typedef struct drum_sink {
-    const himc_line_sink *to;
-    const char *silent; ///< what follows its line
-} drum_sink;
-
-static void describe_drum(void *user, const char *line)
-{
-    const drum_sink *sink = user;
-    char text[640];
-    snprintf(text, sizeof text, "drum %s%s", line, sink->silent);
-    sink->to->line(sink->to->user, text);
-}
-
 void himc_performance_inform(const himc_performance *p, himc_line_sink to)
 {
     himc_performance_stats s = himc_performance_measure(p);
     describe_body(p, to);
     for (int i = 0; i < p->drums.count; i++) {
         const drum_slot *slot = &p->drums.slot[i];
-        drum_sink sink = {&to, slot->source == DRUM_SILENT ? " (silent)" : ""};
-        himc_drum_describe(slot->drum, HIMC_DESCRIBE_INFO, describe_drum, &sink);
+        himc_performance_describe_drum(slot->drum, HIMC_DESCRIBE_INFO, "drum",
+                                       slot->source == DRUM_SILENT ? " (silent)" : "", &to);
     }
     himc_tell(
         &to, "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",

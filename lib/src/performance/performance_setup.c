@@ -22,15 +22,6 @@ static bool check_sample_rate(double hz, himc_error *error)
     return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
 }
 
-static bool config_valid(const himc_performance_config *c, himc_error *error)
-{
-    return check_sample_rate(c->sample_rate, error) &&
-           himc_check_range("physics rate", c->physics_rate, HIMC_PHYSICS_RATE_MIN,
-                            HIMC_PHYSICS_RATE_MAX, "Hz", error) &&
-           himc_check_range("task rate", c->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz",
-                            error);
-}
-
 // the gains of the joints as they were asked for, for the body of that controller
 static void renew_gains(performance_settings *s, const himc_controller *controller)
 {
@@ -124,7 +115,11 @@ static void free_written(performance_written *written)
 himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)
 {
     made_parts parts;
-    if (!config_valid(config, error))
+    if (!check_sample_rate(config->sample_rate, error) ||
+        !himc_check_range("physics rate", config->physics_rate, HIMC_PHYSICS_RATE_MIN,
+                          HIMC_PHYSICS_RATE_MAX, "Hz", error) ||
+        !himc_check_range("task rate", config->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX,
+                          "Hz", error))
         return NULL;
     himc_performance *p = calloc(1, sizeof *p);
     if (!p) {

@@ -99,6 +99,10 @@ void himc_performance_inform(const himc_performance *p, himc_line_sink to);
 /// The command `dump FILE` as a job; NULL without memory.
 himc_job *himc_performance_dump_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
+/// Gives each line of a drum's description to `to`, with words before and after it.
+void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
+                                    const char *before, const char *after,
+                                    const himc_line_sink *to);
 
 /// Room for one more line; false with the reason, which begins with `command`.
 bool himc_written_room(himc_text_lines *lines, const char *command, himc_error *error);
