@@ -29,7 +29,6 @@
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8   // postures in that mean
-#define OUT_OF_REACH 1e-3 // chosen: the user is told of a target missed by more (m)
 #define PRESS_RIM 0.9     // share of a head's radius; further out targets go past its rim, too
 
 // a live target that falls faster than sticks do has jumped; so that it presses without a blow, it
@@ -628,14 +627,11 @@ void himc_motion_stop(performance_motion *m, double t)
     m->replan = true;
 }
 
-himc_vec3 himc_motion_reachable(performance_motion *m, himc_hand hand, himc_vec3 asked,
-                                bool *reachable, bool *first)
+bool himc_motion_note_target(performance_motion *m, himc_hand hand, bool good)
 {
-    himc_vec3 x = himc_posture_reachable(&m->body.posture, hand, asked);
-    *reachable = himc_vec3_length(himc_vec3_sub(x, asked)) <= OUT_OF_REACH;
-    *first = !m->out_of_reach[hand];
-    m->out_of_reach[hand] = !*reachable;
-    return x;
+    bool first = !good && !m->out_of_reach[hand];
+    m->out_of_reach[hand] = !good;
+    return first;
 }
 
 himc_vec3 himc_motion_ease_down(performance_motion *m, himc_hand hand, double t, himc_vec3 target,
@@ -670,13 +666,6 @@ himc_vec3 himc_motion_beyond(const performance_motion *m, const himc_head_frame 
             least = way;
     }
     return least;
-}
-
-bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
-{
-    bool first = !m->out_of_reach[hand];
-    m->out_of_reach[hand] = true;
-    return first;
 }
 
 // of a score, or of the count before it

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MISSED_TARGET 1e-3  // chosen: the user is told of a target missed by more (m)
 #define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; largest depth of a target (m)
 #define UNDER_THE_HEAD 0.3  // a target deeper than this is under the drum, not in its head (m)
 
@@ -240,19 +241,20 @@ static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
 // one note when a stream of targets begins to be refused, or leaves the reach
 void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 asked)
 {
-    bool reachable, first;
     if (!himc_vec3_finite(asked) || (unsigned)hand >= HIMC_HANDS)
         return;
-    if (!himc_motion_free_hand(p->motion, hand, step_time(p))) {
-        if (himc_motion_refuse_target(p->motion, hand))
-            himc_events_note(&p->events, "target %s: not possible while a take is playing",
-                             himc_hand_name(hand));
-        return;
-    }
-    himc_vec3 x = himc_motion_reachable(p->motion, hand, asked, &reachable, &first);
-    if (!reachable && first)
+    himc_vec3 x = himc_posture_reachable(&p->motion->body.posture, hand, asked);
+    bool free = himc_motion_free_hand(p->motion, hand, step_time(p));
+    bool reached = himc_vec3_length(himc_vec3_sub(x, asked)) <= MISSED_TARGET;
+    bool first = himc_motion_note_target(p->motion, hand, free && reached);
+    if (first && free)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
                          himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
+    else if (first)
+        himc_events_note(&p->events, "target %s: not possible while a take is playing",
+                         himc_hand_name(hand));
+    if (!free)
+        return;
     const himc_head_frame *head = head_of(p, &x);
     x = himc_motion_ease_down(p->motion, hand, step_time(p), x, head);
     himc_planner_reach(p->motion->planner, step_time(p), hand, x);

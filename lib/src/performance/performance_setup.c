@@ -22,23 +22,6 @@ static bool check_sample_rate(double hz, himc_error *error)
     return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
 }
 
-// the gains of the joints as they were asked for, for the body of that controller
-static void renew_gains(performance_settings *s, const himc_controller *controller)
-{
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        const asked_gain *asked = &s->gain[j];
-        double factor = asked->frequency;
-        himc_gain usual = himc_controller_usual_gain(controller, j);
-        if (!s->control.gain_set[j])
-            continue;
-        // k_s is proportional to the square of the natural frequency, k_d to the frequency
-        s->control.gain[j] =
-            factor > 0 ? (himc_gain){himc_vec3_scale(usual.stiffness, factor * factor),
-                                     himc_vec3_scale(usual.damping, factor)}
-                       : himc_controller_gain(controller, j, asked->stiffness, asked->damping);
-    }
-}
-
 // the stool as these drums need it
 static void fit_stool(performance_motion *motion, performance_body *body,
                       const performance_drums *drums, const performance_settings *s)
@@ -178,8 +161,21 @@ void himc_performance_restart_steps(himc_performance *p)
 
 void himc_performance_adopt(himc_performance *p, const performance_settings *s)
 {
+    const himc_controller *controller = &p->body->controller;
     p->settings = *s;
-    renew_gains(&p->settings, &p->body->controller);
+    // the gains of the joints as they were asked for, for this body
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const asked_gain *asked = &s->gain[j];
+        double factor = asked->frequency;
+        himc_gain usual = himc_controller_usual_gain(controller, j);
+        if (!s->control.gain_set[j])
+            continue;
+        // k_s is proportional to the square of the natural frequency, k_d to the frequency
+        p->settings.control.gain[j] =
+            factor > 0 ? (himc_gain){himc_vec3_scale(usual.stiffness, factor * factor),
+                                     himc_vec3_scale(usual.damping, factor)}
+                       : himc_controller_gain(controller, j, asked->stiffness, asked->damping);
+    }
     himc_body_configure(p->body, &p->settings);
 }
 

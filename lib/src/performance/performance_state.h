@@ -136,8 +136,8 @@ HIMC_RT void himc_performance_notice_drums(himc_performance *p);
 /// True if the performance has the drum, or the host has one for it.
 bool himc_performance_find_drum(himc_performance *p, const char *name);
 /// Index of the drum of that name ("": the first, which may be still to be made). The name is the
-/// last word of a stroke on `spot`; if there is no such drum, and no spot was given, the word may be
-/// a misspelt spot.
+/// last word of a stroke on `spot`; if there is no such drum, and no spot was given, the word may
+/// be a misspelt spot.
 bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                  himc_error *error);
 /// The same; without any drum a silent one is made for "".
@@ -187,8 +187,8 @@ himc_job *himc_performance_take_job(himc_performance *p, const himc_command *com
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error);
 /// The command `nudge` for a take; NULL: there is none, and it is refused.
 bool himc_performance_nudge(himc_track *track, const himc_command *command, himc_error *error);
-/// True if a job could play this command's take, the first drum being at `place`, which may be NULL:
-/// there is none. Touches the job alone.
+/// True if a job could play this command's take, the first drum being at `place` (NULL: there is
+/// none). Touches the job alone.
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
                                const himc_head_frame *place, himc_error *error);
 /// The same for a `nudge` after it.
