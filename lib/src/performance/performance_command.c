@@ -124,7 +124,6 @@ static bool carry_out(himc_performance *p, const himc_command *c, himc_error *er
 // a command for the score and the transport
 static bool act_on_score(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    enum { CLEAR }; // form of `units`
     const himc_atom *atom = c->atom;
     himc_planner *planner = p->motion->planner;
     switch (c->id) {
@@ -155,9 +154,7 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
         himc_drums_drop_heads(&p->drums);
         himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
         break;
-    case HIMC_COMMAND_UNITS:
-        if (c->form != CLEAR)
-            return carry_out(p, c, error);
+    case HIMC_COMMAND_UNITS: // clear
         himc_planner_clear_units(planner);
         himc_text_clear(&p->written.units);
         break;
@@ -175,11 +172,6 @@ static bool act(himc_performance *p, const himc_command *c, himc_error *error)
     himc_listener listener;
     planned_push push;
     switch (c->id) {
-    case HIMC_COMMAND_AT:
-    case HIMC_COMMAND_SCORE:
-    case HIMC_COMMAND_PRESET:
-    case HIMC_COMMAND_TAKE:
-    case HIMC_COMMAND_RECORD: return carry_out(p, c, error);
     case HIMC_COMMAND_LISTENER:
         listener = listener_of(c);
         return himc_drums_listen(&p->drums, &listener, error);
@@ -207,7 +199,7 @@ static bool act(himc_performance *p, const himc_command *c, himc_error *error)
             return false;
         himc_body_push(p->body, &push, step_time(p));
         return true;
-    default: return act_on_score(p, c, error);
+    default: return takes_long(p, c) ? carry_out(p, c, error) : act_on_score(p, c, error);
     }
 }
 

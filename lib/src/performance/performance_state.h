@@ -193,8 +193,8 @@ bool himc_performance_try_take(himc_job *job, const himc_command *command,
                                const himc_head_frame *place, himc_error *error);
 /// The same for a `nudge` after it.
 bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error);
-/// Joint limits of a player with postures, as captured.
-bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+/// Joint limits of a player with these postures.
+bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limits *learned,
                                    himc_error *error);
 
 // performance_score.c

@@ -99,10 +99,10 @@ static himc_trunk_posture mean_trunk(const himc_player *player)
     return b;
 }
 
-bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limits *learned,
                                    himc_error *error)
 {
-    if (!himc_limits_learn(learned, player->pose, player->frames, LIMIT_MARGIN, error))
+    if (!himc_limits_learn(learned, pose, frames, LIMIT_MARGIN, error))
         return false;
     himc_limits_loosen(learned, LEAST_LIMIT);
     return true;
@@ -142,11 +142,10 @@ static bool learn_bent(const himc_player *player, const himc_track *track,
         postures_at(posture, track, himc_track_length(track) * i / POSTURES_SEEN, &pose[2 * i]);
     if (!pose)
         himc_error_set(error, "limits: out of memory");
-    bool fitted = pose && himc_limits_learn(&bent, pose, 2 * POSTURES_SEEN, LIMIT_MARGIN, error);
+    bool fitted = pose && himc_performance_learn_limits(pose, 2 * POSTURES_SEEN, &bent, error);
     free(pose);
     if (!fitted)
         return false;
-    himc_limits_loosen(&bent, LEAST_LIMIT);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int k = 0; lacks[hand] && k < HIMC_ARM_JOINTS; k++) {
             int j = himc_arm_joint((himc_hand)hand, k);
@@ -164,7 +163,7 @@ static bool learn_limits(const himc_player *player, const himc_track *track,
     himc_posture posture;
     if (!player->pose)
         return true;
-    if (!himc_performance_learn_limits(player, learned, error) ||
+    if (!himc_performance_learn_limits(player->pose, player->frames, learned, error) ||
         !himc_skeleton_init(&skeleton, &player->config, error))
         return false;
     himc_posture_init(&posture, &skeleton, place->center.z + skeleton.mallet_radius);
