@@ -2,7 +2,7 @@
 /// himc/command_rows.h.
 ///
 /// The kind of a row is two functions: read_KIND stores a command's atoms in the field, tell_KIND
-/// tells the field as a command. Four kinds serve most rows; a command that is more than its field
+/// tells the field as a command. Three kinds serve most rows; a command that is more than its field
 /// has a kind of its own. Invariant: read_KIND stores what tell_KIND tells as it was, bit by bit.
 /// Numbers are told in single precision, so one that equals the default in single precision is the
 /// default (himc_argument_usual).
@@ -55,17 +55,6 @@ static bool read_switch(const reading *r)
 static void tell_switch(const telling *t)
 {
     tell(t, NULL, 1, (double[]){*(const bool *)t->field});
-}
-
-static bool read_off_switch(const reading *r)
-{
-    *(bool *)r->field = r->command->atom[0].number == 0;
-    return true;
-}
-
-static void tell_off_switch(const telling *t)
-{
-    tell(t, NULL, 1, (double[]){!*(const bool *)t->field});
 }
 
 // an enum, in the order of the words of the first atom
