@@ -523,19 +523,6 @@ static bool ask_host(score_job *j, himc_error *error)
     return true;
 }
 
-// true if the drums are those with which the score was tried
-static bool drums_as_tried(score_job *j)
-{
-    const performance_drums *drums = &j->performance->drums;
-    bool same = !j->unknown && drums->count == j->present &&
-                j->clock.sample_rate == j->performance->clock.sample_rate;
-    for (int i = 0; i < drums->count && same; i++) {
-        const score_drum *d = find_drum(j, himc_drum_name(drums->slot[i].drum));
-        same = d && himc_drum_has_head(drums->slot[i].drum, &d->was);
-    }
-    return same;
-}
-
 static himc_job_state begin(score_job *j, himc_error *error)
 {
     himc_performance *p = j->performance;
@@ -543,7 +530,15 @@ static himc_job_state begin(score_job *j, himc_error *error)
     int pushes = 0;
     if (!ask_host(j, error))
         return HIMC_JOB_FAILED;
-    if (!drums_as_tried(j) && (++j->tries < HIMC_JOB_TRIES || j->unknown)) {
+    // the drums should be those with which the score was tried
+    bool same =
+        !j->unknown && p->drums.count == j->present && j->clock.sample_rate == p->clock.sample_rate;
+    for (int i = 0; i < p->drums.count && same; i++) {
+        himc_drum *drum = p->drums.slot[i].drum;
+        const score_drum *d = find_drum(j, himc_drum_name(drum));
+        same = d && himc_drum_has_head(drum, &d->was);
+    }
+    if (!same && (++j->tries < HIMC_JOB_TRIES || j->unknown)) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;
     }
