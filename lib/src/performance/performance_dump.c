@@ -146,25 +146,6 @@ static void dump_hearing(const performance_drums *d, const himc_line_sink *to)
 
 // drums
 
-typedef struct drum_sink {
-    const himc_line_sink *to;
-    const char *before, *after;
-} drum_sink;
-
-static void tell_of_drum(void *object, const char *text)
-{
-    const drum_sink *sink = object;
-    char line[LINE_ROOM];
-    himc_format(line, sizeof line, "%s %s%s", sink->before, text, sink->after);
-    sink->to->line(sink->to->user, line);
-}
-
-void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
-                                    const char *before, const char *after, const himc_line_sink *to)
-{
-    himc_drum_describe(drum, what, tell_of_drum, &(drum_sink){to, before, after});
-}
-
 // no line can be for the silent drum of strokes without a drum's name, whose name is a command's
 static bool can_be_named(const himc_drum *drum)
 {

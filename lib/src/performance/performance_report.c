@@ -2,6 +2,7 @@
 /// recording of its motion.
 #include "performance/performance_state.h"
 
+#include "base/format.h"
 #include "body/dynamics.h"
 #include "control/tracking_error.h"
 
@@ -361,6 +362,25 @@ static void describe_body(const himc_performance *p, himc_line_sink to)
             himc_tell(&to, "strength %s %g N m: too weak in %.3g %% of steps, %.1f N m asked",
                       himc_joint_name(j), c->strength[j],
                       100.0 * (double)counts->weak[j] / (double)counts->steps, counts->torque[j]);
+}
+
+typedef struct drum_sink {
+    const himc_line_sink *to;
+    const char *before, *after;
+} drum_sink;
+
+static void tell_of_drum(void *object, const char *text)
+{
+    const drum_sink *sink = object;
+    char line[3 * HIMC_PATH_SIZE]; // of a file and the words around it
+    himc_format(line, sizeof line, "%s %s%s", sink->before, text, sink->after);
+    sink->to->line(sink->to->user, line);
+}
+
+void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
+                                    const char *before, const char *after, const himc_line_sink *to)
+{
+    himc_drum_describe(drum, what, tell_of_drum, &(drum_sink){to, before, after});
 }
 
 void himc_performance_inform(const himc_performance *p, himc_line_sink to)

@@ -94,15 +94,15 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
 
 /// The lines of `info`.
 void himc_performance_inform(const himc_performance *p, himc_line_sink to);
+/// Gives each line of a drum's description to `to`, with words before and after it.
+void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
+                                    const char *before, const char *after,
+                                    const himc_line_sink *to);
 
 // performance_dump.c
 /// The command `dump FILE` as a job; NULL without memory.
 himc_job *himc_performance_dump_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
-/// Gives each line of a drum's description to `to`, with words before and after it.
-void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
-                                    const char *before, const char *after,
-                                    const himc_line_sink *to);
 
 /// Room for one more line; false with the reason, which begins with `command`.
 bool himc_written_room(himc_text_lines *lines, const char *command, himc_error *error);
