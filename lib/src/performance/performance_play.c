@@ -62,13 +62,22 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke,
     if (!check_stroke(stroke, false, error) ||
         !himc_performance_index_drum(p, stroke->drum, stroke->spot, &drum, error))
         return false;
+    // the silent drum that it may need, before the planner makes room
+    himc_drum *first = NULL;
+    if (p->drums.count == 0) {
+        first = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
+        if (!first)
+            return false;
+    }
     bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
     int tempo_count;
     const himc_tempo_change *tempi = himc_planner_tempi(p->motion->planner, &tempo_count);
     if (rolls ? !himc_score_accepts_roll(tempi, tempo_count, stroke, error)
-              : !himc_planner_accepts(p->motion->planner, stroke, drum, error))
+              : !himc_planner_accepts(p->motion->planner, stroke, drum, error)) {
+        himc_drum_release(first);
         return false;
-    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &drum, error))
+    }
+    if (first && !himc_performance_adopt_drum(p, first, DRUM_SILENT, &drum, error))
         return false;
     himc_motion_replan(p->motion);
     himc_stroke plain = *stroke;
