@@ -26,8 +26,8 @@
 /// kind, field, usual, after, does). The command's action, the default, `dump`, `reset` and the
 /// check of scores follow from it. The library alone reads its further columns:
 ///
-///   kind      how its atoms are stored: switch, off_switch (true at 0), word, numbers, or its own
-///             way (lib/src/performance/performance_settings.c)
+///   kind      how its atoms are stored: switch, word, numbers, or its own way
+///             (lib/src/performance/performance_settings.c)
 ///   field     where: of performance_settings (lib/src/performance/performance_settings.h)
 ///   usual     its default, as atoms; "": that of the struct around the field
 ///   after     the consequence of a change (setting_effect), NOTHING for most
@@ -104,8 +104,7 @@ HIMC_SETTING_ROW(SOLVER, solver, AT_SAMPLE, "dls|pinv|transpose|nakamura|sdls", 
                  control.solver, "", NOTHING, "chooses the inverse kinematics")
 HIMC_SETTING_ROW(DAMPING, damping, AT_SAMPLE, "LAMBDA", numbers, control.damping, "", NOTHING,
                  "sets the damping of the least squares")
-HIMC_SETTING_ROW(POSTURE, posture, AT_SAMPLE, "SWITCH", off_switch, control.null_space_off, "",
-                 NOTHING,
+HIMC_SETTING_ROW(POSTURE, posture, AT_SAMPLE, "SWITCH", switch, control.posture, "", NOTHING,
                  "null space of the tips: 1 keeps a natural posture, 0 is unused, as published")
 HIMC_SETTING_ROW(BEND, bend, AT_SAMPLE, "SWITCH", switch, bend, "1", REPLAN,
                  "in `id`: 1 bends a take's arms so that its tips are reached and strokes land, 0 "

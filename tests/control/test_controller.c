@@ -386,7 +386,7 @@ static void test_printed_torque_of_a_tip_12_cm_off_is_three_times_that_of_4_cm(v
 {
     himc_vec3 near[HIMC_JOINTS], far[HIMC_JOINTS], rest = reference.tip[HIMC_LEFT].x;
     controller.config.law = HIMC_LAW_PRINTED;
-    controller.config.null_space_off = true;
+    controller.config.posture = false;
     controller.step = 0;
     memset(state.spin, 0, sizeof state.spin);
     himc_body_state_complete(&skeleton, &state);

@@ -53,7 +53,7 @@ static void test_transpose_has_a_step_length_for_each_demand(void)
     himc_arm_jacobian jacobian;
     controller.config.law = HIMC_LAW_FEEDFORWARD;
     controller.config.solver = HIMC_SOLVER_TRANSPOSE;
-    controller.config.null_space_off = true;
+    controller.config.posture = false;
     controller.step = 0;
     find_torques();
     memcpy(without, torque, sizeof torque);

@@ -248,37 +248,36 @@ typedef struct verdicts {
     long of[OSC_WRONG + 1], subscriptions;
 } verdicts;
 
-static void check_request(const osc_request *request)
+static void check_request(const himc_command *c)
 {
     himc_command again;
     himc_error error;
-    const himc_command *c = &request->command;
     for (int i = 0; i < c->count; i++)
         require(c->atom[i].kind == HIMC_ATOM_SYMBOL || isfinite(c->atom[i].number),
                 "an atom is a word or finite");
-    require(himc_command_check(&again, request->receiver, c, &error), error.text);
+    require(himc_command_check(&again, HIMC_PERFORMER, c, &error), error.text);
 }
 
-static void take_verdict(void *object, osc_verdict verdict, osc_request *request,
+static void take_verdict(void *object, osc_verdict verdict, himc_command *command,
                          const himc_error *error)
 {
     verdicts *v = object;
     himc_error refusal;
-    osc_request copy;
+    himc_command copy;
     int file;
     v->of[verdict]++;
     if (verdict == OSC_WRONG)
         require_line(error);
     if (verdict != OSC_REQUEST)
         return;
-    check_request(request);
-    v->subscriptions += himc_command_table((int)request->command.id)->when == HIMC_WHEN_NETWORK;
-    himc_osc_request_copy(&copy, request);
-    if (!himc_osc_request_admit(&copy, "/some/folder", &refusal))
+    check_request(command);
+    v->subscriptions += himc_command_table((int)command->id)->when == HIMC_WHEN_NETWORK;
+    himc_command_copy(&copy, command);
+    if (!himc_osc_command_admit(&copy, "/some/folder", &refusal))
         require_line(&refusal);
-    else if (himc_command_file(&copy.command, &file) != HIMC_FILE_NONE)
-        require(himc_command_file(&copy.command, &file) == HIMC_FILE_READ && copy.command.folder &&
-                    strcmp(copy.command.folder, "/some/folder") == 0,
+    else if (himc_command_file(&copy, &file) != HIMC_FILE_NONE)
+        require(himc_command_file(&copy, &file) == HIMC_FILE_READ && copy.folder &&
+                    strcmp(copy.folder, "/some/folder") == 0,
                 "a file over the network is read, and in the folder");
 }
 

@@ -125,7 +125,8 @@ static void test_limits_of_a_take_are_at_least_0_05_wide(void)
             double most = j == ELBOW ? 0.5 : 0.002, turn = most * (2.0 * i / (FRAMES - 1) - 1);
             pose[i].joint[j] = himc_quat_exp(himc_vec3_make(0, turn, 0));
         }
-    TEST_ASSERT_TRUE_MESSAGE(himc_performance_learn_limits(&player, &learned, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(
+        himc_performance_learn_limits(player.pose, player.frames, &learned, &error), error.text);
     TEST_ASSERT_TRUE_MESSAGE(himc_limits_learn(&exact, pose, FRAMES, 0, &error), error.text);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const himc_limit *l = &learned.joint[j], *e = &exact.joint[j];

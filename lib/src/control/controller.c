@@ -65,6 +65,7 @@ himc_controller_config himc_controller_config_default(void)
         .damping =
             0.01, // chosen: far below an arm's levers of 0.3 m, so it acts near singularities
         .weight = {1, 1, 1, 1},
+        .posture = true,
         .bandwidth = 20, // chosen: above the fastest strokes, far below the physics rate
     };
 }

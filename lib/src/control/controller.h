@@ -46,7 +46,7 @@ typedef struct himc_controller_config {
     himc_solver solver;
     double damping;                 ///< lambda of the inverse kinematics (m)
     double weight[HIMC_ARM_JOINTS]; ///< of shoulder, elbow, wrist, grip in the inverse kinematics
-    bool null_space_off;            ///< no posture in the null space of the tips, as published
+    bool posture;                   ///< in the null space of the tips; false: none, as published
     bool elbow;                     ///< the elbow's place has priority over the rest of the posture
     double bandwidth;               ///< of computed torque, critically damped (Hz)
     bool gain_set[HIMC_JOINTS];     ///< the joint has the gain below; computed torque uses it, too

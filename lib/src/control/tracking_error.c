@@ -52,7 +52,7 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
     himc_mat3 inverse = tasks->inverse;
     himc_vec3 posture[HIMC_ARM_JOINTS], solution[HIMC_ARM_JOINTS];
     himc_arm_gather(all, tasks->hand, posture);
-    for (int k = 0; c->null_space_off && k < HIMC_ARM_JOINTS; k++)
+    for (int k = 0; !c->posture && k < HIMC_ARM_JOINTS; k++)
         posture[k] = himc_vec3_make(0, 0, 0);
     if (himc_solvers[c->solver].own_step)
         inverse = himc_solvers[c->solver].inverse(tasks->jacobian, c->damping, demand);

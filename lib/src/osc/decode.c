@@ -18,21 +18,20 @@
 
 // --- packets
 
-// "/himc/NAME" or "/membrane/DRUM/NAME"; false if it is neither
-static bool read_path(const char *path, osc_request *request, const char **name)
+// "/himc/NAME" or "/membrane/DRUM/NAME" ("" is the drum of the first); false if it is neither
+static bool read_path(const char *path, char drum[HIMC_NAME_SIZE], const char **name)
 {
+    drum[0] = '\0';
     if (strncmp(path, "/himc/", 6) == 0) {
-        request->receiver = HIMC_PERFORMER;
         *name = path + 6;
         return !strchr(*name, '/');
     }
     if (strncmp(path, "/membrane/", 10) != 0)
         return false;
-    const char *drum = path + 10, *slash = strchr(drum, '/');
-    if (!slash || slash == drum || slash - drum >= HIMC_NAME_SIZE)
+    const char *begin = path + 10, *slash = strchr(begin, '/');
+    if (!slash || slash == begin || slash - begin >= HIMC_NAME_SIZE)
         return false;
-    request->receiver = HIMC_DRUM;
-    snprintf(request->drum, sizeof request->drum, "%.*s", (int)(slash - drum), drum);
+    snprintf(drum, HIMC_NAME_SIZE, "%.*s", (int)(slash - begin), begin);
     *name = slash + 1;
     return !strchr(*name, '/');
 }
@@ -49,41 +48,40 @@ static bool sent_by_us(himc_receiver receiver, const char *name)
     return false;
 }
 
-static osc_verdict read_message(const char *data, size_t size, osc_request *request,
+static osc_verdict read_message(const char *data, size_t size, himc_command *command,
                                 himc_error *error)
 {
     himc_atom atom[ATOMS];
+    char drum[HIMC_NAME_SIZE];
     const char *name;
     int count;
     bool plain;
     if (size < 8 || !himc_osc_message_read(data, size, atom, ATOMS, &count, &plain))
         return OSC_MALFORMED;
-    if (!read_path(data, request, &name))
+    if (!read_path(data, drum, &name))
         return OSC_FOREIGN;
     if (!plain)
         return OSC_MALFORMED;
-    if (himc_command_parse(&request->command, request->receiver, name, atom, count, error)) {
-        if (request->command.drum[0]) { // /himc/DRUM COMMAND ...
-            request->receiver = HIMC_DRUM;
-            snprintf(request->drum, sizeof request->drum, "%s", request->command.drum);
-            request->command.drum[0] = '\0';
-        }
+    himc_receiver receiver = drum[0] ? HIMC_DRUM : HIMC_PERFORMER;
+    if (himc_command_parse(command, receiver, name, atom, count, error)) {
+        if (drum[0]) // else it may be /himc/DRUM COMMAND ...
+            memcpy(command->drum, drum, sizeof drum);
         return OSC_REQUEST;
     }
-    if (sent_by_us(request->receiver, name))
+    if (sent_by_us(receiver, name))
         return OSC_FOREIGN;
-    if (request->receiver == HIMC_DRUM)
-        himc_error_prefix(error, "%s", request->drum);
+    if (drum[0])
+        himc_error_prefix(error, "%s", drum);
     return OSC_WRONG;
 }
 
 static void decode_element(const char *data, size_t size, int depth, osc_sink *sink, void *object)
 {
     if (size < 16 || memcmp(data, "#bundle", 8) != 0) {
-        osc_request request = {.drum = ""};
+        himc_command command;
         himc_error error;
-        osc_verdict verdict = read_message(data, size, &request, &error);
-        sink(object, verdict, &request, &error);
+        osc_verdict verdict = read_message(data, size, &command, &error);
+        sink(object, verdict, &command, &error);
         return;
     }
     const int most = 4; // bundles in bundles; chosen: nobody needs more than one
@@ -107,20 +105,13 @@ void himc_osc_decode(const char *data, size_t size, osc_sink *sink, void *object
         decode_element(data, size, 0, sink, object);
 }
 
-void himc_osc_request_copy(osc_request *out, const osc_request *in)
-{
-    out->receiver = in->receiver;
-    memcpy(out->drum, in->drum, sizeof out->drum);
-    himc_command_copy(&out->command, &in->command);
-}
-
 // --- the commands that a stranger may give
 
 // chosen by the time they take: `target` comes often and takes microseconds, a head or a body is
 // made anew in 1 ms or more, a file is read from the disk
-double himc_osc_request_cost(const osc_request *request)
+double himc_osc_command_cost(const himc_command *command)
 {
-    switch (request->command.id) {
+    switch (command->id) {
     case HIMC_COMMAND_TARGET: return 1;
     case HIMC_COMMAND_SCORE:
     case HIMC_COMMAND_TAKE: return 250;
@@ -137,9 +128,9 @@ double himc_osc_request_cost(const osc_request *request)
     }
 }
 
-bool himc_osc_request_admit(osc_request *request, const char *folder, himc_error *error)
+bool himc_osc_command_admit(himc_command *command, const char *folder, himc_error *error)
 {
-    if (request->receiver == HIMC_PERFORMER && request->command.id == HIMC_COMMAND_LISTEN)
+    if (command->id == HIMC_COMMAND_LISTEN)
         return himc_error_set(error, "listen: not over the network");
-    return himc_confine_command(&request->command, folder, error);
+    return himc_confine_command(command, folder, error);
 }

@@ -5,13 +5,6 @@
 
 #include "himc/command.h"
 
-/// A command from the network; to be copied with himc_osc_request_copy only.
-typedef struct osc_request {
-    himc_receiver receiver;
-    char drum[HIMC_NAME_SIZE]; ///< if the receiver is a drum
-    himc_command command;
-} osc_request;
-
 typedef enum osc_verdict {
     OSC_REQUEST,   ///< a command that fits the table
     OSC_MALFORMED, ///< not OSC, or an atom that is neither number nor word
@@ -19,20 +12,19 @@ typedef enum osc_verdict {
     OSC_WRONG      ///< a command with an error
 } osc_verdict;
 
-/// One message of a packet. `request` is for OSC_REQUEST, `error` for OSC_WRONG.
-typedef void osc_sink(void *object, osc_verdict verdict, osc_request *request,
+/// One message of a packet. `command` is for OSC_REQUEST, one with the name of a drum is for that;
+/// `error` is for OSC_WRONG.
+typedef void osc_sink(void *object, osc_verdict verdict, himc_command *command,
                       const himc_error *error);
 
 /// Gives each message of a packet to `sink`.
 void himc_osc_decode(const char *data, size_t size, osc_sink *sink, void *object);
 
-void himc_osc_request_copy(osc_request *out, const osc_request *in);
-
 /// Points of the 1000 a second that a command costs.
-double himc_osc_request_cost(const osc_request *request);
+double himc_osc_command_cost(const himc_command *command);
 
 /// True if a stranger may give this command. A file is looked for in `folder` (a real path, or
 /// NULL: no file) when the command is carried out.
-bool himc_osc_request_admit(osc_request *request, const char *folder, himc_error *error);
+bool himc_osc_command_admit(himc_command *command, const char *folder, himc_error *error);
 
 #endif

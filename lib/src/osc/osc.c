@@ -93,7 +93,7 @@ static void subscribe(himc_osc *osc, const osc_change *change)
         refuse(osc, change->local ? NULL : &change->from, error.text);
 }
 
-static void take_message(void *object, osc_verdict verdict, osc_request *request,
+static void take_message(void *object, osc_verdict verdict, himc_command *command,
                          const himc_error *error)
 {
     const osc_sender *s = object;
@@ -104,19 +104,18 @@ static void take_message(void *object, osc_verdict verdict, osc_request *request
         himc_osc_add(&osc->counts, verdict == OSC_FOREIGN ? COUNT_FOREIGN : COUNT_MALFORMED, 1);
     } else if (verdict == OSC_WRONG) {
         refuse(osc, s->address, error->text);
-    } else if (!himc_osc_afford(&osc->points, himc_osc_now(osc), himc_osc_request_cost(request))) {
+    } else if (!himc_osc_afford(&osc->points, himc_osc_now(osc), himc_osc_command_cost(command))) {
         himc_osc_add(&osc->counts, COUNT_FREQUENT, 1);
-    } else if (request->receiver == HIMC_PERFORMER &&
-               himc_osc_change_from(&change, &request->command)) {
+    } else if (himc_osc_change_from(&change, command)) {
         himc_osc_add(&osc->counts, COUNT_COMMANDS, 1);
         subscribe(osc, &change);
-    } else if (!himc_osc_request_admit(request, osc->files, &why)) {
+    } else if (!himc_osc_command_admit(command, osc->files, &why)) {
         refuse(osc, s->address, why.text);
     } else {
         osc_order *slot = himc_osc_ring_slot(&osc->orders);
         if (slot) {
             slot->from = *s->address;
-            himc_osc_request_copy(&slot->request, request);
+            himc_command_copy(&slot->command, command);
             himc_osc_ring_push(&osc->orders);
         }
         himc_osc_add(&osc->counts, slot ? COUNT_COMMANDS : COUNT_FREQUENT, 1);

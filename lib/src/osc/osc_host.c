@@ -289,37 +289,34 @@ static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_or
                       himc_error *error)
 {
     osc_host *h = &osc->host;
-    const osc_request *request = &order->request;
+    const himc_command *command = &order->command;
+    const char *name = command->drum;
     himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
     bool good;
-    if (request->receiver != HIMC_PERFORMER) {
-        to.drum = find_drum(performance, request->drum, error);
-        if (!to.drum)
-            return false;
-    }
+    if (name[0] && !(to.drum = find_drum(performance, name, error)))
+        return false;
     if (h->loader) {
-        good = himc_loader_command(h->loader, &to, &request->command, error);
+        good = himc_loader_command(h->loader, &to, command, error);
         h->loading = good && himc_loader_busy(h->loader);
         h->loading_for = order->from;
-        snprintf(h->loading_drum, sizeof h->loading_drum, "%s", to.drum ? request->drum : "");
+        memcpy(h->loading_drum, name, sizeof h->loading_drum);
     } else if (to.drum) {
-        good = himc_drum_command(to.drum, &request->command, error);
+        good = himc_drum_command(to.drum, command, error);
     } else {
-        good = himc_performance_command(performance, &request->command, 0, error);
+        good = himc_performance_command(performance, command, 0, error);
     }
-    return good || (to.drum && himc_error_prefix(error, "%s", request->drum));
+    return good || (to.drum && himc_error_prefix(error, "%s", name));
 }
 
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
 {
     himc_error error = {""};
-    const osc_request *request = &order->request;
     osc_sender from = {.osc = osc, .address = &order->from};
     osc_dump *dump = &osc->host.dump;
-    himc_command_id id = request->command.id;
+    himc_command_id id = order->command.id;
     const himc_drum *drum = NULL;
     if (id == HIMC_COMMAND_DRUM_DUMP || id == HIMC_COMMAND_DRUM_INFO)
-        drum = find_drum(performance, request->drum, &error);
+        drum = find_drum(performance, order->command.drum, &error);
     if (id == HIMC_COMMAND_INFO)
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
     else if (id == HIMC_COMMAND_DUMP)

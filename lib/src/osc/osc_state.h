@@ -42,7 +42,7 @@ typedef struct osc_record {
 /// From network to host.
 typedef struct osc_order {
     osc_address from;
-    osc_request request;
+    himc_command command;
 } osc_order;
 
 /// The sender of a command, for the lines of an answer.

@@ -27,6 +27,7 @@
 #define RENEWED_WITHIN 60.0 // (s) chosen: a receiver that subscribes twice a minute keeps it
 #define HOST_BYTES 500e3    // a second; chosen: the largest stream, vmc at 250 Hz, has 468,000
 #define HOST_BURST 0.25     // of a second's bytes at once; chosen: poses come in bursts of blocks
+#define UNKNOWN_DRUM 110.0  // (Hz) chosen: A2, for vmc
 #define OF_A_HOST 32        // subscriptions of a stranger; chosen: four receivers of all streams
 
 void himc_osc_tell(osc_ring *lines, const char *format, ...)
@@ -403,12 +404,12 @@ static void deliver_pose(osc_subscriptions *s, const osc_state *state, osc_packe
     }
 }
 
-// to each address once that subscribed to anything but vmc
-static void send_once(osc_subscriptions *s, const osc_packets *p, double now)
+// to the subscribers of a stream; STREAM_ANY: to each address once that has one but vmc
+static void send_stream(osc_subscriptions *s, osc_stream stream, const osc_packets *p, double now)
 {
-    for (int i = 0; i < SUBSCRIPTIONS; i++)
-        if (s->subscription[i].used && s->subscription[i].first)
-            send_packets(s, &s->subscription[i].to, p, now);
+    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
+        if (one->used && (stream == STREAM_ANY ? one->first : one->stream == stream))
+            send_packets(s, &one->to, p, now);
 }
 
 const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
@@ -429,22 +430,6 @@ static int find_drum(const osc_subscriptions *s, const char *name)
     return i;
 }
 
-static void deliver_strike(osc_subscriptions *s, const osc_state *state, osc_packets *p, double now)
-{
-    const himc_strike *strike = &state->strike.strike;
-    osc_packets vmc;
-    int drum = find_drum(s, strike->drum);
-    double hz = drum < s->drums ? s->drum[drum].hz : 110; // chosen: A2 until the drum is known
-    himc_osc_encode_strike(p, &state->strike);
-    himc_osc_encode_begin(&vmc, SMALL_PACKET, true, state->wall);
-    himc_osc_encode_vmc_strike(&vmc, strike, hz);
-    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
-        if (one->used && one->stream == STREAM_STRIKES)
-            send_packets(s, &one->to, p, now);
-        else if (one->used && one->stream == STREAM_VMC)
-            send_packets(s, &one->to, &vmc, now);
-}
-
 static void deliver_head(osc_subscriptions *s, const osc_head *head, osc_packets *p, double now)
 {
     himc_osc_encode_head(p, head);
@@ -462,39 +447,37 @@ static void deliver_head(osc_subscriptions *s, const osc_head *head, osc_packets
 void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_osc_counts *counts,
                       double now)
 {
-    osc_packets p;
+    osc_packets p, vmc;
+    osc_stream to = STREAM_ANY;
     int drum;
     himc_osc_encode_begin(&p, SMALL_PACKET, true, state->wall);
     switch (state->kind) {
-    case STATE_POSE: deliver_pose(s, state, &p, now); break;
-    case STATE_STRIKE: deliver_strike(s, state, &p, now); break;
-    case STATE_HEAD: deliver_head(s, &state->head, &p, now); break;
+    case STATE_POSE: deliver_pose(s, state, &p, now); return;
+    case STATE_HEAD: deliver_head(s, &state->head, &p, now); return;
+    case STATE_STRIKE:
+        to = STREAM_STRIKES;
+        himc_osc_encode_strike(&p, &state->strike);
+        drum = find_drum(s, state->strike.strike.drum);
+        himc_osc_encode_begin(&vmc, SMALL_PACKET, true, state->wall);
+        himc_osc_encode_vmc_strike(&vmc, &state->strike.strike,
+                                   drum < s->drums ? s->drum[drum].hz : UNKNOWN_DRUM);
+        send_stream(s, STREAM_VMC, &vmc, now);
+        break;
     case STATE_SOUND:
+        to = STREAM_SOUND;
         himc_osc_encode_sound(&p, &state->sound);
-        for (int i = 0; i < SUBSCRIPTIONS; i++)
-            if (s->subscription[i].used && s->subscription[i].stream == STREAM_SOUND)
-                send_packets(s, &s->subscription[i].to, &p, now);
         break;
     case STATE_DRUM:
         drum = find_drum(s, state->drum.name);
         if (drum == HIMC_DRUMS)
-            break;
+            return;
         s->drums += drum == s->drums;
         s->drum[drum] = state->drum;
         himc_osc_encode_drum(&p, &state->drum);
-        send_once(s, &p, now);
         break;
-    case STATE_BEAT:
-        himc_osc_encode_beat(&p, state->beat);
-        send_once(s, &p, now);
-        break;
-    case STATE_MISSED:
-        himc_osc_encode_missed(&p, &state->missed);
-        send_once(s, &p, now);
-        break;
-    case STATE_STATUS:
-        himc_osc_encode_status(&p, &state->status, counts);
-        send_once(s, &p, now);
-        break;
+    case STATE_BEAT: himc_osc_encode_beat(&p, state->beat); break;
+    case STATE_MISSED: himc_osc_encode_missed(&p, &state->missed); break;
+    case STATE_STATUS: himc_osc_encode_status(&p, &state->status, counts); break;
     }
+    send_stream(s, to, &p, now);
 }

@@ -3,21 +3,14 @@
 
 #include <string.h>
 
-// bytes of `storage` that the command's symbols take; they lie one after the other
-static size_t used_storage(const himc_command *c)
-{
-    size_t used = 0;
-    for (int i = 0; i < c->count; i++)
-        if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
-            used += strlen(c->atom[i].symbol) + 1;
-    return used;
-}
-
 bool himc_confine_command(himc_command *c, const char *folder, himc_error *error)
 {
     const himc_command_row *row = himc_command_table((int)c->id);
-    size_t used = used_storage(c), size = folder ? strlen(folder) + 1 : 0;
+    size_t used = 0, size = folder ? strlen(folder) + 1 : 0;
     int atom = 0;
+    for (int i = 0; i < c->count; i++) // the symbols lie one after the other in `storage`
+        if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
+            used += strlen(c->atom[i].symbol) + 1;
     bool names_file = himc_command_file(c, &atom) != HIMC_FILE_NONE;
     if (c->id == HIMC_COMMAND_RECORD || (names_file && !(row->marks & HIMC_IN_FOLDER)))
         return himc_error_set(error, "%s %.80s: no file is %s over the network", row->name,

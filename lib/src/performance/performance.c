@@ -86,7 +86,7 @@ static void tell_planner_notes(himc_performance *p)
 {
     himc_planner_note note;
     while (himc_planner_note_next(p->motion->planner, &note))
-        himc_events_note_as(&p->events, note.minor, "%s", note.text);
+        himc_events_note_as(&p->events, note.minor ? NOTE_MINOR : NOTE_USUAL, "%s", note.text);
 }
 
 // strokes given up, beats, the end

@@ -17,14 +17,6 @@
 // than a change of tempo between two ticks makes
 #define SAME_COURSE 0.25
 
-performance_body *himc_body_new(himc_error *error)
-{
-    performance_body *b = calloc(1, sizeof *b);
-    if (!b)
-        himc_error_set(error, "performance: out of memory");
-    return b;
-}
-
 void himc_body_free(performance_body *b)
 {
     if (!b)
@@ -33,23 +25,18 @@ void himc_body_free(performance_body *b)
     free(b);
 }
 
-static himc_skeleton make_plant(const himc_skeleton *skeleton, const double *weight)
-{
-    himc_skeleton plant = *skeleton;
-    for (int i = 0; i < HIMC_SEGMENTS; i++) {
-        plant.segment[i].mass *= weight[i];
-        plant.segment[i].inertia = himc_vec3_scale(plant.segment[i].inertia, weight[i]);
-    }
-    return plant;
-}
-
 bool himc_body_make_parts(body_parts *parts, const performance_settings *s, himc_error *error)
 {
     if (!himc_skeleton_init(&parts->skeleton, &s->skeleton, error))
         return false;
-    parts->plant = make_plant(&parts->skeleton, s->weight);
+    parts->plant = parts->skeleton;
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        himc_segment *heavy = &parts->plant.segment[i];
+        heavy->mass *= s->weight[i];
+        heavy->inertia = himc_vec3_scale(heavy->inertia, s->weight[i]);
+    }
     parts->character = himc_character_new(&parts->plant, error);
-    return parts->character != NULL;
+    return parts->character;
 }
 
 static double energy(const himc_character *c)
@@ -82,13 +69,18 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
     b->shares = same_segments(&b->skeleton, &b->plant);
 }
 
-bool himc_body_build(performance_body *b, const performance_settings *s, himc_error *error)
+performance_body *himc_body_new(const performance_settings *s, himc_error *error)
 {
+    performance_body *b = calloc(1, sizeof *b);
     body_parts parts;
-    if (!himc_body_make_parts(&parts, s, error))
-        return false;
-    himc_body_adopt(b, &parts);
-    return true;
+    if (!b)
+        himc_error_set(error, "performance: out of memory");
+    if (b && himc_body_make_parts(&parts, s, error)) {
+        himc_body_adopt(b, &parts);
+        return b;
+    }
+    free(b);
+    return NULL;
 }
 
 void himc_body_place(performance_body *b, const himc_setpoint *at)
@@ -215,10 +207,11 @@ void himc_body_begin_pushes(performance_body *b, double now, double next, double
     b->pushed_to = next;
 }
 
-// the numbers may be finite although the body has come apart
-static bool is_whole(const performance_body *b)
+bool himc_body_observe(performance_body *b, bool check)
 {
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    himc_character_observe(b->character, &b->state);
+    // the numbers may be finite although the body has come apart
+    for (int i = 1; check && i < HIMC_SEGMENTS; i++) {
         const himc_segment *segment = &b->skeleton.segment[i];
         himc_vec3 r = himc_mat3_apply(&b->state.rotation[segment->parent], segment->origin);
         himc_vec3 gap =
@@ -227,12 +220,6 @@ static bool is_whole(const performance_body *b)
             return false;
     }
     return true;
-}
-
-bool himc_body_observe(performance_body *b, bool check)
-{
-    himc_character_observe(b->character, &b->state);
-    return !check || is_whole(b);
 }
 
 void himc_body_control(performance_body *b, const himc_reference *reference, double h)
@@ -311,33 +298,32 @@ long himc_body_limit_hits(const performance_body *b)
     return hits;
 }
 
-bool himc_body_find_joint(const char *name, const char *command, int *joint, himc_error *error)
+// which names of the numbers from `first` to `end` are allowed instead of that one
+static bool refuse_name(const char *what, const char *name, const char *(*name_of)(int), int first,
+                        int end, himc_error *error)
+{
+    himc_error_set(error, "%s: %s, expected", what, name);
+    size_t used = error ? strlen(error->text) : 0;
+    for (int i = first; error && i < end; i++)
+        used += himc_format(error->text + used, sizeof error->text - used, " %s", name_of(i));
+    return false;
+}
+
+bool himc_body_find_joint(const char *name, const char *what, int *joint, himc_error *error)
 {
     *joint = himc_joint_find(name);
-    if (*joint >= 0)
-        return true;
-    himc_error_set(error, "%s: JOINT: %s, expected", command, name);
-    size_t used = error ? strlen(error->text) : 0;
-    for (int j = 0; error && j < HIMC_JOINTS; j++)
-        used +=
-            himc_format(error->text + used, sizeof error->text - used, " %s", himc_joint_name(j));
-    return false;
+    return *joint >= 0 || refuse_name(what, name, himc_joint_name, 0, HIMC_JOINTS, error);
 }
 
 bool himc_body_read_push(const himc_command *c, planned_push *out, himc_error *error)
 {
     const himc_atom *atom = c->atom;
-    const char *name = atom[0].symbol;
     *out = (planned_push){.force = {atom[1].number, atom[2].number, atom[3].number},
                           .seconds = atom[4].number,
                           .along = c->count > 5 ? atom[5].number : -1};
     for (out->segment = HIMC_PELVIS + 1; out->segment < HIMC_SEGMENTS; out->segment++)
-        if (strcmp(name, himc_segment_name(out->segment)) == 0)
+        if (strcmp(atom[0].symbol, himc_segment_name(out->segment)) == 0)
             return true;
-    himc_error_set(error, "push: SEGMENT: %s, expected", name);
-    size_t used = error ? strlen(error->text) : 0;
-    for (int i = HIMC_PELVIS + 1; error && i < HIMC_SEGMENTS; i++)
-        used +=
-            himc_format(error->text + used, sizeof error->text - used, " %s", himc_segment_name(i));
-    return false;
+    return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_PELVIS + 1,
+                       HIMC_SEGMENTS, error);
 }

@@ -45,8 +45,8 @@ typedef struct performance_body {
     double pushed_to; ///< beat; earlier planned pushes have begun
 } performance_body;
 
-/// Memory for a body; himc_body_build fills it.
-performance_body *himc_body_new(himc_error *error);
+/// A body for these settings; NULL with the reason.
+performance_body *himc_body_new(const performance_settings *settings, himc_error *error);
 void himc_body_free(performance_body *body);
 
 /// The segments of a body.
@@ -59,9 +59,6 @@ bool himc_body_make_parts(body_parts *parts, const performance_settings *setting
                           himc_error *error);
 /// Replaces the body's segments.
 void himc_body_adopt(performance_body *body, const body_parts *parts);
-/// Makes the segments again for these settings. False, and nothing changed, if this fails.
-bool himc_body_build(performance_body *body, const performance_settings *settings,
-                     himc_error *error);
 /// Puts the body into the posture of a tick: at rest, or back from a state that was not finite.
 HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
 /// Sets the simulated body to the last kinematic pose.
@@ -120,8 +117,8 @@ HIMC_RT void himc_body_clamp(performance_body *body, himc_pose *pose, himc_vec3 
 /// Number of times that a joint reached its bounds.
 HIMC_RT long himc_body_limit_hits(const performance_body *body);
 
-/// The joint of that name; false if there is none, `command` begins the error.
-bool himc_body_find_joint(const char *name, const char *command, int *joint, himc_error *error);
+/// The joint of that name; false if there is none, `what` begins the error.
+bool himc_body_find_joint(const char *name, const char *what, int *joint, himc_error *error);
 /// Reads the command `push` but for its beat; false with the names of segments allowed.
 bool himc_body_read_push(const himc_command *command, planned_push *out, himc_error *error);
 

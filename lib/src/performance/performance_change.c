@@ -45,12 +45,6 @@ static bool add_push(change_job *j, himc_error *error)
     return himc_body_plan_pushes(body, list, count + 1, PUSHES_INSTEAD, error);
 }
 
-static bool find_drum(const himc_performance *p, const char *name, int *index, himc_error *error)
-{
-    *index = himc_drums_find(&p->drums, name);
-    return *index >= 0 || himc_drums_refuse(&p->drums, name, HIMC_SPOT_XY, error);
-}
-
 /// Begins with the heads as they are now.
 static bool begin(change_job *j, himc_error *error)
 {
@@ -58,7 +52,7 @@ static bool begin(change_job *j, himc_error *error)
     int index;
     if (!j->line.drum[0])
         return true;
-    if (!find_drum(p, j->line.drum, &index, error))
+    if (!himc_performance_index_drum(p, j->line.drum, HIMC_SPOT_XY, &index, error))
         return false;
     j->over = j->insertion;
     j->insertion = himc_head_insertion_new(p->drums.slot[index].heads, p->drums.slot[index].drum,
@@ -80,7 +74,7 @@ static himc_job_state add_head(change_job *j, double now, himc_error *error)
     himc_performance *p = j->performance;
     int index;
     if (!himc_written_room(&p->written.score, "at", error) ||
-        !find_drum(p, j->line.drum, &index, error))
+        !himc_performance_index_drum(p, j->line.drum, HIMC_SPOT_XY, &index, error))
         return HIMC_JOB_FAILED;
     if (!himc_head_insertion_install(j->insertion, &p->drums.slot[index].heads, now)) {
         if (++j->tries < HIMC_JOB_TRIES)
@@ -129,8 +123,6 @@ himc_job *himc_performance_change_job(himc_performance *p, const himc_command *c
         return NULL;
     j->performance = p;
     bool read = himc_score_read_change(command->atom, command->count, &j->line, error);
-    if (read && j->line.drum[0])
-        himc_performance_find_drum(p, j->line.drum); // the host may have it
     if (read && begin(j, error))
         return &j->job;
     free_job(&j->job);

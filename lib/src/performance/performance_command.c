@@ -1,112 +1,12 @@
-/// performance_command.c: the performer's commands, one row of a table for each of command_rows.h.
+/// performance_command.c: the performer's commands, those of command_rows.h.
 ///
 /// They act between physics steps. A command of kind AT_SAMPLE with a delay waits in a queue until
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
 /// cannot be carried out changes nothing and gives the reason in one line.
 #include "base/argument.h"
-#include "base/format.h"
 #include "performance/performance_state.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
-
-static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_job_carry_out(p->runner.job(p, c, error), error);
-}
-
-// playing
-
-static bool do_stroke(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_performance_add_stroke(p, &c->stroke, error);
-}
-
-static bool do_hit(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_performance_hit(p, &c->stroke, error);
-}
-
-static bool do_tempo(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    if (c->count == 1)
-        return himc_performance_set_tempo(p, c->atom[0].number, error);
-    himc_tempo_change tempo = {.bpm = c->atom[0].number, .beat = c->atom[1].number};
-    himc_motion_replan(p->motion);
-    return himc_planner_add_tempo(p->motion->planner, &tempo, error);
-}
-
-static bool do_clear(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)c, (void)error;
-    himc_planner_clear(p->motion->planner);
-    himc_text_clear(&p->written.score);
-    himc_drums_drop_heads(&p->drums);
-    himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
-    himc_motion_replan(p->motion);
-    return true;
-}
-
-static bool do_loop(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    himc_planner_loop(p->motion->planner, step_time(p), c->atom[0].number != 0);
-    himc_motion_replan(p->motion);
-    return true;
-}
-
-static bool do_play(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)c;
-    return himc_performance_play(p, error);
-}
-
-static bool do_stop(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)c, (void)error;
-    himc_performance_stop(p);
-    return true;
-}
-
-static bool do_seek(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    himc_planner_seek(p->motion->planner, step_time(p), c->atom[0].number);
-    himc_motion_replan(p->motion);
-    return true;
-}
-
-static bool do_units(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    enum { CLEAR };
-    if (c->form != CLEAR)
-        return carry_out(p, c, error);
-    himc_motion_replan(p->motion);
-    himc_planner_clear_units(p->motion->planner);
-    himc_text_clear(&p->written.units);
-    return true;
-}
-
-static bool do_target(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    himc_performance_target(
-        p, (himc_hand)c->choice[0],
-        himc_vec3_make(c->atom[1].number, c->atom[2].number, c->atom[3].number));
-    return true;
-}
-
-static bool do_nudge(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    himc_nudge nudge = himc_performance_nudge(c);
-    if (!p->motion->track)
-        return himc_error_set(error, "nudge: no take is loaded");
-    return himc_track_nudge(p->motion->track, &nudge, error);
-}
-
-// the settings
 
 // what follows from a command that has changed a setting
 static void follow(himc_performance *p, const himc_command *c, himc_pipeline before)
@@ -141,7 +41,7 @@ static void follow(himc_performance *p, const himc_command *c, himc_pipeline bef
     himc_motion_replan(p->motion);
 }
 
-static bool do_setting(himc_performance *p, const himc_command *c, himc_error *error)
+static bool set(himc_performance *p, const himc_command *c, himc_error *error)
 {
     performance_settings s = p->settings;
     himc_pipeline before = s.control.mode;
@@ -163,18 +63,8 @@ static bool do_setting(himc_performance *p, const himc_command *c, himc_error *e
     return true;
 }
 
-// body and instrument
+// the commands
 
-static bool do_push(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    planned_push push;
-    if (!himc_body_read_push(c, &push, error))
-        return false;
-    himc_body_push(p->body, &push, step_time(p));
-    return true;
-}
-
-// who listens, as the command says
 static himc_listener listener_of(const himc_command *c)
 {
     enum { OFF };
@@ -187,145 +77,130 @@ static himc_listener listener_of(const himc_command *c)
     return listener;
 }
 
-static bool do_listener(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    himc_listener listener = listener_of(c);
-    return himc_drums_listen(&p->drums, &listener, error);
-}
-
-static himc_job *listener_job(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    himc_listener listener = listener_of(c);
-    return himc_drums_listen_job(&p->drums, &listener, error);
-}
-
-static bool do_room(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    const himc_walls usual = HIMC_WALLS_USUAL;
-    himc_walls walls = {himc_argument_usual(c->atom[0].number, usual.seconds),
-                        p->drums.walls.volume};
-    (void)error;
-    if (c->count > 1)
-        walls.volume = himc_argument_usual(c->atom[1].number, usual.volume);
-    himc_drums_enclose(&p->drums, &walls);
-    return true;
-}
-
-static bool do_mute(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    himc_drums_fade(&p->drums, p->drums.gain, c->atom[0].number == 1);
-    return true;
-}
-
-static bool do_reset(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)c;
-    return himc_performance_reset(p, error);
-}
-
-static bool do_drum(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return himc_performance_find_drum(p, c->atom[0].symbol) || carry_out(p, c, error);
-}
-
-// without a file the host answers, with himc_performance_describe; as `info`
-static bool do_dump(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    return c->count == 0 || carry_out(p, c, error);
-}
-
-static bool refuse_network(himc_performance *p, const himc_command *c, himc_error *error)
-{
-    (void)p;
-    return himc_error_set(error, "%s: only as a message to [himc~] or over OSC",
-                          himc_command_table((int)c->id)->name);
-}
-
-// the table
-
-static bool names_file(const himc_performance *p, const himc_command *c)
-{
-    int file;
-    (void)p;
-    return himc_command_file(c, &file) != HIMC_FILE_NONE;
-}
-
-static bool makes_drum(const himc_performance *p, const himc_command *c)
-{
-    return himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
-}
-
-static bool listening_takes_long(const himc_performance *p, const himc_command *c)
-{
-    (void)c;
-    return himc_drums_listening_takes_long(&p->drums);
-}
-
-/// How a command is carried out. One that reads or writes a file, makes a drum or computes heads
-/// takes long: a loader (himc/loader.h) carries out its job, which the performance must outlive.
-typedef struct performer_action {
-    performance_action *act; ///< carry_out: always a job
-    himc_job *(*job)(himc_performance *, const himc_command *, himc_error *);
-    bool (*takes_long)(const himc_performance *, const himc_command *); ///< NULL: always
-} performer_action;
-
-// a row for each command of the performer
-static const performer_action actions[HIMC_COMMANDS] = {
-#define HIMC_SETTING_ROW(ID, word, when, atoms, kind, field, usual, after, does) \
-    [HIMC_COMMAND_##ID] = {.act = do_setting},
-#include "himc/command_rows.h"
-    [HIMC_COMMAND_STROKE] = {.act = do_stroke},
-    [HIMC_COMMAND_ROLL] = {.act = do_stroke},
-    [HIMC_COMMAND_FLAM] = {.act = do_stroke},
-    [HIMC_COMMAND_DRAG] = {.act = do_stroke},
-    [HIMC_COMMAND_RUFF] = {.act = do_stroke},
-    [HIMC_COMMAND_HIT] = {.act = do_hit},
-    [HIMC_COMMAND_AT] = {.act = carry_out, .job = himc_performance_change_job},
-    [HIMC_COMMAND_TEMPO] = {.act = do_tempo},
-    [HIMC_COMMAND_LOOP] = {.act = do_loop},
-    [HIMC_COMMAND_CLEAR] = {.act = do_clear},
-    [HIMC_COMMAND_PLAY] = {.act = do_play},
-    [HIMC_COMMAND_STOP] = {.act = do_stop},
-    [HIMC_COMMAND_SEEK] = {.act = do_seek},
-    [HIMC_COMMAND_SCORE] = {.act = carry_out, .job = himc_performance_score_job},
-    [HIMC_COMMAND_TAKE] = {.act = carry_out, .job = himc_performance_take_job},
-    [HIMC_COMMAND_NUDGE] = {.act = do_nudge},
-    [HIMC_COMMAND_UNITS] = {.act = do_units,
-                            .job = himc_performance_units_job,
-                            .takes_long = names_file},
-    [HIMC_COMMAND_TARGET] = {.act = do_target},
-    [HIMC_COMMAND_PUSH] = {.act = do_push},
-    [HIMC_COMMAND_LISTENER] = {.act = do_listener,
-                               .job = listener_job,
-                               .takes_long = listening_takes_long},
-    [HIMC_COMMAND_ROOM] = {.act = do_room},
-    [HIMC_COMMAND_MUTE] = {.act = do_mute},
-    [HIMC_COMMAND_RECORD] = {.act = carry_out, .job = himc_performance_record_job},
-    [HIMC_COMMAND_INFO] = {.act = do_dump},
-    [HIMC_COMMAND_DUMP] = {.act = do_dump,
-                           .job = himc_performance_dump_job,
-                           .takes_long = names_file},
-    [HIMC_COMMAND_PRESET] = {.act = carry_out,
-                             .job = himc_performance_score_job}, // the parser makes it a score
-    [HIMC_COMMAND_RESET] = {.act = do_reset},
-    [HIMC_COMMAND_MAKE_DRUM] = {.act = do_drum,
-                                .job = himc_performance_drum_job,
-                                .takes_long = makes_drum},
-    [HIMC_COMMAND_SUBSCRIBE] = {.act = refuse_network},
-    [HIMC_COMMAND_UNSUBSCRIBE] = {.act = refuse_network},
-    [HIMC_COMMAND_LISTEN] = {.act = refuse_network},
-};
-
 static bool takes_long(const himc_performance *p, const himc_command *c)
 {
-    const performer_action *a = &actions[c->id];
-    return a->job && (!a->takes_long || a->takes_long(p, c));
+    int file;
+    switch (c->id) {
+    case HIMC_COMMAND_AT:
+    case HIMC_COMMAND_SCORE:
+    case HIMC_COMMAND_PRESET:
+    case HIMC_COMMAND_TAKE:
+    case HIMC_COMMAND_RECORD: return true;
+    case HIMC_COMMAND_UNITS:
+    case HIMC_COMMAND_DUMP: return himc_command_file(c, &file) != HIMC_FILE_NONE;
+    case HIMC_COMMAND_LISTENER: return himc_drums_listening_takes_long(&p->drums);
+    case HIMC_COMMAND_MAKE_DRUM: return himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
+    default: return false;
+    }
 }
 
+/// The job of a command that reads or writes a file, makes a drum or computes heads: it takes long.
+/// A loader (himc/loader.h) carries it out; the performance must outlive it.
 static himc_job *job_of(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    return actions[c->id].job(p, c, error);
+    himc_listener listener;
+    switch (c->id) {
+    case HIMC_COMMAND_AT: return himc_performance_change_job(p, c, error);
+    case HIMC_COMMAND_SCORE:
+    case HIMC_COMMAND_PRESET:
+        return himc_performance_score_job(p, c, error); // as the parser has it
+    case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
+    case HIMC_COMMAND_RECORD: return himc_performance_record_job(p, c, error);
+    case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
+    case HIMC_COMMAND_DUMP: return himc_performance_dump_job(p, c, error);
+    case HIMC_COMMAND_MAKE_DRUM: return himc_performance_drum_job(p, c, error);
+    case HIMC_COMMAND_LISTENER:
+        listener = listener_of(c);
+        return himc_drums_listen_job(&p->drums, &listener, error);
+    default: return NULL; // takes no time
+    }
+}
+
+static bool carry_out(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    return himc_job_carry_out(job_of(p, c, error), error);
+}
+
+// a command for the score and the transport
+static bool act_on_score(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    const himc_atom *atom = c->atom;
+    himc_planner *planner = p->motion->planner;
+    switch (c->id) {
+    case HIMC_COMMAND_STROKE:
+    case HIMC_COMMAND_ROLL:
+    case HIMC_COMMAND_FLAM:
+    case HIMC_COMMAND_DRAG:
+    case HIMC_COMMAND_RUFF: return himc_performance_add_stroke(p, &c->stroke, error);
+    case HIMC_COMMAND_HIT: return himc_performance_hit(p, &c->stroke, error);
+    case HIMC_COMMAND_PLAY: return himc_performance_play(p, error);
+    case HIMC_COMMAND_STOP: himc_performance_stop(p); return true;
+    case HIMC_COMMAND_TARGET:
+        himc_performance_target(p, (himc_hand)c->choice[0],
+                                himc_vec3_make(atom[1].number, atom[2].number, atom[3].number));
+        return true;
+    case HIMC_COMMAND_NUDGE: return himc_performance_nudge(p->motion->track, c, error);
+    case HIMC_COMMAND_TEMPO:
+        himc_motion_replan(p->motion);
+        return c->count == 1
+                   ? himc_performance_set_tempo(p, atom[0].number, error)
+                   : himc_planner_add_tempo(
+                         planner, &(himc_tempo_change){atom[1].number, atom[0].number}, error);
+    case HIMC_COMMAND_LOOP: himc_planner_loop(planner, step_time(p), atom[0].number != 0); break;
+    case HIMC_COMMAND_SEEK: himc_planner_seek(planner, step_time(p), atom[0].number); break;
+    case HIMC_COMMAND_CLEAR:
+        himc_planner_clear(planner);
+        himc_text_clear(&p->written.score);
+        himc_drums_drop_heads(&p->drums);
+        himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
+        break;
+    case HIMC_COMMAND_UNITS: // clear
+        himc_planner_clear_units(planner);
+        himc_text_clear(&p->written.units);
+        break;
+    default: return set(p, c, error);
+    }
+    himc_motion_replan(p->motion);
+    return true;
+}
+
+/// Carries out any command now.
+static bool act(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    const himc_walls usual = HIMC_WALLS_USUAL;
+    himc_walls walls = p->drums.walls;
+    himc_listener listener;
+    planned_push push;
+    switch (c->id) {
+    case HIMC_COMMAND_LISTENER:
+        listener = listener_of(c);
+        return himc_drums_listen(&p->drums, &listener, error);
+    case HIMC_COMMAND_MAKE_DRUM:
+        return himc_performance_find_drum(p, c->atom[0].symbol) || carry_out(p, c, error);
+    case HIMC_COMMAND_INFO: // the host answers, with himc_performance_describe; also without a file
+    case HIMC_COMMAND_DUMP: return c->count == 0 || carry_out(p, c, error);
+    case HIMC_COMMAND_SUBSCRIBE:
+    case HIMC_COMMAND_UNSUBSCRIBE:
+    case HIMC_COMMAND_LISTEN:
+        return himc_error_set(error, "%s: only as a message to [himc~] or over OSC",
+                              himc_command_table((int)c->id)->name);
+    case HIMC_COMMAND_RESET: return himc_performance_reset(p, error);
+    case HIMC_COMMAND_MUTE:
+        himc_drums_fade(&p->drums, p->drums.gain, c->atom[0].number == 1);
+        return true;
+    case HIMC_COMMAND_ROOM:
+        walls.seconds = himc_argument_usual(c->atom[0].number, usual.seconds);
+        if (c->count > 1)
+            walls.volume = himc_argument_usual(c->atom[1].number, usual.volume);
+        himc_drums_enclose(&p->drums, &walls);
+        return true;
+    case HIMC_COMMAND_PUSH:
+        if (!himc_body_read_push(c, &push, error))
+            return false;
+        himc_body_push(p->body, &push, step_time(p));
+        return true;
+    default: return takes_long(p, c) ? carry_out(p, c, error) : act_on_score(p, c, error);
+    }
 }
 
 // the drum that a command is for, or NULL with the reason
@@ -357,17 +232,6 @@ static bool command_drum(himc_performance *p, const himc_command *c, int delay, 
 const himc_runner himc_performance_runner = {takes_long, himc_performance_command, job_of,
                                              himc_performance_state_job, drum_of};
 
-// makes drums for waiting commands now, not in the audio callback
-static bool prepare(himc_performance *p, const himc_command *command, himc_error *error)
-{
-    int index;
-    if (command->id == HIMC_COMMAND_HIT)
-        return himc_performance_ensure_drum(p, command->stroke.drum, command->stroke.spot, &index,
-                                            error);
-    return command->id != HIMC_COMMAND_PLAY ||
-           himc_performance_ensure_drum(p, "", HIMC_SPOT_NORMAL, &index, error);
-}
-
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
                               himc_error *error)
 {
@@ -380,12 +244,18 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
         return himc_error_set(error, "a drum's command, not the performer's");
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates
     if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE || on_beat)
-        return actions[command->id].act(p, command, error);
+        return act(p, command, error);
     if (delay > LONGEST_DELAY)
         return himc_error_set(error, "delay: %d samples, expected 0 .. %d", delay, LONGEST_DELAY);
     if (!himc_queue_has_room(&p->queue))
         return himc_queue_drop(&p->queue, error);
-    if (!prepare(p, command, error))
+    // drums for waiting commands are made now, not in the audio callback
+    int index;
+    bool hits = command->id == HIMC_COMMAND_HIT;
+    if ((hits || command->id == HIMC_COMMAND_PLAY) &&
+        !himc_performance_ensure_drum(p, hits ? command->stroke.drum : "",
+                                      hits ? command->stroke.spot : HIMC_SPOT_NORMAL, &index,
+                                      error))
         return false;
     himc_queue_add(&p->queue, command, p->clock.played + delay);
     return true;
@@ -395,7 +265,7 @@ static bool run_waiting(himc_performance *p, const himc_command *command, himc_e
 {
     himc_drums_catch_up(&p->drums);
     himc_motion_stir(p->motion);
-    return actions[command->id].act(p, command, error);
+    return act(p, command, error);
 }
 
 void himc_performance_run_due_commands(himc_performance *p)

@@ -141,19 +141,33 @@ static bool rests_after(const contact_scene *s, himc_hand hand, int drum, double
            himc_motion_rests_after(s->motion, hand, time, frame_of(s, drum));
 }
 
+// true if a tip is on that head or less than `highest` over it (m); `local` is its place and height
+static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand hand, int drum,
+                    double highest, himc_vec3 *local)
+{
+    const himc_head_frame *frame = frame_of(s, drum);
+    // most sticks are away from most heads, and a distance costs less than a head's frame
+    himc_vec3 away = himc_vec3_sub(s->body->state.tip[hand], frame->center);
+    double reach = fmax(highest, DEEPEST_CONTACT) + s->body->skeleton.mallet_radius;
+    if (himc_vec3_dot(away, away) > frame->radius * frame->radius + reach * reach)
+        return false;
+    double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
+    *local = over_head(s, drum, s->body->state.tip[hand]);
+    return himc_head_frame_contains(frame, local->x, local->y) && local->z < highest &&
+           local->z > lowest;
+}
+
 // the highest head that the hand's tip is above or on, or -1
 static int head_under(const stick_contact *c, const contact_scene *s, himc_hand hand)
 {
     int under = -1;
     double least = HUGE_VAL;
-    for (int i = 0; i < s->drums->count; i++) {
-        himc_vec3 at = over_head(s, i, s->body->state.tip[hand]);
-        double lowest = c->touching && c->drum == i ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
-        if (himc_head_frame_contains(frame_of(s, i), at.x, at.y) && at.z > lowest && at.z < least) {
+    himc_vec3 at;
+    for (int i = 0; i < s->drums->count; i++)
+        if (is_over(c, s, hand, i, least, &at)) {
             least = at.z;
             under = i;
         }
-    }
     return under;
 }
 
@@ -253,24 +267,6 @@ void himc_contacts_release(performance_contacts *c, const contact_scene *s, doub
         release_hand(&c->hand[hand], s, (himc_hand)hand, t);
 }
 
-// true if a tip is on that head or near it; `local` is its place and height over the head
-static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand hand, int drum,
-                    himc_vec3 *local)
-{
-    double radius = frame_of(s, drum)->radius;
-    // most sticks are away from most heads, and a distance costs less than a head's frame
-    himc_vec3 away = himc_vec3_sub(s->body->state.tip[hand], frame_of(s, drum)->center);
-    double reach = HIGHEST_BOUNCE + s->body->skeleton.mallet_radius;
-    if (himc_vec3_dot(away, away) > radius * radius + reach * reach)
-        return false;
-    himc_vec3 at = over_head(s, drum, s->body->state.tip[hand]);
-    double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
-    double highest = c->bounce.on && c->drum == drum ? HIGHEST_BOUNCE : NEAR_HEAD;
-    *local = at;
-    return himc_head_frame_contains(frame_of(s, drum), at.x, at.y) && at.z < highest &&
-           at.z > lowest;
-}
-
 // the drum below a tip, or -1; of two drums at one place, the planned one
 static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand hand,
                       himc_vec3 *local)
@@ -278,7 +274,8 @@ static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand 
     int below = -1;
     for (int i = 0; i < s->drums->count; i++) {
         himc_vec3 at;
-        if (!is_over(c, s, hand, i, &at))
+        double highest = c->bounce.on && c->drum == i ? HIGHEST_BOUNCE : NEAR_HEAD;
+        if (!is_over(c, s, hand, i, highest, &at))
             continue;
         if (below >= 0) { // which one is meant matters here alone
             himc_source_contact next =
@@ -363,9 +360,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
     himc_motion_answer(s->motion, hand, next.time);
     himc_statistics_strokes(s->statistics, 1, played);
-    if (isfinite(next.speed))
-        himc_statistics_impact(s->statistics, -velocity, next.speed);
-    himc_statistics_yields(s->statistics, next.yields);
+    himc_statistics_landed(s->statistics, -velocity, next.speed, next.yields);
     char name[HIMC_PLANNER_NAME];
     if (off > PLAYED_PLACE && !s->motion->track && himc_statistics_aside(s->statistics) == 0 &&
         name_stroke(s, hand, time, name)) // once: a stroke of a score, or a hit
@@ -396,8 +391,7 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     c->strike.impulse += impulse;
     c->impulse_row += impulse;
     c->strike.duration = c->last_force + dt - c->strike.time;
-    himc_statistics_force(s->statistics, c->strike.force);
-    himc_statistics_contact(s->statistics, c->strike.duration);
+    himc_statistics_contact(s->statistics, c->strike.force, c->strike.duration);
     return impulse;
 }
 
@@ -473,14 +467,6 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
     }
 }
 
-// work of a head on a stick from `a` to `b` (J): it is a free body under this and the hand's
-// acceleration, both constant in a sample
-static double work_on(const himc_stick *a, const himc_stick *b)
-{
-    double kinetic = 0.5 * b->mass * (b->velocity * b->velocity - a->velocity * a->velocity);
-    return kinetic - b->mass * b->acceleration * (b->height - a->height);
-}
-
 void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int n,
                            himc_vec3 tip_force[HIMC_HANDS])
 {
@@ -506,7 +492,12 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             continue;
         double impulse =
             note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
-        double work = impulse > 0 ? work_on(&before[hand], &c->hand[hand].stick) : 0;
+        // work of the head on the stick (J): it is a free body under this and the hand's
+        // acceleration, both constant in a sample
+        const himc_stick *a = &before[hand], *b = &c->hand[hand].stick;
+        double kinetic = 0.5 * b->mass * (b->velocity * b->velocity - a->velocity * a->velocity);
+        double work =
+            impulse > 0 ? kinetic - b->mass * b->acceleration * (b->height - a->height) : 0;
         himc_statistics_contact_work(s->statistics, (himc_hand)hand, work,
                                      (1 - c->hand[hand].share) * work);
         double force = impulse * s->clock->sample_rate / n;

@@ -146,19 +146,6 @@ static void dump_hearing(const performance_drums *d, const himc_line_sink *to)
 
 // drums
 
-typedef struct named_sink {
-    const himc_line_sink *to;
-    const char *name;
-} named_sink;
-
-static void tell_named(void *object, const char *text)
-{
-    const named_sink *named = object;
-    himc_state_line line = himc_state_begin(named->name);
-    line.used = himc_format(line.text, sizeof line.text, "%s %s", named->name, text);
-    himc_state_end(&line, named->to);
-}
-
 // no line can be for the silent drum of strokes without a drum's name, whose name is a command's
 static bool can_be_named(const himc_drum *drum)
 {
@@ -181,9 +168,8 @@ static bool dump_drum(const himc_performance *p, size_t *at, const himc_line_sin
     if (*at >= (size_t)p->drums.count)
         return false;
     const himc_drum *drum = p->drums.slot[(*at)++].drum;
-    named_sink named = {to, himc_drum_name(drum)};
     if (can_be_named(drum))
-        himc_drum_describe(drum, HIMC_DESCRIBE_STATE, tell_named, &named);
+        himc_performance_describe_drum(drum, HIMC_DESCRIBE_STATE, himc_drum_name(drum), "", to);
     return true;
 }
 

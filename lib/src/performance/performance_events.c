@@ -47,42 +47,20 @@ void himc_events_add(performance_events *e, const himc_event *event)
     e->count++;
 }
 
-static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
-    __attribute__((format(printf, 3, 0)));
-
-static void add_note(performance_events *e, himc_event event, const char *format, va_list args)
+void himc_events_note_as(performance_events *e, note_kind kind, const char *format, ...)
 {
     himc_event last = {.kind = HIMC_EVENT_DONE};
+    himc_event event = {
+        .kind = HIMC_EVENT_NOTE, .minor = kind == NOTE_MINOR, .refused = kind == NOTE_REFUSED};
+    va_list args;
     if (e->count > 0)
         pass(e, e->last, &last, false);
+    va_start(args, format);
     himc_line_print(event.text, sizeof event.text, format, args);
+    va_end(args);
     // a score that plays, and then its host: one cause, one line
     if (last.kind != HIMC_EVENT_NOTE || strcmp(last.text, event.text) != 0)
         himc_events_add(e, &event);
-}
-
-void himc_events_note(performance_events *e, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    add_note(e, (himc_event){.kind = HIMC_EVENT_NOTE}, format, args);
-    va_end(args);
-}
-
-void himc_events_note_as(performance_events *e, bool minor, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    add_note(e, (himc_event){.kind = HIMC_EVENT_NOTE, .minor = minor}, format, args);
-    va_end(args);
-}
-
-void himc_events_refuse(performance_events *e, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    add_note(e, (himc_event){.kind = HIMC_EVENT_NOTE, .refused = true}, format, args);
-    va_end(args);
 }
 
 void himc_events_missed(performance_events *e, const himc_strike *missed, const char *drum,
@@ -106,17 +84,4 @@ bool himc_events_take(performance_events *e, himc_event *event)
     e->used -= size_of(event);
     e->count--;
     return true;
-}
-
-void himc_events_on_motion(performance_events *e, void (*row)(void *, const himc_motion_row *),
-                           void *user)
-{
-    e->on_motion = row;
-    e->motion_user = user;
-}
-
-void himc_events_on_tick(performance_events *e, void (*tick)(void *, const himc_tick *), void *user)
-{
-    e->on_tick = tick;
-    e->tick_user = user;
 }

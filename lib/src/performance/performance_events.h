@@ -1,5 +1,4 @@
-/// performance_events.h: the reports of a performance to its host: a bounded queue of events, and
-/// the calls at each task tick.
+/// performance_events.h: the reports of a performance to its host: a bounded queue of events.
 #ifndef HIMC_PERFORMANCE_EVENTS_H
 #define HIMC_PERFORMANCE_EVENTS_H
 
@@ -15,34 +14,25 @@ typedef struct performance_events {
     size_t first, last, used; ///< place of the oldest one, of the latest one; all of them (bytes)
     int count;
     long lost; ///< dropped because the host took none
-    void (*on_motion)(void *, const himc_motion_row *);
-    void *motion_user;
-    void (*on_tick)(void *, const himc_tick *);
-    void *tick_user;
 } performance_events;
 
 /// Adds an event; when the queue is full the oldest one is dropped.
 HIMC_RT void himc_events_add(performance_events *events, const himc_event *event);
+typedef enum note_kind {
+    NOTE_USUAL,
+    NOTE_MINOR,  ///< himc_event.minor
+    NOTE_REFUSED ///< of a command that could not be carried out
+} note_kind;
+
 /// Adds a line for the user, unless it is the same as the one before that still waits.
-HIMC_RT void himc_events_note(performance_events *events, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-/// The same, minor or not.
-HIMC_RT void himc_events_note_as(performance_events *events, bool minor, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-/// The same, of a command that could not be carried out.
-HIMC_RT void himc_events_refuse(performance_events *events, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+HIMC_RT void himc_events_note_as(performance_events *events, note_kind kind, const char *format,
+                                 ...) __attribute__((format(printf, 3, 4)));
+#define himc_events_note(events, ...) himc_events_note_as(events, NOTE_USUAL, __VA_ARGS__)
 /// Adds a stroke that is not played, on the drum of that name; its place is where it should have
 /// been. `why` in a few words.
 HIMC_RT void himc_events_missed(performance_events *events, const himc_strike *missed,
                                 const char *drum, const char *why);
 /// Takes the oldest event; false if there is none.
 HIMC_RT bool himc_events_take(performance_events *events, himc_event *event);
-
-/// Sets the function that is called at each task tick; NULL for none.
-void himc_events_on_motion(performance_events *events, void (*row)(void *, const himc_motion_row *),
-                           void *user);
-void himc_events_on_tick(performance_events *events, void (*tick)(void *, const himc_tick *),
-                         void *user);
 
 #endif

@@ -29,7 +29,6 @@
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8   // postures in that mean
-#define OUT_OF_REACH 1e-3 // chosen: the user is told of a target missed by more (m)
 #define PRESS_RIM 0.9     // share of a head's radius; further out targets go past its rim, too
 
 // a live target that falls faster than sticks do has jumped; so that it presses without a blow, it
@@ -259,25 +258,18 @@ static void enliven(performance_motion *m, const performance_drums *drums, doubl
     himc_alive_add(&m->body.posture, &next, t, &m->body.goal);
 }
 
-// when a hand has nothing to play; never while live targets move it
-static himc_free_hand free_hand(const performance_motion *m, const performance_drums *drums,
-                                himc_hand hand, double t)
-{
-    himc_source_stroke next = himc_motion_stroke(m, drums, hand, t);
-    himc_free_hand free = {m->answered[hand], next.any ? next.time : INFINITY};
-    if (m->live[hand].time > 0 && m->live[hand].time > free.from)
-        free.until = free.from;
-    return free;
-}
-
 // hands lie on heads that are damped; a take shows its own
 static void damp(performance_motion *m, const performance_drums *drums, double t)
 {
     himc_free_hand hand[HIMC_HANDS];
     himc_damped_head head[HIMC_DRUMS];
     double soon = himc_motion_score_beat(m, t + HIMC_DAMPING_FORESIGHT);
-    for (int i = 0; i < HIMC_HANDS; i++)
-        hand[i] = free_hand(m, drums, (himc_hand)i, t);
+    for (int i = 0; i < HIMC_HANDS; i++) { // free while it has nothing to play or to follow
+        himc_source_stroke next = himc_motion_stroke(m, drums, (himc_hand)i, t);
+        bool live = m->live[i].time > 0 && m->live[i].time > m->answered[i];
+        double until = next.any ? next.time : INFINITY;
+        hand[i] = (himc_free_hand){m->answered[i], live ? m->answered[i] : until};
+    }
     for (int i = 0; i < drums->count; i++)
         head[i] = (himc_damped_head){.frame = himc_drums_frame(drums, i),
                                      .now = himc_drums_damped(drums, i),
@@ -357,20 +349,6 @@ static void follow_regression(const performance_motion *m, const performance_set
                                    &tick->posture);
 }
 
-// With a take the trunk has its captured posture, not the one for the strokes; the regression's
-// trunk rotation is relative to it.
-static void fit_regression(performance_motion *m, const performance_settings *s)
-{
-    himc_pose pose;
-    himc_posture held = m->body.posture;
-    const himc_vec3 tip[HIMC_HANDS] = {m->from.tip[HIMC_LEFT].x, m->from.tip[HIMC_RIGHT].x};
-    if (!m->has_regression || !m->track || !himc_settings_trunk_known(s))
-        return;
-    held.trunk_posture = s->captured.trunk;
-    himc_posture_at(&held, tip, &pose);
-    m->regression.player.natural_trunk = pose.joint[HIMC_TRUNK - 1];
-}
-
 void himc_motion_set_regression(performance_motion *m, const performance_settings *s,
                                 const himc_posture_regression *regression, bool of_take)
 {
@@ -382,7 +360,16 @@ void himc_motion_set_regression(performance_motion *m, const performance_setting
         m->crossfade_due = true;
         m->replan = true;
     }
-    fit_regression(m, s);
+    if (!regression || !m->track || !himc_settings_trunk_known(s))
+        return;
+    // with a take the trunk has its captured posture, not the one for the strokes; the regression's
+    // trunk rotation is relative to it
+    himc_pose pose;
+    himc_posture held = m->body.posture;
+    const himc_vec3 tip[HIMC_HANDS] = {m->from.tip[HIMC_LEFT].x, m->from.tip[HIMC_RIGHT].x};
+    held.trunk_posture = s->captured.trunk;
+    himc_posture_at(&held, tip, &pose);
+    m->regression.player.natural_trunk = pose.joint[HIMC_TRUNK - 1];
 }
 
 // cross-fades a tick's joint targets from the source before to this one, during a cross-fade
@@ -603,25 +590,20 @@ void himc_motion_move_tip(performance_motion *m, const performance_settings *s, 
 
 // transport
 
-static void start_track(performance_motion *m, double t)
-{
-    m->track_start = t + HIMC_APPROACH;
-    himc_track_rewind(m->track, m->track_start);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (himc_track_present(m->track, (himc_hand)hand)) {
-            himc_target now = m->reference.tip[hand];
-            himc_track_approach(m->track, (himc_hand)hand, &now, HIMC_APPROACH);
-        }
-    himc_track_approach_posture(m->track, &m->reference.posture);
-    choose_sources(m);
-}
-
 void himc_motion_play(performance_motion *m, double t)
 {
-    if (m->track)
-        start_track(m, t);
-    else
+    if (m->track) {
+        m->track_start = t + HIMC_APPROACH;
+        himc_track_rewind(m->track, m->track_start);
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            if (himc_track_present(m->track, (himc_hand)hand))
+                himc_track_approach(m->track, (himc_hand)hand, &m->reference.tip[hand],
+                                    HIMC_APPROACH);
+        himc_track_approach_posture(m->track, &m->reference.posture);
+        choose_sources(m);
+    } else {
         himc_planner_play(m->planner, t);
+    }
     m->playing = true;
     m->over = false;
     m->replan = true;
@@ -645,14 +627,11 @@ void himc_motion_stop(performance_motion *m, double t)
     m->replan = true;
 }
 
-himc_vec3 himc_motion_reachable(performance_motion *m, himc_hand hand, himc_vec3 asked,
-                                bool *reachable, bool *first)
+bool himc_motion_note_target(performance_motion *m, himc_hand hand, bool good)
 {
-    himc_vec3 x = himc_posture_reachable(&m->body.posture, hand, asked);
-    *reachable = himc_vec3_length(himc_vec3_sub(x, asked)) <= OUT_OF_REACH;
-    *first = !m->out_of_reach[hand];
-    m->out_of_reach[hand] = !*reachable;
-    return x;
+    bool first = !good && !m->out_of_reach[hand];
+    m->out_of_reach[hand] = !good;
+    return first;
 }
 
 himc_vec3 himc_motion_ease_down(performance_motion *m, himc_hand hand, double t, himc_vec3 target,
@@ -689,13 +668,6 @@ himc_vec3 himc_motion_beyond(const performance_motion *m, const himc_head_frame 
     return least;
 }
 
-bool himc_motion_refuse_target(performance_motion *m, himc_hand hand)
-{
-    bool first = !m->out_of_reach[hand];
-    m->out_of_reach[hand] = true;
-    return first;
-}
-
 // of a score, or of the count before it
 static double score_beat(const performance_motion *m, double t)
 {
@@ -716,19 +688,14 @@ double himc_motion_score_beat(const performance_motion *m, double t)
     return m->playing || m->over ? t - m->track_start : -1;
 }
 
-// true within the first tick of a beat
-static bool is_beginning(const performance_motion *m, double t)
-{
-    double beat = score_beat(m, t);
-    return beat - floor(beat + BEAT_ROUNDING) < BEAT_BEGINNING;
-}
-
 /// True if a beat begins by t: another one, or the same one of a later round or behind a count. A
 /// score that starts within a beat does not begin it.
 static bool begins_beat(const performance_motion *m, double t)
 {
     long whole = whole_beat(m, t);
-    bool other = whole != m->last_beat && (m->last_beat >= 0 || whole < 0 || is_beginning(m, t));
+    double beat = score_beat(m, t);
+    bool within = beat - floor(beat + BEAT_ROUNDING) >= BEAT_BEGINNING;
+    bool other = whole != m->last_beat && (m->last_beat >= 0 || whole < 0 || !within);
     return other || himc_planner_round(m->planner, t) > m->last_round ||
            (m->counted && !himc_planner_is_preparing(m->planner, t));
 }

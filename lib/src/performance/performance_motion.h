@@ -154,10 +154,9 @@ HIMC_RT void himc_motion_go_on(performance_motion *motion, double t);
 /// `play` and `stop`.
 HIMC_RT void himc_motion_play(performance_motion *motion, double t);
 HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
-/// Sets a live target. Returns the place to which the tip moves; `reachable` is false if this is
-/// not the requested place, `first` true if the target before was reachable.
-HIMC_RT himc_vec3 himc_motion_reachable(performance_motion *motion, himc_hand hand, himc_vec3 asked,
-                                        bool *reachable, bool *first);
+/// Takes note if a live target is followed: `good` is false if it is refused or out of reach. True
+/// for the first one of a stream that is not.
+HIMC_RT bool himc_motion_note_target(performance_motion *motion, himc_hand hand, bool good);
 /// Takes note of a live target at `t`, in that head (NULL: in none). One that has jumped into a
 /// head comes down to it slowly: returns where it is meanwhile.
 HIMC_RT himc_vec3 himc_motion_ease_down(performance_motion *motion, himc_hand hand, double t,
@@ -165,8 +164,6 @@ HIMC_RT himc_vec3 himc_motion_ease_down(performance_motion *motion, himc_hand ha
 /// From the nearest place in reach of either hand to the usual strike point of a head (m); 0 if
 /// that is in reach.
 HIMC_RT himc_vec3 himc_motion_beyond(const performance_motion *motion, const himc_head_frame *head);
-/// Refuses a live target, because the take moves the hand. True for the first one.
-HIMC_RT bool himc_motion_refuse_target(performance_motion *motion, himc_hand hand);
 
 /// True if no beat begins and no end comes at `t`: himc_motion_foresee has found it so, and nothing
 /// has changed.

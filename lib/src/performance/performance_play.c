@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MISSED_TARGET 1e-3  // chosen: the user is told of a target missed by more (m)
 #define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; largest depth of a target (m)
 #define UNDER_THE_HEAD 0.3  // a target deeper than this is under the drum, not in its head (m)
 
@@ -57,26 +58,34 @@ void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, 
 
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
 {
-    wanted_drum drum;
+    int drum;
     if (!check_stroke(stroke, false, error) ||
-        !himc_performance_want_drum(p, stroke->drum, stroke->spot, &drum, error))
+        !himc_performance_index_drum(p, stroke->drum, stroke->spot, &drum, error))
         return false;
+    // the silent drum that it may need, before the planner makes room
+    himc_drum *first = NULL;
+    if (p->drums.count == 0) {
+        first = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
+        if (!first)
+            return false;
+    }
     bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
     int tempo_count;
     const himc_tempo_change *tempi = himc_planner_tempi(p->motion->planner, &tempo_count);
     if (rolls ? !himc_score_accepts_roll(tempi, tempo_count, stroke, error)
-              : !himc_planner_accepts(p->motion->planner, stroke, drum.index, error)) {
-        himc_drum_release(drum.fresh);
+              : !himc_planner_accepts(p->motion->planner, stroke, drum, error)) {
+        himc_drum_release(first);
         return false;
     }
-    himc_performance_keep_drum(p, &drum);
+    if (first && !himc_performance_adopt_drum(p, first, DRUM_SILENT, &drum, error))
+        return false;
     himc_motion_replan(p->motion);
     himc_stroke plain = *stroke;
     plain.ornament = HIMC_PLAIN;
-    himc_performance_name_drum(p, &plain, drum.index);
-    if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum.index, error))
+    himc_performance_name_drum(p, &plain, drum);
+    if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum, error))
         return false;
-    himc_performance_add_ornament(p, stroke, drum.index);
+    himc_performance_add_ornament(p, stroke, drum);
     himc_motion_go_on(p->motion, step_time(p));
     return true;
 }
@@ -110,20 +119,6 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
             &p->events, "%s at beat %g %s %s: no grace notes, the %s hand has another stroke there",
             himc_grace_name(own.ornament), own.beat, himc_hand_name(own.hand), own.drum,
             himc_hand_name(himc_other_hand(own.hand)));
-}
-
-/// Plays a hit; returns the time from the moment it was asked to its contact (s), infinite if it is
-/// given up.
-static double hit(himc_performance *p, const himc_hit *asked)
-{
-    // a command that acts in this step was meant for its sample, up to a step before
-    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
-    double now = step_time(p), from = (double)sample / p->clock.sample_rate;
-    himc_hit timed = *asked;
-    timed.at = from + p->settings.latency;
-    if (p->settings.latency > 0)
-        return himc_planner_hit_at(p->motion->planner, now, &timed) - from;
-    return himc_planner_hit(p->motion->planner, now, asked->stroke, asked->drum) - now;
 }
 
 /// Leaves a hit to the hands that no take moves; false if there is none.
@@ -186,6 +181,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
 {
     himc_stroke own = *stroke;
     himc_hit asked = {.stroke = &own};
+    himc_planner *planner = p->motion->planner;
     if (!check_stroke(stroke, true, error))
         return false;
     if (!give_to_free_hands(p, &own, &asked.alone))
@@ -194,7 +190,14 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return false;
     himc_performance_name_drum(p, &own, asked.drum);
     tell_places(p);
-    double latency = hit(p, &asked);
+    // a command that acts in this step was meant for its sample, up to a step before
+    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
+    double now = step_time(p), from = (double)sample / p->clock.sample_rate;
+    asked.at = from + p->settings.latency;
+    // to the contact, from the moment it was asked; infinite if it is given up
+    double latency = p->settings.latency > 0
+                         ? himc_planner_hit_at(planner, now, &asked) - from
+                         : himc_planner_hit(planner, now, &own, asked.drum) - now;
     himc_performance_tell_misses(p);
     if (isfinite(latency))
         himc_statistics_hit(&p->statistics, latency);
@@ -247,19 +250,20 @@ static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
 // one note when a stream of targets begins to be refused, or leaves the reach
 void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 asked)
 {
-    bool reachable, first;
     if (!himc_vec3_finite(asked) || (unsigned)hand >= HIMC_HANDS)
         return;
-    if (!himc_motion_free_hand(p->motion, hand, step_time(p))) {
-        if (himc_motion_refuse_target(p->motion, hand))
-            himc_events_note(&p->events, "target %s: not possible while a take is playing",
-                             himc_hand_name(hand));
-        return;
-    }
-    himc_vec3 x = himc_motion_reachable(p->motion, hand, asked, &reachable, &first);
-    if (!reachable && first)
+    himc_vec3 x = himc_posture_reachable(&p->motion->body.posture, hand, asked);
+    bool free = himc_motion_free_hand(p->motion, hand, step_time(p));
+    bool reached = himc_vec3_length(himc_vec3_sub(x, asked)) <= MISSED_TARGET;
+    bool first = himc_motion_note_target(p->motion, hand, free && reached);
+    if (first && free)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
                          himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);
+    else if (first)
+        himc_events_note(&p->events, "target %s: not possible while a take is playing",
+                         himc_hand_name(hand));
+    if (!free)
+        return;
     const himc_head_frame *head = head_of(p, &x);
     x = himc_motion_ease_down(p->motion, hand, step_time(p), x, head);
     himc_planner_reach(p->motion->planner, step_time(p), hand, x);

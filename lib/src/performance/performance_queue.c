@@ -66,7 +66,7 @@ void himc_queue_run(performance_queue *q, int64_t sample, performance_action *ac
         }
         take_out(&q->waiting[i], &command);
         if (!act(performance, &command, &error))
-            himc_events_refuse(events, "%s", error.text);
+            himc_events_note_as(events, NOTE_REFUSED, "%s", error.text);
     }
     q->acting = -1;
     q->count = kept;

@@ -2,6 +2,7 @@
 /// recording of its motion.
 #include "performance/performance_state.h"
 
+#include "base/format.h"
 #include "body/dynamics.h"
 #include "control/tracking_error.h"
 
@@ -19,7 +20,8 @@ bool himc_performance_event(himc_performance *p, himc_event *event)
 void himc_performance_on_motion(himc_performance *p, void (*row)(void *, const himc_motion_row *),
                                 void *user)
 {
-    himc_events_on_motion(&p->events, row, user);
+    p->host.on_motion = row;
+    p->host.motion_user = user;
     himc_body_account(p->body, row != NULL);
     memset(p->statistics.mallet, 0, sizeof p->statistics.mallet);
     double unused[2];
@@ -30,7 +32,8 @@ void himc_performance_on_motion(himc_performance *p, void (*row)(void *, const h
 void himc_performance_on_tick(himc_performance *p, void (*tick)(void *, const himc_tick *),
                               void *user)
 {
-    himc_events_on_tick(&p->events, tick, user);
+    p->host.on_tick = tick;
+    p->host.tick_user = user;
 }
 
 himc_performance_stats himc_performance_measure(const himc_performance *p)
@@ -194,19 +197,19 @@ void himc_performance_tell_tick(himc_performance *p, double t)
     himc_motion_row row;
     himc_posture_motion captured;
     performance_recording *r = &p->recording;
-    if (p->events.on_motion)
+    if (p->host.on_motion)
         fill_row(p, t, &row);
-    if (p->events.on_tick) {
+    if (p->host.on_tick) {
         himc_tick tick = {
-            .time = t, .body = &p->body->state, .row = p->events.on_motion ? &row : NULL};
+            .time = t, .body = &p->body->state, .row = p->host.on_motion ? &row : NULL};
         if (himc_motion_captured_joints(p->motion, t, &captured))
             tick.captured = captured.joint;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             tick.target[hand] = p->motion->reference.tip[hand].x;
-        p->events.on_tick(p->events.tick_user, &tick);
+        p->host.on_tick(p->host.tick_user, &tick);
     }
-    if (p->events.on_motion)
-        p->events.on_motion(p->events.motion_user, &row);
+    if (p->host.on_motion)
+        p->host.on_motion(p->host.motion_user, &row);
     if (!r->file || himc_recording_add(r->file, &p->body->state) || r->full)
         return;
     r->full = true;
@@ -239,6 +242,8 @@ void himc_performance_drop_recording(himc_performance *p)
 }
 
 // the command `record`: a recording is made, or taken away and written
+enum { STOP }; // its forms
+
 typedef struct record_job {
     himc_job job;
     himc_performance *performance; ///< borrowed
@@ -248,34 +253,27 @@ typedef struct record_job {
     himc_recording *file; ///< owned
 } record_job;
 
-static bool make_recording(himc_job *job, himc_error *error)
+static bool prepare_recording(himc_job *job, himc_error *error)
 {
     record_job *j = (record_job *)job;
+    if (j->command.form == STOP)
+        return write_frames(j->file, error);
     himc_recording_free(j->file);
     j->file = himc_recording_new(j->command.atom[0].symbol, &j->skeleton, j->rate,
                                  LONGEST_RECORDING, error);
     return j->file || himc_error_prefix(error, "record");
 }
 
-static himc_job_state begin_recording(himc_job *job, himc_error *error)
+static himc_job_state install_recording(himc_job *job, himc_error *error)
 {
     record_job *j = (record_job *)job;
     (void)error;
+    if (j->command.form == STOP) {
+        note_written(j->performance, j->file);
+        return HIMC_JOB_DONE;
+    }
     j->performance->recording = (performance_recording){.file = j->file};
     j->file = NULL;
-    return HIMC_JOB_DONE;
-}
-
-static bool write_recording(himc_job *job, himc_error *error)
-{
-    return write_frames(((record_job *)job)->file, error);
-}
-
-static himc_job_state end_recording(himc_job *job, himc_error *error)
-{
-    record_job *j = (record_job *)job;
-    (void)error;
-    note_written(j->performance, j->file);
     return HIMC_JOB_DONE;
 }
 
@@ -287,8 +285,7 @@ static void free_recording(himc_job *job)
 
 bool himc_performance_allows(bool recording, const himc_command *c, himc_error *error)
 {
-    enum { STOP };
-    enum { PHYSICS };
+    enum { PHYSICS }; // form of `rate`
     if (c->id == HIMC_COMMAND_RATE)
         return !recording || c->form == PHYSICS ||
                himc_error_set(error,
@@ -305,14 +302,11 @@ bool himc_performance_allows(bool recording, const himc_command *c, himc_error *
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error)
 {
-    enum { STOP };
     if (!himc_performance_allows(p->recording.file, command, error))
         return NULL;
-    bool stop = command->form == STOP;
-    record_job *j = himc_job_new(sizeof *j, "record",
-                                 (himc_job){stop ? write_recording : make_recording,
-                                            stop ? end_recording : begin_recording, free_recording},
-                                 error);
+    record_job *j =
+        himc_job_new(sizeof *j, "record",
+                     (himc_job){prepare_recording, install_recording, free_recording}, error);
     if (!j)
         return NULL;
     j->performance = p;
@@ -370,18 +364,23 @@ static void describe_body(const himc_performance *p, himc_line_sink to)
                       100.0 * (double)counts->weak[j] / (double)counts->steps, counts->torque[j]);
 }
 
-// of a drum
 typedef struct drum_sink {
     const himc_line_sink *to;
-    const char *silent; ///< what follows its line
+    const char *before, *after;
 } drum_sink;
 
-static void describe_drum(void *user, const char *line)
+static void tell_of_drum(void *object, const char *text)
 {
-    const drum_sink *sink = user;
-    char text[640];
-    snprintf(text, sizeof text, "drum %s%s", line, sink->silent);
-    sink->to->line(sink->to->user, text);
+    const drum_sink *sink = object;
+    char line[3 * HIMC_PATH_SIZE]; // of a file and the words around it
+    himc_format(line, sizeof line, "%s %s%s", sink->before, text, sink->after);
+    sink->to->line(sink->to->user, line);
+}
+
+void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
+                                    const char *before, const char *after, const himc_line_sink *to)
+{
+    himc_drum_describe(drum, what, tell_of_drum, &(drum_sink){to, before, after});
 }
 
 void himc_performance_inform(const himc_performance *p, himc_line_sink to)
@@ -390,8 +389,8 @@ void himc_performance_inform(const himc_performance *p, himc_line_sink to)
     describe_body(p, to);
     for (int i = 0; i < p->drums.count; i++) {
         const drum_slot *slot = &p->drums.slot[i];
-        drum_sink sink = {&to, slot->source == DRUM_SILENT ? " (silent)" : ""};
-        himc_drum_describe(slot->drum, HIMC_DESCRIBE_INFO, describe_drum, &sink);
+        himc_performance_describe_drum(slot->drum, HIMC_DESCRIBE_INFO, "drum",
+                                       slot->source == DRUM_SILENT ? " (silent)" : "", &to);
     }
     himc_tell(
         &to, "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",

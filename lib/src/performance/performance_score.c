@@ -53,10 +53,9 @@ typedef struct score_job {
     const char *path;
     const char *text; ///< borrowed; the score, if it is in no file
     // of the performance, when the job was made
-    himc_take_options options;
+    performance_host host;
+    performance_clock clock;
     himc_skeleton skeleton;
-    double sample_rate, task_rate; ///< (Hz)
-    bool make_drums, host_finds;
     // of the performance, then what the lines tried so far leave
     bool recording;
     int units;      ///< of motion, that the planner has
@@ -108,12 +107,9 @@ static void copy_performance(score_job *j)
         j->drum[j->drums] = (score_drum){.was = was, .trial = himc_drum_settings_copy(&was)};
     }
     j->present = j->drums;
-    j->options = p->host.take_options;
+    j->host = p->host;
+    j->clock = p->clock;
     j->skeleton = p->body->skeleton;
-    j->sample_rate = p->clock.sample_rate;
-    j->task_rate = p->clock.task_rate;
-    j->make_drums = p->host.make_drums;
-    j->host_finds = p->host.config.find_drum != NULL;
     j->recording = p->recording.file != NULL;
     j->units = himc_planner_units(p->motion->planner);
 }
@@ -125,7 +121,7 @@ static bool make_drum(score_job *j, const char *name, double inches, drum_source
         return true;
     if (j->drums == HIMC_DRUMS)
         return himc_drums_full(name, error);
-    himc_drum *made = himc_drum_new(name, inches, j->sample_rate, error);
+    himc_drum *made = himc_drum_new(name, inches, j->clock.sample_rate, error);
     if (!made)
         return false;
     himc_drum_settings was = himc_drum_settings_of(made);
@@ -142,36 +138,29 @@ static bool make_drums(score_job *j, himc_error *error)
         const himc_command *c = &j->score->lines[i].command;
         if (c->id == HIMC_COMMAND_MAKE_DRUM &&
             !make_drum(j, c->atom[0].symbol, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
-                       j->make_drums ? DRUM_MADE : DRUM_SILENT, error))
+                       j->host.make_drums ? DRUM_MADE : DRUM_SILENT, error))
             return himc_error_prefix(error, "%s:%d", j->path, j->score->lines[i].line);
     }
     return j->drums > 0 || j->score->stroke_count == 0 ||
            make_drum(j, FIRST_DRUM, HIMC_INCHES_USUAL, DRUM_SILENT, error);
 }
 
-/// The drum that line, change or stroke `i` of the score names; false after the last of them.
-static bool name_of(const himc_score *score, int i, named_drum *out)
-{
-    int change = i - score->line_count, stroke = change - score->change_count;
-    if (stroke >= score->stroke_count)
-        return false;
-    if (stroke >= 0) {
-        *out = (named_drum){score->strokes[stroke].drum, score->strokes[stroke].spot,
-                            score->stroke_lines[stroke]};
-    } else {
-        const himc_score_line *line = change < 0 ? &score->lines[i] : &score->changes[change];
-        *out = (named_drum){line->drum, HIMC_SPOT_XY, line->line};
-    }
-    return true;
-}
-
-/// The first drum from `*i` on that the performance does not have and the score does not make;
-/// false if there is none.
+/// The first line, change or stroke of the score from `*i` on whose drum the performance does not
+/// have and the score does not make; false if there is none.
 static bool find_unknown(score_job *j, int *i, named_drum *out)
 {
-    while (name_of(j->score, *i, out) && (!out->name[0] || find_drum(j, out->name)))
-        ++*i;
-    return name_of(j->score, *i, out);
+    const himc_score *score = j->score;
+    for (;; ++*i) {
+        int change = *i - score->line_count, stroke = change - score->change_count;
+        if (stroke >= score->stroke_count)
+            return false;
+        const himc_score_line *line = change < 0 ? &score->lines[*i] : &score->changes[change];
+        *out = stroke < 0 ? (named_drum){line->drum, HIMC_SPOT_XY, line->line}
+                          : (named_drum){score->strokes[stroke].drum, score->strokes[stroke].spot,
+                                         score->stroke_lines[stroke]};
+        if (out->name[0] && !find_drum(j, out->name))
+            return true;
+    }
 }
 
 static bool refuse_drum(const score_job *j, const named_drum *drum, himc_error *error)
@@ -192,8 +181,8 @@ static bool rehearse_record(score_job *j, const himc_command *c, himc_error *err
     j->recording = !j->recording;
     if (!j->recording)
         return true;
-    himc_recording *trial =
-        himc_recording_new(c->atom[0].symbol, &j->skeleton, j->task_rate, TRIAL_RECORDING, error);
+    himc_recording *trial = himc_recording_new(c->atom[0].symbol, &j->skeleton, j->clock.task_rate,
+                                               TRIAL_RECORDING, error);
     himc_recording_free(trial);
     return (trial && himc_recording_may_replace(c->atom[0].symbol, error)) ||
            himc_error_prefix(error, "record");
@@ -205,7 +194,7 @@ static bool rehearse_units(score_job *j, const himc_command *c, himc_error *erro
     if (himc_command_file(c, &file) == HIMC_FILE_NONE)
         j->units = 0; // `units clear`
     else
-        more = himc_performance_count_units(c, &j->options, error);
+        more = himc_performance_count_units(c, &j->host.take_options, error);
     j->units += more;
     return more >= 0 && himc_planner_check_units(j->units - more, more, error);
 }
@@ -231,7 +220,7 @@ static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error 
     case HIMC_COMMAND_RECORD: return rehearse_record(j, c, error);
     default: // the network's are always refused
         return himc_performance_allows(j->recording, c, error) &&
-               himc_settings_read(&aside, &j->performance->host.usual, c, error) &&
+               himc_settings_read(&aside, &j->host.usual, c, error) &&
                (himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
                 j->performance->runner.run(j->performance, c, 0, error));
     }
@@ -321,7 +310,8 @@ static bool prepare(himc_job *job, himc_error *error)
         return false;
     // the host is asked later, in its own thread
     j->unknown = find_unknown(j, &i, &unknown);
-    return j->unknown ? j->host_finds || refuse_drum(j, &unknown, error) : rehearse(j, error);
+    return j->unknown ? j->host.config.find_drum || refuse_drum(j, &unknown, error)
+                      : rehearse(j, error);
 }
 
 // the score installed
@@ -533,19 +523,6 @@ static bool ask_host(score_job *j, himc_error *error)
     return true;
 }
 
-// true if the drums are those with which the score was tried
-static bool drums_as_tried(score_job *j)
-{
-    const performance_drums *drums = &j->performance->drums;
-    bool same = !j->unknown && drums->count == j->present &&
-                j->sample_rate == j->performance->clock.sample_rate;
-    for (int i = 0; i < drums->count && same; i++) {
-        const score_drum *d = find_drum(j, himc_drum_name(drums->slot[i].drum));
-        same = d && himc_drum_has_head(drums->slot[i].drum, &d->was);
-    }
-    return same;
-}
-
 static himc_job_state begin(score_job *j, himc_error *error)
 {
     himc_performance *p = j->performance;
@@ -553,7 +530,15 @@ static himc_job_state begin(score_job *j, himc_error *error)
     int pushes = 0;
     if (!ask_host(j, error))
         return HIMC_JOB_FAILED;
-    if (!drums_as_tried(j) && (++j->tries < HIMC_JOB_TRIES || j->unknown)) {
+    // the drums should be those with which the score was tried
+    bool same =
+        !j->unknown && p->drums.count == j->present && j->clock.sample_rate == p->clock.sample_rate;
+    for (int i = 0; i < p->drums.count && same; i++) {
+        himc_drum *drum = p->drums.slot[i].drum;
+        const score_drum *d = find_drum(j, himc_drum_name(drum));
+        same = d && himc_drum_has_head(drum, &d->was);
+    }
+    if (!same && (++j->tries < HIMC_JOB_TRIES || j->unknown)) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;
     }
@@ -571,43 +556,34 @@ static himc_job_state begin(score_job *j, himc_error *error)
     return HIMC_JOB_DONE;
 }
 
-// the present part; DONE at its end
-static himc_job_state install_part(score_job *j, himc_error *error)
-{
-    himc_job_state state;
-    switch (j->part) {
-    case BEGINNING: return begin(j, error);
-    case BEFORE_STROKES:
-        state = run_lines(j, false, error);
-        return state == HIMC_JOB_DONE ? begin_strokes(j, error) : state;
-    case CHANGES: return install_changes(j, error);
-    case STROKES: return add_strokes(j, error);
-    default: return run_lines(j, true, error);
-    }
-}
-
-// what is played of a MIDI file, and what not; what of a text stands in a comment
-static void tell_report(score_job *j)
-{
-    const char *line = j->score->report ? j->score->report : "", *end;
-    for (; (end = strchr(line, '\n')); line = end + 1)
-        himc_events_note_as(&j->performance->events, j->score->left_out == 0, "%.*s",
-                            (int)(end - line), line);
-}
-
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     score_job *j = (score_job *)job;
     himc_error why = {""};
-    himc_job_state state = install_part(j, error ? error : &why);
+    himc_job_state state;
+    error = error ? error : &why;
+    switch (j->part) {
+    case BEGINNING: state = begin(j, error); break;
+    case BEFORE_STROKES:
+        state = run_lines(j, false, error);
+        state = state == HIMC_JOB_DONE ? begin_strokes(j, error) : state;
+        break;
+    case CHANGES: state = install_changes(j, error); break;
+    case STROKES: state = add_strokes(j, error); break;
+    default: state = run_lines(j, true, error);
+    }
     himc_motion_replan(j->performance->motion);
-    if (state == HIMC_JOB_DONE && j->part == AFTER_STROKES)
-        tell_report(j);
-    if (state != HIMC_JOB_DONE || j->part == AFTER_STROKES)
+    if (state != HIMC_JOB_DONE)
         return state;
-    j->part++;
     j->at = 0;
-    return HIMC_JOB_MORE;
+    if (j->part++ < AFTER_STROKES)
+        return HIMC_JOB_MORE;
+    // what is played of a MIDI file, and what not; what of a text stands in a comment
+    const char *line = j->score->report ? j->score->report : "", *end;
+    for (; (end = strchr(line, '\n')); line = end + 1)
+        himc_events_note_as(&j->performance->events, j->score->left_out ? NOTE_USUAL : NOTE_MINOR,
+                            "%.*s", (int)(end - line), line);
+    return HIMC_JOB_DONE;
 }
 
 static void free_job(himc_job *job)
@@ -640,7 +616,7 @@ static himc_job *job_new(himc_performance *p, const char *text, const char *name
         himc_command_copy(&j->command, command);
     j->path = command ? j->command.atom[0].symbol : name;
     copy_performance(j);
-    j->take = himc_performance_take_trial(p, error);
+    j->take = himc_performance_take_job(p, NULL, error);
     if (j->take)
         return &j->job;
     free_job(&j->job);

@@ -2,7 +2,7 @@
 /// himc/command_rows.h.
 ///
 /// The kind of a row is two functions: read_KIND stores a command's atoms in the field, tell_KIND
-/// tells the field as a command. Four kinds serve most rows; a command that is more than its field
+/// tells the field as a command. Three kinds serve most rows; a command that is more than its field
 /// has a kind of its own. Invariant: read_KIND stores what tell_KIND tells as it was, bit by bit.
 /// Numbers are told in single precision, so one that equals the default in single precision is the
 /// default (himc_argument_usual).
@@ -55,17 +55,6 @@ static bool read_switch(const reading *r)
 static void tell_switch(const telling *t)
 {
     tell(t, NULL, 1, (double[]){*(const bool *)t->field});
-}
-
-static bool read_off_switch(const reading *r)
-{
-    *(bool *)r->field = r->command->atom[0].number == 0;
-    return true;
-}
-
-static void tell_off_switch(const telling *t)
-{
-    tell(t, NULL, 1, (double[]){!*(const bool *)t->field});
 }
 
 // an enum, in the order of the words of the first atom
@@ -157,7 +146,7 @@ static bool read_gain(const reading *r)
             s->gain[joint] = (asked_gain){.frequency = c->atom[1].number};
         }
     } else if (c->form == JOINT) {
-        if (!himc_body_find_joint(c->atom[0].symbol, "gain", &joint, r->error))
+        if (!himc_body_find_joint(c->atom[0].symbol, "gain: JOINT", &joint, r->error))
             return false;
         s->control.gain_set[joint] = true;
         s->gain[joint] = (asked_gain){c->atom[1].number, c->atom[2].number, 0};
@@ -187,7 +176,7 @@ static bool read_strength(const reading *r)
     const himc_command *c = r->command;
     int joint;
     if (c->form == JOINT) {
-        if (!himc_body_find_joint(c->atom[0].symbol, "strength", &joint, r->error))
+        if (!himc_body_find_joint(c->atom[0].symbol, "strength: JOINT", &joint, r->error))
             return false;
         config->strength[joint] = c->atom[1].number;
     } else if (c->choice[0] == HUMAN) {

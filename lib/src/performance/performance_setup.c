@@ -22,32 +22,6 @@ static bool check_sample_rate(double hz, himc_error *error)
     return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
 }
 
-static bool config_valid(const himc_performance_config *c, himc_error *error)
-{
-    return check_sample_rate(c->sample_rate, error) &&
-           himc_check_range("physics rate", c->physics_rate, HIMC_PHYSICS_RATE_MIN,
-                            HIMC_PHYSICS_RATE_MAX, "Hz", error) &&
-           himc_check_range("task rate", c->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz",
-                            error);
-}
-
-// the gains of the joints as they were asked for, for the body of that controller
-static void renew_gains(performance_settings *s, const himc_controller *controller)
-{
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        const asked_gain *asked = &s->gain[j];
-        double factor = asked->frequency;
-        himc_gain usual = himc_controller_usual_gain(controller, j);
-        if (!s->control.gain_set[j])
-            continue;
-        // k_s is proportional to the square of the natural frequency, k_d to the frequency
-        s->control.gain[j] =
-            factor > 0 ? (himc_gain){himc_vec3_scale(usual.stiffness, factor * factor),
-                                     himc_vec3_scale(usual.damping, factor)}
-                       : himc_controller_gain(controller, j, asked->stiffness, asked->damping);
-    }
-}
-
 // the stool as these drums need it
 static void fit_stool(performance_motion *motion, performance_body *body,
                       const performance_drums *drums, const performance_settings *s)
@@ -88,8 +62,8 @@ static void free_parts(made_parts *parts)
 static bool make_parts(made_parts *parts, const performance_settings *s, himc_error *error)
 {
     parts->motion = himc_motion_new(error);
-    parts->body = parts->motion ? himc_body_new(error) : NULL;
-    if (!parts->body || !himc_body_build(parts->body, s, error)) {
+    parts->body = parts->motion ? himc_body_new(s, error) : NULL;
+    if (!parts->body) {
         free_parts(parts);
         return false;
     }
@@ -106,7 +80,7 @@ static void begin(himc_performance *p, const made_parts *parts)
     himc_text_clear(&p->written.units);
     p->motion = parts->motion;
     p->body = parts->body;
-    himc_body_account(p->body, p->events.on_motion != NULL);
+    himc_body_account(p->body, p->host.on_motion != NULL);
     himc_statistics_clear(&p->statistics);
     p->events.lost = 0;
     himc_queue_clear(&p->queue);
@@ -124,7 +98,11 @@ static void free_written(performance_written *written)
 himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)
 {
     made_parts parts;
-    if (!config_valid(config, error))
+    if (!check_sample_rate(config->sample_rate, error) ||
+        !himc_check_range("physics rate", config->physics_rate, HIMC_PHYSICS_RATE_MIN,
+                          HIMC_PHYSICS_RATE_MAX, "Hz", error) ||
+        !himc_check_range("task rate", config->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX,
+                          "Hz", error))
         return NULL;
     himc_performance *p = calloc(1, sizeof *p);
     if (!p) {
@@ -183,8 +161,21 @@ void himc_performance_restart_steps(himc_performance *p)
 
 void himc_performance_adopt(himc_performance *p, const performance_settings *s)
 {
+    const himc_controller *controller = &p->body->controller;
     p->settings = *s;
-    renew_gains(&p->settings, &p->body->controller);
+    // the gains of the joints as they were asked for, for this body
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        const asked_gain *asked = &s->gain[j];
+        double factor = asked->frequency;
+        himc_gain usual = himc_controller_usual_gain(controller, j);
+        if (!s->control.gain_set[j])
+            continue;
+        // k_s is proportional to the square of the natural frequency, k_d to the frequency
+        p->settings.control.gain[j] =
+            factor > 0 ? (himc_gain){himc_vec3_scale(usual.stiffness, factor * factor),
+                                     himc_vec3_scale(usual.damping, factor)}
+                       : himc_controller_gain(controller, j, asked->stiffness, asked->damping);
+    }
     himc_body_configure(p->body, &p->settings);
 }
 
@@ -299,35 +290,24 @@ bool himc_performance_find_drum(himc_performance *p, const char *name)
            (host->find_drum && host->find_drum(host->find_user, name));
 }
 
-bool himc_performance_want_drum(himc_performance *p, const char *name, himc_spot spot,
-                                wanted_drum *drum, himc_error *error)
+bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
+                                 himc_error *error)
 {
-    *drum = (wanted_drum){.index = 0};
-    if (name[0] && !himc_performance_find_drum(p, name))
-        return himc_drums_refuse(&p->drums, name, spot, error);
+    *index = 0;
     if (name[0])
-        drum->index = himc_drums_find(&p->drums, name);
-    else if (p->drums.count == 0)
-        drum->fresh = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
-    return drum->fresh || p->drums.count > 0;
-}
-
-void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum)
-{
-    int index;
-    if (drum->fresh)
-        himc_performance_adopt_drum(p, drum->fresh, DRUM_SILENT, &index, NULL);
+        *index = himc_performance_find_drum(p, name) ? himc_drums_find(&p->drums, name) : -1;
+    return *index >= 0 || himc_drums_refuse(&p->drums, name, spot, error);
 }
 
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error)
 {
-    wanted_drum drum;
-    if (!himc_performance_want_drum(p, name, spot, &drum, error))
+    if (!himc_performance_index_drum(p, name, spot, index, error))
         return false;
-    himc_performance_keep_drum(p, &drum);
-    *index = drum.index;
-    return true;
+    if (p->drums.count > 0)
+        return true;
+    himc_drum *first = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, p->clock.sample_rate, error);
+    return first && himc_performance_adopt_drum(p, first, DRUM_SILENT, index, error);
 }
 
 // the command `drum`

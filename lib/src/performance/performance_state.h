@@ -36,8 +36,12 @@
 typedef struct performance_host {
     himc_performance_config config; ///< given to himc_performance_new
     himc_take_options take_options;
-    performance_settings usual; ///< of `reset`
-    bool make_drums;            ///< `drum` makes one that sounds
+    performance_settings usual;                         ///< of `reset`
+    bool make_drums;                                    ///< `drum` makes one that sounds
+    void (*on_motion)(void *, const himc_motion_row *); ///< at each task tick; NULL: none
+    void *motion_user;
+    void (*on_tick)(void *, const himc_tick *); ///< as well
+    void *tick_user;
 } performance_host;
 
 typedef struct performance_recording {
@@ -90,6 +94,10 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
 
 /// The lines of `info`.
 void himc_performance_inform(const himc_performance *p, himc_line_sink to);
+/// Gives each line of a drum's description to `to`, with words before and after it.
+void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
+                                    const char *before, const char *after,
+                                    const himc_line_sink *to);
 
 // performance_dump.c
 /// The command `dump FILE` as a job; NULL without memory.
@@ -125,21 +133,14 @@ HIMC_RT void himc_performance_restart_steps(himc_performance *p);
 HIMC_RT void himc_performance_renew_limits(himc_performance *p);
 /// Gives the drums that have changed to the planner.
 HIMC_RT void himc_performance_notice_drums(himc_performance *p);
-/// A drum that a command needs: one of the performance's, or a new one that it does not have yet.
-typedef struct wanted_drum {
-    int index;        ///< among the performance's, also of the new one
-    himc_drum *fresh; ///< owned until it is kept; NULL if there is one already
-} wanted_drum;
 /// True if the performance has the drum, or the host has one for it.
 bool himc_performance_find_drum(himc_performance *p, const char *name);
-/// Finds the drum of that name ("": the first, which may be a silent one, made for it). The name is
-/// the last word of a stroke on `spot`; if there is no such drum, and no spot was given, the word
-/// may be a misspelt spot.
-bool himc_performance_want_drum(himc_performance *p, const char *name, himc_spot spot,
-                                wanted_drum *drum, himc_error *error);
-/// Adds the new one. To refuse the command instead, release `fresh`.
-void himc_performance_keep_drum(himc_performance *p, const wanted_drum *drum);
-/// Both steps.
+/// Index of the drum of that name ("": the first, which may be still to be made). The name is the
+/// last word of a stroke on `spot`; if there is no such drum, and no spot was given, the word may
+/// be a misspelt spot.
+bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
+                                 himc_error *error);
+/// The same; without any drum a silent one is made for "".
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error);
 /// Adds a drum and its reference, which is given back if there is no place for it.
@@ -177,24 +178,23 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
                                  himc_error *error);
 
 // performance_take.c
-/// The command `take` as a job; NULL with the reason.
+/// The command `take` as a job; without a command one to try takes with, as the performance is now.
+/// NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
 /// Loads the take once more, for the player of the settings, as if its drum still stood where the
 /// take found it. NULL without memory.
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error);
-/// The same for a `nudge` after a take that has been tried.
-bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error);
-/// What a `nudge` asks for.
-himc_nudge himc_performance_nudge(const himc_command *command);
-/// A job to try takes with, as the performance is now; NULL without memory.
-himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error);
-/// True if it could play this command's take, the first drum being at `place`, which may be NULL:
-/// there is none. Touches the job alone.
+/// The command `nudge` for a take; NULL: there is none, and it is refused.
+bool himc_performance_nudge(himc_track *track, const himc_command *command, himc_error *error);
+/// True if a job could play this command's take, the first drum being at `place` (NULL: there is
+/// none). Touches the job alone.
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
                                const himc_head_frame *place, himc_error *error);
-/// Joint limits of a player with postures, as captured.
-bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+/// The same for a `nudge` after it.
+bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error);
+/// Joint limits of a player with these postures.
+bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limits *learned,
                                    himc_error *error);
 
 // performance_score.c

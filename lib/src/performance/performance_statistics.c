@@ -70,8 +70,9 @@ void himc_statistics_unplanned(performance_statistics *s)
     s->unplanned++;
 }
 
-void himc_statistics_contact(performance_statistics *s, double duration)
+void himc_statistics_contact(performance_statistics *s, double force, double duration)
 {
+    s->peak_force = fmax(s->peak_force, force);
     s->longest_contact = fmax(s->longest_contact, duration);
 }
 
@@ -81,14 +82,10 @@ void himc_statistics_strokes(performance_statistics *s, int strokes, int played)
     s->played += played;
 }
 
-void himc_statistics_impact(performance_statistics *s, double played, double captured)
+void himc_statistics_landed(performance_statistics *s, double speed, double captured, double yields)
 {
-    s->impact_sum += played;
-    s->captured_impact_sum += captured;
-}
-
-void himc_statistics_yields(performance_statistics *s, double yields)
-{
+    s->impact_sum += isfinite(captured) ? speed : 0;
+    s->captured_impact_sum += isfinite(captured) ? captured : 0;
     s->moved += yields > 0;
     s->moved_most = fmax(s->moved_most, yields);
 }
@@ -112,27 +109,11 @@ void himc_statistics_contact_work(performance_statistics *s, himc_hand hand, dou
     s->mallet[hand] += own;
 }
 
-void himc_statistics_force(performance_statistics *s, double force)
-{
-    s->peak_force = fmax(s->peak_force, force);
-}
-
 long himc_statistics_recovery(performance_statistics *s)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         s->apex[hand] = 0;
     return s->recoveries++;
-}
-
-static void read_capture(const performance_statistics *s, himc_performance_stats *out)
-{
-    double percent = out->stroke_height > 0 ? 100 / out->stroke_height : NAN;
-    out->captured_rms = s->captured_count ? sqrt(s->captured_sum / (double)s->captured_count) : NAN;
-    out->captured_most = s->captured_count ? sqrt(s->captured_most) : NAN;
-    out->captured_rms_percent = percent * out->captured_rms;
-    out->captured_most_percent = percent * out->captured_most;
-    out->captured_speed_ratio =
-        s->captured_impact_sum > 0 ? s->impact_sum / s->captured_impact_sum : NAN;
 }
 
 void himc_statistics_read(const performance_statistics *s, himc_performance_stats *out)
@@ -154,5 +135,11 @@ void himc_statistics_read(const performance_statistics *s, himc_performance_stat
     out->longest_contact = s->longest_contact;
     out->peak_rate = peak(s->rate, &out->peak_rate_joint);
     out->peak_torque = peak(s->torque, &out->peak_torque_joint);
-    read_capture(s, out);
+    double percent = out->stroke_height > 0 ? 100 / out->stroke_height : NAN;
+    out->captured_rms = s->captured_count ? sqrt(s->captured_sum / (double)s->captured_count) : NAN;
+    out->captured_most = s->captured_count ? sqrt(s->captured_most) : NAN;
+    out->captured_rms_percent = percent * out->captured_rms;
+    out->captured_most_percent = percent * out->captured_most;
+    out->captured_speed_ratio =
+        s->captured_impact_sum > 0 ? s->impact_sum / s->captured_impact_sum : NAN;
 }

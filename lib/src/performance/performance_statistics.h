@@ -54,15 +54,15 @@ HIMC_RT void himc_statistics_joints(performance_statistics *statistics,
 HIMC_RT bool himc_statistics_too_fast(performance_statistics *statistics, int *joint, double *rate);
 /// Adds a contact that no stroke asked for.
 HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
-/// Adds a contact that has lasted so long (s).
-HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double duration);
+/// Adds a contact of that force (N) that has lasted so long (s).
+HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double force,
+                                     double duration);
 /// Adds finished strokes of the score; `played` of them landed on time and place.
 HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int strokes, int played);
-/// Adds the speed of a take's strike as it was played and as it was captured (m/s).
-HIMC_RT void himc_statistics_impact(performance_statistics *statistics, double played,
-                                    double captured);
-/// Adds a stroke that was struck so far from where it was asked for (m).
-HIMC_RT void himc_statistics_yields(performance_statistics *statistics, double yields);
+/// Adds the speed of a stroke's contact (m/s), as it was captured (NAN: it is not of a take), and
+/// the distance to where it was asked for (m).
+HIMC_RT void himc_statistics_landed(performance_statistics *statistics, double speed,
+                                    double captured, double yields);
 /// Counts a stroke that has landed beside its place; returns how many there were before.
 HIMC_RT long himc_statistics_aside(performance_statistics *statistics);
 /// Adds a hit, with the time from its command to its planned contact (s).
@@ -70,7 +70,6 @@ HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double late
 /// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.
 HIMC_RT void himc_statistics_contact_work(performance_statistics *statistics, himc_hand hand,
                                           double work, double own);
-HIMC_RT void himc_statistics_force(performance_statistics *statistics, double force);
 /// Counts a state that was not finite and was replaced; returns the count before.
 HIMC_RT long himc_statistics_recovery(performance_statistics *statistics);
 

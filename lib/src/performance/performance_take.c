@@ -29,12 +29,6 @@
 #define OUT_OF_REACH 1e-3     // a tip further from its target is out of reach (m)
 #define SAME_PLACE 1e-6       // a drum as near as this is not moved (m)
 
-/// The part of a take that its player's arms do not reach.
-typedef struct take_reach {
-    int count, far;  ///< places looked at, and those out of reach
-    double farthest; ///< (m)
-} take_reach;
-
 typedef struct take_job {
     himc_job job;
     himc_performance *performance; ///< borrowed
@@ -44,22 +38,22 @@ typedef struct take_job {
     bool again;       ///< of the loaded take: the drum counts as not moved by it
     // of the performance, when the job was made
     himc_take_options options;
-    himc_skeleton_config body;
-    double asked_height, asked_mass; ///< by `player`, instead of those measured; 0: not asked
+    performance_settings settings;
     himc_posture posture;
     double sample_rate;    ///< (Hz)
     bool has_drum;         ///< else a silent one is made
     bool own_regression;   ///< another one than a take's has been set
     himc_head_frame place; ///< of the drum
     // made from the take
-    wanted_drum drum;
+    himc_drum *drum; ///< owned; to be added, NULL if there is one
     himc_take *take;
     himc_player *player;
     himc_track *track;     ///< after `install` the one that it has replaced
     himc_head_frame frame; ///< the drum under the strikes
     himc_limits learned;
     himc_take_tip tips[HIMC_HANDS];
-    take_reach reach;
+    int placed, far;      ///< tips that were looked at, and those out of reach ...
+    double farthest;      ///< ... by so much at most (m)
     int strikes, outside; ///< of the take, and those beside the drum
     double fastest, seen; ///< of the strikes, as found and between frames of the take (m/s)
     int left_out;         ///< motions as sharp as strikes, but off the head
@@ -74,35 +68,23 @@ static bool same_place(himc_vec3 a, himc_vec3 b)
     return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
 }
 
-// the natural posture of the take's player before its drum
-static himc_posture posture_of(const take_job *j, const himc_skeleton *skeleton,
-                               const captured_player *captured)
-{
-    himc_posture posture = j->posture;
-    if (j->player->lengths > 0)
-        himc_motion_init_posture(&posture, skeleton, captured, posture.level);
-    if (!same_place(j->frame.center, j->place.center))
-        posture.level = j->frame.center.z + skeleton->mallet_radius;
-    return posture;
-}
-
 // the part of the take out of reach; there the arm stretches towards the tips
-static take_reach find_reach(const himc_track *track, const himc_posture *posture)
+static void find_reach(take_job *j, const himc_posture *posture)
 {
-    take_reach r = {0, 0, 0};
-    double length = himc_track_length(track);
+    double length = himc_track_length(j->track);
+    j->placed = j->far = 0;
+    j->farthest = 0;
     for (double t = 0; t < length; t += REACH_CHECK_STEP)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            if (!himc_track_present(track, (himc_hand)hand))
+            if (!himc_track_present(j->track, (himc_hand)hand))
                 continue;
-            himc_vec3 x = himc_track_target(track, (himc_hand)hand, t).x;
+            himc_vec3 x = himc_track_target(j->track, (himc_hand)hand, t).x;
             himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
             double missing = himc_vec3_length(himc_vec3_sub(x, near));
-            r.count++;
-            r.far += missing > OUT_OF_REACH;
-            r.farthest = fmax(r.farthest, missing);
+            j->placed++;
+            j->far += missing > OUT_OF_REACH;
+            j->farthest = fmax(j->farthest, missing);
         }
-    return r;
 }
 
 static himc_trunk_posture mean_trunk(const himc_player *player)
@@ -117,10 +99,10 @@ static himc_trunk_posture mean_trunk(const himc_player *player)
     return b;
 }
 
-bool himc_performance_learn_limits(const himc_player *player, himc_limits *learned,
+bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limits *learned,
                                    himc_error *error)
 {
-    if (!himc_limits_learn(learned, player->pose, player->frames, LIMIT_MARGIN, error))
+    if (!himc_limits_learn(learned, pose, frames, LIMIT_MARGIN, error))
         return false;
     himc_limits_loosen(learned, LEAST_LIMIT);
     return true;
@@ -160,11 +142,10 @@ static bool learn_bent(const himc_player *player, const himc_track *track,
         postures_at(posture, track, himc_track_length(track) * i / POSTURES_SEEN, &pose[2 * i]);
     if (!pose)
         himc_error_set(error, "limits: out of memory");
-    bool fitted = pose && himc_limits_learn(&bent, pose, 2 * POSTURES_SEEN, LIMIT_MARGIN, error);
+    bool fitted = pose && himc_performance_learn_limits(pose, 2 * POSTURES_SEEN, &bent, error);
     free(pose);
     if (!fitted)
         return false;
-    himc_limits_loosen(&bent, LEAST_LIMIT);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int k = 0; lacks[hand] && k < HIMC_ARM_JOINTS; k++) {
             int j = himc_arm_joint((himc_hand)hand, k);
@@ -182,7 +163,7 @@ static bool learn_limits(const himc_player *player, const himc_track *track,
     himc_posture posture;
     if (!player->pose)
         return true;
-    if (!himc_performance_learn_limits(player, learned, error) ||
+    if (!himc_performance_learn_limits(player->pose, player->frames, learned, error) ||
         !himc_skeleton_init(&skeleton, &player->config, error))
         return false;
     himc_posture_init(&posture, &skeleton, place->center.z + skeleton.mallet_radius);
@@ -251,26 +232,21 @@ static bool fit_regression(take_job *j, const himc_skeleton *skeleton, himc_erro
     return memory || himc_error_set(error, "%s", j->unfitted.text);
 }
 
-// the drum's place, or that of one that is made for the take
-static bool find_place(take_job *j, himc_error *error)
-{
-    himc_drum_release(j->drum.fresh);
-    j->drum = (wanted_drum){.index = 0};
-    j->frame = j->place;
-    if (j->has_drum)
-        return true;
-    j->drum.fresh = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, j->sample_rate, error);
-    if (j->drum.fresh)
-        j->frame = j->place = *himc_drum_head_frame(j->drum.fresh);
-    return j->drum.fresh;
-}
-
 // all that is made from take and player
 static bool make_track(take_job *j, himc_error *error)
 {
     himc_skeleton skeleton;
     himc_player *player = j->player;
-    if (!find_place(j, error) || !himc_player_sit(player, j->take, &j->options, &j->frame, error))
+    himc_drum_release(j->drum);
+    j->drum = NULL;
+    if (!j->has_drum) {
+        j->drum = himc_drum_new(FIRST_DRUM, HIMC_INCHES_USUAL, j->sample_rate, error);
+        if (!j->drum)
+            return false;
+        j->place = *himc_drum_head_frame(j->drum);
+    }
+    j->frame = j->place;
+    if (!himc_player_sit(player, j->take, &j->options, &j->frame, error))
         return false;
     // if left and right are exchanged in a capture, its drum is behind the player
     if (player->placed && !player->walks && j->frame.center.x < 0)
@@ -281,15 +257,21 @@ static bool make_track(take_job *j, himc_error *error)
     himc_track_free(j->track);
     j->track = himc_track_new(j->take, &j->options, &j->frame, player, player->config.mallet_radius,
                               error);
-    const himc_skeleton_config *body = player->lengths > 0 ? &player->config : &j->body;
+    bool moves = !same_place(j->frame.center, j->place.center);
     if (!j->track || !learn_limits(player, j->track, &j->frame, &j->learned, error) ||
-        !(same_place(j->frame.center, j->place.center) ||
-          himc_drum_check_place(j->frame.center, error)) ||
-        !himc_skeleton_init(&skeleton, body, error) || !count_strikes(j, error))
+        (moves && !himc_drum_check_place(j->frame.center, error)) ||
+        !himc_skeleton_init(&skeleton,
+                            player->lengths > 0 ? &player->config : &j->settings.skeleton, error) ||
+        !count_strikes(j, error))
         return false;
+    // the natural posture of the player before the drum
     captured_player captured = captured_of(player);
-    himc_posture posture = posture_of(j, &skeleton, &captured);
-    j->reach = find_reach(j->track, &posture);
+    himc_posture posture = j->posture;
+    if (player->lengths > 0)
+        himc_motion_init_posture(&posture, &skeleton, &captured, posture.level);
+    if (moves)
+        posture.level = j->frame.center.z + skeleton.mallet_radius;
+    find_reach(j, &posture);
     return fit_regression(j, &skeleton, error);
 }
 
@@ -308,10 +290,10 @@ static bool prepare(himc_job *job, himc_error *error)
             j->take = himc_take_load_in(j->command.folder, j->name, &j->options, error);
         if (!j->take)
             return false;
-        j->player = himc_player_new(j->take, &j->options, &j->body, error);
-        if (j->player && j->asked_height > 0) {
-            j->player->config.height = j->asked_height;
-            j->player->config.mass = j->asked_mass;
+        j->player = himc_player_new(j->take, &j->options, &j->settings.skeleton, error);
+        if (j->player && j->settings.asked_height > 0) { // by `player`, not those measured
+            j->player->config.height = j->settings.asked_height;
+            j->player->config.mass = j->settings.asked_mass;
         }
     }
     return (j->player && make_track(j, error)) || himc_take_name_error(j->name, error);
@@ -354,10 +336,10 @@ static void note_repairs(const take_job *j)
         if (j->tips[hand].present && j->tips[hand].filled > 0)
             himc_events_note(&p->events, "%s: %s is missing in %d frames, which are filled",
                              j->name, j->tips[hand].name, j->tips[hand].filled);
-    if (j->reach.far > 0)
+    if (j->far > 0)
         himc_events_note(&p->events,
                          "%s: tips out of reach in %.0f %% of the take, by up to %.2f m", j->name,
-                         100.0 * j->reach.far / j->reach.count, j->reach.farthest);
+                         100.0 * j->far / j->placed, j->farthest);
     if (j->left_out > 0)
         himc_events_note(&p->events, "%s: %d motions as sharp as strikes end off the head", j->name,
                          j->left_out);
@@ -397,9 +379,7 @@ static void copy_performance(take_job *j)
 {
     const himc_performance *p = j->performance;
     j->options = p->host.take_options;
-    j->body = p->settings.skeleton;
-    j->asked_height = p->settings.asked_height;
-    j->asked_mass = p->settings.asked_mass;
+    j->settings = p->settings;
     j->posture = p->motion->body.posture;
     j->sample_rate = p->clock.sample_rate;
     j->own_regression = has_own_regression(p);
@@ -424,6 +404,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_performance *p = j->performance;
     body_parts parts = {.character = NULL};
     performance_settings s = p->settings;
+    int first;
     j->tries++;
     if (!drum_as_seen(j)) {
         copy_performance(j);
@@ -441,8 +422,9 @@ static himc_job_state install(himc_job *job, himc_error *error)
         himc_take_name_error(j->name, error);
         return HIMC_JOB_FAILED;
     }
-    himc_performance_keep_drum(p, &j->drum);
-    j->drum.fresh = NULL;
+    if (j->drum)
+        himc_performance_adopt_drum(p, j->drum, DRUM_SILENT, &first, NULL);
+    j->drum = NULL;
     move_drum(j);
     if (j->player->lengths > 0) {
         himc_performance_embody(p, &s, &parts);
@@ -468,7 +450,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
 static void free_job(himc_job *job)
 {
     take_job *j = (take_job *)job;
-    himc_drum_release(j->drum.fresh);
+    himc_drum_release(j->drum);
     himc_track_free(j->track);
     if (!j->given) {
         himc_player_free(j->player);
@@ -496,17 +478,12 @@ static take_job *job_of(himc_performance *p, const himc_command *command, const 
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
-    return (himc_job *)job_of(p, command, NULL, false, error);
+    return (himc_job *)job_of(p, command, "take", false, error);
 }
 
 himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error)
 {
     return (himc_job *)job_of(p, &p->written.take_command, NULL, true, error);
-}
-
-himc_job *himc_performance_take_trial(himc_performance *p, himc_error *error)
-{
-    return (himc_job *)job_of(p, NULL, "take", false, error);
 }
 
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
@@ -541,18 +518,17 @@ himc_vec3 himc_performance_take_offset(const himc_performance *p)
     return p->motion->track ? himc_track_offset(p->motion->track) : himc_vec3_make(0, 0, 0);
 }
 
-himc_nudge himc_performance_nudge(const himc_command *c)
+bool himc_performance_nudge(himc_track *track, const himc_command *c, himc_error *error)
 {
-    return (himc_nudge){.hand = (himc_hand)c->choice[0],
+    himc_nudge nudge = {.hand = (himc_hand)c->choice[0],
                         .time = c->atom[1].number,
                         .span = c->atom[2].number,
                         .way = {c->atom[3].number, c->atom[4].number, c->atom[5].number}};
+    return track ? himc_track_nudge(track, &nudge, error)
+                 : himc_error_set(error, "nudge: no take is loaded");
 }
 
 bool himc_performance_try_nudge(himc_job *job, const himc_command *command, himc_error *error)
 {
-    himc_nudge nudge = himc_performance_nudge(command);
-    himc_track *track = ((take_job *)job)->track;
-    return track ? himc_track_nudge(track, &nudge, error)
-                 : himc_error_set(error, "nudge: no take is loaded");
+    return himc_performance_nudge(((take_job *)job)->track, command, error);
 }
