@@ -5,6 +5,7 @@
 /// be planned again (planner_motion.c); calls go in that direction only. Memory grows here, in
 /// setup; the motion only moves within it.
 #include "plan/planner_state.h"
+#include "base/format.h"
 #include "base/head_frame.h"
 #include "plan/planner_roll.h"
 
@@ -69,9 +70,9 @@ static void rebase(himc_planner *planner, double t)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         planner_hand *h = &planner->hand[hand];
         for (int i = 0; i < h->waiting_count; i++)
-            h->waiting[i].round -= round;
+            h->waiting[i].place.round -= round;
         for (int i = 0; i < h->planned_count; i++)
-            h->planned[i].round -= round;
+            h->planned[i].place.round -= round;
     }
 }
 
@@ -94,8 +95,8 @@ static int last_round(const himc_planner *planner, int round)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            if (planner->hand[hand].planned[i].round > round)
-                round = planner->hand[hand].planned[i].round;
+            if (planner->hand[hand].planned[i].place.round > round)
+                round = planner->hand[hand].planned[i].place.round;
     return round;
 }
 
@@ -194,49 +195,41 @@ void himc_planner_set_human(himc_planner *planner, himc_human human)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
-static double time_of(const planner_score *score, const planner_stroke *s, int round)
-{
-    return himc_planner_score_time(score, round, s->stroke.beat) - s->stroke.early;
-}
-
 /// A stroke added to a loop is the next one in the first round in which the hand is free by then,
 /// if it comes before the present next one. Planned strokes of a later round are put back already.
 static void fit_in_loop(himc_planner *planner, himc_hand hand, int at, bool first)
 {
     planner_score *score = &planner->score;
-    const planner_part *part = &score->part[hand];
-    const planner_stroke *added = &part->list[at];
+    const planner_place *next = &score->part[hand].listed;
+    const himc_stroke *added = &score->part[hand].list[at].stroke;
     int round = 0;
-    while (time_of(score, added, round) <= planner->hand[hand].plan.end)
+    while (himc_planner_score_touch(score, round, added) <= planner->hand[hand].plan.end)
         round++;
-    if (round > 0 && time_of(score, added, 0) > planner->now)
-        himc_planner_tell_next_round(planner, &added->stroke);
-    if (first || round < part->round || (round == part->round && at < part->next))
-        himc_planner_score_go(score, hand, at, round);
-    else if (round > part->round && at == part->next)
-        himc_planner_score_go(score, hand, at + 1, part->round);
+    if (round > 0 && himc_planner_score_touch(score, 0, added) > planner->now)
+        himc_planner_tell_next_round(planner, added);
+    if (first || round < next->round || (round == next->round && at < next->number))
+        himc_planner_score_go(score, hand, (planner_place){-1, at, round});
+    else if (round > next->round && at == next->number)
+        himc_planner_score_go(score, hand, (planner_place){-1, at + 1, next->round});
 }
 
 /// The same without a loop; given up if its beat is past.
 static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
 {
-    planner_score *score = &planner->score;
-    const planner_part *part = &score->part[hand];
+    const planner_part *part = &planner->score.part[hand];
     const planner_stroke *added = &part->list[at];
-    double time = time_of(score, added, part->round);
-    if (at >= part->next)
+    double time = himc_planner_score_touch(&planner->score, part->listed.round, &added->stroke);
+    if (at >= part->listed.number)
         return;
     if (time > planner->hand[hand].plan.end) {
-        himc_planner_score_go(score, hand, at, part->round);
+        himc_planner_score_go(&planner->score, hand, (planner_place){-1, at, part->listed.round});
         return;
     }
     char name[HIMC_PLANNER_NAME];
-    timed_stroke past = {.stroke = added->stroke, .round = -1};
-    himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
-    himc_planner_notes_miss(&planner->notes,
-                            &(himc_planner_miss){added->stroke, added->drum, false, time, PAST});
-    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s",
-                     himc_planner_name(planner, &past, name), PAST);
+    timed_stroke past = {.stroke = added->stroke, .place = {-1, 0, -1}};
+    himc_planner_tell_miss(planner,
+                           &(himc_planner_miss){added->stroke, added->drum, false, time, PAST},
+                           himc_planner_name(planner, &past, name));
 }
 
 /// While playing, a stroke before the planned ones is fitted in.
@@ -259,14 +252,14 @@ static void go_on(himc_planner *planner, const himc_stroke *stroke, double end)
 {
     char name[HIMC_PLANNER_NAME];
     planner_score *score = &planner->score;
-    timed_stroke late = {.stroke = *stroke, .round = -1};
+    timed_stroke late = {.stroke = *stroke, .place = {-1, 0, -1}};
     if (!score->over)
         return;
     rebase(planner, planner->now);
     if (himc_planner_score_time(score, 0, end) - stroke->early > planner->now + PLANNER_AHEAD)
         himc_planner_score_go_on(score, planner->now);
     else
-        himc_planner_say(&planner->notes, PLANNER_NEXT_PLAY, "%s: " PAST ", the next play has it",
+        himc_planner_say(planner, PLANNER_NEXT_PLAY, "%s: " PAST ", the next play has it",
                          himc_planner_name(planner, &late, name));
 }
 
@@ -303,7 +296,8 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     himc_planner_score_insert(score, at, stroke, drum);
     planner_hand *h = &planner->hand[stroke->hand];
     for (int i = 0; i < h->planned_count; i++) // later ones move up by one
-        h->planned[i].index += !h->planned[i].roll && h->planned[i].index >= at;
+        h->planned[i].place.number +=
+            h->planned[i].place.roll < 0 && h->planned[i].place.number >= at;
     himc_planner_rest_again(planner);
     if (!running)
         return true;
@@ -315,28 +309,27 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
 }
 
 /// A roll that has lost its beats to another one is named.
-static void tell_overlap(planner_notes *notes, const planner_roll *r, const planner_roll *by)
+static void tell_overlap(himc_planner *planner, const himc_stroke *own, const himc_stroke *other)
 {
-    const himc_stroke *own = &r->stroke, *other = &by->stroke;
     const char *on = own->drum[0] ? " on " : "", *other_on = other->drum[0] ? " on " : "";
     if (other->beat > own->beat)
-        himc_planner_say(notes, PLANNER_OVERLAP,
+        himc_planner_say(planner, PLANNER_OVERLAP,
                          "roll at beat %g%s%s: ends at beat %g, where another one begins%s%s, not "
                          "at beat %g",
                          own->beat, on, own->drum, other->beat, other_on, other->drum,
                          own->beat + own->length);
     else
-        himc_planner_say(
-            notes, PLANNER_OVERLAP,
-            "roll at beat %g%s%s: given up, another one begins there%s%s; expected two "
-            "drums, one kind and one length",
-            own->beat, on, own->drum, other_on, other->drum);
+        himc_planner_say(planner, PLANNER_OVERLAP,
+                         "roll at beat %g%s%s: given up, another one begins there%s%s; expected "
+                         "two drums, one kind and one length",
+                         own->beat, on, own->drum, other_on, other->drum);
 }
 
 int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int drum, double rate,
                           himc_error *error)
 {
     planner_score *score = &planner->score;
+    char name[HIMC_PLANNER_NAME];
     go_on(planner, roll, roll->beat + roll->length);
     bool running = score->playing && !score->empties;
     if (running)
@@ -346,11 +339,12 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
         return -1;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            planner->hand[hand].planned[i].roll += planner->hand[hand].planned[i].roll > at;
+            planner->hand[hand].planned[i].place.roll +=
+                planner->hand[hand].planned[i].place.roll >= at;
     for (int i = at > 1 ? at - 2 : 0; i <= at; i++) {
         const planner_roll *by = himc_planner_roll_cut_by(score, i);
         if (by)
-            tell_overlap(&planner->notes, &score->roll[i], by);
+            tell_overlap(planner, &score->roll[i].stroke, &by->stroke);
     }
     himc_planner_rest_again(planner);
     double t = planner->now + PLANNER_AHEAD;
@@ -361,11 +355,8 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     }
     double end = himc_planner_score_time(score, 0, himc_planner_roll_end(score, at));
     if (running && !score->loop && end < t) {
-        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
-        himc_planner_notes_miss(&planner->notes,
-                                &(himc_planner_miss){*roll, drum, false, end, PAST});
-        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "roll at beat %g: given up, %s",
-                         roll->beat, PAST);
+        himc_format(name, sizeof name, "roll at beat %g", roll->beat);
+        himc_planner_tell_miss(planner, &(himc_planner_miss){*roll, drum, false, end, PAST}, name);
         return 0; // that line is enough
     }
     return himc_planner_roll_left_out(score, at);
@@ -420,9 +411,7 @@ bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *t
 /// Time of a stroke of a part that may be of another score (s); infinite past its end.
 static double part_time(const planner_score *score, const planner_part *part, int i)
 {
-    return i < part->count ? himc_planner_score_time(score, 0, part->list[i].stroke.beat) -
-                                 part->list[i].stroke.early
-                           : HUGE_VAL;
+    return i < part->count ? himc_planner_score_touch(score, 0, &part->list[i].stroke) : HUGE_VAL;
 }
 
 /// True if a hand that has struck nothing waits over the same drum with the strokes of `fresh`.
@@ -498,7 +487,7 @@ void himc_planner_clear(himc_planner *planner)
         h->struck = false;
         h->waiting_count = 0;
         for (int i = 0; i < h->planned_count; i++) // they are no longer in the score
-            h->planned[i].index = -1, h->planned[i].roll = 0;
+            h->planned[i].place.roll = h->planned[i].place.number = -1;
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
     himc_planner_score_seek(score, 0);
@@ -542,7 +531,7 @@ static void start(himc_planner *planner, double t, bool running)
     double late = himc_planner_lateness(planner);
     himc_planner_score_delay(score, late);
     if (running && late > LATENESS_NOTED)
-        himc_planner_say(&planner->notes, PLANNER_LATE,
+        himc_planner_say(planner, PLANNER_LATE,
                          "beat %g is %.2g s late: the first stroke must be prepared", score->beat,
                          late);
     himc_planner_replan(planner, t);
@@ -677,26 +666,11 @@ double himc_planner_end(const himc_planner *planner)
     return fmax(score->origin, end);
 }
 
-int himc_planner_given_up(himc_planner *planner)
-{
-    return himc_planner_notes_given_up(&planner->notes);
-}
-
-bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss)
-{
-    return himc_planner_notes_miss_next(&planner->notes, miss);
-}
-
 void himc_planner_finish(himc_planner *planner)
 {
     if (planner->score.playing)
         himc_planner_score_finish(&planner->score);
     himc_planner_notes_sum_up(&planner->notes);
-}
-
-bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note)
-{
-    return himc_planner_notes_next(&planner->notes, note);
 }
 
 const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count)

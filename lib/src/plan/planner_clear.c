@@ -334,7 +334,7 @@ static const timed_stroke *yielding(const himc_planner *planner, const near_time
     const planner_hand *h = &planner->hand[hand];
     int k = himc_planner_next_planned(h, n->from - AT_TOUCH);
     const timed_stroke *s = &h->planned[k];
-    bool changeable = k < h->planned_count && (s->index >= 0 || s->reassigned) &&
+    bool changeable = k < h->planned_count && (s->place.number >= 0 || s->reassigned) &&
                       s->goal.time > planner->now + CHANGEABLE;
     return changeable ? s : NULL;
 }
@@ -419,10 +419,10 @@ static void say_meet(himc_planner *planner)
     const timed_stroke *s = &planner->hand[later].planned[k];
     char name[HIMC_PLANNER_NAME];
     if (k < planner->hand[later].planned_count)
-        himc_planner_say(&planner->notes, PLANNER_MEET, "%s: the hands come too near on the way",
+        himc_planner_say(planner, PLANNER_MEET, "%s: the hands come too near on the way",
                          himc_planner_name(planner, s, name));
     else
-        himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
+        himc_planner_say(planner, PLANNER_MEET, "the hands come too near");
 }
 
 static void plan_way(himc_planner *planner, const planner_way *way)

@@ -61,7 +61,7 @@ static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *s
     if (g.speed <= most)
         return g;
     if (most > HIMC_SLOWEST_GESTURE) // else it is given up
-        himc_planner_say(&planner->notes, PLANNER_SOFTER,
+        himc_planner_say(planner, PLANNER_SOFTER,
                          "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
                          stroke->bounce_time, most);
     return himc_gesture_scale(g, most / g.speed);
@@ -71,7 +71,7 @@ double himc_planner_bounce_most(himc_planner *planner, int bounces, double t,
                                 const planner_due *after)
 {
     double time = fmax(after->time - t, 0), share = himc_planner_bounce_share(bounces);
-    if (after->roll)
+    if (after->place.roll >= 0)
         return share * time;
     himc_goal goal = himc_planner_goal(planner, &after->stroke, after->drum, after->time);
     double left = time - goal.gesture.speed / (FULL_HURRY * HIMC_HURRY);
@@ -134,7 +134,7 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
     himc_stroke_spot(stroke, head->radius, &x, &y);
     double asked_x = x, asked_y = y;
     if (keep_inside(head, &x, &y))
-        himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
+        himc_planner_say(planner, PLANNER_OUTSIDE,
                          "%.3g %.3g is beyond the rim at %.3g m: struck at %.3g %.3g", asked_x,
                          asked_y, head->radius, x, y);
     return (himc_goal){.time = t,
@@ -148,10 +148,10 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
 void himc_planner_vary(const himc_planner *planner, timed_stroke *s)
 {
     const himc_head_frame *head = &planner->drum[s->drum];
-    bool hit = s->index < 0 && !s->reassigned;
+    bool hit = s->place.number < 0 && !s->reassigned;
     if (!hit)
-        s->variation = himc_human_stroke(&planner->human, &planner->score, s->stroke.hand, s->round,
-                                         s->stroke.beat);
+        s->variation = himc_human_stroke(&planner->human, &planner->score, s->stroke.hand,
+                                         s->place.round, s->stroke.beat);
     const himc_variation *v = &s->variation;
     himc_vec3 at = himc_head_frame_from_world(head, s->written.spot);
     himc_variation_place(v, s->stroke.hand, &at.x, &at.y);

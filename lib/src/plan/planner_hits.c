@@ -76,7 +76,7 @@ static neighbours neighbours_at(himc_planner *planner, himc_hand hand, double at
     for (int i = 0; i < h->planned_count; i++) {
         himc_goal goal = h->planned[i].goal;
         goal.gesture = h->planned[i].written.gesture; // not as haste has bent it
-        keep_nearer(&n, at, &goal, goal.time, h->planned[i].index >= 0);
+        keep_nearer(&n, at, &goal, goal.time, h->planned[i].place.number >= 0);
     }
     for (int i = 0; i < h->waiting_count; i++)
         keep_nearer(&n, at, &h->waiting[i].goal, himc_planner_waiting_time(planner, &h->waiting[i]),
@@ -222,7 +222,7 @@ static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hi
 
 static timed_stroke stroke_of(himc_planner *planner, const himc_hit *hit, himc_hand hand)
 {
-    timed_stroke s = {.stroke = *hit->stroke, .drum = hit->drum, .index = -1};
+    timed_stroke s = {.stroke = *hit->stroke, .drum = hit->drum, .place = {-1, -1, 0}};
     s.stroke.hand = hand;
     s.variation = himc_human_hit(&planner->human, hand, planner->hits++);
     return s;
@@ -249,7 +249,7 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal) + hit.variation.late;
     if (h->waiting_count >= QUEUED_HITS || !himc_planner_find_gap(planner, hand, &touch)) {
         char name[HIMC_PLANNER_NAME];
-        himc_planner_say(&planner->notes, PLANNER_CROWDED, "%s: given up, others are waiting",
+        himc_planner_say(planner, PLANNER_CROWDED, "%s: given up, others are waiting",
                          himc_planner_name(planner, &hit, name));
         himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){hit.stroke, drum, true, touch,
                                                                       "others are waiting"});
@@ -280,7 +280,7 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
         himc_planner_notes_hit(&planner->notes, t, chosen.late);
     // once: who asked for a hand should know that it is not bound
     if (hit->stroke->hand != HIMC_HAND_ANY && hit->stroke->hand != hand)
-        himc_planner_say(&planner->notes, PLANNER_OTHER_HAND,
+        himc_planner_say(planner, PLANNER_OTHER_HAND,
                          "hit %s: the %s hand plays it, which can be there in time",
                          himc_hand_name(hit->stroke->hand), himc_hand_name(hand));
     s.exact = true;

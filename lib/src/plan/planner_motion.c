@@ -112,26 +112,13 @@ static void lift_again(planner_hand *h, double t)
 
 double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
 {
-    return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat) -
-                               s->stroke.early
+    return s->reassigned ? himc_planner_score_touch(&planner->score, s->place.round, &s->stroke)
                          : s->goal.time;
 }
 
-static planner_roll_place place_of(const timed_stroke *s)
+static bool is_settled(const himc_planner *planner, himc_hand hand, const planner_place *place)
 {
-    return (planner_roll_place){s->roll - 1, s->index, s->round};
-}
-
-static bool is_settled(const himc_planner *planner, const timed_stroke *s)
-{
-    planner_roll_place place = place_of(s);
-    return s->index >= 0 && himc_planner_score_is_settled(&planner->score, s->stroke.hand, &place);
-}
-
-static bool is_settled_due(const himc_planner *planner, himc_hand hand, const planner_due *due)
-{
-    planner_roll_place place = {due->roll - 1, due->index, due->round};
-    return himc_planner_score_is_settled(&planner->score, hand, &place);
+    return place->number >= 0 && himc_planner_score_is_settled(&planner->score, hand, place);
 }
 
 /// Bounces leave time for the hand's next stroke; none with the servo grip. The stroke is so many
@@ -142,12 +129,12 @@ static void fit_bounces(himc_planner *planner, timed_stroke *s, double t, int ah
     himc_stroke *stroke = &s->stroke;
     if (planner->servo)
         stroke->bounces = 0;
-    if (stroke->bounces == 0 || s->index < 0)
+    if (stroke->bounces == 0 || s->place.number < 0)
         return;
     do {
         if (!himc_planner_score_next(&planner->score, stroke->hand, ++ahead, &after))
             return;
-    } while (is_settled_due(planner, stroke->hand, &after) && ahead < MOST_TRIES);
+    } while (is_settled(planner, stroke->hand, &after.place) && ahead < MOST_TRIES);
     double most = himc_planner_bounce_most(planner, stroke->bounces, t, &after);
     stroke->bounce_time = fmin(stroke->bounce_time, most);
 }
@@ -164,11 +151,7 @@ static bool written_at(himc_planner *planner, himc_hand hand, int ahead, timed_s
         *next = h->waiting[0];
         t = himc_planner_waiting_time(planner, next);
     } else if (scored) {
-        *next = (timed_stroke){.stroke = due.stroke,
-                               .drum = due.drum,
-                               .index = due.index,
-                               .roll = due.roll,
-                               .round = due.round};
+        *next = (timed_stroke){.stroke = due.stroke, .drum = due.drum, .place = due.place};
     } else {
         return false;
     }
@@ -183,7 +166,7 @@ static bool written_at(himc_planner *planner, himc_hand hand, int ahead, timed_s
 static bool next_written(himc_planner *planner, himc_hand hand, timed_stroke *next)
 {
     for (int ahead = 0; ahead < MOST_TRIES && written_at(planner, hand, ahead, next); ahead++)
-        if (!is_settled(planner, next))
+        if (!is_settled(planner, hand, &next->place))
             return true;
     return false;
 }
@@ -200,19 +183,16 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
 /// The next stroke of the score is that one, or the one of its hand after it.
 static void go_to(himc_planner *planner, const timed_stroke *s, int after)
 {
-    planner_roll_place place = place_of(s);
-    place.number += 2 * after; // the hands take turns in a roll
-    if (s->roll)
-        himc_planner_score_go_roll(&planner->score, s->stroke.hand, &place);
-    else
-        himc_planner_score_go(&planner->score, s->stroke.hand, s->index + after, s->round);
+    planner_place place = s->place;
+    place.number += place.roll < 0 ? after : 2 * after; // the hands take turns in a roll
+    himc_planner_score_go(&planner->score, s->stroke.hand, place);
 }
 
 /// Takes the next stroke out of the score or of the queue.
 static void take(himc_planner *planner, const timed_stroke *s)
 {
     planner_hand *h = &planner->hand[s->stroke.hand];
-    if (s->index >= 0) {
+    if (s->place.number >= 0) {
         go_to(planner, s, 1);
         return;
     }
@@ -233,7 +213,7 @@ void himc_planner_give_up_hit(himc_planner *planner, const timed_stroke *s, doub
 static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *s)
 {
     planner_hand *h = &planner->hand[hand];
-    if (s->index >= 0) {
+    if (s->place.number >= 0) {
         go_to(planner, s, 0);
         return;
     }
@@ -258,9 +238,8 @@ void himc_planner_queue(himc_planner *planner, const timed_stroke *s)
 
 static void settle(himc_planner *planner, const timed_stroke *s)
 {
-    planner_roll_place place = place_of(s);
-    if (s->index >= 0 && !planner->clear.planning)
-        himc_planner_score_settle(&planner->score, s->stroke.hand, &place);
+    if (s->place.number >= 0 && !planner->clear.planning)
+        himc_planner_score_settle(&planner->score, s->stroke.hand, &s->place);
 }
 
 static void renew_home(himc_planner *planner, himc_hand hand)
@@ -336,15 +315,15 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
     if (speed >= PLANNER_AS_STRONG * struck->asked)
         return;
     const char *name = himc_planner_name(planner, struck, text);
-    if (struck->roll) {
+    if (struck->place.roll >= 0) {
         himc_format(text, sizeof text, "roll at beat %g",
-                    planner->score.roll[struck->roll - 1].stroke.beat);
+                    planner->score.roll[struck->place.roll].stroke.beat);
         name = text;
     }
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
     if (speed >= PLANNER_AS_STRONG * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
         return;
-    himc_planner_say(&planner->notes, struck->roll ? PLANNER_HURRIED_ROLL : PLANNER_HURRIED,
+    himc_planner_say(planner, struck->place.roll < 0 ? PLANNER_HURRIED : PLANNER_HURRIED_ROLL,
                      "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,
                      speed);
 }
@@ -387,7 +366,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         return TOO_FAR;
     if (way->leaves)
         return LEFT_OUT;
-    if (way->other && s->index >= 0)
+    if (way->other && s->place.number >= 0)
         return MEETS;
     s->yields = 0;
     if (way->aside != 0) {
@@ -418,7 +397,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
 /// the other hand still has time to play it.
 static plan_result check_following(himc_planner *planner, himc_hand hand, timed_stroke *following)
 {
-    if (!next_written(planner, hand, following) || following->index < 0)
+    if (!next_written(planner, hand, following) || following->place.number < 0)
         return PLANNED;
     if (!himc_planner_reaches(planner, hand, following->written.spot))
         return TOO_FAR;
@@ -434,7 +413,7 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     planner_hand *h = &planner->hand[hand];
     timed_stroke next;
     bool more;
-    while ((more = next_stroke(planner, hand, &next)) && is_settled(planner, &next))
+    while ((more = next_stroke(planner, hand, &next)) && is_settled(planner, hand, &next.place))
         take(planner, &next);
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
         if (!more)
@@ -464,8 +443,8 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
 void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke)
 {
     char name[HIMC_PLANNER_NAME];
-    timed_stroke s = {.stroke = *stroke, .round = -1};
-    himc_planner_say(&planner->notes, PLANNER_NEXT_ROUND,
+    timed_stroke s = {.stroke = *stroke, .place = {-1, 0, -1}};
+    himc_planner_say(planner, PLANNER_NEXT_ROUND,
                      "%s: no time to prepare it, it sounds from the next round on",
                      himc_planner_name(planner, &s, name));
 }
@@ -479,8 +458,10 @@ static bool play_late(himc_planner *planner, const timed_stroke *s)
     char name[HIMC_PLANNER_NAME];
     timed_stroke late = *s, after;
     const planner_part *part = &planner->score.part[s->stroke.hand];
-    bool is_next = s->index >= 0 && !s->roll && part->round == s->round &&
-                   (part->next == s->index || part->next == s->index + 1);
+    int next = part->listed.number;
+    bool is_next = s->place.number >= 0 && s->place.roll < 0 &&
+                   part->listed.round == s->place.round &&
+                   (next == s->place.number || next == s->place.number + 1);
     if (!is_next || planner->clear.planning || s->written.time > planner->hastened)
         return false;
     go_to(planner, s, 1);
@@ -493,8 +474,7 @@ static bool play_late(himc_planner *planner, const timed_stroke *s)
             return false;
         if (!himc_hand_can_strike(&h->plan, &late.goal) || plan_stroke(planner, &late) != PLANNED)
             continue;
-        himc_planner_say(&planner->notes, PLANNER_DELAYED,
-                         "%s: %.0f ms late, no time to prepare it",
+        himc_planner_say(planner, PLANNER_DELAYED, "%s: %.0f ms late, no time to prepare it",
                          himc_planner_name(planner, s, name), 1e3 * d);
         return true;
     }
@@ -507,25 +487,21 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
 {
     char name[HIMC_PLANNER_NAME];
     timed_stroke anyway = *s;
-    himc_planner_miss miss = {s->stroke, s->drum, s->index < 0 && !s->reassigned, s->written.time,
-                              ""};
+    himc_planner_miss miss = {s->stroke, s->drum, s->place.number < 0 && !s->reassigned,
+                              s->written.time, ""};
     planner->hand[s->stroke.hand].way.other = false;
     if ((result == MEETS && plan_stroke(planner, &anyway) == PLANNED) ||
         (result == NO_TIME && play_late(planner, s)))
         return;
-    if (result == NO_TIME && s->index >= 0 && !s->roll &&
-        planner->hand[s->stroke.hand].added == s->index + 1) {
+    if (result == NO_TIME && s->place.number >= 0 && s->place.roll < 0 &&
+        planner->hand[s->stroke.hand].added == s->place.number + 1) {
         settle(planner, s);
         himc_planner_tell_next_round(planner, &s->stroke);
         return;
     }
-    if (s->index >= 0 || s->reassigned)
-        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     reason_of(planner, s, result, miss.why);
-    himc_planner_notes_miss(&planner->notes, &miss);
     settle(planner, s);
-    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s",
-                     himc_planner_name(planner, s, name), miss.why);
+    himc_planner_tell_miss(planner, &miss, himc_planner_name(planner, s, name));
 }
 
 /// Drops the plan from where it has been checked on, with its strokes: no body could follow it. The
@@ -536,7 +512,7 @@ static void drop_plan(himc_planner *planner, himc_hand hand)
     double t = fmax(h->checked, planner->now);
     while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time > t)
         give_up(planner, &h->planned[--h->planned_count], UNSOUND);
-    himc_planner_say(&planner->notes, PLANNER_DROPPED,
+    himc_planner_say(planner, PLANNER_DROPPED,
                      "%s hand: a motion that no body could make was dropped at %.3f s",
                      himc_hand_name(hand), t);
     h->targeted = false;
@@ -613,7 +589,7 @@ bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *
             planner_due due;
             if (!himc_planner_score_next(&planner->score, hand, i, &due) || due.time > *t + HIT_GAP)
                 break;
-            if (due.time > *t - HIT_GAP && !is_settled_due(planner, hand, &due))
+            if (due.time > *t - HIT_GAP && !is_settled(planner, hand, &due.place))
                 clash = fmax(clash, due.time);
         }
         if (clash == -HUGE_VAL)
@@ -630,7 +606,7 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     for (int i = 0; i < MOST_TRIES && due.time <= goal->time; i++) {
         if (!himc_planner_score_next(&planner->score, hand, i, &due))
             break;
-        if (is_settled_due(planner, hand, &due))
+        if (is_settled(planner, hand, &due.place))
             continue;
         himc_goal own = himc_planner_goal(planner, &due.stroke, due.drum, due.time);
         bool first = due.time <= goal->time;
@@ -661,13 +637,12 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
     planner_hand *h = &planner->hand[other];
     double from = planner->now + PLANNER_AHEAD;
     timed_stroke taken = *s;
-    if (s->reassigned || s->index < 0)
+    if (s->reassigned || s->place.number < 0)
         return false;
     if (h->plan.end < from)
         extend(planner, other, from, give_up);
     cut_plan(planner, other, from);
-    taken.index = -1;
-    taken.roll = 0;
+    taken.place = (planner_place){-1, -1, s->place.round};
     taken.reassigned = true;
     taken.stroke.hand = other;
     taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
@@ -687,7 +662,7 @@ static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, pl
     }
     himc_planner_notes_count(&planner->notes, PLANNER_REASSIGNED);
     settle(planner, s);
-    himc_planner_say(&planner->notes, PLANNER_REASSIGNED, "%s: %s, the %s hand plays it",
+    himc_planner_say(planner, PLANNER_REASSIGNED, "%s: %s, the %s hand plays it",
                      himc_planner_name(planner, s, name), reason_of(planner, s, result, reason),
                      himc_hand_name(himc_other_hand(s->stroke.hand)));
 }
@@ -720,7 +695,8 @@ void himc_planner_replan(himc_planner *planner, double t)
 
 double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
 {
-    *index = planner->score.part[hand].next + 1; // the next stroke and the one that follows it
+    *index =
+        planner->score.part[hand].listed.number + 1; // the next stroke and the one that follows it
     return planner->hand[hand].plan.end + PREPARED_AHEAD + PREPARED_MARGIN;
 }
 
@@ -837,7 +813,7 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
 static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
 {
     *stroke = s->stroke;
-    if (s->index < 0 && !s->reassigned) // a hit
+    if (s->place.number < 0 && !s->reassigned) // a hit
         stroke->beat = NAN;
     if (!s->varied)
         return;

@@ -72,11 +72,6 @@ typedef struct roll_grid {
     int count;          ///< one more than the last number
 } roll_grid;
 
-static double seconds_to(const planner_score *score, double beat)
-{
-    return himc_score_seconds(score->tempi, score->tempo_count, beat);
-}
-
 /// True if the roll is played together with the one before it: the hands have a drum each.
 static bool is_second(const planner_score *score, int i)
 {
@@ -112,12 +107,6 @@ const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int i)
     double end = r->stroke.beat + r->stroke.length;
     bool cut = !is_second(score, i) && himc_planner_roll_end(score, i) < end - END_ROUNDING;
     return cut ? &score->roll[roll_after(score, i)] : NULL;
-}
-
-/// Length of a round of the loop (s).
-static double round_length(const planner_score *score)
-{
-    return seconds_to(score, himc_planner_roll_length(score));
 }
 
 /// True if another round follows, or comes before.
@@ -201,11 +190,11 @@ static const planner_stroke *listed_after(const planner_score *score, int i, int
     int at = himc_planner_part_after(part, end - END_ROUNDING, true);
     if (at == part->count && goes_on(score, in_round)) {
         at = 0;
-        turned = round_length(score);
+        turned = himc_planner_score_round_length(score);
     }
     const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
-    *time = s ? turned + seconds_to(score, s->beat) - s->early : HUGE_VAL;
-    return *time <= seconds_to(score, end) + JOINED_TIME ? &part->list[at] : NULL;
+    *time = s ? turned + himc_planner_score_seconds(score, s->beat) - s->early : HUGE_VAL;
+    return *time <= himc_planner_score_seconds(score, end) + JOINED_TIME ? &part->list[at] : NULL;
 }
 
 /// The same as what follows; a hand that would have to cross the other one leaves it to that one,
@@ -330,16 +319,16 @@ static roll_grid ended(roll_grid g, const roll_next next[HIMC_HANDS], double fir
 /// The roll before one, maybe of the round before; -1 if there is none soon before it.
 static int joined_before(const planner_score *score, int i, int in_round)
 {
-    double begin = seconds_to(score, score->roll[i].stroke.beat);
+    double begin = himc_planner_score_seconds(score, score->roll[i].stroke.beat);
     int before = i - 1;
     if (before < 0 && has_begun(score, in_round)) {
         before = score->roll_count - 1;
-        begin += round_length(score);
+        begin += himc_planner_score_round_length(score);
     }
     if (before < 0)
         return -1;
     before -= is_second(score, before);
-    double end = seconds_to(score, himc_planner_roll_end(score, before));
+    double end = himc_planner_score_seconds(score, himc_planner_roll_end(score, before));
     return begin > end + JOINED_TIME ? -1 : before;
 }
 
@@ -351,11 +340,11 @@ static double listed_since(const planner_score *score, int i, int in_round, himc
     int at = himc_planner_part_after(part, beat, true);
     if (at == 0 && has_begun(score, in_round)) {
         at = part->count;
-        turned = round_length(score);
+        turned = himc_planner_score_round_length(score);
     }
     return at == 0 ? HUGE_VAL
-                   : turned + seconds_to(score, beat) -
-                         seconds_to(score, part->list[at - 1].stroke.beat);
+                   : turned + himc_planner_score_seconds(score, beat) -
+                         himc_planner_score_seconds(score, part->list[at - 1].stroke.beat);
 }
 
 /// The right hand begins, but not where a roll goes on from there on a drum to the left, nor where
@@ -368,8 +357,9 @@ static himc_hand lead_of(const planner_score *score, int i, int in_round)
         himc_vec3 way = way_to(score, roll_of(score, before, HIMC_RIGHT), &r->stroke, r->drum);
         return crosses(HIMC_RIGHT, way) ? HIMC_LEFT : HIMC_RIGHT;
     }
-    double rate = rate_of(score, i), begin = seconds_to(score, r->stroke.beat),
-           first = seconds_to(score, himc_planner_roll_end(score, i)), early, other_early;
+    double rate = rate_of(score, i), begin = himc_planner_score_seconds(score, r->stroke.beat),
+           first = himc_planner_score_seconds(score, himc_planner_roll_end(score, i)), early,
+           other_early;
     if (rate * (first - begin) >= SHORT_ROLL ||
         listed_since(score, i, in_round, HIMC_LEFT) < 2 / rate)
         return HIMC_RIGHT;
@@ -393,12 +383,13 @@ static void rolled_next(const planner_score *score, int i, int in_round, roll_ne
     if (after >= score->roll_count && goes_on(score, in_round)) {
         after = 0;
         in_round++;
-        turned = round_length(score);
+        turned = himc_planner_score_round_length(score);
     }
     if (after >= score->roll_count)
         return;
-    double first = turned + seconds_to(score, score->roll[after].stroke.beat),
-           latest = seconds_to(score, himc_planner_roll_end(score, i)) + JOINED_TIME;
+    double first = turned + himc_planner_score_seconds(score, score->roll[after].stroke.beat),
+           latest =
+               himc_planner_score_seconds(score, himc_planner_roll_end(score, i)) + JOINED_TIME;
     himc_hand lead = lead_of(score, after, in_round);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_roll *from = roll_of(score, i, (himc_hand)hand),
@@ -413,8 +404,9 @@ static void rolled_next(const planner_score *score, int i, int in_round, roll_ne
 static roll_grid grid_of(const planner_score *score, int i, int in_round)
 {
     const planner_anchor *a = &score->anchor;
-    double first = seconds_to(score, himc_planner_roll_end(score, i)), early;
-    roll_grid g = {.begin = seconds_to(score, score->roll[i].stroke.beat), .step = 1};
+    double first = himc_planner_score_seconds(score, himc_planner_roll_end(score, i)), early;
+    roll_grid g = {.begin = himc_planner_score_seconds(score, score->roll[i].stroke.beat),
+                   .step = 1};
     roll_next next[HIMC_HANDS] = {{.time = HUGE_VAL}, {.time = HUGE_VAL}};
     bool anchored = a->any && a->roll == i && a->round == in_round;
     if (is_second(score, i))
@@ -488,11 +480,14 @@ static bool is_left_out(const planner_score *score, int in_round, const himc_str
     if (part->count > 0 && (goes_on(score, in_round) || has_begun(score, in_round))) {
         const himc_stroke *first = &part->list[0].stroke,
                           *last = &part->list[part->count - 1].stroke;
-        double own = seconds_to(score, stroke->beat), turned = round_length(score);
+        double own = himc_planner_score_seconds(score, stroke->beat),
+               turned = himc_planner_score_round_length(score);
         if (goes_on(score, in_round))
-            room = fmin(room, turned + seconds_to(score, first->beat) - first->early - own);
+            room = fmin(room, turned + himc_planner_score_seconds(score, first->beat) -
+                                  first->early - own);
         if (has_begun(score, in_round))
-            room = fmin(room, turned + own - seconds_to(score, last->beat) + last->early);
+            room = fmin(room,
+                        turned + own - himc_planner_score_seconds(score, last->beat) + last->early);
     }
     return room < LEAST_ROOM;
 }
@@ -559,7 +554,7 @@ bool himc_planner_roll_equal(const planner_score *a, const planner_score *b)
     return same;
 }
 
-bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_roll_place *at,
+bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_place *at,
                            planner_due *due)
 {
     // in a loop where all are left out there is none
@@ -574,9 +569,7 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_r
                 if (is_left_out(score, at->round, &due->stroke))
                     continue;
                 due->drum = himc_planner_roll_drum(score, at->roll, due->stroke.hand);
-                due->roll = at->roll + 1;
-                due->index = at->number;
-                due->round = at->round;
+                due->place = *at;
                 return true;
             }
         }
@@ -597,22 +590,22 @@ static int number_after(const roll_grid *g, double t)
 
 void himc_planner_roll_from(planner_score *score, himc_hand hand, int in_round, double t)
 {
-    planner_roll_place *at = &score->part[hand].rolls;
+    planner_place *at = &score->part[hand].rolls;
     for (int i = 0; i < score->roll_count; i++) {
         roll_grid g = grid_of(score, i, in_round);
         int number = own_number(&g, hand, number_after(&g, t));
-        *at = (planner_roll_place){i, number, in_round};
+        *at = (planner_place){i, number, in_round};
         if (number < g.count)
             return;
     }
-    *at = (planner_roll_place){score->roll_count, 0, in_round};
+    *at = (planner_place){score->roll_count, 0, in_round};
 }
 
 /// The strokes of a roll after that one are to be played again.
-static void take_back(planner_score *score, const roll_grid *g, const planner_roll_place *last)
+static void take_back(planner_score *score, const roll_grid *g, const planner_place *last)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        planner_roll_place next = *last;
+        planner_place next = *last;
         next.number = own_number(g, (himc_hand)hand, last->number + 1);
         if (next.number < g->count)
             score->part[hand].rolls = next;
@@ -621,23 +614,22 @@ static void take_back(planner_score *score, const roll_grid *g, const planner_ro
 
 bool himc_planner_roll_anchor(planner_score *score, double t)
 {
-    planner_roll_place *left = &score->part[HIMC_LEFT].rolls,
-                       *right = &score->part[HIMC_RIGHT].rolls;
+    planner_place *left = &score->part[HIMC_LEFT].rolls, *right = &score->part[HIMC_RIGHT].rolls;
     bool ahead =
         left->round != right->round ? left->round > right->round : left->roll > right->roll;
-    planner_roll_place at = ahead ? *right : *left;
+    planner_place at = ahead ? *right : *left;
     if (at.roll >= score->roll_count)
         return false;
     roll_grid g = grid_of(score, at.roll, at.round);
     int planned = -1; // the last one
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_roll_place *own = &score->part[hand].rolls;
+        const planner_place *own = &score->part[hand].rolls;
         bool within = own->roll == at.roll && own->round == at.round;
         int next = own_number(&g, (himc_hand)hand, within ? own->number : g.count);
         planned = next - 2 > planned ? next - 2 : planned;
     }
     t += TIME_ROUNDING - score->origin;
-    t -= at.round ? at.round * round_length(score) : 0;
+    t -= at.round ? at.round * himc_planner_score_round_length(score) : 0;
     bool early = planned >= g.first && time_of(&g, planned) > t;
     if (early) {
         planned = number_after(&g, t) - 1;
@@ -671,11 +663,6 @@ double himc_planner_roll_last_beat(const planner_score *score)
             return fmax(beat, beat_of(score, i, &g, g.count - 1));
     }
     return beat;
-}
-
-double himc_planner_roll_length(const planner_score *score)
-{
-    return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
 }
 
 /// The last roll that begins at or before a beat, -1 if there is none.
@@ -718,7 +705,8 @@ void himc_planner_roll_near(const planner_score *score, himc_hand hand, int in_r
     *before = -HUGE_VAL, *after = HUGE_VAL;
     for (int i = first; i < score->roll_count && i <= begun + 1; i++) {
         roll_grid g = grid_of(score, i, in_round);
-        int at = number_after(&g, seconds_to(score, beat)), from = at < 4 ? 0 : at - 4;
+        int at = number_after(&g, himc_planner_score_seconds(score, beat)),
+            from = at < 4 ? 0 : at - 4;
         for (int k = own_number(&g, hand, from); k < g.count && k < at + 4;
              k += hand == HIMC_HAND_ANY ? 1 : 2) {
             double own = beat_of(score, i, &g, k);
@@ -730,20 +718,20 @@ void himc_planner_roll_near(const planner_score *score, himc_hand hand, int in_r
     }
 }
 
-planner_roll_place himc_planner_roll_walk(const planner_score *score, int in_round, double beat)
+planner_place himc_planner_roll_walk(const planner_score *score, int in_round, double beat)
 {
-    planner_roll_place at = {last_begun(score, beat), 0, in_round};
+    planner_place at = {last_begun(score, beat), 0, in_round};
     if (at.roll < 0)
         return at;
     at.roll -= is_second(score, at.roll);
     roll_grid g = grid_of(score, at.roll, in_round);
-    at.number = number_after(&g, seconds_to(score, beat));
+    at.number = number_after(&g, himc_planner_score_seconds(score, beat));
     if (at.number < g.count && beat_of(score, at.roll, &g, at.number) <= beat) // of rounding
         at.number++;
     return at;
 }
 
-bool himc_planner_roll_back(const planner_score *score, planner_roll_place *at, double *beat,
+bool himc_planner_roll_back(const planner_score *score, planner_place *at, double *beat,
                             himc_hand *hand)
 {
     for (; at->roll >= 0; at->roll--, at->number = INT_MAX) {

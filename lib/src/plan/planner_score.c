@@ -24,6 +24,8 @@
 bool himc_planner_score_init(planner_score *score)
 {
     *score = (planner_score){.tempi = malloc(sizeof *score->tempi), .tempo_count = 1, .until = -1};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        himc_planner_score_clear(score, (himc_hand)hand);
     if (score->tempi)
         score->tempi[0] = (himc_tempo_change){0, HIMC_TEMPO};
     return score->tempi != NULL;
@@ -37,14 +39,51 @@ void himc_planner_score_free(planner_score *score)
     free(score->tempi);
 }
 
-static double seconds_to(const planner_score *score, double beat)
-{
-    return himc_score_seconds(score->tempi, score->tempo_count, beat);
-}
-
 static double gap(const planner_score *score, double a, double b)
 {
-    return fabs(seconds_to(score, b) - seconds_to(score, a));
+    return fabs(himc_planner_score_seconds(score, b) - himc_planner_score_seconds(score, a));
+}
+
+int himc_planner_part_after(const planner_part *part, double beat, bool from)
+{
+    int low = 0, high = part->count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        double at = part->list[middle].stroke.beat;
+        if (from ? at < beat : at <= beat)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
+static int place_in(const planner_part *part, const himc_stroke *stroke)
+{
+    int at = himc_planner_part_after(part, stroke->beat, false);
+    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
+           part->list[at - 1].stroke.early < stroke->early)
+        at--;
+    return at;
+}
+
+/// Time of a stroke from beat 0 (s).
+static double seconds_of(const planner_score *score, const himc_stroke *stroke)
+{
+    return himc_planner_score_seconds(score, stroke->beat) - stroke->early;
+}
+
+double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke)
+{
+    const planner_part *part = &score->part[stroke->hand];
+    int at = place_in(part, stroke);
+    double least = HUGE_VAL, time = seconds_of(score, stroke);
+    if (at > 0)
+        least = time - seconds_of(score, &part->list[at - 1].stroke);
+    if (at < part->count)
+        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
+    return least;
 }
 
 static bool check_count(int count, himc_error *error)
@@ -98,7 +137,7 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
-    int at = himc_planner_part_place(part, stroke);
+    int at = place_in(part, stroke);
     return check_stroke(score, stroke, drum, error) && grow(part, error) ? at : -1;
 }
 
@@ -107,12 +146,11 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
     planner_part *part = &score->part[stroke->hand];
     planner_stroke *at = part->list + index;
     if (part->count == 0)
-        part->round = 0; // its rounds begin with the one under way
+        part->listed.round = 0; // its rounds begin with the one under way
     memmove(at + 1, at, (size_t)(part->count - index) * sizeof *at);
     *at = (planner_stroke){*stroke, drum, 0};
     part->count++;
-    if (index < part->next)
-        part->next++;
+    part->listed.number += index < part->listed.number;
 }
 
 static bool is_same(const planner_stroke *a, const planner_stroke *b)
@@ -161,8 +199,9 @@ void himc_planner_score_exchange(planner_part *a, planner_part *b)
 void himc_planner_score_clear(planner_score *score, himc_hand hand)
 {
     planner_part *part = &score->part[hand];
-    part->count = part->next = part->round = 0;
-    part->rolls = (planner_roll_place){0, 0, 0};
+    part->count = 0;
+    part->listed = (planner_place){-1, 0, 0};
+    part->rolls = (planner_place){0, 0, 0};
     score->roll_count = 0;
     score->anchor.any = false;
 }
@@ -261,7 +300,7 @@ void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
 
 void himc_planner_score_hold(planner_score *score, double t, double beat)
 {
-    score->origin = t - seconds_to(score, beat);
+    score->origin = t - himc_planner_score_seconds(score, beat);
 }
 
 void himc_planner_score_seat(planner_score *score, himc_hand hand, double t)
@@ -277,7 +316,7 @@ static long round_name(const planner_score *score, int round)
 }
 
 /// The hand's strokes of the roll from `place` on are planned again after all.
-static void unsettle(planner_score *score, himc_hand hand, const planner_roll_place *place)
+static void unsettle(planner_score *score, himc_hand hand, const planner_place *place)
 {
     planner_part *part = &score->part[hand];
     for (int i = 0; i < PLANNER_MARKS; i++)
@@ -309,10 +348,10 @@ void himc_planner_score_start(planner_score *score, double t)
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
     score->anchor.any = false;
-    double begin = seconds_to(score, score->beat - BEAT_ROUNDING);
+    double begin = himc_planner_score_seconds(score, score->beat - BEAT_ROUNDING);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int next = first_from(&score->part[hand], score->beat);
-        himc_planner_score_go(score, (himc_hand)hand, next, 0);
+        score->part[hand].listed = (planner_place){-1, next, 0};
         himc_planner_roll_from(score, (himc_hand)hand, 0, begin);
     }
 }
@@ -368,22 +407,16 @@ int himc_planner_score_rebase(planner_score *score, double t)
     score->rounds -= round;
     score->anchor.round -= round;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        score->part[hand].round -= round;
+        score->part[hand].listed.round -= round;
         score->part[hand].rolls.round -= round;
     }
     return round;
 }
 
-void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int round)
+void himc_planner_score_go(planner_score *score, himc_hand hand, planner_place place)
 {
-    score->part[hand].next = index;
-    score->part[hand].round = round;
-}
-
-void himc_planner_score_go_roll(planner_score *score, himc_hand hand,
-                                const planner_roll_place *place)
-{
-    score->part[hand].rolls = *place;
+    planner_part *part = &score->part[hand];
+    *(place.roll < 0 ? &part->listed : &part->rolls) = place;
 }
 
 /// The stroke of its list `ahead` strokes after the next of a hand.
@@ -392,32 +425,31 @@ static bool list_next(const planner_score *score, himc_hand hand, int ahead, pla
     const planner_part *part = &score->part[hand];
     if (part->count == 0)
         return false;
-    long at = (long)part->next + ahead;
-    due->round = part->round + (int)(at / part->count);
-    due->index = (int)(at % part->count);
-    due->roll = 0;
-    if (!score->loop && due->round > score->rounds)
+    long at = (long)part->listed.number + ahead;
+    int number = (int)(at % part->count), round = part->listed.round + (int)(at / part->count);
+    if (!score->loop && round > score->rounds)
         return false;
-    due->stroke = part->list[due->index].stroke;
-    due->drum = part->list[due->index].drum;
-    due->time = himc_planner_score_time(score, due->round, due->stroke.beat) - due->stroke.early;
+    *due = (planner_due){.stroke = part->list[number].stroke,
+                         .drum = part->list[number].drum,
+                         .place = {-1, number, round}};
+    due->time = himc_planner_score_touch(score, round, &due->stroke);
     return true;
 }
 
 /// The stroke of a roll at `place` or after it.
-static bool roll_next(const planner_score *score, himc_hand hand, planner_roll_place *place,
+static bool roll_next(const planner_score *score, himc_hand hand, planner_place *place,
                       planner_due *due)
 {
     if (!himc_planner_roll_due(score, hand, place, due))
         return false;
-    due->time = himc_planner_score_time(score, due->round, due->stroke.beat);
+    due->time = himc_planner_score_touch(score, due->place.round, &due->stroke);
     return true;
 }
 
 bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
                              planner_due *due)
 {
-    planner_roll_place place = score->part[hand].rolls;
+    planner_place place = score->part[hand].rolls;
     planner_due listed, rolled;
     if (!score->playing || score->empties)
         return false;
@@ -440,8 +472,7 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
     return false;
 }
 
-void himc_planner_score_settle(planner_score *score, himc_hand hand,
-                               const planner_roll_place *place)
+void himc_planner_score_settle(planner_score *score, himc_hand hand, const planner_place *place)
 {
     planner_part *part = &score->part[hand];
     long name = round_name(score, place->round);
@@ -454,7 +485,7 @@ void himc_planner_score_settle(planner_score *score, himc_hand hand,
 }
 
 bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
-                                   const planner_roll_place *place)
+                                   const planner_place *place)
 {
     const planner_part *part = &score->part[hand];
     long name = round_name(score, place->round);
@@ -472,7 +503,7 @@ double himc_planner_score_last_beat(const planner_score *score)
 
 double himc_planner_score_length(const planner_score *score)
 {
-    return himc_planner_roll_length(score);
+    return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
 }
 
 double himc_planner_score_free_from(const planner_score *score)
@@ -483,7 +514,7 @@ double himc_planner_score_free_from(const planner_score *score)
 
 double himc_planner_score_round_length(const planner_score *score)
 {
-    return seconds_to(score, himc_planner_score_length(score));
+    return himc_planner_score_seconds(score, himc_planner_score_length(score));
 }
 
 int himc_planner_score_round_at(const planner_score *score, double t)
@@ -604,7 +635,12 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
 double himc_planner_score_time(const planner_score *score, int round, double beat)
 {
     double begun = round == 0 ? 0 : round * himc_planner_score_round_length(score);
-    return begun + (score->origin + seconds_to(score, beat));
+    return begun + (score->origin + himc_planner_score_seconds(score, beat));
+}
+
+double himc_planner_score_touch(const planner_score *score, int round, const himc_stroke *stroke)
+{
+    return himc_planner_score_time(score, round, stroke->beat) - stroke->early;
 }
 
 double himc_planner_score_beat_at(const planner_score *score, double t)

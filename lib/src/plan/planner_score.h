@@ -21,10 +21,12 @@ typedef struct planner_roll {
     double rate; ///< strokes of both hands (1/s)
 } planner_roll;
 
-/// A stroke of a roll.
-typedef struct planner_roll_place {
-    int roll, number, round;
-} planner_roll_place;
+/// A stroke of the score.
+typedef struct planner_place {
+    int roll;   ///< -1: it is of its hand's list
+    int number; ///< in the roll or the list; in no place of the score: -1
+    int round;  ///< of the loop
+} planner_place;
 
 /// From here on the strokes of a roll have been counted anew.
 typedef struct planner_anchor {
@@ -46,9 +48,8 @@ typedef struct planner_mark {
 typedef struct planner_part {
     planner_stroke *list; ///< owned, sorted by beat
     int count, room;
-    int next;                         ///< first of the list that is not planned ...
-    int round;                        ///< ... and its round of the loop
-    planner_roll_place rolls;         ///< first stroke of the rolls that is not planned
+    planner_place listed;             ///< first of the list that is not planned
+    planner_place rolls;              ///< first stroke of the rolls that is not planned
     planner_mark mark[PLANNER_MARKS]; ///< a ring ...
     int marks;                        ///< ... and its next place
 } planner_part;
@@ -79,9 +80,7 @@ typedef struct planner_score {
 typedef struct planner_due {
     himc_stroke stroke;
     int drum;
-    int roll;  ///< 1 + that of a roll; 0: it is of none
-    int index; ///< in its hand's list, or its number in the roll
-    int round;
+    planner_place place;
     double time; ///< (s)
 } planner_due;
 
@@ -96,7 +95,7 @@ typedef struct planner_walk {
     int at[HIMC_HANDS]; ///< strokes of the round that are still to come
     int round;
     double before; ///< beats of the rounds before it
-    planner_roll_place rolls;
+    planner_place rolls;
 } planner_walk;
 
 /// False without memory.
@@ -170,21 +169,17 @@ HIMC_RT void himc_planner_score_loop(planner_score *score, bool on, int rounds);
 /// Makes the round of the loop at `t` round 0, before its length changes; returns its number so
 /// far.
 HIMC_RT int himc_planner_score_rebase(planner_score *score, double t);
-/// The next stroke of a hand is this one.
-HIMC_RT void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int round);
-/// The same of its strokes of rolls.
-HIMC_RT void himc_planner_score_go_roll(planner_score *score, himc_hand hand,
-                                        const planner_roll_place *place);
+/// The next stroke of a hand, of its list or of the rolls, is the one at that place.
+HIMC_RT void himc_planner_score_go(planner_score *score, himc_hand hand, planner_place place);
 /// The stroke `ahead` strokes after the next of a hand; false if there is none.
 HIMC_RT bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
                                      planner_due *due);
 
-/// The stroke (`number` in its hand's list if `roll` is -1) has been reassigned or given up in that
-/// round: it is not planned again in it.
+/// The stroke has been reassigned or given up in that round: it is not planned again in it.
 HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
-                                       const planner_roll_place *place);
+                                       const planner_place *place);
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
-                                           const planner_roll_place *place);
+                                           const planner_place *place);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
@@ -215,16 +210,20 @@ HIMC_RT planner_walk himc_planner_score_walk(const planner_score *score, int rou
 /// ... and gives the onsets at and before it, the last one first; false when there is none left.
 HIMC_RT bool himc_planner_score_back(const planner_score *score, planner_walk *walk,
                                      planner_onset *onset);
+/// Time of a stroke in a round (s).
+HIMC_RT double himc_planner_score_touch(const planner_score *score, int round,
+                                        const himc_stroke *stroke);
 /// Time of a beat in a round (s).
 HIMC_RT double himc_planner_score_time(const planner_score *score, int round, double beat);
 /// Beat at `t`, in its round.
 HIMC_RT double himc_planner_score_beat_at(const planner_score *score, double t);
+/// Time of a beat from beat 0 of its round (s).
+HIMC_RT static inline double himc_planner_score_seconds(const planner_score *score, double beat)
+{
+    return himc_score_seconds(score->tempi, score->tempo_count, beat);
+}
 
-// planner_part.c: a hand's strokes, sorted
-
-/// The first stroke after `beat`, or with `from` the first at it or after it.
+/// The first stroke of a hand's list after `beat`, or with `from` the first at it or after it.
 HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool from);
-/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
-HIMC_RT int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke);
 
 #endif
