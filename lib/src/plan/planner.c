@@ -8,6 +8,7 @@
 #include "base/format.h"
 #include "base/head_frame.h"
 #include "plan/planner_roll.h"
+#include "plan/score.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -393,9 +394,13 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
 bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *tempo,
                             himc_error *error)
 {
-    int count;
-    himc_tempo_change *all = himc_planner_score_add_tempo(&planner->score, tempo, &count, error);
-    bool good = all && himc_planner_set_tempi(planner, all, count, error);
+    int count = planner->score.tempo_count;
+    himc_tempo_change *all = malloc(((size_t)count + 1) * sizeof *all);
+    if (!all)
+        return himc_error_set(error, "tempo: out of memory");
+    memcpy(all, planner->score.tempi, (size_t)count * sizeof *all);
+    himc_score_insert_tempo(all, &count, *tempo);
+    bool good = himc_planner_set_tempi(planner, all, count, error);
     free(all);
     return good;
 }

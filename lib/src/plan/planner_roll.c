@@ -31,6 +31,7 @@
 ///
 /// even in -w/2 .. w/2 and 0 on the beat. From j to j + i it changes by 2 a i j + a i^2 (mod 1), so
 /// for every i the differences are even too: the strokes add up in energy, in long rolls and short.
+#include "base/array.h"
 #include "plan/hand.h"
 #include "plan/planner_roll.h"
 #include "plan/sticking.h"
@@ -503,26 +504,15 @@ int himc_planner_roll_left_out(const planner_score *score, int i)
     return out;
 }
 
-static bool grow(planner_score *score, himc_error *error)
-{
-    if (score->roll_count == MOST_ROLLS)
-        return himc_error_set(error, "roll: one too many, expected %d", MOST_ROLLS);
-    if (score->roll_count < score->roll_room)
-        return true;
-    int wanted = score->roll_room ? 2 * score->roll_room : 16;
-    planner_roll *list = realloc(score->roll, (size_t)wanted * sizeof *list);
-    if (!list)
-        return himc_error_set(error, "roll: out of memory for %d", wanted);
-    score->roll = list;
-    score->roll_room = wanted;
-    return true;
-}
-
 int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, int drum, double rate,
                              himc_error *error)
 {
     int at = score->roll_count;
-    if (!grow(score, error))
+    if (at == MOST_ROLLS) {
+        himc_error_set(error, "roll: one too many, expected %d", MOST_ROLLS);
+        return -1;
+    }
+    if (!himc_array_grow(&score->roll, at, &score->roll_room, sizeof *score->roll, error))
         return -1;
     while (at > 0 && score->roll[at - 1].stroke.beat > stroke->beat)
         at--;

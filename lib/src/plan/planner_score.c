@@ -6,6 +6,7 @@
 /// where it is. In a loop with rounds of length L, beat b of round k is at origin + k S(L) +
 /// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
 /// strictly, so every time has one beat.
+#include "base/array.h"
 #include "plan/planner_roll.h"
 #include "plan/score.h"
 
@@ -17,7 +18,6 @@
 // minute.
 #define BEAT_ROUNDED 1e-4        // (s)
 #define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
-#define FIRST_ROOM 256           // strokes; then the room doubles
 #define ROUND_ROUNDING 1e-12     // of a time at a round's beginning (rounds)
 #define MOST_ROUNDS 1e9          // they fit an int
 
@@ -120,25 +120,14 @@ static bool check_stroke(const planner_score *score, const himc_stroke *stroke, 
     return true;
 }
 
-static bool grow(planner_part *part, himc_error *error)
-{
-    if (part->count < part->room)
-        return true;
-    int wanted = part->room ? 2 * part->room : FIRST_ROOM;
-    planner_stroke *list = realloc(part->list, (size_t)wanted * sizeof *list);
-    if (!list)
-        return himc_error_set(error, "stroke: out of memory for %d", wanted);
-    part->list = list;
-    part->room = wanted;
-    return true;
-}
-
 int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, int drum,
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
     int at = place_in(part, stroke);
-    return check_stroke(score, stroke, drum, error) && grow(part, error) ? at : -1;
+    bool good = check_stroke(score, stroke, drum, error) &&
+                himc_array_grow(&part->list, part->count, &part->room, sizeof *part->list, error);
+    return good ? at : -1;
 }
 
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke, int drum)
@@ -225,26 +214,6 @@ himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi,
     }
     memcpy(copy, tempi, (size_t)count * sizeof *copy);
     return copy;
-}
-
-himc_tempo_change *himc_planner_score_add_tempo(const planner_score *score,
-                                                const himc_tempo_change *more, int *count,
-                                                himc_error *error)
-{
-    himc_tempo_change *all = malloc(((size_t)score->tempo_count + 1) * sizeof *all);
-    int at = score->tempo_count;
-    if (!all) {
-        himc_error_set(error, "tempo: out of memory");
-        return NULL;
-    }
-    while (at > 0 && score->tempi[at - 1].beat >= more->beat)
-        at--;
-    int after = at < score->tempo_count && score->tempi[at].beat == more->beat ? at + 1 : at;
-    *count = at + 1 + score->tempo_count - after;
-    memcpy(all, score->tempi, (size_t)at * sizeof *all);
-    all[at] = *more;
-    memcpy(all + at + 1, score->tempi + after, (size_t)(*count - at - 1) * sizeof *all);
-    return all;
 }
 
 void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count)

@@ -125,11 +125,6 @@ void himc_planner_score_clear(planner_score *score, himc_hand hand);
 /// A checked copy of a tempo map, or NULL with the reason.
 himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi, int count,
                                                  himc_error *error);
-/// A copy of the tempo map (*count) with one more change, or with it in place of that on its beat;
-/// NULL without memory.
-himc_tempo_change *himc_planner_score_add_tempo(const planner_score *score,
-                                                const himc_tempo_change *more, int *count,
-                                                himc_error *error);
 /// Replaces the tempo map by one on the heap, which it then owns.
 void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count);
 /// The tempo map up to `beat`, then another shifted to begin there; false without memory.

@@ -8,12 +8,12 @@
 #include "plan/score.h"
 
 #include "base/argument.h"
+#include "base/array.h"
 #include "base/format.h"
 #include "base/text.h"
 
 #include <ctype.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,27 +36,12 @@ typedef struct reader {
     himc_error *error;
 } reader;
 
-/// Makes room for one more element; the array doubles.
-static bool grow(void *array, int count, int *room, size_t size, himc_error *error)
-{
-    if (count < *room)
-        return true;
-    int wanted = *room ? 2 * *room : 64;
-    void **slot = array;
-    void *bigger = realloc(*slot, (size_t)wanted * size);
-    if (!bigger)
-        return himc_error_set(error, "out of memory for %d lines", wanted);
-    *slot = bigger;
-    *room = wanted;
-    return true;
-}
-
 /// The stroke or change that is added next has its place behind those of the file so far.
 static bool add_place(reader *r, int place)
 {
     himc_score *score = r->score;
     int count = score->stroke_count + score->change_count;
-    if (!grow(&score->order, count, &r->order_room, sizeof *score->order, r->error))
+    if (!himc_array_grow(&score->order, count, &r->order_room, sizeof *score->order, r->error))
         return false;
     score->order[count] = place;
     return true;
@@ -70,14 +55,28 @@ static bool add_stroke(reader *r)
                               SCORE_STROKES_MAX);
     int room = r->stroke_room;
     if (!add_place(r, score->stroke_count) ||
-        !grow(&score->stroke_lines, score->stroke_count, &room, sizeof *score->stroke_lines,
-              r->error) ||
-        !grow(&score->strokes, score->stroke_count, &r->stroke_room, sizeof *score->strokes,
-              r->error))
+        !himc_array_grow(&score->stroke_lines, score->stroke_count, &room,
+                         sizeof *score->stroke_lines, r->error) ||
+        !himc_array_grow(&score->strokes, score->stroke_count, &r->stroke_room,
+                         sizeof *score->strokes, r->error))
         return false;
     score->stroke_lines[score->stroke_count] = r->line;
     score->strokes[score->stroke_count++] = r->command.stroke;
     return true;
+}
+
+void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_change change)
+{
+    int i = *count;
+    while (i > 0 && tempi[i - 1].beat > change.beat)
+        i--;
+    if (i > 0 && tempi[i - 1].beat == change.beat) {
+        tempi[i - 1] = change;
+        return;
+    }
+    memmove(tempi + i + 1, tempi + i, (size_t)(*count - i) * sizeof *tempi);
+    tempi[i] = change;
+    ++*count;
 }
 
 static bool add_tempo(reader *r)
@@ -85,22 +84,13 @@ static bool add_tempo(reader *r)
     himc_score *score = r->score;
     const himc_atom *atom = r->command.atom;
     double beat = r->command.count > 1 ? atom[1].number : 0;
-    int i = score->tempo_count;
-    while (i > 0 && score->tempi[i - 1].beat > beat)
-        i--;
-    if (i > 0 && score->tempi[i - 1].beat == beat) {
-        score->tempi[i - 1].bpm = atom[0].number;
-        return true;
-    }
-    if (score->tempo_count == SCORE_LINES_MAX)
-        return himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
-    if (!grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi, r->error))
+    if (!himc_array_grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi,
+                         r->error))
         return false;
-    memmove(score->tempi + i + 1, score->tempi + i,
-            (size_t)(score->tempo_count - i) * sizeof *score->tempi);
-    score->tempi[i] = (himc_tempo_change){beat, atom[0].number};
-    score->tempo_count++;
-    return true;
+    himc_score_insert_tempo(score->tempi, &score->tempo_count,
+                            (himc_tempo_change){beat, atom[0].number});
+    return score->tempo_count <= SCORE_LINES_MAX ||
+           himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
 }
 
 /// Lines, as they grow.
@@ -295,12 +285,6 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     return read_performer_line(r, atom, count);
 }
 
-// comments of other languages
-static bool is_foreign_comment(const char *word)
-{
-    return word[0] == '#' || strncmp(word, "//", 2) == 0;
-}
-
 // What is wrong with a refused statement is that it has no end, if a line inside it begins with a
 // command's or a drum's name. Returns false.
 static bool suggest_end(reader *r, const char *begin, const char *end)
@@ -323,23 +307,21 @@ static bool suggest_end(reader *r, const char *begin, const char *end)
     return false;
 }
 
-static bool add_report(reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-/// A line of the score's report.
-static bool add_report(reader *r, const char *format, ...)
+/// A line of the score's report: the command `at` that line stands inside a comment.
+static bool add_report(reader *r, int line, const char *at)
 {
     himc_score *score = r->score;
-    himc_error line;
-    va_list args;
-    va_start(args, format);
-    himc_line_print(line.text, sizeof line.text, format, args);
-    va_end(args);
-    size_t used = score->report ? strlen(score->report) : 0, room = used + strlen(line.text) + 2;
+    himc_error said;
+    himc_error_set(&said,
+                   "%s:%d: \"%.*s\" is left out: no ; ends the comment before it, in line %d",
+                   r->name, line, (int)strcspn(at, ";\r\n"), at, r->line);
+    size_t used = score->report ? strlen(score->report) : 0, room = used + strlen(said.text) + 2;
     char *report = realloc(score->report, room);
     if (!report)
         return himc_error_set(r->error, "out of memory for %zu bytes", room);
-    himc_format(report + used, room - used, "%s\n", line.text);
+    himc_format(report + used, room - used, "%s\n", said.text);
     score->report = report;
+    score->left_out++;
     return true;
 }
 
@@ -356,13 +338,8 @@ static bool report_swallowed(reader *r, const char *begin, const char *end)
         if (at != begin && length < sizeof text) {
             memcpy(text, at, length);
             text[length] = '\0';
-            if (himc_command_parse_text(&command, HIMC_PERFORMER, text, NULL)) {
-                r->score->left_out++;
-                return add_report(r,
-                                  "%s:%d: \"%.*s\" is left out: no ; ends the comment before it, "
-                                  "in line %d",
-                                  r->name, line, (int)strcspn(at, ";\r\n"), at, r->line);
-            }
+            if (himc_command_parse_text(&command, HIMC_PERFORMER, text, NULL))
+                return add_report(r, line, at);
         }
         for (at += strcspn(at, "\n"); at < end && isspace((unsigned char)*at); at++)
             line += *at == '\n';
@@ -383,103 +360,63 @@ static bool read_all(reader *r, const char *text)
         text += strlen(BYTE_ORDER_MARK);
     for (const char *begin = text; himc_text_next(&text, &line, &s); begin = text) {
         r->line = s.line;
-        if (is_foreign_comment(s.count > 0 ? s.atom[0].symbol : ""))
-            return himc_error_set(r->error, "%.20s: a comment is written comment ...;",
-                                  s.atom[0].symbol);
+        const char *word = s.count > 0 ? s.atom[0].symbol : "";
+        if (word[0] == '#' || strncmp(word, "//", 2) == 0) // of other languages
+            return himc_error_set(r->error, "%.20s: a comment is written comment ...;", word);
         if (!read_statement(r, &s))
             return suggest_end(r, begin, text);
-        if (s.count > 0 && strcmp(s.atom[0].symbol, "comment") == 0 &&
-            !report_swallowed(r, begin, text))
+        if (strcmp(word, "comment") == 0 && !report_swallowed(r, begin, text))
             return false;
     }
     return true;
 }
 
-/// Sorts by beat, then by place in the file.
+/// A stroke or a change with its place in the file.
 typedef struct sort_key {
+    bool change;
     double beat;
-    int index;
     int at; ///< of score->order
 } sort_key;
 
 static int by_beat(const void *a, const void *b)
 {
     const sort_key *p = a, *q = b;
+    if (p->change != q->change)
+        return p->change ? 1 : -1;
     if (p->beat != q->beat)
         return p->beat < q->beat ? -1 : 1;
-    return p->index - q->index;
+    return p->at - q->at;
 }
 
-/// The keys of the strokes, or of the changes, sorted; owned, NULL without memory.
-static sort_key *sort_keys(const himc_score *score, bool changes)
+/// Strokes and changes may stand in any order; those of one beat stay as they stand.
+static bool sort_by_beat(reader *r)
 {
-    int count = changes ? score->change_count : score->stroke_count, i = 0;
-    sort_key *key = malloc((size_t)count * sizeof *key);
-    if (!key)
-        return NULL;
-    for (int at = 0; i < count; at++)
-        if ((score->order[at] < 0) == changes) {
-            key[i] = (sort_key){changes ? score->changes[i].beat : score->strokes[i].beat, i, at};
-            i++;
+    himc_score *score = r->score, old = *score;
+    int strokes = old.stroke_count, all = strokes + old.change_count;
+    sort_key *key = malloc((size_t)(all + 1) * sizeof *key);
+    score->strokes = malloc((size_t)(strokes + 1) * sizeof *score->strokes);
+    score->stroke_lines = malloc((size_t)(strokes + 1) * sizeof *score->stroke_lines);
+    score->changes = malloc((size_t)(all - strokes + 1) * sizeof *score->changes);
+    bool good = key && score->strokes && score->stroke_lines && score->changes;
+    for (int at = 0; good && at < all; at++) {
+        int i = old.order[at];
+        key[at] = (sort_key){i < 0, i < 0 ? old.changes[-1 - i].beat : old.strokes[i].beat, at};
+    }
+    if (good)
+        qsort(key, (size_t)all, sizeof *key, by_beat);
+    for (int k = 0; good && k < all; k++) {
+        int *order = &score->order[key[k].at], i = *order;
+        if (i < 0) {
+            copy_line(&score->changes[k - strokes], &old.changes[-1 - i]);
+            *order = -1 - (k - strokes);
+        } else {
+            score->strokes[k] = old.strokes[i];
+            score->stroke_lines[k] = old.stroke_lines[i];
+            *order = k;
         }
-    qsort(key, (size_t)count, sizeof *key, by_beat);
-    return key;
-}
-
-static bool are_sorted(const himc_score *score, bool changes)
-{
-    int count = changes ? score->change_count : score->stroke_count;
-    for (int i = 1; i < count; i++)
-        if (changes ? score->changes[i].beat < score->changes[i - 1].beat
-                    : score->strokes[i].beat < score->strokes[i - 1].beat)
-            return false;
-    return true;
-}
-
-static bool sort_strokes(reader *r)
-{
-    himc_score *score = r->score;
-    size_t count = (size_t)score->stroke_count;
-    if (are_sorted(score, false))
-        return true;
-    sort_key *key = sort_keys(score, false);
-    himc_stroke *sorted = malloc(count * sizeof *sorted);
-    int *line = malloc(count * sizeof *line);
-    if (!key || !sorted || !line) {
-        free(key), free(sorted), free(line);
-        return himc_error_set(r->error, "out of memory for %zu strokes", count);
     }
-    for (size_t i = 0; i < count; i++) {
-        sorted[i] = score->strokes[key[i].index];
-        line[i] = score->stroke_lines[key[i].index];
-        score->order[key[i].at] = (int)i;
-    }
-    free(key), free(score->strokes), free(score->stroke_lines);
-    score->strokes = sorted;
-    score->stroke_lines = line;
-    return true;
-}
-
-/// Changes may stand in any order; those of one beat act as they stand.
-static bool sort_changes(reader *r)
-{
-    himc_score *score = r->score;
-    int count = score->change_count;
-    if (are_sorted(score, true))
-        return true;
-    sort_key *key = sort_keys(score, true);
-    himc_score_line *lines = malloc((size_t)count * sizeof *lines);
-    if (!key || !lines) {
-        free(key), free(lines);
-        return himc_error_set(r->error, "out of memory for %d lines", count);
-    }
-    for (int i = 0; i < count; i++) {
-        copy_line(&lines[i], &score->changes[key[i].index]);
-        score->order[key[i].at] = -1 - i;
-    }
-    free(key), free(score->changes);
-    score->changes = lines;
-    return true;
+    free(key), free(old.strokes), free(old.stroke_lines), free(old.changes);
+    return good || himc_error_set(r->error, "out of memory for %d lines", all);
 }
 
 bool himc_score_accepts_roll(const himc_tempo_change *tempi, int count, const himc_stroke *roll,
@@ -530,14 +467,15 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
 {
     reader r = {.name = name, .error = error};
     r.score = calloc(1, sizeof *r.score);
-    bool good = r.score && grow(&r.score->tempi, 0, &r.tempo_room, sizeof *r.score->tempi, error);
+    bool good = r.score &&
+                himc_array_grow(&r.score->tempi, 0, &r.tempo_room, sizeof *r.score->tempi, error);
     if (!good) {
         free(r.score);
         himc_error_set(error, "%s: out of memory", name);
         return NULL;
     }
     r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
-    good = read_all(&r, text) && sort_strokes(&r) && sort_changes(&r) && check_playable(&r);
+    good = read_all(&r, text) && sort_by_beat(&r) && check_playable(&r);
     if (good)
         return r.score;
     himc_error_prefix(error, "%s:%d", name, r.line);

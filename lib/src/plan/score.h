@@ -11,6 +11,9 @@
 /// errors. Free with himc_score_free.
 himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
 
+/// Puts a change into a tempo map of *count that has room for it, or in place of that on its beat.
+void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_change change);
+
 /// The change of a drum, or the push, that the checked atoms of `at` ask for.
 bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,
                             himc_error *error);
