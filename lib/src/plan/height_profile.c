@@ -196,14 +196,6 @@ double himc_height_profile_rise(stroke_plan *s, double top, const himc_gesture *
     return begin;
 }
 
-/// Whether a tip that is too high for its stroke has the time to sink to the stroke's apex first.
-static bool sinks_first(const stroke_plan *s, double T, const himc_gesture *g)
-{
-    himc_gesture low = himc_gesture_squeeze(*g, T, s->height.h);
-    double time = T - low.down - low.dwell;
-    return HIMC_MOVE_PEAK * (s->height.h - low.height) <= SINK_PEAK * time * time;
-}
-
 double himc_height_profile_least_landing(double h, double T)
 {
     double peak = HIMC_MOVE_PEAK * h / (T * T);
@@ -224,9 +216,15 @@ bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g)
     double T = t - s->height_end, h = s->height.h;
     double steepness = s->height.v < -FALLING_SPEED ? FALLING_STEEPNESS : FALL_STEEPNESS;
     double longest = steepness * h / g->speed;
-    if (h <= LEAST_FALL_HEIGHT || T > fmax(longest, LEAST_FALL_TIME) ||
-        (g->speed * T < HIMC_LEAST_LANDING * h && sinks_first(s, T, g)))
+    if (h <= LEAST_FALL_HEIGHT || T > fmax(longest, LEAST_FALL_TIME))
         return false;
+    if (g->speed * T < HIMC_LEAST_LANDING * h) {
+        // a tip that is too high for its stroke sinks to the stroke's apex first, if it has the time
+        himc_gesture low = himc_gesture_squeeze(*g, T, h);
+        double time = T - low.down - low.dwell;
+        if (HIMC_MOVE_PEAK * (h - low.height) <= SINK_PEAK * time * time)
+            return false;
+    }
     double speed = fmax(g->speed, himc_height_profile_least_landing(h, T));
     if (T <= LEAST_FALL_TIME)
         speed = fmin(speed, HIMC_STEEPEST_QUINTIC * h / T);

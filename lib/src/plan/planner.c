@@ -91,16 +91,6 @@ static double last_contact(const himc_planner *planner)
     return last;
 }
 
-/// The last round of a planned stroke, at least `round`.
-static int last_round(const himc_planner *planner, int round)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            if (planner->hand[hand].planned[i].place.round > round)
-                round = planner->hand[hand].planned[i].place.round;
-    return round;
-}
-
 /// The last time at which a stroke is written that a hand has planned or has taken over (s).
 static double last_written(const himc_planner *planner)
 {
@@ -419,20 +409,18 @@ static double part_time(const planner_score *score, const planner_part *part, in
     return i < part->count ? himc_planner_score_touch(score, 0, &part->list[i].stroke) : HUGE_VAL;
 }
 
-/// True if a hand that has struck nothing waits over the same drum with the strokes of `fresh`.
-static bool rests_the_same(const himc_planner *planner, himc_hand hand, const planner_score *fresh)
+/// True if a hand's plan so far is the same with the strokes of `other`.
+static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_score *other)
 {
     const planner_score *score = &planner->score;
-    return !planner->begun || planner->hand[hand].struck ||
-           himc_planner_score_first_drum(score, hand, score->beat, -1) ==
-               himc_planner_score_first_drum(fresh, hand, score->beat, -1);
-}
-
-/// True if a hand's plan so far is the same with the strokes of `fresh`.
-static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_part *fresh)
-{
-    const planner_score *score = &planner->score;
-    const planner_part *part = &score->part[hand];
+    const planner_part *part = &score->part[hand], *fresh = &other->part[hand];
+    // one that has struck nothing waits over its first drum
+    if (planner->begun && !planner->hand[hand].struck &&
+        himc_planner_score_first_drum(score, hand, score->beat, -1) !=
+            himc_planner_score_first_drum(other, hand, score->beat, -1))
+        return false;
+    if (!score->playing)
+        return true;
     int index, same = himc_planner_score_common(part, fresh);
     double to = himc_planner_looked_to(planner, hand, &index),
            time = fmin(part_time(score, part, same), part_time(score, fresh, same));
@@ -465,8 +453,7 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
             score->tempi[i].bpm != fresh->tempi[i].bpm)
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (!rests_the_same(planner, (himc_hand)hand, fresh) ||
-            (score->playing && !may_exchange(planner, (himc_hand)hand, &fresh->part[hand])))
+        if (!may_exchange(planner, (himc_hand)hand, fresh))
             return false;
     planner_score with_fresh = *score; // at the drums' places
     memcpy(with_fresh.part, fresh->part, sizeof fresh->part);
@@ -594,8 +581,10 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
     double anchor = before_change(planner, t); // the last roll goes on to another stroke
     int rounds = on || !score->playing ? 0 : himc_planner_score_round_at(score, t);
     // a stroke of the next round that can no longer be taken back brings that round with it
-    if (!on)
-        rounds = last_round(planner, rounds);
+    for (int hand = 0; hand < HIMC_HANDS && !on; hand++)
+        for (int i = 0; i < planner->hand[hand].planned_count; i++)
+            if (planner->hand[hand].planned[i].place.round > rounds)
+                rounds = planner->hand[hand].planned[i].place.round;
     himc_planner_score_loop(score, on, rounds);
     himc_planner_score_keep(score, anchor);
     himc_planner_replan(planner, t);

@@ -53,20 +53,6 @@ static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *s
                 : himc_gesture_of(stroke->nuance, stroke->dynamic);
 }
 
-/// The gesture, no faster than fingers can turn the stick for its bounces.
-static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *stroke)
-{
-    himc_gesture g = gesture_of(planner, stroke);
-    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
-    if (g.speed <= most)
-        return g;
-    if (most > HIMC_SLOWEST_GESTURE) // else it is given up
-        himc_planner_say(planner, PLANNER_SOFTER,
-                         "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
-                         stroke->bounce_time, most);
-    return himc_gesture_scale(g, most / g.speed);
-}
-
 double himc_planner_bounce_most(himc_planner *planner, int bounces, double t,
                                 const planner_due *after)
 {
@@ -137,11 +123,18 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
         himc_planner_say(planner, PLANNER_OUTSIDE,
                          "%.3g %.3g is beyond the rim at %.3g m: struck at %.3g %.3g", asked_x,
                          asked_y, head->radius, x, y);
+    // no faster than fingers can turn the stick for its bounces
+    himc_gesture g = gesture_of(planner, stroke);
+    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
+    if (g.speed > most && most > HIMC_SLOWEST_GESTURE) // else it is given up
+        himc_planner_say(planner, PLANNER_SOFTER,
+                         "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
+                         stroke->bounce_time, most);
     return (himc_goal){.time = t,
                        .spot = himc_planner_tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),
                        .back = himc_vec3_scale(himc_head_frame_away(head), -1),
-                       .gesture = bouncing_gesture(planner, stroke),
+                       .gesture = g.speed > most ? himc_gesture_scale(g, most / g.speed) : g,
                        .hold = stroke->bounces ? stroke->bounce_time : 0};
 }
 

@@ -115,55 +115,34 @@ static bool lands_softly(const planner_hand *h, double t, const himc_goal *goal,
     return himc_hand_least_speed(&h->plan, t, goal) <= LOUDER * speed;
 }
 
-/// A waiting tip can strike, no louder than the time before the hit allows: else it comes later.
-static bool strikes_from(const planner_hand *h, double t, const himc_goal *goal)
-{
-    double time = fmax(goal->time - t - GIVES_WAY, GIVES_WAY);
-    return himc_hand_can_strike_from(&h->plan, t, goal) &&
-           lands_softly(h, t, goal, himc_gesture_bend(goal->gesture, HIMC_HURRY * time).speed);
-}
-
-/// Whether a stroke of the score after the hit stays as strong as it would be without it.
-static bool leaves_strength(const chance *c)
-{
-    const himc_gesture *g = &c->near.after.gesture;
-    double before = c->near.after.time - himc_goal_end(&c->near.before),
-           left = c->near.after.time - himc_goal_end(&c->goal);
-    return !c->near.scored ||
-           himc_gesture_bend(*g, HIMC_HURRY * left).speed >=
-               PLANNER_AS_STRONG * himc_gesture_bend(*g, HIMC_HURRY * before).speed;
-}
-
 /// Whether the hand has time for the hit before and after it.
 static bool has_time(const himc_planner *planner, himc_hand hand, double t, double least,
                      const chance *c)
 {
     const planner_hand *h = &planner->hand[hand];
-    double at = c->goal.time, free = fmax(t, himc_goal_end(&c->near.before));
-    if (at - free < least || c->near.after.time - at < least + HIMC_CONTACT_TIME)
+    const himc_goal *goal = &c->goal, *after = &c->near.after;
+    double at = goal->time, before = himc_goal_end(&c->near.before);
+    if (at - fmax(t, before) < least || after->time - at < least + HIMC_CONTACT_TIME)
         return false;
-    bool gets_there =
-        c->idle ? strikes_from(h, t, &c->goal) && himc_planner_bends_to(planner, hand, t, &c->goal)
-                : can_follow(&c->near.before, &c->goal);
-    return gets_there && (isinf(c->near.after.time) ||
-                          (can_follow(&c->goal, &c->near.after) && leaves_strength(c)));
-}
-
-/// Delays the hit to the first time at which the hand can play it; for one with strokes to come
-/// that is the time asked for, or none.
-static void find_time(const himc_planner *planner, himc_hand hand, double t, chance *c)
-{
-    const planner_hand *h = &planner->hand[hand];
-    double asked = c->goal.time, least = fmin(LEAST_PREPARATION, asked - t);
-    bool room = h->waiting_count + h->planned_count < PLANNER_WAITING;
-    for (c->late = 0; c->reaches && room && c->late < LATEST; c->late += LATER) {
-        c->goal.time = asked + c->late;
-        if (has_time(planner, hand, t, least, c))
-            return;
-        if (!c->idle)
-            break;
+    if (c->idle) { // strikes no louder than the time before the hit allows: else it comes later
+        double time = fmax(at - t - GIVES_WAY, GIVES_WAY);
+        himc_gesture hurried = himc_gesture_bend(goal->gesture, HIMC_HURRY * time);
+        if (!himc_hand_can_strike_from(&h->plan, t, goal) ||
+            !lands_softly(h, t, goal, hurried.speed) ||
+            !himc_planner_bends_to(planner, hand, t, goal))
+            return false;
+    } else if (!can_follow(&c->near.before, goal)) {
+        return false;
     }
-    c->late = HUGE_VAL;
+    if (isinf(after->time))
+        return true;
+    // a stroke of the score after the hit stays as strong as it would be without it
+    double now = HIMC_HURRY * (after->time - himc_goal_end(goal)),
+           without = HIMC_HURRY * (after->time - before);
+    return can_follow(goal, after) &&
+           (!c->near.scored ||
+            himc_gesture_bend(after->gesture, now).speed >=
+                PLANNER_AS_STRONG * himc_gesture_bend(after->gesture, without).speed);
 }
 
 static chance chance_of(himc_planner *planner, himc_hand hand, double t, const himc_hit *hit)
@@ -177,7 +156,18 @@ static chance chance_of(himc_planner *planner, himc_hand hand, double t, const h
     c.over = h->drum == hit->drum;
     c.from = c.idle ? himc_hand_at(&h->plan, t).x : c.near.before.spot;
     c.reaches = himc_planner_reaches(planner, hand, c.goal.spot);
-    find_time(planner, hand, t, &c);
+    // delayed to the first time at which the hand can play it; for one with strokes to come that is
+    // the time asked for, or none
+    double least = fmin(LEAST_PREPARATION, hit->at - t);
+    bool room = h->waiting_count + h->planned_count < PLANNER_WAITING;
+    for (c.late = 0; c.reaches && room && c.late < LATEST; c.late += LATER) {
+        c.goal.time = hit->at + c.late;
+        if (has_time(planner, hand, t, least, &c))
+            return c;
+        if (!c.idle)
+            break;
+    }
+    c.late = HUGE_VAL;
     return c;
 }
 

@@ -100,16 +100,6 @@ bool himc_planner_lift_from(planner_hand *h, const planner_lift *l, double t)
     return himc_hand_lift(&h->plan, begin, from, fmax(l->to, from), l->end, l->way);
 }
 
-/// The hand's plan, made again from t (s) on, keeps the lift found for its next stroke.
-static void lift_again(planner_hand *h, double t)
-{
-    const planner_lift *l = &h->lift;
-    double touch = himc_planner_touch_after(h, t);
-    bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
-    if (l->end > t && same && l->end <= h->plan.end)
-        himc_planner_lift_from(h, l, t);
-}
-
 double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
 {
     return s->reassigned ? himc_planner_score_touch(&planner->score, s->place.round, &s->stroke)
@@ -242,16 +232,6 @@ static void settle(himc_planner *planner, const timed_stroke *s)
         himc_planner_score_settle(&planner->score, s->stroke.hand, &s->place);
 }
 
-static void renew_home(himc_planner *planner, himc_hand hand)
-{
-    planner_hand *h = &planner->hand[hand];
-    himc_vec3 home = h->targeted ? h->plan.home : himc_planner_rest_place(planner, hand);
-    if (himc_vec3_length(himc_vec3_sub(home, h->plan.home)) <= HOME_MOVED)
-        return;
-    h->plan.home = home;
-    h->plan.at_home = false;
-}
-
 void himc_planner_rest_again(himc_planner *planner)
 {
     for (int i = 0; i < HIMC_HANDS; i++) {
@@ -275,24 +255,18 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
     return text;
 }
 
-/// Time from the hand's touch before to a stroke, or from its message if that is shorter (s).
-static double time_for(const planner_hand *h, const timed_stroke *s)
-{
-    double time = s->latency > 0 ? s->latency : HUGE_VAL;
-    if (h->planned_count > 0) {
-        const himc_goal *last = &h->planned[h->planned_count - 1].goal;
-        time = fmin(time, s->goal.time - last->time - last->hold);
-    }
-    return time;
-}
-
 /// The goal's gesture as strong as the time before it allows, by the law of haste (gesture.c). The
 /// first stroke of a fast run is one of it: a stroke gives way to the next one by as much as that
 /// one, or this one if it is softer, loses by the time between them.
 static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
 {
     const planner_hand *h = &planner->hand[s->stroke.hand];
-    himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, HIMC_HURRY * time_for(h, s));
+    double before = s->latency > 0 ? s->latency : HUGE_VAL; // from its message, or a touch (s)
+    if (h->planned_count > 0) {
+        const himc_goal *last = &h->planned[h->planned_count - 1].goal;
+        before = fmin(before, s->goal.time - last->time - last->hold);
+    }
+    himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, HIMC_HURRY * before);
     timed_stroke after;
     s->gives_way = false;
     if (!next_written(planner, s->stroke.hand, &after))
@@ -416,8 +390,12 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     while ((more = next_stroke(planner, hand, &next)) && is_settled(planner, hand, &next.place))
         take(planner, &next);
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
-        if (!more)
-            renew_home(planner, hand);
+        himc_vec3 home =
+            more || h->targeted ? h->plan.home : himc_planner_rest_place(planner, hand);
+        if (himc_vec3_length(himc_vec3_sub(home, h->plan.home)) > HOME_MOVED) {
+            h->plan.home = home;
+            h->plan.at_home = false;
+        }
         himc_hand_wait(&h->plan, until, more);
         return PLANNED;
     }
@@ -504,34 +482,27 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
     himc_planner_tell_miss(planner, &miss, himc_planner_name(planner, s, name));
 }
 
-/// Drops the plan from where it has been checked on, with its strokes: no body could follow it. The
-/// hand goes to its rest, at once where even the state there is not sound.
-static void drop_plan(himc_planner *planner, himc_hand hand)
-{
-    planner_hand *h = &planner->hand[hand];
-    double t = fmax(h->checked, planner->now);
-    while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time > t)
-        give_up(planner, &h->planned[--h->planned_count], UNSOUND);
-    himc_planner_say(planner, PLANNER_DROPPED,
-                     "%s hand: a motion that no body could make was dropped at %.3f s",
-                     himc_hand_name(hand), t);
-    h->targeted = false;
-    h->plan.home = himc_planner_rest_place(planner, hand);
-    h->plan.at_home = false;
-    himc_hand_cut(&h->plan, t);
-    himc_hand_wait(&h->plan, t, false);
-    if (!himc_hand_is_sound(&h->plan, t))
-        himc_hand_place(&h->plan, t, h->plan.home);
-}
-
-/// Each plan is checked once before it is played or continued, from where it was changed on.
+/// Each plan is checked once before it is played or continued, from where it was changed on. One
+/// that no body could follow is dropped from there on, with its strokes: the hand goes to its rest,
+/// at once where even the state there is not sound.
 static void check_plan(himc_planner *planner, himc_hand hand)
 {
     planner_hand *h = &planner->hand[hand];
-    if (h->checked == h->plan.end)
-        return;
-    if (!himc_hand_is_sound(&h->plan, fmax(h->checked, planner->now)))
-        drop_plan(planner, hand);
+    double t = fmax(h->checked, planner->now);
+    if (h->checked != h->plan.end && !himc_hand_is_sound(&h->plan, t)) {
+        while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time > t)
+            give_up(planner, &h->planned[--h->planned_count], UNSOUND);
+        himc_planner_say(planner, PLANNER_DROPPED,
+                         "%s hand: a motion that no body could make was dropped at %.3f s",
+                         himc_hand_name(hand), t);
+        h->targeted = false;
+        h->plan.home = himc_planner_rest_place(planner, hand);
+        h->plan.at_home = false;
+        himc_hand_cut(&h->plan, t);
+        himc_hand_wait(&h->plan, t, false);
+        if (!himc_hand_is_sound(&h->plan, t))
+            himc_hand_place(&h->plan, t, h->plan.home);
+    }
     h->checked = h->plan.end;
 }
 
@@ -616,21 +587,8 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     return true;
 }
 
-/// Whether the hand can play a stroke beside its own, in a hurry if it must; its plan ends as early
-/// as it can.
-static bool can_take(himc_planner *planner, himc_hand hand, const timed_stroke *s, bool hurries)
-{
-    const planner_hand *h = &planner->hand[hand];
-    double t = s->goal.time, gap = t;
-    bool in_time = hurries ? himc_hand_can_strike(&h->plan, &s->goal)
-                           : t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
-    return h->waiting_count < PLANNER_WAITING &&
-           himc_planner_reaches(planner, hand, s->goal.spot) &&
-           himc_planner_find_gap(planner, hand, &gap) && gap == t && in_time &&
-           fits_in(planner, hand, &s->goal);
-}
-
-/// The other hand takes a stroke of the score, if it has nothing to do and is near enough.
+/// The other hand takes a stroke of the score, if it has nothing to do and is near enough; in a
+/// hurry if it must, else its plan ends as early as it can.
 static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
 {
     himc_hand other = himc_other_hand(s->stroke.hand);
@@ -646,7 +604,13 @@ static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
     taken.reassigned = true;
     taken.stroke.hand = other;
     taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
-    bool can = can_take(planner, other, &taken, hurries);
+    double t = taken.goal.time, gap = t;
+    bool in_time = hurries ? himc_hand_can_strike(&h->plan, &taken.goal)
+                           : t >= h->plan.end + himc_hand_least_time(&h->plan, &taken.goal);
+    bool can = h->waiting_count < PLANNER_WAITING &&
+               himc_planner_reaches(planner, other, taken.goal.spot) &&
+               himc_planner_find_gap(planner, other, &gap) && gap == t && in_time &&
+               fits_in(planner, other, &taken.goal);
     if (can)
         himc_planner_queue(planner, &taken);
     extend(planner, other, from + PLANNER_HORIZON, give_up);
@@ -807,20 +771,12 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     }
     himc_planner_changed(planner, t);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-    lift_again(h, t);
-}
-
-static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
-{
-    *stroke = s->stroke;
-    if (s->place.number < 0 && !s->reassigned) // a hit
-        stroke->beat = NAN;
-    if (!s->varied)
-        return;
-    himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
-    stroke->spot = HIMC_SPOT_XY;
-    stroke->x = at.x;
-    stroke->y = at.y;
+    // the plan, made again, keeps the lift found for its next stroke
+    const planner_lift *l = &h->lift;
+    double touch = himc_planner_touch_after(h, t);
+    bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
+    if (l->end > t && same && l->end <= h->plan.end)
+        himc_planner_lift_from(h, l, t);
 }
 
 double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t)
@@ -832,22 +788,23 @@ double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t
 bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                           himc_stroke *stroke, int *drum, double *contact_time)
 {
-    const planner_hand *h = &planner->hand[hand];
-    const timed_stroke *s = himc_planner_current_planned(h, t);
-    if (s) {
-        if (stroke)
-            read_stroke(planner, s, stroke);
-        *drum = s->drum;
-        *contact_time = s->goal.time;
-        return true;
-    }
+    const timed_stroke *s = himc_planner_current_planned(&planner->hand[hand], t);
     planner_due due;
-    if (!himc_planner_score_next(&planner->score, hand, 0, &due))
+    if (!s && !himc_planner_score_next(&planner->score, hand, 0, &due))
         return false;
-    if (stroke)
-        *stroke = due.stroke;
-    *drum = due.drum;
-    *contact_time = due.time;
+    *drum = s ? s->drum : due.drum;
+    *contact_time = s ? s->goal.time : due.time;
+    if (!stroke)
+        return true;
+    *stroke = s ? s->stroke : due.stroke;
+    if (s && s->place.number < 0 && !s->reassigned) // a hit
+        stroke->beat = NAN;
+    if (s && s->varied) {
+        himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
+        stroke->spot = HIMC_SPOT_XY;
+        stroke->x = at.x;
+        stroke->y = at.y;
+    }
     return true;
 }
 

@@ -175,12 +175,6 @@ static double leap_time(const planner_roll *from, himc_vec3 way)
     return length > 0 ? himc_hand_leap_time(length) / (1 - share) : 0;
 }
 
-/// What a grace note needs after a stroke of a roll and its bounce; it may end a buzz (s).
-static double grace_room(const planner_roll *from)
-{
-    return from->stroke.bounces == 1 ? BOUNCED_ROOM + 0.5 / from->rate : GRACE_ROOM;
-}
-
 /// The first stroke of a list after the roll, maybe of the next round, and its time; NULL if there
 /// is none soon.
 static const planner_stroke *listed_after(const planner_score *score, int i, int in_round, int hand,
@@ -217,9 +211,11 @@ static void listed_next(const planner_score *score, int i, int in_round, roll_ne
         if (trails && !both)
             by = himc_other_hand(by);
         const planner_roll *r = roll_of(score, i, by);
+        // a grace note needs so much after a stroke and its bounce; it may end a buzz
+        double room = r->stroke.bounces == 1 ? BOUNCED_ROOM + 0.5 / r->rate : GRACE_ROOM;
         if (time[hand] < next[by].time)
             next[by] = (roll_next){time[hand], leap_time(r, way_to(score, r, s, drum)), 2,
-                                   s->early > 0 ? grace_room(r) : HUGE_VAL, trails && both};
+                                   s->early > 0 ? room : HUGE_VAL, trails && both};
     }
 }
 
@@ -533,14 +529,9 @@ int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, in
 bool himc_planner_roll_equal(const planner_score *a, const planner_score *b)
 {
     bool same = a->roll_count == b->roll_count;
-    for (int i = 0; i < a->roll_count && same; i++) {
-        const himc_stroke *s = &a->roll[i].stroke, *r = &b->roll[i].stroke;
+    for (int i = 0; i < a->roll_count && same; i++)
         same = a->roll[i].drum == b->roll[i].drum && a->roll[i].rate == b->roll[i].rate &&
-               s->beat == r->beat && s->length == r->length && s->dynamic == r->dynamic &&
-               s->last_dynamic == r->last_dynamic && s->nuance == r->nuance &&
-               s->ornament == r->ornament && s->spot == r->spot && s->x == r->x && s->y == r->y &&
-               strcmp(s->drum, r->drum) == 0;
-    }
+               himc_planner_score_same(&a->roll[i].stroke, &b->roll[i].stroke);
     return same;
 }
 
@@ -591,17 +582,6 @@ void himc_planner_roll_from(planner_score *score, himc_hand hand, int in_round, 
     *at = (planner_place){score->roll_count, 0, in_round};
 }
 
-/// The strokes of a roll after that one are to be played again.
-static void take_back(planner_score *score, const roll_grid *g, const planner_place *last)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        planner_place next = *last;
-        next.number = own_number(g, (himc_hand)hand, last->number + 1);
-        if (next.number < g->count)
-            score->part[hand].rolls = next;
-    }
-}
-
 bool himc_planner_roll_anchor(planner_score *score, double t)
 {
     planner_place *left = &score->part[HIMC_LEFT].rolls, *right = &score->part[HIMC_RIGHT].rolls;
@@ -625,8 +605,11 @@ bool himc_planner_roll_anchor(planner_score *score, double t)
         planned = number_after(&g, t) - 1;
         if (g.first > 0 && planned < g.first)
             planned = g.first;
-        at.number = planned;
-        take_back(score, &g, &at);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) { // those after it are to be played again
+            at.number = own_number(&g, (himc_hand)hand, planned + 1);
+            if (at.number < g.count)
+                score->part[hand].rolls = at;
+        }
     }
     if (planned < 0)
         return early;

@@ -102,32 +102,25 @@ bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *
     return true;
 }
 
-static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum,
-                         himc_error *error)
-{
-    const planner_part *part = &score->part[stroke->hand];
-    if (drum < 0 || drum >= HIMC_DRUMS)
-        return himc_error_set(error, "stroke: drum number %d, expected 0 .. %d", drum,
-                              HIMC_DRUMS - 1);
-    if (!check_count(part->count, error))
-        return false;
-    double least = himc_planner_score_room(score, stroke);
-    if (least < HIMC_CLOSEST_STROKES - BEAT_ROUNDED)
-        return himc_error_set(
-            error,
-            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, expected %g s or more",
-            stroke->beat, least, himc_hand_name(stroke->hand), HIMC_CLOSEST_STROKES);
-    return true;
-}
-
 int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, int drum,
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
-    int at = place_in(part, stroke);
-    bool good = check_stroke(score, stroke, drum, error) &&
-                himc_array_grow(&part->list, part->count, &part->room, sizeof *part->list, error);
-    return good ? at : -1;
+    double least = himc_planner_score_room(score, stroke);
+    bool good = true;
+    if (drum < 0 || drum >= HIMC_DRUMS)
+        good =
+            himc_error_set(error, "stroke: drum number %d, expected 0 .. %d", drum, HIMC_DRUMS - 1);
+    else if (!check_count(part->count, error))
+        good = false;
+    else if (least < HIMC_CLOSEST_STROKES - BEAT_ROUNDED)
+        good = himc_error_set(
+            error,
+            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, expected %g s or more",
+            stroke->beat, least, himc_hand_name(stroke->hand), HIMC_CLOSEST_STROKES);
+    good =
+        good && himc_array_grow(&part->list, part->count, &part->room, sizeof *part->list, error);
+    return good ? place_in(part, stroke) : -1;
 }
 
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke, int drum)
@@ -142,19 +135,20 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
     part->listed.number += index < part->listed.number;
 }
 
-static bool is_same(const planner_stroke *a, const planner_stroke *b)
+bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b)
 {
-    const himc_stroke *s = &a->stroke, *r = &b->stroke;
-    return a->drum == b->drum && s->beat == r->beat && s->hand == r->hand &&
-           s->nuance == r->nuance && s->dynamic == r->dynamic && s->spot == r->spot &&
-           s->x == r->x && s->y == r->y && s->early == r->early && s->bounces == r->bounces &&
-           s->bounce_time == r->bounce_time && strcmp(s->drum, r->drum) == 0;
+    return a->beat == b->beat && a->length == b->length && a->hand == b->hand &&
+           a->nuance == b->nuance && a->dynamic == b->dynamic &&
+           a->last_dynamic == b->last_dynamic && a->ornament == b->ornament && a->spot == b->spot &&
+           a->x == b->x && a->y == b->y && a->early == b->early && a->bounces == b->bounces &&
+           a->bounce_time == b->bounce_time && strcmp(a->drum, b->drum) == 0;
 }
 
 int himc_planner_score_common(const planner_part *a, const planner_part *b)
 {
     int i = 0;
-    while (i < a->count && i < b->count && is_same(&a->list[i], &b->list[i]))
+    while (i < a->count && i < b->count && a->list[i].drum == b->list[i].drum &&
+           himc_planner_score_same(&a->list[i].stroke, &b->list[i].stroke))
         i++;
     return i;
 }
@@ -284,21 +278,16 @@ static long round_name(const planner_score *score, int round)
     return 1 + round + (score->starts & 0xffffL) * 0x100000000L;
 }
 
-/// The hand's strokes of the roll from `place` on are planned again after all.
-static void unsettle(planner_score *score, himc_hand hand, const planner_place *place)
-{
-    planner_part *part = &score->part[hand];
-    for (int i = 0; i < PLANNER_MARKS; i++)
-        if (part->mark[i].name == round_name(score, place->round) &&
-            part->mark[i].roll == place->roll && part->mark[i].number >= place->number)
-            part->mark[i].name = 0;
-}
-
 double himc_planner_score_anchor(planner_score *score, double t)
 {
-    if (himc_planner_roll_anchor(score, t))
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            unsettle(score, (himc_hand)hand, &score->part[hand].rolls);
+    bool again = himc_planner_roll_anchor(score, t);
+    for (int hand = 0; hand < HIMC_HANDS && again; hand++) {
+        planner_part *part = &score->part[hand];
+        long name = round_name(score, part->rolls.round);
+        for (planner_mark *m = part->mark; m < part->mark + PLANNER_MARKS; m++)
+            if (m->name == name && m->roll == part->rolls.roll && m->number >= part->rolls.number)
+                m->name = 0;
+    }
     return score->anchor.time + himc_planner_score_time(score, score->anchor.round, 0);
 }
 
@@ -512,26 +501,21 @@ double himc_planner_score_period(const planner_score *score, double beat)
     return gap(score, beat - 1, beat);
 }
 
-/// The same of the strokes in its list.
-static double list_gap(const planner_score *score, himc_hand hand, double beat)
-{
-    const planner_part *part = &score->part[hand];
-    int before = himc_planner_part_after(part, beat, true) - 1,
-        after = himc_planner_part_after(part, beat, false);
-    if (part->count == 0)
-        return HUGE_VAL;
-    double length = himc_planner_score_length(score), first = part->list[0].stroke.beat,
-           last = part->list[part->count - 1].stroke.beat;
-    double to = before >= 0 ? gap(score, part->list[before].stroke.beat, beat)
-                            : gap(score, last, length) + gap(score, 0, beat);
-    double from = after < part->count ? gap(score, beat, part->list[after].stroke.beat)
-                                      : gap(score, beat, length) + gap(score, 0, first);
-    return fmin(to, from);
-}
-
 double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round, double beat)
 {
-    double least = list_gap(score, hand, beat), before, after;
+    const planner_part *part = &score->part[hand];
+    double least = HUGE_VAL, before, after;
+    if (part->count > 0) {
+        int last = himc_planner_part_after(part, beat, true) - 1,
+            next = himc_planner_part_after(part, beat, false);
+        double length = himc_planner_score_length(score);
+        least = last >= 0 ? gap(score, part->list[last].stroke.beat, beat)
+                          : gap(score, part->list[part->count - 1].stroke.beat, length) +
+                                gap(score, 0, beat);
+        least = fmin(least, next < part->count ? gap(score, beat, part->list[next].stroke.beat)
+                                               : gap(score, beat, length) +
+                                                     gap(score, 0, part->list[0].stroke.beat));
+    }
     himc_planner_roll_near(score, hand, round, beat, &before, &after);
     if (before >= 0)
         least = fmin(least, gap(score, before, beat));

@@ -111,6 +111,8 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
 /// Puts a stroke at that index.
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke,
                                int drum);
+/// True if all of two strokes is the same, as written.
+bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b);
 /// Number of strokes with which both lists begin.
 int himc_planner_score_common(const planner_part *a, const planner_part *b);
 /// Drum of the first stroke from a beat on; `none` without one.

@@ -129,27 +129,20 @@ static double inches_of(const himc_command *drum)
     return drum->count > 1 ? drum->atom[1].number : HIMC_INCHES_USUAL;
 }
 
-/// A drum is made once; the same line again is allowed.
-static bool check_made_once(const reader *r)
+/// The present command, for that drum, in the lines that act at once or at their beats.
+static bool add_line(reader *r, const char *drum)
 {
-    for (int i = 0; i < r->score->line_count; i++) {
-        const himc_score_line *line = &r->score->lines[i];
-        const himc_command *made = &line->command;
+    himc_score *score = r->score;
+    bool makes = r->command.id == HIMC_COMMAND_MAKE_DRUM && !drum[0];
+    // a drum is made once; the same line again is allowed
+    for (int i = 0; makes && i < score->line_count; i++) {
+        const himc_command *made = &score->lines[i].command;
         if (made->id == HIMC_COMMAND_MAKE_DRUM &&
             strcmp(made->atom[0].symbol, r->command.atom[0].symbol) == 0 &&
             inches_of(made) != inches_of(&r->command))
             return himc_error_set(r->error, "drum: %s is made with %g inches on line %d already",
-                                  made->atom[0].symbol, inches_of(made), line->line);
+                                  made->atom[0].symbol, inches_of(made), score->lines[i].line);
     }
-    return true;
-}
-
-/// The present command, for that drum, in the lines that act at once or at their beats.
-static bool add_line(reader *r, const char *drum)
-{
-    if (r->command.id == HIMC_COMMAND_MAKE_DRUM && !drum[0] && !check_made_once(r))
-        return false;
-    himc_score *score = r->score;
     line_list list = {&score->lines, &score->line_count, &r->line_room};
     if (r->timed)
         list = (line_list){&score->changes, &score->change_count, &r->change_room};
