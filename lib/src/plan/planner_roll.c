@@ -638,6 +638,16 @@ double himc_planner_roll_last_beat(const planner_score *score)
     return beat;
 }
 
+double himc_planner_score_length(const planner_score *score)
+{
+    return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
+}
+
+double himc_planner_score_round_length(const planner_score *score)
+{
+    return himc_planner_score_seconds(score, himc_planner_score_length(score));
+}
+
 /// The last roll that begins at or before a beat, -1 if there is none.
 static int last_begun(const planner_score *score, double beat)
 {

@@ -44,48 +44,6 @@ static double gap(const planner_score *score, double a, double b)
     return fabs(himc_planner_score_seconds(score, b) - himc_planner_score_seconds(score, a));
 }
 
-int himc_planner_part_after(const planner_part *part, double beat, bool from)
-{
-    int low = 0, high = part->count;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        double at = part->list[middle].stroke.beat;
-        if (from ? at < beat : at <= beat)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
-static int place_in(const planner_part *part, const himc_stroke *stroke)
-{
-    int at = himc_planner_part_after(part, stroke->beat, false);
-    while (at > 0 && part->list[at - 1].stroke.beat == stroke->beat &&
-           part->list[at - 1].stroke.early < stroke->early)
-        at--;
-    return at;
-}
-
-/// Time of a stroke from beat 0 (s).
-static double seconds_of(const planner_score *score, const himc_stroke *stroke)
-{
-    return himc_planner_score_seconds(score, stroke->beat) - stroke->early;
-}
-
-double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke)
-{
-    const planner_part *part = &score->part[stroke->hand];
-    int at = place_in(part, stroke);
-    double least = HUGE_VAL, time = seconds_of(score, stroke);
-    if (at > 0)
-        least = time - seconds_of(score, &part->list[at - 1].stroke);
-    if (at < part->count)
-        least = fmin(least, seconds_of(score, &part->list[at].stroke) - time);
-    return least;
-}
-
 static bool check_count(int count, himc_error *error)
 {
     return count < MOST_HAND_STROKES ||
@@ -120,7 +78,7 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
             stroke->beat, least, himc_hand_name(stroke->hand), HIMC_CLOSEST_STROKES);
     good =
         good && himc_array_grow(&part->list, part->count, &part->room, sizeof *part->list, error);
-    return good ? place_in(part, stroke) : -1;
+    return good ? himc_planner_part_place(part, stroke) : -1;
 }
 
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke, int drum)
@@ -133,15 +91,6 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
     *at = (planner_stroke){*stroke, drum, 0};
     part->count++;
     part->listed.number += index < part->listed.number;
-}
-
-bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b)
-{
-    return a->beat == b->beat && a->length == b->length && a->hand == b->hand &&
-           a->nuance == b->nuance && a->dynamic == b->dynamic &&
-           a->last_dynamic == b->last_dynamic && a->ornament == b->ornament && a->spot == b->spot &&
-           a->x == b->x && a->y == b->y && a->early == b->early && a->bounces == b->bounces &&
-           a->bounce_time == b->bounce_time && strcmp(a->drum, b->drum) == 0;
 }
 
 int himc_planner_score_common(const planner_part *a, const planner_part *b)
@@ -459,20 +408,10 @@ double himc_planner_score_last_beat(const planner_score *score)
     return fmax(himc_planner_roll_last_beat(score), score->until);
 }
 
-double himc_planner_score_length(const planner_score *score)
-{
-    return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
-}
-
 double himc_planner_score_free_from(const planner_score *score)
 {
     double last = himc_planner_roll_last_beat(score), next = himc_planner_score_length(score);
     return next + (last >= 0 && gap(score, last, next) < HIMC_CLOSEST_STROKES ? 1 : 0);
-}
-
-double himc_planner_score_round_length(const planner_score *score)
-{
-    return himc_planner_score_seconds(score, himc_planner_score_length(score));
 }
 
 int himc_planner_score_round_at(const planner_score *score, double t)

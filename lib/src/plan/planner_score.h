@@ -111,8 +111,6 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
 /// Puts a stroke at that index.
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke,
                                int drum);
-/// True if all of two strokes is the same, as written.
-bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b);
 /// Number of strokes with which both lists begin.
 int himc_planner_score_common(const planner_part *a, const planner_part *b);
 /// Drum of the first stroke from a beat on; `none` without one.
@@ -180,12 +178,8 @@ HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
-/// The whole beat after the last stroke, or at or after all else that the score has.
-HIMC_RT double himc_planner_score_length(const planner_score *score);
 /// The first whole beat where any hand can have a stroke after all others.
 HIMC_RT double himc_planner_score_free_from(const planner_score *score);
-/// Length of a round of the loop (s).
-HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 /// The round of the loop at `t`, 0 before it begins.
 HIMC_RT int himc_planner_score_round_at(const planner_score *score, double t);
 /// A beat of a round, counted through all rounds since play began; a change of tempo in a loop
@@ -197,8 +191,6 @@ HIMC_RT double himc_planner_score_period(const planner_score *score, double beat
 /// infinite without strokes.
 HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round,
                                       double beat);
-/// Time from a stroke to the nearest one of its hand (s); infinite without one.
-HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
 /// Time since the last stroke of either hand before a beat (s), or since the beginning of a roll
 /// that ends there; infinite without one.
 HIMC_RT double himc_planner_score_since(const planner_score *score, double beat);
@@ -220,7 +212,22 @@ HIMC_RT static inline double himc_planner_score_seconds(const planner_score *sco
     return himc_score_seconds(score->tempi, score->tempo_count, beat);
 }
 
-/// The first stroke of a hand's list after `beat`, or with `from` the first at it or after it.
+// planner_part.c: a hand's strokes, sorted
+
+/// The first stroke after `beat`, or with `from` the first at it or after it.
 HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool from);
+/// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
+HIMC_RT int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke);
+/// Time from a stroke to the nearest one of its hand (s); infinite without one.
+HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
+/// True if all of two strokes is the same, as written.
+bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b);
+
+// planner_roll.c: on these the rolls of a loop depend
+
+/// The whole beat after the last stroke, or at or after all else that the score has.
+HIMC_RT double himc_planner_score_length(const planner_score *score);
+/// Length of a round of the loop (s).
+HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 
 #endif
