@@ -490,7 +490,7 @@ void himc_planner_clear(himc_planner *planner)
         return;
     himc_planner_score_start(score, t);
     himc_planner_score_hold(score, t, beat);
-    himc_planner_score_empty(score);
+    score->empties = true; // it plays on without strokes
 }
 
 void himc_planner_last_until(himc_planner *planner, double beat)
@@ -521,7 +521,7 @@ static void start(himc_planner *planner, double t, bool running)
     planner_score *score = &planner->score;
     himc_planner_score_start(score, t);
     double late = himc_planner_lateness(planner);
-    himc_planner_score_delay(score, late);
+    score->origin += late;
     if (running && late > LATENESS_NOTED)
         himc_planner_say(planner, PLANNER_LATE,
                          "beat %g is %.2g s late: the first stroke must be prepared", score->beat,
@@ -585,7 +585,9 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
         for (int i = 0; i < planner->hand[hand].planned_count; i++)
             if (planner->hand[hand].planned[i].place.round > rounds)
                 rounds = planner->hand[hand].planned[i].place.round;
-    himc_planner_score_loop(score, on, rounds);
+    score->over = score->over && !on;
+    score->rounds = rounds;
+    score->loop = on;
     himc_planner_score_keep(score, anchor);
     himc_planner_replan(planner, t);
 }
@@ -662,8 +664,11 @@ double himc_planner_end(const himc_planner *planner)
 
 void himc_planner_finish(himc_planner *planner)
 {
-    if (planner->score.playing)
-        himc_planner_score_finish(&planner->score);
+    planner_score *score = &planner->score;
+    if (score->playing) {
+        himc_planner_score_stop(score, 0);
+        score->over = true;
+    }
     himc_planner_notes_sum_up(&planner->notes);
 }
 

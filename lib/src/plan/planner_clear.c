@@ -143,16 +143,23 @@ static himc_clearance look(const himc_planned_body *b, const moment *at, planner
     return clear;
 }
 
+/// Both tips where they are planned to be at t, but that of `hand`.
+static moment moment_with(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    moment m = {.time = t, .after = -1};
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    return m;
+}
+
 bool himc_planner_bends_to(const himc_planner *planner, himc_hand hand, double t,
                            const himc_goal *goal)
 {
     const himc_planned_body *body = planner->config.body;
     planner_rehearsal r = begin_walk(t);
-    moment m = {.time = t, .after = -1};
     if (!body)
         return true;
-    for (int i = 0; i < HIMC_HANDS; i++)
-        m.tip[i] = m.place[i] = himc_hand_at(&planner->hand[i].plan, t).x;
+    moment m = moment_with(planner, t, hand, himc_hand_at(&planner->hand[hand].plan, t).x);
     m.place[hand] = goal->spot;
     look(body, &m, &r);
     m.time = goal->time;
@@ -164,9 +171,7 @@ bool himc_planner_bends_to(const himc_planner *planner, himc_hand hand, double t
 bool himc_planner_meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
 {
     planner_rehearsal r = begin_walk(t);
-    moment m = {.time = t, .after = -1};
-    for (int i = 0; i < HIMC_HANDS; i++)
-        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    moment m = moment_with(planner, t, hand, x);
     return planner->config.body && look(planner->config.body, &m, &r).sticks < 0;
 }
 

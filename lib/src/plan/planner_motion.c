@@ -709,7 +709,7 @@ static void fill_loop(himc_planner *planner)
            period = himc_planner_score_time(score, 0, beat + 1) - next;
     himc_planner_score_start(score, next);
     double late = ceil(himc_planner_lateness(planner) / period - BEAT_ROUNDING);
-    himc_planner_score_delay(score, fmax(late, 0) * period);
+    score->origin += fmax(late, 0) * period;
     score->count = count;
     himc_planner_replan(planner, t);
 }

@@ -270,39 +270,16 @@ void himc_planner_score_go_on(planner_score *score, double t)
     score->goes_on = true;
 }
 
-void himc_planner_score_delay(planner_score *score, double late)
-{
-    score->origin += late;
-}
-
-void himc_planner_score_empty(planner_score *score)
-{
-    score->empties = true;
-}
-
 void himc_planner_score_stop(planner_score *score, double beat)
 {
     score->beat = score->empties ? 0 : beat;
     score->playing = score->over = score->goes_on = score->empties = false;
 }
 
-void himc_planner_score_finish(planner_score *score)
-{
-    himc_planner_score_stop(score, 0);
-    score->over = true;
-}
-
 void himc_planner_score_seek(planner_score *score, double beat)
 {
     score->beat = beat;
     score->over = false;
-}
-
-void himc_planner_score_loop(planner_score *score, bool on, int rounds)
-{
-    score->over = score->over && !on;
-    score->rounds = rounds;
-    score->loop = on;
 }
 
 int himc_planner_score_rebase(planner_score *score, double t)
@@ -424,15 +401,9 @@ int himc_planner_score_round_at(const planner_score *score, double t)
     return score->loop ? (int)round : (int)fmin(round, score->rounds);
 }
 
-/// Beats of all rounds before one.
-static double beats_before(const planner_score *score, int round)
-{
-    return ((double)score->past + round) * himc_planner_score_length(score);
-}
-
 double himc_planner_score_total_beat(const planner_score *score, int round, double beat)
 {
-    return beat + beats_before(score, round);
+    return beat + ((double)score->past + round) * himc_planner_score_length(score);
 }
 
 double himc_planner_score_period(const planner_score *score, double beat)
@@ -477,7 +448,7 @@ double himc_planner_score_since(const planner_score *score, double beat)
 
 planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat)
 {
-    planner_walk walk = {.round = round, .before = beats_before(score, round)};
+    planner_walk walk = {.round = round, .before = himc_planner_score_total_beat(score, round, 0)};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         walk.at[hand] = himc_planner_part_after(&score->part[hand], beat, false);
     walk.rolls = himc_planner_roll_walk(score, round, beat);
@@ -502,7 +473,7 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
     double beat = beat_back(score, walk), rolled;
     himc_hand rolls;
     if (beat < 0 && walk->round > -score->past) {
-        walk->before = beats_before(score, --walk->round);
+        walk->before = himc_planner_score_total_beat(score, --walk->round, 0);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             walk->at[hand] = score->part[hand].count;
         walk->rolls = himc_planner_roll_walk(score, walk->round, HUGE_VAL);

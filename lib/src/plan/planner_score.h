@@ -149,18 +149,10 @@ HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
 /// After the end, plays on from the beat at `t`.
 HIMC_RT void himc_planner_score_go_on(planner_score *score, double t);
-/// All beats are `late` seconds later.
-HIMC_RT void himc_planner_score_delay(planner_score *score, double late);
-/// Plays on without strokes: they have been dropped in a loop that turns.
-HIMC_RT void himc_planner_score_empty(planner_score *score);
 /// Stops at that beat.
 HIMC_RT void himc_planner_score_stop(planner_score *score, double beat);
-/// Ends when all has been played.
-HIMC_RT void himc_planner_score_finish(planner_score *score);
 /// Play begins at that beat.
 HIMC_RT void himc_planner_score_seek(planner_score *score, double beat);
-/// Begins or ends a loop; without it `rounds` is the last round to be played.
-HIMC_RT void himc_planner_score_loop(planner_score *score, bool on, int rounds);
 /// Makes the round of the loop at `t` round 0, before its length changes; returns its number so
 /// far.
 HIMC_RT int himc_planner_score_rebase(planner_score *score, double t);

@@ -28,11 +28,8 @@
 typedef struct reader {
     himc_score *score;
     int stroke_room, tempo_room, line_room, change_room, order_room;
-    himc_command command; ///< of the current statement
-    int line;
-    bool timed;       ///< the statement begins with `at BEAT` ...
-    double beat;      ///< ... this one
-    const char *name; ///< of the file
+    himc_score_line now; ///< the current statement
+    const char *name;    ///< of the file
     himc_error *error;
 } reader;
 
@@ -60,8 +57,8 @@ static bool add_stroke(reader *r)
         !himc_array_grow(&score->strokes, score->stroke_count, &r->stroke_room,
                          sizeof *score->strokes, r->error))
         return false;
-    score->stroke_lines[score->stroke_count] = r->line;
-    score->strokes[score->stroke_count++] = r->command.stroke;
+    score->stroke_lines[score->stroke_count] = r->now.line;
+    score->strokes[score->stroke_count++] = r->now.command.stroke;
     return true;
 }
 
@@ -82,8 +79,8 @@ void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_ch
 static bool add_tempo(reader *r)
 {
     himc_score *score = r->score;
-    const himc_atom *atom = r->command.atom;
-    double beat = r->command.count > 1 ? atom[1].number : 0;
+    const himc_atom *atom = r->now.command.atom;
+    double beat = r->now.command.count > 1 ? atom[1].number : 0;
     if (!himc_array_grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi,
                          r->error))
         return false;
@@ -129,33 +126,29 @@ static double inches_of(const himc_command *drum)
     return drum->count > 1 ? drum->atom[1].number : HIMC_INCHES_USUAL;
 }
 
-/// The present command, for that drum, in the lines that act at once or at their beats.
-static bool add_line(reader *r, const char *drum)
+/// The current statement, in the lines that act at once or at their beats.
+static bool add_line(reader *r, bool timed)
 {
     himc_score *score = r->score;
-    bool makes = r->command.id == HIMC_COMMAND_MAKE_DRUM && !drum[0];
+    bool makes = r->now.command.id == HIMC_COMMAND_MAKE_DRUM && !r->now.drum[0];
     // a drum is made once; the same line again is allowed
     for (int i = 0; makes && i < score->line_count; i++) {
         const himc_command *made = &score->lines[i].command;
         if (made->id == HIMC_COMMAND_MAKE_DRUM &&
-            strcmp(made->atom[0].symbol, r->command.atom[0].symbol) == 0 &&
-            inches_of(made) != inches_of(&r->command))
+            strcmp(made->atom[0].symbol, r->now.command.atom[0].symbol) == 0 &&
+            inches_of(made) != inches_of(&r->now.command))
             return himc_error_set(r->error, "drum: %s is made with %g inches on line %d already",
                                   made->atom[0].symbol, inches_of(made), score->lines[i].line);
     }
     line_list list = {&score->lines, &score->line_count, &r->line_room};
-    if (r->timed)
+    if (timed)
         list = (line_list){&score->changes, &score->change_count, &r->change_room};
     if (score->line_count + score->change_count == SCORE_LINES_MAX)
         return himc_error_set(r->error, "one line too many, expected %d besides strokes",
                               SCORE_LINES_MAX);
-    if ((r->timed && !add_place(r, -1 - score->change_count)) || !grow_lines(&list, r->error))
+    if ((timed && !add_place(r, -1 - score->change_count)) || !grow_lines(&list, r->error))
         return false;
-    himc_score_line *line = &(*list.lines)[(*list.count)++];
-    snprintf(line->drum, sizeof line->drum, "%s", drum);
-    himc_command_copy(&line->command, &r->command);
-    line->line = r->line;
-    line->beat = r->timed ? r->beat : 0;
+    copy_line(&(*list.lines)[(*list.count)++], &r->now);
     return true;
 }
 
@@ -184,13 +177,14 @@ static bool read_drum_line(reader *r, const himc_atom *atom, int count)
     const himc_argument *name = himc_argument_find("NAME", NULL);
     if (!himc_argument_accepts(name, &atom[0]))
         return himc_error_set(r->error, "%.40s: not a drum's name", atom[0].symbol);
-    if (!himc_command_parse(&r->command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,
+    if (!himc_command_parse(&r->now.command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,
                             r->error) ||
-        !may_stand(&r->command, r->error))
+        !may_stand(&r->now.command, r->error))
         return is_known_drum(r->score, atom[0].symbol)
                    ? himc_error_prefix(r->error, "%s", atom[0].symbol)
                    : himc_command_doubt_drum(atom[0].symbol, r->error);
-    return add_line(r, atom[0].symbol);
+    himc_format(r->now.drum, sizeof r->now.drum, "%s", atom[0].symbol);
+    return add_line(r, false);
 }
 
 bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,
@@ -216,32 +210,24 @@ bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *o
 static bool read_timed_line(reader *r, const himc_atom *atom, int count)
 {
     himc_command at;
-    himc_score_line line;
-    if (!himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) ||
-        !himc_score_read_change(at.atom, at.count, &line, r->error))
-        return false;
-    himc_command_copy(&r->command, &line.command);
-    r->beat = line.beat;
-    r->timed = true;
-    bool good = add_line(r, line.drum);
-    r->timed = false;
-    return good;
+    return himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) &&
+           himc_score_read_change(at.atom, at.count, &r->now, r->error) && add_line(r, true);
 }
 
 static bool read_performer_line(reader *r, const himc_atom *atom, int count)
 {
-    if (!himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
+    if (!himc_command_parse(&r->now.command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
                             r->error) ||
-        !may_stand(&r->command, r->error))
+        !may_stand(&r->now.command, r->error))
         return false;
-    switch (r->command.id) {
+    switch (r->now.command.id) {
     case HIMC_COMMAND_STROKE:
     case HIMC_COMMAND_ROLL:
     case HIMC_COMMAND_FLAM:
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
-    default: return add_line(r, "");
+    default: return add_line(r, false);
     }
 }
 
@@ -307,7 +293,7 @@ static bool add_report(reader *r, int line, const char *at)
     himc_error said;
     himc_error_set(&said,
                    "%s:%d: \"%.*s\" is left out: no ; ends the comment before it, in line %d",
-                   r->name, line, (int)strcspn(at, ";\r\n"), at, r->line);
+                   r->name, line, (int)strcspn(at, ";\r\n"), at, r->now.line);
     size_t used = score->report ? strlen(score->report) : 0, room = used + strlen(said.text) + 2;
     char *report = realloc(score->report, room);
     if (!report)
@@ -324,7 +310,7 @@ static bool report_swallowed(reader *r, const char *begin, const char *end)
 {
     char text[HIMC_PATH_SIZE];
     himc_command command;
-    int line = r->line;
+    int line = r->now.line;
     begin += strspn(begin, " \t\r\n");
     for (const char *at = begin; at < end;) {
         size_t length = (size_t)(end - at);
@@ -352,7 +338,9 @@ static bool read_all(reader *r, const char *text)
     if (strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK)) == 0)
         text += strlen(BYTE_ORDER_MARK);
     for (const char *begin = text; himc_text_next(&text, &line, &s); begin = text) {
-        r->line = s.line;
+        r->now.line = s.line;
+        r->now.drum[0] = '\0';
+        r->now.beat = 0;
         const char *word = s.count > 0 ? s.atom[0].symbol : "";
         if (word[0] == '#' || strncmp(word, "//", 2) == 0) // of other languages
             return himc_error_set(r->error, "%.20s: a comment is written comment ...;", word);
@@ -437,7 +425,7 @@ static bool check_playable(reader *r)
                     score->tempi[tempo].bpm;
         double seconds =
             base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
-        r->line = score->stroke_lines[i];
+        r->now.line = score->stroke_lines[i];
         if (stroke->ornament >= HIMC_ROLL_SINGLE) {
             // it leaves out what does not fit (ornament.h)
             if (!himc_score_accepts_roll(score->tempi, score->tempo_count, stroke, r->error))
@@ -471,7 +459,7 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
     good = read_all(&r, text) && sort_by_beat(&r) && check_playable(&r);
     if (good)
         return r.score;
-    himc_error_prefix(error, "%s:%d", name, r.line);
+    himc_error_prefix(error, "%s:%d", name, r.now.line);
     himc_score_free(r.score);
     return NULL;
 }
