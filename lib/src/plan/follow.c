@@ -34,8 +34,7 @@
 #define LEAST_NOISE 1e-6       // (m)
 
 // the tip; chosen: within the limits of an arm, and a halt without a jerk
-#define HARDEST_MEETING 250.0 // peak acceleration to meet a target (m/s^2)
-#define BRAKING 60.0          // mean acceleration of the halt (m/s^2)
+#define BRAKING 60.0 // mean acceleration of the halt (m/s^2)
 // A tip follows the stream if its own velocity brings it so near to the next meeting.
 #define FOLLOWED 0.05              // (m) chosen: one target at 250 Hz in a stroke of 10 m/s
 #define FOLLOWED_ACCELERATION 30.0 // ... and what this changes meanwhile (m/s^2); chosen: a mouse
@@ -87,11 +86,10 @@ bool himc_stream_add(himc_stream *s, double t, himc_vec3 x)
         learn_noise(s, gap, x);
         filter(s, gap, x);
         double least = s->period > 0 ? BURST_SHARE * s->period : FIRST_GAP;
+        double share = s->period > 0 ? gap / (gap + VELOCITY_TIME) : 1;
         himc_vec3 v = himc_vec3_scale(himc_vec3_sub(x, s->x), 1 / fmax(gap, least));
         s->period = s->period > 0 ? s->period + PERIOD_SHARE * (gap - s->period) : gap;
-        double share = s->moving ? gap / (gap + VELOCITY_TIME) : 1;
         s->v = himc_vec3_madd(himc_vec3_scale(s->v, 1 - share), share, v);
-        s->moving = true;
     }
     s->time = t;
     s->x = x;
@@ -131,7 +129,7 @@ void himc_stream_follow(const himc_stream *s, himc_hand_plan *plan, double t)
     }
     plan->lift.count = 0; // `from` contains it
     double halt = fmax(SHORTEST_HALT, himc_vec3_length(met.v) / BRAKING);
-    blend = fmax(blend, himc_move_time(coast, HARDEST_MEETING));
+    blend = fmax(blend, himc_move_time(coast, HIMC_HARDEST_MOVE));
     himc_target held = met;
     held.x = himc_vec3_madd(met.x, hold, met.v);
     plan->end = t + blend + hold + halt;

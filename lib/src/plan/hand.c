@@ -26,9 +26,8 @@
 #define LIFT_FADE 0.1  // of a lift that is broken off (s) ...
 #define LIFT_SHARE 0.8 // ... but no more than this share of the time to a touch
 
-// habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
+// habits of a hand; chosen by eye
 #define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
-#define QUICK_MOVE 80.0         // ... and of one without (m/s^2)
 #define HOME_MOVE 1.5           // ... and of the way home, when there is nothing to play (m/s^2)
 #define MOVE_MARGIN 1.4         // a stroke's swing takes so much longer than a straight move
 #define HURRY_SHARE 0.7         // of the unhurried time that a hurried gesture takes at least
@@ -46,8 +45,7 @@
 #define FORWARD_TIME 0.2      // the way forward takes as long as the fall, at least this (s) ...
 #define FORWARD_SHARE 0.55    // ... but no more than this share of the time there is
 #define SWING_PEAK 60.0       // peak acceleration of the swing behind the spot (m/s^2)
-#define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s), and ...
-#define STRAIGHT_PEAK 80.0    // ... where the way behind it would be harder (m/s^2)
+#define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s)
 #define IDLE_TIME 1.4         // with more time the tip first waits behind the spot (s) ...
 #define IDLE_ARRIVAL 0.65     // ... coming there in this time (s) ...
 #define IDLE_DEPTH 0.3        // ... at this share of the swing's depth ...
@@ -193,7 +191,7 @@ static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, 
     double depth = fmin(g->depth, SWING_PEAK / HIMC_MOVE_PEAK * shorter * shorter);
     himc_vec3 behind = himc_vec3_madd(spot, depth, goal->back);
     double off = himc_vec3_length(himc_vec3_sub(s->path.x, spot));
-    bool hurries = himc_move_time(off, STRAIGHT_PEAK) > back_at - s->path_end;
+    bool hurries = himc_move_time(off, HIMC_QUICK_MOVE) > back_at - s->path_end;
     if ((span < STRAIGHT_TIME || hurries) && off > depth)
         back_at = s->path_end;
     if (back_at - s->path_end > IDLE_TIME) {
@@ -250,7 +248,7 @@ bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, 
                     himc_vec3 way)
 {
     himc_spline *lift = &plan->lift;
-    double up = himc_move_time(himc_vec3_length(way), HIMC_HARDEST_LIFT);
+    double up = himc_move_time(himc_vec3_length(way), HIMC_QUICK_MOVE);
     himc_target nothing = {0}, raised = himc_target_at_rest(way);
     bool busy = lift->count > 0 && lift->segment[lift->count - 1].t1 > begin;
     bool in_time = from - begin >= up && end - to >= up;
@@ -362,7 +360,7 @@ double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
     // a soft stroke does not fall fast
     T = fmax(T, HIMC_LEAST_LANDING * s.height.h / goal->gesture.speed);
     return fmax(fmax(T, RAISED_TIME),
-                MOVE_MARGIN * himc_move_time(distance_to(&s, goal), QUICK_MOVE));
+                MOVE_MARGIN * himc_move_time(distance_to(&s, goal), HIMC_QUICK_MOVE));
 }
 
 static bool is_possible(const stroke_plan *s, const himc_goal *goal)
@@ -538,7 +536,7 @@ static void move_to(stroke_plan *s, himc_vec3 x, double peak, double at)
 void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x, double at)
 {
     stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
-    move_to(&s, x, QUICK_MOVE, at);
+    move_to(&s, x, HIMC_QUICK_MOVE, at);
     plan_finish(&s);
     plan->home = x;
     plan->at_home = true;

@@ -55,7 +55,6 @@
 #define FALLING_SPEED 0.2          // a tip faster downwards has begun to fall (m/s)
 #define BRAKED_PEAK 150.0          // acceleration of a high tip that falls to a soft touch ...
 #define BRAKED_LIMIT 400.0         // ... and with so much it is not braked at all (m/s^2)
-#define SINK_PEAK 80.0             // of one that sinks before a soft stroke, at most (m/s^2)
 #define FALL_STEEPNESS 2.5         // v T/h of a fall from rest, at most ...
 #define FALLING_STEEPNESS 3.5      // ... and of one that has begun
 #define FALL_OVERSHOOT 1.1         // of the height ...
@@ -222,7 +221,7 @@ bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g)
         // a tip that is too high for its stroke sinks to the stroke's apex first, if it has the time
         himc_gesture low = himc_gesture_squeeze(*g, T, h);
         double time = T - low.down - low.dwell;
-        if (HIMC_MOVE_PEAK * (h - low.height) <= SINK_PEAK * time * time)
+        if (HIMC_MOVE_PEAK * (h - low.height) <= HIMC_QUICK_MOVE * time * time)
             return false;
     }
     double speed = fmax(g->speed, himc_height_profile_least_landing(h, T));

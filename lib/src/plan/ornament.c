@@ -21,8 +21,6 @@
 #include "plan/planner_roll.h"
 #include "plan/sticking.h"
 
-#define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
-
 // strokes of both arms together (1/s); chosen, see above
 #define USUAL_RATE 11.0
 #define USUAL_PITCH 110.0 // (Hz)
@@ -72,7 +70,7 @@ static int add_grace(himc_planner *planner, int drum, const himc_stroke *stroke,
     grace.early = early;
     grace.bounces = bounce_time > 0;
     grace.bounce_time = bounce_time;
-    return himc_planner_score_room(&planner->score, &grace) < LEAST_ROOM ||
+    return himc_planner_score_room(&planner->score, &grace) < PLANNER_LEAST_ROOM ||
            !himc_planner_add(planner, &grace, drum, &unused);
 }
 

@@ -107,13 +107,13 @@ static double last_written(const himc_planner *planner)
 }
 
 /// Rolls are about to change at t, with the tempo or what follows them: what of a roll is not
-/// planned yet is counted anew. Returns what himc_planner_score_keep needs.
-static double before_change(himc_planner *planner, double t)
+/// planned yet is counted anew.
+static void before_change(himc_planner *planner, double t)
 {
     if (!planner->score.playing || planner->score.roll_count == 0)
-        return 0;
+        return;
     himc_planner_cut_both(planner, t);
-    return himc_planner_score_anchor(&planner->score, fmax(t, last_written(planner)));
+    himc_planner_score_anchor(&planner->score, fmax(t, last_written(planner)));
 }
 
 bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place)
@@ -123,10 +123,11 @@ bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_fra
         return false;
     if (planner->known[index] && himc_head_frame_equal(&planner->drum[index], place))
         return true;
-    double t = planner->now + PLANNER_AHEAD, anchor = before_change(planner, t);
+    double t = planner->now + PLANNER_AHEAD;
+    before_change(planner, t);
     planner->drum[index] = *place;
     planner->known[index] = true;
-    himc_planner_score_keep(&planner->score, anchor);
+    himc_planner_score_keep(&planner->score);
     himc_planner_rest_again(planner);
     himc_planner_replan(planner, t);
     return true;
@@ -186,25 +187,7 @@ void himc_planner_set_human(himc_planner *planner, himc_human human)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
-/// A stroke added to a loop is the next one in the first round in which the hand is free by then,
-/// if it comes before the present next one. Planned strokes of a later round are put back already.
-static void fit_in_loop(himc_planner *planner, himc_hand hand, int at, bool first)
-{
-    planner_score *score = &planner->score;
-    const planner_place *next = &score->part[hand].listed;
-    const himc_stroke *added = &score->part[hand].list[at].stroke;
-    int round = 0;
-    while (himc_planner_score_touch(score, round, added) <= planner->hand[hand].plan.end)
-        round++;
-    if (round > 0 && himc_planner_score_touch(score, 0, added) > planner->now)
-        himc_planner_tell_next_round(planner, added);
-    if (first || round < next->round || (round == next->round && at < next->number))
-        himc_planner_score_go(score, hand, (planner_place){-1, at, round});
-    else if (round > next->round && at == next->number)
-        himc_planner_score_go(score, hand, (planner_place){-1, at + 1, next->round});
-}
-
-/// The same without a loop; given up if its beat is past.
+/// A stroke added without a loop is the next one if it comes before it; given up if its beat is past.
 static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
 {
     const planner_part *part = &planner->score.part[hand];
@@ -226,15 +209,30 @@ static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
 /// While playing, a stroke before the planned ones is fitted in.
 static void fit_in(himc_planner *planner, himc_hand hand, int at, bool first)
 {
+    planner_score *score = &planner->score;
+    planner_hand *h = &planner->hand[hand];
     double t = planner->now + PLANNER_AHEAD;
     himc_planner_cut(planner, hand, t);
-    if (planner->score.loop)
-        fit_in_loop(planner, hand, at, first);
-    else
+    if (score->loop) {
+        // the next one in the first round in which the hand is free by then, if it comes before the
+        // present next one; planned strokes of a later round are put back already
+        const planner_place *next = &score->part[hand].listed;
+        const himc_stroke *added = &score->part[hand].list[at].stroke;
+        int round = 0;
+        while (himc_planner_score_touch(score, round, added) <= h->plan.end)
+            round++;
+        if (round > 0 && himc_planner_score_touch(score, 0, added) > planner->now)
+            himc_planner_tell_next_round(planner, added);
+        if (first || round < next->round || (round == next->round && at < next->number))
+            himc_planner_score_go(score, hand, (planner_place){-1, at, round});
+        else if (round > next->round && at == next->number)
+            himc_planner_score_go(score, hand, (planner_place){-1, at + 1, next->round});
+        h->added = at + 1;
+    } else {
         fit_in_once(planner, hand, at);
-    planner->hand[hand].added = planner->score.loop ? at + 1 : 0;
+    }
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-    planner->hand[hand].added = 0;
+    h->added = 0;
 }
 
 /// After the end of the score the beats go on: for a stroke or a roll whose beat, or end, is still
@@ -280,9 +278,10 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     go_on(planner, stroke, stroke->beat);
     bool running = score->playing && !score->empties;
     double t = planner->now + PLANNER_AHEAD;
-    if (running)
+    if (running) {
         rebase(planner, planner->now);
-    double anchor = running ? before_change(planner, t) : 0;
+        before_change(planner, t);
+    }
     bool first = score->part[stroke->hand].count == 0;
     himc_planner_score_insert(score, at, stroke, drum);
     planner_hand *h = &planner->hand[stroke->hand];
@@ -292,7 +291,7 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     himc_planner_rest_again(planner);
     if (!running)
         return true;
-    himc_planner_score_keep(score, anchor);
+    himc_planner_score_keep(score);
     fit_in(planner, stroke->hand, at, first);
     if (score->roll_count > 0)
         himc_planner_replan(planner, t);
@@ -354,14 +353,14 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
 }
 
 /// The tempo has changed at t; that was the beat then.
-static void after_tempo(himc_planner *planner, double t, double beat, double anchor)
+static void after_tempo(himc_planner *planner, double t, double beat)
 {
     planner_score *score = &planner->score;
     if (score->playing || score->over)
         himc_planner_score_hold(score, t, beat);
     if (!score->playing)
         return;
-    himc_planner_score_keep(score, anchor);
+    himc_planner_score_keep(score);
     planner->hastened = t + HASTENED;
     himc_planner_replan(planner, t);
 }
@@ -375,9 +374,9 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
         return false;
     double t = planner->now + PLANNER_AHEAD, beat = himc_planner_score_beat_at(score, t);
     rebase(planner, t);
-    double anchor = before_change(planner, t);
+    before_change(planner, t);
     himc_planner_score_take_tempi(score, copy, count);
-    after_tempo(planner, t, beat, anchor);
+    after_tempo(planner, t, beat);
     return true;
 }
 
@@ -501,11 +500,12 @@ void himc_planner_last_until(himc_planner *planner, double beat)
     double t = planner->now + PLANNER_AHEAD;
     if (score->playing)
         rebase(planner, planner->now);
-    double anchor = score->loop ? before_change(planner, t) : 0;
+    if (score->loop)
+        before_change(planner, t);
     score->until = beat;
     if (!score->playing || !score->loop)
         return;
-    himc_planner_score_keep(score, anchor);
+    himc_planner_score_keep(score);
     himc_planner_replan(planner, t);
 }
 
@@ -578,7 +578,7 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
     if (!isfinite(t) || score->loop == on)
         return;
     himc_planner_cut_both(planner, t);
-    double anchor = before_change(planner, t); // the last roll goes on to another stroke
+    before_change(planner, t); // the last roll goes on to another stroke
     int rounds = on || !score->playing ? 0 : himc_planner_score_round_at(score, t);
     // a stroke of the next round that can no longer be taken back brings that round with it
     for (int hand = 0; hand < HIMC_HANDS && !on; hand++)
@@ -588,7 +588,7 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
     score->over = score->over && !on;
     score->rounds = rounds;
     score->loop = on;
-    himc_planner_score_keep(score, anchor);
+    himc_planner_score_keep(score);
     himc_planner_replan(planner, t);
 }
 
@@ -601,9 +601,9 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (himc_planner_score_has_tempo(score, beat, bpm))
         return;
     rebase(planner, t);
-    double anchor = before_change(planner, t);
+    before_change(planner, t);
     himc_planner_score_set_tempo(score, score->playing ? beat : score->beat, bpm);
-    after_tempo(planner, t, beat, anchor);
+    after_tempo(planner, t, beat);
 }
 
 double himc_planner_length(const himc_planner *planner)

@@ -386,20 +386,6 @@ static bool goes_on(const himc_planner *planner)
            (c->least.gap < enough || (c->candidate < LIFT_TRIES && !due));
 }
 
-static void say_meet(himc_planner *planner)
-{
-    const near_time *n = &planner->clear.plain;
-    himc_hand later = later_hand(planner, n);
-    int k = himc_planner_next_planned(&planner->hand[later], n->from - AT_TOUCH);
-    const timed_stroke *s = &planner->hand[later].planned[k];
-    char name[HIMC_PLANNER_NAME];
-    if (k < planner->hand[later].planned_count)
-        himc_planner_say(planner, PLANNER_MEET, "%s: the hands come too near on the way",
-                         himc_planner_name(planner, s, name));
-    else
-        himc_planner_say(planner, PLANNER_MEET, "the hands come too near");
-}
-
 static void plan_way(himc_planner *planner, const planner_way *way)
 {
     double t = planner->now + PLANNER_AHEAD;
@@ -417,8 +403,16 @@ static void end_search(himc_planner *planner)
     try_nothing(c);
     c->searching = false;
     c->searched = c->plain.to;
-    if (c->least.gap < 0)
-        say_meet(planner);
+    if (c->least.gap < 0) {
+        const planner_hand *later = &planner->hand[later_hand(planner, &c->plain)];
+        int k = himc_planner_next_planned(later, c->plain.from - AT_TOUCH);
+        char name[HIMC_PLANNER_NAME];
+        if (k < later->planned_count)
+            himc_planner_say(planner, PLANNER_MEET, "%s: the hands come too near on the way",
+                             himc_planner_name(planner, &later->planned[k], name));
+        else
+            himc_planner_say(planner, PLANNER_MEET, "the hands come too near");
+    }
     c->walk.near = begin_walk(0).near;
     if (c->best_way.touch > -HUGE_VAL) {
         plan_way(planner, &c->best_way);

@@ -315,12 +315,10 @@ static bool stroke_is_near(const himc_planner *planner, himc_hand hand, double t
 {
     const planner_hand *h = &planner->hand[hand];
     planner_due due;
-    for (int i = 0; i < h->planned_count; i++)
-        if (h->planned[i].goal.time > t && h->planned[i].goal.time < t + TARGET_STROKE)
-            return true;
-    if (h->waiting_count > 0 && h->waiting[0].goal.time < t + TARGET_STROKE)
-        return true;
-    return himc_planner_score_next(&planner->score, hand, 0, &due) && due.time < t + TARGET_STROKE;
+    double end = t + TARGET_STROKE;
+    return himc_planner_touch_after(h, t) < end ||
+           (h->waiting_count > 0 && h->waiting[0].goal.time < end) ||
+           (himc_planner_score_next(&planner->score, hand, 0, &due) && due.time < end);
 }
 
 void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)

@@ -91,7 +91,7 @@ double himc_planner_touch_after(const planner_hand *h, double t)
 
 double himc_planner_lift_time(const planner_lift *l)
 {
-    return LIFT_MARGIN * himc_move_time(himc_vec3_length(l->way), HIMC_HARDEST_LIFT);
+    return LIFT_MARGIN * himc_move_time(himc_vec3_length(l->way), HIMC_QUICK_MOVE);
 }
 
 bool himc_planner_lift_from(planner_hand *h, const planner_lift *l, double t)
@@ -367,17 +367,6 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     return PLANNED;
 }
 
-/// Whether the stroke of the score after the one just planned can be planned too; asked now, while
-/// the other hand still has time to play it.
-static plan_result check_following(himc_planner *planner, himc_hand hand, timed_stroke *following)
-{
-    if (!next_written(planner, hand, following) || following->place.number < 0)
-        return PLANNED;
-    if (!himc_planner_reaches(planner, hand, following->written.spot))
-        return TOO_FAR;
-    return himc_hand_can_strike(&planner->hand[hand].plan, &following->written) ? PLANNED : NO_TIME;
-}
-
 /// Plans a hand's next stroke, or a wait before it. If the result is not PLANNED, `refused` is the
 /// stroke that cannot be played: that one, or the one after it. The stroke before that one is put
 /// back if it has given way to it, to be planned without it.
@@ -405,7 +394,13 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     *refused = next;
     if (result != PLANNED)
         return result;
-    result = check_following(planner, hand, refused);
+    // the stroke of the score after it: asked now, while the other hand still has time to play it
+    if (!next_written(planner, hand, refused) || refused->place.number < 0)
+        return PLANNED;
+    if (!himc_planner_reaches(planner, hand, refused->written.spot))
+        result = TOO_FAR;
+    else if (!himc_hand_can_strike(&h->plan, &refused->written))
+        result = NO_TIME;
     if (result != PLANNED && next.gives_way && !planner->clear.planning) {
         h->plan = before;
         put_back(planner, hand, &h->planned[--h->planned_count]);

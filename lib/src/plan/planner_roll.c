@@ -41,8 +41,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
-#define LAST_BUZZ 0.85  // the last buzz, of a stroke; chosen: a swinging head delays contacts
+#define LAST_BUZZ 0.85 // the last buzz, of a stroke; chosen: a swinging head delays contacts
 // w; chosen: near a period of the lowest drum, a standard deviation of 0.035 intervals, as human.c
 #define UNEVENNESS 0.12
 #define UNEVEN_TURN 0.30901699437494742 // a
@@ -51,7 +50,6 @@
 
 // the join to what follows; chosen
 #define END_ROUNDING 1e-3  // of a written beat and length, which are floats (beats)
-#define TIME_ROUNDING 1e-4 // of a stroke's time that has been a beat (s)
 #define JOINED_TIME 1.0    // what comes later after a roll's end does not hurry (s)
 #define LEAST_STEP 0.9     // of the mean: interval of a short roll
 #define JOIN_GAIN 1e-6     // a roll that would end earlier by less does not (s)
@@ -486,7 +484,7 @@ static bool is_left_out(const planner_score *score, int in_round, const himc_str
             room = fmin(room,
                         turned + own - himc_planner_score_seconds(score, last->beat) + last->early);
     }
-    return room < LEAST_ROOM;
+    return room < PLANNER_LEAST_ROOM;
 }
 
 int himc_planner_roll_left_out(const planner_score *score, int i)

@@ -13,6 +13,9 @@
 /// ... and a buzz ends when the other hand has struck.
 #define PLANNER_BUZZ_SHARE 0.55
 
+/// To another stroke of the hand, at least (s). Chosen: a grace note takes so long.
+#define PLANNER_LEAST_ROOM 0.08
+
 HIMC_RT static inline double himc_planner_bounce_share(int bounces)
 {
     return bounces == HIMC_BUZZ ? PLANNER_BUZZ_SHARE : bounces ? PLANNER_DOUBLE_SHARE : 0;

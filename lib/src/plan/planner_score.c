@@ -14,12 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Beats far from 0 are rounded: so much less is no less. Chosen: up to beat 1e10 at 1 beat a
-// minute.
-#define BEAT_ROUNDED 1e-4        // (s)
-#define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
-#define ROUND_ROUNDING 1e-12     // of a time at a round's beginning (rounds)
-#define MOST_ROUNDS 1e9          // they fit an int
+#define ROUND_ROUNDING 1e-12 // of a time at a round's beginning (rounds)
+#define MOST_ROUNDS 1e9      // they fit an int
 
 bool himc_planner_score_init(planner_score *score)
 {
@@ -46,8 +42,9 @@ static double gap(const planner_score *score, double a, double b)
 
 static bool check_count(int count, himc_error *error)
 {
-    return count < MOST_HAND_STROKES ||
-           himc_error_set(error, "stroke: one too many, expected %d for a hand", MOST_HAND_STROKES);
+    return count < HIMC_SCORE_STROKES ||
+           himc_error_set(error, "stroke: one too many, expected %d for a hand",
+                          HIMC_SCORE_STROKES);
 }
 
 bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *strokes, int count,
@@ -71,7 +68,7 @@ int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, in
             himc_error_set(error, "stroke: drum number %d, expected 0 .. %d", drum, HIMC_DRUMS - 1);
     else if (!check_count(part->count, error))
         good = false;
-    else if (least < HIMC_CLOSEST_STROKES - BEAT_ROUNDED)
+    else if (least < HIMC_CLOSEST_STROKES - TIME_ROUNDING)
         good = himc_error_set(
             error,
             "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, expected %g s or more",
@@ -227,7 +224,7 @@ static long round_name(const planner_score *score, int round)
     return 1 + round + (score->starts & 0xffffL) * 0x100000000L;
 }
 
-double himc_planner_score_anchor(planner_score *score, double t)
+void himc_planner_score_anchor(planner_score *score, double t)
 {
     bool again = himc_planner_roll_anchor(score, t);
     for (int hand = 0; hand < HIMC_HANDS && again; hand++) {
@@ -237,13 +234,15 @@ double himc_planner_score_anchor(planner_score *score, double t)
             if (m->name == name && m->roll == part->rolls.roll && m->number >= part->rolls.number)
                 m->name = 0;
     }
-    return score->anchor.time + himc_planner_score_time(score, score->anchor.round, 0);
+    planner_anchor *a = &score->anchor;
+    a->kept = a->time + himc_planner_score_time(score, a->round, 0);
 }
 
-void himc_planner_score_keep(planner_score *score, double anchor)
+void himc_planner_score_keep(planner_score *score)
 {
+    planner_anchor *a = &score->anchor;
     if (score->playing)
-        score->anchor.time = anchor - himc_planner_score_time(score, score->anchor.round, 0);
+        a->time = a->kept - himc_planner_score_time(score, a->round, 0);
 }
 
 void himc_planner_score_start(planner_score *score, double t)

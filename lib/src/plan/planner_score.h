@@ -7,6 +7,8 @@
 #include "himc/score.h"
 
 #define BEAT_ROUNDING 1e-9 ///< of a time in seconds, in beats
+/// Of a beat, in seconds: so much less is no less. Chosen: up to beat 1e10 at 1 beat a minute.
+#define TIME_ROUNDING 1e-4
 
 typedef struct planner_stroke {
     himc_stroke stroke;
@@ -33,7 +35,8 @@ typedef struct planner_anchor {
     bool any;
     himc_hand lead;          ///< hand of the roll's first stroke
     int roll, round, number; ///< the last stroke that stays ...
-    double time;             ///< ... so long after the beginning of its round (s)
+    double time;             ///< ... so long after the beginning of its round (s) ...
+    double kept;             ///< ... and at this time, whatever the tempo (s)
 } planner_anchor;
 
 /// A stroke of a roll that was reassigned or given up.
@@ -141,10 +144,10 @@ HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat
 /// The hand's next stroke of a roll is the first one after `t` (s).
 HIMC_RT void himc_planner_score_seat(planner_score *score, himc_hand hand, double t);
 /// Before the tempo changes: of a roll that has begun the strokes that are not planned yet will be
-/// counted anew; all of them come after `t`. Returns the time of the last one that is (s) ...
-HIMC_RT double himc_planner_score_anchor(planner_score *score, double t);
+/// counted anew; all of them come after `t`. The last one that is planned has a time ...
+HIMC_RT void himc_planner_score_anchor(planner_score *score, double t);
 /// ... which it keeps after the change.
-HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
+HIMC_RT void himc_planner_score_keep(planner_score *score);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
 /// After the end, plays on from the beat at `t`.

@@ -19,7 +19,6 @@
 #include <string.h>
 
 // chosen: more than a day of drumming, and small enough for any machine's memory
-#define SCORE_STROKES_MAX 200000
 #define SCORE_LINES_MAX 10000
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 #define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 16 a second
@@ -47,9 +46,9 @@ static bool add_place(reader *r, int place)
 static bool add_stroke(reader *r)
 {
     himc_score *score = r->score;
-    if (score->stroke_count == SCORE_STROKES_MAX)
+    if (score->stroke_count == HIMC_SCORE_STROKES)
         return himc_error_set(r->error, "stroke: one too many, expected %d strokes",
-                              SCORE_STROKES_MAX);
+                              HIMC_SCORE_STROKES);
     int room = r->stroke_room;
     if (!add_place(r, score->stroke_count) ||
         !himc_array_grow(&score->stroke_lines, score->stroke_count, &room,

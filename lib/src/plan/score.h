@@ -4,6 +4,8 @@
 
 #include "himc/score.h"
 
+#define HIMC_SCORE_STROKES 200000 ///< of a file, and of a hand; chosen: more than a day of drumming
+
 /// From one stroke of a hand to its next, at least (s). Chosen: 25 a second, faster than players.
 #define HIMC_CLOSEST_STROKES 0.04
 
