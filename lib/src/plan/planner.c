@@ -52,7 +52,12 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
     for (int i = 0; i < HIMC_DRUMS; i++)
         planner->drum[i] = (himc_head_frame){{0.75, 0, 0.85}, 0, 0.2921};
     planner->score.drum = planner->drum;
-    himc_planner_motion_init(planner);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_hand_place(&planner->hand[hand].plan, 0, config->rest[hand]);
+        himc_stream_init(&planner->hand[hand].stream);
+        planner->hand[hand].way.touch = -HUGE_VAL;
+    }
+    himc_planner_changed(planner, -HUGE_VAL);
     return planner;
 }
 
@@ -245,11 +250,14 @@ static void go_on(himc_planner *planner, const himc_stroke *stroke, double end)
     if (!score->over)
         return;
     rebase(planner, planner->now);
-    if (himc_planner_score_time(score, 0, end) - stroke->early > planner->now + PLANNER_AHEAD)
-        himc_planner_score_go_on(score, planner->now);
-    else
+    if (himc_planner_score_time(score, 0, end) - stroke->early > planner->now + PLANNER_AHEAD) {
+        score->beat = himc_planner_score_beat_at(score, planner->now);
+        himc_planner_score_start(score, planner->now);
+        score->goes_on = true;
+    } else {
         himc_planner_say(planner, PLANNER_NEXT_PLAY, "%s: " PAST ", the next play has it",
                          himc_planner_name(planner, &late, name));
+    }
 }
 
 bool himc_planner_goes_on(const himc_planner *planner)
@@ -340,7 +348,10 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
     double t = planner->now + PLANNER_AHEAD;
     for (int i = 0; i < HIMC_HANDS && running; i++) {
         himc_planner_cut(planner, (himc_hand)i, t);
-        himc_planner_score_seat(score, (himc_hand)i, planner->hand[i].plan.end);
+        double from = planner->hand[i].plan.end;
+        int round = himc_planner_score_round_at(score, from);
+        himc_planner_roll_from(score, (himc_hand)i, round,
+                               from - himc_planner_score_time(score, round, 0));
         himc_planner_extend(planner, (himc_hand)i, t + PLANNER_HORIZON);
     }
     double end = himc_planner_score_time(score, 0, himc_planner_roll_end(score, at));
@@ -399,7 +410,18 @@ bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *t
 {
     if (beat <= 0 || count < 1)
         return himc_planner_set_tempi(planner, tempi, count, error);
-    return himc_planner_score_join_tempi(&planner->score, tempi, count, beat, error);
+    planner_score *score = &planner->score;
+    int kept = 1;
+    while (kept < score->tempo_count && score->tempi[kept].beat < beat)
+        kept++;
+    himc_tempo_change *all = malloc((size_t)(kept + count) * sizeof *all);
+    if (!all)
+        return himc_error_set(error, "tempo: out of memory for %d changes", kept + count);
+    memcpy(all, score->tempi, (size_t)kept * sizeof *all);
+    for (int i = 0; i < count; i++)
+        all[kept + i] = (himc_tempo_change){tempi[i].beat + beat, tempi[i].bpm};
+    himc_planner_score_take_tempi(score, all, kept + count);
+    return true;
 }
 
 /// Time of a stroke of a part that may be of another score (s); infinite past its end.
@@ -481,7 +503,7 @@ void himc_planner_clear(himc_planner *planner)
             h->planned[i].place.roll = h->planned[i].place.number = -1;
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
-    himc_planner_score_seek(score, 0);
+    score->beat = 0;
     himc_planner_last_until(planner, -1);
     planner->hits = 0;
     himc_planner_notes_begin(&planner->notes);
@@ -536,7 +558,7 @@ void himc_planner_play(himc_planner *planner, double t)
     if (!isfinite(t) || (plays && t < himc_planner_end(planner)))
         return;
     if (score->playing || score->beat > himc_planner_score_last_beat(score))
-        himc_planner_score_seek(score, 0);
+        score->beat = 0;
     himc_planner_notes_begin(&planner->notes);
     himc_planner_cut_both(planner, t);
     start(planner, t, false);
@@ -564,7 +586,8 @@ void himc_planner_seek(himc_planner *planner, double t, double beat)
 {
     if (!isfinite(t) || !isfinite(beat))
         return;
-    himc_planner_score_seek(&planner->score, fmax(beat, 0));
+    planner->score.beat = fmax(beat, 0);
+    planner->score.over = false;
     himc_planner_rest_again(planner);
     if (!planner->score.playing)
         return;
@@ -614,7 +637,11 @@ double himc_planner_length(const himc_planner *planner)
 double himc_planner_next_start(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
-    double length = himc_planner_score_free_from(score);
+    double last = himc_planner_roll_last_beat(score), length = himc_planner_score_length(score);
+    if (last >= 0 &&
+        himc_planner_score_seconds(score, length) - himc_planner_score_seconds(score, last) <
+            HIMC_CLOSEST_STROKES)
+        length++;
     return score->playing && !score->empties
                ? fmax(length, ceil(himc_planner_score_beat_at(score, t + PREPARATION_TIME)))
                : length;

@@ -72,8 +72,9 @@ double himc_planner_asked(const himc_planner *planner, const timed_stroke *s)
     return varied * gesture_of(planner, &s->stroke).speed;
 }
 
-himc_vec3 himc_planner_tip_at(const himc_planner *planner, const himc_head_frame *head, double x,
-                              double y)
+/// The tip's position when it touches a head at (x, y) (m).
+static himc_vec3 tip_at(const himc_planner *planner, const himc_head_frame *head, double x,
+                        double y)
 {
     return himc_vec3_madd(himc_head_frame_to_world(head, x, y), planner->config.mallet_radius,
                           himc_head_frame_normal(head));
@@ -99,7 +100,7 @@ himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *s,
     double most =
         sqrt(fmax(PLANNER_STRUCK * head->radius * PLANNER_STRUCK * head->radius - at.x * at.x, 0));
     at.y = by > 0 ? fmin(at.y + by, fmax(most, at.y)) : fmax(at.y + by, fmin(-most, at.y));
-    return himc_planner_tip_at(planner, head, at.x, at.y);
+    return tip_at(planner, head, at.x, at.y);
 }
 
 /// Moves a place into the part of a head that is struck; true if it was beyond.
@@ -131,7 +132,7 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
                          "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
                          stroke->bounce_time, most);
     return (himc_goal){.time = t,
-                       .spot = himc_planner_tip_at(planner, head, x, y),
+                       .spot = tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),
                        .back = himc_vec3_scale(himc_head_frame_away(head), -1),
                        .gesture = g.speed > most ? himc_gesture_scale(g, most / g.speed) : g,
@@ -150,7 +151,7 @@ void himc_planner_vary(const himc_planner *planner, timed_stroke *s)
     himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
     keep_inside(head, &at.x, &at.y);
     s->varied = true;
-    s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
+    s->goal.spot = tip_at(planner, head, at.x, at.y);
     if (s->goal.gesture.speed > HIMC_SLOWEST_GESTURE)
         s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
     himc_vec3 aside = himc_vec3_cross(s->goal.normal, s->goal.back);
@@ -175,8 +176,8 @@ static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_
 {
     const himc_head_frame *head = &planner->drum[drum];
     double aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
-    himc_vec3 at = himc_planner_tip_at(planner, head, -REST_BACK * head->radius,
-                                       hand == HIMC_LEFT ? aside : -aside);
+    himc_vec3 at =
+        tip_at(planner, head, -REST_BACK * head->radius, hand == HIMC_LEFT ? aside : -aside);
     *place = himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
     return planner->known[drum] && himc_planner_reaches(planner, hand, *place);
 }

@@ -46,16 +46,6 @@
 /// What has become of a stroke that was to be planned.
 typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS, LEFT_OUT, UNSOUND } plan_result;
 
-void himc_planner_motion_init(himc_planner *planner)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_hand_place(&planner->hand[hand].plan, 0, planner->config.rest[hand]);
-        himc_stream_init(&planner->hand[hand].stream);
-        planner->hand[hand].way.touch = -HUGE_VAL;
-    }
-    himc_planner_changed(planner, -HUGE_VAL);
-}
-
 void himc_planner_changed(himc_planner *planner, double t)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)

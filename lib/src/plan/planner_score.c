@@ -163,22 +163,6 @@ void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *temp
     score->tempo_count = count;
 }
 
-bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change *tempi, int count,
-                                   double beat, himc_error *error)
-{
-    int kept = 1;
-    while (kept < score->tempo_count && score->tempi[kept].beat < beat)
-        kept++;
-    himc_tempo_change *all = malloc((size_t)(kept + count) * sizeof *all);
-    if (!all)
-        return himc_error_set(error, "tempo: out of memory for %d changes", kept + count);
-    memcpy(all, score->tempi, (size_t)kept * sizeof *all);
-    for (int i = 0; i < count; i++)
-        all[kept + i] = (himc_tempo_change){tempi[i].beat + beat, tempi[i].bpm};
-    himc_planner_score_take_tempi(score, all, kept + count);
-    return true;
-}
-
 /// The number of changes up to a beat.
 static int changes_to(const planner_score *score, double beat)
 {
@@ -210,12 +194,6 @@ void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
 void himc_planner_score_hold(planner_score *score, double t, double beat)
 {
     score->origin = t - himc_planner_score_seconds(score, beat);
-}
-
-void himc_planner_score_seat(planner_score *score, himc_hand hand, double t)
-{
-    int round = himc_planner_score_round_at(score, t);
-    himc_planner_roll_from(score, hand, round, t - himc_planner_score_time(score, round, 0));
 }
 
 /// Names a round of the loop, through all starts of the transport; never 0.
@@ -262,23 +240,10 @@ void himc_planner_score_start(planner_score *score, double t)
     }
 }
 
-void himc_planner_score_go_on(planner_score *score, double t)
-{
-    score->beat = himc_planner_score_beat_at(score, t);
-    himc_planner_score_start(score, t);
-    score->goes_on = true;
-}
-
 void himc_planner_score_stop(planner_score *score, double beat)
 {
     score->beat = score->empties ? 0 : beat;
     score->playing = score->over = score->goes_on = score->empties = false;
-}
-
-void himc_planner_score_seek(planner_score *score, double beat)
-{
-    score->beat = beat;
-    score->over = false;
 }
 
 int himc_planner_score_rebase(planner_score *score, double t)
@@ -382,12 +347,6 @@ bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
 double himc_planner_score_last_beat(const planner_score *score)
 {
     return fmax(himc_planner_roll_last_beat(score), score->until);
-}
-
-double himc_planner_score_free_from(const planner_score *score)
-{
-    double last = himc_planner_roll_last_beat(score), next = himc_planner_score_length(score);
-    return next + (last >= 0 && gap(score, last, next) < HIMC_CLOSEST_STROKES ? 1 : 0);
 }
 
 int himc_planner_score_round_at(const planner_score *score, double t)

@@ -130,9 +130,6 @@ himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi,
                                                  himc_error *error);
 /// Replaces the tempo map by one on the heap, which it then owns.
 void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count);
-/// The tempo map up to `beat`, then another shifted to begin there; false without memory.
-bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change *tempi, int count,
-                                   double beat, himc_error *error);
 /// One tempo up to the first change after `beat`; in a loop that plays, only in place of the one
 /// valid at `beat`: the others are for later rounds.
 HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
@@ -141,8 +138,6 @@ HIMC_RT bool himc_planner_score_has_tempo(const planner_score *score, double bea
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
 
-/// The hand's next stroke of a roll is the first one after `t` (s).
-HIMC_RT void himc_planner_score_seat(planner_score *score, himc_hand hand, double t);
 /// Before the tempo changes: of a roll that has begun the strokes that are not planned yet will be
 /// counted anew; all of them come after `t`. The last one that is planned has a time ...
 HIMC_RT void himc_planner_score_anchor(planner_score *score, double t);
@@ -150,12 +145,8 @@ HIMC_RT void himc_planner_score_anchor(planner_score *score, double t);
 HIMC_RT void himc_planner_score_keep(planner_score *score);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
-/// After the end, plays on from the beat at `t`.
-HIMC_RT void himc_planner_score_go_on(planner_score *score, double t);
 /// Stops at that beat.
 HIMC_RT void himc_planner_score_stop(planner_score *score, double beat);
-/// Play begins at that beat.
-HIMC_RT void himc_planner_score_seek(planner_score *score, double beat);
 /// Makes the round of the loop at `t` round 0, before its length changes; returns its number so
 /// far.
 HIMC_RT int himc_planner_score_rebase(planner_score *score, double t);
@@ -173,8 +164,6 @@ HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
-/// The first whole beat where any hand can have a stroke after all others.
-HIMC_RT double himc_planner_score_free_from(const planner_score *score);
 /// The round of the loop at `t`, 0 before it begins.
 HIMC_RT int himc_planner_score_round_at(const planner_score *score, double t);
 /// A beat of a round, counted through all rounds since play began; a change of tempo in a loop

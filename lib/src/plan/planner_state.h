@@ -148,9 +148,6 @@ struct himc_planner {
 };
 
 // planner_goal.c
-/// The tip's position when it touches a head at (x, y) (m).
-HIMC_RT himc_vec3 himc_planner_tip_at(const himc_planner *planner, const himc_head_frame *head,
-                                      double x, double y);
 /// How far out of a hand's reach a place is (m).
 HIMC_RT double himc_planner_beyond(const himc_planner *planner, himc_hand hand, himc_vec3 place);
 /// True if the hand reaches it.
@@ -174,8 +171,6 @@ HIMC_RT void himc_planner_vary(const himc_planner *planner, timed_stroke *stroke
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
 
 // planner_motion.c
-/// Both hands wait at rest.
-HIMC_RT void himc_planner_motion_init(himc_planner *planner);
 /// Drums, reach or first strokes have changed: the hands rest elsewhere.
 HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// The plan of a hand is another one from t (s) on, to be checked and rehearsed.

@@ -89,12 +89,6 @@ static bool add_tempo(reader *r)
            himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
 }
 
-/// Lines, as they grow.
-typedef struct line_list {
-    himc_score_line **lines;
-    int *count, *room;
-} line_list;
-
 static void copy_line(himc_score_line *to, const himc_score_line *from)
 {
     memcpy(to->drum, from->drum, sizeof to->drum);
@@ -104,19 +98,19 @@ static void copy_line(himc_score_line *to, const himc_score_line *from)
 }
 
 /// A command points into itself, so lines are copied one by one and not moved.
-static bool grow_lines(const line_list *list, himc_error *error)
+static bool grow_lines(himc_score_line **lines, int count, int *room, himc_error *error)
 {
-    if (*list->count < *list->room)
+    if (count < *room)
         return true;
-    int wanted = *list->room ? 2 * *list->room : 16;
+    int wanted = *room ? 2 * *room : 16;
     himc_score_line *bigger = malloc((size_t)wanted * sizeof *bigger);
     if (!bigger)
         return himc_error_set(error, "out of memory for %d lines", wanted);
-    for (int i = 0; i < *list->count; i++)
-        copy_line(&bigger[i], &(*list->lines)[i]);
-    free(*list->lines);
-    *list->lines = bigger;
-    *list->room = wanted;
+    for (int i = 0; i < count; i++)
+        copy_line(&bigger[i], &(*lines)[i]);
+    free(*lines);
+    *lines = bigger;
+    *room = wanted;
     return true;
 }
 
@@ -139,15 +133,15 @@ static bool add_line(reader *r, bool timed)
             return himc_error_set(r->error, "drum: %s is made with %g inches on line %d already",
                                   made->atom[0].symbol, inches_of(made), score->lines[i].line);
     }
-    line_list list = {&score->lines, &score->line_count, &r->line_room};
-    if (timed)
-        list = (line_list){&score->changes, &score->change_count, &r->change_room};
+    himc_score_line **lines = timed ? &score->changes : &score->lines;
+    int *count = timed ? &score->change_count : &score->line_count;
     if (score->line_count + score->change_count == SCORE_LINES_MAX)
         return himc_error_set(r->error, "one line too many, expected %d besides strokes",
                               SCORE_LINES_MAX);
-    if ((timed && !add_place(r, -1 - score->change_count)) || !grow_lines(&list, r->error))
+    if ((timed && !add_place(r, -1 - *count)) ||
+        !grow_lines(lines, *count, timed ? &r->change_room : &r->line_room, r->error))
         return false;
-    copy_line(&(*list.lines)[(*list.count)++], &r->now);
+    copy_line(&(*lines)[(*count)++], &r->now);
     return true;
 }
 
