@@ -218,7 +218,7 @@ bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g)
     if (h <= LEAST_FALL_HEIGHT || T > fmax(longest, LEAST_FALL_TIME))
         return false;
     if (g->speed * T < HIMC_LEAST_LANDING * h) {
-        // a tip that is too high for its stroke sinks to the stroke's apex first, if it has the time
+        // a tip too high for its stroke sinks to the stroke's apex first, if it has the time
         himc_gesture low = himc_gesture_squeeze(*g, T, h);
         double time = T - low.down - low.dwell;
         if (HIMC_MOVE_PEAK * (h - low.height) <= HIMC_QUICK_MOVE * time * time)

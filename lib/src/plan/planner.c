@@ -192,7 +192,8 @@ void himc_planner_set_human(himc_planner *planner, himc_human human)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
-/// A stroke added without a loop is the next one if it comes before it; given up if its beat is past.
+/// A stroke added without a loop is the next one if it comes before it; given up if its beat is
+/// past.
 static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
 {
     const planner_part *part = &planner->score.part[hand];

@@ -5,6 +5,11 @@
 #include <math.h>
 #include <string.h>
 
+double himc_planner_score_seconds(const planner_score *score, double beat)
+{
+    return himc_score_seconds(score->tempi, score->tempo_count, beat);
+}
+
 bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b)
 {
     return a->beat == b->beat && a->length == b->length && a->hand == b->hand &&

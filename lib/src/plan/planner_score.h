@@ -190,14 +190,11 @@ HIMC_RT double himc_planner_score_touch(const planner_score *score, int round,
 HIMC_RT double himc_planner_score_time(const planner_score *score, int round, double beat);
 /// Beat at `t`, in its round.
 HIMC_RT double himc_planner_score_beat_at(const planner_score *score, double t);
-/// Time of a beat from beat 0 of its round (s).
-HIMC_RT static inline double himc_planner_score_seconds(const planner_score *score, double beat)
-{
-    return himc_score_seconds(score->tempi, score->tempo_count, beat);
-}
 
 // planner_part.c: a hand's strokes, sorted
 
+/// Time of a beat from beat 0 of its round (s).
+HIMC_RT double himc_planner_score_seconds(const planner_score *score, double beat);
 /// The first stroke after `beat`, or with `from` the first at it or after it.
 HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool from);
 /// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
