@@ -96,12 +96,16 @@ typedef struct himc_quat {
     double z; ///< the same of z
 } himc_quat;
 
-/// Place of a drumhead in the world frame. The head's x axis points away from the performer, its y
-/// axis to the left.
+/// The struck surface of an instrument, a drumhead say, in the world frame. Its x axis
+/// points away from the performer, its y axis to the left.
 typedef struct himc_head_frame {
-    himc_vec3 center; ///< centre of the head at rest (m)
-    double tilt;      ///< positive lifts the side away from the performer (rad)
-    double radius;    ///< of the head (m)
+    himc_vec3 center;    ///< centre of the surface at rest (m)
+    double tilt;         ///< positive lifts the side away from the performer (rad)
+    double radius;       ///< of the disc, or of the circle around a rectangle (m)
+    double length;       ///< of a rectangle along x (m); 0: a disc
+    double width;        ///< of a rectangle along y (m); 0: a disc
+    const double *spots; ///< places of HIMC_SPOT_CENTER, _NORMAL and _RIM, from the centre towards
+                         ///< the performer, per radius (3); borrowed; NULL: those of a drumhead
 } himc_head_frame;
 
 #define HIMC_DRUMS 16 ///< most that one performer plays on

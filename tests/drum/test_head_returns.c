@@ -62,7 +62,7 @@ static himc_drum *drum_of(bool ears)
 
 static void strike(himc_drum *drum)
 {
-    TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, -0.24, 0.01, 4, &error));
+    TEST_ASSERT_TRUE_MESSAGE(himc_drum_strike_at(drum, 0, -0.2, 0.01, 4, &error), error.text);
 }
 
 static double energy_of(himc_drum *drum)
@@ -280,6 +280,8 @@ static void change_somehow(himc_drum *drum, himc_drum *follower, unsigned *rando
     TEST_ASSERT_TRUE_MESSAGE(energy_of(drum) <= before * (1 + ROUNDING), text);
     TEST_ASSERT_TRUE_MESSAGE(himc_drum_follow(follower, drum, &error), error.text);
     TEST_ASSERT_TRUE(himc_drum_follows(follower, drum));
+    const himc_head_frame *led = himc_drum_head_frame(drum), *at = himc_drum_head_frame(follower);
+    TEST_ASSERT_TRUE_MESSAGE(at->radius == led->radius && at->length == led->length, text);
     TEST_ASSERT_TRUE_MESSAGE(energy_of(follower) <= beside * (1 + ROUNDING), text);
 }
 

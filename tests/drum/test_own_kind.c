@@ -44,6 +44,16 @@ static void fit(const himc_shape *shape, himc_head *head)
     head->density = 24;
 }
 
+// x is along the bar; a performer plays it near the middle, or on a node of its first mode
+static void surface(const himc_shape *shape, himc_head_frame *surface)
+{
+    static const double spots[] = {
+        [HIMC_SPOT_CENTER] = 0, [HIMC_SPOT_NORMAL] = 0.1, [HIMC_SPOT_RIM] = 0.538};
+    surface->length = side(shape, shape->length) * surface->radius;
+    surface->width = side(shape, shape->width) * surface->radius;
+    surface->spots = spots;
+}
+
 static double principal(const himc_shape *shape)
 {
     (void)shape;
@@ -92,6 +102,7 @@ static void transform(const himc_modes *modes, int index, double kx, double ky, 
 static const himc_kind bar_kind = {.name = "bar",
                                    .usual = MODES,
                                    .fit = fit,
+                                   .surface = surface,
                                    .principal = principal,
                                    .film = no_film,
                                    .list = list,
@@ -113,6 +124,7 @@ static himc_drum *add_bar(double hz)
     s.usual = s.head.head;
     s.noise = 0; // a bar as it is here radiates little
     s.place.radius = s.head.head.radius;
+    surface(&s.head.shape, &s.place);
     himc_drum *bar = himc_drum_new_of(&s, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(bar, error.text);
     TEST_ASSERT_TRUE_MESSAGE(himc_performance_add_drum(performance, bar, &error), error.text);
@@ -172,6 +184,33 @@ static void test_a_score_plays_the_bar(void)
             TEST_ASSERT_EQUAL_STRING("bar", word(lo_message_get_argv(heard[i].message)[2]));
     double lowest = power_at(bar, 220);
     TEST_ASSERT_TRUE(lowest > 0 && lowest > 1e3 * power_at(bar, 400));
+}
+
+// one past its side is led onto it, one for its end lands there; a mallet must meet the bar
+static void test_strokes_land_on_the_bar_alone(void)
+{
+    himc_drum *bar = add_bar(220);
+    himc_error error = {0};
+    subscribe("strikes");
+    say("/himc/tempo", "120");
+    say("/himc/stroke", "1 right legato f 0 0.1 bar");
+    say("/himc/stroke", "2 left legato f rim bar");
+    say("/himc/play", "");
+    play(3);
+    TEST_ASSERT_EQUAL_INT(2, count("/himc/strike"));
+    double at[2][2];
+    for (int i = 0, k = 0; i < heard_count; i++)
+        if (strcmp(heard[i].path, "/himc/strike") == 0) {
+            for (int j = 0; j < 2; j++)
+                at[k][j] = number(lo_message_get_argv(heard[i].message)[3 + j]);
+            k++;
+        }
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, 0.97 * 0.5 * WIDTH, at[0][1]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, -0.538 * himc_drum_head_frame(bar)->radius, at[1][0]);
+    TEST_ASSERT_TRUE(
+        himc_drum_strike_at(bar, HIMC_STRIKE_NEVER, 0.49 * LENGTH, 0.49 * WIDTH, 1, &error));
+    TEST_ASSERT_FALSE(himc_drum_strike_at(bar, HIMC_STRIKE_NEVER, 0, 0.51 * WIDTH, 1, &error));
+    TEST_ASSERT_FALSE(himc_drum_strike_at(bar, HIMC_STRIKE_NEVER, 0.51 * LENGTH, 0, 1, &error));
 }
 
 static void test_a_damped_bar_rings_shorter(void)
@@ -258,6 +297,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_bar_has_the_frequencies_of_a_free_bar);
     RUN_TEST(test_a_score_plays_the_bar);
+    RUN_TEST(test_strokes_land_on_the_bar_alone);
     RUN_TEST(test_a_damped_bar_rings_shorter);
     RUN_TEST(test_tuning_moves_all_modes_of_the_bar_by_one_ratio);
     RUN_TEST(test_the_bar_is_drawn_from_what_is_sent);

@@ -142,7 +142,7 @@ typedef struct watch {
 static void keep_row(void *user, const himc_motion_row *row)
 {
     watch *w = user;
-    himc_head_frame place = {{0.75, 0, 0.85}, 0, 0.2921};
+    himc_head_frame place = {.center = {0.75, 0, 0.85}, .radius = 0.2921};
     for (int hand = 0; hand < HIMC_HANDS && w->count < w->room; hand++) {
         himc_vec3 at = himc_head_frame_from_world(&place, row->tip[hand]);
         w->height[w->count][hand] = at.z;

@@ -267,7 +267,7 @@ static void test_a_rebound_as_predicted_changes_the_plan_by_less_than_a_millimet
 
 static void test_tip_lands_on_the_other_drum_along_its_normal(void)
 {
-    himc_head_frame place = {{0.7, 0.65, 0.8}, 0.15, 0.33};
+    himc_head_frame place = {.center = {0.7, 0.65, 0.8}, .tilt = 0.15, .radius = 0.33};
     himc_stroke s = {.beat = 3, .hand = HIMC_LEFT, .dynamic = 0.7, .spot = HIMC_SPOT_XY, .x = -0.1};
     add(planner, 2, HIMC_LEFT, HIMC_LEGATO, 0.7);
     TEST_ASSERT_TRUE(himc_planner_add(planner, &s, 1, &error));

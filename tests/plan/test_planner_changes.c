@@ -305,7 +305,7 @@ static void test_stroke_beyond_the_rim_is_struck_just_inside_it_and_a_note_says_
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, PLANE, x.z);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.75, x.x);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.97 * 0.3, x.y);
-    expect_note("0 0.4 is beyond the rim at 0.3 m: struck at 0 0.291");
+    expect_note("0 0.4 is beyond the rim: struck at 0 0.291");
 }
 
 static void test_play_past_the_end_begins_at_beat_0(void)

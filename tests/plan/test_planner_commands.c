@@ -187,7 +187,8 @@ static void test_a_hit_of_any_hand_is_played_by_the_one_above_its_spot(void)
         double side = i % 2 ? -1 : 1, tilt = i < 2 ? 0 : 0.4, touch;
         int drum;
         use(120);
-        himc_planner_set_drum(planner, 0, &(himc_head_frame){{0.75, 0, 0.85}, tilt, 0.3});
+        himc_planner_set_drum(
+            planner, 0, &(himc_head_frame){.center = {0.75, 0, 0.85}, .tilt = tilt, .radius = 0.3});
         himc_planner_reach(planner, 0, above, himc_vec3_make(0.55, 0.02 * side, 1.3));
         himc_planner_reach(planner, 0, aside, himc_vec3_make(0.55, -0.25 * side, 0.9));
         himc_planner_advance(planner, 2);
@@ -284,8 +285,9 @@ static double storm(unsigned seed, int commands)
             break;
         case 7: himc_planner_separated(planner, s.hand, t, &m); break;
         case 8:
-            himc_planner_set_drum(planner, 0,
-                                  &(himc_head_frame){{0.7, 0, 0.8 + rand() % 9 * 0.01}, 0, 0.3});
+            himc_planner_set_drum(
+                planner, 0,
+                &(himc_head_frame){.center = {0.7, 0, 0.8 + rand() % 9 * 0.01}, .radius = 0.3});
             break;
         case 9:
             if (rand() % 40 == 0)
@@ -339,7 +341,8 @@ static void test_values_that_are_not_finite_change_nothing(void)
     himc_planner_reach(planner, 1, HIMC_LEFT, bad.x);
     himc_planner_tempo(planner, 1, NAN);
     himc_planner_seek(planner, 1, NAN);
-    TEST_ASSERT_FALSE(himc_planner_set_drum(planner, 0, &(himc_head_frame){{NAN, 0, 0}, 0, 0.3}));
+    TEST_ASSERT_FALSE(himc_planner_set_drum(
+        planner, 0, &(himc_head_frame){.center = {NAN, 0, 0}, .radius = 0.3}));
     same_state(before, himc_planner_target(planner, HIMC_LEFT, 1));
 }
 

@@ -287,7 +287,7 @@ static double share_of_the_speed(himc_take *take, const himc_head_frame *head)
 
 static void test_each_of_the_45_files_is_played_at_the_speed_captured(void)
 {
-    himc_head_frame head = {{0.5, 0, 0.85}, 0, 0.3};
+    himc_head_frame head = {.center = {0.5, 0, 0.85}, .radius = 0.3};
     double least = 2, most = 0, sum = 0;
     for (int i = 0; i < MOCAP_SEQUENCES; i++) {
         himc_mocap *m = sequence(i);

@@ -332,7 +332,7 @@ static double apex_before(const char *nuance, double gap, const char *before)
     const char *strokes[2] = {before, nuance};
     himc_tempo_change tempo = {0, 60};
     himc_planner_set_tempi(planner, &tempo, 1, &error);
-    himc_planner_set_drum(planner, 0, &(himc_head_frame){{0.75, 0, 0.85}, 0, 0.3});
+    himc_planner_set_drum(planner, 0, &(himc_head_frame){.center = {0.75, 0, 0.85}, .radius = 0.3});
     for (int i = 0; i < 2; i++) {
         himc_command c;
         char text[64];

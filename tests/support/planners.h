@@ -20,8 +20,9 @@ static inline himc_planner *make_with(const himc_planner_config *config, double 
     himc_tempo_change tempo = {0, bpm};
     TEST_ASSERT_NOT_NULL(p);
     TEST_ASSERT_TRUE(himc_planner_set_tempi(p, &tempo, 1, &error));
-    himc_planner_set_drum(p, 0, &(himc_head_frame){{0.75, 0, 0.85}, 0, 0.3});
-    himc_planner_set_drum(p, 1, &(himc_head_frame){{0.7, 0.65, 0.8}, 0.15, 0.33});
+    himc_planner_set_drum(p, 0, &(himc_head_frame){.center = {0.75, 0, 0.85}, .radius = 0.3});
+    himc_planner_set_drum(
+        p, 1, &(himc_head_frame){.center = {0.7, 0.65, 0.8}, .tilt = 0.15, .radius = 0.33});
     return p;
 }
 

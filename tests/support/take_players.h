@@ -8,7 +8,7 @@
 #include "capture/take.h"
 #include "body/posture.h"
 
-static const himc_head_frame usual_drum = {{0.70, 0, 0.85}, 0, 0.2921};
+static const himc_head_frame usual_drum = {.center = {0.70, 0, 0.85}, .radius = 0.2921};
 
 /// Height above the head at `t`: blows every 0.5 s at 0.5 k - 0.1 s, quintics between.
 static inline himc_target beaten_height(double t, double speed)

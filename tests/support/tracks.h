@@ -10,7 +10,7 @@
 
 #define LEVEL 0.85 // height of the head (m)
 
-static const himc_head_frame place = {{0.5, 0, LEVEL}, 0, 0.3};
+static const himc_head_frame place = {.center = {0.5, 0, LEVEL}, .radius = 0.3};
 static himc_error error;
 static himc_take *take;
 static himc_track *track;

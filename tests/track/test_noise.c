@@ -11,7 +11,7 @@
 #define RADIUS 0.0175
 #define FRAMES 1500
 
-static const himc_head_frame place = {{0.5, 0, 0.85}, 0, 0.3};
+static const himc_head_frame place = {.center = {0.5, 0, 0.85}, .radius = 0.3};
 
 void setUp(void)
 {

@@ -54,17 +54,16 @@ himc_capsule_near himc_capsule_shell(const himc_capsule *p, const himc_head_fram
         himc_vec3 at = himc_vec3_madd(p->a, share, himc_vec3_sub(p->b, p->a));
         himc_vec3 from = himc_vec3_sub(at, head->center);
         double over = himc_vec3_dot(from, up);
-        himc_vec3 out = himc_vec3_madd(from, -over, up);
-        double far = himc_vec3_length(out), beside = far - head->radius;
+        himc_vec3 away;
+        double beside = himc_head_frame_beside(head, himc_vec3_madd(from, -over, up), &away);
         bool corner = beside > 0 && over > 0;
         double gap = corner ? hypot(beside, over) : fmax(beside, over);
         if (gap >= least.gap)
             continue;
         least.gap = gap;
         least.s = share;
-        least.n = himc_vec3_add(
-            himc_vec3_scale(up, corner ? over / gap : over >= beside),
-            himc_vec3_scale(out, (corner ? beside / gap : beside > over) / fmax(far, 1e-9)));
+        least.n = himc_vec3_add(himc_vec3_scale(up, corner ? over / gap : over >= beside),
+                                himc_vec3_scale(away, corner ? beside / gap : beside > over));
     }
     least.gap -= p->radius;
     return least;

@@ -249,7 +249,7 @@ static bool strike_place(const himc_take *take, const himc_take_tip tips[HIMC_HA
 static void usual_place(const himc_head_frame *drum, double *x, double *aside)
 {
     himc_stroke usual = {.hand = HIMC_RIGHT, .spot = HIMC_SPOT_NORMAL};
-    himc_stroke_spot(&usual, drum->radius, x, aside);
+    himc_head_frame_spot(drum, &usual, x, aside);
     *aside = fabs(*aside);
 }
 
@@ -291,7 +291,7 @@ static himc_vec3 seen_on_head(const himc_head_frame *drum, himc_vec3 spot)
 static void seat_player(himc_player *player, himc_vec3 struck, himc_head_frame *drum)
 {
     himc_vec3 spot = himc_vec3_sub(struck, player->hips), local = seen_on_head(drum, spot);
-    if (hypot(local.x, local.y) > 0.97 * drum->radius) { // chosen: strikes near the rim miss
+    if (himc_head_frame_out(drum, local.x, local.y) > 0.97) { // chosen: strikes near the rim miss
         // under the strikes, on the line from the player, known from 0.1 m on (chosen)
         double x, aside, far = hypot(spot.x, spot.y);
         usual_place(drum, &x, &aside);

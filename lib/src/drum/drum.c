@@ -168,10 +168,10 @@ bool himc_drum_set(himc_drum *drum, const himc_drum_settings *to, himc_model **m
                    himc_error *error)
 {
     const himc_mallet_head *mallet = &drum->set.mallet;
-    himc_head_frame there = to->place;
-    there.radius = drum->set.place.radius;
-    bool moves = !himc_head_frame_equal(&drum->set.place, &there);
-    bool grows = drum->set.place.radius != to->place.radius ||
+    const himc_head_frame *place = &drum->set.place;
+    himc_head_frame there = himc_head_frame_at(&to->place, place);
+    bool moves = !himc_head_frame_equal(place, &there);
+    bool grows = !himc_head_frame_equal(&to->place, &there) ||
                  himc_membrane_config_of(drum->membrane)->shape.kind != to->head.shape.kind;
     bool exchanges = made && *made;
     if (!set_head(drum, &to->head, made, error))

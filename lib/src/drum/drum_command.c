@@ -4,6 +4,7 @@
 
 #include "base/argument.h"
 #include "base/format.h"
+#include "base/head_frame.h"
 #include "base/text.h"
 #include "head/air.h"
 #include "head/grid.h"
@@ -76,7 +77,9 @@ static bool set_config(himc_drum_settings *s, const himc_membrane_config *config
         return false;
     s->head = *config;
     himc_membrane_config_keep_pickups(&s->head);
-    s->place.radius = s->head.head.radius;
+    s->place = himc_head_frame_at(&s->place, &(himc_head_frame){.radius = s->head.head.radius});
+    if (config->shape.kind->surface)
+        config->shape.kind->surface(&config->shape, &s->place);
     return true;
 }
 
@@ -359,7 +362,7 @@ static bool do_technique(himc_drum_settings *s, const himc_command *c, himc_erro
 
 static bool do_strike(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    return himc_drum_may_strike(s->place.radius, number(c, 0), number(c, 1), number(c, 2), error);
+    return himc_drum_may_strike(&s->place, number(c, 0), number(c, 1), number(c, 2), error);
 }
 
 // those that a score may have at a beat, and three alike

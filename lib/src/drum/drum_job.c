@@ -5,6 +5,7 @@
 #include "drum/drum_state.h"
 
 #include "base/file.h"
+#include "base/head_frame.h"
 #include "base/text.h"
 #include "head/statistical.h"
 
@@ -176,7 +177,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
         to = j->after;
     } else {
         to.head = j->after.head;
-        to.place.radius = j->after.place.radius;
+        to.place = himc_head_frame_at(&to.place, &j->after.place);
         if (j->command.id == HIMC_COMMAND_PLACE && !j->listens) {
             to.place = j->after.place;
             to.placed = true;

@@ -75,6 +75,7 @@ bool himc_drum_follow(himc_drum *drum, const himc_drum *other, himc_error *error
             return false;
         himc_model_free(himc_membrane_exchange(drum->membrane, made));
     }
+    drum->set.place = himc_head_frame_at(&drum->set.place, &other->set.place);
     if (hears)
         return true;
     drum->listener = other->listener;

@@ -82,9 +82,9 @@ HIMC_RT void himc_drum_keep_edits(himc_head *head, const himc_head *was, const h
 /// `density`. False with the reason if the drum refuses it.
 HIMC_RT bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual,
                                  const himc_command *checked, himc_head *head, himc_error *error);
-/// False with the reason if a head of that radius cannot be struck so.
-HIMC_RT bool himc_drum_may_strike(double radius, double x, double y, double velocity,
-                                  himc_error *error);
+/// False with the reason if that surface cannot be struck so.
+HIMC_RT bool himc_drum_may_strike(const himc_head_frame *surface, double x, double y,
+                                  double velocity, himc_error *error);
 
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.
 HIMC_RT void himc_drum_find_ways(himc_drum *drum);

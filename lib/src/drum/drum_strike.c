@@ -18,10 +18,14 @@
 #define GONE 0.005       // (m) above the head at rest and rising: the contact is over; chosen
 #define LONGEST_LIFE 1.0 // (s) of a mallet, whatever it does; chosen
 
-bool himc_drum_may_strike(double radius, double x, double y, double velocity, himc_error *error)
+bool himc_drum_may_strike(const himc_head_frame *surface, double x, double y, double velocity,
+                          himc_error *error)
 {
-    return himc_check_range("strike: X", x, -radius, radius, "m", error) &&
-           himc_check_range("strike: Y", y, -radius, radius, "m", error) &&
+    double radius = surface->radius, side = 0.5 * surface->length, aside = 0.5 * surface->width;
+    if (side == 0)
+        side = aside = radius;
+    return himc_check_range("strike: X", x, -side, side, "m", error) &&
+           himc_check_range("strike: Y", y, -aside, aside, "m", error) &&
            himc_check_range("strike: X Y, from the centre", hypot(x, y), 0, radius, "m", error) &&
            himc_check_range("strike: VELOCITY", velocity, HIMC_STRIKE_VELOCITY_MIN,
                             HIMC_STRIKE_VELOCITY_MAX, "m/s", error);
@@ -30,7 +34,7 @@ bool himc_drum_may_strike(double radius, double x, double y, double velocity, hi
 bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                          himc_error *error)
 {
-    if (!himc_drum_may_strike(drum->set.place.radius, x, y, velocity, error))
+    if (!himc_drum_may_strike(&drum->set.place, x, y, velocity, error))
         return false;
     if (delay == HIMC_STRIKE_NEVER)
         return true;

@@ -39,6 +39,9 @@ struct himc_kind {
 
     /// Sets what the shape itself says of a head: size, material. NULL: nothing.
     void (*fit)(const himc_shape *shape, himc_head *head);
+    /// Sets sides and spots of the surface that is struck, of the radius that it has. NULL: a disc
+    /// with the spots of a drumhead.
+    void (*surface)(const himc_shape *shape, himc_head_frame *surface);
     /// Of the principal mode: radius times wavenumber.
     double (*principal)(const himc_shape *shape);
     /// Area of the film that the outline holds, per radius^2; 0 without a film.

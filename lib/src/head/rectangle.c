@@ -86,6 +86,14 @@ static void fit(const himc_shape *shape, himc_head *head)
     head->radius = 0.5 * hypot(shape->length, shape->width);
 }
 
+static void surface(const himc_shape *shape, himc_head_frame *surface)
+{
+    double a, b;
+    sides(shape, &a, &b);
+    surface->length = a * surface->radius;
+    surface->width = b * surface->radius;
+}
+
 static double principal(const himc_shape *shape)
 {
     double a, b;
@@ -115,6 +123,7 @@ static double patch(const himc_head *head, double x, double y, double b)
 const himc_kind himc_kind_rectangle = {.name = "rectangle",
                                        .usual = HIMC_USUAL_MODES,
                                        .fit = fit,
+                                       .surface = surface,
                                        .principal = principal,
                                        .film = film,
                                        .list = list,

@@ -413,7 +413,7 @@ static void limit_depth(const performance_motion *m, himc_hand hand, himc_target
     if (head->radius == 0)
         return;
     himc_vec3 at = himc_head_frame_from_world(head, tip->x), n = himc_head_frame_normal(head);
-    double out = fmax(hypot(at.x, at.y) / head->radius - PRESS_RIM, 0) / (1 - PRESS_RIM);
+    double out = fmax(himc_head_frame_out(head, at.x, at.y) - PRESS_RIM, 0) / (1 - PRESS_RIM);
     double h = at.z - m->body.posture.skeleton.mallet_radius, v = himc_vec3_dot(n, tip->v),
            a = himc_vec3_dot(n, tip->a), free = h, free_v = v, free_a = a;
     if (out >= 1)
@@ -677,7 +677,7 @@ himc_vec3 himc_motion_beyond(const performance_motion *m, const himc_head_frame 
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_stroke usual = {.hand = (himc_hand)i, .spot = HIMC_SPOT_NORMAL};
         double x, y;
-        himc_stroke_spot(&usual, head->radius, &x, &y);
+        himc_head_frame_spot(head, &usual, &x, &y);
         himc_vec3 tip =
             himc_vec3_madd(himc_head_frame_to_world(head, x, y),
                            m->body.posture.skeleton.mallet_radius, himc_head_frame_normal(head));

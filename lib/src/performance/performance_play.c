@@ -176,7 +176,7 @@ void himc_performance_tell_misses(himc_performance *p)
                               .planned_time = miss.time,
                               .beat = miss.hit ? NAN : s->beat};
         himc_format(missed.nuance, sizeof missed.nuance, "%s", himc_nuance_name(s->nuance));
-        himc_stroke_spot(s, himc_drums_frame(&p->drums, miss.drum)->radius, &missed.x, &missed.y);
+        himc_head_frame_spot(himc_drums_frame(&p->drums, miss.drum), s, &missed.x, &missed.y);
         himc_events_missed(&p->events, &missed, himc_drum_name(p->drums.slot[miss.drum].drum),
                            miss.why);
     }

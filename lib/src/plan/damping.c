@@ -21,8 +21,9 @@ static bool send(himc_damping *d, himc_planner *planner, const himc_posture *pos
 {
     double at = fmax(d->due[drum], t + QUICK), way[HIMC_HANDS];
     himc_vec3 place[HIMC_HANDS];
-    himc_vec3 fingers =
-        himc_head_frame_to_world(head->frame, -FINGERS_BACK * head->frame->radius, 0);
+    double x = -FINGERS_BACK * head->frame->radius, y = 0;
+    himc_head_frame_keep_inside(head->frame, FINGERS_BACK, &x, &y);
+    himc_vec3 fingers = himc_head_frame_to_world(head->frame, x, y);
     fingers = himc_vec3_madd(fingers, FINGERS_OVER, himc_head_frame_normal(head->frame));
     for (int i = 0; i < HIMC_HANDS; i++) {
         place[i] = himc_posture_tip_of_grip(posture, (himc_hand)i, fingers);

@@ -50,7 +50,7 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
     }
     planner->config = *config;
     for (int i = 0; i < HIMC_DRUMS; i++)
-        planner->drum[i] = (himc_head_frame){{0.75, 0, 0.85}, 0, 0.2921};
+        planner->drum[i] = (himc_head_frame){.center = {0.75, 0, 0.85}, .radius = 0.2921};
     planner->score.drum = planner->drum;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_hand_place(&planner->hand[hand].plan, 0, config->rest[hand]);

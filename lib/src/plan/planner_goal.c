@@ -97,33 +97,21 @@ himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *s,
 {
     const himc_head_frame *head = &planner->drum[s->drum];
     himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
-    double most =
-        sqrt(fmax(PLANNER_STRUCK * head->radius * PLANNER_STRUCK * head->radius - at.x * at.x, 0));
+    double most = himc_head_frame_half_width(head, PLANNER_STRUCK, at.x);
     at.y = by > 0 ? fmin(at.y + by, fmax(most, at.y)) : fmax(at.y + by, fmin(-most, at.y));
     return tip_at(planner, head, at.x, at.y);
-}
-
-/// Moves a place into the part of a head that is struck; true if it was beyond.
-static bool keep_inside(const himc_head_frame *head, double *x, double *y)
-{
-    double r = hypot(*x, *y), limit = PLANNER_STRUCK * head->radius;
-    if (r <= limit)
-        return false;
-    *x *= limit / r;
-    *y *= limit / r;
-    return true;
 }
 
 himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
 {
     const himc_head_frame *head = &planner->drum[drum];
     double x, y;
-    himc_stroke_spot(stroke, head->radius, &x, &y);
+    himc_head_frame_spot(head, stroke, &x, &y);
     double asked_x = x, asked_y = y;
-    if (keep_inside(head, &x, &y))
+    if (himc_head_frame_keep_inside(head, PLANNER_STRUCK, &x, &y))
         himc_planner_say(planner, PLANNER_OUTSIDE,
-                         "%.3g %.3g is beyond the rim at %.3g m: struck at %.3g %.3g", asked_x,
-                         asked_y, head->radius, x, y);
+                         "%.3g %.3g is beyond the rim: struck at %.3g %.3g", asked_x, asked_y, x,
+                         y);
     // no faster than fingers can turn the stick for its bounces
     himc_gesture g = gesture_of(planner, stroke);
     double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
@@ -149,7 +137,7 @@ void himc_planner_vary(const himc_planner *planner, timed_stroke *s)
     const himc_variation *v = &s->variation;
     himc_vec3 at = himc_head_frame_from_world(head, s->written.spot);
     himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
-    keep_inside(head, &at.x, &at.y);
+    himc_head_frame_keep_inside(head, PLANNER_STRUCK, &at.x, &at.y);
     s->varied = true;
     s->goal.spot = tip_at(planner, head, at.x, at.y);
     if (s->goal.gesture.speed > HIMC_SLOWEST_GESTURE)
@@ -175,9 +163,10 @@ static int own_drum(const himc_planner *planner, himc_hand hand)
 static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_vec3 *place)
 {
     const himc_head_frame *head = &planner->drum[drum];
-    double aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
-    himc_vec3 at =
-        tip_at(planner, head, -REST_BACK * head->radius, hand == HIMC_LEFT ? aside : -aside);
+    double x = -REST_BACK * head->radius, aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
+    double y = hand == HIMC_LEFT ? aside : -aside;
+    himc_head_frame_keep_inside(head, PLANNER_STRUCK, &x, &y);
+    himc_vec3 at = tip_at(planner, head, x, y);
     *place = himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
     return planner->known[drum] && himc_planner_reaches(planner, hand, *place);
 }

@@ -131,7 +131,7 @@ typedef struct roll_next {
 static himc_vec3 spot_of(const planner_score *score, const himc_stroke *stroke, int drum)
 {
     double x, y;
-    himc_stroke_spot(stroke, score->drum[drum].radius, &x, &y);
+    himc_head_frame_spot(&score->drum[drum], stroke, &x, &y);
     return himc_head_frame_to_world(&score->drum[drum], x, y);
 }
 

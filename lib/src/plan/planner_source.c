@@ -23,7 +23,7 @@ static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
     if (!himc_planner_current(planner, hand, t, &current, &next.drum, &next.time))
         return next;
     next.any = true;
-    himc_stroke_spot(&current, planner->drum[next.drum].radius, &next.x, &next.y);
+    himc_head_frame_spot(&planner->drum[next.drum], &current, &next.x, &next.y);
     strcpy(next.nuance, himc_nuance_name(current.nuance));
     next.yields = himc_planner_yields(planner, hand, t);
     next.beat = current.beat;
