@@ -33,14 +33,14 @@ typedef struct himc_score_line {
 
 /// A score with its arrays, which it owns. Strokes are sorted by beat (stable).
 typedef struct himc_score {
-    himc_stroke *strokes;     ///< of both hands (stroke_count), owned; NULL if there are none
+    himc_stroke *strokes;     ///< of both hands (stroke_count), owned
     int stroke_count;         ///< 0 .. 200000
-    int *stroke_lines;        ///< in the file (stroke_count), owned; NULL if there are none
+    int *stroke_lines;        ///< in the file (stroke_count), owned
     himc_tempo_change *tempi; ///< sorted by beat (tempo_count), owned; the first at beat 0
     int tempo_count;          ///< 1 or more
     himc_score_line *lines;   ///< as in the file (line_count), owned; NULL if there are none
     int line_count;           ///< 0 .. 10000
-    himc_score_line *changes; ///< `at` lines by beat (change_count), owned; NULL if there are none
+    himc_score_line *changes; ///< `at` lines by beat (change_count), owned
     int change_count;         ///< 0 .. 10000, with the lines
     int *order;   ///< strokes and changes as in the file (stroke_count + change_count), owned: i of
                   ///< strokes, or -1 - i of changes; NULL if there are none

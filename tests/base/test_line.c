@@ -3,7 +3,7 @@
 
 #include "capture/player.h"
 #include "performance/performance_events.h"
-#include "plan/planner_notes.h"
+#include "plan/planner_state.h"
 #include "himc/performance.h"
 
 #include "unity.h"
@@ -169,7 +169,8 @@ static void test_lines_about_files_are_cleaned_too(void)
 {
     himc_word heard;
     himc_event event;
-    planner_notes notes = {0};
+    static himc_planner planner;
+    himc_planner_note said;
     performance_events events = {.count = 0};
     himc_player player = {.note_count = 0};
     himc_tell(&(himc_line_sink){keep, &heard}, "tip %s", "\x1B[31m");
@@ -177,8 +178,9 @@ static void test_lines_about_files_are_cleaned_too(void)
     himc_events_note(&events, "%s", "a\nb");
     TEST_ASSERT_TRUE(himc_events_take(&events, &event));
     TEST_ASSERT_EQUAL_STRING("a?b", event.text);
-    himc_planner_say(&notes, PLANNER_GIVEN_UP, "%s", "a\nb");
-    TEST_ASSERT_EQUAL_STRING("a?b", notes.line[notes.first].text);
+    himc_planner_say(&planner, PLANNER_GIVEN_UP, "%s", "a\nb");
+    TEST_ASSERT_TRUE(himc_planner_note_next(&planner, &said));
+    TEST_ASSERT_EQUAL_STRING("a?b", said.text);
     himc_player_note(&player, "%s", "a\nb");
     TEST_ASSERT_EQUAL_STRING("a?b", player.notes[0]);
 }

@@ -35,13 +35,13 @@ static bool think_once(void)
 {
     const planner_clear *c = &planner->clear;
     bool searching = c->searching;
-    int notes = planner->notes.count, next = planner->score.part[HIMC_LEFT].next;
+    int notes = planner->notes.count, next = planner->score.part[HIMC_LEFT].listed.number;
     memcpy(before, planner->hand, sizeof before);
     himc_planner_think(planner, 1);
     if (searching && c->searching) {
         TEST_ASSERT_EQUAL_MEMORY(before, planner->hand, sizeof before);
         TEST_ASSERT_EQUAL_INT(notes, planner->notes.count);
-        TEST_ASSERT_EQUAL_INT(next, planner->score.part[HIMC_LEFT].next);
+        TEST_ASSERT_EQUAL_INT(next, planner->score.part[HIMC_LEFT].listed.number);
     }
     return c->trying && c->way.touch > -HUGE_VAL;
 }

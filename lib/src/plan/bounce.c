@@ -106,25 +106,22 @@ static void tune_grip(himc_bounce *b, double v, double below, double wanted)
     set_omega(b, high);
 }
 
-/// The press with which this flight and those after it fill the time that is left.
-static void tune_press(himc_bounce *b, double v, double left)
-{
-    int flights = BUZZ_CONTACTS - b->contacts;
-    if (flights <= 0 || !(v > 0))
-        return;
-    double air = fmax(left - (flights - 1) * CONTACT, FLIGHT_STEP);
-    b->press = fmin(fmax(2 * v * flights_time(flights) / air, GRAVITY), FINGERS);
-    b->damping = 0.75 * (1 - BUZZ_KEPT * BUZZ_KEPT) * b->press / v;
-}
-
 void himc_bounce_separated(himc_bounce *b, double t, double since, double height, double velocity)
 {
+    double left = b->begin + b->time - t;
     b->contacts++;
     b->rest = height;
-    if (b->bounces == HIMC_BUZZ)
-        tune_press(b, velocity, b->begin + b->time - t);
-    else
-        tune_grip(b, velocity, velocity * since, b->begin + b->time - t);
+    if (b->bounces != HIMC_BUZZ) {
+        tune_grip(b, velocity, velocity * since, left);
+        return;
+    }
+    // the press with which this flight and those after it fill the time that is left
+    int flights = BUZZ_CONTACTS - b->contacts;
+    if (flights <= 0 || !(velocity > 0))
+        return;
+    double air = fmax(left - (flights - 1) * CONTACT, FLIGHT_STEP);
+    b->press = fmin(fmax(2 * velocity * flights_time(flights) / air, GRAVITY), FINGERS);
+    b->damping = 0.75 * (1 - BUZZ_KEPT * BUZZ_KEPT) * b->press / velocity;
 }
 
 bool himc_bounce_is_over(const himc_bounce *b, double t, double velocity)

@@ -15,30 +15,21 @@
 #define QUICK 0.25        // a hand that is called late comes within this (s); chosen
 #define LATEST 0.3        // no hand comes later than this (s); chosen
 
-static himc_vec3 tip_place(const himc_posture *posture, himc_hand hand, const himc_head_frame *head)
-{
-    double x = -FINGERS_BACK * head->radius, y = 0;
-    himc_head_frame_keep_inside(head, FINGERS_BACK, &x, &y);
-    himc_vec3 fingers = himc_head_frame_to_world(head, x, y);
-    fingers = himc_vec3_madd(fingers, FINGERS_OVER, himc_head_frame_normal(head));
-    return himc_posture_tip_of_grip(posture, hand, fingers);
-}
-
-static bool is_free(const himc_free_hand *hand, double t, double arrival)
-{
-    return t > hand->from + SETTLED && arrival + LEAST_STAY + NEXT_STROKE < hand->until;
-}
-
 // the free hand that has the shorter way comes; false if none can
 static bool send(himc_damping *d, himc_planner *planner, const himc_posture *posture,
                  const himc_damped_head *head, int drum, const himc_free_hand *free, double t)
 {
     double at = fmax(d->due[drum], t + QUICK), way[HIMC_HANDS];
     himc_vec3 place[HIMC_HANDS];
+    double x = -FINGERS_BACK * head->frame->radius, y = 0;
+    himc_head_frame_keep_inside(head->frame, FINGERS_BACK, &x, &y);
+    himc_vec3 fingers = himc_head_frame_to_world(head->frame, x, y);
+    fingers = himc_vec3_madd(fingers, FINGERS_OVER, himc_head_frame_normal(head->frame));
     for (int i = 0; i < HIMC_HANDS; i++) {
-        place[i] = tip_place(posture, (himc_hand)i, head->frame);
+        place[i] = himc_posture_tip_of_grip(posture, (himc_hand)i, fingers);
         himc_vec3 now = himc_planner_target(planner, (himc_hand)i, t).x;
-        bool can = d->lies_on[i] == 0 && is_free(&free[i], t, at);
+        bool can = d->lies_on[i] == 0 && t > free[i].from + SETTLED &&
+                   at + LEAST_STAY + NEXT_STROKE < free[i].until;
         way[i] = can ? himc_vec3_length(himc_vec3_sub(place[i], now)) : INFINITY;
     }
     for (int tries = 0; tries < HIMC_HANDS; tries++) {

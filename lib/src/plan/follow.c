@@ -34,43 +34,12 @@
 #define LEAST_NOISE 1e-6       // (m)
 
 // the tip; chosen: within the limits of an arm, and a halt without a jerk
-#define HARDEST_MEETING 250.0 // peak acceleration to meet a target (m/s^2)
-#define BRAKING 60.0          // mean acceleration of the halt (m/s^2)
+#define BRAKING 60.0 // mean acceleration of the halt (m/s^2)
 // A tip follows the stream if its own velocity brings it so near to the next meeting.
 #define FOLLOWED 0.05              // (m) chosen: one target at 250 Hz in a stroke of 10 m/s
 #define FOLLOWED_ACCELERATION 30.0 // ... and what this changes meanwhile (m/s^2); chosen: a mouse
 #define SHORTEST_HALT 0.15         // (s)
 #define FASTEST_STREAM 10.0 // (m/s) as captured sticks; faster targets jump, and are not carried on
-
-/// Within `blend` seconds the tip is in the state `aim`, goes on so for `hold` seconds and comes to
-/// rest at x.
-static void follow_aim(himc_hand_plan *plan, double t, const himc_target *aim, double blend,
-                       double hold, himc_vec3 x)
-{
-    himc_hand_cut(plan, t);
-    t = fmax(t, plan->end);
-    himc_target from = himc_hand_at(plan, t), nothing = {0}, held, rest = himc_target_at_rest(x);
-    double coast = himc_vec3_length(himc_vec3_sub(aim->x, himc_vec3_madd(from.x, blend, from.v)));
-    double near = FOLLOWED + 0.5 * FOLLOWED_ACCELERATION * blend * blend;
-    himc_target met = *aim;
-    if (coast > near) {
-        met.v = himc_vec3_scale(aim->v, near / coast);
-        met.x = himc_vec3_madd(x, near / coast, himc_vec3_sub(aim->x, x));
-    }
-    plan->lift.count = 0; // `from` contains it
-    double halt = fmax(SHORTEST_HALT, himc_vec3_length(met.v) / BRAKING);
-    blend = fmax(blend, himc_move_time(coast, HARDEST_MEETING));
-    held = met;
-    held.x = himc_vec3_madd(met.x, hold, met.v);
-    plan->end = t + blend + hold + halt;
-    himc_spline_add(&plan->tangential_path, t, &from, t + blend, &met);
-    himc_spline_add(&plan->tangential_path, t + blend, &met, t + blend + hold, &held);
-    himc_spline_add(&plan->tangential_path, t + blend + hold, &held, plan->end, &rest);
-    himc_spline_add(&plan->height_profile, t, &nothing, plan->end, &nothing);
-    plan->home = rest.x;
-    plan->rebounding = false;
-    plan->at_home = true;
-}
 
 /// Corrects the estimate of the noise by one more target. The median length of third differences of
 /// three normal coordinates is 1.5382 sqrt(20) sigma (chi distribution of three degrees of
@@ -117,11 +86,10 @@ bool himc_stream_add(himc_stream *s, double t, himc_vec3 x)
         learn_noise(s, gap, x);
         filter(s, gap, x);
         double least = s->period > 0 ? BURST_SHARE * s->period : FIRST_GAP;
+        double share = s->period > 0 ? gap / (gap + VELOCITY_TIME) : 1;
         himc_vec3 v = himc_vec3_scale(himc_vec3_sub(x, s->x), 1 / fmax(gap, least));
         s->period = s->period > 0 ? s->period + PERIOD_SHARE * (gap - s->period) : gap;
-        double share = s->moving ? gap / (gap + VELOCITY_TIME) : 1;
         s->v = himc_vec3_madd(himc_vec3_scale(s->v, 1 - share), share, v);
-        s->moving = true;
     }
     s->time = t;
     s->x = x;
@@ -148,6 +116,28 @@ void himc_stream_follow(const himc_stream *s, himc_hand_plan *plan, double t)
 {
     double blend =
         fmax(fmax(s->period, SHORTEST_BLEND), shakes(s) ? BLEND_MEMORIES * s->memory : 0);
-    himc_target aim = aim_at(s, blend - s->period);
-    follow_aim(plan, t, &aim, blend, 0.5 * s->period, aim_at(s, 0).x);
+    double hold = 0.5 * s->period;
+    himc_target met = aim_at(s, blend - s->period), rest = himc_target_at_rest(aim_at(s, 0).x);
+    himc_hand_cut(plan, t);
+    t = fmax(t, plan->end);
+    himc_target from = himc_hand_at(plan, t), nothing = {0};
+    double coast = himc_vec3_length(himc_vec3_sub(met.x, himc_vec3_madd(from.x, blend, from.v)));
+    double near = FOLLOWED + 0.5 * FOLLOWED_ACCELERATION * blend * blend;
+    if (coast > near) {
+        met.v = himc_vec3_scale(met.v, near / coast);
+        met.x = himc_vec3_madd(rest.x, near / coast, himc_vec3_sub(met.x, rest.x));
+    }
+    plan->lift.count = 0; // `from` contains it
+    double halt = fmax(SHORTEST_HALT, himc_vec3_length(met.v) / BRAKING);
+    blend = fmax(blend, himc_move_time(coast, HIMC_HARDEST_MOVE));
+    himc_target held = met;
+    held.x = himc_vec3_madd(met.x, hold, met.v);
+    plan->end = t + blend + hold + halt;
+    himc_spline_add(&plan->tangential_path, t, &from, t + blend, &met);
+    himc_spline_add(&plan->tangential_path, t + blend, &met, t + blend + hold, &held);
+    himc_spline_add(&plan->tangential_path, t + blend + hold, &held, plan->end, &rest);
+    himc_spline_add(&plan->height_profile, t, &nothing, plan->end, &nothing);
+    plan->home = rest.x;
+    plan->rebounding = false;
+    plan->at_home = true;
 }

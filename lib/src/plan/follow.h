@@ -7,8 +7,7 @@
 /// Live targets as they come in.
 typedef struct himc_stream {
     double time;          ///< of the last one (s)
-    double period;        ///< between them (s), 0 before the second
-    bool moving;          ///< `v` is known
+    double period;        ///< between them (s), 0 before the second: `v` is not known
     himc_vec3 x, v;       ///< the last target and its velocity (m, m/s)
     himc_vec3 before[2];  ///< targets before x, the latest first (m)
     int heard;            ///< count of targets in `before`, so far

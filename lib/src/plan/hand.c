@@ -26,9 +26,8 @@
 #define LIFT_FADE 0.1  // of a lift that is broken off (s) ...
 #define LIFT_SHARE 0.8 // ... but no more than this share of the time to a touch
 
-// habits of a hand; chosen by eye, and so that a hit from rest lands within 0.25 s
+// habits of a hand; chosen by eye
 #define GENTLE_MOVE 12.0        // peak acceleration of a move with time (m/s^2)
-#define QUICK_MOVE 80.0         // ... and of one without (m/s^2)
 #define HOME_MOVE 1.5           // ... and of the way home, when there is nothing to play (m/s^2)
 #define MOVE_MARGIN 1.4         // a stroke's swing takes so much longer than a straight move
 #define HURRY_SHARE 0.7         // of the unhurried time that a hurried gesture takes at least
@@ -46,8 +45,7 @@
 #define FORWARD_TIME 0.2      // the way forward takes as long as the fall, at least this (s) ...
 #define FORWARD_SHARE 0.55    // ... but no more than this share of the time there is
 #define SWING_PEAK 60.0       // peak acceleration of the swing behind the spot (m/s^2)
-#define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s), and ...
-#define STRAIGHT_PEAK 80.0    // ... where the way behind it would be harder (m/s^2)
+#define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s)
 #define IDLE_TIME 1.4         // with more time the tip first waits behind the spot (s) ...
 #define IDLE_ARRIVAL 0.65     // ... coming there in this time (s) ...
 #define IDLE_DEPTH 0.3        // ... at this share of the swing's depth ...
@@ -131,15 +129,6 @@ static void path_segment(stroke_plan *s, double t, himc_vec3 x)
     s->path = to;
 }
 
-/// How far the tip's speed would carry it off its way to x within T (m).
-static double coast_off(const stroke_plan *s, double T, himc_vec3 x)
-{
-    himc_vec3 way = himc_vec3_sub(x, s->path.x), coast = himc_vec3_scale(s->path.v, T);
-    double square = himc_vec3_dot(way, way), along = himc_vec3_dot(coast, way);
-    double share = square > 0 ? fmin(fmax(along / square, 0), ON_THE_WAY) : 0;
-    return himc_vec3_length(himc_vec3_madd(coast, -share, way));
-}
-
 /// If the straight way to x leads through the body, whose axis is the world's z: the first part of
 /// one round it, to the point beside the body that is nearest to the straight way.
 static void go_beside_body(stroke_plan *s, double t, himc_vec3 x)
@@ -169,7 +158,11 @@ static void path_to(stroke_plan *s, double t, himc_vec3 x)
     double T = t - s->path_end;
     if (T <= 0)
         return;
-    if (coast_off(s, T, x) > COAST_LIMIT) {
+    // how far the tip's speed would carry it off its way
+    himc_vec3 way = himc_vec3_sub(x, s->path.x), coast = himc_vec3_scale(s->path.v, T);
+    double square = himc_vec3_dot(way, way), along = himc_vec3_dot(coast, way);
+    double share = square > 0 ? fmin(fmax(along / square, 0), ON_THE_WAY) : 0;
+    if (himc_vec3_length(himc_vec3_madd(coast, -share, way)) > COAST_LIMIT) {
         double speed = himc_vec3_length(s->path.v);
         double halt = fmin(fmin(HALT_TIME, HALT_SHARE * T), 2 * HALT_WAY / speed);
         path_segment(s, s->path_end + halt, himc_vec3_madd(s->path.x, 0.5 * halt, s->path.v));
@@ -198,7 +191,7 @@ static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, 
     double depth = fmin(g->depth, SWING_PEAK / HIMC_MOVE_PEAK * shorter * shorter);
     himc_vec3 behind = himc_vec3_madd(spot, depth, goal->back);
     double off = himc_vec3_length(himc_vec3_sub(s->path.x, spot));
-    bool hurries = himc_move_time(off, STRAIGHT_PEAK) > back_at - s->path_end;
+    bool hurries = himc_move_time(off, HIMC_QUICK_MOVE) > back_at - s->path_end;
     if ((span < STRAIGHT_TIME || hurries) && off > depth)
         back_at = s->path_end;
     if (back_at - s->path_end > IDLE_TIME) {
@@ -212,14 +205,22 @@ static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, 
     path_to(s, goal->time, spot);
 }
 
+/// Appends a motion in space from t on, which is no stroke.
+static void go(himc_hand_plan *plan, double t, const himc_target *from, double end,
+               const himc_target *to)
+{
+    himc_target nothing = {0};
+    himc_spline_add(&plan->tangential_path, t, from, end, to);
+    himc_spline_add(&plan->height_profile, t, &nothing, end, &nothing);
+    plan->end = end;
+}
+
 void himc_hand_place(himc_hand_plan *plan, double t, himc_vec3 home)
 {
-    *plan = (himc_hand_plan){.home = home, .end = t, .at_home = true};
+    *plan = (himc_hand_plan){.home = home, .at_home = true};
     plan->last = (himc_goal){.time = -1e9, .spot = home, .normal = {0, 0, 1}, .back = {-1, 0, 0}};
-    himc_target at = himc_target_at_rest(home), nothing = {0};
-    plan->end = t + HOME_WAIT;
-    himc_spline_add(&plan->tangential_path, t, &at, plan->end, &at);
-    himc_spline_add(&plan->height_profile, t, &nothing, plan->end, &nothing);
+    himc_target at = himc_target_at_rest(home);
+    go(plan, t, &at, t + HOME_WAIT, &at);
 }
 
 himc_target himc_hand_at(const himc_hand_plan *plan, double t)
@@ -228,29 +229,17 @@ himc_target himc_hand_at(const himc_hand_plan *plan, double t)
     return plan->lift.count > 0 ? himc_target_add(s, himc_spline_at(&plan->lift, t)) : s;
 }
 
-/// Ends a lift that is under way at t within LIFT_FADE.
-static void cut_lift(himc_hand_plan *plan, double t)
+/// A lift that goes on after `latest` is broken off at t, and over at `end`.
+static void end_lift(himc_hand_plan *plan, double t, double latest, double end)
 {
     himc_spline *lift = &plan->lift;
     himc_target nothing = {0}, now = himc_spline_at(lift, t);
-    if (lift->count == 0 || t >= lift->segment[lift->count - 1].t1)
+    if (lift->count == 0 || lift->segment[lift->count - 1].t1 <= latest)
         return;
     if (t <= lift->segment[0].t0) {
         lift->count = 0;
         return;
     }
-    himc_spline_cut(lift, t);
-    himc_spline_add(lift, t, &now, t + LIFT_FADE, &nothing);
-}
-
-/// A lift that is broken off is over before a touch.
-static void end_lift(himc_hand_plan *plan, double t, double touch)
-{
-    himc_spline *lift = &plan->lift;
-    himc_target nothing = {0}, now = himc_spline_at(lift, t);
-    double end = t + LIFT_SHARE * (touch - t);
-    if (lift->count == 0 || lift->segment[lift->count - 1].t1 <= end)
-        return;
     himc_spline_cut(lift, t);
     himc_spline_add(lift, t, &now, end, &nothing);
 }
@@ -259,7 +248,7 @@ bool himc_hand_lift(himc_hand_plan *plan, double begin, double from, double to, 
                     himc_vec3 way)
 {
     himc_spline *lift = &plan->lift;
-    double up = himc_move_time(himc_vec3_length(way), HIMC_HARDEST_LIFT);
+    double up = himc_move_time(himc_vec3_length(way), HIMC_QUICK_MOVE);
     himc_target nothing = {0}, raised = himc_target_at_rest(way);
     bool busy = lift->count > 0 && lift->segment[lift->count - 1].t1 > begin;
     bool in_time = from - begin >= up && end - to >= up;
@@ -279,7 +268,7 @@ void himc_hand_cut(himc_hand_plan *plan, double t)
     t = fmax(t, plan->tangential_path.segment[0].t0);
     himc_spline_cut(&plan->tangential_path, t);
     himc_spline_cut(&plan->height_profile, t);
-    cut_lift(plan, t);
+    end_lift(plan, t, t, t + LIFT_FADE);
     plan->end = t;
     plan->rebounding = false;
     himc_target s = himc_hand_at(plan, t);
@@ -297,10 +286,7 @@ void himc_hand_restart(himc_hand_plan *plan, double t, const himc_target *state,
     himc_hand_cut(plan, t);
     plan->lift.count = 0; // the measured state contains it
     himc_target on = {himc_vec3_madd(state->x, T, state->v), state->v, {0, 0, 0}};
-    himc_target nothing = {0};
-    himc_spline_add(&plan->tangential_path, t, state, t + T, &on);
-    himc_spline_add(&plan->height_profile, t, &nothing, t + T, &nothing);
-    plan->end = t + T;
+    go(plan, t, state, t + T, &on);
     plan->rebounding = true;
     plan->at_home = false;
 }
@@ -374,7 +360,7 @@ double himc_hand_least_time(const himc_hand_plan *plan, const himc_goal *goal)
     // a soft stroke does not fall fast
     T = fmax(T, HIMC_LEAST_LANDING * s.height.h / goal->gesture.speed);
     return fmax(fmax(T, RAISED_TIME),
-                MOVE_MARGIN * himc_move_time(distance_to(&s, goal), QUICK_MOVE));
+                MOVE_MARGIN * himc_move_time(distance_to(&s, goal), HIMC_QUICK_MOVE));
 }
 
 static bool is_possible(const stroke_plan *s, const himc_goal *goal)
@@ -459,13 +445,6 @@ static void follow_rebound(const stroke_plan *s, double t, himc_gesture *g)
     g->height = h + climb * (T - down);
 }
 
-/// The gesture, softer if the tip is too low for it with the time left.
-static himc_gesture in_time(const stroke_plan *s, const himc_goal *goal)
-{
-    double T = goal->time - s->height_end, drop = HIMC_STEEPEST_QUINTIC * fmax(s->height.h, 0) / T;
-    return himc_gesture_bend(goal->gesture, FASTEST_HURRY * T + drop);
-}
-
 /// The fall to the touch: one quintic, or from the apex through the knots of a unit's fall.
 static void fall(stroke_plan *s, double t, const himc_gesture *g, bool from_apex)
 {
@@ -497,11 +476,8 @@ void himc_hand_land(himc_hand_plan *plan, double t, const himc_target *measured,
 {
     double speed = goal->gesture.speed;
     himc_target touch = {goal->spot, himc_vec3_scale(goal->normal, -speed), {0, 0, 0}};
-    himc_target nothing = {0};
     himc_hand_cut(plan, t);
-    himc_spline_add(&plan->tangential_path, t, measured, goal->time, &touch);
-    himc_spline_add(&plan->height_profile, t, &nothing, goal->time, &nothing);
-    plan->end = goal->time;
+    go(plan, t, measured, goal->time, &touch);
     stroke_plan s = plan_begin(plan, goal->spot, goal->normal);
     contact(&s, goal, speed);
     plan_finish(&s);
@@ -514,10 +490,13 @@ bool himc_hand_strike(himc_hand_plan *plan, const himc_goal *goal)
     stroke_plan s = begin_from(plan, plan->end, goal);
     if (!is_possible(&s, goal))
         return false;
-    end_lift(plan, plan->end, goal->time);
+    double over = plan->end + LIFT_SHARE * (goal->time - plan->end);
+    end_lift(plan, plan->end, over, over);
     leave(plan, goal->time);
     s = plan_begin(plan, goal->spot, goal->normal);
-    himc_gesture g = in_time(&s, goal);
+    // softer if the tip is too low for it with the time left
+    double T = goal->time - s.height_end, drop = HIMC_STEEPEST_QUINTIC * fmax(s.height.h, 0) / T;
+    himc_gesture g = himc_gesture_bend(goal->gesture, FASTEST_HURRY * T + drop);
     double begin = s.height_end;
     s.approach = fmax(LEAST_APPROACH_TIME, himc_move_time(distance_to(&s, goal), GENTLE_MOVE));
     bool from_apex = !himc_height_profile_falls(&s, goal->time, &g);
@@ -557,25 +536,11 @@ static void move_to(stroke_plan *s, himc_vec3 x, double peak, double at)
 void himc_hand_reach(himc_hand_plan *plan, himc_vec3 x, double at)
 {
     stroke_plan s = plan_begin(plan, plan->last.spot, plan->last.normal);
-    move_to(&s, x, QUICK_MOVE, at);
+    move_to(&s, x, HIMC_QUICK_MOVE, at);
     plan_finish(&s);
     plan->home = x;
     plan->at_home = true;
     plan->rebounding = false;
-}
-
-/// Over the last spot: comes down to the waiting height, or sways a little there.
-static void hover(stroke_plan *s)
-{
-    bool low =
-        s->height.h < HIMC_WAIT_HEIGHT + 2 * HIMC_WAIT_SWAY && s->height.h > HOVER_LEAST_HEIGHT;
-    double sway = s->plan->swayed ? -HIMC_WAIT_SWAY : HIMC_WAIT_SWAY;
-    himc_vec3 x = low ? himc_vec3_madd(s->path.x, sway, s->plan->last.back)
-                      : himc_vec3_madd(s->path.x, HOVER_COAST, s->path.v);
-    s->plan->swayed = !s->plan->swayed;
-    himc_height_profile_to(s, s->height_end + (low ? HOVER_TIME : HOVER_ARRIVAL),
-                           (height_state){HIMC_WAIT_HEIGHT + (low ? sway / 2 : 0), 0, 0});
-    path_to(s, s->height_end, x);
 }
 
 void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
@@ -591,8 +556,16 @@ void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
         himc_height_profile_to(&s, fmax(until, s.height_end + HOME_WAIT),
                                (height_state){s.height.h, 0, 0});
         path_to(&s, s.height_end, s.path.x);
-    } else if (ready) {
-        hover(&s);
+    } else if (ready) { // over the last spot: comes down to the waiting height, or sways there
+        bool low =
+            s.height.h < HIMC_WAIT_HEIGHT + 2 * HIMC_WAIT_SWAY && s.height.h > HOVER_LEAST_HEIGHT;
+        double sway = plan->swayed ? -HIMC_WAIT_SWAY : HIMC_WAIT_SWAY;
+        himc_vec3 x = low ? himc_vec3_madd(s.path.x, sway, plan->last.back)
+                          : himc_vec3_madd(s.path.x, HOVER_COAST, s.path.v);
+        plan->swayed = !plan->swayed;
+        himc_height_profile_to(&s, s.height_end + (low ? HOVER_TIME : HOVER_ARRIVAL),
+                               (height_state){HIMC_WAIT_HEIGHT + (low ? sway / 2 : 0), 0, 0});
+        path_to(&s, s.height_end, x);
     } else {
         move_to(&s, plan->home, HOME_MOVE, 0);
         plan->at_home = true;

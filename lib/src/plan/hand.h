@@ -41,8 +41,9 @@ static inline double himc_goal_end(const himc_goal *goal)
 /// well beyond captured strokes, so that only the impossible is refused.
 #define HIMC_HARDEST_MOVE 250.0
 
-/// Peak acceleration of a lift, at most (m/s^2). Chosen: an arm that is in a hurry.
-#define HIMC_HARDEST_LIFT 80.0
+/// Peak acceleration of an arm in a hurry (m/s^2): of a lift at most, of a move without time.
+/// Chosen, so that a hit from rest lands within 0.25 s.
+#define HIMC_QUICK_MOVE 80.0
 
 /// At rest at `home` from time t on.
 HIMC_RT void himc_hand_place(himc_hand_plan *plan, double t, himc_vec3 home);

@@ -55,7 +55,6 @@
 #define FALLING_SPEED 0.2          // a tip faster downwards has begun to fall (m/s)
 #define BRAKED_PEAK 150.0          // acceleration of a high tip that falls to a soft touch ...
 #define BRAKED_LIMIT 400.0         // ... and with so much it is not braked at all (m/s^2)
-#define SINK_PEAK 80.0             // of one that sinks before a soft stroke, at most (m/s^2)
 #define FALL_STEEPNESS 2.5         // v T/h of a fall from rest, at most ...
 #define FALLING_STEEPNESS 3.5      // ... and of one that has begun
 #define FALL_OVERSHOOT 1.1         // of the height ...
@@ -196,14 +195,6 @@ double himc_height_profile_rise(stroke_plan *s, double top, const himc_gesture *
     return begin;
 }
 
-/// Whether a tip that is too high for its stroke has the time to sink to the stroke's apex first.
-static bool sinks_first(const stroke_plan *s, double T, const himc_gesture *g)
-{
-    himc_gesture low = himc_gesture_squeeze(*g, T, s->height.h);
-    double time = T - low.down - low.dwell;
-    return HIMC_MOVE_PEAK * (s->height.h - low.height) <= SINK_PEAK * time * time;
-}
-
 double himc_height_profile_least_landing(double h, double T)
 {
     double peak = HIMC_MOVE_PEAK * h / (T * T);
@@ -224,9 +215,15 @@ bool himc_height_profile_falls(const stroke_plan *s, double t, himc_gesture *g)
     double T = t - s->height_end, h = s->height.h;
     double steepness = s->height.v < -FALLING_SPEED ? FALLING_STEEPNESS : FALL_STEEPNESS;
     double longest = steepness * h / g->speed;
-    if (h <= LEAST_FALL_HEIGHT || T > fmax(longest, LEAST_FALL_TIME) ||
-        (g->speed * T < HIMC_LEAST_LANDING * h && sinks_first(s, T, g)))
+    if (h <= LEAST_FALL_HEIGHT || T > fmax(longest, LEAST_FALL_TIME))
         return false;
+    if (g->speed * T < HIMC_LEAST_LANDING * h) {
+        // a tip too high for its stroke sinks to the stroke's apex first, if it has the time
+        himc_gesture low = himc_gesture_squeeze(*g, T, h);
+        double time = T - low.down - low.dwell;
+        if (HIMC_MOVE_PEAK * (h - low.height) <= HIMC_QUICK_MOVE * time * time)
+            return false;
+    }
     double speed = fmax(g->speed, himc_height_profile_least_landing(h, T));
     if (T <= LEAST_FALL_TIME)
         speed = fmin(speed, HIMC_STEEPEST_QUINTIC * h / T);

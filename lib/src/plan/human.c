@@ -187,30 +187,23 @@ static himc_variation place_of(const himc_human *human, himc_hand hand, int kind
                             .turn = amount * SWING_TURN * normal(human, kind + TURN, hand, at)};
 }
 
-/// The stroke's own beat, then the beats before it. The score may no longer have a planned stroke,
-/// or have it later: a change of tempo moves the strokes of a roll.
-static int history(const planner_score *score, himc_hand hand, int round, double beat,
-                   planner_onset onset[HISTORY])
+himc_variation himc_human_stroke(const himc_human *human, const planner_score *score,
+                                 himc_hand hand, int round, double beat)
 {
     planner_walk walk = himc_planner_score_walk(score, round, beat);
+    double at = himc_planner_score_total_beat(score, round, beat);
+    planner_onset onset[HISTORY];
     int count = 1;
-    onset[0] = (planner_onset){.beat = himc_planner_score_total_beat(score, round, beat)};
+    onset[0] = (planner_onset){.beat = at};
     onset[0].strikes[hand] = true;
+    // the stroke's own beat, then the beats before it; the score may no longer have a planned
+    // stroke, or have it later: a change of tempo moves the strokes of a roll
     while (count < HISTORY && himc_planner_score_back(score, &walk, &onset[count]))
-        if (onset[count].beat < onset[0].beat)
+        if (onset[count].beat < at)
             count++;
         else
             for (int h = 0; h < HIMC_HANDS; h++)
                 onset[0].strikes[h] |= onset[count].strikes[h];
-    return count;
-}
-
-himc_variation himc_human_stroke(const himc_human *human, const planner_score *score,
-                                 himc_hand hand, int round, double beat)
-{
-    planner_onset onset[HISTORY];
-    int count = history(score, hand, round, beat, onset);
-    double at = onset[0].beat;
     himc_variation v = place_of(human, hand, 0, at);
     v.log_speed = log_speed(human, hand, at, count > 1 ? &onset[1] : NULL);
     double late = clock_error(human, onset, count, himc_planner_score_period(score, beat)) +

@@ -21,8 +21,6 @@
 #include "plan/planner_roll.h"
 #include "plan/sticking.h"
 
-#define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
-
 // strokes of both arms together (1/s); chosen, see above
 #define USUAL_RATE 11.0
 #define USUAL_PITCH 110.0 // (Hz)
@@ -53,21 +51,16 @@
 #define SLOW_PERIOD 0.85 // a beat longer than this, too (s): 70 beats a minute
 #define WIDER 1.2
 
-typedef struct addition {
-    himc_planner *planner;
-    int drum, left_out;
-} addition;
-
-/// A grace note, or two: the second is a bounce.
-static void add_grace(addition *to, const himc_stroke *stroke, double early, double bounce_time)
+/// A grace note, or two: the second is a bounce. Returns 1 if it is left out.
+static int add_grace(himc_planner *planner, int drum, const himc_stroke *stroke, double early,
+                     double bounce_time)
 {
     himc_stroke grace = *stroke;
     himc_error unused;
     grace.hand = himc_other_hand(stroke->hand);
     // a written point is moved to the hand's own side of it, unless that leads off the head
     double y = grace.y + (grace.hand == HIMC_LEFT ? BESIDE : -BESIDE);
-    if (grace.spot == HIMC_SPOT_XY &&
-        hypot(grace.x, y) <= OUTERMOST * to->planner->drum[to->drum].radius)
+    if (grace.spot == HIMC_SPOT_XY && hypot(grace.x, y) <= OUTERMOST * planner->drum[drum].radius)
         grace.y = y;
     double speed = GRACE_SPEED * himc_gesture_of(stroke->nuance, stroke->dynamic).speed;
     if (stroke->nuance != HIMC_STACCATO)
@@ -77,26 +70,8 @@ static void add_grace(addition *to, const himc_stroke *stroke, double early, dou
     grace.early = early;
     grace.bounces = bounce_time > 0;
     grace.bounce_time = bounce_time;
-    to->left_out += himc_planner_score_room(&to->planner->score, &grace) < LEAST_ROOM ||
-                    !himc_planner_add(to->planner, &grace, to->drum, &unused);
-}
-
-static void add_graces(addition *to, const himc_stroke *stroke)
-{
-    const planner_score *score = &to->planner->score;
-    double since = himc_planner_score_since(score, stroke->beat), wide = 1;
-    if (stroke->dynamic >= LOUD)
-        wide *= WIDER;
-    if (himc_planner_score_period(score, fmax(stroke->beat, 1)) > SLOW_PERIOD)
-        wide *= WIDER;
-    double drag = fmin(wide * DRAG_TIME, GRACE_SHARE * since / 2);
-    double ruff = fmin(wide * RUFF_TIME, GRACE_SHARE * since / 2);
-    if (stroke->ornament == HIMC_FLAM)
-        add_grace(to, stroke, fmin(wide * FLAM_TIME, FLAM_SHARE * since), 0);
-    if (stroke->ornament == HIMC_DRAG)
-        add_grace(to, stroke, 2 * drag, drag);
-    if (stroke->ornament == HIMC_RUFF)
-        add_grace(to, stroke, 2 * ruff, ruff);
+    return himc_planner_score_room(&planner->score, &grace) < PLANNER_LEAST_ROOM ||
+           !himc_planner_add(planner, &grace, drum, &unused);
 }
 
 static double clip(double x, double low, double high)
@@ -123,24 +98,27 @@ static double rate_of(const himc_stroke *roll, double pitch)
     }
 }
 
-static void add_roll(addition *to, const himc_stroke *roll, double pitch)
-{
-    himc_error unused;
-    himc_stroke s = *roll;
-    s.bounces = roll->ornament == HIMC_ROLL_DOUBLE  ? 1
-                : roll->ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
-                                                    : 0;
-    int left_out = himc_planner_add_roll(to->planner, &s, to->drum, rate_of(&s, pitch), &unused);
-    to->left_out += left_out < 0 ? 1 : left_out;
-}
-
 int himc_planner_add_ornament(himc_planner *planner, const himc_stroke *stroke, int drum,
                               double pitch)
 {
-    addition to = {.planner = planner, .drum = drum};
-    if (stroke->ornament >= HIMC_ROLL_SINGLE)
-        add_roll(&to, stroke, pitch);
-    else
-        add_graces(&to, stroke);
-    return to.left_out;
+    const planner_score *score = &planner->score;
+    himc_error unused;
+    if (stroke->ornament >= HIMC_ROLL_SINGLE) {
+        himc_stroke roll = *stroke;
+        roll.bounces = roll.ornament == HIMC_ROLL_DOUBLE  ? 1
+                       : roll.ornament == HIMC_ROLL_PRESS ? HIMC_BUZZ
+                                                          : 0;
+        int out = himc_planner_add_roll(planner, &roll, drum, rate_of(&roll, pitch), &unused);
+        return out < 0 ? 1 : out;
+    }
+    double since = himc_planner_score_since(score, stroke->beat), wide = 1;
+    if (stroke->dynamic >= LOUD)
+        wide *= WIDER;
+    if (himc_planner_score_period(score, fmax(stroke->beat, 1)) > SLOW_PERIOD)
+        wide *= WIDER;
+    double two = wide * (stroke->ornament == HIMC_DRAG ? DRAG_TIME : RUFF_TIME);
+    two = fmin(two, GRACE_SHARE * since / 2);
+    if (stroke->ornament == HIMC_FLAM)
+        return add_grace(planner, drum, stroke, fmin(wide * FLAM_TIME, FLAM_SHARE * since), 0);
+    return stroke->ornament == HIMC_PLAIN ? 0 : add_grace(planner, drum, stroke, 2 * two, two);
 }

@@ -5,8 +5,10 @@
 /// be planned again (planner_motion.c); calls go in that direction only. Memory grows here, in
 /// setup; the motion only moves within it.
 #include "plan/planner_state.h"
+#include "base/format.h"
 #include "base/head_frame.h"
 #include "plan/planner_roll.h"
+#include "plan/score.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -50,7 +52,12 @@ himc_planner *himc_planner_new(const himc_planner_config *config, himc_error *er
     for (int i = 0; i < HIMC_DRUMS; i++)
         planner->drum[i] = (himc_head_frame){.center = {0.75, 0, 0.85}, .radius = 0.2921};
     planner->score.drum = planner->drum;
-    himc_planner_motion_init(planner);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_hand_place(&planner->hand[hand].plan, 0, config->rest[hand]);
+        himc_stream_init(&planner->hand[hand].stream);
+        planner->hand[hand].way.touch = -HUGE_VAL;
+    }
+    himc_planner_changed(planner, -HUGE_VAL);
     return planner;
 }
 
@@ -69,9 +76,9 @@ static void rebase(himc_planner *planner, double t)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         planner_hand *h = &planner->hand[hand];
         for (int i = 0; i < h->waiting_count; i++)
-            h->waiting[i].round -= round;
+            h->waiting[i].place.round -= round;
         for (int i = 0; i < h->planned_count; i++)
-            h->planned[i].round -= round;
+            h->planned[i].place.round -= round;
     }
 }
 
@@ -87,16 +94,6 @@ static double last_contact(const himc_planner *planner)
             last = fmax(last, himc_goal_end(&h->planned[h->planned_count - 1].goal));
     }
     return last;
-}
-
-/// The last round of a planned stroke, at least `round`.
-static int last_round(const himc_planner *planner, int round)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            if (planner->hand[hand].planned[i].round > round)
-                round = planner->hand[hand].planned[i].round;
-    return round;
 }
 
 /// The last time at which a stroke is written that a hand has planned or has taken over (s).
@@ -115,13 +112,13 @@ static double last_written(const himc_planner *planner)
 }
 
 /// Rolls are about to change at t, with the tempo or what follows them: what of a roll is not
-/// planned yet is counted anew. Returns what himc_planner_score_keep needs.
-static double before_change(himc_planner *planner, double t)
+/// planned yet is counted anew.
+static void before_change(himc_planner *planner, double t)
 {
     if (!planner->score.playing || planner->score.roll_count == 0)
-        return 0;
+        return;
     himc_planner_cut_both(planner, t);
-    return himc_planner_score_anchor(&planner->score, fmax(t, last_written(planner)));
+    himc_planner_score_anchor(&planner->score, fmax(t, last_written(planner)));
 }
 
 bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place)
@@ -131,10 +128,11 @@ bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_fra
         return false;
     if (planner->known[index] && himc_head_frame_equal(&planner->drum[index], place))
         return true;
-    double t = planner->now + PLANNER_AHEAD, anchor = before_change(planner, t);
+    double t = planner->now + PLANNER_AHEAD;
+    before_change(planner, t);
     planner->drum[index] = *place;
     planner->known[index] = true;
-    himc_planner_score_keep(&planner->score, anchor);
+    himc_planner_score_keep(&planner->score);
     himc_planner_rest_again(planner);
     himc_planner_replan(planner, t);
     return true;
@@ -194,63 +192,53 @@ void himc_planner_set_human(himc_planner *planner, himc_human human)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
-static double time_of(const planner_score *score, const planner_stroke *s, int round)
-{
-    return himc_planner_score_time(score, round, s->stroke.beat) - s->stroke.early;
-}
-
-/// A stroke added to a loop is the next one in the first round in which the hand is free by then,
-/// if it comes before the present next one. Planned strokes of a later round are put back already.
-static void fit_in_loop(himc_planner *planner, himc_hand hand, int at, bool first)
-{
-    planner_score *score = &planner->score;
-    const planner_part *part = &score->part[hand];
-    const planner_stroke *added = &part->list[at];
-    int round = 0;
-    while (time_of(score, added, round) <= planner->hand[hand].plan.end)
-        round++;
-    if (round > 0 && time_of(score, added, 0) > planner->now)
-        himc_planner_tell_next_round(planner, &added->stroke);
-    if (first || round < part->round || (round == part->round && at < part->next))
-        himc_planner_score_go(score, hand, at, round);
-    else if (round > part->round && at == part->next)
-        himc_planner_score_go(score, hand, at + 1, part->round);
-}
-
-/// The same without a loop; given up if its beat is past.
+/// A stroke added without a loop is the next one if it comes before it; given up if its beat is
+/// past.
 static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
 {
-    planner_score *score = &planner->score;
-    const planner_part *part = &score->part[hand];
+    const planner_part *part = &planner->score.part[hand];
     const planner_stroke *added = &part->list[at];
-    double time = time_of(score, added, part->round);
-    if (at >= part->next)
+    double time = himc_planner_score_touch(&planner->score, part->listed.round, &added->stroke);
+    if (at >= part->listed.number)
         return;
     if (time > planner->hand[hand].plan.end) {
-        himc_planner_score_go(score, hand, at, part->round);
+        himc_planner_score_go(&planner->score, hand, (planner_place){-1, at, part->listed.round});
         return;
     }
     char name[HIMC_PLANNER_NAME];
-    timed_stroke past = {.stroke = added->stroke, .round = -1};
-    himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
-    himc_planner_notes_miss(&planner->notes,
-                            &(himc_planner_miss){added->stroke, added->drum, false, time, PAST});
-    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s",
-                     himc_planner_name(planner, &past, name), PAST);
+    timed_stroke past = {.stroke = added->stroke, .place = {-1, 0, -1}};
+    himc_planner_tell_miss(planner,
+                           &(himc_planner_miss){added->stroke, added->drum, false, time, PAST},
+                           himc_planner_name(planner, &past, name));
 }
 
 /// While playing, a stroke before the planned ones is fitted in.
 static void fit_in(himc_planner *planner, himc_hand hand, int at, bool first)
 {
+    planner_score *score = &planner->score;
+    planner_hand *h = &planner->hand[hand];
     double t = planner->now + PLANNER_AHEAD;
     himc_planner_cut(planner, hand, t);
-    if (planner->score.loop)
-        fit_in_loop(planner, hand, at, first);
-    else
+    if (score->loop) {
+        // the next one in the first round in which the hand is free by then, if it comes before the
+        // present next one; planned strokes of a later round are put back already
+        const planner_place *next = &score->part[hand].listed;
+        const himc_stroke *added = &score->part[hand].list[at].stroke;
+        int round = 0;
+        while (himc_planner_score_touch(score, round, added) <= h->plan.end)
+            round++;
+        if (round > 0 && himc_planner_score_touch(score, 0, added) > planner->now)
+            himc_planner_tell_next_round(planner, added);
+        if (first || round < next->round || (round == next->round && at < next->number))
+            himc_planner_score_go(score, hand, (planner_place){-1, at, round});
+        else if (round > next->round && at == next->number)
+            himc_planner_score_go(score, hand, (planner_place){-1, at + 1, next->round});
+        h->added = at + 1;
+    } else {
         fit_in_once(planner, hand, at);
-    planner->hand[hand].added = planner->score.loop ? at + 1 : 0;
+    }
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-    planner->hand[hand].added = 0;
+    h->added = 0;
 }
 
 /// After the end of the score the beats go on: for a stroke or a roll whose beat, or end, is still
@@ -259,15 +247,18 @@ static void go_on(himc_planner *planner, const himc_stroke *stroke, double end)
 {
     char name[HIMC_PLANNER_NAME];
     planner_score *score = &planner->score;
-    timed_stroke late = {.stroke = *stroke, .round = -1};
+    timed_stroke late = {.stroke = *stroke, .place = {-1, 0, -1}};
     if (!score->over)
         return;
     rebase(planner, planner->now);
-    if (himc_planner_score_time(score, 0, end) - stroke->early > planner->now + PLANNER_AHEAD)
-        himc_planner_score_go_on(score, planner->now);
-    else
-        himc_planner_say(&planner->notes, PLANNER_NEXT_PLAY, "%s: " PAST ", the next play has it",
+    if (himc_planner_score_time(score, 0, end) - stroke->early > planner->now + PLANNER_AHEAD) {
+        score->beat = himc_planner_score_beat_at(score, planner->now);
+        himc_planner_score_start(score, planner->now);
+        score->goes_on = true;
+    } else {
+        himc_planner_say(planner, PLANNER_NEXT_PLAY, "%s: " PAST ", the next play has it",
                          himc_planner_name(planner, &late, name));
+    }
 }
 
 bool himc_planner_goes_on(const himc_planner *planner)
@@ -296,18 +287,20 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
     go_on(planner, stroke, stroke->beat);
     bool running = score->playing && !score->empties;
     double t = planner->now + PLANNER_AHEAD;
-    if (running)
+    if (running) {
         rebase(planner, planner->now);
-    double anchor = running ? before_change(planner, t) : 0;
+        before_change(planner, t);
+    }
     bool first = score->part[stroke->hand].count == 0;
     himc_planner_score_insert(score, at, stroke, drum);
     planner_hand *h = &planner->hand[stroke->hand];
     for (int i = 0; i < h->planned_count; i++) // later ones move up by one
-        h->planned[i].index += !h->planned[i].roll && h->planned[i].index >= at;
+        h->planned[i].place.number +=
+            h->planned[i].place.roll < 0 && h->planned[i].place.number >= at;
     himc_planner_rest_again(planner);
     if (!running)
         return true;
-    himc_planner_score_keep(score, anchor);
+    himc_planner_score_keep(score);
     fit_in(planner, stroke->hand, at, first);
     if (score->roll_count > 0)
         himc_planner_replan(planner, t);
@@ -315,28 +308,27 @@ bool himc_planner_add(himc_planner *planner, const himc_stroke *stroke, int drum
 }
 
 /// A roll that has lost its beats to another one is named.
-static void tell_overlap(planner_notes *notes, const planner_roll *r, const planner_roll *by)
+static void tell_overlap(himc_planner *planner, const himc_stroke *own, const himc_stroke *other)
 {
-    const himc_stroke *own = &r->stroke, *other = &by->stroke;
     const char *on = own->drum[0] ? " on " : "", *other_on = other->drum[0] ? " on " : "";
     if (other->beat > own->beat)
-        himc_planner_say(notes, PLANNER_OVERLAP,
+        himc_planner_say(planner, PLANNER_OVERLAP,
                          "roll at beat %g%s%s: ends at beat %g, where another one begins%s%s, not "
                          "at beat %g",
                          own->beat, on, own->drum, other->beat, other_on, other->drum,
                          own->beat + own->length);
     else
-        himc_planner_say(
-            notes, PLANNER_OVERLAP,
-            "roll at beat %g%s%s: given up, another one begins there%s%s; expected two "
-            "drums, one kind and one length",
-            own->beat, on, own->drum, other_on, other->drum);
+        himc_planner_say(planner, PLANNER_OVERLAP,
+                         "roll at beat %g%s%s: given up, another one begins there%s%s; expected "
+                         "two drums, one kind and one length",
+                         own->beat, on, own->drum, other_on, other->drum);
 }
 
 int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int drum, double rate,
                           himc_error *error)
 {
     planner_score *score = &planner->score;
+    char name[HIMC_PLANNER_NAME];
     go_on(planner, roll, roll->beat + roll->length);
     bool running = score->playing && !score->empties;
     if (running)
@@ -346,40 +338,41 @@ int himc_planner_add_roll(himc_planner *planner, const himc_stroke *roll, int dr
         return -1;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; i < planner->hand[hand].planned_count; i++)
-            planner->hand[hand].planned[i].roll += planner->hand[hand].planned[i].roll > at;
+            planner->hand[hand].planned[i].place.roll +=
+                planner->hand[hand].planned[i].place.roll >= at;
     for (int i = at > 1 ? at - 2 : 0; i <= at; i++) {
         const planner_roll *by = himc_planner_roll_cut_by(score, i);
         if (by)
-            tell_overlap(&planner->notes, &score->roll[i], by);
+            tell_overlap(planner, &score->roll[i].stroke, &by->stroke);
     }
     himc_planner_rest_again(planner);
     double t = planner->now + PLANNER_AHEAD;
     for (int i = 0; i < HIMC_HANDS && running; i++) {
         himc_planner_cut(planner, (himc_hand)i, t);
-        himc_planner_score_seat(score, (himc_hand)i, planner->hand[i].plan.end);
+        double from = planner->hand[i].plan.end;
+        int round = himc_planner_score_round_at(score, from);
+        himc_planner_roll_from(score, (himc_hand)i, round,
+                               from - himc_planner_score_time(score, round, 0));
         himc_planner_extend(planner, (himc_hand)i, t + PLANNER_HORIZON);
     }
     double end = himc_planner_score_time(score, 0, himc_planner_roll_end(score, at));
     if (running && !score->loop && end < t) {
-        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
-        himc_planner_notes_miss(&planner->notes,
-                                &(himc_planner_miss){*roll, drum, false, end, PAST});
-        himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "roll at beat %g: given up, %s",
-                         roll->beat, PAST);
+        himc_format(name, sizeof name, "roll at beat %g", roll->beat);
+        himc_planner_tell_miss(planner, &(himc_planner_miss){*roll, drum, false, end, PAST}, name);
         return 0; // that line is enough
     }
     return himc_planner_roll_left_out(score, at);
 }
 
 /// The tempo has changed at t; that was the beat then.
-static void after_tempo(himc_planner *planner, double t, double beat, double anchor)
+static void after_tempo(himc_planner *planner, double t, double beat)
 {
     planner_score *score = &planner->score;
     if (score->playing || score->over)
         himc_planner_score_hold(score, t, beat);
     if (!score->playing)
         return;
-    himc_planner_score_keep(score, anchor);
+    himc_planner_score_keep(score);
     planner->hastened = t + HASTENED;
     himc_planner_replan(planner, t);
 }
@@ -393,18 +386,22 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
         return false;
     double t = planner->now + PLANNER_AHEAD, beat = himc_planner_score_beat_at(score, t);
     rebase(planner, t);
-    double anchor = before_change(planner, t);
+    before_change(planner, t);
     himc_planner_score_take_tempi(score, copy, count);
-    after_tempo(planner, t, beat, anchor);
+    after_tempo(planner, t, beat);
     return true;
 }
 
 bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *tempo,
                             himc_error *error)
 {
-    int count;
-    himc_tempo_change *all = himc_planner_score_add_tempo(&planner->score, tempo, &count, error);
-    bool good = all && himc_planner_set_tempi(planner, all, count, error);
+    int count = planner->score.tempo_count;
+    himc_tempo_change *all = malloc(((size_t)count + 1) * sizeof *all);
+    if (!all)
+        return himc_error_set(error, "tempo: out of memory");
+    memcpy(all, planner->score.tempi, (size_t)count * sizeof *all);
+    himc_score_insert_tempo(all, &count, *tempo);
+    bool good = himc_planner_set_tempi(planner, all, count, error);
     free(all);
     return good;
 }
@@ -414,31 +411,38 @@ bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *t
 {
     if (beat <= 0 || count < 1)
         return himc_planner_set_tempi(planner, tempi, count, error);
-    return himc_planner_score_join_tempi(&planner->score, tempi, count, beat, error);
+    planner_score *score = &planner->score;
+    int kept = 1;
+    while (kept < score->tempo_count && score->tempi[kept].beat < beat)
+        kept++;
+    himc_tempo_change *all = malloc((size_t)(kept + count) * sizeof *all);
+    if (!all)
+        return himc_error_set(error, "tempo: out of memory for %d changes", kept + count);
+    memcpy(all, score->tempi, (size_t)kept * sizeof *all);
+    for (int i = 0; i < count; i++)
+        all[kept + i] = (himc_tempo_change){tempi[i].beat + beat, tempi[i].bpm};
+    himc_planner_score_take_tempi(score, all, kept + count);
+    return true;
 }
 
 /// Time of a stroke of a part that may be of another score (s); infinite past its end.
 static double part_time(const planner_score *score, const planner_part *part, int i)
 {
-    return i < part->count ? himc_planner_score_time(score, 0, part->list[i].stroke.beat) -
-                                 part->list[i].stroke.early
-                           : HUGE_VAL;
+    return i < part->count ? himc_planner_score_touch(score, 0, &part->list[i].stroke) : HUGE_VAL;
 }
 
-/// True if a hand that has struck nothing waits over the same drum with the strokes of `fresh`.
-static bool rests_the_same(const himc_planner *planner, himc_hand hand, const planner_score *fresh)
+/// True if a hand's plan so far is the same with the strokes of `other`.
+static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_score *other)
 {
     const planner_score *score = &planner->score;
-    return !planner->begun || planner->hand[hand].struck ||
-           himc_planner_score_first_drum(score, hand, score->beat, -1) ==
-               himc_planner_score_first_drum(fresh, hand, score->beat, -1);
-}
-
-/// True if a hand's plan so far is the same with the strokes of `fresh`.
-static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_part *fresh)
-{
-    const planner_score *score = &planner->score;
-    const planner_part *part = &score->part[hand];
+    const planner_part *part = &score->part[hand], *fresh = &other->part[hand];
+    // one that has struck nothing waits over its first drum
+    if (planner->begun && !planner->hand[hand].struck &&
+        himc_planner_score_first_drum(score, hand, score->beat, -1) !=
+            himc_planner_score_first_drum(other, hand, score->beat, -1))
+        return false;
+    if (!score->playing)
+        return true;
     int index, same = himc_planner_score_common(part, fresh);
     double to = himc_planner_looked_to(planner, hand, &index),
            time = fmin(part_time(score, part, same), part_time(score, fresh, same));
@@ -471,8 +475,7 @@ bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
             score->tempi[i].bpm != fresh->tempi[i].bpm)
             return false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (!rests_the_same(planner, (himc_hand)hand, fresh) ||
-            (score->playing && !may_exchange(planner, (himc_hand)hand, &fresh->part[hand])))
+        if (!may_exchange(planner, (himc_hand)hand, fresh))
             return false;
     planner_score with_fresh = *score; // at the drums' places
     memcpy(with_fresh.part, fresh->part, sizeof fresh->part);
@@ -498,10 +501,10 @@ void himc_planner_clear(himc_planner *planner)
         h->struck = false;
         h->waiting_count = 0;
         for (int i = 0; i < h->planned_count; i++) // they are no longer in the score
-            h->planned[i].index = -1, h->planned[i].roll = 0;
+            h->planned[i].place.roll = h->planned[i].place.number = -1;
         himc_planner_extend(planner, (himc_hand)hand, t + PLANNER_HORIZON);
     }
-    himc_planner_score_seek(score, 0);
+    score->beat = 0;
     himc_planner_last_until(planner, -1);
     planner->hits = 0;
     himc_planner_notes_begin(&planner->notes);
@@ -509,7 +512,7 @@ void himc_planner_clear(himc_planner *planner)
         return;
     himc_planner_score_start(score, t);
     himc_planner_score_hold(score, t, beat);
-    himc_planner_score_empty(score);
+    score->empties = true; // it plays on without strokes
 }
 
 void himc_planner_last_until(himc_planner *planner, double beat)
@@ -520,11 +523,12 @@ void himc_planner_last_until(himc_planner *planner, double beat)
     double t = planner->now + PLANNER_AHEAD;
     if (score->playing)
         rebase(planner, planner->now);
-    double anchor = score->loop ? before_change(planner, t) : 0;
+    if (score->loop)
+        before_change(planner, t);
     score->until = beat;
     if (!score->playing || !score->loop)
         return;
-    himc_planner_score_keep(score, anchor);
+    himc_planner_score_keep(score);
     himc_planner_replan(planner, t);
 }
 
@@ -540,9 +544,9 @@ static void start(himc_planner *planner, double t, bool running)
     planner_score *score = &planner->score;
     himc_planner_score_start(score, t);
     double late = himc_planner_lateness(planner);
-    himc_planner_score_delay(score, late);
+    score->origin += late;
     if (running && late > LATENESS_NOTED)
-        himc_planner_say(&planner->notes, PLANNER_LATE,
+        himc_planner_say(planner, PLANNER_LATE,
                          "beat %g is %.2g s late: the first stroke must be prepared", score->beat,
                          late);
     himc_planner_replan(planner, t);
@@ -555,7 +559,7 @@ void himc_planner_play(himc_planner *planner, double t)
     if (!isfinite(t) || (plays && t < himc_planner_end(planner)))
         return;
     if (score->playing || score->beat > himc_planner_score_last_beat(score))
-        himc_planner_score_seek(score, 0);
+        score->beat = 0;
     himc_planner_notes_begin(&planner->notes);
     himc_planner_cut_both(planner, t);
     start(planner, t, false);
@@ -583,7 +587,8 @@ void himc_planner_seek(himc_planner *planner, double t, double beat)
 {
     if (!isfinite(t) || !isfinite(beat))
         return;
-    himc_planner_score_seek(&planner->score, fmax(beat, 0));
+    planner->score.beat = fmax(beat, 0);
+    planner->score.over = false;
     himc_planner_rest_again(planner);
     if (!planner->score.playing)
         return;
@@ -597,13 +602,17 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
     if (!isfinite(t) || score->loop == on)
         return;
     himc_planner_cut_both(planner, t);
-    double anchor = before_change(planner, t); // the last roll goes on to another stroke
+    before_change(planner, t); // the last roll goes on to another stroke
     int rounds = on || !score->playing ? 0 : himc_planner_score_round_at(score, t);
     // a stroke of the next round that can no longer be taken back brings that round with it
-    if (!on)
-        rounds = last_round(planner, rounds);
-    himc_planner_score_loop(score, on, rounds);
-    himc_planner_score_keep(score, anchor);
+    for (int hand = 0; hand < HIMC_HANDS && !on; hand++)
+        for (int i = 0; i < planner->hand[hand].planned_count; i++)
+            if (planner->hand[hand].planned[i].place.round > rounds)
+                rounds = planner->hand[hand].planned[i].place.round;
+    score->over = score->over && !on;
+    score->rounds = rounds;
+    score->loop = on;
+    himc_planner_score_keep(score);
     himc_planner_replan(planner, t);
 }
 
@@ -616,9 +625,9 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (himc_planner_score_has_tempo(score, beat, bpm))
         return;
     rebase(planner, t);
-    double anchor = before_change(planner, t);
+    before_change(planner, t);
     himc_planner_score_set_tempo(score, score->playing ? beat : score->beat, bpm);
-    after_tempo(planner, t, beat, anchor);
+    after_tempo(planner, t, beat);
 }
 
 double himc_planner_length(const himc_planner *planner)
@@ -629,7 +638,11 @@ double himc_planner_length(const himc_planner *planner)
 double himc_planner_next_start(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
-    double length = himc_planner_score_free_from(score);
+    double last = himc_planner_roll_last_beat(score), length = himc_planner_score_length(score);
+    if (last >= 0 &&
+        himc_planner_score_seconds(score, length) - himc_planner_score_seconds(score, last) <
+            HIMC_CLOSEST_STROKES)
+        length++;
     return score->playing && !score->empties
                ? fmax(length, ceil(himc_planner_score_beat_at(score, t + PREPARATION_TIME)))
                : length;
@@ -677,26 +690,14 @@ double himc_planner_end(const himc_planner *planner)
     return fmax(score->origin, end);
 }
 
-int himc_planner_given_up(himc_planner *planner)
-{
-    return himc_planner_notes_given_up(&planner->notes);
-}
-
-bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss)
-{
-    return himc_planner_notes_miss_next(&planner->notes, miss);
-}
-
 void himc_planner_finish(himc_planner *planner)
 {
-    if (planner->score.playing)
-        himc_planner_score_finish(&planner->score);
+    planner_score *score = &planner->score;
+    if (score->playing) {
+        himc_planner_score_stop(score, 0);
+        score->over = true;
+    }
     himc_planner_notes_sum_up(&planner->notes);
-}
-
-bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note)
-{
-    return himc_planner_notes_next(&planner->notes, note);
 }
 
 const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count)

@@ -79,15 +79,6 @@ static planner_rehearsal begin_walk(double t)
         .t = t, .after = -1, .met = true, .near = {0, HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0}};
 }
 
-/// The part of a lift at t that is done (0 .. 1), as himc_hand_lift has it.
-static double lifted(const planner_lift *l, double t)
-{
-    double u =
-        t < l->from ? (t - l->begin) / (l->from - l->begin) : (l->end - t) / (l->end - l->to);
-    u = fmin(fmax(u, 0), 1);
-    return u * u * u * (10 - u * (15 - 6 * u));
-}
-
 /// Both hands at a moment.
 typedef struct moment {
     double time, after;          // the moment before (s); negative: it is the first
@@ -102,22 +93,14 @@ static himc_vec3 tip_at(const moment *m, himc_hand hand, double t)
     if (!m->hand)
         return m->tip[hand];
     himc_vec3 tip = himc_hand_at(&m->hand[hand].plan, t).x;
-    return m->lift->end > 0 && m->lift->hand == hand
-               ? himc_vec3_madd(tip, lifted(m->lift, t), m->lift->way)
-               : tip;
-}
-
-static moment moment_at(const planner_rehearsal *walk, const planner_lift *lift,
-                        const planner_hand *hand)
-{
-    moment m = {.time = walk->t, .after = walk->after, .hand = hand, .lift = lift};
-    for (int i = 0; i < HIMC_HANDS; i++) {
-        m.tip[i] = tip_at(&m, (himc_hand)i, walk->t);
-        const timed_stroke *s = himc_planner_current_planned(&hand[i], walk->t);
-        bool soon = s && s->goal.time >= walk->t && s->goal.time < walk->t + PLACE_AHEAD;
-        m.place[i] = soon ? s->goal.spot : m.tip[i];
-    }
-    return m;
+    const planner_lift *l = m->lift;
+    if (l->end == 0 || l->hand != hand)
+        return tip;
+    // the part of the lift that is done (0 .. 1), as himc_hand_lift has it
+    double u =
+        t < l->from ? (t - l->begin) / (l->from - l->begin) : (l->end - t) / (l->end - l->to);
+    u = fmin(fmax(u, 0), 1);
+    return himc_vec3_madd(tip, u * u * u * (10 - u * (15 - 6 * u)), l->way);
 }
 
 /// One step of the avoidance, if it is due; the work.
@@ -160,16 +143,23 @@ static himc_clearance look(const himc_planned_body *b, const moment *at, planner
     return clear;
 }
 
+/// Both tips where they are planned to be at t, but that of `hand`.
+static moment moment_with(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
+{
+    moment m = {.time = t, .after = -1};
+    for (int i = 0; i < HIMC_HANDS; i++)
+        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    return m;
+}
+
 bool himc_planner_bends_to(const himc_planner *planner, himc_hand hand, double t,
                            const himc_goal *goal)
 {
     const himc_planned_body *body = planner->config.body;
     planner_rehearsal r = begin_walk(t);
-    moment m = {.time = t, .after = -1};
     if (!body)
         return true;
-    for (int i = 0; i < HIMC_HANDS; i++)
-        m.tip[i] = m.place[i] = himc_hand_at(&planner->hand[i].plan, t).x;
+    moment m = moment_with(planner, t, hand, himc_hand_at(&planner->hand[hand].plan, t).x);
     m.place[hand] = goal->spot;
     look(body, &m, &r);
     m.time = goal->time;
@@ -181,9 +171,7 @@ bool himc_planner_bends_to(const himc_planner *planner, himc_hand hand, double t
 bool himc_planner_meets_at(const himc_planner *planner, double t, himc_hand hand, himc_vec3 x)
 {
     planner_rehearsal r = begin_walk(t);
-    moment m = {.time = t, .after = -1};
-    for (int i = 0; i < HIMC_HANDS; i++)
-        m.tip[i] = m.place[i] = i == (int)hand ? x : himc_hand_at(&planner->hand[i].plan, t).x;
+    moment m = moment_with(planner, t, hand, x);
     return planner->config.body && look(planner->config.body, &m, &r).sticks < 0;
 }
 
@@ -225,7 +213,13 @@ static int walk_step(const himc_planner *planner, planner_rehearsal *walk, const
                      const planner_hand *hand, double ignored)
 {
     int order;
-    moment at = moment_at(walk, lift, hand);
+    moment at = {.time = walk->t, .after = walk->after, .hand = hand, .lift = lift};
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        at.tip[i] = tip_at(&at, (himc_hand)i, walk->t);
+        const timed_stroke *s = himc_planner_current_planned(&hand[i], walk->t);
+        bool soon = s && s->goal.time >= walk->t && s->goal.time < walk->t + PLACE_AHEAD;
+        at.place[i] = soon ? s->goal.spot : at.tip[i];
+    }
     himc_clearance clear = look(planner->config.body, &at, walk);
     double gap = himc_planner_least_gap(&clear, speed_past(hand, at.time));
     double lack = lack_of(&clear, &at, &order);
@@ -246,14 +240,6 @@ static int walk_step(const himc_planner *planner, planner_rehearsal *walk, const
     }
     walk->t += walk->after;
     return clear.work;
-}
-
-/// True if `a` is the better way: its least gap is larger, or both are SURE_GAP, and less is
-/// lacking.
-static bool is_better(const near_time *a, const near_time *b)
-{
-    double p = fmin(a->gap, SURE_GAP), q = fmin(b->gap, SURE_GAP);
-    return p == q ? a->lack < b->lack : p > q;
 }
 
 static void try_nothing(planner_clear *c)
@@ -293,19 +279,11 @@ static himc_hand later_hand(const himc_planner *planner, const near_time *n)
                : HIMC_RIGHT;
 }
 
-/// Ways past the other hand: over it, over and outwards.
-static himc_vec3 way_past(himc_vec3 tip, int k)
-{
-    static const double share[WAYS][2] = {{1, 0}, {1, 0.7}, {0.3, 1}};
-    double size = LIFT * (1 + k / WAYS), distance = hypot(tip.x, tip.y);
-    const double *s = share[k % WAYS];
-    return himc_vec3_make(size * s[1] * tip.x / distance, size * s[1] * tip.y / distance,
-                          size * s[0]);
-}
-
 /// The k-th lift of a hand where it is near; false if there is no time for it.
 static bool make_lift(himc_planner *planner, himc_hand hand, int k)
 {
+    // over the other hand, over and outwards: up and out
+    static const double share[WAYS][2] = {{1, 0}, {1, 0.7}, {0.3, 1}};
     planner_clear *c = &planner->clear;
     const planner_hand *h = &planner->hand[hand];
     const himc_spline *lifts = &h->plan.lift;
@@ -318,8 +296,11 @@ static bool make_lift(himc_planner *planner, himc_hand hand, int k)
         begin = fmax(begin, lifts->segment[lifts->count - 1].t1);
     planner_lift l = {.hand = hand, .touch = himc_planner_touch_after(h, n->from)};
     end = fmin(end, l.touch);
-    l.way = way_past(himc_hand_at(&h->plan, n->from).x, k);
-    double size = himc_vec3_length(l.way), up = himc_move_time(size, QUICK_LIFT);
+    himc_vec3 tip = himc_hand_at(&h->plan, n->from).x;
+    double size = LIFT * (1 + k / WAYS), distance = hypot(tip.x, tip.y), out = share[k % WAYS][1];
+    l.way = himc_vec3_make(size * out * tip.x / distance, size * out * tip.y / distance,
+                           size * share[k % WAYS][0]);
+    double up = himc_move_time(himc_vec3_length(l.way), QUICK_LIFT);
     l.from = fmax(n->from, begin + himc_planner_lift_time(&l));
     l.begin = fmax(begin, l.from - up);
     l.to = fmax(l.from, fmin(n->to, end - STILL - up));
@@ -334,24 +315,9 @@ static const timed_stroke *yielding(const himc_planner *planner, const near_time
     const planner_hand *h = &planner->hand[hand];
     int k = himc_planner_next_planned(h, n->from - AT_TOUCH);
     const timed_stroke *s = &h->planned[k];
-    bool changeable = k < h->planned_count && (s->index >= 0 || s->reassigned) &&
+    bool changeable = k < h->planned_count && (s->place.number >= 0 || s->reassigned) &&
                       s->goal.time > planner->now + CHANGEABLE;
     return changeable ? s : NULL;
-}
-
-/// To which side a stroke's spot is moved: away from the other hand; 0 if that is far.
-static double side_of(const himc_planner *planner, himc_hand hand, const timed_stroke *s)
-{
-    const himc_head_frame *head = &planner->drum[s->drum];
-    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
-    himc_target other = himc_hand_at(&planner->hand[himc_other_hand(hand)].plan, s->goal.time);
-    himc_vec3 tip = himc_head_frame_from_world(head, other.x);
-    double side = at.y - tip.y;
-    if (hypot(at.x - tip.x, side) > SAME_PLACE)
-        return 0;
-    if (fabs(side) < LEAST_SIDE)
-        return hand == HIMC_LEFT ? 1 : -1;
-    return copysign(1, side);
 }
 
 /// The k-th way for the hand's stroke; false if it cannot be tried, or has been.
@@ -366,7 +332,16 @@ static bool make_way(himc_planner *planner, himc_hand hand, int k)
     way.hand = hand;
     way.touch = s->written.time;
     way.tried = k + 1;
-    way.aside *= side_of(planner, hand, s);
+    // away from the other hand, if that is near
+    const himc_head_frame *head = &planner->drum[s->drum];
+    himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
+    himc_target other_tip = himc_hand_at(&planner->hand[himc_other_hand(hand)].plan, s->goal.time);
+    himc_vec3 tip = himc_head_frame_from_world(head, other_tip.x);
+    double side = at.y - tip.y;
+    if (hypot(at.x - tip.x, side) > SAME_PLACE)
+        way.aside = 0;
+    else if (fabs(side) < LEAST_SIDE ? hand == HIMC_RIGHT : side < 0)
+        way.aside = -way.aside;
     bool meets = c->least.gap < 0;
     bool other = way.other && meets && !s->reassigned &&
                  himc_planner_reaches(planner, himc_other_hand(hand), s->written.spot);
@@ -411,40 +386,12 @@ static bool goes_on(const himc_planner *planner)
            (c->least.gap < enough || (c->candidate < LIFT_TRIES && !due));
 }
 
-static void say_meet(himc_planner *planner)
-{
-    const near_time *n = &planner->clear.plain;
-    himc_hand later = later_hand(planner, n);
-    int k = himc_planner_next_planned(&planner->hand[later], n->from - AT_TOUCH);
-    const timed_stroke *s = &planner->hand[later].planned[k];
-    char name[HIMC_PLANNER_NAME];
-    if (k < planner->hand[later].planned_count)
-        himc_planner_say(&planner->notes, PLANNER_MEET, "%s: the hands come too near on the way",
-                         himc_planner_name(planner, s, name));
-    else
-        himc_planner_say(&planner->notes, PLANNER_MEET, "the hands come too near");
-}
-
 static void plan_way(himc_planner *planner, const planner_way *way)
 {
     double t = planner->now + PLANNER_AHEAD;
     planner->hand[way->hand].way = *way;
     himc_planner_cut(planner, way->hand, t);
     himc_planner_extend(planner, way->hand, t + PLANNER_HORIZON);
-}
-
-/// The hands as they would be planned with `clear.way`; nothing else changes.
-static void try_way(himc_planner *planner)
-{
-    planner_clear *c = &planner->clear;
-    planner_score score = planner->score;
-    memcpy(c->own, planner->hand, sizeof c->own);
-    c->planning = planner->notes.silent = true;
-    plan_way(planner, &c->way);
-    c->planning = planner->notes.silent = false;
-    memcpy(c->with_way, planner->hand, sizeof c->own);
-    memcpy(planner->hand, c->own, sizeof c->own);
-    planner->score = score;
 }
 
 /// Makes the best change.
@@ -456,8 +403,16 @@ static void end_search(himc_planner *planner)
     try_nothing(c);
     c->searching = false;
     c->searched = c->plain.to;
-    if (c->least.gap < 0)
-        say_meet(planner);
+    if (c->least.gap < 0) {
+        const planner_hand *later = &planner->hand[later_hand(planner, &c->plain)];
+        int k = himc_planner_next_planned(later, c->plain.from - AT_TOUCH);
+        char name[HIMC_PLANNER_NAME];
+        if (k < later->planned_count)
+            himc_planner_say(planner, PLANNER_MEET, "%s: the hands come too near on the way",
+                             himc_planner_name(planner, &later->planned[k], name));
+        else
+            himc_planner_say(planner, PLANNER_MEET, "the hands come too near");
+    }
     c->walk.near = begin_walk(0).near;
     if (c->best_way.touch > -HUGE_VAL) {
         plan_way(planner, &c->best_way);
@@ -482,7 +437,15 @@ static int try_next(himc_planner *planner)
         return 2;
     }
     c->trial_walk = begin_walk(planner->now);
-    try_way(planner);
+    // the hands as they would be planned with that way; nothing else changes
+    planner_score score = planner->score;
+    memcpy(c->own, planner->hand, sizeof c->own);
+    c->planning = planner->notes.silent = true;
+    plan_way(planner, &c->way);
+    c->planning = planner->notes.silent = false;
+    memcpy(c->with_way, planner->hand, sizeof c->own);
+    memcpy(planner->hand, c->own, sizeof c->own);
+    planner->score = score;
     return PLANNING_WORK;
 }
 
@@ -500,7 +463,9 @@ static int try_on(himc_planner *planner)
     const planner_hand *hand = lifts ? planner->hand : c->with_way;
     double end = fmin(c->plain.to + (lifts ? BESIDE : AFTER_WAY), known_to(hand));
     int work = walk_step(planner, walk, &c->lift, hand, c->searched);
-    bool better = is_better(&walk->near, &c->least);
+    // its least gap is larger, or both are SURE_GAP, and less is lacking
+    double gap = fmin(walk->near.gap, SURE_GAP), least = fmin(c->least.gap, SURE_GAP);
+    bool better = gap == least ? walk->near.lack < c->least.lack : gap > least;
     if (better && walk->t < end)
         return work;
     c->trying = false;

@@ -53,25 +53,11 @@ static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *s
                 : himc_gesture_of(stroke->nuance, stroke->dynamic);
 }
 
-/// The gesture, no faster than fingers can turn the stick for its bounces.
-static himc_gesture bouncing_gesture(himc_planner *planner, const himc_stroke *stroke)
-{
-    himc_gesture g = gesture_of(planner, stroke);
-    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
-    if (g.speed <= most)
-        return g;
-    if (most > HIMC_SLOWEST_GESTURE) // else it is given up
-        himc_planner_say(&planner->notes, PLANNER_SOFTER,
-                         "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
-                         stroke->bounce_time, most);
-    return himc_gesture_scale(g, most / g.speed);
-}
-
 double himc_planner_bounce_most(himc_planner *planner, int bounces, double t,
                                 const planner_due *after)
 {
     double time = fmax(after->time - t, 0), share = himc_planner_bounce_share(bounces);
-    if (after->roll)
+    if (after->place.roll >= 0)
         return share * time;
     himc_goal goal = himc_planner_goal(planner, &after->stroke, after->drum, after->time);
     double left = time - goal.gesture.speed / (FULL_HURRY * HIMC_HURRY);
@@ -86,8 +72,9 @@ double himc_planner_asked(const himc_planner *planner, const timed_stroke *s)
     return varied * gesture_of(planner, &s->stroke).speed;
 }
 
-himc_vec3 himc_planner_tip_at(const himc_planner *planner, const himc_head_frame *head, double x,
-                              double y)
+/// The tip's position when it touches a head at (x, y) (m).
+static himc_vec3 tip_at(const himc_planner *planner, const himc_head_frame *head, double x,
+                        double y)
 {
     return himc_vec3_madd(himc_head_frame_to_world(head, x, y), planner->config.mallet_radius,
                           himc_head_frame_normal(head));
@@ -112,7 +99,7 @@ himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *s,
     himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
     double most = himc_head_frame_half_width(head, PLANNER_STRUCK, at.x);
     at.y = by > 0 ? fmin(at.y + by, fmax(most, at.y)) : fmax(at.y + by, fmin(-most, at.y));
-    return himc_planner_tip_at(planner, head, at.x, at.y);
+    return tip_at(planner, head, at.x, at.y);
 }
 
 himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, int drum, double t)
@@ -122,30 +109,37 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
     himc_head_frame_spot(head, stroke, &x, &y);
     double asked_x = x, asked_y = y;
     if (himc_head_frame_keep_inside(head, PLANNER_STRUCK, &x, &y))
-        himc_planner_say(&planner->notes, PLANNER_OUTSIDE,
+        himc_planner_say(planner, PLANNER_OUTSIDE,
                          "%.3g %.3g is beyond the rim: struck at %.3g %.3g", asked_x, asked_y, x,
                          y);
+    // no faster than fingers can turn the stick for its bounces
+    himc_gesture g = gesture_of(planner, stroke);
+    double most = himc_bounce_fastest(stroke->bounces, stroke->bounce_time);
+    if (g.speed > most && most > HIMC_SLOWEST_GESTURE) // else it is given up
+        himc_planner_say(planner, PLANNER_SOFTER,
+                         "bounces within %.3g s: struck with %.2g m/s at most, softer than written",
+                         stroke->bounce_time, most);
     return (himc_goal){.time = t,
-                       .spot = himc_planner_tip_at(planner, head, x, y),
+                       .spot = tip_at(planner, head, x, y),
                        .normal = himc_head_frame_normal(head),
                        .back = himc_vec3_scale(himc_head_frame_away(head), -1),
-                       .gesture = bouncing_gesture(planner, stroke),
+                       .gesture = g.speed > most ? himc_gesture_scale(g, most / g.speed) : g,
                        .hold = stroke->bounces ? stroke->bounce_time : 0};
 }
 
 void himc_planner_vary(const himc_planner *planner, timed_stroke *s)
 {
     const himc_head_frame *head = &planner->drum[s->drum];
-    bool hit = s->index < 0 && !s->reassigned;
+    bool hit = s->place.number < 0 && !s->reassigned;
     if (!hit)
-        s->variation = himc_human_stroke(&planner->human, &planner->score, s->stroke.hand, s->round,
-                                         s->stroke.beat);
+        s->variation = himc_human_stroke(&planner->human, &planner->score, s->stroke.hand,
+                                         s->place.round, s->stroke.beat);
     const himc_variation *v = &s->variation;
     himc_vec3 at = himc_head_frame_from_world(head, s->written.spot);
     himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
     himc_head_frame_keep_inside(head, PLANNER_STRUCK, &at.x, &at.y);
     s->varied = true;
-    s->goal.spot = himc_planner_tip_at(planner, head, at.x, at.y);
+    s->goal.spot = tip_at(planner, head, at.x, at.y);
     if (s->goal.gesture.speed > HIMC_SLOWEST_GESTURE)
         s->goal.gesture = himc_gesture_scale(s->goal.gesture, exp(v->log_speed));
     himc_vec3 aside = himc_vec3_cross(s->goal.normal, s->goal.back);
@@ -172,7 +166,7 @@ static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_
     double x = -REST_BACK * head->radius, aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
     double y = hand == HIMC_LEFT ? aside : -aside;
     himc_head_frame_keep_inside(head, PLANNER_STRUCK, &x, &y);
-    himc_vec3 at = himc_planner_tip_at(planner, head, x, y);
+    himc_vec3 at = tip_at(planner, head, x, y);
     *place = himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
     return planner->known[drum] && himc_planner_reaches(planner, hand, *place);
 }

@@ -76,7 +76,7 @@ static neighbours neighbours_at(himc_planner *planner, himc_hand hand, double at
     for (int i = 0; i < h->planned_count; i++) {
         himc_goal goal = h->planned[i].goal;
         goal.gesture = h->planned[i].written.gesture; // not as haste has bent it
-        keep_nearer(&n, at, &goal, goal.time, h->planned[i].index >= 0);
+        keep_nearer(&n, at, &goal, goal.time, h->planned[i].place.number >= 0);
     }
     for (int i = 0; i < h->waiting_count; i++)
         keep_nearer(&n, at, &h->waiting[i].goal, himc_planner_waiting_time(planner, &h->waiting[i]),
@@ -115,55 +115,34 @@ static bool lands_softly(const planner_hand *h, double t, const himc_goal *goal,
     return himc_hand_least_speed(&h->plan, t, goal) <= LOUDER * speed;
 }
 
-/// A waiting tip can strike, no louder than the time before the hit allows: else it comes later.
-static bool strikes_from(const planner_hand *h, double t, const himc_goal *goal)
-{
-    double time = fmax(goal->time - t - GIVES_WAY, GIVES_WAY);
-    return himc_hand_can_strike_from(&h->plan, t, goal) &&
-           lands_softly(h, t, goal, himc_gesture_bend(goal->gesture, HIMC_HURRY * time).speed);
-}
-
-/// Whether a stroke of the score after the hit stays as strong as it would be without it.
-static bool leaves_strength(const chance *c)
-{
-    const himc_gesture *g = &c->near.after.gesture;
-    double before = c->near.after.time - himc_goal_end(&c->near.before),
-           left = c->near.after.time - himc_goal_end(&c->goal);
-    return !c->near.scored ||
-           himc_gesture_bend(*g, HIMC_HURRY * left).speed >=
-               PLANNER_AS_STRONG * himc_gesture_bend(*g, HIMC_HURRY * before).speed;
-}
-
 /// Whether the hand has time for the hit before and after it.
 static bool has_time(const himc_planner *planner, himc_hand hand, double t, double least,
                      const chance *c)
 {
     const planner_hand *h = &planner->hand[hand];
-    double at = c->goal.time, free = fmax(t, himc_goal_end(&c->near.before));
-    if (at - free < least || c->near.after.time - at < least + HIMC_CONTACT_TIME)
+    const himc_goal *goal = &c->goal, *after = &c->near.after;
+    double at = goal->time, before = himc_goal_end(&c->near.before);
+    if (at - fmax(t, before) < least || after->time - at < least + HIMC_CONTACT_TIME)
         return false;
-    bool gets_there =
-        c->idle ? strikes_from(h, t, &c->goal) && himc_planner_bends_to(planner, hand, t, &c->goal)
-                : can_follow(&c->near.before, &c->goal);
-    return gets_there && (isinf(c->near.after.time) ||
-                          (can_follow(&c->goal, &c->near.after) && leaves_strength(c)));
-}
-
-/// Delays the hit to the first time at which the hand can play it; for one with strokes to come
-/// that is the time asked for, or none.
-static void find_time(const himc_planner *planner, himc_hand hand, double t, chance *c)
-{
-    const planner_hand *h = &planner->hand[hand];
-    double asked = c->goal.time, least = fmin(LEAST_PREPARATION, asked - t);
-    bool room = h->waiting_count + h->planned_count < PLANNER_WAITING;
-    for (c->late = 0; c->reaches && room && c->late < LATEST; c->late += LATER) {
-        c->goal.time = asked + c->late;
-        if (has_time(planner, hand, t, least, c))
-            return;
-        if (!c->idle)
-            break;
+    if (c->idle) { // strikes no louder than the time before the hit allows: else it comes later
+        double time = fmax(at - t - GIVES_WAY, GIVES_WAY);
+        himc_gesture hurried = himc_gesture_bend(goal->gesture, HIMC_HURRY * time);
+        if (!himc_hand_can_strike_from(&h->plan, t, goal) ||
+            !lands_softly(h, t, goal, hurried.speed) ||
+            !himc_planner_bends_to(planner, hand, t, goal))
+            return false;
+    } else if (!can_follow(&c->near.before, goal)) {
+        return false;
     }
-    c->late = HUGE_VAL;
+    if (isinf(after->time))
+        return true;
+    // a stroke of the score after the hit stays as strong as it would be without it
+    double now = HIMC_HURRY * (after->time - himc_goal_end(goal)),
+           without = HIMC_HURRY * (after->time - before);
+    return can_follow(goal, after) &&
+           (!c->near.scored ||
+            himc_gesture_bend(after->gesture, now).speed >=
+                PLANNER_AS_STRONG * himc_gesture_bend(after->gesture, without).speed);
 }
 
 static chance chance_of(himc_planner *planner, himc_hand hand, double t, const himc_hit *hit)
@@ -177,7 +156,18 @@ static chance chance_of(himc_planner *planner, himc_hand hand, double t, const h
     c.over = h->drum == hit->drum;
     c.from = c.idle ? himc_hand_at(&h->plan, t).x : c.near.before.spot;
     c.reaches = himc_planner_reaches(planner, hand, c.goal.spot);
-    find_time(planner, hand, t, &c);
+    // delayed to the first time at which the hand can play it; for one with strokes to come that is
+    // the time asked for, or none
+    double least = fmin(LEAST_PREPARATION, hit->at - t);
+    bool room = h->waiting_count + h->planned_count < PLANNER_WAITING;
+    for (c.late = 0; c.reaches && room && c.late < LATEST; c.late += LATER) {
+        c.goal.time = hit->at + c.late;
+        if (has_time(planner, hand, t, least, &c))
+            return c;
+        if (!c.idle)
+            break;
+    }
+    c.late = HUGE_VAL;
     return c;
 }
 
@@ -222,7 +212,7 @@ static himc_hand choose_hand(himc_planner *planner, double t, const himc_hit *hi
 
 static timed_stroke stroke_of(himc_planner *planner, const himc_hit *hit, himc_hand hand)
 {
-    timed_stroke s = {.stroke = *hit->stroke, .drum = hit->drum, .index = -1};
+    timed_stroke s = {.stroke = *hit->stroke, .drum = hit->drum, .place = {-1, -1, 0}};
     s.stroke.hand = hand;
     s.variation = himc_human_hit(&planner->human, hand, planner->hits++);
     return s;
@@ -249,7 +239,7 @@ double himc_planner_hit(himc_planner *planner, double t, const himc_stroke *stro
     double touch = h->plan.end + himc_hand_least_time(&h->plan, &hit.goal) + hit.variation.late;
     if (h->waiting_count >= QUEUED_HITS || !himc_planner_find_gap(planner, hand, &touch)) {
         char name[HIMC_PLANNER_NAME];
-        himc_planner_say(&planner->notes, PLANNER_CROWDED, "%s: given up, others are waiting",
+        himc_planner_say(planner, PLANNER_CROWDED, "%s: given up, others are waiting",
                          himc_planner_name(planner, &hit, name));
         himc_planner_notes_miss(&planner->notes, &(himc_planner_miss){hit.stroke, drum, true, touch,
                                                                       "others are waiting"});
@@ -280,7 +270,7 @@ double himc_planner_hit_at(himc_planner *planner, double t, const himc_hit *hit)
         himc_planner_notes_hit(&planner->notes, t, chosen.late);
     // once: who asked for a hand should know that it is not bound
     if (hit->stroke->hand != HIMC_HAND_ANY && hit->stroke->hand != hand)
-        himc_planner_say(&planner->notes, PLANNER_OTHER_HAND,
+        himc_planner_say(planner, PLANNER_OTHER_HAND,
                          "hit %s: the %s hand plays it, which can be there in time",
                          himc_hand_name(hit->stroke->hand), himc_hand_name(hand));
     s.exact = true;
@@ -325,12 +315,10 @@ static bool stroke_is_near(const himc_planner *planner, himc_hand hand, double t
 {
     const planner_hand *h = &planner->hand[hand];
     planner_due due;
-    for (int i = 0; i < h->planned_count; i++)
-        if (h->planned[i].goal.time > t && h->planned[i].goal.time < t + TARGET_STROKE)
-            return true;
-    if (h->waiting_count > 0 && h->waiting[0].goal.time < t + TARGET_STROKE)
-        return true;
-    return himc_planner_score_next(&planner->score, hand, 0, &due) && due.time < t + TARGET_STROKE;
+    double end = t + TARGET_STROKE;
+    return himc_planner_touch_after(h, t) < end ||
+           (h->waiting_count > 0 && h->waiting[0].goal.time < end) ||
+           (himc_planner_score_next(&planner->score, hand, 0, &due) && due.time < end);
 }
 
 void himc_planner_reach(himc_planner *planner, double t, himc_hand hand, himc_vec3 x)

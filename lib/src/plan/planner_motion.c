@@ -46,16 +46,6 @@
 /// What has become of a stroke that was to be planned.
 typedef enum plan_result { PLANNED, TOO_FAR, NO_TIME, MEETS, LEFT_OUT, UNSOUND } plan_result;
 
-void himc_planner_motion_init(himc_planner *planner)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_hand_place(&planner->hand[hand].plan, 0, planner->config.rest[hand]);
-        himc_stream_init(&planner->hand[hand].stream);
-        planner->hand[hand].way.touch = -HUGE_VAL;
-    }
-    himc_planner_changed(planner, -HUGE_VAL);
-}
-
 void himc_planner_changed(himc_planner *planner, double t)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -91,7 +81,7 @@ double himc_planner_touch_after(const planner_hand *h, double t)
 
 double himc_planner_lift_time(const planner_lift *l)
 {
-    return LIFT_MARGIN * himc_move_time(himc_vec3_length(l->way), HIMC_HARDEST_LIFT);
+    return LIFT_MARGIN * himc_move_time(himc_vec3_length(l->way), HIMC_QUICK_MOVE);
 }
 
 bool himc_planner_lift_from(planner_hand *h, const planner_lift *l, double t)
@@ -100,38 +90,15 @@ bool himc_planner_lift_from(planner_hand *h, const planner_lift *l, double t)
     return himc_hand_lift(&h->plan, begin, from, fmax(l->to, from), l->end, l->way);
 }
 
-/// The hand's plan, made again from t (s) on, keeps the lift found for its next stroke.
-static void lift_again(planner_hand *h, double t)
-{
-    const planner_lift *l = &h->lift;
-    double touch = himc_planner_touch_after(h, t);
-    bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
-    if (l->end > t && same && l->end <= h->plan.end)
-        himc_planner_lift_from(h, l, t);
-}
-
 double himc_planner_waiting_time(const himc_planner *planner, const timed_stroke *s)
 {
-    return s->reassigned ? himc_planner_score_time(&planner->score, s->round, s->stroke.beat) -
-                               s->stroke.early
+    return s->reassigned ? himc_planner_score_touch(&planner->score, s->place.round, &s->stroke)
                          : s->goal.time;
 }
 
-static planner_roll_place place_of(const timed_stroke *s)
+static bool is_settled(const himc_planner *planner, himc_hand hand, const planner_place *place)
 {
-    return (planner_roll_place){s->roll - 1, s->index, s->round};
-}
-
-static bool is_settled(const himc_planner *planner, const timed_stroke *s)
-{
-    planner_roll_place place = place_of(s);
-    return s->index >= 0 && himc_planner_score_is_settled(&planner->score, s->stroke.hand, &place);
-}
-
-static bool is_settled_due(const himc_planner *planner, himc_hand hand, const planner_due *due)
-{
-    planner_roll_place place = {due->roll - 1, due->index, due->round};
-    return himc_planner_score_is_settled(&planner->score, hand, &place);
+    return place->number >= 0 && himc_planner_score_is_settled(&planner->score, hand, place);
 }
 
 /// Bounces leave time for the hand's next stroke; none with the servo grip. The stroke is so many
@@ -142,12 +109,12 @@ static void fit_bounces(himc_planner *planner, timed_stroke *s, double t, int ah
     himc_stroke *stroke = &s->stroke;
     if (planner->servo)
         stroke->bounces = 0;
-    if (stroke->bounces == 0 || s->index < 0)
+    if (stroke->bounces == 0 || s->place.number < 0)
         return;
     do {
         if (!himc_planner_score_next(&planner->score, stroke->hand, ++ahead, &after))
             return;
-    } while (is_settled_due(planner, stroke->hand, &after) && ahead < MOST_TRIES);
+    } while (is_settled(planner, stroke->hand, &after.place) && ahead < MOST_TRIES);
     double most = himc_planner_bounce_most(planner, stroke->bounces, t, &after);
     stroke->bounce_time = fmin(stroke->bounce_time, most);
 }
@@ -164,11 +131,7 @@ static bool written_at(himc_planner *planner, himc_hand hand, int ahead, timed_s
         *next = h->waiting[0];
         t = himc_planner_waiting_time(planner, next);
     } else if (scored) {
-        *next = (timed_stroke){.stroke = due.stroke,
-                               .drum = due.drum,
-                               .index = due.index,
-                               .roll = due.roll,
-                               .round = due.round};
+        *next = (timed_stroke){.stroke = due.stroke, .drum = due.drum, .place = due.place};
     } else {
         return false;
     }
@@ -183,7 +146,7 @@ static bool written_at(himc_planner *planner, himc_hand hand, int ahead, timed_s
 static bool next_written(himc_planner *planner, himc_hand hand, timed_stroke *next)
 {
     for (int ahead = 0; ahead < MOST_TRIES && written_at(planner, hand, ahead, next); ahead++)
-        if (!is_settled(planner, next))
+        if (!is_settled(planner, hand, &next->place))
             return true;
     return false;
 }
@@ -200,19 +163,16 @@ static bool next_stroke(himc_planner *planner, himc_hand hand, timed_stroke *nex
 /// The next stroke of the score is that one, or the one of its hand after it.
 static void go_to(himc_planner *planner, const timed_stroke *s, int after)
 {
-    planner_roll_place place = place_of(s);
-    place.number += 2 * after; // the hands take turns in a roll
-    if (s->roll)
-        himc_planner_score_go_roll(&planner->score, s->stroke.hand, &place);
-    else
-        himc_planner_score_go(&planner->score, s->stroke.hand, s->index + after, s->round);
+    planner_place place = s->place;
+    place.number += place.roll < 0 ? after : 2 * after; // the hands take turns in a roll
+    himc_planner_score_go(&planner->score, s->stroke.hand, place);
 }
 
 /// Takes the next stroke out of the score or of the queue.
 static void take(himc_planner *planner, const timed_stroke *s)
 {
     planner_hand *h = &planner->hand[s->stroke.hand];
-    if (s->index >= 0) {
+    if (s->place.number >= 0) {
         go_to(planner, s, 1);
         return;
     }
@@ -233,7 +193,7 @@ void himc_planner_give_up_hit(himc_planner *planner, const timed_stroke *s, doub
 static void put_back(himc_planner *planner, himc_hand hand, const timed_stroke *s)
 {
     planner_hand *h = &planner->hand[hand];
-    if (s->index >= 0) {
+    if (s->place.number >= 0) {
         go_to(planner, s, 0);
         return;
     }
@@ -258,19 +218,8 @@ void himc_planner_queue(himc_planner *planner, const timed_stroke *s)
 
 static void settle(himc_planner *planner, const timed_stroke *s)
 {
-    planner_roll_place place = place_of(s);
-    if (s->index >= 0 && !planner->clear.planning)
-        himc_planner_score_settle(&planner->score, s->stroke.hand, &place);
-}
-
-static void renew_home(himc_planner *planner, himc_hand hand)
-{
-    planner_hand *h = &planner->hand[hand];
-    himc_vec3 home = h->targeted ? h->plan.home : himc_planner_rest_place(planner, hand);
-    if (himc_vec3_length(himc_vec3_sub(home, h->plan.home)) <= HOME_MOVED)
-        return;
-    h->plan.home = home;
-    h->plan.at_home = false;
+    if (s->place.number >= 0 && !planner->clear.planning)
+        himc_planner_score_settle(&planner->score, s->stroke.hand, &s->place);
 }
 
 void himc_planner_rest_again(himc_planner *planner)
@@ -296,24 +245,18 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
     return text;
 }
 
-/// Time from the hand's touch before to a stroke, or from its message if that is shorter (s).
-static double time_for(const planner_hand *h, const timed_stroke *s)
-{
-    double time = s->latency > 0 ? s->latency : HUGE_VAL;
-    if (h->planned_count > 0) {
-        const himc_goal *last = &h->planned[h->planned_count - 1].goal;
-        time = fmin(time, s->goal.time - last->time - last->hold);
-    }
-    return time;
-}
-
 /// The goal's gesture as strong as the time before it allows, by the law of haste (gesture.c). The
 /// first stroke of a fast run is one of it: a stroke gives way to the next one by as much as that
 /// one, or this one if it is softer, loses by the time between them.
 static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
 {
     const planner_hand *h = &planner->hand[s->stroke.hand];
-    himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, HIMC_HURRY * time_for(h, s));
+    double before = s->latency > 0 ? s->latency : HUGE_VAL; // from its message, or a touch (s)
+    if (h->planned_count > 0) {
+        const himc_goal *last = &h->planned[h->planned_count - 1].goal;
+        before = fmin(before, s->goal.time - last->time - last->hold);
+    }
+    himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, HIMC_HURRY * before);
     timed_stroke after;
     s->gives_way = false;
     if (!next_written(planner, s->stroke.hand, &after))
@@ -336,15 +279,15 @@ static void tell_haste(himc_planner *planner, const timed_stroke *struck)
     if (speed >= PLANNER_AS_STRONG * struck->asked)
         return;
     const char *name = himc_planner_name(planner, struck, text);
-    if (struck->roll) {
+    if (struck->place.roll >= 0) {
         himc_format(text, sizeof text, "roll at beat %g",
-                    planner->score.roll[struck->roll - 1].stroke.beat);
+                    planner->score.roll[struck->place.roll].stroke.beat);
         name = text;
     }
     himc_planner_notes_count(&planner->notes, PLANNER_HURRIED);
     if (speed >= PLANNER_AS_STRONG * himc_bounce_fastest(struck->stroke.bounces, struck->goal.hold))
         return;
-    himc_planner_say(&planner->notes, struck->roll ? PLANNER_HURRIED_ROLL : PLANNER_HURRIED,
+    himc_planner_say(planner, struck->place.roll < 0 ? PLANNER_HURRIED : PLANNER_HURRIED_ROLL,
                      "%s: too little time for %.2g m/s, struck with %.2g", name, struck->asked,
                      speed);
 }
@@ -387,7 +330,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         return TOO_FAR;
     if (way->leaves)
         return LEFT_OUT;
-    if (way->other && s->index >= 0)
+    if (way->other && s->place.number >= 0)
         return MEETS;
     s->yields = 0;
     if (way->aside != 0) {
@@ -414,17 +357,6 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     return PLANNED;
 }
 
-/// Whether the stroke of the score after the one just planned can be planned too; asked now, while
-/// the other hand still has time to play it.
-static plan_result check_following(himc_planner *planner, himc_hand hand, timed_stroke *following)
-{
-    if (!next_written(planner, hand, following) || following->index < 0)
-        return PLANNED;
-    if (!himc_planner_reaches(planner, hand, following->written.spot))
-        return TOO_FAR;
-    return himc_hand_can_strike(&planner->hand[hand].plan, &following->written) ? PLANNED : NO_TIME;
-}
-
 /// Plans a hand's next stroke, or a wait before it. If the result is not PLANNED, `refused` is the
 /// stroke that cannot be played: that one, or the one after it. The stroke before that one is put
 /// back if it has given way to it, to be planned without it.
@@ -434,11 +366,15 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     planner_hand *h = &planner->hand[hand];
     timed_stroke next;
     bool more;
-    while ((more = next_stroke(planner, hand, &next)) && is_settled(planner, &next))
+    while ((more = next_stroke(planner, hand, &next)) && is_settled(planner, hand, &next.place))
         take(planner, &next);
     if (!(more && next.goal.time < h->plan.end + PREPARED_AHEAD)) {
-        if (!more)
-            renew_home(planner, hand);
+        himc_vec3 home =
+            more || h->targeted ? h->plan.home : himc_planner_rest_place(planner, hand);
+        if (himc_vec3_length(himc_vec3_sub(home, h->plan.home)) > HOME_MOVED) {
+            h->plan.home = home;
+            h->plan.at_home = false;
+        }
         himc_hand_wait(&h->plan, until, more);
         return PLANNED;
     }
@@ -448,7 +384,13 @@ static plan_result plan_next(himc_planner *planner, himc_hand hand, double until
     *refused = next;
     if (result != PLANNED)
         return result;
-    result = check_following(planner, hand, refused);
+    // the stroke of the score after it: asked now, while the other hand still has time to play it
+    if (!next_written(planner, hand, refused) || refused->place.number < 0)
+        return PLANNED;
+    if (!himc_planner_reaches(planner, hand, refused->written.spot))
+        result = TOO_FAR;
+    else if (!himc_hand_can_strike(&h->plan, &refused->written))
+        result = NO_TIME;
     if (result != PLANNED && next.gives_way && !planner->clear.planning) {
         h->plan = before;
         put_back(planner, hand, &h->planned[--h->planned_count]);
@@ -464,8 +406,8 @@ static bool has_to_plan(const planner_hand *h, double until, int tries)
 void himc_planner_tell_next_round(himc_planner *planner, const himc_stroke *stroke)
 {
     char name[HIMC_PLANNER_NAME];
-    timed_stroke s = {.stroke = *stroke, .round = -1};
-    himc_planner_say(&planner->notes, PLANNER_NEXT_ROUND,
+    timed_stroke s = {.stroke = *stroke, .place = {-1, 0, -1}};
+    himc_planner_say(planner, PLANNER_NEXT_ROUND,
                      "%s: no time to prepare it, it sounds from the next round on",
                      himc_planner_name(planner, &s, name));
 }
@@ -479,8 +421,10 @@ static bool play_late(himc_planner *planner, const timed_stroke *s)
     char name[HIMC_PLANNER_NAME];
     timed_stroke late = *s, after;
     const planner_part *part = &planner->score.part[s->stroke.hand];
-    bool is_next = s->index >= 0 && !s->roll && part->round == s->round &&
-                   (part->next == s->index || part->next == s->index + 1);
+    int next = part->listed.number;
+    bool is_next = s->place.number >= 0 && s->place.roll < 0 &&
+                   part->listed.round == s->place.round &&
+                   (next == s->place.number || next == s->place.number + 1);
     if (!is_next || planner->clear.planning || s->written.time > planner->hastened)
         return false;
     go_to(planner, s, 1);
@@ -493,8 +437,7 @@ static bool play_late(himc_planner *planner, const timed_stroke *s)
             return false;
         if (!himc_hand_can_strike(&h->plan, &late.goal) || plan_stroke(planner, &late) != PLANNED)
             continue;
-        himc_planner_say(&planner->notes, PLANNER_DELAYED,
-                         "%s: %.0f ms late, no time to prepare it",
+        himc_planner_say(planner, PLANNER_DELAYED, "%s: %.0f ms late, no time to prepare it",
                          himc_planner_name(planner, s, name), 1e3 * d);
         return true;
     }
@@ -507,55 +450,44 @@ static void give_up(himc_planner *planner, const timed_stroke *s, plan_result re
 {
     char name[HIMC_PLANNER_NAME];
     timed_stroke anyway = *s;
-    himc_planner_miss miss = {s->stroke, s->drum, s->index < 0 && !s->reassigned, s->written.time,
-                              ""};
+    himc_planner_miss miss = {s->stroke, s->drum, s->place.number < 0 && !s->reassigned,
+                              s->written.time, ""};
     planner->hand[s->stroke.hand].way.other = false;
     if ((result == MEETS && plan_stroke(planner, &anyway) == PLANNED) ||
         (result == NO_TIME && play_late(planner, s)))
         return;
-    if (result == NO_TIME && s->index >= 0 && !s->roll &&
-        planner->hand[s->stroke.hand].added == s->index + 1) {
+    if (result == NO_TIME && s->place.number >= 0 && s->place.roll < 0 &&
+        planner->hand[s->stroke.hand].added == s->place.number + 1) {
         settle(planner, s);
         himc_planner_tell_next_round(planner, &s->stroke);
         return;
     }
-    if (s->index >= 0 || s->reassigned)
-        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
     reason_of(planner, s, result, miss.why);
-    himc_planner_notes_miss(&planner->notes, &miss);
     settle(planner, s);
-    himc_planner_say(&planner->notes, PLANNER_GIVEN_UP, "%s: given up, %s",
-                     himc_planner_name(planner, s, name), miss.why);
+    himc_planner_tell_miss(planner, &miss, himc_planner_name(planner, s, name));
 }
 
-/// Drops the plan from where it has been checked on, with its strokes: no body could follow it. The
-/// hand goes to its rest, at once where even the state there is not sound.
-static void drop_plan(himc_planner *planner, himc_hand hand)
-{
-    planner_hand *h = &planner->hand[hand];
-    double t = fmax(h->checked, planner->now);
-    while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time > t)
-        give_up(planner, &h->planned[--h->planned_count], UNSOUND);
-    himc_planner_say(&planner->notes, PLANNER_DROPPED,
-                     "%s hand: a motion that no body could make was dropped at %.3f s",
-                     himc_hand_name(hand), t);
-    h->targeted = false;
-    h->plan.home = himc_planner_rest_place(planner, hand);
-    h->plan.at_home = false;
-    himc_hand_cut(&h->plan, t);
-    himc_hand_wait(&h->plan, t, false);
-    if (!himc_hand_is_sound(&h->plan, t))
-        himc_hand_place(&h->plan, t, h->plan.home);
-}
-
-/// Each plan is checked once before it is played or continued, from where it was changed on.
+/// Each plan is checked once before it is played or continued, from where it was changed on. One
+/// that no body could follow is dropped from there on, with its strokes: the hand goes to its rest,
+/// at once where even the state there is not sound.
 static void check_plan(himc_planner *planner, himc_hand hand)
 {
     planner_hand *h = &planner->hand[hand];
-    if (h->checked == h->plan.end)
-        return;
-    if (!himc_hand_is_sound(&h->plan, fmax(h->checked, planner->now)))
-        drop_plan(planner, hand);
+    double t = fmax(h->checked, planner->now);
+    if (h->checked != h->plan.end && !himc_hand_is_sound(&h->plan, t)) {
+        while (h->planned_count > 0 && h->planned[h->planned_count - 1].goal.time > t)
+            give_up(planner, &h->planned[--h->planned_count], UNSOUND);
+        himc_planner_say(planner, PLANNER_DROPPED,
+                         "%s hand: a motion that no body could make was dropped at %.3f s",
+                         himc_hand_name(hand), t);
+        h->targeted = false;
+        h->plan.home = himc_planner_rest_place(planner, hand);
+        h->plan.at_home = false;
+        himc_hand_cut(&h->plan, t);
+        himc_hand_wait(&h->plan, t, false);
+        if (!himc_hand_is_sound(&h->plan, t))
+            himc_hand_place(&h->plan, t, h->plan.home);
+    }
     h->checked = h->plan.end;
 }
 
@@ -613,7 +545,7 @@ bool himc_planner_find_gap(const himc_planner *planner, himc_hand hand, double *
             planner_due due;
             if (!himc_planner_score_next(&planner->score, hand, i, &due) || due.time > *t + HIT_GAP)
                 break;
-            if (due.time > *t - HIT_GAP && !is_settled_due(planner, hand, &due))
+            if (due.time > *t - HIT_GAP && !is_settled(planner, hand, &due.place))
                 clash = fmax(clash, due.time);
         }
         if (clash == -HUGE_VAL)
@@ -630,7 +562,7 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     for (int i = 0; i < MOST_TRIES && due.time <= goal->time; i++) {
         if (!himc_planner_score_next(&planner->score, hand, i, &due))
             break;
-        if (is_settled_due(planner, hand, &due))
+        if (is_settled(planner, hand, &due.place))
             continue;
         himc_goal own = himc_planner_goal(planner, &due.stroke, due.drum, due.time);
         bool first = due.time <= goal->time;
@@ -640,38 +572,30 @@ static bool fits_in(himc_planner *planner, himc_hand hand, const himc_goal *goal
     return true;
 }
 
-/// Whether the hand can play a stroke beside its own, in a hurry if it must; its plan ends as early
-/// as it can.
-static bool can_take(himc_planner *planner, himc_hand hand, const timed_stroke *s, bool hurries)
-{
-    const planner_hand *h = &planner->hand[hand];
-    double t = s->goal.time, gap = t;
-    bool in_time = hurries ? himc_hand_can_strike(&h->plan, &s->goal)
-                           : t >= h->plan.end + himc_hand_least_time(&h->plan, &s->goal);
-    return h->waiting_count < PLANNER_WAITING &&
-           himc_planner_reaches(planner, hand, s->goal.spot) &&
-           himc_planner_find_gap(planner, hand, &gap) && gap == t && in_time &&
-           fits_in(planner, hand, &s->goal);
-}
-
-/// The other hand takes a stroke of the score, if it has nothing to do and is near enough.
+/// The other hand takes a stroke of the score, if it has nothing to do and is near enough; in a
+/// hurry if it must, else its plan ends as early as it can.
 static bool reassign(himc_planner *planner, const timed_stroke *s, bool hurries)
 {
     himc_hand other = himc_other_hand(s->stroke.hand);
     planner_hand *h = &planner->hand[other];
     double from = planner->now + PLANNER_AHEAD;
     timed_stroke taken = *s;
-    if (s->reassigned || s->index < 0)
+    if (s->reassigned || s->place.number < 0)
         return false;
     if (h->plan.end < from)
         extend(planner, other, from, give_up);
     cut_plan(planner, other, from);
-    taken.index = -1;
-    taken.roll = 0;
+    taken.place = (planner_place){-1, -1, s->place.round};
     taken.reassigned = true;
     taken.stroke.hand = other;
     taken.goal = himc_planner_goal(planner, &taken.stroke, taken.drum, s->written.time);
-    bool can = can_take(planner, other, &taken, hurries);
+    double t = taken.goal.time, gap = t;
+    bool in_time = hurries ? himc_hand_can_strike(&h->plan, &taken.goal)
+                           : t >= h->plan.end + himc_hand_least_time(&h->plan, &taken.goal);
+    bool can = h->waiting_count < PLANNER_WAITING &&
+               himc_planner_reaches(planner, other, taken.goal.spot) &&
+               himc_planner_find_gap(planner, other, &gap) && gap == t && in_time &&
+               fits_in(planner, other, &taken.goal);
     if (can)
         himc_planner_queue(planner, &taken);
     extend(planner, other, from + PLANNER_HORIZON, give_up);
@@ -687,7 +611,7 @@ static void reassign_or_give_up(himc_planner *planner, const timed_stroke *s, pl
     }
     himc_planner_notes_count(&planner->notes, PLANNER_REASSIGNED);
     settle(planner, s);
-    himc_planner_say(&planner->notes, PLANNER_REASSIGNED, "%s: %s, the %s hand plays it",
+    himc_planner_say(planner, PLANNER_REASSIGNED, "%s: %s, the %s hand plays it",
                      himc_planner_name(planner, s, name), reason_of(planner, s, result, reason),
                      himc_hand_name(himc_other_hand(s->stroke.hand)));
 }
@@ -720,7 +644,8 @@ void himc_planner_replan(himc_planner *planner, double t)
 
 double himc_planner_looked_to(const himc_planner *planner, himc_hand hand, int *index)
 {
-    *index = planner->score.part[hand].next + 1; // the next stroke and the one that follows it
+    *index =
+        planner->score.part[hand].listed.number + 1; // the next stroke and the one that follows it
     return planner->hand[hand].plan.end + PREPARED_AHEAD + PREPARED_MARGIN;
 }
 
@@ -769,7 +694,7 @@ static void fill_loop(himc_planner *planner)
            period = himc_planner_score_time(score, 0, beat + 1) - next;
     himc_planner_score_start(score, next);
     double late = ceil(himc_planner_lateness(planner) / period - BEAT_ROUNDING);
-    himc_planner_score_delay(score, fmax(late, 0) * period);
+    score->origin += fmax(late, 0) * period;
     score->count = count;
     himc_planner_replan(planner, t);
 }
@@ -831,20 +756,12 @@ void himc_planner_separated(himc_planner *planner, himc_hand hand, double t,
     }
     himc_planner_changed(planner, t);
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
-    lift_again(h, t);
-}
-
-static void read_stroke(const himc_planner *planner, const timed_stroke *s, himc_stroke *stroke)
-{
-    *stroke = s->stroke;
-    if (s->index < 0 && !s->reassigned) // a hit
-        stroke->beat = NAN;
-    if (!s->varied)
-        return;
-    himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
-    stroke->spot = HIMC_SPOT_XY;
-    stroke->x = at.x;
-    stroke->y = at.y;
+    // the plan, made again, keeps the lift found for its next stroke
+    const planner_lift *l = &h->lift;
+    double touch = himc_planner_touch_after(h, t);
+    bool same = touch == l->touch || fabs(touch - l->touch) < SAME_TOUCH; // or both infinite
+    if (l->end > t && same && l->end <= h->plan.end)
+        himc_planner_lift_from(h, l, t);
 }
 
 double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t)
@@ -856,22 +773,23 @@ double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t
 bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                           himc_stroke *stroke, int *drum, double *contact_time)
 {
-    const planner_hand *h = &planner->hand[hand];
-    const timed_stroke *s = himc_planner_current_planned(h, t);
-    if (s) {
-        if (stroke)
-            read_stroke(planner, s, stroke);
-        *drum = s->drum;
-        *contact_time = s->goal.time;
-        return true;
-    }
+    const timed_stroke *s = himc_planner_current_planned(&planner->hand[hand], t);
     planner_due due;
-    if (!himc_planner_score_next(&planner->score, hand, 0, &due))
+    if (!s && !himc_planner_score_next(&planner->score, hand, 0, &due))
         return false;
-    if (stroke)
-        *stroke = due.stroke;
-    *drum = due.drum;
-    *contact_time = due.time;
+    *drum = s ? s->drum : due.drum;
+    *contact_time = s ? s->goal.time : due.time;
+    if (!stroke)
+        return true;
+    *stroke = s ? s->stroke : due.stroke;
+    if (s && s->place.number < 0 && !s->reassigned) // a hit
+        stroke->beat = NAN;
+    if (s && s->varied) {
+        himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
+        stroke->spot = HIMC_SPOT_XY;
+        stroke->x = at.x;
+        stroke->y = at.y;
+    }
     return true;
 }
 

@@ -34,35 +34,24 @@ static void put(planner_notes *notes, bool minor, const char *format, va_list ar
     himc_line_print(note->text, sizeof note->text, format, args);
 }
 
-/// Whether a line of that kind is not one too many.
-static bool may_say(planner_notes *notes, planner_kind kind)
+void himc_planner_say(himc_planner *planner, planner_kind kind, const char *format, ...)
 {
-    bool first = !notes->said[kind];
-    if (notes->silent)
-        return false;
-    notes->said[kind] = true;
-    if (kind != PLANNER_GIVEN_UP)
-        return first || kind == PLANNER_NEXT_ROUND;
-    if (notes->spent <= LINES - 1) {
-        notes->spent++;
-        return true;
-    }
-    notes->untold++;
-    notes->last_untold = notes->told;
-    return false;
-}
-
-void himc_planner_say(planner_notes *notes, planner_kind kind, const char *format, ...)
-{
-    if (!may_say(notes, kind))
-        return;
+    planner_notes *notes = &planner->notes;
+    bool first = !notes->said[kind], given_up = kind == PLANNER_GIVEN_UP;
     va_list args;
+    if (notes->silent)
+        return;
+    notes->said[kind] = true;
+    if (given_up && notes->spent > LINES - 1) {
+        notes->untold++;
+        notes->last_untold = notes->told;
+        return;
+    }
+    if (!given_up && !first && kind != PLANNER_NEXT_ROUND)
+        return;
+    notes->spent += given_up;
     va_start(args, format);
-    bool minor = kind != PLANNER_GIVEN_UP && kind != PLANNER_CROWDED && kind != PLANNER_OUTSIDE &&
-                 kind != PLANNER_DROPPED && kind != PLANNER_OTHER_HAND && kind != PLANNER_HURRIED &&
-                 kind != PLANNER_DELAYED && kind != PLANNER_HURRIED_ROLL &&
-                 kind != PLANNER_OVERLAP && kind != PLANNER_NEXT_ROUND && kind != PLANNER_NEXT_PLAY;
-    put(notes, minor, format, args);
+    put(notes, kind >= PLANNER_REASSIGNED, format, args);
     va_end(args);
 }
 
@@ -83,8 +72,17 @@ void himc_planner_notes_miss(planner_notes *notes, const himc_planner_miss *miss
     notes->miss[(notes->first_miss + notes->misses++) % PLANNER_MISSES] = *miss;
 }
 
-bool himc_planner_notes_miss_next(planner_notes *notes, himc_planner_miss *miss)
+void himc_planner_tell_miss(himc_planner *planner, const himc_planner_miss *miss, const char *name)
 {
+    if (!miss->hit)
+        himc_planner_notes_count(&planner->notes, PLANNER_GIVEN_UP);
+    himc_planner_notes_miss(&planner->notes, miss);
+    himc_planner_say(planner, PLANNER_GIVEN_UP, "%s: given up, %s", name, miss->why);
+}
+
+bool himc_planner_miss_next(himc_planner *planner, himc_planner_miss *miss)
+{
+    planner_notes *notes = &planner->notes;
     if (notes->misses == 0)
         return false;
     *miss = notes->miss[notes->first_miss];
@@ -126,25 +124,20 @@ void himc_planner_notes_hit(planner_notes *notes, double t, double late)
     notes->latest = fmax(notes->latest, late);
 }
 
-static void tell_hits(planner_notes *notes, double t)
-{
-    char lost[32] = "", late[48] = "";
-    if (notes->hits_lost + notes->hits_late == 0 ||
-        t < fmin(notes->last_hit + QUIET_TIME, notes->first_hit + LONGEST_QUIET))
-        return;
-    if (notes->hits_lost > 0)
-        himc_format(lost, sizeof lost, " %d given up,", notes->hits_lost);
-    if (notes->hits_late > 0)
-        himc_format(late, sizeof late, " %d late by up to %.0f ms,", notes->hits_late,
-                    1e3 * notes->latest);
-    say_always(notes, false, "hit:%s%s no hand had the time", lost, late);
-    notes->hits_lost = notes->hits_late = 0;
-    notes->latest = 0;
-}
-
 void himc_planner_notes_tell(planner_notes *notes, double t)
 {
-    tell_hits(notes, t);
+    char lost[32] = "", late[48] = "";
+    if (notes->hits_lost + notes->hits_late > 0 &&
+        t >= fmin(notes->last_hit + QUIET_TIME, notes->first_hit + LONGEST_QUIET)) {
+        if (notes->hits_lost > 0)
+            himc_format(lost, sizeof lost, " %d given up,", notes->hits_lost);
+        if (notes->hits_late > 0)
+            himc_format(late, sizeof late, " %d late by up to %.0f ms,", notes->hits_late,
+                        1e3 * notes->latest);
+        say_always(notes, false, "hit:%s%s no hand had the time", lost, late);
+        notes->hits_lost = notes->hits_late = 0;
+        notes->latest = 0;
+    }
     notes->spent = fmax(notes->spent - (t - notes->told), 0);
     notes->told = t;
     if (notes->untold == 0 || t < notes->last_untold + QUIET_TIME)
@@ -163,8 +156,9 @@ void himc_planner_notes_sum_up(planner_notes *notes)
                    given_up);
 }
 
-bool himc_planner_notes_next(planner_notes *notes, himc_planner_note *note)
+bool himc_planner_note_next(himc_planner *planner, himc_planner_note *note)
 {
+    planner_notes *notes = &planner->notes;
     if (notes->count == 0)
         return false;
     *note = notes->line[notes->first];
@@ -174,10 +168,10 @@ bool himc_planner_notes_next(planner_notes *notes, himc_planner_note *note)
     return true;
 }
 
-int himc_planner_notes_given_up(planner_notes *notes)
+int himc_planner_given_up(himc_planner *planner)
 {
-    int count = notes->given_up;
-    notes->given_up = 0;
+    int count = planner->notes.given_up;
+    planner->notes.given_up = 0;
     return count;
 }
 
@@ -186,34 +180,31 @@ const char *himc_grace_name(himc_ornament ornament)
     return ornament == HIMC_FLAM ? "flam" : ornament == HIMC_DRAG ? "drag" : "ruff";
 }
 
-/// The written stroke of a grace note is by the other hand; a reassigned one has changed hands.
-static himc_hand main_hand(const timed_stroke *grace)
-{
-    return grace->reassigned == (grace->stroke.hand == HIMC_LEFT) ? HIMC_LEFT : HIMC_RIGHT;
-}
-
 const char *himc_planner_name(const himc_planner *planner, const timed_stroke *s,
                               char text[HIMC_PLANNER_NAME])
 {
     const himc_stroke *stroke = &s->stroke;
     const planner_score *score = &planner->score;
     const char *hand = himc_hand_name(stroke->hand), *drum = stroke->drum, *on = drum[0] ? " " : "";
-    bool hit = s->index < 0 && !s->reassigned, grace = stroke->early > 0 && stroke->ornament;
+    bool hit = s->place.number < 0 && !s->reassigned, grace = stroke->early > 0 && stroke->ornament;
+    // the written stroke of a grace note is by the other hand; a reassigned one has changed hands
+    bool left = s->reassigned == (stroke->hand == HIMC_LEFT);
     size_t size = HIMC_PLANNER_NAME, used;
     if (hit)
         used = himc_format(text, size, "hit %s%s%s", hand, on, drum);
-    else if (s->roll)
+    else if (s->place.roll >= 0)
         used = himc_format(text, size, "stroke %s of the roll at beat %g%s%s", hand,
-                           score->roll[s->roll - 1].stroke.beat, on, drum);
+                           score->roll[s->place.roll].stroke.beat, on, drum);
     else if (stroke->ornament >= HIMC_ROLL_SINGLE)
         used = himc_format(text, size, "roll at beat %g%s%s", stroke->beat, on, drum);
     else if (grace)
         used = himc_format(text, size, "grace note %s of the %s at beat %g %s%s%s", hand,
                            himc_grace_name(stroke->ornament), stroke->beat,
-                           himc_hand_name(main_hand(s)), on, drum);
+                           himc_hand_name(left ? HIMC_LEFT : HIMC_RIGHT), on, drum);
     else
         used = himc_format(text, size, "stroke at beat %g %s%s%s", stroke->beat, hand, on, drum);
-    if (!hit && s->round >= 0 && (score->loop || score->rounds > 0))
-        himc_format(text + used, size - used, ", round %ld", (long)score->past + s->round + 1);
+    if (!hit && s->place.round >= 0 && (score->loop || score->rounds > 0))
+        himc_format(text + used, size - used, ", round %ld",
+                    (long)score->past + s->place.round + 1);
     return text;
 }

@@ -3,11 +3,20 @@
 #include "plan/planner_score.h"
 
 #include <math.h>
+#include <string.h>
 
-/// Time of a stroke from beat 0 (s).
-static double seconds_of(const planner_score *score, const himc_stroke *stroke)
+double himc_planner_score_seconds(const planner_score *score, double beat)
 {
-    return himc_score_seconds(score->tempi, score->tempo_count, stroke->beat) - stroke->early;
+    return himc_score_seconds(score->tempi, score->tempo_count, beat);
+}
+
+bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b)
+{
+    return a->beat == b->beat && a->length == b->length && a->hand == b->hand &&
+           a->nuance == b->nuance && a->dynamic == b->dynamic &&
+           a->last_dynamic == b->last_dynamic && a->ornament == b->ornament && a->spot == b->spot &&
+           a->x == b->x && a->y == b->y && a->early == b->early && a->bounces == b->bounces &&
+           a->bounce_time == b->bounce_time && strcmp(a->drum, b->drum) == 0;
 }
 
 int himc_planner_part_after(const planner_part *part, double beat, bool from)
@@ -31,6 +40,12 @@ int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke)
            part->list[at - 1].stroke.early < stroke->early)
         at--;
     return at;
+}
+
+/// Time of a stroke from beat 0 (s).
+static double seconds_of(const planner_score *score, const himc_stroke *stroke)
+{
+    return himc_planner_score_seconds(score, stroke->beat) - stroke->early;
 }
 
 double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke)

@@ -31,6 +31,7 @@
 ///
 /// even in -w/2 .. w/2 and 0 on the beat. From j to j + i it changes by 2 a i j + a i^2 (mod 1), so
 /// for every i the differences are even too: the strokes add up in energy, in long rolls and short.
+#include "base/array.h"
 #include "plan/hand.h"
 #include "plan/planner_roll.h"
 #include "plan/sticking.h"
@@ -40,8 +41,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_ROOM 0.08 // to another stroke of the hand (s); chosen: a grace note takes so long
-#define LAST_BUZZ 0.85  // the last buzz, of a stroke; chosen: a swinging head delays contacts
+#define LAST_BUZZ 0.85 // the last buzz, of a stroke; chosen: a swinging head delays contacts
 // w; chosen: near a period of the lowest drum, a standard deviation of 0.035 intervals, as human.c
 #define UNEVENNESS 0.12
 #define UNEVEN_TURN 0.30901699437494742 // a
@@ -50,7 +50,6 @@
 
 // the join to what follows; chosen
 #define END_ROUNDING 1e-3  // of a written beat and length, which are floats (beats)
-#define TIME_ROUNDING 1e-4 // of a stroke's time that has been a beat (s)
 #define JOINED_TIME 1.0    // what comes later after a roll's end does not hurry (s)
 #define LEAST_STEP 0.9     // of the mean: interval of a short roll
 #define JOIN_GAIN 1e-6     // a roll that would end earlier by less does not (s)
@@ -71,11 +70,6 @@ typedef struct roll_grid {
     double begin, step; ///< ... at this time, and time from stroke to stroke (s)
     int count;          ///< one more than the last number
 } roll_grid;
-
-static double seconds_to(const planner_score *score, double beat)
-{
-    return himc_score_seconds(score->tempi, score->tempo_count, beat);
-}
 
 /// True if the roll is played together with the one before it: the hands have a drum each.
 static bool is_second(const planner_score *score, int i)
@@ -112,12 +106,6 @@ const planner_roll *himc_planner_roll_cut_by(const planner_score *score, int i)
     double end = r->stroke.beat + r->stroke.length;
     bool cut = !is_second(score, i) && himc_planner_roll_end(score, i) < end - END_ROUNDING;
     return cut ? &score->roll[roll_after(score, i)] : NULL;
-}
-
-/// Length of a round of the loop (s).
-static double round_length(const planner_score *score)
-{
-    return seconds_to(score, himc_planner_roll_length(score));
 }
 
 /// True if another round follows, or comes before.
@@ -185,12 +173,6 @@ static double leap_time(const planner_roll *from, himc_vec3 way)
     return length > 0 ? himc_hand_leap_time(length) / (1 - share) : 0;
 }
 
-/// What a grace note needs after a stroke of a roll and its bounce; it may end a buzz (s).
-static double grace_room(const planner_roll *from)
-{
-    return from->stroke.bounces == 1 ? BOUNCED_ROOM + 0.5 / from->rate : GRACE_ROOM;
-}
-
 /// The first stroke of a list after the roll, maybe of the next round, and its time; NULL if there
 /// is none soon.
 static const planner_stroke *listed_after(const planner_score *score, int i, int in_round, int hand,
@@ -201,11 +183,11 @@ static const planner_stroke *listed_after(const planner_score *score, int i, int
     int at = himc_planner_part_after(part, end - END_ROUNDING, true);
     if (at == part->count && goes_on(score, in_round)) {
         at = 0;
-        turned = round_length(score);
+        turned = himc_planner_score_round_length(score);
     }
     const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
-    *time = s ? turned + seconds_to(score, s->beat) - s->early : HUGE_VAL;
-    return *time <= seconds_to(score, end) + JOINED_TIME ? &part->list[at] : NULL;
+    *time = s ? turned + himc_planner_score_seconds(score, s->beat) - s->early : HUGE_VAL;
+    return *time <= himc_planner_score_seconds(score, end) + JOINED_TIME ? &part->list[at] : NULL;
 }
 
 /// The same as what follows; a hand that would have to cross the other one leaves it to that one,
@@ -227,9 +209,11 @@ static void listed_next(const planner_score *score, int i, int in_round, roll_ne
         if (trails && !both)
             by = himc_other_hand(by);
         const planner_roll *r = roll_of(score, i, by);
+        // a grace note needs so much after a stroke and its bounce; it may end a buzz
+        double room = r->stroke.bounces == 1 ? BOUNCED_ROOM + 0.5 / r->rate : GRACE_ROOM;
         if (time[hand] < next[by].time)
             next[by] = (roll_next){time[hand], leap_time(r, way_to(score, r, s, drum)), 2,
-                                   s->early > 0 ? grace_room(r) : HUGE_VAL, trails && both};
+                                   s->early > 0 ? room : HUGE_VAL, trails && both};
     }
 }
 
@@ -330,16 +314,16 @@ static roll_grid ended(roll_grid g, const roll_next next[HIMC_HANDS], double fir
 /// The roll before one, maybe of the round before; -1 if there is none soon before it.
 static int joined_before(const planner_score *score, int i, int in_round)
 {
-    double begin = seconds_to(score, score->roll[i].stroke.beat);
+    double begin = himc_planner_score_seconds(score, score->roll[i].stroke.beat);
     int before = i - 1;
     if (before < 0 && has_begun(score, in_round)) {
         before = score->roll_count - 1;
-        begin += round_length(score);
+        begin += himc_planner_score_round_length(score);
     }
     if (before < 0)
         return -1;
     before -= is_second(score, before);
-    double end = seconds_to(score, himc_planner_roll_end(score, before));
+    double end = himc_planner_score_seconds(score, himc_planner_roll_end(score, before));
     return begin > end + JOINED_TIME ? -1 : before;
 }
 
@@ -351,11 +335,11 @@ static double listed_since(const planner_score *score, int i, int in_round, himc
     int at = himc_planner_part_after(part, beat, true);
     if (at == 0 && has_begun(score, in_round)) {
         at = part->count;
-        turned = round_length(score);
+        turned = himc_planner_score_round_length(score);
     }
     return at == 0 ? HUGE_VAL
-                   : turned + seconds_to(score, beat) -
-                         seconds_to(score, part->list[at - 1].stroke.beat);
+                   : turned + himc_planner_score_seconds(score, beat) -
+                         himc_planner_score_seconds(score, part->list[at - 1].stroke.beat);
 }
 
 /// The right hand begins, but not where a roll goes on from there on a drum to the left, nor where
@@ -368,8 +352,9 @@ static himc_hand lead_of(const planner_score *score, int i, int in_round)
         himc_vec3 way = way_to(score, roll_of(score, before, HIMC_RIGHT), &r->stroke, r->drum);
         return crosses(HIMC_RIGHT, way) ? HIMC_LEFT : HIMC_RIGHT;
     }
-    double rate = rate_of(score, i), begin = seconds_to(score, r->stroke.beat),
-           first = seconds_to(score, himc_planner_roll_end(score, i)), early, other_early;
+    double rate = rate_of(score, i), begin = himc_planner_score_seconds(score, r->stroke.beat),
+           first = himc_planner_score_seconds(score, himc_planner_roll_end(score, i)), early,
+           other_early;
     if (rate * (first - begin) >= SHORT_ROLL ||
         listed_since(score, i, in_round, HIMC_LEFT) < 2 / rate)
         return HIMC_RIGHT;
@@ -393,12 +378,13 @@ static void rolled_next(const planner_score *score, int i, int in_round, roll_ne
     if (after >= score->roll_count && goes_on(score, in_round)) {
         after = 0;
         in_round++;
-        turned = round_length(score);
+        turned = himc_planner_score_round_length(score);
     }
     if (after >= score->roll_count)
         return;
-    double first = turned + seconds_to(score, score->roll[after].stroke.beat),
-           latest = seconds_to(score, himc_planner_roll_end(score, i)) + JOINED_TIME;
+    double first = turned + himc_planner_score_seconds(score, score->roll[after].stroke.beat),
+           latest =
+               himc_planner_score_seconds(score, himc_planner_roll_end(score, i)) + JOINED_TIME;
     himc_hand lead = lead_of(score, after, in_round);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const planner_roll *from = roll_of(score, i, (himc_hand)hand),
@@ -413,8 +399,9 @@ static void rolled_next(const planner_score *score, int i, int in_round, roll_ne
 static roll_grid grid_of(const planner_score *score, int i, int in_round)
 {
     const planner_anchor *a = &score->anchor;
-    double first = seconds_to(score, himc_planner_roll_end(score, i)), early;
-    roll_grid g = {.begin = seconds_to(score, score->roll[i].stroke.beat), .step = 1};
+    double first = himc_planner_score_seconds(score, himc_planner_roll_end(score, i)), early;
+    roll_grid g = {.begin = himc_planner_score_seconds(score, score->roll[i].stroke.beat),
+                   .step = 1};
     roll_next next[HIMC_HANDS] = {{.time = HUGE_VAL}, {.time = HUGE_VAL}};
     bool anchored = a->any && a->roll == i && a->round == in_round;
     if (is_second(score, i))
@@ -488,13 +475,16 @@ static bool is_left_out(const planner_score *score, int in_round, const himc_str
     if (part->count > 0 && (goes_on(score, in_round) || has_begun(score, in_round))) {
         const himc_stroke *first = &part->list[0].stroke,
                           *last = &part->list[part->count - 1].stroke;
-        double own = seconds_to(score, stroke->beat), turned = round_length(score);
+        double own = himc_planner_score_seconds(score, stroke->beat),
+               turned = himc_planner_score_round_length(score);
         if (goes_on(score, in_round))
-            room = fmin(room, turned + seconds_to(score, first->beat) - first->early - own);
+            room = fmin(room, turned + himc_planner_score_seconds(score, first->beat) -
+                                  first->early - own);
         if (has_begun(score, in_round))
-            room = fmin(room, turned + own - seconds_to(score, last->beat) + last->early);
+            room = fmin(room,
+                        turned + own - himc_planner_score_seconds(score, last->beat) + last->early);
     }
-    return room < LEAST_ROOM;
+    return room < PLANNER_LEAST_ROOM;
 }
 
 int himc_planner_roll_left_out(const planner_score *score, int i)
@@ -508,26 +498,15 @@ int himc_planner_roll_left_out(const planner_score *score, int i)
     return out;
 }
 
-static bool grow(planner_score *score, himc_error *error)
-{
-    if (score->roll_count == MOST_ROLLS)
-        return himc_error_set(error, "roll: one too many, expected %d", MOST_ROLLS);
-    if (score->roll_count < score->roll_room)
-        return true;
-    int wanted = score->roll_room ? 2 * score->roll_room : 16;
-    planner_roll *list = realloc(score->roll, (size_t)wanted * sizeof *list);
-    if (!list)
-        return himc_error_set(error, "roll: out of memory for %d", wanted);
-    score->roll = list;
-    score->roll_room = wanted;
-    return true;
-}
-
 int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, int drum, double rate,
                              himc_error *error)
 {
     int at = score->roll_count;
-    if (!grow(score, error))
+    if (at == MOST_ROLLS) {
+        himc_error_set(error, "roll: one too many, expected %d", MOST_ROLLS);
+        return -1;
+    }
+    if (!himc_array_grow(&score->roll, at, &score->roll_room, sizeof *score->roll, error))
         return -1;
     while (at > 0 && score->roll[at - 1].stroke.beat > stroke->beat)
         at--;
@@ -548,18 +527,13 @@ int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, in
 bool himc_planner_roll_equal(const planner_score *a, const planner_score *b)
 {
     bool same = a->roll_count == b->roll_count;
-    for (int i = 0; i < a->roll_count && same; i++) {
-        const himc_stroke *s = &a->roll[i].stroke, *r = &b->roll[i].stroke;
+    for (int i = 0; i < a->roll_count && same; i++)
         same = a->roll[i].drum == b->roll[i].drum && a->roll[i].rate == b->roll[i].rate &&
-               s->beat == r->beat && s->length == r->length && s->dynamic == r->dynamic &&
-               s->last_dynamic == r->last_dynamic && s->nuance == r->nuance &&
-               s->ornament == r->ornament && s->spot == r->spot && s->x == r->x && s->y == r->y &&
-               strcmp(s->drum, r->drum) == 0;
-    }
+               himc_planner_score_same(&a->roll[i].stroke, &b->roll[i].stroke);
     return same;
 }
 
-bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_roll_place *at,
+bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_place *at,
                            planner_due *due)
 {
     // in a loop where all are left out there is none
@@ -574,9 +548,7 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_r
                 if (is_left_out(score, at->round, &due->stroke))
                     continue;
                 due->drum = himc_planner_roll_drum(score, at->roll, due->stroke.hand);
-                due->roll = at->roll + 1;
-                due->index = at->number;
-                due->round = at->round;
+                due->place = *at;
                 return true;
             }
         }
@@ -597,54 +569,45 @@ static int number_after(const roll_grid *g, double t)
 
 void himc_planner_roll_from(planner_score *score, himc_hand hand, int in_round, double t)
 {
-    planner_roll_place *at = &score->part[hand].rolls;
+    planner_place *at = &score->part[hand].rolls;
     for (int i = 0; i < score->roll_count; i++) {
         roll_grid g = grid_of(score, i, in_round);
         int number = own_number(&g, hand, number_after(&g, t));
-        *at = (planner_roll_place){i, number, in_round};
+        *at = (planner_place){i, number, in_round};
         if (number < g.count)
             return;
     }
-    *at = (planner_roll_place){score->roll_count, 0, in_round};
-}
-
-/// The strokes of a roll after that one are to be played again.
-static void take_back(planner_score *score, const roll_grid *g, const planner_roll_place *last)
-{
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        planner_roll_place next = *last;
-        next.number = own_number(g, (himc_hand)hand, last->number + 1);
-        if (next.number < g->count)
-            score->part[hand].rolls = next;
-    }
+    *at = (planner_place){score->roll_count, 0, in_round};
 }
 
 bool himc_planner_roll_anchor(planner_score *score, double t)
 {
-    planner_roll_place *left = &score->part[HIMC_LEFT].rolls,
-                       *right = &score->part[HIMC_RIGHT].rolls;
+    planner_place *left = &score->part[HIMC_LEFT].rolls, *right = &score->part[HIMC_RIGHT].rolls;
     bool ahead =
         left->round != right->round ? left->round > right->round : left->roll > right->roll;
-    planner_roll_place at = ahead ? *right : *left;
+    planner_place at = ahead ? *right : *left;
     if (at.roll >= score->roll_count)
         return false;
     roll_grid g = grid_of(score, at.roll, at.round);
     int planned = -1; // the last one
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_roll_place *own = &score->part[hand].rolls;
+        const planner_place *own = &score->part[hand].rolls;
         bool within = own->roll == at.roll && own->round == at.round;
         int next = own_number(&g, (himc_hand)hand, within ? own->number : g.count);
         planned = next - 2 > planned ? next - 2 : planned;
     }
     t += TIME_ROUNDING - score->origin;
-    t -= at.round ? at.round * round_length(score) : 0;
+    t -= at.round ? at.round * himc_planner_score_round_length(score) : 0;
     bool early = planned >= g.first && time_of(&g, planned) > t;
     if (early) {
         planned = number_after(&g, t) - 1;
         if (g.first > 0 && planned < g.first)
             planned = g.first;
-        at.number = planned;
-        take_back(score, &g, &at);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) { // those after it are to be played again
+            at.number = own_number(&g, (himc_hand)hand, planned + 1);
+            if (at.number < g.count)
+                score->part[hand].rolls = at;
+        }
     }
     if (planned < 0)
         return early;
@@ -673,9 +636,14 @@ double himc_planner_roll_last_beat(const planner_score *score)
     return beat;
 }
 
-double himc_planner_roll_length(const planner_score *score)
+double himc_planner_score_length(const planner_score *score)
 {
     return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
+}
+
+double himc_planner_score_round_length(const planner_score *score)
+{
+    return himc_planner_score_seconds(score, himc_planner_score_length(score));
 }
 
 /// The last roll that begins at or before a beat, -1 if there is none.
@@ -718,7 +686,8 @@ void himc_planner_roll_near(const planner_score *score, himc_hand hand, int in_r
     *before = -HUGE_VAL, *after = HUGE_VAL;
     for (int i = first; i < score->roll_count && i <= begun + 1; i++) {
         roll_grid g = grid_of(score, i, in_round);
-        int at = number_after(&g, seconds_to(score, beat)), from = at < 4 ? 0 : at - 4;
+        int at = number_after(&g, himc_planner_score_seconds(score, beat)),
+            from = at < 4 ? 0 : at - 4;
         for (int k = own_number(&g, hand, from); k < g.count && k < at + 4;
              k += hand == HIMC_HAND_ANY ? 1 : 2) {
             double own = beat_of(score, i, &g, k);
@@ -730,20 +699,20 @@ void himc_planner_roll_near(const planner_score *score, himc_hand hand, int in_r
     }
 }
 
-planner_roll_place himc_planner_roll_walk(const planner_score *score, int in_round, double beat)
+planner_place himc_planner_roll_walk(const planner_score *score, int in_round, double beat)
 {
-    planner_roll_place at = {last_begun(score, beat), 0, in_round};
+    planner_place at = {last_begun(score, beat), 0, in_round};
     if (at.roll < 0)
         return at;
     at.roll -= is_second(score, at.roll);
     roll_grid g = grid_of(score, at.roll, in_round);
-    at.number = number_after(&g, seconds_to(score, beat));
+    at.number = number_after(&g, himc_planner_score_seconds(score, beat));
     if (at.number < g.count && beat_of(score, at.roll, &g, at.number) <= beat) // of rounding
         at.number++;
     return at;
 }
 
-bool himc_planner_roll_back(const planner_score *score, planner_roll_place *at, double *beat,
+bool himc_planner_roll_back(const planner_score *score, planner_place *at, double *beat,
                             himc_hand *hand)
 {
     for (; at->roll >= 0; at->roll--, at->number = INT_MAX) {

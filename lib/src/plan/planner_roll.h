@@ -13,6 +13,9 @@
 /// ... and a buzz ends when the other hand has struck.
 #define PLANNER_BUZZ_SHARE 0.55
 
+/// To another stroke of the hand, at least (s). Chosen: a grace note takes so long.
+#define PLANNER_LEAST_ROOM 0.08
+
 HIMC_RT static inline double himc_planner_bounce_share(int bounces)
 {
     return bounces == HIMC_BUZZ ? PLANNER_BUZZ_SHARE : bounces ? PLANNER_DOUBLE_SHARE : 0;
@@ -30,8 +33,8 @@ bool himc_planner_roll_equal(const planner_score *a, const planner_score *b);
 bool himc_planner_roll_same_places(const planner_score *a, const planner_score *b);
 /// The stroke of a hand at `place` or after it, with its place, without its time; false if there is
 /// none left.
-HIMC_RT bool himc_planner_roll_due(const planner_score *score, himc_hand hand,
-                                   planner_roll_place *place, planner_due *due);
+HIMC_RT bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_place *place,
+                                   planner_due *due);
 /// The hand's next stroke of a roll is the first one that comes later than `t` (s) after the
 /// beginning of that round.
 HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int round, double t);
@@ -41,8 +44,6 @@ HIMC_RT void himc_planner_roll_from(planner_score *score, himc_hand hand, int ro
 HIMC_RT bool himc_planner_roll_anchor(planner_score *score, double t);
 /// Beat of the last stroke of the score, of a roll or a list, -1 without any.
 HIMC_RT double himc_planner_roll_last_beat(const planner_score *score);
-/// himc_planner_score_length, on which the rolls depend in a loop.
-HIMC_RT double himc_planner_roll_length(const planner_score *score);
 /// Beat at which a roll ends: where it is written to, or where the next one begins.
 HIMC_RT double himc_planner_roll_end(const planner_score *score, int roll);
 /// The roll that takes the place of another one from its beginning or within it; NULL if there is
@@ -58,10 +59,9 @@ HIMC_RT void himc_planner_roll_near(const planner_score *score, himc_hand hand, 
 /// grace notes, its first one. Below 0: there is none.
 HIMC_RT double himc_planner_roll_since(const planner_score *score, double beat);
 /// A walk back through the strokes of all rolls of a round: first those at and before `beat` ...
-HIMC_RT planner_roll_place himc_planner_roll_walk(const planner_score *score, int round,
-                                                  double beat);
+HIMC_RT planner_place himc_planner_roll_walk(const planner_score *score, int round, double beat);
 /// ... whose last has this beat and hand; false if none is left. HIMC_RT.
-HIMC_RT bool himc_planner_roll_back(const planner_score *score, planner_roll_place *walk,
-                                    double *beat, himc_hand *hand);
+HIMC_RT bool himc_planner_roll_back(const planner_score *score, planner_place *walk, double *beat,
+                                    himc_hand *hand);
 
 #endif

@@ -6,6 +6,7 @@
 /// where it is. In a loop with rounds of length L, beat b of round k is at origin + k S(L) +
 /// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
 /// strictly, so every time has one beat.
+#include "base/array.h"
 #include "plan/planner_roll.h"
 #include "plan/score.h"
 
@@ -13,17 +14,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Beats far from 0 are rounded: so much less is no less. Chosen: up to beat 1e10 at 1 beat a
-// minute.
-#define BEAT_ROUNDED 1e-4        // (s)
-#define MOST_HAND_STROKES 200000 // of one hand; as many as a score file may hold (himc/score.h)
-#define FIRST_ROOM 256           // strokes; then the room doubles
-#define ROUND_ROUNDING 1e-12     // of a time at a round's beginning (rounds)
-#define MOST_ROUNDS 1e9          // they fit an int
+#define ROUND_ROUNDING 1e-12 // of a time at a round's beginning (rounds)
+#define MOST_ROUNDS 1e9      // they fit an int
 
 bool himc_planner_score_init(planner_score *score)
 {
     *score = (planner_score){.tempi = malloc(sizeof *score->tempi), .tempo_count = 1, .until = -1};
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        himc_planner_score_clear(score, (himc_hand)hand);
     if (score->tempi)
         score->tempi[0] = (himc_tempo_change){0, HIMC_TEMPO};
     return score->tempi != NULL;
@@ -37,20 +35,16 @@ void himc_planner_score_free(planner_score *score)
     free(score->tempi);
 }
 
-static double seconds_to(const planner_score *score, double beat)
-{
-    return himc_score_seconds(score->tempi, score->tempo_count, beat);
-}
-
 static double gap(const planner_score *score, double a, double b)
 {
-    return fabs(seconds_to(score, b) - seconds_to(score, a));
+    return fabs(himc_planner_score_seconds(score, b) - himc_planner_score_seconds(score, a));
 }
 
 static bool check_count(int count, himc_error *error)
 {
-    return count < MOST_HAND_STROKES ||
-           himc_error_set(error, "stroke: one too many, expected %d for a hand", MOST_HAND_STROKES);
+    return count < HIMC_SCORE_STROKES ||
+           himc_error_set(error, "stroke: one too many, expected %d for a hand",
+                          HIMC_SCORE_STROKES);
 }
 
 bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *strokes, int count,
@@ -63,43 +57,25 @@ bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *
     return true;
 }
 
-static bool check_stroke(const planner_score *score, const himc_stroke *stroke, int drum,
-                         himc_error *error)
-{
-    const planner_part *part = &score->part[stroke->hand];
-    if (drum < 0 || drum >= HIMC_DRUMS)
-        return himc_error_set(error, "stroke: drum number %d, expected 0 .. %d", drum,
-                              HIMC_DRUMS - 1);
-    if (!check_count(part->count, error))
-        return false;
-    double least = himc_planner_score_room(score, stroke);
-    if (least < HIMC_CLOSEST_STROKES - BEAT_ROUNDED)
-        return himc_error_set(
-            error,
-            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, expected %g s or more",
-            stroke->beat, least, himc_hand_name(stroke->hand), HIMC_CLOSEST_STROKES);
-    return true;
-}
-
-static bool grow(planner_part *part, himc_error *error)
-{
-    if (part->count < part->room)
-        return true;
-    int wanted = part->room ? 2 * part->room : FIRST_ROOM;
-    planner_stroke *list = realloc(part->list, (size_t)wanted * sizeof *list);
-    if (!list)
-        return himc_error_set(error, "stroke: out of memory for %d", wanted);
-    part->list = list;
-    part->room = wanted;
-    return true;
-}
-
 int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, int drum,
                              himc_error *error)
 {
     planner_part *part = &score->part[stroke->hand];
-    int at = himc_planner_part_place(part, stroke);
-    return check_stroke(score, stroke, drum, error) && grow(part, error) ? at : -1;
+    double least = himc_planner_score_room(score, stroke);
+    bool good = true;
+    if (drum < 0 || drum >= HIMC_DRUMS)
+        good =
+            himc_error_set(error, "stroke: drum number %d, expected 0 .. %d", drum, HIMC_DRUMS - 1);
+    else if (!check_count(part->count, error))
+        good = false;
+    else if (least < HIMC_CLOSEST_STROKES - TIME_ROUNDING)
+        good = himc_error_set(
+            error,
+            "stroke: BEAT: %g is %.3g s from another stroke of the %s hand, expected %g s or more",
+            stroke->beat, least, himc_hand_name(stroke->hand), HIMC_CLOSEST_STROKES);
+    good =
+        good && himc_array_grow(&part->list, part->count, &part->room, sizeof *part->list, error);
+    return good ? himc_planner_part_place(part, stroke) : -1;
 }
 
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke, int drum)
@@ -107,27 +83,18 @@ void himc_planner_score_insert(planner_score *score, int index, const himc_strok
     planner_part *part = &score->part[stroke->hand];
     planner_stroke *at = part->list + index;
     if (part->count == 0)
-        part->round = 0; // its rounds begin with the one under way
+        part->listed.round = 0; // its rounds begin with the one under way
     memmove(at + 1, at, (size_t)(part->count - index) * sizeof *at);
     *at = (planner_stroke){*stroke, drum, 0};
     part->count++;
-    if (index < part->next)
-        part->next++;
-}
-
-static bool is_same(const planner_stroke *a, const planner_stroke *b)
-{
-    const himc_stroke *s = &a->stroke, *r = &b->stroke;
-    return a->drum == b->drum && s->beat == r->beat && s->hand == r->hand &&
-           s->nuance == r->nuance && s->dynamic == r->dynamic && s->spot == r->spot &&
-           s->x == r->x && s->y == r->y && s->early == r->early && s->bounces == r->bounces &&
-           s->bounce_time == r->bounce_time && strcmp(s->drum, r->drum) == 0;
+    part->listed.number += index < part->listed.number;
 }
 
 int himc_planner_score_common(const planner_part *a, const planner_part *b)
 {
     int i = 0;
-    while (i < a->count && i < b->count && is_same(&a->list[i], &b->list[i]))
+    while (i < a->count && i < b->count && a->list[i].drum == b->list[i].drum &&
+           himc_planner_score_same(&a->list[i].stroke, &b->list[i].stroke))
         i++;
     return i;
 }
@@ -161,8 +128,9 @@ void himc_planner_score_exchange(planner_part *a, planner_part *b)
 void himc_planner_score_clear(planner_score *score, himc_hand hand)
 {
     planner_part *part = &score->part[hand];
-    part->count = part->next = part->round = 0;
-    part->rolls = (planner_roll_place){0, 0, 0};
+    part->count = 0;
+    part->listed = (planner_place){-1, 0, 0};
+    part->rolls = (planner_place){0, 0, 0};
     score->roll_count = 0;
     score->anchor.any = false;
 }
@@ -188,47 +156,11 @@ himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi,
     return copy;
 }
 
-himc_tempo_change *himc_planner_score_add_tempo(const planner_score *score,
-                                                const himc_tempo_change *more, int *count,
-                                                himc_error *error)
-{
-    himc_tempo_change *all = malloc(((size_t)score->tempo_count + 1) * sizeof *all);
-    int at = score->tempo_count;
-    if (!all) {
-        himc_error_set(error, "tempo: out of memory");
-        return NULL;
-    }
-    while (at > 0 && score->tempi[at - 1].beat >= more->beat)
-        at--;
-    int after = at < score->tempo_count && score->tempi[at].beat == more->beat ? at + 1 : at;
-    *count = at + 1 + score->tempo_count - after;
-    memcpy(all, score->tempi, (size_t)at * sizeof *all);
-    all[at] = *more;
-    memcpy(all + at + 1, score->tempi + after, (size_t)(*count - at - 1) * sizeof *all);
-    return all;
-}
-
 void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count)
 {
     free(score->tempi);
     score->tempi = tempi;
     score->tempo_count = count;
-}
-
-bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change *tempi, int count,
-                                   double beat, himc_error *error)
-{
-    int kept = 1;
-    while (kept < score->tempo_count && score->tempi[kept].beat < beat)
-        kept++;
-    himc_tempo_change *all = malloc((size_t)(kept + count) * sizeof *all);
-    if (!all)
-        return himc_error_set(error, "tempo: out of memory for %d changes", kept + count);
-    memcpy(all, score->tempi, (size_t)kept * sizeof *all);
-    for (int i = 0; i < count; i++)
-        all[kept + i] = (himc_tempo_change){tempi[i].beat + beat, tempi[i].bpm};
-    himc_planner_score_take_tempi(score, all, kept + count);
-    return true;
 }
 
 /// The number of changes up to a beat.
@@ -261,13 +193,7 @@ void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm)
 
 void himc_planner_score_hold(planner_score *score, double t, double beat)
 {
-    score->origin = t - seconds_to(score, beat);
-}
-
-void himc_planner_score_seat(planner_score *score, himc_hand hand, double t)
-{
-    int round = himc_planner_score_round_at(score, t);
-    himc_planner_roll_from(score, hand, round, t - himc_planner_score_time(score, round, 0));
+    score->origin = t - himc_planner_score_seconds(score, beat);
 }
 
 /// Names a round of the loop, through all starts of the transport; never 0.
@@ -276,28 +202,25 @@ static long round_name(const planner_score *score, int round)
     return 1 + round + (score->starts & 0xffffL) * 0x100000000L;
 }
 
-/// The hand's strokes of the roll from `place` on are planned again after all.
-static void unsettle(planner_score *score, himc_hand hand, const planner_roll_place *place)
+void himc_planner_score_anchor(planner_score *score, double t)
 {
-    planner_part *part = &score->part[hand];
-    for (int i = 0; i < PLANNER_MARKS; i++)
-        if (part->mark[i].name == round_name(score, place->round) &&
-            part->mark[i].roll == place->roll && part->mark[i].number >= place->number)
-            part->mark[i].name = 0;
+    bool again = himc_planner_roll_anchor(score, t);
+    for (int hand = 0; hand < HIMC_HANDS && again; hand++) {
+        planner_part *part = &score->part[hand];
+        long name = round_name(score, part->rolls.round);
+        for (planner_mark *m = part->mark; m < part->mark + PLANNER_MARKS; m++)
+            if (m->name == name && m->roll == part->rolls.roll && m->number >= part->rolls.number)
+                m->name = 0;
+    }
+    planner_anchor *a = &score->anchor;
+    a->kept = a->time + himc_planner_score_time(score, a->round, 0);
 }
 
-double himc_planner_score_anchor(planner_score *score, double t)
+void himc_planner_score_keep(planner_score *score)
 {
-    if (himc_planner_roll_anchor(score, t))
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            unsettle(score, (himc_hand)hand, &score->part[hand].rolls);
-    return score->anchor.time + himc_planner_score_time(score, score->anchor.round, 0);
-}
-
-void himc_planner_score_keep(planner_score *score, double anchor)
-{
+    planner_anchor *a = &score->anchor;
     if (score->playing)
-        score->anchor.time = anchor - himc_planner_score_time(score, score->anchor.round, 0);
+        a->time = a->kept - himc_planner_score_time(score, a->round, 0);
 }
 
 void himc_planner_score_start(planner_score *score, double t)
@@ -309,54 +232,18 @@ void himc_planner_score_start(planner_score *score, double t)
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
     score->anchor.any = false;
-    double begin = seconds_to(score, score->beat - BEAT_ROUNDING);
+    double begin = himc_planner_score_seconds(score, score->beat - BEAT_ROUNDING);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int next = first_from(&score->part[hand], score->beat);
-        himc_planner_score_go(score, (himc_hand)hand, next, 0);
+        score->part[hand].listed = (planner_place){-1, next, 0};
         himc_planner_roll_from(score, (himc_hand)hand, 0, begin);
     }
-}
-
-void himc_planner_score_go_on(planner_score *score, double t)
-{
-    score->beat = himc_planner_score_beat_at(score, t);
-    himc_planner_score_start(score, t);
-    score->goes_on = true;
-}
-
-void himc_planner_score_delay(planner_score *score, double late)
-{
-    score->origin += late;
-}
-
-void himc_planner_score_empty(planner_score *score)
-{
-    score->empties = true;
 }
 
 void himc_planner_score_stop(planner_score *score, double beat)
 {
     score->beat = score->empties ? 0 : beat;
     score->playing = score->over = score->goes_on = score->empties = false;
-}
-
-void himc_planner_score_finish(planner_score *score)
-{
-    himc_planner_score_stop(score, 0);
-    score->over = true;
-}
-
-void himc_planner_score_seek(planner_score *score, double beat)
-{
-    score->beat = beat;
-    score->over = false;
-}
-
-void himc_planner_score_loop(planner_score *score, bool on, int rounds)
-{
-    score->over = score->over && !on;
-    score->rounds = rounds;
-    score->loop = on;
 }
 
 int himc_planner_score_rebase(planner_score *score, double t)
@@ -368,22 +255,16 @@ int himc_planner_score_rebase(planner_score *score, double t)
     score->rounds -= round;
     score->anchor.round -= round;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        score->part[hand].round -= round;
+        score->part[hand].listed.round -= round;
         score->part[hand].rolls.round -= round;
     }
     return round;
 }
 
-void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int round)
+void himc_planner_score_go(planner_score *score, himc_hand hand, planner_place place)
 {
-    score->part[hand].next = index;
-    score->part[hand].round = round;
-}
-
-void himc_planner_score_go_roll(planner_score *score, himc_hand hand,
-                                const planner_roll_place *place)
-{
-    score->part[hand].rolls = *place;
+    planner_part *part = &score->part[hand];
+    *(place.roll < 0 ? &part->listed : &part->rolls) = place;
 }
 
 /// The stroke of its list `ahead` strokes after the next of a hand.
@@ -392,32 +273,31 @@ static bool list_next(const planner_score *score, himc_hand hand, int ahead, pla
     const planner_part *part = &score->part[hand];
     if (part->count == 0)
         return false;
-    long at = (long)part->next + ahead;
-    due->round = part->round + (int)(at / part->count);
-    due->index = (int)(at % part->count);
-    due->roll = 0;
-    if (!score->loop && due->round > score->rounds)
+    long at = (long)part->listed.number + ahead;
+    int number = (int)(at % part->count), round = part->listed.round + (int)(at / part->count);
+    if (!score->loop && round > score->rounds)
         return false;
-    due->stroke = part->list[due->index].stroke;
-    due->drum = part->list[due->index].drum;
-    due->time = himc_planner_score_time(score, due->round, due->stroke.beat) - due->stroke.early;
+    *due = (planner_due){.stroke = part->list[number].stroke,
+                         .drum = part->list[number].drum,
+                         .place = {-1, number, round}};
+    due->time = himc_planner_score_touch(score, round, &due->stroke);
     return true;
 }
 
 /// The stroke of a roll at `place` or after it.
-static bool roll_next(const planner_score *score, himc_hand hand, planner_roll_place *place,
+static bool roll_next(const planner_score *score, himc_hand hand, planner_place *place,
                       planner_due *due)
 {
     if (!himc_planner_roll_due(score, hand, place, due))
         return false;
-    due->time = himc_planner_score_time(score, due->round, due->stroke.beat);
+    due->time = himc_planner_score_touch(score, due->place.round, &due->stroke);
     return true;
 }
 
 bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
                              planner_due *due)
 {
-    planner_roll_place place = score->part[hand].rolls;
+    planner_place place = score->part[hand].rolls;
     planner_due listed, rolled;
     if (!score->playing || score->empties)
         return false;
@@ -440,8 +320,7 @@ bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahe
     return false;
 }
 
-void himc_planner_score_settle(planner_score *score, himc_hand hand,
-                               const planner_roll_place *place)
+void himc_planner_score_settle(planner_score *score, himc_hand hand, const planner_place *place)
 {
     planner_part *part = &score->part[hand];
     long name = round_name(score, place->round);
@@ -454,7 +333,7 @@ void himc_planner_score_settle(planner_score *score, himc_hand hand,
 }
 
 bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
-                                   const planner_roll_place *place)
+                                   const planner_place *place)
 {
     const planner_part *part = &score->part[hand];
     long name = round_name(score, place->round);
@@ -470,22 +349,6 @@ double himc_planner_score_last_beat(const planner_score *score)
     return fmax(himc_planner_roll_last_beat(score), score->until);
 }
 
-double himc_planner_score_length(const planner_score *score)
-{
-    return himc_planner_roll_length(score);
-}
-
-double himc_planner_score_free_from(const planner_score *score)
-{
-    double last = himc_planner_roll_last_beat(score), next = himc_planner_score_length(score);
-    return next + (last >= 0 && gap(score, last, next) < HIMC_CLOSEST_STROKES ? 1 : 0);
-}
-
-double himc_planner_score_round_length(const planner_score *score)
-{
-    return seconds_to(score, himc_planner_score_length(score));
-}
-
 int himc_planner_score_round_at(const planner_score *score, double t)
 {
     double length = himc_planner_score_round_length(score);
@@ -496,15 +359,9 @@ int himc_planner_score_round_at(const planner_score *score, double t)
     return score->loop ? (int)round : (int)fmin(round, score->rounds);
 }
 
-/// Beats of all rounds before one.
-static double beats_before(const planner_score *score, int round)
-{
-    return ((double)score->past + round) * himc_planner_score_length(score);
-}
-
 double himc_planner_score_total_beat(const planner_score *score, int round, double beat)
 {
-    return beat + beats_before(score, round);
+    return beat + ((double)score->past + round) * himc_planner_score_length(score);
 }
 
 double himc_planner_score_period(const planner_score *score, double beat)
@@ -512,26 +369,21 @@ double himc_planner_score_period(const planner_score *score, double beat)
     return gap(score, beat - 1, beat);
 }
 
-/// The same of the strokes in its list.
-static double list_gap(const planner_score *score, himc_hand hand, double beat)
-{
-    const planner_part *part = &score->part[hand];
-    int before = himc_planner_part_after(part, beat, true) - 1,
-        after = himc_planner_part_after(part, beat, false);
-    if (part->count == 0)
-        return HUGE_VAL;
-    double length = himc_planner_score_length(score), first = part->list[0].stroke.beat,
-           last = part->list[part->count - 1].stroke.beat;
-    double to = before >= 0 ? gap(score, part->list[before].stroke.beat, beat)
-                            : gap(score, last, length) + gap(score, 0, beat);
-    double from = after < part->count ? gap(score, beat, part->list[after].stroke.beat)
-                                      : gap(score, beat, length) + gap(score, 0, first);
-    return fmin(to, from);
-}
-
 double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round, double beat)
 {
-    double least = list_gap(score, hand, beat), before, after;
+    const planner_part *part = &score->part[hand];
+    double least = HUGE_VAL, before, after;
+    if (part->count > 0) {
+        int last = himc_planner_part_after(part, beat, true) - 1,
+            next = himc_planner_part_after(part, beat, false);
+        double length = himc_planner_score_length(score);
+        least = last >= 0 ? gap(score, part->list[last].stroke.beat, beat)
+                          : gap(score, part->list[part->count - 1].stroke.beat, length) +
+                                gap(score, 0, beat);
+        least = fmin(least, next < part->count ? gap(score, beat, part->list[next].stroke.beat)
+                                               : gap(score, beat, length) +
+                                                     gap(score, 0, part->list[0].stroke.beat));
+    }
     himc_planner_roll_near(score, hand, round, beat, &before, &after);
     if (before >= 0)
         least = fmin(least, gap(score, before, beat));
@@ -554,7 +406,7 @@ double himc_planner_score_since(const planner_score *score, double beat)
 
 planner_walk himc_planner_score_walk(const planner_score *score, int round, double beat)
 {
-    planner_walk walk = {.round = round, .before = beats_before(score, round)};
+    planner_walk walk = {.round = round, .before = himc_planner_score_total_beat(score, round, 0)};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         walk.at[hand] = himc_planner_part_after(&score->part[hand], beat, false);
     walk.rolls = himc_planner_roll_walk(score, round, beat);
@@ -579,7 +431,7 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
     double beat = beat_back(score, walk), rolled;
     himc_hand rolls;
     if (beat < 0 && walk->round > -score->past) {
-        walk->before = beats_before(score, --walk->round);
+        walk->before = himc_planner_score_total_beat(score, --walk->round, 0);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             walk->at[hand] = score->part[hand].count;
         walk->rolls = himc_planner_roll_walk(score, walk->round, HUGE_VAL);
@@ -604,7 +456,12 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
 double himc_planner_score_time(const planner_score *score, int round, double beat)
 {
     double begun = round == 0 ? 0 : round * himc_planner_score_round_length(score);
-    return begun + (score->origin + seconds_to(score, beat));
+    return begun + (score->origin + himc_planner_score_seconds(score, beat));
+}
+
+double himc_planner_score_touch(const planner_score *score, int round, const himc_stroke *stroke)
+{
+    return himc_planner_score_time(score, round, stroke->beat) - stroke->early;
 }
 
 double himc_planner_score_beat_at(const planner_score *score, double t)

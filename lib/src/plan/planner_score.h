@@ -7,6 +7,8 @@
 #include "himc/score.h"
 
 #define BEAT_ROUNDING 1e-9 ///< of a time in seconds, in beats
+/// Of a beat, in seconds: so much less is no less. Chosen: up to beat 1e10 at 1 beat a minute.
+#define TIME_ROUNDING 1e-4
 
 typedef struct planner_stroke {
     himc_stroke stroke;
@@ -21,17 +23,20 @@ typedef struct planner_roll {
     double rate; ///< strokes of both hands (1/s)
 } planner_roll;
 
-/// A stroke of a roll.
-typedef struct planner_roll_place {
-    int roll, number, round;
-} planner_roll_place;
+/// A stroke of the score.
+typedef struct planner_place {
+    int roll;   ///< -1: it is of its hand's list
+    int number; ///< in the roll or the list; in no place of the score: -1
+    int round;  ///< of the loop
+} planner_place;
 
 /// From here on the strokes of a roll have been counted anew.
 typedef struct planner_anchor {
     bool any;
     himc_hand lead;          ///< hand of the roll's first stroke
     int roll, round, number; ///< the last stroke that stays ...
-    double time;             ///< ... so long after the beginning of its round (s)
+    double time;             ///< ... so long after the beginning of its round (s) ...
+    double kept;             ///< ... and at this time, whatever the tempo (s)
 } planner_anchor;
 
 /// A stroke of a roll that was reassigned or given up.
@@ -46,9 +51,8 @@ typedef struct planner_mark {
 typedef struct planner_part {
     planner_stroke *list; ///< owned, sorted by beat
     int count, room;
-    int next;                         ///< first of the list that is not planned ...
-    int round;                        ///< ... and its round of the loop
-    planner_roll_place rolls;         ///< first stroke of the rolls that is not planned
+    planner_place listed;             ///< first of the list that is not planned
+    planner_place rolls;              ///< first stroke of the rolls that is not planned
     planner_mark mark[PLANNER_MARKS]; ///< a ring ...
     int marks;                        ///< ... and its next place
 } planner_part;
@@ -79,9 +83,7 @@ typedef struct planner_score {
 typedef struct planner_due {
     himc_stroke stroke;
     int drum;
-    int roll;  ///< 1 + that of a roll; 0: it is of none
-    int index; ///< in its hand's list, or its number in the roll
-    int round;
+    planner_place place;
     double time; ///< (s)
 } planner_due;
 
@@ -96,7 +98,7 @@ typedef struct planner_walk {
     int at[HIMC_HANDS]; ///< strokes of the round that are still to come
     int round;
     double before; ///< beats of the rounds before it
-    planner_roll_place rolls;
+    planner_place rolls;
 } planner_walk;
 
 /// False without memory.
@@ -126,16 +128,8 @@ void himc_planner_score_clear(planner_score *score, himc_hand hand);
 /// A checked copy of a tempo map, or NULL with the reason.
 himc_tempo_change *himc_planner_score_copy_tempi(const himc_tempo_change *tempi, int count,
                                                  himc_error *error);
-/// A copy of the tempo map (*count) with one more change, or with it in place of that on its beat;
-/// NULL without memory.
-himc_tempo_change *himc_planner_score_add_tempo(const planner_score *score,
-                                                const himc_tempo_change *more, int *count,
-                                                himc_error *error);
 /// Replaces the tempo map by one on the heap, which it then owns.
 void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *tempi, int count);
-/// The tempo map up to `beat`, then another shifted to begin there; false without memory.
-bool himc_planner_score_join_tempi(planner_score *score, const himc_tempo_change *tempi, int count,
-                                   double beat, himc_error *error);
 /// One tempo up to the first change after `beat`; in a loop that plays, only in place of the one
 /// valid at `beat`: the others are for later rounds.
 HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
@@ -144,56 +138,32 @@ HIMC_RT bool himc_planner_score_has_tempo(const planner_score *score, double bea
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
 
-/// The hand's next stroke of a roll is the first one after `t` (s).
-HIMC_RT void himc_planner_score_seat(planner_score *score, himc_hand hand, double t);
 /// Before the tempo changes: of a roll that has begun the strokes that are not planned yet will be
-/// counted anew; all of them come after `t`. Returns the time of the last one that is (s) ...
-HIMC_RT double himc_planner_score_anchor(planner_score *score, double t);
+/// counted anew; all of them come after `t`. The last one that is planned has a time ...
+HIMC_RT void himc_planner_score_anchor(planner_score *score, double t);
 /// ... which it keeps after the change.
-HIMC_RT void himc_planner_score_keep(planner_score *score, double anchor);
+HIMC_RT void himc_planner_score_keep(planner_score *score);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
-/// After the end, plays on from the beat at `t`.
-HIMC_RT void himc_planner_score_go_on(planner_score *score, double t);
-/// All beats are `late` seconds later.
-HIMC_RT void himc_planner_score_delay(planner_score *score, double late);
-/// Plays on without strokes: they have been dropped in a loop that turns.
-HIMC_RT void himc_planner_score_empty(planner_score *score);
 /// Stops at that beat.
 HIMC_RT void himc_planner_score_stop(planner_score *score, double beat);
-/// Ends when all has been played.
-HIMC_RT void himc_planner_score_finish(planner_score *score);
-/// Play begins at that beat.
-HIMC_RT void himc_planner_score_seek(planner_score *score, double beat);
-/// Begins or ends a loop; without it `rounds` is the last round to be played.
-HIMC_RT void himc_planner_score_loop(planner_score *score, bool on, int rounds);
 /// Makes the round of the loop at `t` round 0, before its length changes; returns its number so
 /// far.
 HIMC_RT int himc_planner_score_rebase(planner_score *score, double t);
-/// The next stroke of a hand is this one.
-HIMC_RT void himc_planner_score_go(planner_score *score, himc_hand hand, int index, int round);
-/// The same of its strokes of rolls.
-HIMC_RT void himc_planner_score_go_roll(planner_score *score, himc_hand hand,
-                                        const planner_roll_place *place);
+/// The next stroke of a hand, of its list or of the rolls, is the one at that place.
+HIMC_RT void himc_planner_score_go(planner_score *score, himc_hand hand, planner_place place);
 /// The stroke `ahead` strokes after the next of a hand; false if there is none.
 HIMC_RT bool himc_planner_score_next(const planner_score *score, himc_hand hand, int ahead,
                                      planner_due *due);
 
-/// The stroke (`number` in its hand's list if `roll` is -1) has been reassigned or given up in that
-/// round: it is not planned again in it.
+/// The stroke has been reassigned or given up in that round: it is not planned again in it.
 HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
-                                       const planner_roll_place *place);
+                                       const planner_place *place);
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
-                                           const planner_roll_place *place);
+                                           const planner_place *place);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
-/// The whole beat after the last stroke, or at or after all else that the score has.
-HIMC_RT double himc_planner_score_length(const planner_score *score);
-/// The first whole beat where any hand can have a stroke after all others.
-HIMC_RT double himc_planner_score_free_from(const planner_score *score);
-/// Length of a round of the loop (s).
-HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 /// The round of the loop at `t`, 0 before it begins.
 HIMC_RT int himc_planner_score_round_at(const planner_score *score, double t);
 /// A beat of a round, counted through all rounds since play began; a change of tempo in a loop
@@ -205,8 +175,6 @@ HIMC_RT double himc_planner_score_period(const planner_score *score, double beat
 /// infinite without strokes.
 HIMC_RT double himc_planner_score_gap(const planner_score *score, himc_hand hand, int round,
                                       double beat);
-/// Time from a stroke to the nearest one of its hand (s); infinite without one.
-HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
 /// Time since the last stroke of either hand before a beat (s), or since the beginning of a roll
 /// that ends there; infinite without one.
 HIMC_RT double himc_planner_score_since(const planner_score *score, double beat);
@@ -215,6 +183,9 @@ HIMC_RT planner_walk himc_planner_score_walk(const planner_score *score, int rou
 /// ... and gives the onsets at and before it, the last one first; false when there is none left.
 HIMC_RT bool himc_planner_score_back(const planner_score *score, planner_walk *walk,
                                      planner_onset *onset);
+/// Time of a stroke in a round (s).
+HIMC_RT double himc_planner_score_touch(const planner_score *score, int round,
+                                        const himc_stroke *stroke);
 /// Time of a beat in a round (s).
 HIMC_RT double himc_planner_score_time(const planner_score *score, int round, double beat);
 /// Beat at `t`, in its round.
@@ -222,9 +193,22 @@ HIMC_RT double himc_planner_score_beat_at(const planner_score *score, double t);
 
 // planner_part.c: a hand's strokes, sorted
 
+/// Time of a beat from beat 0 of its round (s).
+HIMC_RT double himc_planner_score_seconds(const planner_score *score, double beat);
 /// The first stroke after `beat`, or with `from` the first at it or after it.
 HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool from);
 /// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
 HIMC_RT int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke);
+/// Time from a stroke to the nearest one of its hand (s); infinite without one.
+HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
+/// True if all of two strokes is the same, as written.
+bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b);
+
+// planner_roll.c: on these the rolls of a loop depend
+
+/// The whole beat after the last stroke, or at or after all else that the score has.
+HIMC_RT double himc_planner_score_length(const planner_score *score);
+/// Length of a round of the loop (s).
+HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 
 #endif

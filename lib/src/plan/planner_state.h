@@ -40,17 +40,15 @@
 typedef struct timed_stroke {
     himc_stroke stroke;
     int drum;
-    int index;       ///< in the hand's part of the score, -1 for a hit or a reassigned stroke
-    int roll;        ///< 1 + the roll in which `index` is its number; 0: it is of none
-    int round;       ///< of the loop
-    bool gives_way;  ///< it is softer for the stroke after it
-    bool reassigned; ///< it is from the other hand's part of the score
-    bool separated;  ///< the tip has left the head again
-    double asked;    ///< speed of impact that was asked for (m/s)
-    bool varied;     ///< the goal is not as written
-    double yields;   ///< its spot is moved by so much, as the hands would have met (m)
-    bool exact;      ///< a hit with a time, still to be corrected before its touch
-    double latency;  ///< time that a hit with a time has, since its message (s), else 0
+    planner_place place; ///< in the hand's part of the score; of a hit or a reassigned stroke none
+    bool gives_way;      ///< it is softer for the stroke after it
+    bool reassigned;     ///< it is from the other hand's part of the score
+    bool separated;      ///< the tip has left the head again
+    double asked;        ///< speed of impact that was asked for (m/s)
+    bool varied;         ///< the goal is not as written
+    double yields;       ///< its spot is moved by so much, as the hands would have met (m)
+    bool exact;          ///< a hit with a time, still to be corrected before its touch
+    double latency;      ///< time that a hit with a time has, since its message (s), else 0
     himc_variation variation; ///< of a hit since it came, of another stroke since it was varied
     himc_goal written;
     himc_goal goal; ///< varied; once planned, with the gesture as it will be played
@@ -150,9 +148,6 @@ struct himc_planner {
 };
 
 // planner_goal.c
-/// The tip's position when it touches a head at (x, y) (m).
-HIMC_RT himc_vec3 himc_planner_tip_at(const himc_planner *planner, const himc_head_frame *head,
-                                      double x, double y);
 /// How far out of a hand's reach a place is (m).
 HIMC_RT double himc_planner_beyond(const himc_planner *planner, himc_hand hand, himc_vec3 place);
 /// True if the hand reaches it.
@@ -176,8 +171,6 @@ HIMC_RT void himc_planner_vary(const himc_planner *planner, timed_stroke *stroke
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
 
 // planner_motion.c
-/// Both hands wait at rest.
-HIMC_RT void himc_planner_motion_init(himc_planner *planner);
 /// Drums, reach or first strokes have changed: the hands rest elsewhere.
 HIMC_RT void himc_planner_rest_again(himc_planner *planner);
 /// The plan of a hand is another one from t (s) on, to be checked and rehearsed.

@@ -8,18 +8,17 @@
 #include "plan/score.h"
 
 #include "base/argument.h"
+#include "base/array.h"
 #include "base/format.h"
 #include "base/text.h"
 
 #include <ctype.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 // chosen: more than a day of drumming, and small enough for any machine's memory
-#define SCORE_STROKES_MAX 200000
 #define SCORE_LINES_MAX 10000
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 #define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 16 a second
@@ -28,35 +27,17 @@
 typedef struct reader {
     himc_score *score;
     int stroke_room, tempo_room, line_room, change_room, order_room;
-    himc_command command; ///< of the current statement
-    int line;
-    bool timed;       ///< the statement begins with `at BEAT` ...
-    double beat;      ///< ... this one
-    const char *name; ///< of the file
+    himc_score_line now; ///< the current statement
+    const char *name;    ///< of the file
     himc_error *error;
 } reader;
-
-/// Makes room for one more element; the array doubles.
-static bool grow(void *array, int count, int *room, size_t size, himc_error *error)
-{
-    if (count < *room)
-        return true;
-    int wanted = *room ? 2 * *room : 64;
-    void **slot = array;
-    void *bigger = realloc(*slot, (size_t)wanted * size);
-    if (!bigger)
-        return himc_error_set(error, "out of memory for %d lines", wanted);
-    *slot = bigger;
-    *room = wanted;
-    return true;
-}
 
 /// The stroke or change that is added next has its place behind those of the file so far.
 static bool add_place(reader *r, int place)
 {
     himc_score *score = r->score;
     int count = score->stroke_count + score->change_count;
-    if (!grow(&score->order, count, &r->order_room, sizeof *score->order, r->error))
+    if (!himc_array_grow(&score->order, count, &r->order_room, sizeof *score->order, r->error))
         return false;
     score->order[count] = place;
     return true;
@@ -65,49 +46,48 @@ static bool add_place(reader *r, int place)
 static bool add_stroke(reader *r)
 {
     himc_score *score = r->score;
-    if (score->stroke_count == SCORE_STROKES_MAX)
+    if (score->stroke_count == HIMC_SCORE_STROKES)
         return himc_error_set(r->error, "stroke: one too many, expected %d strokes",
-                              SCORE_STROKES_MAX);
+                              HIMC_SCORE_STROKES);
     int room = r->stroke_room;
     if (!add_place(r, score->stroke_count) ||
-        !grow(&score->stroke_lines, score->stroke_count, &room, sizeof *score->stroke_lines,
-              r->error) ||
-        !grow(&score->strokes, score->stroke_count, &r->stroke_room, sizeof *score->strokes,
-              r->error))
+        !himc_array_grow(&score->stroke_lines, score->stroke_count, &room,
+                         sizeof *score->stroke_lines, r->error) ||
+        !himc_array_grow(&score->strokes, score->stroke_count, &r->stroke_room,
+                         sizeof *score->strokes, r->error))
         return false;
-    score->stroke_lines[score->stroke_count] = r->line;
-    score->strokes[score->stroke_count++] = r->command.stroke;
+    score->stroke_lines[score->stroke_count] = r->now.line;
+    score->strokes[score->stroke_count++] = r->now.command.stroke;
     return true;
+}
+
+void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_change change)
+{
+    int i = *count;
+    while (i > 0 && tempi[i - 1].beat > change.beat)
+        i--;
+    if (i > 0 && tempi[i - 1].beat == change.beat) {
+        tempi[i - 1] = change;
+        return;
+    }
+    memmove(tempi + i + 1, tempi + i, (size_t)(*count - i) * sizeof *tempi);
+    tempi[i] = change;
+    ++*count;
 }
 
 static bool add_tempo(reader *r)
 {
     himc_score *score = r->score;
-    const himc_atom *atom = r->command.atom;
-    double beat = r->command.count > 1 ? atom[1].number : 0;
-    int i = score->tempo_count;
-    while (i > 0 && score->tempi[i - 1].beat > beat)
-        i--;
-    if (i > 0 && score->tempi[i - 1].beat == beat) {
-        score->tempi[i - 1].bpm = atom[0].number;
-        return true;
-    }
-    if (score->tempo_count == SCORE_LINES_MAX)
-        return himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
-    if (!grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi, r->error))
+    const himc_atom *atom = r->now.command.atom;
+    double beat = r->now.command.count > 1 ? atom[1].number : 0;
+    if (!himc_array_grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi,
+                         r->error))
         return false;
-    memmove(score->tempi + i + 1, score->tempi + i,
-            (size_t)(score->tempo_count - i) * sizeof *score->tempi);
-    score->tempi[i] = (himc_tempo_change){beat, atom[0].number};
-    score->tempo_count++;
-    return true;
+    himc_score_insert_tempo(score->tempi, &score->tempo_count,
+                            (himc_tempo_change){beat, atom[0].number});
+    return score->tempo_count <= SCORE_LINES_MAX ||
+           himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
 }
-
-/// Lines, as they grow.
-typedef struct line_list {
-    himc_score_line **lines;
-    int *count, *room;
-} line_list;
 
 static void copy_line(himc_score_line *to, const himc_score_line *from)
 {
@@ -118,19 +98,19 @@ static void copy_line(himc_score_line *to, const himc_score_line *from)
 }
 
 /// A command points into itself, so lines are copied one by one and not moved.
-static bool grow_lines(const line_list *list, himc_error *error)
+static bool grow_lines(himc_score_line **lines, int count, int *room, himc_error *error)
 {
-    if (*list->count < *list->room)
+    if (count < *room)
         return true;
-    int wanted = *list->room ? 2 * *list->room : 16;
+    int wanted = *room ? 2 * *room : 16;
     himc_score_line *bigger = malloc((size_t)wanted * sizeof *bigger);
     if (!bigger)
         return himc_error_set(error, "out of memory for %d lines", wanted);
-    for (int i = 0; i < *list->count; i++)
-        copy_line(&bigger[i], &(*list->lines)[i]);
-    free(*list->lines);
-    *list->lines = bigger;
-    *list->room = wanted;
+    for (int i = 0; i < count; i++)
+        copy_line(&bigger[i], &(*lines)[i]);
+    free(*lines);
+    *lines = bigger;
+    *room = wanted;
     return true;
 }
 
@@ -139,40 +119,29 @@ static double inches_of(const himc_command *drum)
     return drum->count > 1 ? drum->atom[1].number : HIMC_INCHES_USUAL;
 }
 
-/// A drum is made once; the same line again is allowed.
-static bool check_made_once(const reader *r)
+/// The current statement, in the lines that act at once or at their beats.
+static bool add_line(reader *r, bool timed)
 {
-    for (int i = 0; i < r->score->line_count; i++) {
-        const himc_score_line *line = &r->score->lines[i];
-        const himc_command *made = &line->command;
-        if (made->id == HIMC_COMMAND_MAKE_DRUM &&
-            strcmp(made->atom[0].symbol, r->command.atom[0].symbol) == 0 &&
-            inches_of(made) != inches_of(&r->command))
-            return himc_error_set(r->error, "drum: %s is made with %g inches on line %d already",
-                                  made->atom[0].symbol, inches_of(made), line->line);
-    }
-    return true;
-}
-
-/// The present command, for that drum, in the lines that act at once or at their beats.
-static bool add_line(reader *r, const char *drum)
-{
-    if (r->command.id == HIMC_COMMAND_MAKE_DRUM && !drum[0] && !check_made_once(r))
-        return false;
     himc_score *score = r->score;
-    line_list list = {&score->lines, &score->line_count, &r->line_room};
-    if (r->timed)
-        list = (line_list){&score->changes, &score->change_count, &r->change_room};
+    bool makes = r->now.command.id == HIMC_COMMAND_MAKE_DRUM && !r->now.drum[0];
+    // a drum is made once; the same line again is allowed
+    for (int i = 0; makes && i < score->line_count; i++) {
+        const himc_command *made = &score->lines[i].command;
+        if (made->id == HIMC_COMMAND_MAKE_DRUM &&
+            strcmp(made->atom[0].symbol, r->now.command.atom[0].symbol) == 0 &&
+            inches_of(made) != inches_of(&r->now.command))
+            return himc_error_set(r->error, "drum: %s is made with %g inches on line %d already",
+                                  made->atom[0].symbol, inches_of(made), score->lines[i].line);
+    }
+    himc_score_line **lines = timed ? &score->changes : &score->lines;
+    int *count = timed ? &score->change_count : &score->line_count;
     if (score->line_count + score->change_count == SCORE_LINES_MAX)
         return himc_error_set(r->error, "one line too many, expected %d besides strokes",
                               SCORE_LINES_MAX);
-    if ((r->timed && !add_place(r, -1 - score->change_count)) || !grow_lines(&list, r->error))
+    if ((timed && !add_place(r, -1 - *count)) ||
+        !grow_lines(lines, *count, timed ? &r->change_room : &r->line_room, r->error))
         return false;
-    himc_score_line *line = &(*list.lines)[(*list.count)++];
-    snprintf(line->drum, sizeof line->drum, "%s", drum);
-    himc_command_copy(&line->command, &r->command);
-    line->line = r->line;
-    line->beat = r->timed ? r->beat : 0;
+    copy_line(&(*lines)[(*count)++], &r->now);
     return true;
 }
 
@@ -201,13 +170,14 @@ static bool read_drum_line(reader *r, const himc_atom *atom, int count)
     const himc_argument *name = himc_argument_find("NAME", NULL);
     if (!himc_argument_accepts(name, &atom[0]))
         return himc_error_set(r->error, "%.40s: not a drum's name", atom[0].symbol);
-    if (!himc_command_parse(&r->command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,
+    if (!himc_command_parse(&r->now.command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,
                             r->error) ||
-        !may_stand(&r->command, r->error))
+        !may_stand(&r->now.command, r->error))
         return is_known_drum(r->score, atom[0].symbol)
                    ? himc_error_prefix(r->error, "%s", atom[0].symbol)
                    : himc_command_doubt_drum(atom[0].symbol, r->error);
-    return add_line(r, atom[0].symbol);
+    himc_format(r->now.drum, sizeof r->now.drum, "%s", atom[0].symbol);
+    return add_line(r, false);
 }
 
 bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,
@@ -233,32 +203,24 @@ bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *o
 static bool read_timed_line(reader *r, const himc_atom *atom, int count)
 {
     himc_command at;
-    himc_score_line line;
-    if (!himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) ||
-        !himc_score_read_change(at.atom, at.count, &line, r->error))
-        return false;
-    himc_command_copy(&r->command, &line.command);
-    r->beat = line.beat;
-    r->timed = true;
-    bool good = add_line(r, line.drum);
-    r->timed = false;
-    return good;
+    return himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) &&
+           himc_score_read_change(at.atom, at.count, &r->now, r->error) && add_line(r, true);
 }
 
 static bool read_performer_line(reader *r, const himc_atom *atom, int count)
 {
-    if (!himc_command_parse(&r->command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
+    if (!himc_command_parse(&r->now.command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
                             r->error) ||
-        !may_stand(&r->command, r->error))
+        !may_stand(&r->now.command, r->error))
         return false;
-    switch (r->command.id) {
+    switch (r->now.command.id) {
     case HIMC_COMMAND_STROKE:
     case HIMC_COMMAND_ROLL:
     case HIMC_COMMAND_FLAM:
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
-    default: return add_line(r, "");
+    default: return add_line(r, false);
     }
 }
 
@@ -295,12 +257,6 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     return read_performer_line(r, atom, count);
 }
 
-// comments of other languages
-static bool is_foreign_comment(const char *word)
-{
-    return word[0] == '#' || strncmp(word, "//", 2) == 0;
-}
-
 // What is wrong with a refused statement is that it has no end, if a line inside it begins with a
 // command's or a drum's name. Returns false.
 static bool suggest_end(reader *r, const char *begin, const char *end)
@@ -323,23 +279,21 @@ static bool suggest_end(reader *r, const char *begin, const char *end)
     return false;
 }
 
-static bool add_report(reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-/// A line of the score's report.
-static bool add_report(reader *r, const char *format, ...)
+/// A line of the score's report: the command `at` that line stands inside a comment.
+static bool add_report(reader *r, int line, const char *at)
 {
     himc_score *score = r->score;
-    himc_error line;
-    va_list args;
-    va_start(args, format);
-    himc_line_print(line.text, sizeof line.text, format, args);
-    va_end(args);
-    size_t used = score->report ? strlen(score->report) : 0, room = used + strlen(line.text) + 2;
+    himc_error said;
+    himc_error_set(&said,
+                   "%s:%d: \"%.*s\" is left out: no ; ends the comment before it, in line %d",
+                   r->name, line, (int)strcspn(at, ";\r\n"), at, r->now.line);
+    size_t used = score->report ? strlen(score->report) : 0, room = used + strlen(said.text) + 2;
     char *report = realloc(score->report, room);
     if (!report)
         return himc_error_set(r->error, "out of memory for %zu bytes", room);
-    himc_format(report + used, room - used, "%s\n", line.text);
+    himc_format(report + used, room - used, "%s\n", said.text);
     score->report = report;
+    score->left_out++;
     return true;
 }
 
@@ -349,20 +303,15 @@ static bool report_swallowed(reader *r, const char *begin, const char *end)
 {
     char text[HIMC_PATH_SIZE];
     himc_command command;
-    int line = r->line;
+    int line = r->now.line;
     begin += strspn(begin, " \t\r\n");
     for (const char *at = begin; at < end;) {
         size_t length = (size_t)(end - at);
         if (at != begin && length < sizeof text) {
             memcpy(text, at, length);
             text[length] = '\0';
-            if (himc_command_parse_text(&command, HIMC_PERFORMER, text, NULL)) {
-                r->score->left_out++;
-                return add_report(r,
-                                  "%s:%d: \"%.*s\" is left out: no ; ends the comment before it, "
-                                  "in line %d",
-                                  r->name, line, (int)strcspn(at, ";\r\n"), at, r->line);
-            }
+            if (himc_command_parse_text(&command, HIMC_PERFORMER, text, NULL))
+                return add_report(r, line, at);
         }
         for (at += strcspn(at, "\n"); at < end && isspace((unsigned char)*at); at++)
             line += *at == '\n';
@@ -382,104 +331,66 @@ static bool read_all(reader *r, const char *text)
     if (strncmp(text, BYTE_ORDER_MARK, strlen(BYTE_ORDER_MARK)) == 0)
         text += strlen(BYTE_ORDER_MARK);
     for (const char *begin = text; himc_text_next(&text, &line, &s); begin = text) {
-        r->line = s.line;
-        if (is_foreign_comment(s.count > 0 ? s.atom[0].symbol : ""))
-            return himc_error_set(r->error, "%.20s: a comment is written comment ...;",
-                                  s.atom[0].symbol);
+        r->now.line = s.line;
+        r->now.drum[0] = '\0';
+        r->now.beat = 0;
+        const char *word = s.count > 0 ? s.atom[0].symbol : "";
+        if (word[0] == '#' || strncmp(word, "//", 2) == 0) // of other languages
+            return himc_error_set(r->error, "%.20s: a comment is written comment ...;", word);
         if (!read_statement(r, &s))
             return suggest_end(r, begin, text);
-        if (s.count > 0 && strcmp(s.atom[0].symbol, "comment") == 0 &&
-            !report_swallowed(r, begin, text))
+        if (strcmp(word, "comment") == 0 && !report_swallowed(r, begin, text))
             return false;
     }
     return true;
 }
 
-/// Sorts by beat, then by place in the file.
+/// A stroke or a change with its place in the file.
 typedef struct sort_key {
+    bool change;
     double beat;
-    int index;
     int at; ///< of score->order
 } sort_key;
 
 static int by_beat(const void *a, const void *b)
 {
     const sort_key *p = a, *q = b;
+    if (p->change != q->change)
+        return p->change ? 1 : -1;
     if (p->beat != q->beat)
         return p->beat < q->beat ? -1 : 1;
-    return p->index - q->index;
+    return p->at - q->at;
 }
 
-/// The keys of the strokes, or of the changes, sorted; owned, NULL without memory.
-static sort_key *sort_keys(const himc_score *score, bool changes)
+/// Strokes and changes may stand in any order; those of one beat stay as they stand.
+static bool sort_by_beat(reader *r)
 {
-    int count = changes ? score->change_count : score->stroke_count, i = 0;
-    sort_key *key = malloc((size_t)count * sizeof *key);
-    if (!key)
-        return NULL;
-    for (int at = 0; i < count; at++)
-        if ((score->order[at] < 0) == changes) {
-            key[i] = (sort_key){changes ? score->changes[i].beat : score->strokes[i].beat, i, at};
-            i++;
+    himc_score *score = r->score, old = *score;
+    int strokes = old.stroke_count, all = strokes + old.change_count;
+    sort_key *key = malloc((size_t)(all + 1) * sizeof *key);
+    score->strokes = malloc((size_t)(strokes + 1) * sizeof *score->strokes);
+    score->stroke_lines = malloc((size_t)(strokes + 1) * sizeof *score->stroke_lines);
+    score->changes = malloc((size_t)(all - strokes + 1) * sizeof *score->changes);
+    bool good = key && score->strokes && score->stroke_lines && score->changes;
+    for (int at = 0; good && at < all; at++) {
+        int i = old.order[at];
+        key[at] = (sort_key){i < 0, i < 0 ? old.changes[-1 - i].beat : old.strokes[i].beat, at};
+    }
+    if (good)
+        qsort(key, (size_t)all, sizeof *key, by_beat);
+    for (int k = 0; good && k < all; k++) {
+        int *order = &score->order[key[k].at], i = *order;
+        if (i < 0) {
+            copy_line(&score->changes[k - strokes], &old.changes[-1 - i]);
+            *order = -1 - (k - strokes);
+        } else {
+            score->strokes[k] = old.strokes[i];
+            score->stroke_lines[k] = old.stroke_lines[i];
+            *order = k;
         }
-    qsort(key, (size_t)count, sizeof *key, by_beat);
-    return key;
-}
-
-static bool are_sorted(const himc_score *score, bool changes)
-{
-    int count = changes ? score->change_count : score->stroke_count;
-    for (int i = 1; i < count; i++)
-        if (changes ? score->changes[i].beat < score->changes[i - 1].beat
-                    : score->strokes[i].beat < score->strokes[i - 1].beat)
-            return false;
-    return true;
-}
-
-static bool sort_strokes(reader *r)
-{
-    himc_score *score = r->score;
-    size_t count = (size_t)score->stroke_count;
-    if (are_sorted(score, false))
-        return true;
-    sort_key *key = sort_keys(score, false);
-    himc_stroke *sorted = malloc(count * sizeof *sorted);
-    int *line = malloc(count * sizeof *line);
-    if (!key || !sorted || !line) {
-        free(key), free(sorted), free(line);
-        return himc_error_set(r->error, "out of memory for %zu strokes", count);
     }
-    for (size_t i = 0; i < count; i++) {
-        sorted[i] = score->strokes[key[i].index];
-        line[i] = score->stroke_lines[key[i].index];
-        score->order[key[i].at] = (int)i;
-    }
-    free(key), free(score->strokes), free(score->stroke_lines);
-    score->strokes = sorted;
-    score->stroke_lines = line;
-    return true;
-}
-
-/// Changes may stand in any order; those of one beat act as they stand.
-static bool sort_changes(reader *r)
-{
-    himc_score *score = r->score;
-    int count = score->change_count;
-    if (are_sorted(score, true))
-        return true;
-    sort_key *key = sort_keys(score, true);
-    himc_score_line *lines = malloc((size_t)count * sizeof *lines);
-    if (!key || !lines) {
-        free(key), free(lines);
-        return himc_error_set(r->error, "out of memory for %d lines", count);
-    }
-    for (int i = 0; i < count; i++) {
-        copy_line(&lines[i], &score->changes[key[i].index]);
-        score->order[key[i].at] = -1 - i;
-    }
-    free(key), free(score->changes);
-    score->changes = lines;
-    return true;
+    free(key), free(old.strokes), free(old.stroke_lines), free(old.changes);
+    return good || himc_error_set(r->error, "out of memory for %d lines", all);
 }
 
 bool himc_score_accepts_roll(const himc_tempo_change *tempi, int count, const himc_stroke *roll,
@@ -507,7 +418,7 @@ static bool check_playable(reader *r)
                     score->tempi[tempo].bpm;
         double seconds =
             base + (stroke->beat - score->tempi[tempo].beat) * 60 / score->tempi[tempo].bpm;
-        r->line = score->stroke_lines[i];
+        r->now.line = score->stroke_lines[i];
         if (stroke->ornament >= HIMC_ROLL_SINGLE) {
             // it leaves out what does not fit (ornament.h)
             if (!himc_score_accepts_roll(score->tempi, score->tempo_count, stroke, r->error))
@@ -530,17 +441,18 @@ himc_score *himc_score_parse(const char *text, const char *name, himc_error *err
 {
     reader r = {.name = name, .error = error};
     r.score = calloc(1, sizeof *r.score);
-    bool good = r.score && grow(&r.score->tempi, 0, &r.tempo_room, sizeof *r.score->tempi, error);
+    bool good = r.score &&
+                himc_array_grow(&r.score->tempi, 0, &r.tempo_room, sizeof *r.score->tempi, error);
     if (!good) {
         free(r.score);
         himc_error_set(error, "%s: out of memory", name);
         return NULL;
     }
     r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
-    good = read_all(&r, text) && sort_strokes(&r) && sort_changes(&r) && check_playable(&r);
+    good = read_all(&r, text) && sort_by_beat(&r) && check_playable(&r);
     if (good)
         return r.score;
-    himc_error_prefix(error, "%s:%d", name, r.line);
+    himc_error_prefix(error, "%s:%d", name, r.now.line);
     himc_score_free(r.score);
     return NULL;
 }

@@ -4,12 +4,17 @@
 
 #include "himc/score.h"
 
+#define HIMC_SCORE_STROKES 200000 ///< of a file, and of a hand; chosen: more than a day of drumming
+
 /// From one stroke of a hand to its next, at least (s). Chosen: 25 a second, faster than players.
 #define HIMC_CLOSEST_STROKES 0.04
 
 /// The score in a string, as himc_score_load reads it from a file; `name` stands for the file in
 /// errors. Free with himc_score_free.
 himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
+
+/// Puts a change into a tempo map of *count that has room for it, or in place of that on its beat.
+void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_change change);
 
 /// The change of a drum, or the push, that the checked atoms of `at` ask for.
 bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,
