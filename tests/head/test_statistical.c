@@ -2,12 +2,12 @@
 /// their decay, their sound, passivity.
 #include "drum/contact.h"
 #include "drum/membrane_state.h"
-#include "drum/membrane_probe.h"
 #include "head/air.h"
 #include "head/bessel.h"
 #include "head/statistical.h"
 
 #include "unity.h"
+#include "inner_state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -561,9 +561,9 @@ static bool any_stiff(himc_stick *const *sticks, int count, double h)
 
 void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count)
 {
-    double h = 1 / himc_membrane_rate(membrane), mean[MAX_PAIRS] = {0};
+    double rate = himc_membrane_rate(membrane), h = 1 / rate, mean[MAX_PAIRS] = {0};
     count = count < MAX_PAIRS ? count : MAX_PAIRS;
-    int substeps = any_stiff(sticks, count, h) ? himc_membrane_substeps(membrane) : 1;
+    int substeps = any_stiff(sticks, count, h) ? himc_membrane_substeps(rate) : 1;
     for (int i = 0; i < substeps; i++) {
         himc_membrane_set_substep(membrane, i, substeps);
         step(membrane, sticks, count, h / substeps);

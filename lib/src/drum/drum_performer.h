@@ -18,12 +18,10 @@ typedef struct himc_outside_force {
 /// @param sticks   evolve (membrane.h); may be NULL when count is 0
 /// @param forces   forces[s][i] receives the force of stick s in sample i (N); NULL if unwanted
 /// @param outside  or NULL
-HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
+/// Returns true if a sample was made by itself, with sticks near the head or a force; it costs as
+/// much as several others.
+HIMC_RT bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                                       double *const *forces, const himc_outside_force *outside);
-
-/// Samples that sticks near the head have made it make one by one, so far; each costs as much as
-/// several others.
-HIMC_RT uint64_t himc_drum_single_samples(const himc_drum *drum);
 
 /// Memory for a listener's ears, which a drum has from the first listener on.
 bool himc_drum_open_ears(himc_drum *drum, himc_error *error);

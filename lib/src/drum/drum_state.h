@@ -49,9 +49,8 @@ struct himc_drum {
     unsigned revision;
     himc_drum_driver driver;
     double rate;
-    uint64_t time;    ///< samples since the drum was made; all samples in here are counted so
-    uint64_t singles; ///< of these, made one by one with sticks near the head
-    uint64_t zero;    ///< the one that counts as 0 outside, since the last realign
+    uint64_t time; ///< samples since the drum was made; all samples in here are counted so
+    uint64_t zero; ///< the one that counts as 0 outside, since the last realign
     double ring[HIMC_PICKUPS + 1][HIMC_DRUM_RING]; ///< sound of each channel; the displacement
     uint64_t filled[HIMC_PICKUPS + 1]; ///< `time` after the last sample of a ring that may not be 0
     bool unwatched;                    ///< the displacement is not wanted
@@ -75,8 +74,6 @@ struct himc_drum {
 
 /// The head without the changes of a score: the drum's own, which a state tells.
 himc_head himc_drum_base_head(const himc_drum *drum);
-/// Sets in `head` what differs between `was` and `now`.
-HIMC_RT void himc_drum_keep_edits(himc_head *head, const himc_head *was, const himc_head *now);
 
 /// The head after a checked command of one that a score may have at a beat, or of `radius` or
 /// `density`. False with the reason if the drum refuses it.
