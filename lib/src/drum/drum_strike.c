@@ -85,25 +85,6 @@ static int earliest(const himc_drum *drum)
     return best;
 }
 
-static void forget(himc_drum *drum, int index)
-{
-    drum->waiting_count--;
-    for (int i = index; i < drum->waiting_count; i++)
-        drum->waiting[i] = drum->waiting[i + 1];
-}
-
-static void launch(himc_drum *drum, drum_mallet *m, const drum_waiting *w)
-{
-    *m = (drum_mallet){.used = true};
-    m->stick = (himc_stick){.head = drum->set.mallet,
-                            .mass = drum->set.mallet.mass,
-                            .x = w->x,
-                            .y = w->y,
-                            .velocity = -w->velocity};
-    himc_stick_put(drum->membrane, &m->stick);
-    m->report = (himc_contact_report){.x = w->x, .y = w->y, .velocity = w->velocity};
-}
-
 void himc_drum_launch(himc_drum *drum)
 {
     for (;;) {
@@ -111,8 +92,18 @@ void himc_drum_launch(himc_drum *drum)
         drum_mallet *m = free_mallet(drum);
         if (next < 0 || !m || drum->waiting[next].at > drum->time)
             return;
-        launch(drum, m, &drum->waiting[next]);
-        forget(drum, next);
+        drum_waiting w = drum->waiting[next];
+        drum->waiting_count--;
+        for (int i = next; i < drum->waiting_count; i++)
+            drum->waiting[i] = drum->waiting[i + 1];
+        *m = (drum_mallet){.used = true,
+                           .stick = {.head = drum->set.mallet,
+                                     .mass = drum->set.mallet.mass,
+                                     .x = w.x,
+                                     .y = w.y,
+                                     .velocity = -w.velocity},
+                           .report = {.x = w.x, .y = w.y, .velocity = w.velocity}};
+        himc_stick_put(drum->membrane, &m->stick);
     }
 }
 
@@ -133,17 +124,6 @@ int himc_drum_add_mallets(himc_drum *drum, himc_stick **sticks)
     return count;
 }
 
-// frees the mallet and queues its report
-static void finish(himc_drum *drum, drum_mallet *m)
-{
-    m->used = false;
-    if (!m->struck)
-        return;
-    m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
-    m->report.duration = (double)(m->end - m->first) / drum->rate;
-    drum->reports[queue_push(&drum->report_queue, DRUM_REPORTS)] = m->report;
-}
-
 static void follow(himc_drum *drum, drum_mallet *m)
 {
     const himc_stick *s = &m->stick;
@@ -156,8 +136,13 @@ static void follow(himc_drum *drum, drum_mallet *m)
         m->report.impulse += s->force / drum->rate;
     }
     m->age++;
-    if ((!s->touching && s->height > GONE && s->velocity > 0) || m->age > LONGEST_LIFE * drum->rate)
-        finish(drum, m);
+    bool gone = !s->touching && s->height > GONE && s->velocity > 0;
+    m->used = !gone && m->age <= LONGEST_LIFE * drum->rate;
+    if (m->used || !m->struck)
+        return;
+    m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
+    m->report.duration = (double)(m->end - m->first) / drum->rate;
+    drum->reports[queue_push(&drum->report_queue, DRUM_REPORTS)] = m->report;
 }
 
 void himc_drum_follow_mallets(himc_drum *drum)

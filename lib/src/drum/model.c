@@ -60,15 +60,6 @@ static himc_readout take_readout(double **memory, int length)
     return (himc_readout){.p = p, .s = take(memory, length)};
 }
 
-static himc_output take_output(double **memory, int length)
-{
-    himc_output o = {.readout = take_readout(memory, length)};
-    o.readout.film = take(memory, length);
-    for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
-        o.response[k] = take(memory, length);
-    return o;
-}
-
 static void share_memory(himc_model *c)
 {
     int padded = himc_bank_padded(c->bank);
@@ -78,8 +69,12 @@ static void share_memory(himc_model *c)
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
     c->watched = take_readout(&memory, padded);
-    for (int i = 0; i < HIMC_OUTPUTS; i++)
-        c->outputs[i] = take_output(&memory, padded);
+    for (int i = 0; i < HIMC_OUTPUTS; i++) {
+        c->outputs[i].readout = take_readout(&memory, padded);
+        c->outputs[i].readout.film = take(&memory, padded);
+        for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
+            c->outputs[i].response[k] = take(&memory, padded);
+    }
     c->rays.form = take_readout(&memory, padded);
     c->rays.form.film = take(&memory, padded);
     for (int i = 0; i < HIMC_RAYS; i++) {
@@ -259,10 +254,16 @@ static void find_output(himc_model *m, int index)
     himc_bank_set_step(m->bank, HIMC_STEP_SAMPLE);
 }
 
-// what all its rays have in common
-static void find_form(himc_model *m)
+void himc_model_find_outputs(himc_model *m, int first, int end)
 {
-    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+    for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
+        m->points[i].used = false;
+    for (int i = first; i < end; i++)
+        if (himc_membrane_config_has(&m->config, i))
+            find_output(m, i);
+    if (end <= HIMC_PICKUPS || !m->config.rays || !m->config.shape.kind->form)
+        return;
+    for (int i = 0; i < himc_modes_count(m->modes); i++) { // what all rays have in common
         himc_mode mode = sounding_mode(m, i);
         pickup_weights w = m->config.shape.kind->form(&mode);
         m->on_q[i] = w.displacement;
@@ -272,33 +273,11 @@ static void find_form(himc_model *m)
     himc_bank_readout(m->bank, m->on_q, m->on_v, m->on_force, &m->rays.form);
 }
 
-void himc_model_find_outputs(himc_model *m, int first, int end)
-{
-    for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
-        m->points[i].used = false;
-    for (int i = first; i < end; i++)
-        if (himc_membrane_config_has(&m->config, i))
-            find_output(m, i);
-    if (end > HIMC_PICKUPS && m->config.rays && m->config.shape.kind->form)
-        find_form(m);
-}
-
 void himc_model_watch(himc_model *m, double x, double y)
 {
     himc_modes_shapes(m->modes, m->config.head.radius, x, y, m->scratch);
     himc_modes_mix(m->modes, m->scratch);
     himc_bank_readout(m->bank, m->scratch, NULL, NULL, &m->watched);
-}
-
-// The film is off while it could not raise the tension by SLACK of it, 0.001 cent, even with twice
-// the energy in the head.
-static void set_film(himc_model *m)
-{
-    double tension = m->config.head.tension, stiffness = himc_model_film_stiffness(m);
-    if (stiffness > 0)
-        himc_bank_set_film(m->bank, m->stretch, SLACK * tension * tension / (2 * stiffness));
-    else
-        himc_bank_set_film(m->bank, NULL, 0);
 }
 
 void himc_model_make(himc_model *m, const himc_membrane_config *config)
@@ -317,6 +296,9 @@ void himc_model_make(himc_model *m, const himc_membrane_config *config)
     find_shared(m);
     himc_bank_set_substeps(m->bank, himc_membrane_substeps(m->config.rate));
     himc_bank_set(m->bank, m->oscillators, himc_modes_count(m->modes), m->config.rate);
-    set_film(m);
+    // off while it could not raise the tension by SLACK of it, even with twice the energy
+    double stiffness = himc_model_film_stiffness(m);
+    himc_bank_set_film(m->bank, stiffness > 0 ? m->stretch : NULL,
+                       SLACK * head->tension * head->tension / (2 * stiffness));
     himc_model_find_outputs(m, 0, HIMC_OUTPUTS);
 }
