@@ -2,7 +2,7 @@
 #ifndef HIMC_TESTS_INNER_STATE_H
 #define HIMC_TESTS_INNER_STATE_H
 
-#include "drum/membrane_probe.h"
+#include "drum/drum_performer.h"
 #include "drum/membrane_state.h"
 
 #include <math.h>

@@ -533,7 +533,7 @@ void himc_drum_realign(himc_drum *drum, int ahead)
     uint64_t kept = ahead > 0 ? (uint64_t)ahead : 0, before = drum->zero;
     drum->zero = drum->time - (kept < drum->time ? kept : drum->time);
     for (int i = 0; i < drum->report_queue.count; i++)
-        drum->reports[(drum->report_queue.first + i) % DRUM_REPORTS].time -=
+        drum->reports[(drum->report_queue.first + i) % DRUM_QUEUE].time -=
             ((double)drum->zero - (double)before) / drum->rate;
 }
 

@@ -53,6 +53,12 @@ HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
 /// Frequency of the head's principal mode (Hz).
 HIMC_RT double himc_drum_pitch(const himc_drum *drum);
 
+/// For those who draw a head: displacement (m) of the first `count` shapes of a bare head with its
+/// axes along x and y, of which the modes are made: of what the modes have now, or of `modal`
+/// (count) (m) if it is not NULL.
+HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
+                                   double *displacement);
+
 /// True if a force acted on the head in its last sample.
 HIMC_RT bool himc_drum_is_touched(const himc_drum *drum);
 

@@ -8,9 +8,7 @@
 #include "drum/membrane_state.h"
 #include "drum/stroke_noise.h"
 
-#define DRUM_WAITING 64 ///< strikes; this, the next two and the delay: chosen
-#define DRUM_REPORTS 64
-#define DRUM_ONSETS 64
+#define DRUM_QUEUE 64       ///< strikes that wait, reports, onsets; this and the delay: chosen
 #define DRUM_MAX_DELAY 8192 ///< (samples)
 
 /// A strike that begins with sample `at`.
@@ -23,11 +21,10 @@ typedef struct drum_waiting {
 typedef struct drum_mallet {
     bool used;
     himc_stick stick;
-    uint64_t first; ///< sample of the first force
-    uint64_t end;   ///< sample after the last force
-    bool struck;    ///< it has felt a force
-    int age;        ///< samples since it was launched
-    himc_contact_report report;
+    uint64_t first;             ///< sample of the first force
+    uint64_t end;               ///< sample after the last force
+    int age;                    ///< samples since it was launched
+    himc_contact_report report; ///< its force is 0 until it has felt one
 } drum_mallet;
 
 /// Entries of a ring, oldest first.
@@ -55,12 +52,12 @@ struct himc_drum {
     uint64_t filled[HIMC_PICKUPS + 1]; ///< `time` after the last sample of a ring that may not be 0
     bool unwatched;                    ///< the displacement is not wanted
     double outside_x, outside_y;       ///< point of the outside force, the watched point
-    drum_waiting waiting[DRUM_WAITING]; ///< unordered
+    drum_waiting waiting[DRUM_QUEUE];  ///< unordered
     int waiting_count;
     drum_mallet mallets[HIMC_STICKS];
-    himc_contact_report reports[DRUM_REPORTS];
+    himc_contact_report reports[DRUM_QUEUE];
     drum_queue report_queue;
-    himc_contact_onset onsets[DRUM_ONSETS]; ///< `at` is in samples of `time`
+    himc_contact_onset onsets[DRUM_QUEUE]; ///< `at` is in samples of `time`
     drum_queue onset_queue;
     double fader; ///< of all drums of its performer (factor)
     double level; ///< of the drum's own sound: on its way to the product, or to 0

@@ -1,6 +1,6 @@
 /// membrane_read.c: what a membrane is asked for: its head, modes and pitch, and the shapes that it
 /// has now. Nothing changes it.
-#include "drum/membrane_probe.h"
+#include "drum/drum_performer.h"
 #include "drum/membrane_state.h"
 
 #include <math.h>
