@@ -83,13 +83,6 @@ static bool set_config(himc_drum_settings *s, const himc_membrane_config *config
     return true;
 }
 
-static bool set_head(himc_drum_settings *s, const himc_head *head, himc_error *error)
-{
-    himc_membrane_config config = s->head;
-    config.head = *head;
-    return set_config(s, &config, error);
-}
-
 // the head that a drum of this shape has at first
 static himc_head usual_head(const himc_shape *shape, const himc_head *usual)
 {
@@ -116,7 +109,7 @@ static bool find_tune(const himc_shape *shape, const himc_command *c, himc_head 
 bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const himc_command *c,
                          himc_head *head, himc_error *error)
 {
-    enum { T60, BOTH };
+    enum { T60, BOTH, AUTO = 1, VOLUME = 1 }; // forms of decay, modes and kettle
     himc_head here = usual_head(shape, usual);
     double said = number(c, 0), square = c->form == BOTH ? number(c, 1) : 0;
     switch (c->id) {
@@ -130,6 +123,20 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
         head->decay_constant = himc_argument_usual(said, usual->decay_constant);
         head->decay_square = himc_argument_usual(square, usual->decay_square);
         break;
+    case HIMC_COMMAND_MODES: head->modes = c->form == AUTO ? HIMC_MODES_AUTO : (int)said; break;
+    case HIMC_COMMAND_AIR: head->air = said == 1; break;
+    case HIMC_COMMAND_KETTLE:
+        if (c->form == VOLUME && !himc_air_check(said, head->radius, error))
+            return false;
+        head->kettle = c->form == VOLUME ? said : 0;
+        break;
+    case HIMC_COMMAND_UNIFORMITY:
+        head->uniformity = himc_argument_usual(said, usual->uniformity);
+        head->uniformity_seed = c->count == 2 ? (int)number(c, 1) : head->uniformity_seed;
+        if (head->uniformity < 1 && !shape->kind->air) // it has no pairs to split
+            return himc_error_set(error, "uniformity: %.6g, expected 1 on a head that is not round",
+                                  head->uniformity);
+        break;
     default: return find_tune(shape, c, head, error);
     }
     return true;
@@ -137,9 +144,9 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
 
 static bool change_head(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    himc_head head = s->head.head;
-    return himc_drum_find_head(&s->head.shape, &s->usual, c, &head, error) &&
-           set_head(s, &head, error);
+    himc_membrane_config config = s->head;
+    return himc_drum_find_head(&s->head.shape, &s->usual, c, &config.head, error) &&
+           set_config(s, &config, error);
 }
 
 static bool do_noise(himc_drum_settings *s, const himc_command *c, himc_error *error)
@@ -147,27 +154,6 @@ static bool do_noise(himc_drum_settings *s, const himc_command *c, himc_error *e
     (void)error;
     s->noise = number(c, 0);
     return true;
-}
-
-// other heads have no pairs to split
-static bool do_uniformity(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    himc_head head = s->head.head;
-    head.uniformity = himc_argument_usual(number(c, 0), s->usual.uniformity);
-    if (c->count == 2)
-        head.uniformity_seed = (int)number(c, 1);
-    if (head.uniformity < 1 && !s->head.shape.kind->air)
-        return himc_error_set(error, "uniformity: %.6g, expected 1 on a head that is not round",
-                              head.uniformity);
-    return set_head(s, &head, error);
-}
-
-static bool do_modes(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    himc_head head = s->head.head;
-    enum { COUNT, AUTO };
-    head.modes = c->form == AUTO ? HIMC_MODES_AUTO : (int)number(c, 0);
-    return set_head(s, &head, error);
 }
 
 static bool do_mallet(himc_drum_settings *s, const himc_command *c, himc_error *error)
@@ -253,23 +239,6 @@ static bool do_channel(himc_drum_settings *s, const himc_command *c, himc_error 
            change_pickup(s, c, 1, channel - 1, error);
 }
 
-static bool do_air(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    himc_head head = s->head.head;
-    head.air = number(c, 0) == 1;
-    return set_head(s, &head, error);
-}
-
-static bool do_kettle(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    enum { USUAL, VOLUME };
-    himc_head head = s->head.head;
-    if (c->form == VOLUME && !himc_air_check(number(c, 0), head.radius, error))
-        return false;
-    head.kettle = c->form == USUAL ? 0 : number(c, 0);
-    return set_head(s, &head, error);
-}
-
 // takes the outline and its reference
 static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *error)
 {
@@ -343,7 +312,6 @@ static bool do_strike(himc_drum_settings *s, const himc_command *c, himc_error *
     return himc_drum_may_strike(&s->place, number(c, 0), number(c, 1), number(c, 2), error);
 }
 
-// those that a score may have at a beat, and three alike
 #define do_radius change_head
 #define do_tension change_head
 #define do_density change_head
@@ -351,6 +319,10 @@ static bool do_strike(himc_drum_settings *s, const himc_command *c, himc_error *
 #define do_damp change_head
 #define do_decay change_head
 #define do_tune change_head
+#define do_modes change_head
+#define do_air change_head
+#define do_kettle change_head
+#define do_uniformity change_head
 typedef bool drum_action(himc_drum_settings *s, const himc_command *command, himc_error *error);
 
 // the action of each row for a drum is do_ and its word; these two are jobs (drum_job.c)

@@ -72,8 +72,8 @@ struct himc_drum {
 /// The head without the changes of a score: the drum's own, which a state tells.
 himc_head himc_drum_base_head(const himc_drum *drum);
 
-/// The head after a checked command of one that a score may have at a beat, or of `radius` or
-/// `density`. False with the reason if the drum refuses it.
+/// The head after a checked command that changes it, but for `shape`. False with the reason if the
+/// drum refuses it.
 HIMC_RT bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual,
                                  const himc_command *checked, himc_head *head, himc_error *error);
 /// False with the reason if that surface cannot be struck so.

@@ -18,25 +18,22 @@ bool himc_shape_equal(const himc_shape *a, const himc_shape *b)
 }
 
 // all fields of a head
-#define FIELDS(OF)                                                                      \
-    OF(radius)                                                                          \
-    OF(tension)                                                                         \
-    OF(density)                                                                         \
-    OF(decay_constant) OF(decay_square) OF(modes) OF(air) OF(kettle) OF(glide) OF(damp) \
-        OF(uniformity) OF(uniformity_seed)
+#define FIELDS(OF)                                                                         \
+    OF(radius), OF(tension), OF(density), OF(decay_constant), OF(decay_square), OF(modes), \
+        OF(air), OF(kettle), OF(glide), OF(damp), OF(uniformity), OF(uniformity_seed)
 
 bool himc_head_equal(const himc_head *a, const himc_head *b)
 {
+#define SAME(field) (equal = equal && a->field == b->field)
     bool equal = true;
-#define COMPARE(field) equal = equal && a->field == b->field;
-    FIELDS(COMPARE)
+    FIELDS(SAME);
     return equal;
 }
 
 void himc_head_keep_edits(himc_head *head, const himc_head *was, const himc_head *now)
 {
-#define KEEP(field) head->field = now->field != was->field ? now->field : head->field;
-    FIELDS(KEEP)
+#define KEEP(field) (head->field = now->field != was->field ? now->field : head->field)
+    FIELDS(KEEP);
 }
 
 static bool same_pickups(const himc_pickup *a, const himc_pickup *b, int count)
