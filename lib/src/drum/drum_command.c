@@ -372,10 +372,14 @@ static void tell(const himc_line_sink *to, const char *name, double value)
     himc_state_tell(to, name, NULL, 1, &value);
 }
 
+// the head without the changes of a score: the drum's own
 static void dump_head(const himc_drum *drum, const himc_line_sink *to)
 {
-    const himc_head own = himc_drum_base_head(drum), *head = &own;
+    const himc_head *now = himc_membrane_head(drum->membrane);
+    himc_head own = drum->told ? drum->told->base : *now, *head = &own;
     const himc_shape *shape = &himc_membrane_config_of(drum->membrane)->shape;
+    if (drum->told)
+        himc_head_keep_edits(head, &drum->told->known, now);
     himc_state_tell(to, "shape", shape->kind->name ? shape->kind->name : shape->grid->path,
                     shape->length > 0 ? 2 : 0, (double[]){shape->length, shape->width});
     himc_state_tell(to, "kettle", "usual", 0, NULL);

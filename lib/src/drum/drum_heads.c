@@ -195,15 +195,6 @@ void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum)
     }
 }
 
-himc_head himc_drum_base_head(const himc_drum *drum)
-{
-    const himc_head *now = himc_membrane_head(drum->membrane);
-    himc_head base = drum->told ? drum->told->base : *now;
-    if (drum->told)
-        himc_head_keep_edits(&base, &drum->told->known, now);
-    return base;
-}
-
 void himc_drum_set_heads(himc_drum *drum, const himc_drum_heads *heads)
 {
     drum->told = heads ? &heads->told : NULL;

@@ -69,9 +69,6 @@ struct himc_drum {
     himc_ears *ears;  ///< owned; of the listener; NULL before the first one
 };
 
-/// The head without the changes of a score: the drum's own, which a state tells.
-himc_head himc_drum_base_head(const himc_drum *drum);
-
 /// The head after a checked command that changes it, but for `shape`. False with the reason if the
 /// drum refuses it.
 HIMC_RT bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual,
