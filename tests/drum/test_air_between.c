@@ -1,11 +1,11 @@
 /// test_air_between.c: drums hear each other: how loud, never with energy from nowhere, and not at
 /// all when they are far apart.
 #include "drum/air_between.h"
-#include "drum/membrane_probe.h"
 #include "drum/membrane_state.h"
 #include "himc/himc.h"
 
 #include "unity.h"
+#include "inner_state.h"
 
 #include <math.h>
 #include <stdio.h>

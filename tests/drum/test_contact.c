@@ -1,9 +1,9 @@
 /// test_contact.c: energy, forces, times and rebounds of sticks on a head.
 #include "drum/membrane_state.h"
 #include "drum/contact.h"
-#include "drum/membrane_probe.h"
 
 #include "unity.h"
+#include "inner_state.h"
 #include "heads.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
 #include "base/random.h"
 #include "drum/contact.h"
 #include "drum/membrane_state.h"
-#include "drum/membrane_probe.h"
 
 #include "unity.h"
+#include "inner_state.h"
 #include "heads.h"
 
 #include <math.h>

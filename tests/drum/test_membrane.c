@@ -1,11 +1,11 @@
 /// test_membrane.c: pitch, decay, energy and pickups of a bare head, and changes while it sounds.
 #include "drum/membrane_state.h"
-#include "drum/membrane_probe.h"
 #include "head/air.h"
 #include "head/bessel.h"
 #include "head/pickup.h"
 
 #include "unity.h"
+#include "inner_state.h"
 #include "exact_shape.h"
 #include "heads.h"
 

@@ -6,8 +6,9 @@
 /// 2.15).
 #include "osc_ear.h"
 
+#include "inner_state.h"
+
 #include "drum/drum_performer.h"
-#include "drum/membrane_probe.h"
 #include "drum/membrane_state.h"
 #include "head/mode_list.h"
 #include "head/pickup.h"

@@ -2,12 +2,12 @@
 /// number of modes, contact times of each mallet, energy.
 #include "drum/contact.h"
 #include "drum/drum_performer.h"
-#include "drum/membrane_probe.h"
 #include "drum/membrane_state.h"
 #include "drum/patch.h"
 #include "head/bessel.h"
 
 #include "unity.h"
+#include "inner_state.h"
 
 #include <math.h>
 #include <stdio.h>

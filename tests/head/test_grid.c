@@ -7,9 +7,9 @@
 #include "head/bessel.h"
 #include "drum/contact.h"
 #include "drum/drum_state.h"
-#include "drum/membrane_probe.h"
 #include "head/modes.h"
 #include "heads.h"
+#include "inner_state.h"
 
 #define RADIUS 0.3
 #define TENSION 3000.0

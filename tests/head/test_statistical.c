@@ -2,12 +2,12 @@
 /// their decay, their sound, passivity.
 #include "drum/contact.h"
 #include "drum/membrane_state.h"
-#include "drum/membrane_probe.h"
 #include "head/air.h"
 #include "head/bessel.h"
 #include "head/statistical.h"
 
 #include "unity.h"
+#include "inner_state.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -441,7 +441,8 @@ static void test_other_outlines_have_200_modes_and_none_is_statistical(void)
     TEST_ASSERT_EQUAL_INT(200, himc_modes_count(modes));
     for (int i = 0; i < 200; i++) {
         himc_mode a = himc_modes_get(modes, &head, i), b = himc_modes_get(same, &head, i);
-        TEST_ASSERT_EQUAL_MEMORY(&a, &b, sizeof a);
+        TEST_ASSERT_TRUE(a.m == b.m && a.n == b.n && a.sine == b.sine && a.m > 0);
+        TEST_ASSERT_EQUAL_MEMORY(&a.axis, &b.axis, sizeof a - offsetof(himc_mode, axis));
     }
     himc_modes_free(modes);
     himc_modes_free(same);

@@ -2,9 +2,9 @@
 /// beat; an even head is as it was.
 #include "dry_drum.h"
 #include "exact_shape.h"
+#include "inner_state.h"
 #include "one_drum.h"
 
-#include "drum/membrane_probe.h"
 #include "head/bessel.h"
 #include "head/modes.h"
 

@@ -184,7 +184,7 @@ static double loudest_ringing_of(const himc_drum *d, int k, past before)
     const himc_membrane *m = d->membrane;
     const himc_readout *r = &m->model->outputs[k].readout;
     double most = 0;
-    if (m->model->stale || !himc_membrane_wants(m, k))
+    if (!himc_membrane_has(m, k))
         return 0;
     for (int i = 0; i < himc_membrane_audible(m); i++)
         most = fmax(most, hypot(r->p[i], r->s[i]) / sqrt(m->model->oscillators[i].mass));

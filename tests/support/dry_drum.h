@@ -4,6 +4,7 @@
 
 #include "drum/membrane_state.h"
 #include "heads.h"
+#include "inner_state.h"
 #include "himc/drum.h"
 
 #include <assert.h>

@@ -53,7 +53,7 @@ static inline double largest_sample(const himc_drum *d, int pickup, double energ
     const himc_membrane *m = d->membrane;
     const himc_pickup *at = &himc_membrane_pickups(m, &count)[pickup];
     double area = HIMC_PI * pow(m->model->config.head.radius, 2), inverse_mass;
-    double step = 1 / (d->rate * himc_membrane_substeps(m));
+    double step = 1 / (d->rate * himc_membrane_substeps(d->rate));
     double fastest = sqrt(2.0) * 2 * HIMC_PI * 0.49 * d->rate + 2 / step;
     if (at->kind == HIMC_PICKUP_POINT) {
         point_yield(d, at->x, at->y, &inverse_mass);

@@ -7,7 +7,6 @@
 /// after `reset`; the recording's goes on.
 #include "scene_record.h"
 #include "drum/drum_performer.h"
-#include "drum/membrane_probe.h"
 #include "himc/body.h"
 #include "himc/membrane.h"
 #include "scene.h"

@@ -46,18 +46,6 @@ static void single_step(himc_bank *bank)
     bank->bounds_left = 0;
 }
 
-// from time to time: sets the quiet oscillators at the top to rest
-static void tidy(himc_bank *bank)
-{
-    int live = bank->live;
-    while (live > 0 && fabs(bank->p[live - 1]) < QUIET && fabs(bank->s[live - 1]) < QUIET) {
-        live--;
-        bank->p[live] = bank->s[live] = 0;
-    }
-    bank->live = bank_round_up(live);
-    bank->age = 0;
-}
-
 void himc_bank_ready(himc_bank *bank)
 {
     if (bank->at < bank->length || bank->forced || bank->kind == HIMC_STEP_SUBSTEP)
@@ -66,13 +54,21 @@ void himc_bank_ready(himc_bank *bank)
     himc_bank_turn(bank);
 }
 
+// from time to time sets the quiet oscillators at the top to rest
 static void begin_pass(himc_bank *bank)
 {
     bank_film *f = &bank->film;
-    bool due = bank->age >= TIDY_INTERVAL;
-    if (due)
-        tidy(bank);
-    if (f->on && (due || f->moved))
+    bool tidies = bank->age >= TIDY_INTERVAL;
+    if (tidies) {
+        int live = bank->live;
+        while (live > 0 && fabs(bank->p[live - 1]) < QUIET && fabs(bank->s[live - 1]) < QUIET) {
+            live--;
+            bank->p[live] = bank->s[live] = 0;
+        }
+        bank->live = bank_round_up(live);
+        bank->age = 0;
+    }
+    if (f->on && (tidies || f->moved))
         himc_bank_anchor(bank);
     bank->length = bank->whole_pass;
     bank->step = f->on && bank_steps[f->level] < bank->length ? bank_steps[f->level] : bank->length;
@@ -82,8 +78,7 @@ static void begin_pass(himc_bank *bank)
 // samples that the present step can give, at most n; begins the next one at its end
 static int go_on(himc_bank *bank, int n)
 {
-    bool next_pass = bank->at == bank->length;
-    if (next_pass) {
+    if (bank->at == bank->length) {
         himc_bank_ready(bank);
         begin_pass(bank);
     } else if (bank->step_at == bank->step) {

@@ -73,34 +73,27 @@ double himc_bank_film_slope(const himc_bank *bank, const himc_readout *readout, 
     return bank->h * sum * (readout->direct ? fmin(fmax(f->power, -most), most) : s);
 }
 
+// 4 times what an oscillator has of s, of its oscillation only `part`
+static inline double four_of(const himc_bank *bank, int i, double part)
+{
+    const bank_film *f = &bank->film;
+    double q = bank->p[i] * bank->q_per_p[i];
+    double v = (bank->s[i] - f->damp[i] * bank->p[i]) * f->slack[i] * bank->q_per_p[i];
+    return f->on_p[i] * bank->damped[i] * ((1 + part) * q * q + (1 - part) * v * v);
+}
+
 // What s is to be in the present state, so that its mean in coming steps of length t is right:
 // sum a q^2/2, but of each oscillation of s only x/tan x, x = w t, since the exchanges make of it
 // x/sin x, half a step away.
 static double film_of(const himc_bank *bank, double t)
 {
-    const bank_film *f = &bank->film;
     double sum = 0;
     for (int i = 0, count = bank_coupled(bank); i < count; i++) {
         double x = bank->omega[i] * t, y = x * x;
-        double part = 1 - y * (1.0 / 3 + y * (1.0 / 45 + y * 2.0 / 945)); // x / tan x
-        double q = bank->p[i] * bank->q_per_p[i];
-        double v = (bank->s[i] - f->damp[i] * bank->p[i]) * f->slack[i] * bank->q_per_p[i];
-        sum += f->on_p[i] * bank->damped[i] * ((1 + part) * q * q + (1 - part) * v * v);
+        // x / tan x
+        sum += four_of(bank, i, 1 - y * (1.0 / 3 + y * (1.0 / 45 + y * 2.0 / 945)));
     }
     return 0.25 * sum;
-}
-
-// the highest s that the oscillators could make together
-static double highest(const himc_bank *bank)
-{
-    const bank_film *f = &bank->film;
-    double sum = 0;
-    for (int i = 0; i < bank->live; i++) {
-        double q = bank->p[i] * bank->q_per_p[i];
-        double v = (bank->s[i] - f->damp[i] * bank->p[i]) * f->slack[i] * bank->q_per_p[i];
-        sum += 0.5 * f->on_p[i] * bank->damped[i] * (q * q + v * v);
-    }
-    return sum;
 }
 
 void himc_bank_find_film(himc_bank *bank)
@@ -120,7 +113,9 @@ double himc_bank_film(const himc_bank *bank)
 void himc_bank_anchor(himc_bank *bank)
 {
     bank_film *f = &bank->film;
-    double kinetic = 0, potential = 0, most = highest(bank);
+    double kinetic = 0, potential = 0, most = 0; // of s that the oscillators could make together
+    for (int i = 0; i < bank->live; i++)
+        most += 0.5 * four_of(bank, i, 0);
     himc_bank_exchange(bank, 0);
     for (f->level = LEVELS - 1; f->level > 0 && most > f->most[f->level];)
         f->level--;

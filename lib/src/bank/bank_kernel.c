@@ -35,35 +35,29 @@
 
 static const himc_bank_kernel versions[] = {ALL_OF(base), ALL_OF(avx2), ALL_OF(avx512)};
 
-// whether the processor and the system have the unit of that version
-static bool supported(int index)
+const himc_bank_kernel *himc_bank_kernel_version(int index)
 {
-    __builtin_cpu_init();
-    if (index == 2)
-        return __builtin_cpu_supports("avx512f");
-    return index == 0 || (index == 1 && __builtin_cpu_supports("avx2"));
+    __builtin_cpu_init(); // of the processor and the system
+    bool supported = index == 0 || (index == 1 && __builtin_cpu_supports("avx2")) ||
+                     (index == 2 && __builtin_cpu_supports("avx512f"));
+    return supported ? &versions[index] : NULL;
 }
 
 #else
 
-static const himc_bank_kernel versions[] = {ALL_OF(base)};
+static const himc_bank_kernel base = ALL_OF(base);
 
-static bool supported(int index)
+const himc_bank_kernel *himc_bank_kernel_version(int index)
 {
-    return index == 0;
+    return index == 0 ? &base : NULL;
 }
 
 #endif
 
-const himc_bank_kernel *himc_bank_kernel_version(int index)
-{
-    return supported(index) ? &versions[index] : NULL;
-}
-
 const himc_bank_kernel *himc_bank_kernel_fastest(void)
 {
     int index = 0;
-    while (supported(index + 1))
+    while (himc_bank_kernel_version(index + 1))
         index++;
-    return &versions[index];
+    return himc_bank_kernel_version(index);
 }

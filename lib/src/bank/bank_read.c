@@ -57,21 +57,6 @@ static void add_alike(himc_bank *bank, const himc_alike *alike)
     }
 }
 
-// adds the film's present step to readout->ahead
-static void add_step(himc_bank *bank, himc_readout *readout)
-{
-    const bank_film *f = &bank->film;
-    double out[2 * LANES] = {0}, *ahead = readout->ahead + bank->at - bank->step_at;
-    bool stretched = readout->film != NULL;
-    double sum = add_waves(bank, readout, 0, bank->low, stretched,
-                           readout->direct ? -himc_bank_audible(f) : 0,
-                           bank->step < LANES ? LANES : bank->step, out);
-    double slope = stretched ? himc_bank_film_slope(bank, readout, sum) : 0;
-    for (int n = 0; n < bank->step; n++)
-        ahead[n] += out[n] + (f->lead - 1 - n) * slope;
-    readout->part = bank->part;
-}
-
 // fills readout->ahead as far as the present step goes
 static void look_ahead(himc_bank *bank, himc_readout *readout)
 {
@@ -83,8 +68,19 @@ static void look_ahead(himc_bank *bank, himc_readout *readout)
         readout->pass = bank->pass;
         readout->part = 0;
     }
-    if (bank->low > 0 && readout->part != bank->part)
-        add_step(bank, readout);
+    if (bank->low == 0 || readout->part == bank->part)
+        return;
+    // what the film's present step adds
+    const bank_film *f = &bank->film;
+    double out[2 * LANES] = {0}, *ahead = readout->ahead + bank->at - bank->step_at;
+    bool stretched = readout->film != NULL;
+    double sum = add_waves(bank, readout, 0, bank->low, stretched,
+                           readout->direct ? -himc_bank_audible(f) : 0,
+                           bank->step < LANES ? LANES : bank->step, out);
+    double slope = stretched ? himc_bank_film_slope(bank, readout, sum) : 0;
+    for (int n = 0; n < bank->step; n++)
+        ahead[n] += out[n] + (f->lead - 1 - n) * slope;
+    readout->part = bank->part;
 }
 
 double himc_bank_read(himc_bank *bank, himc_readout *readout)

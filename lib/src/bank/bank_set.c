@@ -10,6 +10,7 @@
 #define HIGHEST 0.49  // of the sample rate; chosen: just below half, where aliasing begins
 
 #define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + HIMC_BANK_TABLE)
+#define STATE_ARRAYS 2 // of these, the first: p and s
 
 // takes the next array from the block
 static double *take(himc_bank *bank, double **free_memory)
@@ -127,73 +128,40 @@ static void set_oscillator(himc_bank *bank, int i, const himc_oscillator *o, dou
         find_step(&bank->sub, &bank->parted, i, o, damped, h / bank->substeps);
 }
 
-// brings oscillator i to rest, for good: it has no coefficients
-static void silence(himc_bank *bank, int i)
-{
-    for (int k = 0; k < ARRAYS - HIMC_BANK_TABLE; k++)
-        bank->memory[k * bank->capacity + i] = 0;
-    memset(bank->table + (size_t)i * HIMC_BANK_TABLE, 0, sizeof(double) * HIMC_BANK_TABLE);
-}
-
 // sets a state that an oscillator of that mass and omega had: q sqrt(K) and v sqrt(m) are kept, so
 // that energy and phase are the same
 static void inherit(himc_bank *bank, int i, double q, double v, double mass, double omega)
 {
+    if (q == 0 && v == 0)
+        return;
     double mass_ratio = sqrt(mass / bank->mass[i]), omega_ratio = omega / bank->omega[i];
-    if (q != 0 || v != 0)
-        himc_bank_excite(bank, i, q * mass_ratio * omega_ratio, v * mass_ratio);
+    himc_bank_excite(bank, i, q * mass_ratio * omega_ratio, v * mass_ratio);
 }
 
-static void carry_over(himc_bank *bank, int i, const himc_oscillator *to, double h)
+// Becomes the other but for the contents of its memory, the first `arrays` of which are copied.
+// Readouts of its own that were computed ahead no longer hold.
+static void become(himc_bank *bank, const himc_bank *from, int arrays)
 {
-    double q, v, mass = bank->mass[i], omega = bank->omega[i];
-    himc_bank_state(bank, i, &q, &v);
-    set_oscillator(bank, i, to, h);
-    inherit(bank, i, q, v, mass, omega);
-}
-
-// the constants of both are the same
-static bool same_constants(const himc_bank *a, const himc_bank *b)
-{
-    size_t bytes = sizeof(double) * (size_t)a->capacity;
-    return a->count == b->count && a->capacity == b->capacity && a->h == b->h &&
-           memcmp(a->omega, b->omega, bytes) == 0 && memcmp(a->decay, b->decay, bytes) == 0 &&
-           memcmp(a->mass, b->mass, bytes) == 0 && memcmp(a->film.on_p, b->film.on_p, bytes) == 0;
-}
-
-// goes on in the middle of the other's pass, to the last bit
-static void go_on_as(himc_bank *bank, const himc_bank *from)
-{
-    size_t bytes = sizeof(double) * (size_t)bank->capacity;
-    const bank_film *g = &from->film;
-    bank_film *f = &bank->film;
-    memcpy(bank->p, from->p, bytes);
-    memcpy(bank->s, from->s, bytes);
-    bank->live = from->live;
-    bank->age = from->age;
-    bank->at = from->at;
-    bank->length = from->length;
-    bank->low = from->low;
-    bank->step_at = from->step_at;
-    bank->step = from->step;
-    bank->forced = from->forced;
-    f->on = g->on;
-    f->s = g->s;
-    f->mean = g->mean;
-    f->moved = g->moved;
-    f->power = g->power;
-    f->lead = g->lead;
-    f->level = g->level;
-    f->due = g->due;
+    himc_bank own = *bank;
+    *bank = *from;
+    bank->memory = own.memory;
+    bank->pass = own.pass + 1;
+    bank->part = own.part + 1;
     bank->bounds_left = 0;
-    bank->pass++;
-    bank->part++;
+    share_memory(bank);
+    himc_bank_set_step(bank, from->kind);
+    memcpy(bank->memory, from->memory, sizeof(double) * (size_t)(arrays * bank->capacity));
 }
 
 void himc_bank_continue(himc_bank *bank, himc_bank *from, int count)
 {
-    if (same_constants(bank, from)) {
-        go_on_as(bank, from);
+    size_t bytes = sizeof(double) * (size_t)bank->capacity;
+    if (bank->count == from->count && bank->capacity == from->capacity && bank->h == from->h &&
+        memcmp(bank->omega, from->omega, bytes) == 0 &&
+        memcmp(bank->decay, from->decay, bytes) == 0 &&
+        memcmp(bank->mass, from->mass, bytes) == 0 &&
+        memcmp(bank->film.on_p, from->film.on_p, bytes) == 0) {
+        become(bank, from, STATE_ARRAYS); // in the middle of its pass, to the last bit
         return;
     }
     himc_bank_settle(from);
@@ -214,29 +182,24 @@ void himc_bank_set(himc_bank *bank, const himc_oscillator *oscillators, int coun
     himc_bank_settle(bank);
     bank->h = 1 / rate;
     for (; i < count && oscillators[i].omega < 2 * HIMC_PI * HIGHEST * rate; i++) {
-        if (i < bank->count)
-            carry_over(bank, i, &oscillators[i], 1 / rate);
-        else
-            set_oscillator(bank, i, &oscillators[i], 1 / rate);
+        double q, v, mass = bank->mass[i], omega = bank->omega[i];
+        himc_bank_state(bank, i, &q, &v);
+        set_oscillator(bank, i, &oscillators[i], 1 / rate);
+        inherit(bank, i, q, v, mass, omega);
     }
     bank->count = i;
-    for (; i < bank->capacity; i++)
-        silence(bank, i);
+    // the others are at rest, for good: they have no coefficients
+    size_t rest = sizeof(double) * (size_t)(bank->capacity - i);
+    for (int k = 0; k < ARRAYS - HIMC_BANK_TABLE; k++)
+        memset(bank->memory + k * bank->capacity + i, 0, rest);
+    memset(bank->table + (size_t)i * HIMC_BANK_TABLE, 0, rest * HIMC_BANK_TABLE);
     himc_bank_wake(bank);
     bank->forced = true;
 }
 
 void himc_bank_copy(himc_bank *bank, const himc_bank *from)
 {
-    memcpy(bank->memory, from->memory, sizeof(double) * ARRAYS * (size_t)bank->capacity);
-    bank->count = from->count;
-    bank->whole_pass = from->whole_pass;
-    bank->substeps = from->substeps;
-    bank->h = from->h;
-    bank->film.set = from->film.set;
-    bank->film.least = from->film.least;
-    memcpy(bank->film.most, from->film.most, sizeof bank->film.most);
-    memcpy(bank->film.reach, from->film.reach, sizeof bank->film.reach);
+    become(bank, from, ARRAYS);
     himc_bank_rest(bank);
 }
 

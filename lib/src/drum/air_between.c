@@ -37,10 +37,9 @@ static const himc_shared_mode *shared(const himc_air_between *air, int i, int *c
     return himc_membrane_shared(himc_drum_membrane(air->drum[i]), count);
 }
 
-static double distance(const himc_drum *a, const himc_drum *b)
+static int interval(const himc_air_between *air)
 {
-    return himc_vec3_length(
-        himc_vec3_sub(himc_drum_head_frame(a)->center, himc_drum_head_frame(b)->center));
+    return himc_membrane_interval(himc_drum_rate(air->drum[0]));
 }
 
 static bool in_air(himc_drum *drum)
@@ -51,8 +50,11 @@ static bool in_air(himc_drum *drum)
 static bool is_near(himc_drum *const *drums, int count, int i)
 {
     bool near = false;
-    for (int k = 0; k < count; k++)
-        near = near || (k != i && distance(drums[i], drums[k]) < REACH && in_air(drums[k]));
+    himc_vec3 here = himc_drum_head_frame(drums[i])->center;
+    for (int k = 0; k < count; k++) {
+        himc_vec3 away = himc_vec3_sub(here, himc_drum_head_frame(drums[k])->center);
+        near = near || (k != i && himc_vec3_length(away) < REACH && in_air(drums[k]));
+    }
     return near && in_air(drums[i]);
 }
 
@@ -135,42 +137,9 @@ static void add_direction(const himc_air_between *air, const sender *senders, in
             c[senders[i].at][senders[j].at] += re[i] * re[j] + im[i] * im[j];
 }
 
-static void add_band(const himc_air_between *air, int band, double c[MODES][MODES])
-{
-    sender senders[MODES];
-    int n = find_senders(air, band, senders);
-    for (int i = 0; n > 0 && i < HIMC_AIR_DIRECTIONS; i++)
-        add_direction(air, senders, n, band, i, c);
-}
-
-// C
-static void find_losses(const himc_air_between *air, double c[MODES][MODES])
-{
-    for (int i = 0; i < air->first[air->count]; i++)
-        memset(c[i], 0, sizeof c[i]);
-    for (int band = 0; band < HIMC_AIR_BANDS; band++)
-        add_band(air, band, c);
-}
-
-// solves (lower lower') x = b for each of the n columns of b, in place
-static void solve(int n, double lower[MODES][MODES], double b[MODES][MODES])
-{
-    for (int i = 0; i < n; i++)
-        for (int column = 0; column < n; column++) {
-            for (int k = 0; k < i; k++)
-                b[i][column] -= lower[i][k] * b[k][column];
-            b[i][column] /= lower[i][i];
-        }
-    for (int i = n - 1; i >= 0; i--)
-        for (int column = 0; column < n; column++) {
-            for (int k = i + 1; k < n; k++)
-                b[i][column] -= lower[k][i] * b[k][column];
-            b[i][column] /= lower[i][i];
-        }
-}
-
-// in place, Cholesky's factor of a symmetric matrix whose eigenvalues are 1 and more
-static void factor(int n, double a[MODES][MODES])
+// solves a x = b, a symmetric with eigenvalues of 1 and more, for each of the n columns of b, in
+// place; of a remains Cholesky's factor
+static void solve(int n, double a[MODES][MODES], double b[MODES][MODES])
 {
     for (int i = 0; i < n; i++)
         for (int j = 0; j <= i; j++) {
@@ -179,13 +148,26 @@ static void factor(int n, double a[MODES][MODES])
                 sum -= a[i][k] * a[j][k];
             a[i][j] = i == j ? sqrt(sum) : sum / a[j][j];
         }
+    for (int i = 0; i < n; i++)
+        for (int column = 0; column < n; column++) {
+            for (int k = 0; k < i; k++)
+                b[i][column] -= a[i][k] * b[k][column];
+            b[i][column] /= a[i][i];
+        }
+    for (int i = n - 1; i >= 0; i--)
+        for (int column = 0; column < n; column++) {
+            for (int k = i + 1; k < n; k++)
+                b[i][column] -= a[k][i] * b[k][column];
+            b[i][column] /= a[i][i];
+        }
 }
 
 // With u = sqrt(m) v and S = C/sqrt(m_i m_j): u' - u = -t (1 + t S/2)^-1 S u.
 static void find_change(himc_air_between *air)
 {
-    double lower[MODES][MODES], root[MODES];
-    double t = himc_membrane_interval(himc_drum_rate(air->drum[0])) / himc_drum_rate(air->drum[0]);
+    double sum[MODES][MODES], root[MODES]; // 1 + t S/2
+    sender senders[MODES];
+    double t = interval(air) / himc_drum_rate(air->drum[0]);
     int n = 0, count;
     for (int drum = 0; drum < air->count; drum++) {
         const himc_shared_mode *mode = shared(air, drum, &count);
@@ -195,14 +177,19 @@ static void find_change(himc_air_between *air)
             root[n++] = sqrt(mode[i].mass);
     }
     air->first[air->count] = n;
-    find_losses(air, air->change);
+    for (int i = 0; i < n; i++)
+        memset(air->change[i], 0, sizeof air->change[i]);
+    for (int band = 0; band < HIMC_AIR_BANDS; band++) {
+        int found = find_senders(air, band, senders);
+        for (int i = 0; found > 0 && i < HIMC_AIR_DIRECTIONS; i++)
+            add_direction(air, senders, found, band, i, air->change);
+    }
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) {
             air->change[i][j] /= root[i] * root[j];
-            lower[i][j] = (i == j) + 0.5 * t * air->change[i][j];
+            sum[i][j] = (i == j) + 0.5 * t * air->change[i][j];
         }
-    factor(n, lower);
-    solve(n, lower, air->change);
+    solve(n, sum, air->change);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)
             air->change[i][j] *= -t * root[j] / root[i];
@@ -231,43 +218,12 @@ void himc_air_between_leave(himc_air_between *air, himc_drum *drum)
         }
 }
 
-static int interval(const himc_air_between *air)
-{
-    return himc_membrane_interval(himc_drum_rate(air->drum[0]));
-}
-
 int himc_air_between_until(const himc_air_between *air, int64_t now, int n)
 {
     if (air->count == 0)
         return n;
     int left = interval(air) - (int)(now % interval(air));
     return n < left ? n : left;
-}
-
-// the heads have changed since `change` was found
-static bool is_stale(const himc_air_between *air)
-{
-    bool stale = false;
-    for (int i = 0; i < air->count; i++)
-        stale =
-            stale || air->revision[i] != himc_membrane_revision(himc_drum_membrane(air->drum[i]));
-    return stale;
-}
-
-// velocities of all shared modes; false if all heads are at rest
-static bool read_velocities(const himc_air_between *air, double *v)
-{
-    bool moves = false;
-    double q;
-    int count;
-    for (int drum = 0; drum < air->count; drum++) {
-        const himc_membrane *head = himc_drum_membrane(air->drum[drum]);
-        const himc_shared_mode *mode = shared(air, drum, &count);
-        moves = moves || !himc_membrane_at_rest(head);
-        for (int i = 0; i < count; i++)
-            himc_membrane_state(head, mode[i].index, &q, &v[air->first[drum] + i]);
-    }
-    return moves;
 }
 
 // changes a drum's velocities
@@ -292,11 +248,24 @@ bool himc_air_between_due(const himc_air_between *air, int64_t now)
 
 void himc_air_between_exchange(himc_air_between *air)
 {
-    double v[MODES], change[MODES];
-    if (is_stale(air))
+    double v[MODES], change[MODES], q;
+    bool stale = false, moves = false;
+    int count;
+    for (int drum = 0; drum < air->count; drum++) {
+        const himc_membrane *head = himc_drum_membrane(air->drum[drum]);
+        stale = stale || air->revision[drum] != himc_membrane_revision(head);
+        moves = moves || !himc_membrane_at_rest(head);
+    }
+    if (stale)
         find_change(air);
-    if (!read_velocities(air, v))
+    if (!moves)
         return;
+    for (int drum = 0; drum < air->count; drum++) {
+        const himc_shared_mode *mode = shared(air, drum, &count);
+        for (int i = 0; i < count; i++)
+            himc_membrane_state(himc_drum_membrane(air->drum[drum]), mode[i].index, &q,
+                                &v[air->first[drum] + i]);
+    }
     int n = air->first[air->count];
     for (int i = 0; i < n; i++) {
         change[i] = 0;

@@ -167,18 +167,6 @@ static bool evaluate(search *s)
     return done;
 }
 
-// Newton's direction from here: (1 + G D) step = -residual
-static void direction(const search *s, double *step)
-{
-    double a[MAX_PAIRS][MAX_PAIRS];
-    for (int i = 0; i < s->n; i++) {
-        for (int j = 0; j < s->n; j++)
-            a[i][j] = (i == j) + s->g[i][j] * s->slope[j];
-        step[i] = -s->residual[i];
-    }
-    eliminate(a, step, s->n);
-}
-
 // slope of Psi along `step`, with dual = G^-1 step
 static double descent(const search *s, const double *dual)
 {
@@ -224,9 +212,15 @@ static void solve_together(contact_pair *pairs, int n, double (*g)[MAX_PAIRS], d
             s.r[i] -= g[i][j] * pairs[j].guess;
     }
     bool done = evaluate(&s);
-    for (int i = 0; i < NEWTON_STEPS && !done; i++) {
-        double step[MAX_PAIRS];
-        direction(&s, step);
+    for (int k = 0; k < NEWTON_STEPS && !done; k++) {
+        // Newton's direction from here: (1 + G D) step = -residual
+        double a[MAX_PAIRS][MAX_PAIRS], step[MAX_PAIRS];
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++)
+                a[i][j] = (i == j) + g[i][j] * s.slope[j];
+            step[i] = -s.residual[i];
+        }
+        eliminate(a, step, n);
         done = line_search(&s, step);
     }
     for (int i = 0; i < n; i++)
@@ -288,46 +282,35 @@ static bool is_stiff(const himc_mallet_head *head)
     return head->stiffness * most > stiff && head->stiffness * pow(0.001, head->exponent) > stiff;
 }
 
-// Bounds of a stick's coming n samples: its velocity and acceleration are downward all the time.
-typedef struct fall {
-    double lowest, fastest; // (m, m/s)
-} fall;
-
-static fall fall_of(const himc_stick *s, double t)
-{
-    double down = fmax(-s->velocity, 0), faster = fmax(-s->acceleration, 0);
-    return (fall){s->height - t * (down + 0.5 * t * faster) - REACH_ROUNDING, down + t * faster};
-}
-
-// The head's displacement near a stick in the air, at a place that is kept while the stick is near
-// it: most places on a stick's way are not worth the shapes of all modes.
-static double watched(himc_membrane *m, himc_stick *s)
-{
-    double x = s->x - s->watched_x, y = s->y - s->watched_y;
-    if (!(x * x + y * y < WATCHED * WATCHED)) {
-        s->watched_x = s->x;
-        s->watched_y = s->y;
-    }
-    return himc_strike_point_displacement(
-        m, himc_membrane_strike_point(m, s->watched_x, s->watched_y, 0));
-}
-
 // Whether in the coming n samples a stick certainly is in the air, over a head that may be `pushed`
 // in them. The substeps of a stiff one change the last digits of the head, so their beginning must
 // not hang on an estimate.
 static bool is_clear(himc_membrane *membrane, himc_stick *s, int n, double h, bool pushed)
 {
     himc_bank_bounds head = {INFINITY, INFINITY};
-    fall f = fall_of(s, n * h);
-    if (s->touching || f.lowest >= HIMC_CONTACT_REACH)
+    // at most: the stick's velocity and acceleration are downward all the time
+    double t = n * h, down = fmax(-s->velocity, 0), faster = fmax(-s->acceleration, 0);
+    double lowest = s->height - t * (down + 0.5 * t * faster) - REACH_ROUNDING;
+    double near = 2 * h * (down + t * faster) + PUSHED;
+    if (s->touching || lowest >= HIMC_CONTACT_REACH)
         return !s->touching;
     if (!pushed)
         head = himc_membrane_bounds(membrane);
-    double near = 2 * h * f.fastest + PUSHED, over = near + head.swing;
-    double moves = near + STEEPEST * WATCHED + n * h * fmin(head.speed, FASTEST_HEAD);
-    if (!(f.lowest > fmin(over, moves)) || is_stiff(&s->head))
+    double over = near + head.swing;
+    double moves = near + STEEPEST * WATCHED + t * fmin(head.speed, FASTEST_HEAD);
+    if (!(lowest > fmin(over, moves)) || is_stiff(&s->head))
         return false;
-    return f.lowest > over || f.lowest > moves + watched(membrane, s);
+    if (lowest > over)
+        return true;
+    // The head near the stick, at a place that is kept while the stick is near it: most places on
+    // its way are not worth the shapes of all modes.
+    double x = s->x - s->watched_x, y = s->y - s->watched_y;
+    if (!(x * x + y * y < WATCHED * WATCHED)) {
+        s->watched_x = s->x;
+        s->watched_y = s->y;
+    }
+    strike_point *watched = himc_membrane_strike_point(membrane, s->watched_x, s->watched_y, 0);
+    return lowest > moves + himc_strike_point_displacement(membrane, watched);
 }
 
 int himc_contact_clear(himc_membrane *membrane, himc_stick *const *sticks, int count, int n)
@@ -423,15 +406,6 @@ static void find_compliances(himc_membrane *m, const near_stick *near, int count
     }
 }
 
-// pushes the head under a stick, and its residual oscillator
-static void push_head(himc_membrane *m, const near_stick *n, double force)
-{
-    himc_stick *s = n->stick;
-    himc_strike_point_apply(m, n->point, -force);
-    s->residual_x -= (1 - n->residual.stay) * s->residual_root * force;
-    s->residual_y -= n->residual.turn * s->residual_root * force;
-}
-
 // solves the sticks near the head
 static void step_near(himc_membrane *membrane, const near_stick *near, int count, double h)
 {
@@ -452,12 +426,14 @@ static void step_near(himc_membrane *membrane, const near_stick *near, int count
     solve_pairs(pairs, count, g, h);
     for (int i = 0; i < count; i++) {
         himc_stick *s = near[i].stick;
+        const himc_residual_step *r = &near[i].residual;
         // the path of a one-way stick is rigid: the force is limited to that of the motion
-        if (s->one_way)
-            pairs[i].force = fmin(pairs[i].force, s->force);
-        push_head(membrane, &near[i], pairs[i].force);
+        double force = s->one_way ? fmin(pairs[i].force, s->force) : pairs[i].force;
+        himc_strike_point_apply(membrane, near[i].point, -force);
+        s->residual_x -= (1 - r->stay) * s->residual_root * force;
+        s->residual_y -= r->turn * s->residual_root * force;
         if (!s->one_way)
-            move(s, pairs[i].force, h);
+            move(s, force, h);
     }
 }
 
@@ -472,17 +448,10 @@ static void keep_compression(himc_stick *s, double before)
         s->height = surface - most;
 }
 
-// Kept while it hardly changes: a stick that follows a head on its way down is in its last two
-// steps for a long time, and weighing all modes anew in each of them would take a block's time.
-static void foresee_patch(const himc_membrane *m, himc_stick *s, double distance, double speed)
-{
-    double radius = himc_patch_radius(himc_membrane_head(m), &s->head, s->mass, distance, speed);
-    if (s->patch == 0 || fabs(radius - s->patch) > SAME_PATCH * s->patch)
-        s->patch = radius;
-}
-
 // The strike point under a stick. Until a blow has begun, its patch is that of a blow as fast as
-// the stick comes down; it is found anew in the last two steps.
+// the stick comes down; it is found anew in the last two steps, and kept while it hardly changes: a
+// stick that follows a head on its way down is in its last two steps for a long time, and weighing
+// all modes anew in each of them would take a block's time.
 static strike_point *point_under(himc_membrane *m, himc_stick *s, double h)
 {
     double x = s->touching ? s->contact_x : s->x, y = s->touching ? s->contact_y : s->y;
@@ -491,10 +460,14 @@ static strike_point *point_under(himc_membrane *m, himc_stick *s, double h)
         return point;
     double speed = fmax(-s->velocity, 0), last = 2 * h * speed;
     double gap = s->height - (s->one_way ? 0 : himc_strike_point_displacement(m, point));
-    if (gap > CLOSE + last)
+    if (gap > CLOSE + last) {
         s->patch = 0;
-    else if (s->patch == 0 || !(gap > last))
-        foresee_patch(m, s, hypot(x, y), speed);
+    } else if (s->patch == 0 || !(gap > last)) {
+        double radius =
+            himc_patch_radius(himc_membrane_head(m), &s->head, s->mass, hypot(x, y), speed);
+        if (s->patch == 0 || fabs(radius - s->patch) > SAME_PATCH * s->patch)
+            s->patch = radius;
+    }
     point = himc_membrane_strike_point(m, x, y, s->patch);
     himc_residual residual = himc_strike_point_residual(point);
     s->residual_root = residual.root;
@@ -509,30 +482,21 @@ void himc_stick_put(himc_membrane *membrane, himc_stick *stick)
     stick->height = displacement(membrane, stick, point_under(membrane, stick, 0));
 }
 
-// Moves the sticks that are in the air in a step whatever the others do; the rest are `low`.
-// Returns their number.
-static int let_fly(himc_membrane *membrane, himc_stick *const *sticks, int count, double h,
-                   himc_stick **low)
-{
-    int low_count = 0;
-    for (int i = 0; i < count; i++) {
-        if (within_reach(sticks[i], h) && !is_clear(membrane, sticks[i], 1, h, true))
-            low[low_count++] = sticks[i];
-        else
-            himc_stick_fly(sticks[i], h);
-    }
-    return low_count;
-}
-
 // a step of length h: a sample or a substep
 static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, double h)
 {
     near_stick near[MAX_PAIRS];
-    himc_stick *low[MAX_PAIRS];
+    int near_count = 0;
     himc_membrane_ready(membrane);
-    int near_count = let_fly(membrane, sticks, count, h, low);
+    for (int i = 0; i < count; i++) {
+        // in the air in this step, whatever the others do
+        if (!within_reach(sticks[i], h) || is_clear(membrane, sticks[i], 1, h, true))
+            himc_stick_fly(sticks[i], h);
+        else
+            near[near_count++].stick = sticks[i];
+    }
     for (int i = 0; i < near_count; i++) {
-        himc_stick *s = low[i];
+        himc_stick *s = near[i].stick;
         strike_point *point = point_under(membrane, s, h);
         double before = displacement(membrane, s, point);
         keep_compression(s, before);
@@ -551,19 +515,14 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
     }
 }
 
-static bool any_stiff(himc_stick *const *sticks, int count, double h)
-{
-    for (int i = 0; i < count; i++)
-        if (within_reach(sticks[i], h) && is_stiff(&sticks[i]->head))
-            return true;
-    return false;
-}
-
 void himc_contact_step(himc_membrane *membrane, himc_stick *const *sticks, int count)
 {
-    double h = 1 / himc_membrane_rate(membrane), mean[MAX_PAIRS] = {0};
+    double rate = himc_membrane_rate(membrane), h = 1 / rate, mean[MAX_PAIRS] = {0};
     count = count < MAX_PAIRS ? count : MAX_PAIRS;
-    int substeps = any_stiff(sticks, count, h) ? himc_membrane_substeps(membrane) : 1;
+    int substeps = 1;
+    for (int i = 0; i < count && substeps == 1; i++)
+        if (within_reach(sticks[i], h) && is_stiff(&sticks[i]->head))
+            substeps = himc_membrane_substeps(rate);
     for (int i = 0; i < substeps; i++) {
         himc_membrane_set_substep(membrane, i, substeps);
         step(membrane, sticks, count, h / substeps);

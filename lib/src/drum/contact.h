@@ -1,5 +1,4 @@
-/// contact.h: the private part of contact.c: what drum.c needs beside himc_contact_step, and the
-/// energy, which only tests read.
+/// contact.h: the private part of contact.c: what others need beside himc_contact_step.
 #ifndef HIMC_CONTACT_H
 #define HIMC_CONTACT_H
 

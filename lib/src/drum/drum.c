@@ -86,10 +86,9 @@ static double nearness(const himc_pickup *pickup)
 // while no noise sounds, it is at once where the pickups are
 static void settle_noise(himc_drum *drum)
 {
-    int count;
-    const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
-    for (int k = 0; k < count && !drum->noise.sounds; k++)
-        drum->nearness[k] = nearness(&pickups[k]);
+    const himc_membrane_config *head = himc_membrane_config_of(drum->membrane);
+    for (int k = 0; k < head->pickup_count && !drum->noise.sounds; k++)
+        drum->nearness[k] = nearness(&head->pickups[k]);
 }
 
 himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error)
@@ -121,6 +120,7 @@ himc_drum_settings himc_drum_settings_of(const himc_drum *drum)
 {
     himc_drum_settings settings = drum->set;
     settings.head = *himc_membrane_config_of(drum->membrane);
+    settings.head.muted = false;
     return himc_drum_settings_copy(&settings);
 }
 
@@ -151,7 +151,7 @@ static bool set_head(himc_drum *drum, const himc_membrane_config *to, himc_model
     here.shares = now->shares;
     if (made && *made) {
         if (here.rate != (*made)->config.rate || here.shares != (*made)->config.shares)
-            himc_model_make(*made, &here, false);
+            himc_model_make(*made, &here);
         *made = himc_membrane_exchange(drum->membrane, *made);
         return true;
     }
@@ -284,64 +284,19 @@ bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error)
     return true;
 }
 
-// the outside force of one call, and the sample that comes next
-typedef struct outside {
-    himc_outside_force of;
-    int at, n;
-} outside;
-
-static void move_outside(himc_drum *drum, const outside *o)
+// the outside force of sample `at`, finite and limited
+static double force_at(const himc_outside_force *o, int at)
 {
-    if (!o->of.force || !o->of.x || !o->of.y || !isfinite(o->of.x[o->at]) ||
-        !isfinite(o->of.y[o->at]))
-        return;
-    drum->outside_x = o->of.x[o->at];
-    drum->outside_y = o->of.y[o->at];
-    himc_membrane_watch(drum->membrane, drum->outside_x, drum->outside_y);
-}
-
-// the force of sample `at`, finite and limited
-static double outside_force(const outside *o, int at)
-{
-    if (!o->of.force || !isfinite(o->of.force[at]))
+    if (!o->force || !isfinite(o->force[at]))
         return 0;
-    return fmin(fmax(o->of.force[at], -HIMC_FORCE_MAX), HIMC_FORCE_MAX);
+    return fmin(fmax(o->force[at], -HIMC_FORCE_MAX), HIMC_FORCE_MAX);
 }
 
-// number of samples from now on without force and with the point unchanged
-static int outside_quiet(const himc_drum *drum, const outside *o)
+// whether its point is another there
+static bool moves_at(const himc_drum *drum, const himc_outside_force *o, int at)
 {
-    int i = o->at;
-    if (!o->of.force)
-        return o->n - i;
-    while (i < o->n && outside_force(o, i) == 0) {
-        if (o->of.x && o->of.y && (o->of.x[i] != drum->outside_x || o->of.y[i] != drum->outside_y))
-            break;
-        i++;
-    }
-    return i - o->at;
-}
-
-static int channels(const himc_drum *drum)
-{
-    int count;
-    himc_membrane_pickups(drum->membrane, &count);
-    return count;
-}
-
-// levels of the head's own sound in the coming n samples; `levels` is NULL if nothing sounds
-static void next_levels(himc_drum *drum, int n, double *levels)
-{
-    bool sounds = drum->set.technique == HIMC_TECHNIQUE_MODAL && !drum->set.mute;
-    double goal = sounds ? drum->set.gain * drum->fader : 0;
-    for (int i = 0; i < n && (levels || drum->level != goal); i++) {
-        if (drum->level != goal) {
-            double step = fmax(fmax(goal, drum->level), 1) / (LEVEL_RAMP * drum->rate);
-            drum->level += fmin(fmax(goal - drum->level, -step), step);
-        }
-        if (levels)
-            levels[i] = drum->level;
-    }
+    return o->force && o->x && o->y && isfinite(o->x[at]) && isfinite(o->y[at]) &&
+           (o->x[at] != drum->outside_x || o->y[at] != drum->outside_y);
 }
 
 // n samples into ring `index`, times their levels, if any; `row` is NULL for silence
@@ -362,13 +317,13 @@ static void store_row(himc_drum *drum, int index, int n, const double *row, cons
 static int listen_in(himc_drum *drum, int n, double *const *sound, bool silent)
 {
     himc_ears *ears = drum->ears;
-    int count = silent ? 0 : channels(drum), some = count > HIMC_EARS ? count : HIMC_EARS;
+    const himc_membrane_config *head = himc_membrane_config_of(drum->membrane);
+    int count = silent ? 0 : head->pickup_count, some = count > HIMC_EARS ? count : HIMC_EARS;
     if (!himc_ears_heard(ears) || (silent && himc_ears_at_rest(ears)))
         return count;
     for (int k = himc_ears_alone(ears) ? 0 : count; k < some; k++)
         memset(sound[k], 0, (size_t)n * sizeof(double));
-    bool rays = !silent && himc_membrane_config_of(drum->membrane)->rays;
-    himc_ears_hear(ears, n, rays ? sound + HIMC_PICKUPS : NULL, some, sound);
+    himc_ears_hear(ears, n, !silent && head->rays ? sound + HIMC_PICKUPS : NULL, some, sound);
     if (himc_ears_alone(ears))
         himc_membrane_mute_pickups(drum->membrane, true);
     if (!himc_ears_heard(ears))
@@ -381,7 +336,15 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
 {
     double levels[RUN_BLOCK];
     int count = listen_in(drum, n, sound, silent);
-    next_levels(drum, n, silent && count == 0 ? NULL : levels);
+    bool sounds = drum->set.technique == HIMC_TECHNIQUE_MODAL && !drum->set.mute;
+    double goal = sounds ? drum->set.gain * drum->fader : 0; // of the head's own sound
+    for (int i = 0; i < n && (count > 0 || drum->level != goal); i++) {
+        if (drum->level != goal) {
+            double step = fmax(fmax(goal, drum->level), 1) / (LEVEL_RAMP * drum->rate);
+            drum->level += fmin(fmax(goal - drum->level, -step), step);
+        }
+        levels[i] = drum->level;
+    }
     for (int k = 0; k < HIMC_PICKUPS; k++)
         store_row(drum, k, n, k < count ? sound[k] : NULL, levels);
     store_row(drum, WATCHED, n, silent ? NULL : watched, NULL);
@@ -393,15 +356,15 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
 static void add_noise(himc_drum *drum, int n, double force, double *const *sound)
 {
     double noise[HIMC_NOISE_ROWS][RUN_BLOCK], most = NOISE_MOVES / drum->rate;
-    int count;
-    const himc_pickup *pickups = himc_membrane_pickups(drum->membrane, &count);
+    const himc_membrane_config *head = himc_membrane_config_of(drum->membrane);
+    const himc_pickup *pickups = head->pickups;
+    bool rays = head->rays;
     if (!drum->noise.sounds && force == 0) {
         settle_noise(drum);
         return;
     }
-    bool rays = himc_membrane_config_of(drum->membrane)->rays;
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
-    for (int k = 0; k < count && !himc_ears_alone(drum->ears); k++)
+    for (int k = 0; k < head->pickup_count && !himc_ears_alone(drum->ears); k++)
         for (int i = 0; i < n; i++) {
             double left = nearness(&pickups[k]) - drum->nearness[k];
             drum->nearness[k] += fmin(fmax(left, -most), most);
@@ -420,15 +383,12 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
                       double *const *forces, int at)
 {
     double sound[HIMC_OUTPUTS][RUN_BLOCK], watched[RUN_BLOCK], h = 1 / drum->rate;
-    double *into[HIMC_OUTPUTS], *wanted[HIMC_OUTPUTS], *seen = drum->unwatched ? NULL : watched;
-    bool alone = himc_ears_alone(drum->ears);
-    for (int k = 0; k < HIMC_OUTPUTS; k++) {
+    double *into[HIMC_OUTPUTS], *seen = drum->unwatched ? NULL : watched;
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
         into[k] = sound[k];
-        wanted[k] = alone && k < HIMC_PICKUPS ? NULL : sound[k];
-    }
     bool silent = himc_membrane_at_rest(drum->membrane) && !drum->noise.sounds;
     if (!silent)
-        himc_membrane_run_all(drum->membrane, n, wanted, seen);
+        himc_membrane_run_all(drum->membrane, n, into, seen);
     add_noise(drum, n, 0, into);
     store(drum, n, into, seen, silent);
     for (int k = 0; k < count; k++) {
@@ -437,12 +397,6 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
         for (int i = 0; forces && forces[k] && i < n; i++)
             forces[k][at + i] = 0;
     }
-}
-
-static void begin_contact(himc_drum *drum, const himc_stick *stick)
-{
-    himc_stroke_noise_begin(&drum->noise, stick->x, stick->y);
-    himc_drum_keep_onset(drum, stick);
 }
 
 // samples made one by one that are not stored yet: ears take several together
@@ -461,27 +415,12 @@ static void store_singles(himc_drum *drum, singles *s)
     s->count = 0;
 }
 
-// adds one sample to them
-static void keep_single(himc_drum *drum, double pressing, singles *s)
-{
-    double *into[HIMC_OUTPUTS];
-    int at = s->count++;
-    for (int k = 0; k < HIMC_OUTPUTS; k++) {
-        into[k] = &s->sound[k][at];
-        *into[k] = himc_membrane_sound(drum->membrane, k);
-    }
-    s->watched[at] = drum->unwatched ? 0 : himc_membrane_watched(drum->membrane);
-    add_noise(drum, 1, pressing, into);
-    drum->singles++;
-}
-
 // runs one sample with everything that may touch the head: `given` sticks and the drum's mallets
 static void step_once(himc_drum *drum, himc_stick **all, int given, double *const *forces,
-                      const outside *o, singles *made)
+                      double outside, int at, singles *made)
 {
-    double force = outside_force(o, o->at);
-    if (force != 0)
-        himc_membrane_push(drum->membrane, drum->outside_x, drum->outside_y, force);
+    if (outside != 0)
+        himc_membrane_push(drum->membrane, drum->outside_x, drum->outside_y, outside);
     int count = given + himc_drum_add_mallets(drum, all + given);
     unsigned known[2 * HIMC_STICKS];
     double pressing = 0;
@@ -491,51 +430,61 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     for (int k = 0; k < count; k++) {
         if (all[k]->contacts != known[k]) {
             store_singles(drum, made); // an onset has the drum's time
-            begin_contact(drum, all[k]);
+            himc_stroke_noise_begin(&drum->noise, all[k]->x, all[k]->y);
+            himc_drum_keep_onset(drum, all[k]);
         }
         pressing += all[k]->force;
     }
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
-            forces[k][o->at] = all[k]->force;
-    keep_single(drum, pressing, made);
+            forces[k][at] = all[k]->force;
+    double *into[HIMC_OUTPUTS];
+    for (int k = 0; k < HIMC_OUTPUTS; k++) {
+        into[k] = &made->sound[k][made->count];
+        *into[k] = himc_membrane_sound(drum->membrane, k);
+    }
+    made->watched[made->count++] = drum->unwatched ? 0 : himc_membrane_watched(drum->membrane);
+    add_noise(drum, 1, pressing, into);
     if (count > given || drum->waiting_count > 0 || made->count == RUN_BLOCK)
         store_singles(drum, made);
     himc_drum_follow_mallets(drum);
 }
 
-void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
-                              double *const *forces, const himc_outside_force *given)
+bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
+                              double *const *forces, const himc_outside_force *outside)
 {
+    static const himc_outside_force none;
+    const himc_outside_force *o = outside ? outside : &none;
     himc_stick *all[2 * HIMC_STICKS];
-    outside o = {.n = n};
     singles made;
     made.count = 0;
-    if (given)
-        o.of = *given;
+    bool near = false;
     for (int i = 0; i < count; i++)
         all[i] = sticks[i];
-    while (o.at < n) {
+    for (int at = 0, run; at<n; at += run> 0 ? run : 1) {
         himc_drum_launch(drum);
-        move_outside(drum, &o);
+        if (moves_at(drum, o, at)) {
+            drum->outside_x = o->x[at];
+            drum->outside_y = o->y[at];
+            himc_membrane_watch(drum->membrane, drum->outside_x, drum->outside_y);
+        }
         bool alone = himc_drum_add_mallets(drum, all + count) == 0;
-        int run = alone ? outside_quiet(drum, &o) : 0;
-        run = himc_drum_until_launch(drum, run < RUN_BLOCK ? run : RUN_BLOCK);
+        int most = n - at < RUN_BLOCK ? n - at : RUN_BLOCK;
+        for (run = 0; alone && run < most; run++)
+            if (force_at(o, at + run) != 0 || moves_at(drum, o, at + run))
+                break;
+        run = himc_drum_until_launch(drum, run);
         run = himc_contact_clear(drum->membrane, all, count, run);
+        near = near || run == 0;
         if (run > 0) {
             store_singles(drum, &made);
-            run_clear(drum, run, all, count, forces, o.at);
+            run_clear(drum, run, all, count, forces, at);
         } else {
-            step_once(drum, all, count, forces, &o, &made);
+            step_once(drum, all, count, forces, force_at(o, at), at, &made);
         }
-        o.at += run > 0 ? run : 1;
     }
     store_singles(drum, &made);
-}
-
-uint64_t himc_drum_single_samples(const himc_drum *drum)
-{
-    return drum->singles;
+    return near;
 }
 
 void himc_drum_advance(himc_drum *drum, int n, const double *force, const double *x,
@@ -584,7 +533,7 @@ void himc_drum_realign(himc_drum *drum, int ahead)
     uint64_t kept = ahead > 0 ? (uint64_t)ahead : 0, before = drum->zero;
     drum->zero = drum->time - (kept < drum->time ? kept : drum->time);
     for (int i = 0; i < drum->report_queue.count; i++)
-        drum->reports[(drum->report_queue.first + i) % DRUM_REPORTS].time -=
+        drum->reports[(drum->report_queue.first + i) % DRUM_QUEUE].time -=
             ((double)drum->zero - (double)before) / drum->rate;
 }
 

@@ -83,13 +83,6 @@ static bool set_config(himc_drum_settings *s, const himc_membrane_config *config
     return true;
 }
 
-static bool set_head(himc_drum_settings *s, const himc_head *head, himc_error *error)
-{
-    himc_membrane_config config = s->head;
-    config.head = *head;
-    return set_config(s, &config, error);
-}
-
 // the head that a drum of this shape has at first
 static himc_head usual_head(const himc_shape *shape, const himc_head *usual)
 {
@@ -97,16 +90,6 @@ static himc_head usual_head(const himc_shape *shape, const himc_head *usual)
     if (shape->kind->fit)
         shape->kind->fit(shape, &head);
     return head;
-}
-
-static void find_decay(const himc_head *usual, const himc_command *c, himc_head *head)
-{
-    enum { T60, BOTH };
-    head->decay_constant =
-        c->form == T60 ? as_said("SIGMA0", log(1000) / number(c, 0)) : number(c, 0);
-    head->decay_square = c->form == BOTH ? number(c, 1) : 0;
-    head->decay_constant = himc_argument_usual(head->decay_constant, usual->decay_constant);
-    head->decay_square = himc_argument_usual(head->decay_square, usual->decay_square);
 }
 
 static bool find_tune(const himc_shape *shape, const himc_command *c, himc_head *head,
@@ -126,31 +109,44 @@ static bool find_tune(const himc_shape *shape, const himc_command *c, himc_head 
 bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const himc_command *c,
                          himc_head *head, himc_error *error)
 {
+    enum { T60, BOTH, AUTO = 1, VOLUME = 1 }; // forms of decay, modes and kettle
     himc_head here = usual_head(shape, usual);
+    double said = number(c, 0), square = c->form == BOTH ? number(c, 1) : 0;
     switch (c->id) {
-    case HIMC_COMMAND_RADIUS:
-        head->radius = himc_argument_usual(number(c, 0), here.radius);
-        return true;
-    case HIMC_COMMAND_TENSION:
-        head->tension = himc_argument_usual(number(c, 0), here.tension);
-        return true;
-    case HIMC_COMMAND_DENSITY:
-        head->density = himc_argument_usual(number(c, 0), here.density);
-        return true;
-    case HIMC_COMMAND_GLIDE:
-        head->glide = himc_argument_usual(number(c, 0), here.glide);
-        return true;
-    case HIMC_COMMAND_DAMP: head->damp = himc_argument_usual(number(c, 0), here.damp); return true;
-    case HIMC_COMMAND_DECAY: find_decay(usual, c, head); return true;
+    case HIMC_COMMAND_RADIUS: head->radius = himc_argument_usual(said, here.radius); break;
+    case HIMC_COMMAND_TENSION: head->tension = himc_argument_usual(said, here.tension); break;
+    case HIMC_COMMAND_DENSITY: head->density = himc_argument_usual(said, here.density); break;
+    case HIMC_COMMAND_GLIDE: head->glide = himc_argument_usual(said, here.glide); break;
+    case HIMC_COMMAND_DAMP: head->damp = himc_argument_usual(said, here.damp); break;
+    case HIMC_COMMAND_DECAY:
+        said = c->form == T60 ? as_said("SIGMA0", log(1000) / said) : said;
+        head->decay_constant = himc_argument_usual(said, usual->decay_constant);
+        head->decay_square = himc_argument_usual(square, usual->decay_square);
+        break;
+    case HIMC_COMMAND_MODES: head->modes = c->form == AUTO ? HIMC_MODES_AUTO : (int)said; break;
+    case HIMC_COMMAND_AIR: head->air = said == 1; break;
+    case HIMC_COMMAND_KETTLE:
+        if (c->form == VOLUME && !himc_air_check(said, head->radius, error))
+            return false;
+        head->kettle = c->form == VOLUME ? said : 0;
+        break;
+    case HIMC_COMMAND_UNIFORMITY:
+        head->uniformity = himc_argument_usual(said, usual->uniformity);
+        head->uniformity_seed = c->count == 2 ? (int)number(c, 1) : head->uniformity_seed;
+        if (head->uniformity < 1 && !shape->kind->air) // it has no pairs to split
+            return himc_error_set(error, "uniformity: %.6g, expected 1 on a head that is not round",
+                                  head->uniformity);
+        break;
     default: return find_tune(shape, c, head, error);
     }
+    return true;
 }
 
 static bool change_head(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    himc_head head = s->head.head;
-    return himc_drum_find_head(&s->head.shape, &s->usual, c, &head, error) &&
-           set_head(s, &head, error);
+    himc_membrane_config config = s->head;
+    return himc_drum_find_head(&s->head.shape, &s->usual, c, &config.head, error) &&
+           set_config(s, &config, error);
 }
 
 static bool do_noise(himc_drum_settings *s, const himc_command *c, himc_error *error)
@@ -158,27 +154,6 @@ static bool do_noise(himc_drum_settings *s, const himc_command *c, himc_error *e
     (void)error;
     s->noise = number(c, 0);
     return true;
-}
-
-// other heads have no pairs to split
-static bool do_uniformity(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    himc_head head = s->head.head;
-    head.uniformity = himc_argument_usual(number(c, 0), s->usual.uniformity);
-    if (c->count == 2)
-        head.uniformity_seed = (int)number(c, 1);
-    if (head.uniformity < 1 && !s->head.shape.kind->air)
-        return himc_error_set(error, "uniformity: %.6g, expected 1 on a head that is not round",
-                              head.uniformity);
-    return set_head(s, &head, error);
-}
-
-static bool do_modes(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    himc_head head = s->head.head;
-    enum { COUNT, AUTO };
-    head.modes = c->form == AUTO ? HIMC_MODES_AUTO : (int)number(c, 0);
-    return set_head(s, &head, error);
 }
 
 static bool do_mallet(himc_drum_settings *s, const himc_command *c, himc_error *error)
@@ -213,31 +188,26 @@ static bool do_place(himc_drum_settings *s, const himc_command *c, himc_error *e
     return true;
 }
 
-// the place from atom `first` on; `pickup` and `channel` have the same two forms
-static himc_pickup read_pickup(const himc_command *c, int first, himc_pickup pickup)
+// Pickup `index` from the command's atoms from `first` on; the others stay. `pickup` and `channel`
+// have the same two forms.
+static bool change_pickup(himc_drum_settings *s, const himc_command *c, int first, int index,
+                          himc_error *error)
 {
     enum { AIR, POINT };
+    himc_pickup pickup = s->head.pickups[index];
     pickup.kind = c->form == AIR ? HIMC_PICKUP_AIR : HIMC_PICKUP_POINT;
     if (c->form == AIR) {
-        himc_pickup usual = himc_pickup_default();
+        double usual = himc_pickup_default().elevation;
         pickup.azimuth = number(c, first + 1);
-        pickup.elevation = himc_argument_usual(number(c, first + 2), usual.elevation);
+        pickup.elevation = himc_argument_usual(number(c, first + 2), usual);
         pickup.distance = number(c, first + 3);
     } else {
         pickup.x = number(c, first);
         pickup.y = number(c, first + 1);
     }
-    return pickup;
-}
-
-// pickup `index` from the command's atoms from `first` on; the others stay
-static bool change_pickup(himc_drum_settings *s, const himc_command *c, int first, int index,
-                          himc_error *error)
-{
-    himc_pickup changed = read_pickup(c, first, s->head.pickups[index]);
-    if (!himc_pickup_check(&changed, &s->head.head, error))
+    if (!himc_pickup_check(&pickup, &s->head.head, error))
         return false;
-    s->head.pickups[index] = changed;
+    s->head.pickups[index] = pickup;
     return true;
 }
 
@@ -269,23 +239,6 @@ static bool do_channel(himc_drum_settings *s, const himc_command *c, himc_error 
            change_pickup(s, c, 1, channel - 1, error);
 }
 
-static bool do_air(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    himc_head head = s->head.head;
-    head.air = number(c, 0) == 1;
-    return set_head(s, &head, error);
-}
-
-static bool do_kettle(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    enum { USUAL, VOLUME };
-    himc_head head = s->head.head;
-    if (c->form == VOLUME && !himc_air_check(number(c, 0), head.radius, error))
-        return false;
-    head.kettle = c->form == USUAL ? 0 : number(c, 0);
-    return set_head(s, &head, error);
-}
-
 // takes the outline and its reference
 static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *error)
 {
@@ -305,33 +258,27 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
     return good;
 }
 
-static bool load_shape(himc_drum_settings *s, const char *path, himc_error *error)
-{
-    himc_shape shape = {.kind = &himc_kind_grid, .grid = himc_grid_load(path, error)};
-    return shape.grid && (replace_shape(s, shape, error) || himc_error_prefix(error, "%s", path));
-}
-
-// the word of a misspelt outline looks like no file's name
-static bool refuse_shape(const char *word, himc_error *error)
-{
-    if (strpbrk(word, "./\\"))
-        return himc_error_prefix(error, "shape");
-    return himc_error_set(error, "shape: %.80s, expected circle, rectangle LENGTH WIDTH, or a file",
-                          word);
-}
-
 static bool do_shape(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    static const himc_kind *const kinds[] = {&himc_kind_round, &himc_kind_rectangle}; // by form
-    enum { FROM_FILE = sizeof kinds / sizeof *kinds };
-    if (c->form == FROM_FILE)
-        return load_shape(s, c->atom[0].symbol, error) || refuse_shape(c->atom[0].symbol, error);
+    enum { ROUND, RECTANGLE, FROM_FILE };
+    static const himc_kind *const kinds[] = {&himc_kind_round, &himc_kind_rectangle,
+                                             &himc_kind_grid};
     himc_shape shape = {.kind = kinds[c->form]};
-    if (c->count == 3) {
+    if (c->form == RECTANGLE) {
         shape.length = number(c, 1);
         shape.width = number(c, 2);
     }
-    return replace_shape(s, shape, error);
+    if (c->form != FROM_FILE)
+        return replace_shape(s, shape, error);
+    const char *file = c->atom[0].symbol;
+    shape.grid = himc_grid_load(file, error);
+    if (shape.grid && (replace_shape(s, shape, error) || himc_error_prefix(error, "%s", file)))
+        return true;
+    if (strpbrk(file, "./\\"))
+        return himc_error_prefix(error, "shape");
+    // the word of a misspelt outline looks like no file's name
+    return himc_error_set(error, "shape: %.80s, expected circle, rectangle LENGTH WIDTH, or a file",
+                          file);
 }
 
 static bool do_gain(himc_drum_settings *s, const himc_command *c, himc_error *error)
@@ -365,7 +312,6 @@ static bool do_strike(himc_drum_settings *s, const himc_command *c, himc_error *
     return himc_drum_may_strike(&s->place, number(c, 0), number(c, 1), number(c, 2), error);
 }
 
-// those that a score may have at a beat, and three alike
 #define do_radius change_head
 #define do_tension change_head
 #define do_density change_head
@@ -373,6 +319,10 @@ static bool do_strike(himc_drum_settings *s, const himc_command *c, himc_error *
 #define do_damp change_head
 #define do_decay change_head
 #define do_tune change_head
+#define do_modes change_head
+#define do_air change_head
+#define do_kettle change_head
+#define do_uniformity change_head
 typedef bool drum_action(himc_drum_settings *s, const himc_command *command, himc_error *error);
 
 // the action of each row for a drum is do_ and its word; these two are jobs (drum_job.c)
@@ -417,92 +367,81 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
 // A state is told in an order in which each line is allowed whatever the drum was before: first the
 // outline, a kettle of any size, the size; what depends on them after.
 
-static void dump_outline(const himc_drum *drum, const himc_line_sink *to)
+static void tell(const himc_line_sink *to, const char *name, double value)
 {
-    const himc_shape *shape = &himc_membrane_config_of(drum->membrane)->shape;
-    himc_state_line line = himc_state_begin("shape");
-    himc_state_word(&line, shape->kind->name ? shape->kind->name : shape->grid->path);
-    if (shape->length > 0)
-        himc_state_numbers(&line, 2, (double[]){shape->length, shape->width});
-    himc_state_end(&line, to);
+    himc_state_tell(to, name, NULL, 1, &value);
 }
 
+// the head without the changes of a score: the drum's own
 static void dump_head(const himc_drum *drum, const himc_line_sink *to)
 {
-    const himc_head own = himc_drum_base_head(drum), *head = &own;
-    himc_state_line seeded = himc_state_begin("uniformity"), modes = himc_state_begin("modes");
+    const himc_head *now = himc_membrane_head(drum->membrane);
+    himc_head own = drum->told ? drum->told->base : *now, *head = &own;
+    const himc_shape *shape = &himc_membrane_config_of(drum->membrane)->shape;
+    if (drum->told)
+        himc_head_keep_edits(head, &drum->told->known, now);
+    himc_state_tell(to, "shape", shape->kind->name ? shape->kind->name : shape->grid->path,
+                    shape->length > 0 ? 2 : 0, (double[]){shape->length, shape->width});
     himc_state_tell(to, "kettle", "usual", 0, NULL);
-    himc_state_tell(to, "radius", NULL, 1, (double[]){head->radius});
-    himc_state_tell(to, "density", NULL, 1, (double[]){head->density});
-    himc_state_tell(to, "tension", NULL, 1, (double[]){head->tension});
+    tell(to, "radius", head->radius);
+    tell(to, "density", head->density);
+    tell(to, "tension", head->tension);
     if (head->modes == HIMC_MODES_AUTO)
-        himc_state_word(&modes, "auto");
+        himc_state_tell(to, "modes", "auto", 0, NULL);
     else
-        himc_state_numbers(&modes, 1, (double[]){head->modes});
-    himc_state_end(&modes, to);
+        tell(to, "modes", head->modes);
     himc_state_tell(to, "decay", NULL, 2, (double[]){head->decay_constant, head->decay_square});
-    himc_state_tell(to, "air", NULL, 1, (double[]){head->air ? 1.0 : 0.0});
+    tell(to, "air", head->air);
     // without air the head may have grown too large for its kettle, which is then not heard
     if (head->kettle > 0 && himc_air_check(head->kettle, head->radius, NULL))
-        himc_state_tell(to, "kettle", NULL, 1, (double[]){head->kettle});
-    himc_state_tell(to, "glide", NULL, 1, (double[]){head->glide});
-    himc_state_tell(to, "damp", NULL, 1, (double[]){head->damp});
-    if (himc_membrane_config_of(drum->membrane)->shape.kind->air) {
-        himc_state_numbers(&seeded, 1, &head->uniformity);
-        if (head->uniformity < 1) // its usual one is of the drum's name, which another may not have
-            himc_state_numbers(&seeded, 1, (double[]){head->uniformity_seed});
-        himc_state_end(&seeded, to);
-    }
+        tell(to, "kettle", head->kettle);
+    tell(to, "glide", head->glide);
+    tell(to, "damp", head->damp);
+    // its usual seed is of the drum's name, which another may not have
+    if (shape->kind->air)
+        himc_state_tell(to, "uniformity", NULL, head->uniformity < 1 ? 2 : 1,
+                        (double[]){head->uniformity, head->uniformity_seed});
 }
 
-static void dump_pickups(const himc_drum *drum, const himc_line_sink *to)
+static void dump_pickups(const himc_membrane_config *head, const himc_line_sink *to)
 {
-    int count;
-    const himc_pickup *all = himc_membrane_pickups(drum->membrane, &count);
-    himc_state_tell(to, "pickups", NULL, 1, (double[]){(double)count});
-    for (int i = 0; i < count; i++) {
+    tell(to, "pickups", head->pickup_count);
+    for (int i = 0; i < head->pickup_count; i++) {
+        const himc_pickup *p = &head->pickups[i];
         himc_state_line line = himc_state_begin("channel");
         himc_state_numbers(&line, 1, (double[]){i + 1});
-        if (all[i].kind == HIMC_PICKUP_AIR) {
+        if (p->kind == HIMC_PICKUP_AIR) {
             himc_state_word(&line, "air");
-            himc_state_numbers(&line, 3,
-                               (double[]){all[i].azimuth, all[i].elevation, all[i].distance});
+            himc_state_numbers(&line, 3, (double[]){p->azimuth, p->elevation, p->distance});
         } else {
-            himc_state_numbers(&line, 2, (double[]){all[i].x, all[i].y});
+            himc_state_numbers(&line, 2, (double[]){p->x, p->y});
         }
         himc_state_end(&line, to);
     }
 }
 
-static void dump_rest(const himc_drum *drum, const himc_line_sink *to)
-{
-    const himc_mallet_head *m = &drum->set.mallet;
-    if (strcmp(drum->set.mallet_name.text, OWN_MALLET) == 0)
-        himc_state_tell(to, "mallet", NULL, 3, (double[]){m->stiffness, m->exponent, m->mass});
-    else
-        himc_state_tell(to, "mallet", drum->set.mallet_name.text, 0, NULL);
-    himc_state_tell(to, "noise", NULL, 1, (double[]){drum->set.noise});
-    if (drum->set.placed)
-        himc_state_tell(to, "place", NULL, 4,
-                        (double[]){drum->set.place.center.x, drum->set.place.center.y,
-                                   drum->set.place.center.z, drum->set.place.tilt});
-    himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(drum->set.gain)});
-    himc_state_tell(to, "mute", NULL, 1, (double[]){drum->set.mute ? 1.0 : 0.0});
-    himc_state_tell(to, "technique",
-                    himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text, 0,
-                    0);
-}
-
 void himc_drum_describe(const himc_drum *drum, himc_description what,
                         void (*line)(void *, const char *), void *user)
 {
+    const himc_drum_settings *set = &drum->set;
+    const himc_mallet_head *m = &set->mallet;
+    const himc_vec3 *at = &set->place.center;
     himc_line_sink to = {line, user};
     if (what == HIMC_DESCRIBE_INFO) {
         describe_for_person(drum, &to);
         return;
     }
-    dump_outline(drum, &to);
     dump_head(drum, &to);
-    dump_pickups(drum, &to);
-    dump_rest(drum, &to);
+    dump_pickups(himc_membrane_config_of(drum->membrane), &to);
+    if (strcmp(set->mallet_name.text, OWN_MALLET) == 0)
+        himc_state_tell(&to, "mallet", NULL, 3, (double[]){m->stiffness, m->exponent, m->mass});
+    else
+        himc_state_tell(&to, "mallet", set->mallet_name.text, 0, NULL);
+    tell(&to, "noise", set->noise);
+    if (set->placed)
+        himc_state_tell(&to, "place", NULL, 4, (double[]){at->x, at->y, at->z, set->place.tilt});
+    tell(&to, "gain", 20 * log10(set->gain));
+    tell(&to, "mute", set->mute);
+    himc_state_tell(&to, "technique",
+                    himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)set->technique).text, 0, 0);
 }

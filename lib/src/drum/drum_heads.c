@@ -88,6 +88,16 @@ static bool find_head(himc_drum_settings *settings, head_change *change, himc_er
     return true;
 }
 
+static bool make_room(himc_drum_heads *heads, int room, himc_error *error)
+{
+    head_change *bigger = realloc(heads->change, (size_t)room * sizeof *bigger);
+    if (!bigger)
+        return himc_error_set(error, "at: out of memory for %d changes", room);
+    heads->change = bigger;
+    heads->room = room;
+    return true;
+}
+
 bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command *command,
                          himc_error *error)
 {
@@ -95,14 +105,8 @@ bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command
     keep_command(&change, command);
     if (!find_head(&heads->settings, &change, error))
         return false;
-    if (heads->count == heads->room) {
-        int room = heads->room ? 2 * heads->room : 16;
-        head_change *bigger = realloc(heads->change, (size_t)room * sizeof *bigger);
-        if (!bigger)
-            return himc_error_set(error, "at: out of memory for %d changes", room);
-        heads->change = bigger;
-        heads->room = room;
-    }
+    if (heads->count == heads->room && !make_room(heads, 2 * heads->room + 16, error))
+        return false;
     heads->change[heads->count++] = change;
     return true;
 }
@@ -122,19 +126,23 @@ static himc_model **find_spare(himc_drum_heads *heads, const himc_membrane_confi
     return NULL;
 }
 
+static bool add_spare(himc_drum_heads *heads, const himc_membrane_config *config, himc_error *error)
+{
+    himc_model *made = himc_model_new(config, heads->spares ? heads->spare[0] : NULL, error);
+    if (made)
+        heads->spare[heads->spares++] = made;
+    return made;
+}
+
 bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error)
 {
     himc_membrane_config config = heads->settings.head;
-    for (int i = 0; i < heads->count && heads->spares < MOST_SPARES; i++) {
+    bool good = true;
+    for (int i = 0; good && i < heads->count && heads->spares < MOST_SPARES; i++) {
         config.head = *head_of(heads, i);
-        if (find_spare(heads, &config))
-            continue;
-        himc_model *made = himc_model_new(&config, heads->spares ? heads->spare[0] : NULL, error);
-        if (!made)
-            return false;
-        heads->spare[heads->spares++] = made;
+        good = find_spare(heads, &config) || add_spare(heads, &config, error);
     }
-    return true;
+    return good;
 }
 
 // the last change at or before a beat; usually the present one or its neighbour
@@ -181,8 +189,8 @@ void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum)
     himc_head was = heads->told.known;
     heads->told.known = *now;
     for (; heads; heads = heads->before) {
-        himc_drum_keep_edits(&heads->first, &was, now);
-        himc_drum_keep_edits(&heads->told.base, &was, now);
+        himc_head_keep_edits(&heads->first, &was, now);
+        himc_head_keep_edits(&heads->told.base, &was, now);
         heads->edited = true;
     }
 }
@@ -213,6 +221,15 @@ double himc_drum_heads_damp(const himc_drum_heads *heads, double beat)
     return from > 0 || heads->now == -1 ? present : heads->first.damp;
 }
 
+/// Carries the command of a change out on a head of the drum, which may refuse it.
+static bool redo(const himc_drum *drum, const head_change *change, himc_head *head,
+                 himc_error *error)
+{
+    himc_command command = command_of(change);
+    return himc_drum_find_head(&himc_membrane_config_of(drum->membrane)->shape, &drum->set.usual,
+                               &command, head, error);
+}
+
 /// The head of a drum that was changed by hand, after a change: of the commands that set the same,
 /// only the last acts. False with the reason if the drum refuses one, which is left out.
 static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int change,
@@ -223,15 +240,13 @@ static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int cha
     bool onward = from > 0 || heads->now == -1, good = true;
     *head = onward ? *himc_membrane_head(drum->membrane) : heads->first;
     for (int i = change, set = 0; i >= from && set != ALL; i--) {
-        himc_command command = command_of(&heads->change[i]);
-        int sets = command.id == HIMC_COMMAND_DECAY   ? DECAY
-                   : command.id == HIMC_COMMAND_GLIDE ? GLIDE
-                   : command.id == HIMC_COMMAND_DAMP  ? DAMP
-                                                      : PITCH;
+        himc_command_id id = heads->change[i].id;
+        int sets = id == HIMC_COMMAND_DECAY   ? DECAY
+                   : id == HIMC_COMMAND_GLIDE ? GLIDE
+                   : id == HIMC_COMMAND_DAMP  ? DAMP
+                                              : PITCH;
         if (!(set & sets))
-            good = himc_drum_find_head(&himc_membrane_config_of(drum->membrane)->shape,
-                                       &drum->set.usual, &command, head, error) &&
-                   good;
+            good = redo(drum, &heads->change[i], head, error) && good;
         set |= sets;
     }
     return good;
@@ -251,14 +266,6 @@ static bool give(himc_drum_heads *heads, himc_drum *drum, const himc_head *head,
     return true;
 }
 
-/// Gives the drum the head of a change.
-static bool give_head(himc_drum_heads *heads, himc_drum *drum, int change, himc_error *error)
-{
-    himc_head head = *head_of(heads, change);
-    bool good = !heads->edited || overlay(heads, drum, change, &head, error);
-    return give(heads, drum, &head, error) && good;
-}
-
 bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, himc_error *error)
 {
     himc_drum_heads *latest = heads;
@@ -271,7 +278,9 @@ bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, 
     if (change == heads->now)
         return true;
     heads->since = 0;
-    bool good = give_head(heads, drum, change, error);
+    himc_head head = *head_of(heads, change);
+    bool good = !heads->edited || overlay(heads, drum, change, &head, error);
+    good = give(heads, drum, &head, error) && good;
     heads->now = change;
     latest->told.known = *himc_membrane_head(drum->membrane);
     return good;
@@ -288,12 +297,8 @@ bool himc_drum_heads_begin_again(himc_drum_heads *heads, himc_drum *drum, double
     himc_drum_heads_notice(heads, drum);
     himc_head head = heads->first;
     bool good = true;
-    for (int i = from; i < heads->count; i++) {
-        himc_command command = command_of(&heads->change[i]);
-        good = himc_drum_find_head(&himc_membrane_config_of(drum->membrane)->shape,
-                                   &drum->set.usual, &command, &head, error) &&
-               good;
-    }
+    for (int i = from; i < heads->count; i++)
+        good = redo(drum, &heads->change[i], &head, error) && good;
     good = give(heads, drum, &head, error) && good;
     heads->edited = true; // the next changes act on this head
     heads->now = -1;
@@ -312,9 +317,8 @@ himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads 
 {
     heads->before = before;
     heads->from = from;
-    if (before) {
+    if (before)
         heads->told = before->told;
-    }
     himc_drum_heads *present = before;
     while (present && present->before && now < present->from)
         present = present->before;
@@ -340,18 +344,13 @@ void himc_drum_heads_free(himc_drum_heads *heads)
 // a change that is added while others are in use
 
 struct himc_head_insertion {
-    himc_drum *drum;             ///< borrowed
-    himc_drum_heads *to;         ///< not touched by `prepare`; NULL: the drum has no changes yet
-    himc_drum_settings settings; ///< owned; of the drum
-    himc_head first;
-    head_change *change;          ///< owned; those of `to` with the new one
-    int count, at;                ///< the new one's index
-    bool anew;                    ///< the drum was changed by hand: all heads are made again
-    himc_head known[MOST_SPARES]; ///< heads that are made already ...
+    himc_drum *drum;              ///< borrowed
+    himc_drum_heads *to;          ///< not touched by `prepare`; NULL: the drum has no changes yet
+    himc_drum_heads *made;        ///< owned; changes of `to` with the new one, and the heads ...
+    himc_head known[MOST_SPARES]; ///< ... that are not yet made
     int known_count;
-    himc_model *spare[MOST_SPARES]; ///< ... and those that are not, owned
-    int spares;
-    himc_drum_heads *fresh; ///< owned; for a drum without changes
+    int at;    ///< the new one's index
+    bool anew; ///< the drum was changed by hand: all heads are made again
 };
 
 /// Those of the chain that hold at a beat.
@@ -362,83 +361,77 @@ static himc_drum_heads *heads_at(himc_drum_heads *heads, double beat)
     return heads;
 }
 
-static void know_heads(himc_head_insertion *j)
-{
-    himc_membrane_config config = j->settings.head;
-    for (int i = 0; i < j->to->spares; i++) {
-        config.head = j->to->spare[i]->config.head;
-        if (himc_membrane_config_equal(&j->to->spare[i]->config, &config))
-            j->known[j->known_count++] = config.head;
-    }
-}
-
 himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *drum, double beat,
                                              const himc_command *command, himc_error *error)
 {
     himc_drum_heads *to = heads_at(heads, beat);
     int old = to ? to->count : 0;
-    himc_head_insertion *j = calloc(1, sizeof *j);
-    head_change *change = malloc(((size_t)old + 1) * sizeof *change);
-    if (!j || !change) {
+    himc_drum_settings settings = himc_drum_settings_of(drum);
+    himc_drum_heads *made = himc_drum_heads_new(&settings, error);
+    himc_head_insertion *j = made ? calloc(1, sizeof *j) : NULL;
+    himc_drum_settings_free(&settings);
+    if (!j || !make_room(made, old + 1, error)) {
+        himc_drum_heads_free(made);
         free(j);
-        free(change);
-        himc_error_set(error, "at: out of memory for %d changes", old + 1);
         return NULL;
     }
-    *j = (himc_head_insertion){.drum = drum, .to = to, .change = change, .count = old + 1};
-    j->settings = himc_drum_settings_of(drum);
-    j->first = to ? to->first : j->settings.head.head;
-    j->anew = to && to->edited;
+    *j = (himc_head_insertion){.drum = drum, .to = to, .made = made, .anew = to && to->edited};
     while (j->at < old && to->change[j->at].beat <= beat)
         j->at++;
     for (int i = 0; i < old; i++)
-        change[i + (i >= j->at)] = to->change[i];
-    change[j->at] = (head_change){.beat = beat};
-    keep_command(&change[j->at], command);
+        made->change[i + (i >= j->at)] = to->change[i];
+    made->change[j->at] = (head_change){.beat = beat};
+    made->count = old + 1;
+    keep_command(&made->change[j->at], command);
+    for (int i = 0; to && i < to->spares; i++) {
+        himc_membrane_config config = made->settings.head;
+        config.head = to->spare[i]->config.head;
+        if (himc_membrane_config_equal(&to->spare[i]->config, &config))
+            j->known[j->known_count++] = config.head;
+    }
     if (to)
-        know_heads(j);
+        made->first = to->first;
     return j;
 }
 
 static bool is_known(const himc_head_insertion *j, const himc_head *head)
 {
-    bool known = himc_head_equal(head, &j->settings.head.head);
+    const himc_drum_heads *made = j->made;
+    bool known = himc_head_equal(head, &made->settings.head.head);
     for (int i = 0; i < j->known_count; i++)
         known = known || himc_head_equal(head, &j->known[i]);
-    for (int i = 0; i < j->spares; i++)
-        known = known || himc_head_equal(head, &j->spare[i]->config.head);
+    for (int i = 0; i < made->spares; i++)
+        known = known || himc_head_equal(head, &made->spare[i]->config.head);
     return known;
 }
 
 bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
 {
+    himc_drum_heads *made = j->made;
     int from = j->anew ? 0 : j->at;
-    himc_drum_settings after = himc_drum_settings_copy(&j->settings);
+    himc_drum_settings after = himc_drum_settings_copy(&made->settings);
     bool good = true;
-    after.head.head = from > 0 ? j->change[from - 1].head : j->first;
-    for (int i = from; i < j->count && good; i++) {
-        good = find_head(&after, &j->change[i], error);
-        if (!good || j->known_count + j->spares == MOST_SPARES || is_known(j, &after.head.head))
-            continue;
-        himc_model *made = himc_model_new(&after.head, j->spares ? j->spare[0] : NULL, error);
-        if (made)
-            j->spare[j->spares++] = made;
-        good = made;
+    after.head.head = *head_of(made, from - 1);
+    for (int i = from; i < made->count && good; i++) {
+        good = find_head(&after, &made->change[i], error);
+        bool room = j->known_count + made->spares < MOST_SPARES;
+        if (good && room && !is_known(j, &after.head.head))
+            good = add_spare(made, &after.head, error);
     }
     himc_drum_settings_free(&after);
-    if (good && !j->to && !j->fresh)
-        j->fresh = calloc(1, sizeof *j->fresh);
-    return good && (j->to || j->fresh || himc_error_set(error, "at: out of memory"));
+    return good;
 }
 
 /// True if the changes are still those that it was prepared for.
 static bool still_fits(const himc_head_insertion *j, const himc_drum_heads *to)
 {
+    const himc_drum_heads *made = j->made;
     if (!to)
-        return !j->to && himc_drum_has_head(j->drum, &j->settings);
-    bool fits = to == j->to && to->count == j->count - 1 && himc_head_equal(&to->first, &j->first);
+        return !j->to && himc_drum_has_head(j->drum, &made->settings);
+    bool fits =
+        to == j->to && to->count == made->count - 1 && himc_head_equal(&to->first, &made->first);
     for (int i = 0; fits && i < to->count; i++) {
-        const head_change *was = &j->change[i + (i >= j->at)];
+        const head_change *was = &made->change[i + (i >= j->at)];
         fits = was->beat == to->change[i].beat && was->id == to->change[i].id &&
                memcmp(was->number, to->change[i].number, sizeof was->number) == 0;
     }
@@ -447,25 +440,24 @@ static bool still_fits(const himc_head_insertion *j, const himc_drum_heads *to)
 
 bool himc_head_insertion_install(himc_head_insertion *j, himc_drum_heads **heads, double now)
 {
-    himc_drum_heads *to = heads_at(*heads, j->change[j->at].beat);
+    himc_drum_heads *made = j->made, *to = heads_at(*heads, made->change[j->at].beat);
     if (!still_fits(j, to))
         return false;
     if (!to) {
-        to = *heads = j->fresh;
-        *to = (himc_drum_heads){
-            .first = j->first, .told = {j->first, j->first}, .settings = j->settings, .now = -1};
+        to = *heads = made;
+        to->now = -1;
         himc_drum_set_heads(j->drum, to);
-        j->fresh = NULL;
-        j->settings.head.shape.grid = NULL; // it has the reference
+        j->made = NULL;
+    } else {
+        head_change *old = to->change;
+        to->change = made->change;
+        to->count = to->room = made->count;
+        made->change = old;
+        while (made->spares > 0 && to->spares < MOST_SPARES)
+            to->spare[to->spares++] = made->spare[--made->spares];
+        to->now += to->now >= j->at;
+        to->late += to->late >= j->at;
     }
-    head_change *old = to->change;
-    to->change = j->change;
-    to->count = to->room = j->count;
-    j->change = old;
-    while (j->spares > 0 && to->spares < MOST_SPARES)
-        to->spare[to->spares++] = j->spare[--j->spares];
-    to->now += to->now >= j->at;
-    to->late += to->late >= j->at;
     if (now > to->change[j->at].beat && change_at(to, now) == j->at) {
         to->late = j->at;
         to->since = now;
@@ -475,12 +467,7 @@ bool himc_head_insertion_install(himc_head_insertion *j, himc_drum_heads **heads
 
 void himc_head_insertion_free(himc_head_insertion *j)
 {
-    if (!j)
-        return;
-    while (j->spares > 0)
-        himc_model_free(j->spare[--j->spares]);
-    himc_drum_settings_free(&j->settings);
-    free(j->fresh);
-    free(j->change);
+    if (j)
+        himc_drum_heads_free(j->made);
     free(j);
 }

@@ -114,16 +114,6 @@ static bool is_preset(const drum_job *j)
     return !j->listens && j->command.id == HIMC_COMMAND_DRUM_PRESET;
 }
 
-static bool find_settings(drum_job *j, himc_error *error)
-{
-    if (j->listens)
-        return true;
-    if (j->state)
-        return run_lines(&j->after, j->state, "state", error);
-    return is_preset(j) ? himc_drum_settings_preset(&j->after, j->command.atom[0].symbol, error)
-                        : himc_drum_settings_command(&j->after, &j->command, error);
-}
-
 static bool prepare(himc_job *job, himc_error *error)
 {
     drum_job *j = (drum_job *)job;
@@ -131,7 +121,12 @@ static bool prepare(himc_job *job, himc_error *error)
     himc_model_free(j->made);
     j->made = NULL;
     j->after = himc_drum_settings_copy(&j->before);
-    if (!find_settings(j, error))
+    bool good = j->listens ? true
+                : j->state ? run_lines(&j->after, j->state, "state", error)
+                : is_preset(j)
+                    ? himc_drum_settings_preset(&j->after, j->command.atom[0].symbol, error)
+                    : himc_drum_settings_command(&j->after, &j->command, error);
+    if (!good)
         return false;
     if (j->listener.on) {
         himc_ear_paths paths = himc_ears_trace(&j->listener, &j->after.place);
@@ -143,16 +138,6 @@ static bool prepare(himc_job *job, himc_error *error)
         return true;
     j->made = himc_model_new(&j->after.head, NULL, error);
     return j->made;
-}
-
-// Carries it out on the drum itself. Where only rays change and the drum has them already, that is
-// quick.
-static bool act(drum_job *j, himc_error *error)
-{
-    if (!j->listens)
-        return himc_drum_command(j->drum, &j->command, error);
-    himc_drum_listen(j->drum, &j->listener);
-    return true;
 }
 
 static himc_job_state install(himc_job *job, himc_error *error)
@@ -171,8 +156,8 @@ static himc_job_state install(himc_job *job, himc_error *error)
         drum->ears = j->ears;
         j->ears = NULL;
     }
-    if (!same && !preset)
-        return act(j, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
+    if (!same && !preset && !j->listens)
+        return himc_drum_command(drum, &j->command, error) ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
     if (preset) {
         to = j->after;
     } else {
@@ -183,9 +168,9 @@ static himc_job_state install(himc_job *job, himc_error *error)
             to.placed = true;
         }
     }
-    if (!himc_drum_set(drum, &to, &j->made, error))
+    if ((same || preset) && !himc_drum_set(drum, &to, &j->made, error))
         return HIMC_JOB_FAILED;
-    if (j->listens)
+    if (j->listens) // quick where the drum has the rays already
         himc_drum_listen(drum, &j->listener);
     return HIMC_JOB_DONE;
 }
@@ -202,30 +187,22 @@ static void free_job(himc_job *job)
 
 static drum_job *job_new(himc_drum *drum, const char *what, himc_error *error)
 {
-    drum_job *j = calloc(1, sizeof *j);
-    if (!j) {
-        himc_error_set(error, "%s: out of memory", what);
+    drum_job *j = himc_job_new(sizeof *j, what, (himc_job){prepare, install, free_job}, error);
+    if (!j)
         return NULL;
-    }
-    j->job = (himc_job){prepare, install, free_job};
     j->drum = drum;
     j->before = himc_drum_settings_of(drum);
     j->listener = drum->listener;
     return j;
 }
 
-// the state of now into a file
-static himc_job *dump_job(const himc_drum *drum, const himc_command *command, himc_error *error)
-{
-    himc_text_lines lines = {0};
-    himc_drum_describe(drum, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
-    return himc_file_write_job("dump", command->atom[0].symbol, &lines, error);
-}
-
 himc_job *himc_drum_job(himc_drum *drum, const himc_command *command, himc_error *error)
 {
-    if (command->id == HIMC_COMMAND_DRUM_DUMP)
-        return dump_job(drum, command, error);
+    if (command->id == HIMC_COMMAND_DRUM_DUMP) { // the state of now into a file
+        himc_text_lines lines = {0};
+        himc_drum_describe(drum, HIMC_DESCRIBE_STATE, himc_text_add, &lines);
+        return himc_file_write_job("dump", command->atom[0].symbol, &lines, error);
+    }
     drum_job *j = job_new(drum, himc_command_table((int)command->id)->name, error);
     if (!j)
         return NULL;

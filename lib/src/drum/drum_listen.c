@@ -66,6 +66,7 @@ bool himc_drum_follow(himc_drum *drum, const himc_drum *other, himc_error *error
         return false;
     to.rate = now->rate;
     to.shares = false; // no other head is near
+    to.muted = now->muted;
     if (drum->driver.performer)
         to.rays = false,
         himc_membrane_config_set_rays(&to, now->rays ? now->pickups + HIMC_PICKUPS : NULL);

@@ -18,12 +18,10 @@ typedef struct himc_outside_force {
 /// @param sticks   evolve (membrane.h); may be NULL when count is 0
 /// @param forces   forces[s][i] receives the force of stick s in sample i (N); NULL if unwanted
 /// @param outside  or NULL
-HIMC_RT void himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
+/// Returns true if a sample was made by itself, with sticks near the head or a force; it costs as
+/// much as several others.
+HIMC_RT bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks, int count,
                                       double *const *forces, const himc_outside_force *outside);
-
-/// Samples that sticks near the head have made it make one by one, so far; each costs as much as
-/// several others.
-HIMC_RT uint64_t himc_drum_single_samples(const himc_drum *drum);
 
 /// Memory for a listener's ears, which a drum has from the first listener on.
 bool himc_drum_open_ears(himc_drum *drum, himc_error *error);
@@ -54,6 +52,12 @@ HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum);
 HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
 /// Frequency of the head's principal mode (Hz).
 HIMC_RT double himc_drum_pitch(const himc_drum *drum);
+
+/// For those who draw a head: displacement (m) of the first `count` shapes of a bare head with its
+/// axes along x and y, of which the modes are made: of what the modes have now, or of `modal`
+/// (count) (m) if it is not NULL.
+HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
+                                   double *displacement);
 
 /// True if a force acted on the head in its last sample.
 HIMC_RT bool himc_drum_is_touched(const himc_drum *drum);

@@ -8,9 +8,7 @@
 #include "drum/membrane_state.h"
 #include "drum/stroke_noise.h"
 
-#define DRUM_WAITING 64 ///< strikes; this, the next two and the delay: chosen
-#define DRUM_REPORTS 64
-#define DRUM_ONSETS 64
+#define DRUM_QUEUE 64       ///< strikes that wait, reports, onsets; this and the delay: chosen
 #define DRUM_MAX_DELAY 8192 ///< (samples)
 
 /// A strike that begins with sample `at`.
@@ -23,11 +21,10 @@ typedef struct drum_waiting {
 typedef struct drum_mallet {
     bool used;
     himc_stick stick;
-    uint64_t first; ///< sample of the first force
-    uint64_t end;   ///< sample after the last force
-    bool struck;    ///< it has felt a force
-    int age;        ///< samples since it was launched
-    himc_contact_report report;
+    uint64_t first;             ///< sample of the first force
+    uint64_t end;               ///< sample after the last force
+    int age;                    ///< samples since it was launched
+    himc_contact_report report; ///< its force is 0 until it has felt one
 } drum_mallet;
 
 /// Entries of a ring, oldest first.
@@ -49,19 +46,18 @@ struct himc_drum {
     unsigned revision;
     himc_drum_driver driver;
     double rate;
-    uint64_t time;    ///< samples since the drum was made; all samples in here are counted so
-    uint64_t singles; ///< of these, made one by one with sticks near the head
-    uint64_t zero;    ///< the one that counts as 0 outside, since the last realign
+    uint64_t time; ///< samples since the drum was made; all samples in here are counted so
+    uint64_t zero; ///< the one that counts as 0 outside, since the last realign
     double ring[HIMC_PICKUPS + 1][HIMC_DRUM_RING]; ///< sound of each channel; the displacement
     uint64_t filled[HIMC_PICKUPS + 1]; ///< `time` after the last sample of a ring that may not be 0
     bool unwatched;                    ///< the displacement is not wanted
     double outside_x, outside_y;       ///< point of the outside force, the watched point
-    drum_waiting waiting[DRUM_WAITING]; ///< unordered
+    drum_waiting waiting[DRUM_QUEUE];  ///< unordered
     int waiting_count;
     drum_mallet mallets[HIMC_STICKS];
-    himc_contact_report reports[DRUM_REPORTS];
+    himc_contact_report reports[DRUM_QUEUE];
     drum_queue report_queue;
-    himc_contact_onset onsets[DRUM_ONSETS]; ///< `at` is in samples of `time`
+    himc_contact_onset onsets[DRUM_QUEUE]; ///< `at` is in samples of `time`
     drum_queue onset_queue;
     double fader; ///< of all drums of its performer (factor)
     double level; ///< of the drum's own sound: on its way to the product, or to 0
@@ -73,13 +69,8 @@ struct himc_drum {
     himc_ears *ears;  ///< owned; of the listener; NULL before the first one
 };
 
-/// The head without the changes of a score: the drum's own, which a state tells.
-himc_head himc_drum_base_head(const himc_drum *drum);
-/// Sets in `head` what differs between `was` and `now`.
-HIMC_RT void himc_drum_keep_edits(himc_head *head, const himc_head *was, const himc_head *now);
-
-/// The head after a checked command of one that a score may have at a beat, or of `radius` or
-/// `density`. False with the reason if the drum refuses it.
+/// The head after a checked command that changes it, but for `shape`. False with the reason if the
+/// drum refuses it.
 HIMC_RT bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual,
                                  const himc_command *checked, himc_head *head, himc_error *error);
 /// False with the reason if that surface cannot be struck so.

@@ -40,31 +40,29 @@ bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double 
         return true;
     if (!himc_check_range("strike: delay", delay, 0, DRUM_MAX_DELAY, "samples", error))
         return false;
-    if (drum->waiting_count == DRUM_WAITING)
-        return himc_error_set(error, "strike: %d wait already, expected up to %d", DRUM_WAITING,
-                              DRUM_WAITING);
+    if (drum->waiting_count == DRUM_QUEUE)
+        return himc_error_set(error, "strike: %d wait already, expected up to %d", DRUM_QUEUE,
+                              DRUM_QUEUE);
     drum->waiting[drum->waiting_count++] =
         (drum_waiting){drum->time + (uint64_t)delay, x, y, velocity};
     return true;
 }
 
-// index of a new last entry in a ring of `size`; a full ring loses its oldest
-static int queue_push(drum_queue *q, int size)
-{
-    if (q->count == size) {
-        q->first = (q->first + 1) % size;
-        q->count--;
-    }
-    return (q->first + q->count++) % size;
-}
-
 // index of the oldest entry, which is taken out; the ring must not be empty
-static int queue_pop(drum_queue *q, int size)
+static int queue_pop(drum_queue *q)
 {
     int oldest = q->first;
-    q->first = (oldest + 1) % size;
+    q->first = (oldest + 1) % DRUM_QUEUE;
     q->count--;
     return oldest;
+}
+
+// index of a new last entry; a full ring loses its oldest
+static int queue_push(drum_queue *q)
+{
+    if (q->count == DRUM_QUEUE)
+        queue_pop(q);
+    return (q->first + q->count++) % DRUM_QUEUE;
 }
 
 static drum_mallet *free_mallet(himc_drum *drum)
@@ -85,25 +83,6 @@ static int earliest(const himc_drum *drum)
     return best;
 }
 
-static void forget(himc_drum *drum, int index)
-{
-    drum->waiting_count--;
-    for (int i = index; i < drum->waiting_count; i++)
-        drum->waiting[i] = drum->waiting[i + 1];
-}
-
-static void launch(himc_drum *drum, drum_mallet *m, const drum_waiting *w)
-{
-    *m = (drum_mallet){.used = true};
-    m->stick = (himc_stick){.head = drum->set.mallet,
-                            .mass = drum->set.mallet.mass,
-                            .x = w->x,
-                            .y = w->y,
-                            .velocity = -w->velocity};
-    himc_stick_put(drum->membrane, &m->stick);
-    m->report = (himc_contact_report){.x = w->x, .y = w->y, .velocity = w->velocity};
-}
-
 void himc_drum_launch(himc_drum *drum)
 {
     for (;;) {
@@ -111,8 +90,18 @@ void himc_drum_launch(himc_drum *drum)
         drum_mallet *m = free_mallet(drum);
         if (next < 0 || !m || drum->waiting[next].at > drum->time)
             return;
-        launch(drum, m, &drum->waiting[next]);
-        forget(drum, next);
+        drum_waiting w = drum->waiting[next];
+        drum->waiting_count--;
+        for (int i = next; i < drum->waiting_count; i++)
+            drum->waiting[i] = drum->waiting[i + 1];
+        *m = (drum_mallet){.used = true,
+                           .stick = {.head = drum->set.mallet,
+                                     .mass = drum->set.mallet.mass,
+                                     .x = w.x,
+                                     .y = w.y,
+                                     .velocity = -w.velocity},
+                           .report = {.x = w.x, .y = w.y, .velocity = w.velocity}};
+        himc_stick_put(drum->membrane, &m->stick);
     }
 }
 
@@ -133,31 +122,24 @@ int himc_drum_add_mallets(himc_drum *drum, himc_stick **sticks)
     return count;
 }
 
-// frees the mallet and queues its report
-static void finish(himc_drum *drum, drum_mallet *m)
-{
-    m->used = false;
-    if (!m->struck)
-        return;
-    m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
-    m->report.duration = (double)(m->end - m->first) / drum->rate;
-    drum->reports[queue_push(&drum->report_queue, DRUM_REPORTS)] = m->report;
-}
-
 static void follow(himc_drum *drum, drum_mallet *m)
 {
     const himc_stick *s = &m->stick;
     if (s->force > 0) {
-        if (!m->struck)
+        if (m->report.force == 0)
             m->first = drum->time - 1;
-        m->struck = true;
         m->end = drum->time;
         m->report.force = fmax(m->report.force, fmax(s->force, s->peak));
         m->report.impulse += s->force / drum->rate;
     }
     m->age++;
-    if ((!s->touching && s->height > GONE && s->velocity > 0) || m->age > LONGEST_LIFE * drum->rate)
-        finish(drum, m);
+    bool gone = !s->touching && s->height > GONE && s->velocity > 0;
+    m->used = !gone && m->age <= LONGEST_LIFE * drum->rate;
+    if (m->used || m->report.force == 0)
+        return;
+    m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
+    m->report.duration = (double)(m->end - m->first) / drum->rate;
+    drum->reports[queue_push(&drum->report_queue)] = m->report;
 }
 
 void himc_drum_follow_mallets(himc_drum *drum)
@@ -171,7 +153,7 @@ bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
 {
     if (drum->report_queue.count == 0)
         return false;
-    *report = drum->reports[queue_pop(&drum->report_queue, DRUM_REPORTS)];
+    *report = drum->reports[queue_pop(&drum->report_queue)];
     return true;
 }
 
@@ -184,7 +166,7 @@ void himc_drum_keep_onset(himc_drum *drum, const himc_stick *stick)
 {
     if (!(stick->impact > 0))
         return; // a head raised into a resting stick is no blow
-    drum->onsets[queue_push(&drum->onset_queue, DRUM_ONSETS)] = (himc_contact_onset){
+    drum->onsets[queue_push(&drum->onset_queue)] = (himc_contact_onset){
         .at = (int64_t)drum->time,
         .x = stick->x,
         .y = stick->y,
@@ -197,7 +179,7 @@ bool himc_drum_contact_next(himc_drum *drum, himc_contact_onset *onset)
 {
     if (drum->onset_queue.count == 0)
         return false;
-    *onset = drum->onsets[queue_pop(&drum->onset_queue, DRUM_ONSETS)];
+    *onset = drum->onsets[queue_pop(&drum->onset_queue)];
     onset->at -= (int64_t)drum->zero;
     return true;
 }

@@ -144,31 +144,6 @@ static int longest(const himc_ear_taps *taps)
     return most;
 }
 
-// begins to listen, to an empty room
-static void begin(himc_ears *e)
-{
-    memset(e->line, 0, sizeof e->line);
-    forget(&e->shadow[HIMC_EAR_LEFT]);
-    forget(&e->shadow[HIMC_EAR_RIGHT]);
-    forget(&e->floor);
-    e->changes = false;
-    e->faded = 1;
-    e->now = e->next;
-    e->reach = longest(&e->now);
-    e->at = e->silent = 0;
-    himc_room_leave(&e->room);
-}
-
-static void fade_to_next(himc_ears *e)
-{
-    int before = longest(&e->now), now = longest(&e->next);
-    e->changes = false;
-    e->before = e->now;
-    e->now = e->next;
-    e->reach = before > now ? before : now;
-    e->faded = 0;
-}
-
 void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, const himc_walls *walls, double rate)
 {
     e->step = 1 / (FADE * rate);
@@ -178,10 +153,18 @@ void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, const himc_walls *
         e->next.direct[ear] = tap_of(&paths->direct[ear], rate);
         e->next.floor[ear] = tap_of(&paths->floor[ear], rate);
     }
-    if (himc_ears_heard(e))
-        e->changes = true;
-    else
-        begin(e);
+    e->changes = himc_ears_heard(e);
+    if (!e->changes) { // begins to listen, to an empty room
+        memset(e->line, 0, sizeof e->line);
+        forget(&e->shadow[HIMC_EAR_LEFT]);
+        forget(&e->shadow[HIMC_EAR_RIGHT]);
+        forget(&e->floor);
+        e->faded = 1;
+        e->now = e->next;
+        e->reach = longest(&e->now);
+        e->at = e->silent = 0;
+        himc_room_leave(&e->room);
+    }
     himc_room_set(&e->room, walls, rate);
     e->on = true;
 }
@@ -305,8 +288,14 @@ void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double 
         double *ray[HIMC_RAYS], heard[HIMC_EARS][HIMC_ROOM_RUN], walls[HIMC_EARS][HIMC_ROOM_RUN];
         for (int k = 0; k < HIMC_RAYS; k++)
             ray[k] = rays ? rays[k] + from : silence;
-        if (e->changes && e->faded == 1)
-            fade_to_next(e);
+        if (e->changes && e->faded == 1) {
+            int before = longest(&e->now), now = longest(&e->next);
+            e->changes = false;
+            e->before = e->now;
+            e->now = e->next;
+            e->reach = before > now ? before : now;
+            e->faded = 0;
+        }
         run = steady(e, n - from);
         e->level = fmin(fmax(e->level + (e->on ? e->step : -e->step), 0), 1);
         e->faded = fmin(e->faded + e->step, 1);

@@ -90,13 +90,3 @@ double himc_felt_force(const felt *f, double r, double h, double *slope)
     *slope = 0;
     return 0;
 }
-
-double himc_felt_static(const felt *f)
-{
-    return f->outer.force + f->core.force;
-}
-
-double himc_felt_potential(const felt *f)
-{
-    return f->outer.potential + f->core.potential;
-}

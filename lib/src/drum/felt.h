@@ -25,8 +25,10 @@ HIMC_RT felt himc_felt_at(const himc_mallet_head *head, double scale, double c0)
 /// derivative (N/m).
 HIMC_RT double himc_felt_force(const felt *f, double r, double h, double *slope);
 
-/// Static force (N) and potential energy (J).
-HIMC_RT double himc_felt_static(const felt *f);
-HIMC_RT double himc_felt_potential(const felt *f);
+/// Potential energy (J).
+static inline double himc_felt_potential(const felt *f)
+{
+    return f->outer.potential + f->core.potential;
+}
 
 #endif

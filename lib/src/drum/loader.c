@@ -57,44 +57,28 @@ static bool is_helpers(loader_stage stage)
 
 // the helper
 
-// true if there is work for it, false at the end
-static bool wait_for_work(himc_loader *loader)
-{
-    pthread_mutex_lock(&loader->lock);
-    while (!loader->stop && !is_helpers(stage_of(loader)))
-        pthread_cond_wait(&loader->work, &loader->lock);
-    bool go_on = !loader->stop;
-    pthread_mutex_unlock(&loader->lock);
-    return go_on;
-}
-
-static void give_back(himc_loader *loader, loader_stage stage)
-{
-    atomic_store_explicit(&loader->stage, stage, memory_order_release);
-    pthread_mutex_lock(&loader->lock);
-    pthread_cond_signal(&loader->done);
-    pthread_mutex_unlock(&loader->lock);
-}
-
 static void *help(void *object)
 {
     himc_loader *loader = object;
-    while (wait_for_work(loader)) {
-        bool preparing = stage_of(loader) == PREPARING;
-        if (preparing)
+    pthread_mutex_lock(&loader->lock);
+    while (!loader->stop) {
+        loader_stage stage = stage_of(loader);
+        if (!is_helpers(stage)) {
+            pthread_cond_wait(&loader->work, &loader->lock);
+            continue;
+        }
+        pthread_mutex_unlock(&loader->lock);
+        if (stage == PREPARING)
             loader->good = loader->job->prepare(loader->job, &loader->error);
         else
             loader->job->free(loader->job);
-        give_back(loader, preparing ? PREPARED : IDLE);
+        stage = stage == PREPARING ? PREPARED : IDLE;
+        atomic_store_explicit(&loader->stage, stage, memory_order_release);
+        pthread_mutex_lock(&loader->lock);
+        pthread_cond_signal(&loader->done);
     }
+    pthread_mutex_unlock(&loader->lock);
     return NULL;
-}
-
-static bool start(himc_loader *loader, himc_error *error)
-{
-    if (!loader->running)
-        loader->running = himc_system_start_thread(&loader->thread, help, loader);
-    return loader->running || himc_error_set(error, "no thread to load in");
 }
 
 // the host
@@ -198,28 +182,28 @@ static bool carry_out(const himc_load_target *target, const himc_command *comman
                         : runner_of(target)->run(target->performance, command, delay, error);
 }
 
-static himc_job *make_job(const waiting_load *load, himc_error *error)
-{
-    return load->target.drum
-               ? himc_drum_job(load->target.drum, &load->command, error)
-               : runner_of(&load->target)->job(load->target.performance, &load->command, error);
-}
-
 // begins with the first that waits; true if it was short
 static bool begin_first(himc_loader *loader)
 {
-    const waiting_load *load = &loader->queue[loader->first];
+    const himc_load_target *target = &loader->queue[loader->first].target;
+    const himc_command *command = &loader->queue[loader->first].command;
     himc_error error = {""};
-    if (takes_long(&load->target, &load->command)) {
-        loader->job = start(loader, &error) ? make_job(load, &error) : NULL;
+    if (takes_long(target, command)) {
+        if (!loader->running)
+            loader->running = himc_system_start_thread(&loader->thread, help, loader);
+        if (!loader->running)
+            himc_error_set(&error, "no thread to load in");
+        loader->job = !loader->running ? NULL
+                      : target->drum   ? himc_drum_job(target->drum, command, &error)
+                                     : runner_of(target)->job(target->performance, command, &error);
         if (loader->job)
             hand_over(loader, PREPARING);
         else
             end_first(loader, error.text);
         return false;
     }
-    bool head = himc_command_table((int)load->command.id)->marks & HIMC_CHANGES_HEAD;
-    bool good = carry_out(&load->target, &load->command, 0, &error);
+    bool head = himc_command_table((int)command->id)->marks & HIMC_CHANGES_HEAD;
+    bool good = carry_out(target, command, 0, &error);
     end_first(loader, good ? NULL : error.text);
     return !head;
 }
@@ -265,17 +249,6 @@ void himc_loader_finish(himc_loader *loader)
     }
 }
 
-// room for one more, or NULL
-static waiting_load *add(himc_loader *loader, himc_error *error)
-{
-    if (loader->count == WAITING_LOADS) {
-        loader->dropped++;
-        himc_error_set(error, "more than %d commands wait: this one is dropped", WAITING_LOADS);
-        return NULL;
-    }
-    return &loader->queue[(loader->first + loader->count++) % WAITING_LOADS];
-}
-
 bool himc_loader_command(himc_loader *loader, const himc_load_target *asked,
                          const himc_command *command, himc_error *error)
 {
@@ -287,9 +260,11 @@ bool himc_loader_command(himc_loader *loader, const himc_load_target *asked,
     }
     if (loader->count == 0 && !takes_long(target, command))
         return carry_out(asked, command, asked->delay, error);
-    waiting_load *load = add(loader, error);
-    if (!load)
-        return loader->dropped > 1;
+    if (loader->count == WAITING_LOADS) {
+        himc_error_set(error, "more than %d commands wait: this one is dropped", WAITING_LOADS);
+        return loader->dropped++ > 0;
+    }
+    waiting_load *load = &loader->queue[(loader->first + loader->count++) % WAITING_LOADS];
     load->target = *target;
     himc_command_copy(&load->command, command);
     if (target->drum)

@@ -5,7 +5,6 @@
 /// that both have keep energy and phase, and the energy never grows; a declick keeps the sound
 /// continuous. Where no memory may be had, the model is made in the place of the present one, whose
 /// bank carries itself over.
-#include "drum/membrane_probe.h"
 #include "drum/membrane_state.h"
 
 #include "head/pickup.h"
@@ -104,7 +103,7 @@ static sounds read_sounds(himc_membrane *m)
 {
     sounds s = {0};
     for (int i = 0; i < HIMC_OUTPUTS; i++) {
-        if (!himc_membrane_wants(m, i))
+        if (!himc_membrane_has(m, i))
             continue;
         himc_readout *readout = &m->model->outputs[i].readout;
         const declick *d = &m->declicks[i];
@@ -173,28 +172,13 @@ static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before)
     }
 }
 
-// the state of `from` goes on in the membrane's model, which was made aside
-static void carry_over(himc_membrane *m, himc_model *from)
-{
-    himc_model *to = m->model;
-    himc_bank_set_step(to->bank, m->step);
-    for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
-        to->points[i].used = false; // what they know may be of pickups as they were then
-    if (to->stale && !m->muted)
-        himc_model_find_outputs(to, 0, HIMC_PICKUPS, false);
-    if (himc_shape_equal(&from->config.shape, &to->config.shape))
-        himc_bank_continue(to->bank, from->bank, himc_modes_common(from->modes, to->modes));
-    else
-        himc_bank_rest(to->bank);
-}
-
-// Gives the membrane the model `made`, or if that is NULL makes that of `config` in its place; its
-// sounds were `before`.
-static void change(himc_membrane *m, const himc_membrane_config *config, himc_model *made,
-                   const sounds *before)
+// Gives the membrane the model `made`, whose config this is, or if that is NULL makes that of
+// `config` in its place.
+static void change(himc_membrane *m, const himc_membrane_config *config, himc_model *made)
 {
     himc_model *was = m->model;
-    double energy = himc_membrane_energy(m);
+    double energy = himc_membrane_energy(m), samples = was->config.rate / config->rate;
+    sounds before = read_sounds(m);
     himc_lugs_pair pairs[HIMC_LUGS_ORDERS];
     bool outline = himc_shape_equal(&was->config.shape, &config->shape);
     bool bends = outline && !himc_head_equal(&was->config.head, &config->head);
@@ -202,32 +186,40 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
     if (bends)
         bend(m, -1);
     m->revision++;
-    m->model = made ? made : was;
-    if (made)
-        carry_over(m, was);
-    else
-        himc_model_make(was, config, m->muted);
+    if (made) {
+        bool lacks = made->config.muted && !was->config.muted;
+        m->model = made;
+        made->config.muted = was->config.muted;
+        himc_bank_set_step(made->bank, m->step);
+        for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
+            made->points[i].used = false; // what they know may be of pickups as they were then
+        if (lacks)
+            himc_model_find_outputs(made, 0, HIMC_PICKUPS);
+        if (outline)
+            himc_bank_continue(made->bank, was->bank, himc_modes_common(was->modes, made->modes));
+        else
+            himc_bank_rest(made->bank);
+    } else {
+        himc_model_make(was, config);
+    }
     himc_model_watch(m->model, m->watch_x, m->watch_y);
     if (bends) {
         turn_pairs(m, pairs);
         bend(m, 1);
     }
     keep_energy(m, energy);
-    declick_from(m, before, 0, HIMC_OUTPUTS);
+    for (int i = 0; i < HIMC_OUTPUTS && samples != 1; i++) {
+        sound_pair *s = &before.of[i];
+        s->next = s->now + (s->next - s->now) * samples;
+    }
+    declick_from(m, &before, 0, HIMC_OUTPUTS);
 }
 
 himc_model *himc_membrane_exchange(himc_membrane *m, himc_model *made)
 {
     himc_model *was = m->model;
-    sounds before = read_sounds(m);
-    change(m, &made->config, made, &before);
+    change(m, &made->config, made);
     return was;
-}
-
-void himc_membrane_retune(himc_membrane *m, const himc_membrane_config *config)
-{
-    sounds before = read_sounds(m);
-    change(m, config, NULL, &before);
 }
 
 bool himc_membrane_become(himc_membrane *m, const himc_membrane_config *config, himc_error *error)
@@ -235,7 +227,7 @@ bool himc_membrane_become(himc_membrane *m, const himc_membrane_config *config, 
     if (!himc_membrane_config_check(config, error))
         return false;
     if (himc_model_has_room(m->model, config)) {
-        himc_membrane_retune(m, config);
+        change(m, config, NULL);
         return true;
     }
     himc_model *made = himc_model_new(config, NULL, error);
@@ -244,39 +236,42 @@ bool himc_membrane_become(himc_membrane *m, const himc_membrane_config *config, 
     return made;
 }
 
-bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error)
+bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
 {
     himc_membrane_config config = membrane->model->config;
-    config.head = *head;
+    config.rate = rate;
     return himc_membrane_become(membrane, &config, error);
+}
+
+// outputs from `first` to `end` become those of a config that differs in nothing else
+static void change_outputs(himc_membrane *m, const himc_membrane_config *config, int first, int end)
+{
+    sounds before = read_sounds(m);
+    m->model->config = *config;
+    himc_model_find_outputs(m->model, first, end);
+    declick_from(m, &before, first, end);
 }
 
 bool himc_membrane_set_pickups(himc_membrane *membrane, const himc_pickup *pickups, int count,
                                himc_error *error)
 {
-    himc_model *model = membrane->model;
+    himc_membrane_config config = membrane->model->config;
     if (!himc_check_range("pickups", count, 1, HIMC_PICKUPS, "", error))
         return false;
     for (int i = 0; i < count; i++)
-        if (!himc_pickup_check(&pickups[i], &model->config.head, error))
+        if (!himc_pickup_check(&pickups[i], &config.head, error))
             return false;
-    sounds before = read_sounds(membrane);
-    memcpy(model->config.pickups, pickups, sizeof *pickups * (size_t)count);
-    model->config.pickup_count = count;
-    himc_model_find_outputs(model, 0, HIMC_PICKUPS, membrane->muted);
-    declick_from(membrane, &before, 0, HIMC_PICKUPS);
+    memcpy(config.pickups, pickups, sizeof *pickups * (size_t)count);
+    config.pickup_count = count;
+    change_outputs(membrane, &config, 0, HIMC_PICKUPS);
     return true;
 }
 
 void himc_membrane_set_rays(himc_membrane *membrane, const himc_pickup *rays)
 {
     himc_membrane_config config = membrane->model->config;
-    if (!himc_membrane_config_set_rays(&config, rays))
-        return;
-    sounds before = read_sounds(membrane);
-    membrane->model->config = config;
-    himc_model_find_outputs(membrane->model, HIMC_PICKUPS, HIMC_OUTPUTS, false);
-    declick_from(membrane, &before, HIMC_PICKUPS, HIMC_OUTPUTS);
+    if (himc_membrane_config_set_rays(&config, rays))
+        change_outputs(membrane, &config, HIMC_PICKUPS, HIMC_OUTPUTS);
 }
 
 void himc_membrane_share(himc_membrane *m, bool shares)
@@ -284,7 +279,7 @@ void himc_membrane_share(himc_membrane *m, bool shares)
     himc_membrane_config config = m->model->config;
     config.shares = shares;
     if (m->model->config.shares != shares)
-        himc_membrane_retune(m, &config);
+        change(m, &config, NULL);
 }
 
 const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count)
@@ -305,25 +300,13 @@ void himc_membrane_kick(himc_membrane *membrane, int index, double change)
 
 void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
 {
-    bool returns = membrane->muted && !mute;
-    membrane->muted = mute;
-    if (returns)
-        himc_model_find_outputs(membrane->model, 0, HIMC_PICKUPS, false);
-}
-
-bool himc_membrane_set_rate(himc_membrane *membrane, double rate, himc_error *error)
-{
-    himc_membrane_config config = membrane->model->config;
-    if (!himc_check_range("sample rate", rate, 4000, 480000, "Hz", error))
-        return false;
-    sounds before = read_sounds(membrane);
-    for (int i = 0; i < HIMC_OUTPUTS; i++) {
-        sound_pair *s = &before.of[i];
-        s->next = s->now + (s->next - s->now) * (config.rate / rate);
-    }
-    config.rate = rate;
-    change(membrane, &config, NULL, &before);
-    return true;
+    if (membrane->model->config.muted == mute)
+        return;
+    membrane->model->config.muted = mute;
+    memset(membrane->declicks, 0, sizeof *membrane->declicks * HIMC_PICKUPS);
+    memset(membrane->sound, 0, sizeof *membrane->sound * HIMC_PICKUPS);
+    if (!mute)
+        himc_model_find_outputs(membrane->model, 0, HIMC_PICKUPS);
 }
 
 void himc_membrane_watch(himc_membrane *membrane, double x, double y)
@@ -333,12 +316,6 @@ void himc_membrane_watch(himc_membrane *membrane, double x, double y)
     membrane->watch_x = x;
     membrane->watch_y = y;
     himc_model_watch(membrane->model, x, y);
-}
-
-void himc_membrane_excite(himc_membrane *membrane, int index, double q, double v)
-{
-    himc_bank_excite(membrane->model->bank, index, q, v);
-    himc_bank_find_film(membrane->model->bank);
 }
 
 void himc_membrane_rest(himc_membrane *membrane)

@@ -17,13 +17,23 @@ bool himc_shape_equal(const himc_shape *a, const himc_shape *b)
     return a->kind == b->kind && a->grid == b->grid && a->length * b->width == b->length * a->width;
 }
 
+// all fields of a head
+#define FIELDS(OF)                                                                         \
+    OF(radius), OF(tension), OF(density), OF(decay_constant), OF(decay_square), OF(modes), \
+        OF(air), OF(kettle), OF(glide), OF(damp), OF(uniformity), OF(uniformity_seed)
+
 bool himc_head_equal(const himc_head *a, const himc_head *b)
 {
-    return a->radius == b->radius && a->tension == b->tension && a->density == b->density &&
-           a->decay_constant == b->decay_constant && a->decay_square == b->decay_square &&
-           a->modes == b->modes && a->air == b->air && a->kettle == b->kettle &&
-           a->glide == b->glide && a->damp == b->damp && a->uniformity == b->uniformity &&
-           a->uniformity_seed == b->uniformity_seed;
+#define SAME(field) (equal = equal && a->field == b->field)
+    bool equal = true;
+    FIELDS(SAME);
+    return equal;
+}
+
+void himc_head_keep_edits(himc_head *head, const himc_head *was, const himc_head *now)
+{
+#define KEEP(field) (head->field = now->field != was->field ? now->field : head->field)
+    FIELDS(KEEP);
 }
 
 static bool same_pickups(const himc_pickup *a, const himc_pickup *b, int count)

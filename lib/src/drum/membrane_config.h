@@ -17,20 +17,24 @@ typedef struct himc_membrane_config {
     himc_head head;
     himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
-    bool rays;   ///< it has them
+    bool rays;  ///< it has them
+    bool muted; ///< the pickups' sound is not wanted, and their outputs are of no use; a membrane's
+                ///< own, and no difference between two configs
     bool shares; ///< the air between this head and others takes what its shared modes radiate; they
                  ///< decay by so much less
     double rate; ///< (Hz)
 } himc_membrane_config;
 
-/// Whether the config has output k, a pickup or a ray.
+/// Whether output k, a pickup or a ray, sounds.
 static inline bool himc_membrane_config_has(const himc_membrane_config *c, int k)
 {
-    return k < c->pickup_count || (c->rays && k >= HIMC_PICKUPS);
+    return k < HIMC_PICKUPS ? k < c->pickup_count && !c->muted : c->rays;
 }
 
 /// True if all of both heads is the same.
 HIMC_RT bool himc_head_equal(const himc_head *a, const himc_head *b);
+/// Sets in `head` what differs between `was` and `now`.
+HIMC_RT void himc_head_keep_edits(himc_head *head, const himc_head *was, const himc_head *now);
 /// True if modes of one outline are modes of the other, in another size.
 HIMC_RT bool himc_shape_equal(const himc_shape *a, const himc_shape *b);
 HIMC_RT bool himc_membrane_config_equal(const himc_membrane_config *a,

@@ -1,6 +1,6 @@
 /// membrane_read.c: what a membrane is asked for: its head, modes and pitch, and the shapes that it
 /// has now. Nothing changes it.
-#include "drum/membrane_probe.h"
+#include "drum/drum_performer.h"
 #include "drum/membrane_state.h"
 
 #include <math.h>
@@ -66,19 +66,6 @@ static double coordinate(const himc_membrane *membrane, int count, const double 
     return q;
 }
 
-// displacements of the bare shapes of order 0, from those of what a kettle makes of them
-static void unmix(const himc_membrane *membrane, int count, const double *modal,
-                  double *displacement)
-{
-    const himc_mixture *mix = himc_modes_mixture(membrane->model->modes);
-    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
-        double sum = 0;
-        for (int n = 0; n < mix->count; n++)
-            sum += mix->part[n][k] * coordinate(membrane, count, modal, mix->index[n]);
-        displacement[mix->index[k]] = sum;
-    }
-}
-
 void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
                            double *displacement)
 {
@@ -99,5 +86,12 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, const doubl
         displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
                                     : pair[0] * axis->cosine - pair[1] * axis->sine;
     }
-    unmix(membrane, count, modal, displacement);
+    // the bare shapes of order 0, from what a kettle makes of them
+    const himc_mixture *mix = himc_modes_mixture(modes);
+    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
+        double *sum = &displacement[mix->index[k]];
+        *sum = 0;
+        for (int n = 0; n < mix->count; n++)
+            *sum += mix->part[n][k] * coordinate(membrane, count, modal, mix->index[n]);
+    }
 }

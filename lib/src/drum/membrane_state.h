@@ -34,7 +34,6 @@ static inline double declick_at(const declick *d, int at)
 
 struct himc_membrane {
     himc_model *model;     ///< owned; with the state of its modes
-    bool muted;            ///< the pickups' sound is not wanted
     unsigned revision;     ///< grows with every change of head or rate
     himc_step_length step; ///< of the next step
     bool ends_sample;      ///< the next step is the last one of a sample
@@ -47,16 +46,10 @@ struct himc_membrane {
     double sound[HIMC_OUTPUTS]; ///< of the last sample
 };
 
-/// Whether the membrane has output k, a pickup or a ray.
+/// Whether output k of the membrane, a pickup or a ray, sounds.
 static inline bool himc_membrane_has(const himc_membrane *m, int k)
 {
     return himc_membrane_config_has(&m->model->config, k);
-}
-
-/// Whether its sound is wanted, too.
-static inline bool himc_membrane_wants(const himc_membrane *m, int k)
-{
-    return himc_membrane_has(m, k) && !(m->muted && k < HIMC_PICKUPS);
 }
 
 /// What a newton at the point does in a step of that length, found when first asked for.
@@ -75,14 +68,11 @@ himc_membrane *himc_membrane_new_of(himc_model *model, himc_error *error);
 /// now on. Modes of the same outline keep energy and phase, the sound of those that no longer exist
 /// ends in 5 ms, and there is no click; another outline begins at rest.
 HIMC_RT himc_model *himc_membrane_exchange(himc_membrane *membrane, himc_model *model);
-/// The same for a config whose model has room in the present one's place (himc_model_has_room).
-HIMC_RT void himc_membrane_retune(himc_membrane *membrane, const himc_membrane_config *config);
-/// The same for any config. False with the reason, and nothing changed, if there is no such head.
+/// The same for a config; without allocation if its model has room in the present one's place
+/// (himc_model_has_room). False with the reason, and nothing changed, if there is no such head.
 bool himc_membrane_become(himc_membrane *membrane, const himc_membrane_config *config,
                           himc_error *error);
 
-/// The same for another head of the same outline.
-bool himc_membrane_set_head(himc_membrane *membrane, const himc_head *head, himc_error *error);
 /// Sets its rays (HIMC_RAYS, of kind AIR), or NULL for none. Their sound begins, or changes over,
 /// in 5 ms; the pickups do not notice.
 HIMC_RT void himc_membrane_set_rays(himc_membrane *membrane, const himc_pickup *rays);
@@ -95,10 +85,11 @@ HIMC_RT unsigned himc_membrane_revision(const himc_membrane *membrane);
 /// Between two samples: changes the velocity of mode `index` (m/s).
 HIMC_RT void himc_membrane_kick(himc_membrane *membrane, int index, double change);
 
-/// himc_membrane_run with a row for each of the HIMC_OUTPUTS.
+/// himc_membrane_run with a row for each of the HIMC_OUTPUTS; rows of muted pickups stay as they
+/// are.
 HIMC_RT void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound,
                                    double *watched);
-/// Whether the sound of the pickups is not wanted: it is then 0 in samples with contact, too.
+/// Whether the sound of the pickups is not wanted: himc_membrane_sound is then 0.
 HIMC_RT void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute);
 
 #endif

@@ -9,8 +9,6 @@
 /// of it.
 #include "drum/membrane_state.h"
 
-#include "drum/membrane_probe.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -37,49 +35,29 @@ static const double *weights(himc_membrane *m, double b)
     return oldest->weight;
 }
 
-// what the modes of the list do not yield under a patch of radius b
-static himc_residual find_residual(const himc_membrane *m, const strike_point *s, double b)
+// spreads a force at the point over its patch, and finds what the list's modes do not yield there
+static void spread(himc_membrane *m, strike_point *s)
 {
     const himc_model *c = m->model;
-    double compliance = c->config.shape.kind->compliance(&c->config.head, s->x, s->y, b);
-    double per_mass = 1 / (m->model->config.head.density * HIMC_PI * b * b);
+    const himc_head *head = &c->config.head;
+    const himc_kind *kind = c->config.shape.kind;
+    double b = kind->patch ? kind->patch(head, s->x, s->y, s->b) : 0;
+    s->residual = (himc_residual){0};
+    if (!(b > 0))
+        return;
+    const double *weight = weights(m, b);
+    for (int i = 0; i < himc_modes_count(c->modes); i++)
+        s->shape[i] *= weight[i];
+    if (!kind->compliance)
+        return;
+    double compliance = kind->compliance(head, s->x, s->y, b);
+    double per_mass = 1 / (head->density * HIMC_PI * b * b);
     for (int i = 0; i < himc_bank_count(c->bank); i++) {
         double square = s->shape[i] * s->shape[i];
         compliance -= square * c->per_stiffness[i];
         per_mass -= square * c->per_mass[i];
     }
-    return himc_residual_of(compliance, per_mass);
-}
-
-// spreads a force at the point over its patch
-static void spread(himc_membrane *m, strike_point *s)
-{
-    const himc_membrane_config *c = &m->model->config;
-    const himc_kind *kind = c->shape.kind;
-    double b = kind->patch ? kind->patch(&c->head, s->x, s->y, s->b) : 0;
-    s->residual = (himc_residual){0};
-    if (!(b > 0))
-        return;
-    const double *weight = weights(m, b);
-    for (int i = 0; i < himc_modes_count(m->model->modes); i++)
-        s->shape[i] *= weight[i];
-    if (kind->compliance)
-        s->residual = find_residual(m, s, b);
-}
-
-// finds the point's shapes; most points of a stick on its way feel no force
-static void move_point(himc_membrane *m, strike_point *s, double x, double y, double b)
-{
-    const himc_model *c = m->model;
-    s->used = true;
-    s->x = x;
-    s->y = y;
-    s->b = b;
-    himc_modes_shapes(c->modes, m->model->config.head.radius, x, y, s->shape);
-    spread(m, s);
-    himc_modes_mix(c->modes, s->shape);
-    himc_bank_readout(c->bank, s->shape, NULL, NULL, &s->readout);
-    memset(s->responds, 0, sizeof s->responds);
+    s->residual = himc_residual_of(compliance, per_mass);
 }
 
 const himc_unit_response *himc_strike_point_response(himc_membrane *m, strike_point *s,
@@ -93,15 +71,10 @@ const himc_unit_response *himc_strike_point_response(himc_membrane *m, strike_po
     himc_bank_set_step(c->bank, k);
     e->compliance = himc_bank_response(c->bank, s->shape, &s->readout);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
-        if (himc_membrane_wants(m, i))
+        if (himc_membrane_has(m, i))
             e->sound[i] = himc_bank_sum(c->bank, s->shape, c->outputs[i].response[k]);
     himc_bank_set_step(c->bank, m->step);
     return e;
-}
-
-int himc_membrane_substeps(const himc_membrane *membrane)
-{
-    return himc_model_substeps(membrane->model);
 }
 
 void himc_membrane_set_substep(himc_membrane *membrane, int index, int count)
@@ -113,18 +86,28 @@ void himc_membrane_set_substep(himc_membrane *membrane, int index, int count)
 
 strike_point *himc_membrane_strike_point(himc_membrane *membrane, double x, double y, double b)
 {
-    strike_point *oldest = &membrane->model->points[0];
+    himc_model *c = membrane->model;
+    strike_point *oldest = &c->points[0];
     for (int i = 0; i < HIMC_STRIKE_POINTS; i++) {
-        strike_point *s = &membrane->model->points[i];
+        strike_point *s = &c->points[i];
         if (s->used && s->x == x && s->y == y && s->b == b) {
-            s->age = ++membrane->model->clock;
+            s->age = ++c->clock;
             return s;
         }
         if (!s->used || (oldest->used && s->age < oldest->age))
             oldest = s;
     }
-    move_point(membrane, oldest, x, y, b);
-    oldest->age = ++membrane->model->clock;
+    // most points of a stick on its way feel no force: responses are found when asked for
+    oldest->used = true;
+    oldest->x = x;
+    oldest->y = y;
+    oldest->b = b;
+    himc_modes_shapes(c->modes, c->config.head.radius, x, y, oldest->shape);
+    spread(membrane, oldest);
+    himc_modes_mix(c->modes, oldest->shape);
+    himc_bank_readout(c->bank, oldest->shape, NULL, NULL, &oldest->readout);
+    memset(oldest->responds, 0, sizeof oldest->responds);
+    oldest->age = ++c->clock;
     return oldest;
 }
 
@@ -151,16 +134,10 @@ void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double fo
     himc_bank_push(membrane->model->bank, s->shape, force);
     const himc_unit_response *e = himc_strike_point_response(membrane, s, membrane->step);
     for (int i = 0; i < HIMC_OUTPUTS; i++)
-        if (himc_membrane_wants(membrane, i))
+        if (himc_membrane_has(membrane, i))
             membrane->sound[i] += e->sound[i] * force;
     if (membrane->applied_count < HIMC_STRIKE_POINTS)
         membrane->applied[membrane->applied_count++] = (himc_push){s->x, s->y, s->b, force};
-}
-
-double himc_membrane_rise(const himc_membrane *membrane)
-{
-    return sqrt(2 * himc_model_film_stiffness(membrane->model)) *
-           himc_bank_film(membrane->model->bank);
 }
 
 // runs n steps without forces; adds the declicks to the sound
@@ -199,7 +176,7 @@ void himc_membrane_free_step(himc_membrane *membrane)
 {
     double sound[HIMC_OUTPUTS], *into[HIMC_OUTPUTS];
     for (int k = 0; k < HIMC_OUTPUTS; k++)
-        into[k] = himc_membrane_wants(membrane, k) ? &sound[k] : NULL;
+        into[k] = himc_membrane_has(membrane, k) ? &sound[k] : NULL;
     run_free(membrane, 1, into, NULL);
     for (int i = 0; i < membrane->push_count; i++) {
         const himc_push *p = &membrane->pushes[i];
@@ -252,13 +229,6 @@ double himc_membrane_watched(const himc_membrane *membrane)
 {
     // only what is known of the coming samples changes, which nobody can see
     return himc_bank_read(membrane->model->bank, &((himc_membrane *)membrane)->model->watched);
-}
-
-double himc_membrane_displacement(const himc_membrane *membrane, double x, double y)
-{
-    // only the cache of points changes, which nobody can see
-    return himc_strike_point_displacement(
-        membrane, himc_membrane_strike_point((himc_membrane *)membrane, x, y, 0));
 }
 
 double himc_membrane_energy(const himc_membrane *membrane)

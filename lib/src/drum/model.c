@@ -60,15 +60,6 @@ static himc_readout take_readout(double **memory, int length)
     return (himc_readout){.p = p, .s = take(memory, length)};
 }
 
-static himc_output take_output(double **memory, int length)
-{
-    himc_output o = {.readout = take_readout(memory, length)};
-    o.readout.film = take(memory, length);
-    for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
-        o.response[k] = take(memory, length);
-    return o;
-}
-
 static void share_memory(himc_model *c)
 {
     int padded = himc_bank_padded(c->bank);
@@ -78,8 +69,12 @@ static void share_memory(himc_model *c)
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = take(&memory, padded);
     c->watched = take_readout(&memory, padded);
-    for (int i = 0; i < HIMC_OUTPUTS; i++)
-        c->outputs[i] = take_output(&memory, padded);
+    for (int i = 0; i < HIMC_OUTPUTS; i++) {
+        c->outputs[i].readout = take_readout(&memory, padded);
+        c->outputs[i].readout.film = take(&memory, padded);
+        for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
+            c->outputs[i].response[k] = take(&memory, padded);
+    }
     c->rays.form = take_readout(&memory, padded);
     c->rays.form.film = take(&memory, padded);
     for (int i = 0; i < HIMC_RAYS; i++) {
@@ -106,7 +101,7 @@ static void copy(himc_model *c, const himc_model *from)
     memcpy(c->shared, from->shared, sizeof c->shared);
     c->shared_count = from->shared_count;
     c->air = from->air;
-    c->stale = from->stale;
+    c->config.muted = from->config.muted;
     c->rays.form.direct = from->rays.form.direct;
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         c->outputs[i].readout.direct = from->outputs[i].readout.direct;
@@ -141,7 +136,7 @@ himc_model *himc_model_new(const himc_membrane_config *config, const himc_model 
     if (like && himc_membrane_config_equal(config, &like->config))
         copy(c, like);
     else
-        himc_model_make(c, config, false);
+        himc_model_make(c, config);
     return c;
 }
 
@@ -161,9 +156,9 @@ double himc_model_film_stiffness(const himc_model *m)
     return m->config.head.glide * YOUNG * thickness / (2 * (1 - POISSON * POISSON) * area);
 }
 
-int himc_model_substeps(const himc_model *model)
+int himc_membrane_substeps(double rate)
 {
-    return (int)ceil(SUBSTEP_RATE / model->config.rate);
+    return (int)ceil(SUBSTEP_RATE / rate);
 }
 
 // Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
@@ -217,19 +212,6 @@ int himc_membrane_interval(double rate)
     return samples;
 }
 
-// responses of an output to modal forces: through the state and, for accelerations, direct ones
-static void find_responses(himc_model *m, himc_output *o, const double *direct)
-{
-    himc_bank *bank = m->bank;
-    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
-        himc_bank_set_step(bank, (himc_step_length)k);
-        himc_bank_step_response(bank, &o->readout, o->response[k]);
-        for (int i = 0; direct && i < himc_bank_count(bank); i++)
-            o->response[k][i] += direct[i];
-    }
-    himc_bank_set_step(bank, HIMC_STEP_SAMPLE);
-}
-
 // as its oscillator has it
 static himc_mode sounding_mode(const himc_model *m, int i)
 {
@@ -259,16 +241,29 @@ static void find_output(himc_model *m, int index)
         if (index >= HIMC_PICKUPS)
             m->rays.gain[index - HIMC_PICKUPS][i] = unit * w.gain;
     }
+    himc_output *o = &m->outputs[index];
     himc_bank_readout(m->bank, m->on_q, m->on_v,
-                      pickup->kind == HIMC_PICKUP_AIR ? m->on_force : NULL,
-                      &m->outputs[index].readout);
-    find_responses(m, &m->outputs[index], m->on_force);
+                      pickup->kind == HIMC_PICKUP_AIR ? m->on_force : NULL, &o->readout);
+    // responses to modal forces: through the state and, for accelerations, direct ones
+    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
+        himc_bank_set_step(m->bank, (himc_step_length)k);
+        himc_bank_step_response(m->bank, &o->readout, o->response[k]);
+        for (int i = 0; i < himc_bank_count(m->bank); i++)
+            o->response[k][i] += m->on_force[i];
+    }
+    himc_bank_set_step(m->bank, HIMC_STEP_SAMPLE);
 }
 
-// what all its rays have in common
-static void find_form(himc_model *m)
+void himc_model_find_outputs(himc_model *m, int first, int end)
 {
-    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+    for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
+        m->points[i].used = false;
+    for (int i = first; i < end; i++)
+        if (himc_membrane_config_has(&m->config, i))
+            find_output(m, i);
+    if (end <= HIMC_PICKUPS || !m->config.rays || !m->config.shape.kind->form)
+        return;
+    for (int i = 0; i < himc_modes_count(m->modes); i++) { // what all rays have in common
         himc_mode mode = sounding_mode(m, i);
         pickup_weights w = m->config.shape.kind->form(&mode);
         m->on_q[i] = w.displacement;
@@ -278,19 +273,6 @@ static void find_form(himc_model *m)
     himc_bank_readout(m->bank, m->on_q, m->on_v, m->on_force, &m->rays.form);
 }
 
-void himc_model_find_outputs(himc_model *m, int first, int end, bool muted)
-{
-    for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
-        m->points[i].used = false;
-    for (int i = first; i < end; i++)
-        if (himc_membrane_config_has(&m->config, i) && !(muted && i < HIMC_PICKUPS))
-            find_output(m, i);
-    if (first < HIMC_PICKUPS)
-        m->stale = muted;
-    if (end > HIMC_PICKUPS && m->config.rays && m->config.shape.kind->form)
-        find_form(m);
-}
-
 void himc_model_watch(himc_model *m, double x, double y)
 {
     himc_modes_shapes(m->modes, m->config.head.radius, x, y, m->scratch);
@@ -298,22 +280,12 @@ void himc_model_watch(himc_model *m, double x, double y)
     himc_bank_readout(m->bank, m->scratch, NULL, NULL, &m->watched);
 }
 
-// The film is off while it could not raise the tension by SLACK of it, 0.001 cent, even with twice
-// the energy in the head.
-static void set_film(himc_model *m)
+void himc_model_make(himc_model *m, const himc_membrane_config *config)
 {
-    double tension = m->config.head.tension, stiffness = himc_model_film_stiffness(m);
-    if (stiffness > 0)
-        himc_bank_set_film(m->bank, m->stretch, SLACK * tension * tension / (2 * stiffness));
-    else
-        himc_bank_set_film(m->bank, NULL, 0);
-}
-
-void himc_model_make(himc_model *m, const himc_membrane_config *config, bool muted)
-{
-    himc_shape shape = *himc_modes_shape(m->modes); // it has the grid
+    bool muted = m->config.muted;
     m->config = *config;
-    m->config.shape = shape;
+    m->config.shape = *himc_modes_shape(m->modes); // it has the grid
+    m->config.muted = muted;
     himc_membrane_config_keep_pickups(&m->config);
     const himc_head *head = &m->config.head;
     himc_modes_set_lugs(m->modes, head->uniformity, head->uniformity_seed);
@@ -322,8 +294,11 @@ void himc_model_make(himc_model *m, const himc_membrane_config *config, bool mut
     himc_modes_mix_as(m->modes, head->air ? &mixture : NULL);
     find_oscillators(m);
     find_shared(m);
-    himc_bank_set_substeps(m->bank, himc_model_substeps(m));
+    himc_bank_set_substeps(m->bank, himc_membrane_substeps(m->config.rate));
     himc_bank_set(m->bank, m->oscillators, himc_modes_count(m->modes), m->config.rate);
-    set_film(m);
-    himc_model_find_outputs(m, 0, HIMC_OUTPUTS, muted);
+    // off while it could not raise the tension by SLACK of it, even with twice the energy
+    double stiffness = himc_model_film_stiffness(m);
+    himc_bank_set_film(m->bank, stiffness > 0 ? m->stretch : NULL,
+                       SLACK * head->tension * head->tension / (2 * stiffness));
+    himc_model_find_outputs(m, 0, HIMC_OUTPUTS);
 }

@@ -60,7 +60,6 @@ typedef struct himc_model {
     double *wave;                     ///< wave numbers of the bare modes (1/m)
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     himc_output outputs[HIMC_OUTPUTS];
-    bool stale;      ///< the pickups' outputs are not of these modes: they were muted
     himc_alike rays; ///< of a kind whose rays have a form
     // room for what a membrane has of so many modes: its state, and what it keeps of pure functions
     // of the model
@@ -80,18 +79,16 @@ himc_model *himc_model_new(const himc_membrane_config *config, const himc_model 
 void himc_model_free(himc_model *model);
 /// Whether himc_model_make can make a model of that config out of this one.
 HIMC_RT bool himc_model_has_room(const himc_model *model, const himc_membrane_config *config);
-/// Makes the model anew, in its own place; what is in its bank keeps energy and phase. With
-/// `muted`, pickups are left out until himc_model_find_outputs.
-HIMC_RT void himc_model_make(himc_model *model, const himc_membrane_config *config, bool muted);
-/// Outputs from `first` to `end`, but muted pickups; strike points are forgotten, as they hold
-/// responses to them.
-HIMC_RT void himc_model_find_outputs(himc_model *model, int first, int end, bool muted);
+/// Makes the model anew, in its own place; what is in its bank keeps energy and phase, and what is
+/// muted stays so.
+HIMC_RT void himc_model_make(himc_model *model, const himc_membrane_config *config);
+/// Outputs from `first` to `end` that sound; strike points are forgotten, as they hold responses to
+/// them.
+HIMC_RT void himc_model_find_outputs(himc_model *model, int first, int end);
 /// The readout of the displacement at a point.
 HIMC_RT void himc_model_watch(himc_model *model, double x, double y);
 /// The film's constant kappa: int |grad w|^2 dS times kappa is the rise of tension (N/m^3).
 HIMC_RT double himc_model_film_stiffness(const himc_model *model);
-/// Number of substeps of a sample with a stiff contact: each lasts 5.2 microseconds or less.
-HIMC_RT int himc_model_substeps(const himc_model *model);
 /// Interval between two exchanges with other heads at a rate (Hz): 8, 16, 32 or 64 samples.
 HIMC_RT int himc_membrane_interval(double rate);
 

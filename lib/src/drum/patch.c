@@ -55,7 +55,7 @@ double himc_patch_radius(const himc_head *head, const himc_mallet_head *mallet, 
     double c = pow((n + 1) * energy / mallet->stiffness, 1 / (n + 1));
     for (int i = 0; i < SOLVER_STEPS; i++) {
         felt f = himc_felt_at(mallet, 1, c);
-        double force = himc_felt_static(&f), potential = himc_felt_potential(&f);
+        double force = f.outer.force + f.core.force, potential = himc_felt_potential(&f);
         double bent = force / (2 * HIMC_PI * head->tension);
         b = fmin(WEIGHTED_MEAN * sqrt(mallet->radius * (c + bent)), most);
         double pressed = himc_kind_round.compliance(head, distance, 0, b) * force * force;

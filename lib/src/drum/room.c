@@ -35,29 +35,22 @@
 static const double ENTERING[HIMC_ROOM_LINES] = {-1, -1, 1, 1, -1, -1, 1, 1,
                                                  -1, -1, 1, 1, -1, -1, 1, 1};
 
-// the filter of a wall after a delay of d seconds
-static void set_wall(himc_room_form *f, int line, double d, double t60, double rate)
-{
-    double gain = pow(10, -3 * d / t60), high = fmin(HIGH, 0.4 * rate);
-    double ratio = pow(10, -3 * d / t60 * (1 / HIGH_PART - 1)), b = ratio * ratio;
-    // (1 - p)^2 = b |1 - p exp(-i w)|^2
-    double s = 1 - b, c = 1 - b * cos(2 * HIMC_PI * high / rate);
-    double p = (c - sqrt((c - s) * (c + s))) / s;
-    f->keep[line] = p;
-    f->take[line] = gain * (1 - p);
-}
-
 static himc_room_form form_of(const himc_walls *walls, const int *delay, double rate)
 {
     himc_room_form f;
-    double loss = 0;
+    double loss = 0, t60 = walls->seconds, angle = 2 * HIMC_PI * fmin(HIGH, 0.4 * rate) / rate;
     for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        set_wall(&f, l, delay[l] / rate, walls->seconds, rate);
+        // the filter of a wall after the delay: (1 - p)^2 = b |1 - p exp(-i w)|^2
+        double d = delay[l] / rate, ratio = pow(10, -3 * d / t60 * (1 / HIGH_PART - 1));
+        double b = ratio * ratio, s = 1 - b, c = 1 - b * cos(angle);
+        double p = (c - sqrt((c - s) * (c + s))) / s;
+        f.keep[l] = p;
+        f.take[l] = pow(10, -3 * d / t60) * (1 - p);
         // of a shorter T60 the longest ways, which nobody hears, would count for all
         double gain = fmax(f.take[l] / (1 - f.keep[l]), LEAST_GAIN);
         loss += (1 / (gain * gain) - 1) / HIMC_ROOM_LINES;
     }
-    double absorption = SABINE * walls->volume / walls->seconds;
+    double absorption = SABINE * walls->volume / t60;
     double filled = 16 * HIMC_PI / (DIRECTIVITY * absorption);
     f.out = sqrt(filled * loss / HIMC_ROOM_LINES);
     return f;
@@ -89,26 +82,21 @@ static void forget(himc_room *r)
     r->silent = HIMC_ROOM_EMPTY;
 }
 
-// an empty room at that rate
-static void begin(himc_room *r, double rate)
-{
-    r->rate = rate;
-    for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        double part = (double)l / (HIMC_ROOM_LINES - 1);
-        r->delay[l] = (int)lround(rate * SHORTEST * pow(LONGEST / SHORTEST, part));
-    }
-    memset(r->at, 0, sizeof r->at);
-    forget(r);
-}
-
 void himc_room_set(himc_room *r, const himc_walls *walls, double rate)
 {
     bool before = himc_room_heard(r);
     r->on = walls->seconds > 0;
     if (!before && !r->on)
         return;
-    if (!before || r->rate != rate)
-        begin(r, rate);
+    if (!before || r->rate != rate) { // an empty room
+        r->rate = rate;
+        for (int l = 0; l < HIMC_ROOM_LINES; l++) {
+            double part = (double)l / (HIMC_ROOM_LINES - 1);
+            r->delay[l] = (int)lround(rate * SHORTEST * pow(LONGEST / SHORTEST, part));
+            r->at[l] = 0;
+        }
+        forget(r);
+    }
     r->from = present(r);
     if (r->on) {
         r->to = form_of(walls, r->delay, rate);
@@ -128,29 +116,6 @@ void himc_room_leave(himc_room *r)
 {
     r->on = false;
     r->faded = 1;
-}
-
-// A delay is a ring of its length: what leaves it makes room for what enters it. Here, where both
-// are next in each, and as many samples until one of the rings begins anew, at most n.
-static int find_ways(himc_room *r, int n, double *way[HIMC_ROOM_LINES])
-{
-    for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        int left = r->delay[l] - r->at[l];
-        way[l] = r->line[l] + r->at[l];
-        n = n < left ? n : left;
-    }
-    return n;
-}
-
-// n samples on; asks the memory for what comes within reach
-static void move_on(himc_room *r, int n)
-{
-    for (int l = 0; l < HIMC_ROOM_LINES; l++) {
-        int at = r->at[l] + n;
-        r->at[l] = at < r->delay[l] ? at : 0;
-        for (int i = HIMC_ROOM_RUN - n; i <= HIMC_ROOM_RUN; i += CACHE_LINE)
-            __builtin_prefetch(&r->line[l][r->at[l] + i], 1);
-    }
 }
 
 // two delays at once, as any x86-64 has it
@@ -201,16 +166,28 @@ static void mix(himc_room *r, const himc_room_form *f, int n, double *const way[
     memcpy(r->y, z, sizeof z);
 }
 
-// n samples of the network, fewer than any delay
+// n samples of the network, fewer than any delay. A delay is a ring of its length: what leaves it
+// makes room for what enters it.
 static void reflect(himc_room *r, const himc_room_form *f, int n, double *const *drum,
                     double *const *ears)
 {
     double *way[HIMC_ROOM_LINES];
     for (int done = 0, run; done < n; done += run) {
-        run = find_ways(r, n - done, way);
+        run = n - done; // until one of the rings begins anew
+        for (int l = 0; l < HIMC_ROOM_LINES; l++) {
+            int left = r->delay[l] - r->at[l];
+            way[l] = r->line[l] + r->at[l];
+            run = run < left ? run : left;
+        }
         mix(r, f, run, way, drum[0] + done, drum[1] + done,
             (double *[]){ears[0] + done, ears[1] + done});
-        move_on(r, run);
+        for (int l = 0; l < HIMC_ROOM_LINES; l++) {
+            int at = r->at[l] + run;
+            r->at[l] = at < r->delay[l] ? at : 0;
+            // asks the memory for what comes within reach
+            for (int i = HIMC_ROOM_RUN - run; i <= HIMC_ROOM_RUN; i += CACHE_LINE)
+                __builtin_prefetch(&r->line[l][r->at[l] + i], 1);
+        }
     }
 }
 

@@ -20,8 +20,9 @@ HIMC_RT strike_point *himc_membrane_strike_point(himc_membrane *membrane, double
                                                  double b);
 /// Mean displacement of the patch now (m, up positive), without the residual's.
 HIMC_RT double himc_strike_point_displacement(const himc_membrane *membrane, strike_point *s);
-/// Number of substeps of a sample with a stiff contact: each lasts 5.2 microseconds or less.
-HIMC_RT int himc_membrane_substeps(const himc_membrane *membrane);
+/// Number of substeps of a sample with a stiff contact at a rate (Hz): each lasts 5.2 microseconds
+/// or less.
+HIMC_RT int himc_membrane_substeps(double rate);
 /// The next step is substep `index` (0 .. count - 1) of `count` in a sample. Substep 0 of 1 is a
 /// whole sample: the state at the beginning, and to return to.
 HIMC_RT void himc_membrane_set_substep(himc_membrane *membrane, int index, int count);

@@ -202,14 +202,6 @@ static int find_levels(himc_stroke_noise *noise, int n, double force, bool *rest
     return n;
 }
 
-// the filters of a row begin at rest again
-static void forget_row(himc_noise_edge *edge, int row)
-{
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 2; i++)
-            memset(edge[k].past[i] + row * HIMC_NOISE_BANDS, 0, HIMC_NOISE_BANDS * sizeof(double));
-}
-
 // one row of samples or two
 static inline void sound(himc_stroke_noise *noise, int lanes, int n, double *const *row,
                          double level[CHUNK][HIMC_NOISE_BANDS])
@@ -232,12 +224,14 @@ static int run_chunk(himc_stroke_noise *noise, int n, double force, int rows, do
     double level[CHUNK][HIMC_NOISE_BANDS];
     bool rests;
     n = find_levels(noise, n < CHUNK ? n : CHUNK, force, &rests, level);
-    if (rows > 1) {
+    // the filters of the other row begin at rest again: where it ended depends on the host's blocks
+    for (int k = 0; k < 3 && rows == 1; k++)
+        for (int i = HIMC_NOISE_BANDS; i < HIMC_NOISE_LANES; i++)
+            noise->edge[k].past[0][i] = noise->edge[k].past[1][i] = 0;
+    if (rows > 1)
         sound(noise, HIMC_NOISE_LANES, n, row, level);
-    } else {
-        forget_row(noise->edge, 1); // where it ended depends on the host's blocks
+    else
         sound(noise, HIMC_NOISE_BANDS, n, row, level);
-    }
     if (rests)
         himc_stroke_noise_rest(noise);
     return n;

@@ -62,6 +62,7 @@
 // -ln(z cot z) = z^2/3 + 7 z^4/90 + ...
 #define COLUMN_2 (1 / 3.0)
 #define COLUMN_4 (7 / 90.0)
+#define USUAL_DEPTH (HIMC_AIR_KETTLE_SHAPE / HIMC_PI)
 #define SLOPE_STEP 1e-4 // (nodes) for the slope at the table's end by a difference
 
 #define VISCOSITY 1.81e-5 // eta of air at 20 degrees (Pa s)
@@ -129,7 +130,7 @@ static double added(int m, int n, double zero, double depth)
         return 2 * RIM / zero;
     // in a kettle of another depth only the lowest mode, which reaches its bottom, changes
     double b = himc_air_slosh[m], z2 = zero * zero - b * b;
-    double change = 1 / tanh(b * depth) - 1 / tanh(b * (HIMC_AIR_KETTLE_SHAPE / HIMC_PI));
+    double change = 1 / tanh(b * depth) - 1 / tanh(b * USUAL_DEPTH);
     double share = 4 * zero * zero / (z2 * z2 * (1 - m * m / (b * b)) * b);
     return himc_air_outer[m][n - 1] + himc_air_inner[m][n - 1] + share * change;
 }
@@ -169,13 +170,6 @@ static log_pair uncoupled(const himc_air *air, double depth, mode_id s)
     return logarithms(x, decay, s.zero * sqrt(air->tension));
 }
 
-// the kettle's spring for a change of volume
-static double spring_at(double x, double depth)
-{
-    double s = x * x * depth * depth;
-    return exp(-s * (COLUMN_2 + s * COLUMN_4)) / depth;
-}
-
 // the modes of order 0 with the added masses at rest, and one of those that the kettle's spring
 // makes of them
 typedef struct coupled_mode {
@@ -202,8 +196,11 @@ static coupled_mode couple(const himc_air *air, double depth, int rank)
         c.x = 0.5 * (low + high);
         for (int n = 0; n < COUPLED_MODES; n++)
             sum += 4 / (ZERO[n] * ZERO[n] * detuning(air, &c, n));
+        // the kettle's spring for a change of volume
+        double s = c.x * c.x * depth * depth;
+        double spring = exp(-s * (COLUMN_2 + s * COLUMN_4)) / depth;
         // from -infinity to +infinity, rising
-        if (1 + air->loading * spring_at(c.x, depth) * sum < 0)
+        if (1 + air->loading * spring * sum < 0)
             low = c.x;
         else
             high = c.x;
@@ -229,11 +226,6 @@ static log_pair coupled(const himc_air *air, double depth, mode_id s)
 static log_pair closed_form(const himc_air *air, double depth, mode_id s)
 {
     return s.m == 0 && s.n <= HIMC_AIR_RANKS ? coupled(air, depth, s) : uncoupled(air, depth, s);
-}
-
-static double usual_depth(void)
-{
-    return HIMC_AIR_KETTLE_SHAPE / HIMC_PI;
 }
 
 static double log_step(void)
@@ -267,21 +259,8 @@ static double along_row(const short *row, double unit, double rise, int node, do
            t * rise;
 }
 
-// the table at node + t along the tensions
-static log_pair tabulated(const himc_air *air, mode_id s, int node, double t)
-{
-    double value[2][2], rise = 0.5 * log_step();
-    for (int i = 0; i < 2; i++) {
-        int row = HIMC_AIR_ROW(air->drum + i, s.m, s.n - 1);
-        value[i][0] = along_row(himc_air_ratio + row, HIMC_AIR_RATIO_UNIT, rise, node, t);
-        value[i][1] = along_row(himc_air_decay + row, HIMC_AIR_DECAY_UNIT, 0, node, t);
-    }
-    double u = 1 - air->between;
-    return (log_pair){u * value[0][0] + air->between * value[1][0],
-                      u * value[0][1] + air->between * value[1][1]};
-}
-
-// difference of table and closed form, at a tension and an epsilon inside the table
+// difference of table and closed form, at a tension t nodes after the cell's first and an epsilon
+// inside the table
 static log_pair difference(const himc_air *air, mode_id s, double t)
 {
     himc_air there = *air;
@@ -290,8 +269,15 @@ static log_pair difference(const himc_air *air, mode_id s, double t)
     const double *a = himc_air_radius + air->drum;
     there.loading =
         (a[0] + air->between * (a[1] - a[0])) * (HIMC_AIR_DENSITY / HIMC_AIR_TABLE_FILM);
-    log_pair table = tabulated(air, s, air->node, t), form = closed_form(&there, usual_depth(), s);
-    return (log_pair){table.ratio - form.ratio, table.decay - form.decay};
+    double value[2][2], rise = 0.5 * log_step(), u = 1 - air->between;
+    for (int i = 0; i < 2; i++) {
+        int row = HIMC_AIR_ROW(air->drum + i, s.m, s.n - 1);
+        value[i][0] = along_row(himc_air_ratio + row, HIMC_AIR_RATIO_UNIT, rise, air->node, t);
+        value[i][1] = along_row(himc_air_decay + row, HIMC_AIR_DECAY_UNIT, 0, air->node, t);
+    }
+    log_pair form = closed_form(&there, USUAL_DEPTH, s);
+    return (log_pair){u * value[0][0] + air->between * value[1][0] - form.ratio,
+                      u * value[0][1] + air->between * value[1][1] - form.decay};
 }
 
 // from 1 at s = 0 to 0 at s = 1, without slope at both ends
@@ -316,34 +302,28 @@ static log_pair correction(const himc_air *air, mode_id s)
     return (log_pair){air->weight * q.ratio, air->weight * q.decay};
 }
 
-// finds the cell of the table, or the nearest one
-static void locate(himc_air *air)
-{
-    double low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
-    double at = (log(air->tension) - low) / log_step(),
-           inside = fmin(fmax(at, 0), HIMC_AIR_NODES - 1);
-    air->node = (int)fmin(inside, HIMC_AIR_NODES - 2);
-    air->along = inside - air->node;
-    air->beyond = (at - inside) * log_step();
-
-    // radius of a head of the table's film with this epsilon
-    double like = air->loading * HIMC_AIR_TABLE_FILM / HIMC_AIR_DENSITY;
-    const double *a = himc_air_radius;
-    double held = fmin(fmax(like, a[0]), a[HIMC_AIR_DRUMS - 1]);
-    while (air->drum < HIMC_AIR_DRUMS - 2 && held > a[air->drum + 1])
-        air->drum++;
-    air->between = (held - a[air->drum]) / (a[air->drum + 1] - a[air->drum]);
-    air->weight = smooth_end(fabs(log(like / held)) / LOADING_MARGIN);
-}
-
 himc_air himc_air_around(const himc_head *head, double kettle)
 {
-    double a = head->radius;
-    himc_air air = {.radius = a,
+    double r = head->radius;
+    himc_air air = {.radius = r,
                     .tension = head->tension / (head->density * SPEED2),
-                    .loading = HIMC_AIR_DENSITY * a / head->density,
-                    .depth = kettle / (HIMC_PI * a * a * a)};
-    locate(&air);
+                    .loading = HIMC_AIR_DENSITY * r / head->density,
+                    .depth = kettle / (HIMC_PI * r * r * r)};
+    // the cell of the table, or the nearest one
+    double low = log(HIMC_AIR_TABLE_LOW / (HIMC_AIR_TABLE_FILM * SPEED2));
+    double at = (log(air.tension) - low) / log_step();
+    double inside = fmin(fmax(at, 0), HIMC_AIR_NODES - 1);
+    air.node = (int)fmin(inside, HIMC_AIR_NODES - 2);
+    air.along = inside - air.node;
+    air.beyond = (at - inside) * log_step();
+    // radius of a head of the table's film with this epsilon
+    double like = air.loading * HIMC_AIR_TABLE_FILM / HIMC_AIR_DENSITY;
+    const double *a = himc_air_radius;
+    double held = fmin(fmax(like, a[0]), a[HIMC_AIR_DRUMS - 1]);
+    while (air.drum < HIMC_AIR_DRUMS - 2 && held > a[air.drum + 1])
+        air.drum++;
+    air.between = (held - a[air.drum]) / (a[air.drum + 1] - a[air.drum]);
+    air.weight = smooth_end(fabs(log(like / held)) / LOADING_MARGIN);
     return air;
 }
 

@@ -85,11 +85,6 @@ static bool next_number(reader *r, double *value)
     return found;
 }
 
-static bool at_end(const reader *r)
-{
-    return r->at[strspn(r->at, " \t\r\n,")] == '\0';
-}
-
 // the next line that is neither empty nor a comment
 static bool next_row(reader *r, char comment)
 {
@@ -121,23 +116,16 @@ static bool set_size(reader *r, matrix *m, int rows, int columns)
     return true;
 }
 
-// how many numbers the present line has; reading starts again at its beginning
-static int count_numbers(reader *r)
-{
-    double value;
-    int count = 0;
-    while (next_number(r, &value))
-        count++;
-    r->at = r->row;
-    return count;
-}
-
 static bool read_rows(reader *r, matrix *m, int columns)
 {
+    double value;
     int rows = 0;
+    if (columns == 0) { // as many as the first row has
+        while (next_number(r, &value))
+            columns++;
+        r->at = r->row;
+    }
     do {
-        if (columns == 0)
-            columns = count_numbers(r);
         if (!check_size(r, rows + 1, columns, r->error) ||
             (rows % ROWS_AT_ONCE == 0 && !set_size(r, m, rows + ROWS_AT_ONCE, columns)))
             return false;
@@ -145,7 +133,7 @@ static bool read_rows(reader *r, matrix *m, int columns)
             if (!next_number(r, &m->value[rows * columns + j]))
                 return himc_error_set(r->error, "%s:%d: number %d of %d is missing or not a number",
                                       r->path, r->line, j + 1, columns);
-        if (!at_end(r))
+        if (r->at[strspn(r->at, " \t\r\n,")] != '\0')
             return himc_error_set(r->error, "%s:%d: more than %d numbers, or text after them",
                                   r->path, r->line, columns);
         rows++;
@@ -154,40 +142,17 @@ static bool read_rows(reader *r, matrix *m, int columns)
     return true;
 }
 
-static bool put(matrix *m, int i, int j, double value, bool symmetric)
+static void put(matrix *m, int i, int j, double value, bool symmetric)
 {
     m->value[i * m->columns + j] += value;
     if (symmetric && i != j)
         m->value[j * m->columns + i] += value;
-    return true;
-}
-
-static bool read_entry(reader *r, matrix *m, bool symmetric)
-{
-    double i, j, value;
-    if (!next_row(r, '%') || !next_number(r, &i) || !next_number(r, &j) || !next_number(r, &value))
-        return fault(r, "an entry is missing or not \"row column value\"");
-    if (i < 1 || i > m->rows || j < 1 || j > m->columns || i != floor(i) || j != floor(j))
-        return fault(r, "row or column outside the matrix");
-    return put(m, (int)i - 1, (int)j - 1, value, symmetric);
-}
-
-static bool read_array(reader *r, matrix *m, bool symmetric)
-{
-    double value;
-    for (int j = 0; j < m->columns; j++)
-        for (int i = symmetric ? j : 0; i < m->rows; i++) {
-            if (!next_row(r, '%') || !next_number(r, &value))
-                return fault(r, "a value is missing or not a number");
-            put(m, i, j, value, symmetric);
-        }
-    return true;
 }
 
 static bool read_market(reader *r, matrix *m)
 {
     char format[16], field[16], kind[16];
-    double rows, columns, entries = 0;
+    double rows, columns, entries = 0, row, column, value;
     if (sscanf(r->row, "%%%%MatrixMarket matrix %15s %15s %15s", format, field, kind) != 3)
         return fault(r, "expected %%MatrixMarket matrix coordinate|array real general|symmetric");
     bool coordinate = strcmp(format, "coordinate") == 0, symmetric = strcmp(kind, "symmetric") == 0;
@@ -202,10 +167,22 @@ static bool read_market(reader *r, matrix *m)
         return false;
     if (symmetric && rows != columns)
         return fault(r, "symmetric, but not square");
-    for (double k = 0; k < entries; k++)
-        if (!read_entry(r, m, symmetric))
-            return false;
-    return coordinate || read_array(r, m, symmetric);
+    for (double k = 0; k < entries; k++) {
+        if (!next_row(r, '%') || !next_number(r, &row) || !next_number(r, &column) ||
+            !next_number(r, &value))
+            return fault(r, "an entry is missing or not \"row column value\"");
+        if (row < 1 || row > rows || column < 1 || column > columns || row != floor(row) ||
+            column != floor(column))
+            return fault(r, "row or column outside the matrix");
+        put(m, (int)row - 1, (int)column - 1, value, symmetric);
+    }
+    for (int j = 0; j < m->columns && !coordinate; j++)
+        for (int i = symmetric ? j : 0; i < m->rows; i++) {
+            if (!next_row(r, '%') || !next_number(r, &value))
+                return fault(r, "a value is missing or not a number");
+            put(m, i, j, value, symmetric);
+        }
+    return true;
 }
 
 // Reads a table, of at most `most` rows and columns. With `columns` > 0, rows must have so many
@@ -240,13 +217,6 @@ typedef struct parts {
     double tension, density;
     matrix places, mass, stiffness;
 } parts;
-
-static void free_parts(parts *p)
-{
-    free(p->places.value);
-    free(p->mass.value);
-    free(p->stiffness.value);
-}
 
 // the file `name` beside the file `path`
 static bool beside(const char *path, const char *name, char *out, size_t size, himc_error *error)
@@ -299,8 +269,15 @@ static bool read_parts(parts *p, reader *r)
     return true;
 }
 
-static bool check_symmetric(const matrix *a, const char *name, himc_error *error)
+static bool check_matrix(const matrix *a, const char *name, const matrix *places, himc_error *error)
 {
+    if (!a->value)
+        return himc_error_set(error, "%s: missing", name);
+    if (a->rows != a->columns)
+        return himc_error_set(error, "%s: %d rows of %d numbers, expected a square matrix", name,
+                              a->rows, a->columns);
+    if (a->rows > places->rows)
+        return himc_error_set(error, "%s: %d rows but %d places", name, a->rows, places->rows);
     double most = 0;
     for (int i = 0; i < a->rows * a->columns; i++)
         most = fmax(most, fabs(a->value[i]));
@@ -312,18 +289,6 @@ static bool check_symmetric(const matrix *a, const char *name, himc_error *error
                                       name, j + 1, i + 1, upper, i + 1, j + 1, lower);
         }
     return true;
-}
-
-static bool check_matrix(const matrix *a, const char *name, const matrix *places, himc_error *error)
-{
-    if (!a->value)
-        return himc_error_set(error, "%s: missing", name);
-    if (a->rows != a->columns)
-        return himc_error_set(error, "%s: %d rows of %d numbers, expected a square matrix", name,
-                              a->rows, a->columns);
-    if (a->rows > places->rows)
-        return himc_error_set(error, "%s: %d rows but %d places", name, a->rows, places->rows);
-    return check_symmetric(a, name, error);
 }
 
 static bool check_parts(const parts *p, himc_error *error)
@@ -340,25 +305,28 @@ static bool check_parts(const parts *p, himc_error *error)
                           p->stiffness.rows);
 }
 
-static himc_grid *grid_new(int places, int all, int modes)
+// with a mode for each place that moves
+static himc_grid *grid_new(int places, int all, const char *path)
 {
     himc_grid *g = calloc(1, sizeof *g);
     if (!g)
         return NULL;
     g->references = 1;
-    g->places = places;
+    g->places = g->modes = places;
     g->all = all;
-    g->modes = modes;
+    g->path = malloc(strlen(path) + 1);
     g->x = malloc(sizeof(double) * (size_t)all);
     g->y = malloc(sizeof(double) * (size_t)all);
     g->area = malloc(sizeof(double) * (size_t)places);
-    g->zero = malloc(sizeof(double) * (size_t)modes);
-    g->norm = malloc(sizeof(double) * (size_t)modes);
-    g->shape = malloc(sizeof(double) * (size_t)modes * (size_t)places);
-    if (g->x && g->y && g->area && g->zero && g->norm && g->shape)
-        return g;
-    himc_grid_release(g);
-    return NULL;
+    g->zero = malloc(sizeof(double) * (size_t)places);
+    g->norm = malloc(sizeof(double) * (size_t)places);
+    g->shape = malloc(sizeof(double) * (size_t)places * (size_t)places);
+    if (!g->path || !g->x || !g->y || !g->area || !g->zero || !g->norm || !g->shape) {
+        himc_grid_release(g);
+        return NULL;
+    }
+    memcpy(g->path, path, strlen(path) + 1);
+    return g;
 }
 
 // places from the centre of the smallest box around them, per radius
@@ -380,31 +348,8 @@ static void set_places(himc_grid *g, const matrix *places)
     }
 }
 
-// shape k as it was found, v' M v = 1, to a largest value of 1
-static void set_mode(himc_grid *g, int k, double square)
-{
-    double *v = g->shape + (size_t)k * (size_t)g->places, most = 0;
-    for (int i = 0; i < g->places; i++)
-        most = fabs(v[i]) > fabs(most) ? v[i] : most;
-    for (int i = 0; i < g->places; i++)
-        v[i] /= most;
-    double area = HIMC_PI * g->radius * g->radius;
-    g->norm[k] = 1 / (most * most * g->density * area);
-    g->zero[k] = g->radius * sqrt(square * g->density / g->tension);
-}
-
-// Leaves out the first `rigid` modes, in which a free body moves without bending: their eigenvalues
-// are 0 but for rounding.
-static void leave_out(himc_grid *g, int rigid)
-{
-    g->free = rigid > 0;
-    g->modes -= rigid;
-    memmove(g->zero, g->zero + rigid, sizeof *g->zero * (size_t)g->modes);
-    memmove(g->shape, g->shape + (size_t)rigid * (size_t)g->places,
-            sizeof *g->shape * (size_t)g->modes * (size_t)g->places);
-}
-
-// takes the modes that bend; the eigenvalues are in `zero`, rising
+// Takes the modes that bend; the eigenvalues are in `zero`, rising. In the first ones a free body
+// moves without bending: their eigenvalues are 0 but for rounding.
 static bool take_modes(himc_grid *g, himc_error *error)
 {
     double highest = g->zero[g->modes - 1];
@@ -418,9 +363,22 @@ static bool take_modes(himc_grid *g, himc_error *error)
         rigid++;
     if (rigid == g->modes)
         return himc_error_set(error, "stiffness: 0, expected one that resists bending");
-    leave_out(g, rigid);
-    for (int k = 0; k < g->modes; k++)
-        set_mode(g, k, g->zero[k]);
+    g->free = rigid > 0;
+    g->modes -= rigid;
+    memmove(g->zero, g->zero + rigid, sizeof *g->zero * (size_t)g->modes);
+    memmove(g->shape, g->shape + (size_t)rigid * (size_t)g->places,
+            sizeof *g->shape * (size_t)g->modes * (size_t)g->places);
+    double area = HIMC_PI * g->radius * g->radius;
+    for (int k = 0; k < g->modes; k++) {
+        // the shape as it was found, v' M v = 1, to a largest value of 1
+        double *v = g->shape + (size_t)k * (size_t)g->places, most = 0;
+        for (int i = 0; i < g->places; i++)
+            most = fabs(v[i]) > fabs(most) ? v[i] : most;
+        for (int i = 0; i < g->places; i++)
+            v[i] /= most;
+        g->norm[k] = 1 / (most * most * g->density * area);
+        g->zero[k] = g->radius * sqrt(g->zero[k] * g->density / g->tension);
+    }
     return true;
 }
 
@@ -442,12 +400,12 @@ static bool solve(himc_grid *g, parts *p, himc_error *error)
     }
 }
 
-static himc_grid *make(parts *p, himc_error *error)
+static himc_grid *make(parts *p, const char *path, himc_error *error)
 {
     if (!check_parts(p, error))
         return NULL;
     int n = p->mass.rows;
-    himc_grid *g = grid_new(n, p->places.rows, n);
+    himc_grid *g = grid_new(n, p->places.rows, path);
     if (!g) {
         himc_error_set(error, "no memory for %d places", n);
         return NULL;
@@ -463,15 +421,6 @@ static himc_grid *make(parts *p, himc_error *error)
     return NULL;
 }
 
-static bool keep_path(himc_grid *grid, const char *path)
-{
-    size_t size = strlen(path) + 1;
-    grid->path = malloc(size);
-    if (grid->path)
-        memcpy(grid->path, path, size);
-    return grid->path;
-}
-
 himc_grid *himc_grid_load(const char *path, himc_error *error)
 {
     parts p = {0};
@@ -480,16 +429,13 @@ himc_grid *himc_grid_load(const char *path, himc_error *error)
     if (!open_text(&r, path, error))
         return NULL;
     if (read_parts(&p, &r)) {
-        grid = make(&p, error);
+        grid = make(&p, path, error);
         if (!grid)
             himc_error_prefix(error, "%s", path);
-        else if (!keep_path(grid, path)) {
-            himc_error_set(error, "%s: out of memory", path);
-            himc_grid_release(grid);
-            grid = NULL;
-        }
     }
     free(r.text);
-    free_parts(&p);
+    free(p.places.value);
+    free(p.mass.value);
+    free(p.stiffness.value);
     return grid;
 }

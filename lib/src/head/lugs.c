@@ -25,21 +25,9 @@
 
 #include <math.h>
 
-#define LUGS 8         // L; chosen: a timpano has 6 or 8 (find_phases is for 8)
+#define LUGS 8         // L; chosen: a timpano has 6 or 8 (the phases are for 8)
 #define UNEVEN 0.02    // s with uniformity 0; chosen: a semitone is 12 % of tension
 #define HOOP_ORDER 4.0 // k that the hoop halves; chosen
-
-// k th_k of the harmonics k = 0, 2 .. LUGS - 2, by k/2
-static void find_phases(int seed, double *phase)
-{
-    uint64_t state = (uint64_t)seed, bits = himc_random_bits(&state);
-    double part = ldexp((double)(himc_random_bits(&state) >> 11), -53);
-    double turn = (bits & 4 ? 1 : -1) * HIMC_PI * (1 + part) / 3;
-    phase[0] = bits & 1 ? 0 : HIMC_PI;
-    phase[1] = turn;
-    phase[2] = bits & 2 ? 0.5 * HIMC_PI : -0.5 * HIMC_PI;
-    phase[3] = HIMC_PI - turn;
-}
 
 static himc_lugs_pair split(int m, double uniformity, const double *phase)
 {
@@ -59,8 +47,12 @@ static himc_lugs_pair split(int m, double uniformity, const double *phase)
 
 void himc_lugs_split(double uniformity, int seed, himc_lugs_pair *pairs)
 {
-    double phase[LUGS / 2];
-    find_phases(seed, phase);
+    uint64_t state = (uint64_t)seed, bits = himc_random_bits(&state);
+    double part = ldexp((double)(himc_random_bits(&state) >> 11), -53);
+    double turn = (bits & 4 ? 1 : -1) * HIMC_PI * (1 + part) / 3;
+    // k th_k of the harmonics k = 0, 2 .. LUGS - 2, by k/2
+    double phase[LUGS / 2] = {bits & 1 ? 0 : HIMC_PI, turn,
+                              bits & 2 ? 0.5 * HIMC_PI : -0.5 * HIMC_PI, HIMC_PI - turn};
     for (int m = 0; m < HIMC_LUGS_ORDERS; m++)
         pairs[m] =
             m > 0 && uniformity < 1 ? split(m, uniformity, phase) : (himc_lugs_pair){.cosine = 1};

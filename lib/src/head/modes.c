@@ -192,25 +192,23 @@ void himc_modes_mix(const himc_modes *modes, double *numbers)
     }
 }
 
-// the fields of a mode that depend on the shape alone
-static himc_mode bare_shape(const himc_modes *modes, int index)
-{
-    if (index >= modes->exact) {
-        const himc_statistical_mode *s = &modes->statistical->mode[index - modes->exact];
-        return (himc_mode){
-            .m = -1, .n = index - modes->exact + 1, .zero = s->zero, .norm = 1 / s->count};
-    }
-    int i = modes->of ? modes->of[index] : index;
-    const himc_mode_entry *e = &modes->entries[i];
-    bool sine = modes->of && index > modes->first[i];
-    double axis = modes->of ? modes->pairs[e->m].axis : 0;
-    return (himc_mode){
-        .m = e->m, .n = e->n, .sine = sine, .axis = axis, .zero = e->z, .norm = e->norm};
-}
-
 himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int index)
 {
-    himc_mode mode = bare_shape(modes, index);
+    himc_mode mode = {.m = -1, .n = index - modes->exact + 1};
+    if (index >= modes->exact) {
+        const himc_statistical_mode *s = &modes->statistical->mode[index - modes->exact];
+        mode.zero = s->zero;
+        mode.norm = 1 / s->count;
+    } else {
+        int i = modes->of ? modes->of[index] : index;
+        const himc_mode_entry *e = &modes->entries[i];
+        mode.m = e->m;
+        mode.n = e->n;
+        mode.sine = modes->of && index > modes->first[i];
+        mode.axis = modes->of ? modes->pairs[e->m].axis : 0;
+        mode.zero = e->z;
+        mode.norm = e->norm;
+    }
     double split = modes->of && mode.m > 0 ? modes->pairs[mode.m].split : 0;
     double omega = mode.zero / head->radius * sqrt(head->tension / head->density);
     omega *= sqrt(mode.sine ? 1 + split : 1 - split);

@@ -79,21 +79,7 @@ static int find_zeros(const himc_modes *modes, himc_mode_entry *out)
     return found;
 }
 
-// takes the first entries that make `count` modes; false if there are too few
-static bool assign_modes(himc_modes *modes, int found)
-{
-    int mode = 0, i = 0;
-    for (; i < found && mode < modes->exact; i++) {
-        modes->first[i] = mode;
-        int members = modes->entries[i].m > 0 ? 2 : 1;
-        for (int k = 0; k < members && mode < modes->exact; k++)
-            modes->of[mode++] = i;
-    }
-    modes->entry_count = i;
-    return mode == modes->exact;
-}
-
-static bool list_exact(himc_modes *modes)
+static bool list(himc_modes *modes, bool automatic)
 {
     double end = 1 + sqrt(1 + 4.0 * modes->exact) + TABLE_MARGIN;
     if (!tabulate(modes, (int)end, (int)(end * TABLE_STEPS) + 2))
@@ -106,11 +92,17 @@ static bool list_exact(himc_modes *modes)
         return false;
     find_zeros(modes, modes->entries);
     himc_modes_sort(modes->entries, found);
-    return assign_modes(modes, found);
-}
-
-static bool list_statistical(himc_modes *modes)
-{
+    // the first entries that make so many modes
+    int mode = 0, i = 0;
+    for (; i < found && mode < modes->exact; i++) {
+        modes->first[i] = mode;
+        int members = modes->entries[i].m > 0 ? 2 : 1;
+        for (int k = 0; k < members && mode < modes->exact; k++)
+            modes->of[mode++] = i;
+    }
+    modes->entry_count = i;
+    if (mode < modes->exact || !automatic)
+        return mode == modes->exact;
     modes->statistical = malloc(sizeof *modes->statistical);
     if (!modes->statistical)
         return false;
@@ -127,10 +119,14 @@ static double hermite(const double *cell, double t)
            t * t * ((1 + 2 * u) * cell[2] - u * cell[3]);
 }
 
-// all shapes at radius r < 1 in the direction (cosine, sine)
-static void shapes_of_circle(const himc_modes *modes, double r, double cosine, double sine,
-                             double *out)
+static void shapes(const himc_modes *modes, double radius, double x, double y, double *out)
 {
+    double distance = hypot(x, y), r = distance / radius;
+    double cosine = distance > 0 ? x / distance : 1, sine = distance > 0 ? y / distance : 0;
+    if (!(r < 1)) {
+        memset(out, 0, sizeof *out * (size_t)modes->count);
+        return;
+    }
     // cos and sin of all multiples of the angle, by rotation, then from each order's own axis
     double c[HIMC_LUGS_ORDERS], s[HIMC_LUGS_ORDERS];
     c[0] = 1;
@@ -154,22 +150,6 @@ static void shapes_of_circle(const himc_modes *modes, double r, double cosine, d
         if (m > 0 && mode + 1 < modes->exact)
             out[mode + 1] = j * s[m];
     }
-}
-
-static bool list(himc_modes *modes, bool automatic)
-{
-    return list_exact(modes) && (!automatic || list_statistical(modes));
-}
-
-static void shapes(const himc_modes *modes, double radius, double x, double y, double *out)
-{
-    double distance = hypot(x, y), r = distance / radius;
-    if (!(r < 1)) {
-        memset(out, 0, sizeof *out * (size_t)modes->count);
-        return;
-    }
-    shapes_of_circle(modes, r, distance > 0 ? x / distance : 1, distance > 0 ? y / distance : 0,
-                     out);
     if (modes->statistical)
         himc_statistical_shapes(modes->statistical, x / radius, y / radius, out + modes->exact);
 }

@@ -7,7 +7,6 @@
 #define _POSIX_C_SOURCE 200809L // strnlen
 
 #include "drum/drum_performer.h"
-#include "drum/membrane_probe.h"
 #include "head/modes.h"
 #include "himc/body.h"
 #include "himc/membrane.h"

@@ -443,10 +443,8 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
         return;
     }
     himc_drum *of = s->drums->slot[drum].drum;
-    uint64_t singles = himc_drum_single_samples(of);
     himc_drums_catch_up_one(s->drums, drum);
-    himc_drum_advance_sticks(of, n, sticks, count, forces, NULL);
-    if (himc_drum_single_samples(of) != singles)
+    if (himc_drum_advance_sticks(of, n, sticks, count, forces, NULL))
         c->quiet = 0;
 }
 
