@@ -13,6 +13,9 @@
 
 HIMC_BEGIN
 
+/// Time (s) from the sticks' place at `play` to the first frame of a take.
+#define HIMC_APPROACH 1.0
+
 // Takes.
 //
 // The points are in metres, z up, and rotated so that the performer faces along x; the origin stays

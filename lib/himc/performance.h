@@ -57,9 +57,6 @@ bool himc_performance_command(himc_performance *performance, const himc_command 
 /// that it does not have are silent).
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
 
-/// Time (s) from the sticks' place at `play` to the first frame of a take.
-#define HIMC_APPROACH 1.0
-
 // The commands `stroke`, `hit`, `tempo`, `play` and `stop` for C programs: they act now.
 
 /// Adds a stroke to the score: beat 0 .. 1e9, dynamic 0 .. 1, x and y -1 .. 1 m. May allocate.

@@ -510,6 +510,7 @@ static void test_the_loud_notes_of_a_chord_are_played(void)
     end(&b);
     import(&b, NULL);
     TEST_ASSERT_EQUAL_INT(2, score->stroke_count);
+    TEST_ASSERT_EQUAL_INT(1, made.left_out);
     for (int i = 0; i < 2; i++)
         TEST_ASSERT_TRUE(strcmp(score->strokes[i].drum, "snare") != 0);
 }

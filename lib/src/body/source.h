@@ -4,6 +4,7 @@
 #define HIMC_SOURCE_H
 
 #include "base/quintic.h"
+#include "body/posture.h"
 #include "himc/command.h"
 
 /// The present or next contact of a hand.
@@ -40,6 +41,14 @@ typedef struct himc_source {
     /// The tip is in that state shortly before a stroke: true if the motion is another from here.
     /// NULL: it never is.
     bool (*correct)(void *source, himc_hand hand, double t, const himc_target *measured);
+
+    /// As a piece: begins at t from that state of both tips and of the joints ...
+    void (*play)(void *source, double t, const himc_target *tip, const himc_posture_motion *joints);
+    /// ... comes to rest from such a state ...
+    void (*stop)(void *source, double t, const himc_target *tip);
+    /// ... is at that beat, or of a take second, and is over at that time (s).
+    double (*beat)(const void *source, double t);
+    double (*end)(const void *source);
 } himc_source;
 
 #endif

@@ -38,9 +38,6 @@
 #define PRESS_ARRIVAL 0.6 // at the head (m/s)
 #define PRESS_BRAKE 20.0  // above it (m/s^2)
 
-// after the predicted end of the last contact, by when the real one has begun; chosen: strokes land
-// within 10 ms of their time, bounces within 30 ms
-#define LATE_CONTACT 0.05  // (s)
 #define BEAT_BEGINNING 0.1 // of a beat; chosen: a tick at 1000 beats a minute
 
 // a stroke that does not rebound: at both times after it the tip is wanted so low; chosen: the
@@ -48,13 +45,13 @@
 static const double rests_at[] = {0.06, 0.09}; // (s)
 #define RESTS_BELOW 0.002                      // (m)
 
-// the take moves the hands that it has, while it plays
+// the piece is the take if there is one; it moves the hands that it has, while it plays
 static void choose_sources(performance_motion *m)
 {
+    const hand_source planner = {&himc_planner_source, m->planner};
+    m->piece = m->track ? (hand_source){&himc_track_source, m->track} : planner;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        m->source[hand] = himc_motion_tracks(m, (himc_hand)hand)
-                              ? (hand_source){&himc_track_source, m->track}
-                              : (hand_source){&himc_planner_source, m->planner};
+        m->source[hand] = himc_motion_tracks(m, (himc_hand)hand) ? m->piece : planner;
 }
 
 performance_motion *himc_motion_new(himc_error *error)
@@ -145,11 +142,6 @@ bool himc_motion_captured_joints(const performance_motion *m, double t, himc_pos
     return true;
 }
 
-static double take_end(const performance_motion *m)
-{
-    return m->track_start + himc_track_length(m->track);
-}
-
 // Gives the hands of the take to the planner.
 static void take_hands_back(performance_motion *m, double t)
 {
@@ -167,7 +159,7 @@ static void take_hands_back(performance_motion *m, double t)
 
 bool himc_motion_free_hand(performance_motion *m, himc_hand hand, double t)
 {
-    if (himc_motion_tracks(m, hand) && t >= take_end(m))
+    if (himc_motion_tracks(m, hand) && t >= m->piece.kind->end(m->piece.of))
         take_hands_back(m, t);
     return !himc_motion_tracks(m, hand);
 }
@@ -178,6 +170,7 @@ himc_track *himc_motion_set_track(performance_motion *m, himc_track *track,
     himc_track *old = m->track;
     take_hands_back(m, t);
     m->track = track;
+    choose_sources(m);
     m->over = false;
     m->has_learned = learned != NULL;
     if (learned)
@@ -592,17 +585,10 @@ void himc_motion_move_tip(performance_motion *m, const performance_settings *s, 
 
 void himc_motion_play(performance_motion *m, double t)
 {
+    m->piece.kind->play(m->piece.of, t, m->reference.tip, &m->reference.posture);
     if (m->track) {
-        m->track_start = t + HIMC_APPROACH;
-        himc_track_rewind(m->track, m->track_start);
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            if (himc_track_present(m->track, (himc_hand)hand))
-                himc_track_approach(m->track, (himc_hand)hand, &m->reference.tip[hand],
-                                    HIMC_APPROACH);
-        himc_track_approach_posture(m->track, &m->reference.posture);
+        m->track_start = himc_track_start(m->track);
         choose_sources(m);
-    } else {
-        himc_planner_play(m->planner, t);
     }
     m->playing = true;
     m->over = false;
@@ -620,9 +606,9 @@ void himc_motion_go_on(performance_motion *m, double t)
 
 void himc_motion_stop(performance_motion *m, double t)
 {
-    if (m->track)
-        himc_track_stop(m->track, t - m->track_start, m->reference.tip);
-    himc_planner_stop(m->planner, t);
+    m->piece.kind->stop(m->piece.of, t, m->reference.tip);
+    if (m->track) // it has moved the hand that the take has not
+        himc_planner_stop(m->planner, t);
     m->playing = m->over = false;
     m->replan = true;
 }
@@ -683,9 +669,7 @@ static long whole_beat(const performance_motion *m, double t)
 
 double himc_motion_score_beat(const performance_motion *m, double t)
 {
-    if (!m->track)
-        return himc_planner_beat(m->planner, t);
-    return m->playing || m->over ? t - m->track_start : -1;
+    return m->track && !m->playing && !m->over ? -1 : m->piece.kind->beat(m->piece.of, t);
 }
 
 /// True if a beat begins by t: another one, or the same one of a later round or behind a count. A
@@ -702,8 +686,9 @@ static bool begins_beat(const performance_motion *m, double t)
 
 static bool is_over(const performance_motion *m, double t)
 {
-    double end = m->track ? fmax(take_end(m), m->track_start + himc_planner_until(m->planner))
-                          : himc_planner_end(m->planner) + LATE_CONTACT;
+    double end = m->piece.kind->end(m->piece.of);
+    if (m->track)
+        end = fmax(end, m->track_start + himc_planner_until(m->planner));
     return m->playing && t >= end;
 }
 

@@ -29,6 +29,7 @@ typedef struct performance_motion {
     himc_planner *planner;          ///< owned
     himc_track *track;              ///< owned; instead of the planner when a take is loaded
     double track_start;             ///< (s); infinite while the planner moves the hands
+    hand_source piece;              ///< what is played: the track, or else the planner
     hand_source source[HIMC_HANDS]; ///< the planner, or the track while it plays that hand
     bool has_learned;
     himc_limits learned;    ///< joint limits of the take's player

@@ -3,6 +3,10 @@
 
 #include <string.h>
 
+// after the predicted end of the last contact, by when the real one has begun; chosen: strokes land
+// within 10 ms of their time, bounces within 30 ms
+#define LATE_CONTACT 0.05 // (s)
+
 static himc_target target(const void *source, himc_hand hand, double t)
 {
     return himc_planner_target(source, hand, t);
@@ -42,4 +46,28 @@ static bool correct(void *source, himc_hand hand, double t, const himc_target *m
     return himc_planner_correct(source, hand, t, measured);
 }
 
-const himc_source himc_planner_source = {target, next, stroke, separated, correct};
+static void play(void *source, double t, const himc_target *tip, const himc_posture_motion *joints)
+{
+    (void)tip;
+    (void)joints;
+    himc_planner_play(source, t);
+}
+
+static void stop(void *source, double t, const himc_target *tip)
+{
+    (void)tip;
+    himc_planner_stop(source, t);
+}
+
+static double beat(const void *source, double t)
+{
+    return himc_planner_beat(source, t);
+}
+
+static double end(const void *source)
+{
+    return himc_planner_end(source) + LATE_CONTACT;
+}
+
+const himc_source himc_planner_source = {target, next, stroke, separated, correct,
+                                         play,   stop, beat,   end};

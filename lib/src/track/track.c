@@ -214,6 +214,11 @@ void himc_track_stop(himc_track *track, double t, const himc_target now[HIMC_HAN
         track->hand[hand].settle = come_to_rest(&track->head, &now[hand]);
 }
 
+double himc_track_start(const himc_track *track)
+{
+    return track->start;
+}
+
 void himc_track_rewind(himc_track *track, double start)
 {
     track->start = start;

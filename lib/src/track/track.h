@@ -37,6 +37,8 @@ HIMC_RT void himc_track_stop(himc_track *track, double t, const himc_target now[
 HIMC_RT void himc_track_rewind(himc_track *track, double start);
 /// Difference of the world's coordinates and the take's (m).
 himc_vec3 himc_track_offset(const himc_track *track);
+/// When its first frame comes (s of the performance), since himc_track_rewind.
+HIMC_RT double himc_track_start(const himc_track *track);
 /// True if the take has that hand's tip.
 bool himc_track_present(const himc_track *track, himc_hand hand);
 /// Length (s), with the halt after the last frame.
