@@ -364,15 +364,16 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
         return;
     }
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
-    for (int k = 0; k < head->pickup_count && !himc_ears_alone(drum->ears); k++)
-        for (int i = 0; i < n; i++) {
-            double left = nearness(&pickups[k]) - drum->nearness[k];
-            drum->nearness[k] += fmin(fmax(left, -most), most);
-            if (left != 0) // the pickup has moved
-                sound[k][i] += NOISE_UNIT * noise[0][i] * drum->nearness[k];
-            else if (pickups[k].kind == HIMC_PICKUP_AIR)
-                sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
+    for (int k = 0; k < head->pickup_count && !himc_ears_alone(drum->ears); k++) {
+        double *at = &drum->nearness[k], to = nearness(&pickups[k]);
+        int i = 0;
+        for (; i < n && *at != to; i++) { // the pickup has moved
+            *at += fmin(fmax(to - *at, -most), most);
+            sound[k][i] += NOISE_UNIT * noise[0][i] * *at;
         }
+        for (; i < n && pickups[k].kind == HIMC_PICKUP_AIR; i++)
+            sound[k][i] += NOISE_UNIT * noise[0][i] / pickups[k].distance;
+    }
     for (int k = 0; k < HIMC_RAYS && rays; k++)
         for (int i = 0; i < n; i++)
             sound[HIMC_PICKUPS + k][i] += NOISE_UNIT * noise[k == HIMC_RAY_RIGHT][i];
