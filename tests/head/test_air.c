@@ -3,6 +3,7 @@
 #include "christian_drum.h"
 
 #include "head/bessel.h"
+#include "head/shared.h"
 #include "heads.h"
 
 #include <stdio.h>
@@ -337,6 +338,23 @@ static void test_the_kettle_is_a_spring_to_the_lowest_mode_alone(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.002, 1, third);
 }
 
+// modes above the highest frequency are nobody's but their drum's
+static void test_only_modes_below_the_highest_are_shared(void)
+{
+    himc_head head = head_of(A, 3990);
+    himc_shape circle = {.kind = &himc_kind_round};
+    himc_modes *modes = himc_modes_new(&circle, 40, NULL);
+    himc_air air = himc_air_around(&head, himc_air_kettle(A));
+    himc_shared_mode shared[HIMC_SHARED];
+    TEST_ASSERT_EQUAL_INT(HIMC_SHARED, himc_shared_find(&head, modes, &air, 1e4, shared));
+    double second = shared[2].omega / (2 * HIMC_PI);
+    int below = himc_shared_find(&head, modes, &air, second - 1, shared);
+    TEST_ASSERT_TRUE(below > 0 && below < HIMC_SHARED);
+    for (int i = 0; i < below; i++)
+        TEST_ASSERT_TRUE(shared[i].omega < 2 * HIMC_PI * second);
+    himc_modes_free(modes);
+}
+
 static void test_other_kettles_keep_the_preferred_modes_within_a_fifth_of_a_semitone(void)
 {
     static const double TIMES[] = {0.5, 0.7, 1.4, 2};
@@ -418,6 +436,7 @@ int main(void)
     RUN_TEST(test_mass_follows_from_stiffness_and_frequency);
     RUN_TEST(test_mass_of_the_principal_modes_is_within_a_tenth_of_the_residue);
     RUN_TEST(test_the_kettle_is_a_spring_to_the_lowest_mode_alone);
+    RUN_TEST(test_only_modes_below_the_highest_are_shared);
     RUN_TEST(test_other_kettles_keep_the_preferred_modes_within_a_fifth_of_a_semitone);
     RUN_TEST(test_heads_equal_in_dimensionless_measures_sound_equal);
     RUN_TEST(test_any_head_in_range_has_finite_slower_damped_modes);

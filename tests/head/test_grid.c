@@ -68,6 +68,19 @@ static void compare(const himc_grid *g, double *ten, double *twenty)
     himc_modes_free(round);
 }
 
+// of (0,1), per that for no wave at all: j^2 J_0(k)/(j^2 - k^2)
+static void check_transform(himc_grid *g)
+{
+    himc_shape shape = {.kind = &himc_kind_grid, .grid = g};
+    himc_modes *modes = himc_modes_new(&shape, 1, &error);
+    double j = himc_bessel_zero(0, 1), k = 1.5, none, even, odd;
+    shape.kind->transform(modes, 0, 0, 0, &none, &odd);
+    shape.kind->transform(modes, 0, k * cos(1), k * sin(1), &even, &odd);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, j * j * himc_bessel_j(0, k) / (j * j - k * k), even / none);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0, odd / none);
+    himc_modes_free(modes);
+}
+
 static void load_disc(int rings, double ten_most, double twenty_most)
 {
     char path[300];
@@ -80,6 +93,7 @@ static void load_disc(int rings, double ten_most, double twenty_most)
     TEST_ASSERT_EQUAL_INT(d.inner, g->places);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, RADIUS, g->radius);
     compare(g, &ten, &twenty);
+    check_transform(g);
     printf("%d places: first 10 within %.2f cents, first 20 within %.2f\n", d.all, ten, twenty);
     TEST_ASSERT_TRUE(ten < ten_most && twenty < twenty_most);
     himc_grid_release(g);
