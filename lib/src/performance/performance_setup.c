@@ -179,6 +179,8 @@ void himc_performance_adopt(himc_performance *p, const performance_settings *s)
     himc_body_configure(p->body, &p->settings);
 }
 
+// The order counts: the body is placed on its seat first, and the settings act last, since placing
+// resets the controller and its usual gains follow from the new masses.
 void himc_performance_embody(himc_performance *p, const performance_settings *wanted,
                              const body_parts *parts)
 {

@@ -286,9 +286,10 @@ static double rate_of(const planner_score *score, int i)
     return is_pair(score, i) ? fmax(r->rate, r[1].rate) : r->rate;
 }
 
-/// The better of both ends of a grid: with the one or the other hand last. Where neither ends
-/// earlier, the hands take turns with what follows at once; else a short roll takes the end that is
-/// nearer to its rate.
+/// The better of both ends of a grid: with the one or the other hand last. The first test that
+/// tells them apart decides: the end that lacks less time (of a roll that goes on after a change of
+/// tempo and is bent too much); the one nearer to its rate (of a short roll, or one bent too much);
+/// the earlier; the one with which the hands take turns with what follows.
 static roll_grid ended(roll_grid g, const roll_next next[HIMC_HANDS], double first, double rate,
                        double *early)
 {
