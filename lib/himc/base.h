@@ -96,8 +96,8 @@ typedef struct himc_quat {
     double z; ///< the same of z
 } himc_quat;
 
-/// The struck surface of an instrument, a drumhead say, in the world frame. Its x axis
-/// points away from the performer, its y axis to the left.
+/// The struck surface of an instrument, such as a drumhead, in the world frame. Its x axis points
+/// away from the performer, its y axis to the left.
 typedef struct himc_head_frame {
     himc_vec3 center;    ///< centre of the surface at rest (m)
     double tilt;         ///< positive lifts the side away from the performer (rad)

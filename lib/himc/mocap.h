@@ -238,8 +238,8 @@ void himc_performance_take_options(himc_performance *performance, const himc_tak
 /// Plays a take from memory, like the `take` command, by a player made from it with
 /// himc_player_new. The measures of `player` may have been changed since (within the ranges of
 /// himc_skeleton_config); joint rotations stay as captured. The player is seated. `name` begins
-/// notes and errors. Take and player are borrowed for this call. False with the reason; at once if
-/// `player` is NULL, with that of himc_player_new.
+/// notes and errors. Take and player are borrowed for this call. False with the reason, and
+/// if `player` is NULL; `error` then keeps that of himc_player_new.
 bool himc_performance_play_player(himc_performance *performance, himc_take *take,
                                   himc_player *player, const char *name, himc_error *error);
 /// Offset from the coordinates of the take being played to the world's (m).

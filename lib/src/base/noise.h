@@ -8,7 +8,7 @@
 /// smooth motion does not count. 0 for fewer than 5 frames. False without memory.
 bool himc_noise(const himc_vec3 *x, int frames, double *noise);
 
-/// The median of `count` numbers (> 0), which are sorted.
+/// The median of `count` (> 0) numbers; it sorts them.
 double himc_median(double *x, int count);
 
 #endif

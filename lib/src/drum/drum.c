@@ -462,7 +462,8 @@ bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
     bool near = false;
     for (int i = 0; i < count; i++)
         all[i] = sticks[i];
-    for (int at = 0, run; at<n; at += run> 0 ? run : 1) {
+    int at = 0;
+    while (at < n) {
         himc_drum_launch(drum);
         if (moves_at(drum, o, at)) {
             drum->outside_x = o->x[at];
@@ -470,10 +471,9 @@ bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
             himc_membrane_watch(drum->membrane, drum->outside_x, drum->outside_y);
         }
         bool alone = himc_drum_add_mallets(drum, all + count) == 0;
-        int most = n - at < RUN_BLOCK ? n - at : RUN_BLOCK;
-        for (run = 0; alone && run < most; run++)
-            if (force_at(o, at + run) != 0 || moves_at(drum, o, at + run))
-                break;
+        int most = n - at < RUN_BLOCK ? n - at : RUN_BLOCK, run = 0;
+        while (alone && run < most && force_at(o, at + run) == 0 && !moves_at(drum, o, at + run))
+            run++;
         run = himc_drum_until_launch(drum, run);
         run = himc_contact_clear(drum->membrane, all, count, run);
         near = near || run == 0;
@@ -483,6 +483,7 @@ bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
         } else {
             step_once(drum, all, count, forces, force_at(o, at), at, &made);
         }
+        at += run > 0 ? run : 1;
     }
     store_singles(drum, &made);
     return near;

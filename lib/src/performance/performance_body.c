@@ -298,7 +298,7 @@ long himc_body_limit_hits(const performance_body *b)
     return hits;
 }
 
-// which names of the numbers from `first` to `end` are allowed instead of that one
+// false; the error lists the names expected, of the numbers first .. end - 1
 static bool refuse_name(const char *what, const char *name, const char *(*name_of)(int), int first,
                         int end, himc_error *error)
 {

@@ -188,10 +188,9 @@ void himc_performance_embody(himc_performance *p, const performance_settings *wa
     himc_body_adopt(p->body, parts);
     if (s.control.human_strength)
         himc_controller_set_human_strength(&s.control, s.skeleton.mass);
-    p->settings = s;
     fit_stool(p->motion, p->body, &p->drums, &s);
     put_together(p->motion, p->body, &s, step_time(p));
-    himc_performance_adopt(p, &p->settings);
+    himc_performance_adopt(p, &s);
     himc_performance_renew_limits(p);
 }
 

@@ -286,30 +286,34 @@ static double rate_of(const planner_score *score, int i)
     return is_pair(score, i) ? fmax(r->rate, r[1].rate) : r->rate;
 }
 
-/// The better of both ends of a grid: with the one or the other hand last. The first test that
-/// tells them apart decides: the end that lacks less time (of a roll that goes on after a change of
-/// tempo and is bent too much); the one nearer to its rate (of a short roll, or one bent too much);
-/// the earlier; the one with which the hands take turns with what follows.
+/// The better of both ends of a grid: with the one or the other hand last.
 static roll_grid ended(roll_grid g, const roll_next next[HIMC_HANDS], double first, double rate,
                        double *early)
 {
-    roll_grid left = g, right = g;
-    double extra = end_with(&left, next, first, rate, HIMC_LEFT),
-           other = end_with(&right, next, first, rate, HIMC_RIGHT), bent = bend_of(&left, rate),
-           other_bent = bend_of(&right, rate), lacks = lack_of(&left, next, rate, HIMC_LEFT),
-           other_lacks = lack_of(&right, next, rate, HIMC_RIGHT);
-    bool too_bent = g.first > 0 && fmax(bent, other_bent) > ANCHOR_BEND, better = other < extra;
+    roll_grid end[HIMC_HANDS] = {g, g};
+    double extra[HIMC_HANDS], bent[HIMC_HANDS], lack[HIMC_HANDS];
+    for (int last = 0; last < HIMC_HANDS; last++) {
+        extra[last] = end_with(&end[last], next, first, rate, (himc_hand)last);
+        bent[last] = bend_of(&end[last], rate);
+        lack[last] = lack_of(&end[last], next, rate, last);
+    }
     double to_left = next[HIMC_LEFT].time, to_right = next[HIMC_RIGHT].time;
-    bool at_once = to_left != to_right && fmin(to_left, to_right) < first + 1 / rate;
-    bool is_short = rate * (first - g.begin) < SHORT_ROLL;
-    if (too_bent && fabs(lacks - other_lacks) > ANCHOR_BEND)
-        better = other_lacks < lacks;
-    else if (rate * (first - g.begin) < 1 || too_bent)
-        better = other_bent < bent;
-    else if (fabs(other - extra) < JOIN_GAIN)
-        better = at_once ? to_left < to_right : is_short && other_bent < bent;
-    *early = better ? other : extra;
-    return better ? right : left;
+    double intervals = rate * (first - g.begin);
+    bool nearer = bent[HIMC_RIGHT] < bent[HIMC_LEFT]; // to its rate, if the right hand is last
+    bool anchored = g.first > 0;                      // goes on after a change of tempo
+    bool too_bent = anchored && fmax(bent[HIMC_LEFT], bent[HIMC_RIGHT]) > ANCHOR_BEND, right;
+    if (too_bent && fabs(lack[HIMC_LEFT] - lack[HIMC_RIGHT]) > ANCHOR_BEND)
+        right = lack[HIMC_RIGHT] < lack[HIMC_LEFT];
+    else if (too_bent || intervals < 1)
+        right = nearer;
+    else if (!(fabs(extra[HIMC_RIGHT] - extra[HIMC_LEFT]) < JOIN_GAIN))
+        right = extra[HIMC_RIGHT] < extra[HIMC_LEFT]; // the earlier
+    else if (to_left != to_right && fmin(to_left, to_right) < first + 1 / rate)
+        right = to_left < to_right; // the hands take turns with what follows at once
+    else
+        right = intervals < SHORT_ROLL && nearer;
+    *early = extra[right ? HIMC_RIGHT : HIMC_LEFT];
+    return end[right ? HIMC_RIGHT : HIMC_LEFT];
 }
 
 /// The roll before one, maybe of the round before; -1 if there is none soon before it.

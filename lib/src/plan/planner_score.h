@@ -7,7 +7,7 @@
 #include "himc/score.h"
 
 #define BEAT_ROUNDING 1e-9 ///< of a time in seconds, in beats
-/// Of a beat, in seconds: so much less is no less. Chosen: up to beat 1e10 at 1 beat a minute.
+/// Times of beats that differ by less are equal (s). Chosen: up to beat 1e10 at 1 beat a minute.
 #define TIME_ROUNDING 1e-4
 
 typedef struct planner_stroke {
@@ -138,10 +138,10 @@ HIMC_RT bool himc_planner_score_has_tempo(const planner_score *score, double bea
 /// Moves the origin so that `beat` is at `t`.
 HIMC_RT void himc_planner_score_hold(planner_score *score, double t, double beat);
 
-/// Before the tempo changes: of a roll that has begun the strokes that are not planned yet will be
-/// counted anew; all of them come after `t`. The last one that is planned has a time ...
+/// Before the tempo changes: of a roll that has begun, the strokes that are not planned yet will be
+/// counted anew, from its last planned stroke on; all of them come after `t`.
 HIMC_RT void himc_planner_score_anchor(planner_score *score, double t);
-/// ... which it keeps after the change.
+/// After the change: that last planned stroke keeps its time.
 HIMC_RT void himc_planner_score_keep(planner_score *score);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
