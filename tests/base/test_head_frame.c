@@ -1,8 +1,9 @@
-/// test_head_frame.c: the frames of drumheads and the strike points of strokes.
+/// test_head_frame.c: struck surfaces: their frames, outlines and strike points.
 #include "unity.h"
 
 #include "himc/command.h"
 #include "base/head_frame.h"
+#include "body/capsules.h"
 
 #include <stdlib.h>
 
@@ -97,6 +98,18 @@ static void test_an_outline_is_one_to_all_that_ask(void)
     check_outline(&place);
 }
 
+// a stick beside the long side of a rectangle, far inside the circle around it
+static void test_a_capsule_is_as_near_as_the_outline(void)
+{
+    himc_head_frame place = {.center = {0.8, 0, 0.9}, .radius = 0.26, .length = 0.1, .width = 0.5};
+    himc_capsule stick = {.a = {0.9, -0.1, 0.8}, .b = {0.9, 0.1, 0.8}, .radius = 0.01};
+    himc_capsule_near near = himc_capsule_shell(&stick, &place);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1 - 0.05 - 0.01, near.gap);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1, near.n.x);
+    place.length = place.width = 0;
+    TEST_ASSERT_TRUE(himc_capsule_shell(&stick, &place).gap < 0);
+}
+
 static void test_a_kind_has_spots_of_its_own(void)
 {
     const double spots[] = {0, 0.1, 0.5};
@@ -116,6 +129,7 @@ int main(void)
     RUN_TEST(test_from_world_undoes_to_world);
     RUN_TEST(test_spots_lie_towards_the_player_each_hand_on_its_side);
     RUN_TEST(test_an_outline_is_one_to_all_that_ask);
+    RUN_TEST(test_a_capsule_is_as_near_as_the_outline);
     RUN_TEST(test_a_kind_has_spots_of_its_own);
     return UNITY_END();
 }

@@ -96,6 +96,14 @@ static void test_a_pedal_that_moves_while_the_stick_is_on_the_head_does_not_pluc
         TEST_ASSERT_DOUBLE_WITHIN(0.7, 0, 20 * log10(peak_with(changes[i]) / alone)); // dB
 }
 
+static void test_a_score_changes_the_surface_of_a_drum_that_is_there(void)
+{
+    himc_performance *p = with_score(DRUM STROKES);
+    load(p, "drum low 26; low shape rectangle 0.4 0.6; " STROKES);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.6, himc_drum_head_frame(himc_performance_drum(p, 0))->width);
+    himc_performance_free(p);
+}
+
 static void test_a_change_sounds_as_the_command_given_then(void)
 {
     enum { LENGTH = 3 * 48000, AT = 72000 }; // beat 3.0 at 120 per minute
@@ -536,6 +544,7 @@ int main(void)
     RUN_TEST(test_a_drums_command_finds_it_by_its_name);
     RUN_TEST(test_a_pedal_and_a_hand_act_on_their_beats);
     RUN_TEST(test_a_pedal_that_moves_while_the_stick_is_on_the_head_does_not_pluck_it);
+    RUN_TEST(test_a_score_changes_the_surface_of_a_drum_that_is_there);
     RUN_TEST(test_a_change_sounds_as_the_command_given_then);
     RUN_TEST(test_changes_need_no_memory_and_follow_the_transport);
     RUN_TEST(test_changes_act_on_a_drum_that_has_changed_meanwhile);

@@ -277,6 +277,8 @@ static void change_somehow(himc_drum *drum, himc_drum *follower, unsigned *rando
         say(drum, text);
     else
         say_aside(drum, text);
+    const himc_shape *shape = &himc_membrane_config_of(himc_drum_membrane(drum))->shape;
+    TEST_ASSERT_EQUAL_MESSAGE(shape->length > 0, himc_drum_head_frame(drum)->length > 0, text);
     TEST_ASSERT_TRUE_MESSAGE(energy_of(drum) <= before * (1 + ROUNDING), text);
     TEST_ASSERT_TRUE_MESSAGE(himc_drum_follow(follower, drum, &error), error.text);
     TEST_ASSERT_TRUE(himc_drum_follows(follower, drum));

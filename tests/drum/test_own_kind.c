@@ -12,6 +12,7 @@
 #include "drum/membrane_state.h"
 #include "head/mode_list.h"
 #include "head/pickup.h"
+#include "performance/performance_state.h"
 
 #define LENGTH 0.35 // (m)
 #define WIDTH 0.08  // (m)
@@ -214,6 +215,47 @@ static void test_strokes_land_on_the_bar_alone(void)
     TEST_ASSERT_FALSE(himc_drum_strike_at(bar, HIMC_STRIKE_NEVER, 0.51 * LENGTH, 0, 1, &error));
 }
 
+// where the first strike that is heard lands, across the head (m)
+static double first_across(void)
+{
+    for (int i = 0; i < heard_count; i++)
+        if (strcmp(heard[i].path, "/himc/strike") == 0)
+            return number(lo_message_get_argv(heard[i].message)[4]);
+    return NAN;
+}
+
+// both of one radius, and the performer has planned for the first
+static void test_a_head_turned_by_a_quarter_is_struck_inside_its_new_sides(void)
+{
+    himc_drum *kettle = himc_performance_drum(performance, 0);
+    subscribe("strikes");
+    say("/membrane/kettle/shape", "rectangle 0.6 0.4");
+    play(0.1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.6, himc_drum_head_frame(kettle)->length);
+    say("/membrane/kettle/shape", "rectangle 0.4 0.6");
+    play(0.1);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.4, himc_drum_head_frame(kettle)->length);
+    say("/himc/stroke", "1 left legato f 0 0.25");
+    say("/himc/play", "");
+    play(2);
+    TEST_ASSERT_DOUBLE_WITHIN(0.003, 0.25, first_across());
+}
+
+static void test_hands_rest_over_the_bar(void)
+{
+    himc_drum *bar = add_bar(220);
+    const himc_head_frame *frame = himc_drum_head_frame(bar);
+    say("/himc/stroke", "1 right legato f normal bar");
+    say("/himc/stroke", "1 left legato f normal bar");
+    say("/himc/play", "");
+    play(4);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 tip = performance->body->state.tip[hand];
+        himc_vec3 at = himc_head_frame_from_world(frame, tip);
+        TEST_ASSERT_TRUE(himc_head_frame_contains(frame, at.x, at.y) && at.z > 0.02);
+    }
+}
+
 static void test_a_damped_bar_rings_shorter(void)
 {
     double left[2];
@@ -299,6 +341,8 @@ int main(void)
     RUN_TEST(test_the_bar_has_the_frequencies_of_a_free_bar);
     RUN_TEST(test_a_score_plays_the_bar);
     RUN_TEST(test_strokes_land_on_the_bar_alone);
+    RUN_TEST(test_a_head_turned_by_a_quarter_is_struck_inside_its_new_sides);
+    RUN_TEST(test_hands_rest_over_the_bar);
     RUN_TEST(test_a_damped_bar_rings_shorter);
     RUN_TEST(test_tuning_moves_all_modes_of_the_bar_by_one_ratio);
     RUN_TEST(test_the_bar_is_drawn_from_what_is_sent);
