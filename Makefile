@@ -253,7 +253,7 @@ check-tsan: $(THREADED)
 
 clang: deps ## all of it compiled by clang, whose warnings are errors
 	@tools/build/deps.sh tools/build/deps-clang.txt
-	@$(MAKE) units build/clang/bin/himc $(if $(WEBSOCKETS),build/clang/bin/himc-viewer) BUILD=build/clang CC=clang CFLAGS="$(CFLAGS) -Werror"
+	@$(MAKE) units build/clang/bin/himc $(if $(WEBSOCKETS),build/clang/bin/himc-viewer) BUILD=build/clang CC=clang CFLAGS="$(CFLAGS) -Werror -g0"
 
 # of the tests' scripts those that run nothing but the program
 COVERED := $(addprefix tests/cli/test_,cli.sh evaluate.sh osc_serve.sh osc_vmc.sh)
