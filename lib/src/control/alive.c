@@ -34,35 +34,31 @@ static double bounded(double x, double low, double high)
     return fmin(fmax(x, low), high);
 }
 
-static void look_at(const himc_posture *posture, himc_vec3 place, himc_trunk_posture *goal)
-{
-    const himc_segment *s = posture->skeleton.segment;
-    double height = posture->skeleton.segment[HIMC_PELVIS].origin.z + s[HIMC_TRUNK].origin.z +
-                    s[HIMC_NECK].origin.z + s[HIMC_NECK].length;
-    double aside = atan2(place.y, place.x), far = hypot(place.x, place.y);
-    double down = atan2(height - place.z, far) - goal->value[HIMC_TRUNK_POSTURE_LEAN];
-    double turn = aside - goal->value[HIMC_TRUNK_POSTURE_TURN];
-    goal->value[HIMC_TRUNK_POSTURE_LOOK_LEFT] = bounded(GAZE_SHARE * turn, -MOST_ASIDE, MOST_ASIDE);
-    goal->value[HIMC_TRUNK_POSTURE_LOOK_DOWN] =
-        bounded(GAZE_SHARE * down - RESTING_LOOK, MOST_UP, MOST_DOWN);
-    goal->value[HIMC_TRUNK_POSTURE_SIDE] -=
-        bounded(WEIGHT_SHARE * aside, -MOST_WEIGHT, MOST_WEIGHT);
-}
-
 void himc_alive_add(const himc_posture *posture, const himc_next_stroke *next, double t,
                     himc_trunk_posture *goal)
 {
+    const himc_segment *s = posture->skeleton.segment;
+    double *side = &goal->value[HIMC_TRUNK_POSTURE_SIDE],
+           *lean = &goal->value[HIMC_TRUNK_POSTURE_LEAN],
+           *left = &goal->value[HIMC_TRUNK_POSTURE_LOOK_LEFT],
+           *down = &goal->value[HIMC_TRUNK_POSTURE_LOOK_DOWN];
     double turn = goal->value[HIMC_TRUNK_POSTURE_TURN];
-    goal->value[HIMC_TRUNK_POSTURE_SIDE] += SWAY * sin(2 * HIMC_PI * t / SWAY_PERIOD);
+    *side += SWAY * sin(2 * HIMC_PI * t / SWAY_PERIOD);
     if (next->in < READS_AHEAD) {
-        look_at(posture, next->at, goal);
+        double height = s[HIMC_PELVIS].origin.z + s[HIMC_TRUNK].origin.z + s[HIMC_NECK].origin.z +
+                        s[HIMC_NECK].length;
+        double aside = atan2(next->at.y, next->at.x), far = hypot(next->at.x, next->at.y);
+        double below = atan2(height - next->at.z, far) - *lean;
+        *left = bounded(GAZE_SHARE * (aside - turn), -MOST_ASIDE, MOST_ASIDE);
+        *down = bounded(GAZE_SHARE * below - RESTING_LOOK, MOST_UP, MOST_DOWN);
+        *side -= bounded(WEIGHT_SHARE * aside, -MOST_WEIGHT, MOST_WEIGHT);
     } else {
-        goal->value[HIMC_TRUNK_POSTURE_LOOK_LEFT] = bounded(-turn, -MOST_ASIDE, MOST_ASIDE);
-        goal->value[HIMC_TRUNK_POSTURE_LOOK_DOWN] = CONDUCTOR_UP;
+        *left = bounded(-turn, -MOST_ASIDE, MOST_ASIDE);
+        *down = CONDUCTOR_UP;
     }
-    goal->value[HIMC_TRUNK_POSTURE_LEAN] += BREATH * sin(2 * HIMC_PI * t / BREATH_PERIOD);
+    *lean += BREATH * sin(2 * HIMC_PI * t / BREATH_PERIOD);
     if (next->since > FIRST_AFTER && next->in < LIFT_BEGINS && next->in > LIFT_ENDS) {
-        goal->value[HIMC_TRUNK_POSTURE_LOOK_DOWN] -= LIFT_HEAD;
-        goal->value[HIMC_TRUNK_POSTURE_LEAN] -= LIFT_CHEST;
+        *down -= LIFT_HEAD;
+        *lean -= LIFT_CHEST;
     }
 }

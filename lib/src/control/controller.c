@@ -32,30 +32,6 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_strength_apply(c, skeleton, s, torque);
 }
 
-// inertia of all segments moved by a joint, about the child's axes
-static himc_vec3 hanging_inertia(const himc_skeleton *skeleton, const himc_body_state *s, int joint)
-{
-    double sum[3] = {0, 0, 0};
-    const himc_mat3 *axes = &s->rotation[joint + 1];
-    for (int i = joint + 1; i < HIMC_SEGMENTS; i++) {
-        int up = i;
-        while (up > joint + 1)
-            up = skeleton->segment[up].parent;
-        if (up != joint + 1)
-            continue;
-        const himc_segment *segment = &skeleton->segment[i];
-        himc_vec3 r = himc_vec3_sub(himc_segment_center(skeleton, s, i), s->origin[joint + 1]);
-        for (int k = 0; k < 3; k++) {
-            himc_vec3 axis = {axes->m[0][k], axes->m[1][k], axes->m[2][k]};
-            himc_vec3 own = himc_mat3_apply_transposed(&s->rotation[i], axis);
-            himc_vec3 arm = himc_vec3_cross(axis, r);
-            sum[k] += segment->mass * himc_vec3_dot(arm, arm) + segment->inertia.x * own.x * own.x +
-                      segment->inertia.y * own.y * own.y + segment->inertia.z * own.z * own.z;
-        }
-    }
-    return himc_vec3_make(sum[0], sum[1], sum[2]);
-}
-
 himc_controller_config himc_controller_config_default(void)
 {
     return (himc_controller_config){
@@ -92,8 +68,29 @@ void himc_controller_init(himc_controller *c, const himc_controller_config *conf
                           const himc_skeleton *skeleton, const himc_body_state *posture)
 {
     *c = (himc_controller){.step = 1 / USUAL_PHYSICS_RATE};
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        c->inertia[j] = hanging_inertia(skeleton, posture, j);
+    // inertia of all segments moved by a joint, about the child's axes
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        double sum[3] = {0, 0, 0};
+        const himc_mat3 *axes = &posture->rotation[j + 1];
+        for (int i = j + 1; i < HIMC_SEGMENTS; i++) {
+            int up = i;
+            while (up > j + 1)
+                up = skeleton->segment[up].parent;
+            if (up != j + 1) // the joint does not move it
+                continue;
+            const himc_segment *segment = &skeleton->segment[i];
+            himc_vec3 center = himc_segment_center(skeleton, posture, i);
+            himc_vec3 r = himc_vec3_sub(center, posture->origin[j + 1]), inertia = segment->inertia;
+            for (int k = 0; k < 3; k++) {
+                himc_vec3 axis = {axes->m[0][k], axes->m[1][k], axes->m[2][k]};
+                himc_vec3 own = himc_mat3_apply_transposed(&posture->rotation[i], axis);
+                himc_vec3 arm = himc_vec3_cross(axis, r);
+                sum[k] += segment->mass * himc_vec3_dot(arm, arm) + inertia.x * own.x * own.x +
+                          inertia.y * own.y * own.y + inertia.z * own.z * own.z;
+            }
+        }
+        c->inertia[j] = himc_vec3_make(sum[0], sum[1], sum[2]);
+    }
     himc_controller_configure(c, config);
 }
 

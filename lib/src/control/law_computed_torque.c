@@ -10,17 +10,6 @@
 #include "control/law.h"
 #include "control/limit_torque.h"
 
-// in contact the tip has the hand's acceleration along the normal, for any gains of the joints
-static void release(const law_input *in, himc_hand hand, himc_vec3 wanted[HIMC_JOINTS])
-{
-    himc_vec3 n = in->reference->normal[hand], arm[HIMC_ARM_JOINTS];
-    himc_vec3 a = himc_vec3_scale(n, in->reference->yield[hand]);
-    himc_vec3 left = himc_acceleration_left(in->skeleton, in->state, hand, wanted, a);
-    himc_arm_gather(wanted, hand, arm);
-    himc_ik_release(&in->jacobian[hand], n, himc_vec3_dot(n, left), arm);
-    himc_arm_scatter(arm, hand, wanted);
-}
-
 // stiffness and damping over inertia of one axis, as far as an implicit step lets them act
 static void implicit_rates(double ks, double kd, double step, double rate[2])
 {
@@ -29,36 +18,43 @@ static void implicit_rates(double ks, double kd, double step, double rate[2])
     rate[1] = (kd + step * ks) / all;
 }
 
-// w^2 and 2 w of a joint, from the bandwidth or, where the user has set gains, from those over
-// the inertia; the bandwidth is always slow compared with the step, gains need not be
-static himc_vec3 feedback(const himc_controller *c, const himc_body_state *s, int j,
-                          const tracking_error *e)
-{
-    double w = 2 * HIMC_PI * c->config.bandwidth, x[2], y[2], z[2];
-    if (!c->config.gain_set[j])
-        return himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
-    himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
-    const himc_mat3 *r = &s->rotation[j + 1];
-    implicit_rates(ks.x / i.x, kd.x / i.x, c->step, x);
-    implicit_rates(ks.y / i.y, kd.y / i.y, c->step, y);
-    implicit_rates(ks.z / i.z, kd.z / i.z, c->step, z);
-    return himc_vec3_add(himc_mat3_scale_along(r, himc_vec3_make(x[0], y[0], z[0]), e->angle[j]),
-                         himc_mat3_scale_along(r, himc_vec3_make(x[1], y[1], z[1]), e->rate[j]));
-}
-
 void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS])
 {
     const himc_controller *c = in->controller;
     tracking_error *e = in->error;
-    himc_vec3 wanted[HIMC_JOINTS];
-    // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq
+    himc_vec3 wanted[HIMC_JOINTS], arm[HIMC_ARM_JOINTS];
+    // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq; w^2 and 2 w are those of the bandwidth or, where
+    // the user has set gains, those over the inertia
     for (int j = 0; j < HIMC_JOINTS; j++) {
+        double w = 2 * HIMC_PI * c->config.bandwidth, x[2], y[2], z[2];
         e->rate[j] = himc_vec3_madd(e->rate[j], -0.5 * c->step, e->acceleration[j]);
-        wanted[j] = himc_vec3_add(e->acceleration[j], feedback(c, in->state, j, e));
+        himc_vec3 angle = himc_vec3_scale(e->angle[j], w * w);
+        himc_vec3 feedback = himc_vec3_madd(angle, 2 * w, e->rate[j]);
+        if (c->config
+                .gain_set[j]) { // the bandwidth is always slow beside the step, gains need not be
+            himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
+            const himc_mat3 *r = &in->state->rotation[j + 1];
+            implicit_rates(ks.x / i.x, kd.x / i.x, c->step, x);
+            implicit_rates(ks.y / i.y, kd.y / i.y, c->step, y);
+            implicit_rates(ks.z / i.z, kd.z / i.z, c->step, z);
+            angle = himc_mat3_scale_along(r, himc_vec3_make(x[0], y[0], z[0]), e->angle[j]);
+            himc_vec3 damping = himc_vec3_make(x[1], y[1], z[1]);
+            feedback = himc_vec3_add(angle, himc_mat3_scale_along(r, damping, e->rate[j]));
+        }
+        wanted[j] = himc_vec3_add(e->acceleration[j], feedback);
     }
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (in->reference->released[hand])
-            release(in, (himc_hand)hand, wanted);
+    // in contact the tip has the hand's acceleration along the normal, for any gains of the joints
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        if (!in->reference->released[hand])
+            continue;
+        himc_vec3 n = in->reference->normal[hand];
+        himc_vec3 a = himc_vec3_scale(n, in->reference->yield[hand]);
+        himc_vec3 left = himc_vec3_sub(a, himc_tip_carried(in->skeleton, in->state, hand, wanted));
+        himc_arm_gather(wanted, hand, arm);
+        himc_ik_release(&in->jacobian[hand], n, himc_vec3_dot(n, left), arm);
+        himc_arm_scatter(arm, hand, wanted);
+    }
     himc_limits_compliance(c, in->skeleton, in->state, in->jacobian, wanted);
     himc_inverse_dynamics_of(in->skeleton, in->state, c->articulation, wanted, torque);
 }

@@ -177,22 +177,19 @@ static void give_back(const limit_stops *stop, const himc_arm_jacobian *jacobian
     }
 }
 
-// acceleration of a tip that is missing beside that of other accelerations
-static himc_vec3 lost_at_tip(const himc_skeleton *skeleton, const himc_body_state *s,
-                             himc_hand hand, const himc_vec3 *before, const himc_vec3 *now)
+// Shortens an arm's vectors, in the same proportions, so that none is longer than `most`. Torques
+// are measured by the accelerations that they make: `inertia` and the state; else both are NULL.
+static void bound_arm(himc_hand hand, double most, const himc_vec3 *inertia,
+                      const himc_body_state *s, himc_vec3 all[HIMC_JOINTS])
 {
-    himc_vec3 lost = {0, 0, 0};
-    for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent) {
-        himc_vec3 less = himc_vec3_sub(before[i - 1], now[i - 1]);
-        himc_vec3 lever = himc_vec3_sub(s->tip[hand], s->origin[i]);
-        lost = himc_vec3_add(lost, himc_vec3_cross(less, lever));
+    double longest = 0;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        himc_vec3 v = all[j];
+        if (inertia)
+            v = himc_mat3_scale_along(&s->rotation[j + 1], reciprocal(inertia[j]), v);
+        longest = fmax(longest, himc_vec3_length(v));
     }
-    return lost;
-}
-
-// the arm's vectors in the same proportions, none longer than `most`, if the longest is `longest`
-static void shorten(himc_hand hand, double longest, double most, himc_vec3 all[HIMC_JOINTS])
-{
     for (int k = 0; k < HIMC_ARM_JOINTS && longest > most; k++) {
         himc_vec3 *v = &all[himc_arm_joint(hand, k)];
         *v = himc_vec3_scale(*v, most / longest);
@@ -203,37 +200,8 @@ void himc_limits_bound_errors(const himc_controller *c, tracking_error *e)
 {
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        double longest = 0;
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            longest = fmax(longest, himc_vec3_length(e->angle[himc_arm_joint((himc_hand)hand, k)]));
-        shorten((himc_hand)hand, longest, LARGEST_ERROR, e->angle);
-    }
-}
-
-// `part` is what the demand is per acceleration: an inertia, or NULL for 1
-static void bound_demand(const himc_body_state *s, himc_hand hand, const himc_vec3 *part,
-                         himc_vec3 demand[HIMC_JOINTS])
-{
-    double longest = 0;
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        himc_vec3 a = demand[j];
-        if (part)
-            a = himc_mat3_scale_along(&s->rotation[j + 1], reciprocal(part[j]), a);
-        longest = fmax(longest, himc_vec3_length(a));
-    }
-    shorten(hand, longest, HARDEST_DEMAND, demand);
-}
-
-static bool is_beyond(const himc_limits *limits, himc_hand hand, const joint_place at[HIMC_JOINTS])
-{
-    bool beyond = false;
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        beyond = beyond || (limits->joint[j].bound && at[j].beyond >= LEAST_BEYOND);
-    }
-    return beyond;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        bound_arm((himc_hand)hand, LARGEST_ERROR, NULL, NULL, e->angle);
 }
 
 void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skeleton,
@@ -247,7 +215,7 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
         return;
     find_places(c, skeleton, s, RETURN_SPEED * HORIZON, at);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        bound_demand(s, (himc_hand)hand, NULL, wanted);
+        bound_arm((himc_hand)hand, HARDEST_DEMAND, NULL, NULL, wanted);
     memcpy(before, wanted, sizeof before);
     for (int pass = 0; pass <= COMPENSATION_PASSES; pass++) {
         double least = pass == 0 ? LEAST_CORRECTION : LEAST_AGAIN;
@@ -259,9 +227,15 @@ void himc_limits_compliance(const himc_controller *c, const himc_skeleton *skele
             himc_vec3 *a = &wanted[stop.joint[h]];
             *a = himc_vec3_madd(*a, stop.more[h], stop.inward[h]);
         }
-        for (int hand = 0; pass < COMPENSATION_PASSES && hand < HIMC_HANDS; hand++) {
-            himc_vec3 lost = lost_at_tip(skeleton, s, (himc_hand)hand, before, wanted);
-            give_back(&stop, &jacobian[hand], (himc_hand)hand, lost, wanted);
+        for (int h = 0; pass < COMPENSATION_PASSES && h < HIMC_HANDS; h++) {
+            himc_hand hand = (himc_hand)h;
+            himc_vec3 lost = {0, 0, 0}; // of the tip's acceleration
+            for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent) {
+                himc_vec3 less = himc_vec3_sub(before[i - 1], wanted[i - 1]);
+                himc_vec3 lever = himc_vec3_sub(s->tip[hand], s->origin[i]);
+                lost = himc_vec3_add(lost, himc_vec3_cross(less, lever));
+            }
+            give_back(&stop, &jacobian[hand], hand, lost, wanted);
         }
     }
 }
@@ -273,22 +247,6 @@ static double energy(himc_quat q, himc_vec3 inertia, himc_vec3 spin)
     return inertia.x * v.x * v.x + inertia.y * v.y * v.y + inertia.z * v.z * v.z;
 }
 
-// the rotation to the nearest orientation within, and its rate, in the parent's frame
-static void find_way(const himc_limits *limits, int j, const joint_place *at, himc_vec3 spin,
-                     himc_vec3 inertia, himc_vec3 *way, himc_vec3 *rate)
-{
-    *way = himc_mat3_apply_transposed(at->parent, at->back);
-    spin = himc_mat3_apply_transposed(at->parent, spin);
-    himc_quat near = himc_quat_mul(himc_quat_exp(*way), at->q);
-    himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(spin, SLIDE_STEP)), at->q);
-    himc_quat moved = himc_quat_mul(himc_limit_closest(limits, j, next), himc_quat_conj(near));
-    *way = himc_vec3_scale(*way, fmin(1, LARGEST_BEYOND / at->beyond));
-    // far outside, the nearest orientation may run away or jump to the other side
-    himc_vec3 along = himc_vec3_scale(himc_quat_log(moved), 1 / SLIDE_STEP);
-    double most = energy(at->q, inertia, spin), has = energy(at->q, inertia, along);
-    *rate = himc_vec3_madd(spin, has > most ? -sqrt(most / has) : -1, along);
-}
-
 void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
                         const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS],
                         himc_vec3 resistance[HIMC_JOINTS])
@@ -298,19 +256,33 @@ void himc_limits_resist(const himc_controller *c, const himc_skeleton *skeleton,
     if (!c->limits || c->limits->kind == HIMC_LIMITS_OFF)
         return;
     find_places(c, skeleton, s, 0, at);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (is_beyond(c->limits, (himc_hand)hand, at))
-            bound_demand(s, (himc_hand)hand, c->inertia, torque);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        bool beyond = false;
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint((himc_hand)hand, k);
+            beyond = beyond || (c->limits->joint[j].bound && at[j].beyond >= LEAST_BEYOND);
+        }
+        if (beyond)
+            bound_arm((himc_hand)hand, HARDEST_DEMAND, c->inertia, s, torque);
+    }
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        himc_vec3 way, rate;
         if (!c->limits->joint[j].bound || at[j].beyond < LEAST_BEYOND)
             continue;
         count_hit(c->saturation, j);
-        find_way(c->limits, j, &at[j], himc_relative_spin(skeleton, s, j), c->inertia[j], &way,
-                 &rate);
-        const himc_mat3 *parent = at[j].parent;
-        const himc_mat3 *child = &s->rotation[j + 1];
+        const himc_mat3 *parent = at[j].parent, *child = &s->rotation[j + 1];
         himc_vec3 i = c->inertia[j], light = reciprocal(i);
+        // the rotation to the nearest orientation within, and its rate, in the parent's frame
+        himc_vec3 way = himc_mat3_apply_transposed(parent, at[j].back);
+        himc_vec3 spin = himc_mat3_apply_transposed(parent, himc_relative_spin(skeleton, s, j));
+        himc_quat q = at[j].q, near = himc_quat_mul(himc_quat_exp(way), q);
+        himc_quat next = himc_quat_mul(himc_quat_exp(himc_vec3_scale(spin, SLIDE_STEP)), q);
+        himc_quat closest = himc_limit_closest(c->limits, j, next);
+        himc_vec3 moved = himc_quat_log(himc_quat_mul(closest, himc_quat_conj(near)));
+        himc_vec3 along = himc_vec3_scale(moved, 1 / SLIDE_STEP);
+        way = himc_vec3_scale(way, fmin(1, LARGEST_BEYOND / at[j].beyond));
+        // far outside, the nearest orientation may run away or jump to the other side
+        double most = energy(q, i, spin), has = energy(q, i, along);
+        himc_vec3 rate = himc_vec3_madd(spin, has > most ? -sqrt(most / has) : -1, along);
         himc_vec3 a = himc_vec3_madd(himc_vec3_scale(way, w * w), -(h * w * w + 2 * w), rate);
         himc_vec3 n = himc_mat3_apply(parent, himc_vec3_unit(way));
         // the servo's torque must not move the joint further out

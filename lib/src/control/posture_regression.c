@@ -130,72 +130,57 @@ static himc_vec3 weighted(const double *weight, const double *term, int terms)
     return himc_vec3_make(u[0], u[1], u[2]);
 }
 
-// the joints of one arm by the weights, before the tip's correction
-static void set_arm(const himc_posture_regression *regression, himc_hand hand,
-                    const himc_vec3 tip[OFFSETS][HIMC_HANDS], himc_pose *pose)
-{
-    const himc_posture_regression_player *player = &regression->player;
-    double term[TERMS];
-    himc_quat frame[HIMC_ARM_JOINTS];
-    himc_posture_regression_terms(player, hand, pose->joint[TRUNK], tip, term);
-    himc_posture_regression_frames(player, hand, frame);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        himc_vec3 u = weighted(regression->weight[hand][k][0], term, TERMS);
-        himc_vec3 own = himc_quat_rotate(himc_quat_conj(frame[k]), u);
-        pose->joint[j] = himc_quat_mul(player->mean.joint[j], himc_quat_exp(own));
-    }
-}
-
 void himc_posture_regression_at(const himc_posture_regression *regression,
                                 const himc_vec3 tip[OFFSETS][HIMC_HANDS], himc_pose *pose)
 {
     const himc_posture_regression_player *player = &regression->player;
+    double term[TRUNK_TERMS];
+    himc_quat frame[HIMC_ARM_JOINTS];
     if (player->trunk) { // it turns with the tips from its mean orientation
-        double term[TRUNK_TERMS];
         himc_posture_regression_trunk_terms(player, pose->joint[TRUNK], tip, term);
         himc_vec3 turn = weighted(regression->trunk[0], term, TRUNK_TERMS);
         pose->joint[TRUNK] = himc_quat_mul(pose->joint[TRUNK], himc_quat_exp(turn));
     }
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
         if (!player->arm[hand])
             continue;
-        set_arm(regression, (himc_hand)hand, tip, pose);
+        himc_posture_regression_terms(player, hand, pose->joint[TRUNK], tip, term);
+        himc_posture_regression_frames(player, hand, frame);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint(hand, k);
+            himc_vec3 u = weighted(regression->weight[hand][k][0], term, TERMS);
+            himc_vec3 own = himc_quat_rotate(himc_quat_conj(frame[k]), u);
+            pose->joint[j] = himc_quat_mul(player->mean.joint[j], himc_quat_exp(own));
+        }
         himc_vec3 target =
             himc_posture_regression_in_trunk(player->waist, pose->joint[TRUNK], tip[0][hand]);
-        for (int i = 0; i < CORRECTION_STEPS; i++)
-            correct_tip(regression, (himc_hand)hand, target, pose);
+        for (int step = 0; step < CORRECTION_STEPS; step++)
+            correct_tip(regression, hand, target, pose);
     }
-}
-
-// the pose `dt` seconds from now: the player's mean with the natural posture's trunk motion and,
-// for arms that were not captured, its arms
-static himc_pose pose_after(const himc_posture_regression_player *player,
-                            const himc_posture_motion *natural, double dt)
-{
-    himc_pose pose = player->mean;
-    himc_quat own = himc_quat_mul(himc_quat_conj(player->natural_trunk), player->mean.joint[TRUNK]);
-    pose.joint[TRUNK] = himc_quat_mul(himc_posture_joint_after(natural, TRUNK, dt), own);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int k = 0; k < HIMC_ARM_JOINTS && !player->arm[hand]; k++) {
-            int j = himc_arm_joint((himc_hand)hand, k);
-            pose.joint[j] = himc_posture_joint_after(natural, j, dt);
-        }
-    return pose;
 }
 
 void himc_posture_regression_moving(const himc_posture_regression *regression,
                                     const himc_target tip[OFFSETS][HIMC_HANDS],
                                     himc_posture_motion *motion)
 {
+    const himc_posture_regression_player *player = &regression->player;
+    himc_quat own = himc_quat_mul(himc_quat_conj(player->natural_trunk), player->mean.joint[TRUNK]);
     himc_pose pose[3];
     for (int i = 0; i < 3; i++) {
         double dt = (i - 1) * HIMC_DIFFERENCE_STEP;
         himc_vec3 then[OFFSETS][HIMC_HANDS];
-        pose[i] = pose_after(&regression->player, motion, dt);
-        for (int k = 0; k < OFFSETS; k++)
-            for (int hand = 0; hand < HIMC_HANDS; hand++)
+        // the player's mean, with the natural motion of the trunk and of arms not captured
+        pose[i] = player->mean;
+        pose[i].joint[TRUNK] = himc_quat_mul(himc_posture_joint_after(motion, TRUNK, dt), own);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            for (int k = 0; k < HIMC_ARM_JOINTS && !player->arm[hand]; k++) {
+                int j = himc_arm_joint((himc_hand)hand, k);
+                pose[i].joint[j] = himc_posture_joint_after(motion, j, dt);
+            }
+            for (int k = 0; k < OFFSETS; k++)
                 then[k][hand] = himc_target_after(&tip[k][hand], dt).x;
+        }
         himc_posture_regression_at(regression, (const himc_vec3(*)[HIMC_HANDS])then, &pose[i]);
     }
     himc_posture_differentiate(pose, HIMC_DIFFERENCE_STEP, 0, HIMC_JOINTS, motion);

@@ -70,28 +70,6 @@ himc_vec3 himc_posture_regression_tip(const himc_skeleton *skeleton, const himc_
     return himc_vec3_add(skeleton->segment[HIMC_PELVIS].origin, x);
 }
 
-static void fit_hand(himc_posture_regression_player *player,
-                     const himc_posture_regression_take *take, int count, himc_hand hand)
-{
-    const himc_skeleton *skeleton = take->skeleton;
-    himc_vec3 sum = {0, 0, 0};
-    double frames = 0;
-    for (int n = 0; n < count; frames += take[n++].frames)
-        for (int i = 0; i < take[n].frames; i++) {
-            const himc_pose *pose = &take[n].pose[i];
-            himc_vec3 x = himc_posture_regression_tip(skeleton, pose, hand);
-            sum = himc_vec3_add(
-                sum, himc_posture_regression_in_trunk(player->waist, pose->joint[TRUNK], x));
-        }
-    player->tip[hand] = himc_vec3_scale(sum, 1 / frames);
-    player->reach[hand] = himc_vec3_length(skeleton->tip);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        player->joint[hand][k] = skeleton->segment[himc_arm_joint(hand, k) + 1].origin;
-        if (k > 0)
-            player->reach[hand] += himc_vec3_length(player->joint[hand][k]);
-    }
-}
-
 // a hand's mean strike point: the mean of the lowest positions of its tip (m)
 static himc_vec3 mean_strike(const himc_posture_regression_take *take, int count, himc_hand hand)
 {
@@ -140,18 +118,35 @@ bool himc_posture_regression_fit(himc_posture_regression_player *player,
                 himc_rotations_add(&all, take[n].pose[i].joint[j]);
         player->mean.joint[j] = himc_rotations_mean(&all);
     }
-    player->waist = himc_skeleton_waist(take->skeleton);
+    const himc_skeleton *skeleton = take->skeleton;
+    player->waist = himc_skeleton_waist(skeleton);
     player->trunk = true;
     for (int n = 0; n < count; n++)
         player->trunk = player->trunk && !take[n].unseen_trunk;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+    player->stick = skeleton->tip;
+    for (int h = 0; h < HIMC_HANDS; h++) {
+        himc_hand hand = (himc_hand)h;
+        himc_vec3 sum = {0, 0, 0};
+        double frames = 0;
         player->arm[hand] = true;
-        for (int n = 0; n < count; n++)
+        for (int n = 0; n < count; frames += take[n++].frames) {
             player->arm[hand] = player->arm[hand] && !take[n].unseen_arm[hand];
+            for (int i = 0; i < take[n].frames; i++) {
+                const himc_pose *pose = &take[n].pose[i];
+                himc_vec3 x = himc_posture_regression_tip(skeleton, pose, hand);
+                x = himc_posture_regression_in_trunk(player->waist, pose->joint[TRUNK], x);
+                sum = himc_vec3_add(sum, x);
+            }
+        }
         player->trunk = player->trunk && player->arm[hand];
-        fit_hand(player, take, count, (himc_hand)hand);
+        player->tip[hand] = himc_vec3_scale(sum, 1 / frames);
+        player->reach[hand] = himc_vec3_length(skeleton->tip);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            player->joint[hand][k] = skeleton->segment[himc_arm_joint(hand, k) + 1].origin;
+            if (k > 0)
+                player->reach[hand] += himc_vec3_length(player->joint[hand][k]);
+        }
     }
-    player->stick = take->skeleton->tip;
     player->natural_trunk = natural_trunk(take, count);
     return true;
 }
@@ -170,19 +165,6 @@ typedef struct problem {
 #define PROBLEMS (HIMC_HANDS + 1) // each arm, and the trunk
 static const char *const problem_tips[PROBLEMS] = {"left tip", "right tip", "tips"};
 
-// the tip `ahead` seconds after frame i, by linear interpolation between frames
-static himc_vec3 tip_ahead(const himc_posture_regression_take *take, int i, double ahead,
-                           himc_hand hand)
-{
-    double at = ahead * take->rate, part = at - floor(at);
-    const himc_pose *pose = &take->pose[i + (int)at];
-    himc_vec3 x = himc_posture_regression_tip(take->skeleton, pose, hand);
-    if (part < SAME_FRAME)
-        return x;
-    himc_vec3 next = himc_posture_regression_tip(take->skeleton, pose + 1, hand);
-    return himc_vec3_madd(himc_vec3_scale(x, 1 - part), part, next);
-}
-
 // adds a take's rows to a problem: of an arm, or of the trunk
 static void add_rows(problem *p, const himc_posture_regression_player *player,
                      const himc_posture_regression_take *take, int which)
@@ -196,9 +178,18 @@ static void add_rows(problem *p, const himc_posture_regression_player *player,
         const himc_pose *pose = &take->pose[i];
         double *term = p->term + p->terms * (size_t)p->rows;
         himc_vec3 u[HIMC_ARM_JOINTS], tip[OFFSETS][HIMC_HANDS];
-        for (int k = 0; k < OFFSETS; k++)
-            for (int h = 0; h < HIMC_HANDS; h++)
-                tip[k][h] = tip_ahead(take, i, k * HIMC_REGRESSION_OFFSET_STEP, (himc_hand)h);
+        for (int k = 0; k < OFFSETS; k++) { // by linear interpolation between frames
+            double at = k * HIMC_REGRESSION_OFFSET_STEP * take->rate, part = at - floor(at);
+            const himc_pose *then = pose + (int)at;
+            for (int h = 0; h < HIMC_HANDS; h++) {
+                tip[k][h] = himc_posture_regression_tip(take->skeleton, then, (himc_hand)h);
+                if (part < SAME_FRAME)
+                    continue;
+                himc_vec3 next =
+                    himc_posture_regression_tip(take->skeleton, then + 1, (himc_hand)h);
+                tip[k][h] = himc_vec3_madd(himc_vec3_scale(tip[k][h], 1 - part), part, next);
+            }
+        }
         if (which == HIMC_HANDS)
             himc_posture_regression_trunk_terms(player, mean->joint[TRUNK],
                                                 (const himc_vec3(*)[HIMC_HANDS])tip, term);
@@ -319,16 +310,6 @@ static bool fill_rows(himc_posture_regression *regression, problem p[PROBLEMS],
     return true;
 }
 
-static bool allocate(problem *p, int rows, int terms, int angles, himc_error *error)
-{
-    *p = (problem){.terms = terms, .angles = angles};
-    p->term = malloc((size_t)rows * (size_t)terms * sizeof *p->term);
-    p->angle = malloc((size_t)(rows > terms ? rows : terms) * (size_t)angles * sizeof *p->angle);
-    p->no_memory = !p->term || !p->angle;
-    return !p->no_memory ||
-           himc_error_set(error, "posture regression: out of memory for %d frames", rows);
-}
-
 // the weights of problem i (angles x terms)
 static double *weights_of(himc_posture_regression *regression, int i)
 {
@@ -372,9 +353,18 @@ static bool learn(himc_posture_regression *regression, problem p[PROBLEMS],
 
 static bool allocate_all(problem p[PROBLEMS], int rows, himc_error *error)
 {
-    return allocate(&p[HIMC_LEFT], rows, TERMS, ANGLES, error) &&
-           allocate(&p[HIMC_RIGHT], rows, TERMS, ANGLES, error) &&
-           allocate(&p[HIMC_HANDS], rows, TRUNK_TERMS, 3, error);
+    for (int i = 0; i < PROBLEMS; i++) {
+        bool arm = i < HIMC_HANDS;
+        int terms = arm ? TERMS : TRUNK_TERMS, angles = arm ? ANGLES : 3;
+        size_t most = (size_t)(rows > terms ? rows : terms);
+        p[i] = (problem){.terms = terms, .angles = angles};
+        p[i].term = malloc((size_t)rows * (size_t)terms * sizeof *p[i].term);
+        p[i].angle = malloc(most * (size_t)angles * sizeof *p[i].angle);
+        p[i].no_memory = !p[i].term || !p[i].angle;
+        if (p[i].no_memory)
+            return himc_error_set(error, "posture regression: out of memory for %d frames", rows);
+    }
+    return true;
 }
 
 static void free_all(problem p[PROBLEMS])
@@ -404,31 +394,24 @@ bool himc_posture_regression_learn(himc_posture_regression *regression,
     return ok;
 }
 
-// turns a problem into one for the correction D: the residuals, and a row for each term that holds
-// its weight
-static void make_correction_problem(problem *p, const double *weight)
-{
-    if (p->rows == 0)
-        return;
-    for (int i = 0; i < p->rows; i++)
-        for (int c = 0; c < p->angles; c++)
-            p->angle[p->angles * i + c] -=
-                explained(weight + p->terms * c, p->term + p->terms * i, p->terms);
-    for (int t = 0; t < p->terms; t++, p->rows++) {
-        memset(p->term + p->terms * p->rows, 0, (size_t)p->terms * sizeof *p->term);
-        memset(p->angle + p->angles * p->rows, 0, (size_t)p->angles * sizeof *p->angle);
-        p->term[p->terms * p->rows + t] = PRIOR_FRAMES;
-    }
-}
-
+// learns the corrections D from the residuals, with a row for each term that holds its weight
 static bool correct(himc_posture_regression *regression, problem p[PROBLEMS],
                     const himc_posture_regression_take *take, himc_error *error)
 {
     if (!fill_rows(regression, p, take, 1, error))
         return false;
-    for (int i = 0; i < PROBLEMS; i++) {
-        make_correction_problem(&p[i], weights_of(regression, i));
-        if (!solve(&p[i], problem_tips[i], error))
+    for (problem *q = p; q < p + PROBLEMS; q++) {
+        const double *weight = weights_of(regression, (int)(q - p));
+        for (int i = 0; i < q->rows; i++)
+            for (int c = 0; c < q->angles; c++)
+                q->angle[q->angles * i + c] -=
+                    explained(weight + q->terms * c, q->term + q->terms * i, q->terms);
+        for (int t = 0; t < q->terms && q->rows > 0; t++, q->rows++) {
+            memset(q->term + q->terms * q->rows, 0, (size_t)q->terms * sizeof *q->term);
+            memset(q->angle + q->angles * q->rows, 0, (size_t)q->angles * sizeof *q->angle);
+            q->term[q->terms * q->rows + t] = PRIOR_FRAMES;
+        }
+        if (!solve(q, problem_tips[q - p], error))
             return false;
     }
     add_solutions(regression, p);

@@ -20,18 +20,13 @@
 #define SDLS_MOST_ROTATION \
     0.785 // gamma_max of one joint in one step (rad): Buss & Kim 2005, pi / 4
 
-static himc_mat3 damp(const himc_mat3 *gram, double damping)
+static himc_mat3 damped(const himc_arm_jacobian *jacobian, double damping, himc_vec3 error)
 {
-    himc_mat3 g = *gram;
+    himc_mat3 g = jacobian->gram;
+    (void)error;
     for (int i = 0; i < 3; i++)
         g.m[i][i] += damping * damping + HIMC_NULL_FLOOR;
     return himc_mat3_inverse_symmetric(&g);
-}
-
-static himc_mat3 damped(const himc_arm_jacobian *jacobian, double damping, himc_vec3 error)
-{
-    (void)error;
-    return damp(&jacobian->gram, damping);
 }
 
 typedef struct spectrum {
@@ -74,12 +69,12 @@ static himc_mat3 truncated(const himc_arm_jacobian *jacobian, double damping, hi
 
 static himc_mat3 nakamura(const himc_arm_jacobian *jacobian, double damping, himc_vec3 error)
 {
-    (void)error;
     const double(*m)[3] = jacobian->gram.m;
     double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[1][2]) -
                  m[0][1] * (m[0][1] * m[2][2] - m[1][2] * m[0][2]) +
                  m[0][2] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
-    return damp(&jacobian->gram, damping * fmax(1 - sqrt(fmax(det, 0)) / NAKAMURA_SINGULAR, 0));
+    double near = fmax(1 - sqrt(fmax(det, 0)) / NAKAMURA_SINGULAR, 0);
+    return damped(jacobian, damping * near, error);
 }
 
 static double largest_component(himc_vec3 v)
@@ -90,33 +85,27 @@ static double largest_component(himc_vec3 v)
 // Buss & Kim 2005, equations 10 to 14, for one end effector: N_i = 1. The undamped inverse would
 // rotate the joints by a W J' u_i / s_i^2 for the component a of the error along u_i; M_i is the
 // sum of the distances by which each joint alone would move the tip per unit of that component.
-static double selective_gain(const himc_arm_jacobian *jacobian, double square, himc_vec3 u,
-                             double a)
-{
-    himc_vec3 step[HIMC_ARM_JOINTS];
-    double distance = 0, most = 0;
-    himc_ik_apply_transposed(jacobian, himc_vec3_scale(u, 1 / square), step);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        himc_vec3 r = jacobian->lever[k];
-        distance += fabs(step[k].x) * hypot(r.y, r.z) + fabs(step[k].y) * hypot(r.x, r.z) +
-                    fabs(step[k].z) * hypot(r.x, r.y);
-        most = fmax(most, fabs(a) * largest_component(step[k]));
-    }
-    double gamma = fmin(1, 1 / distance) * SDLS_MOST_ROTATION;
-    return most > gamma ? gamma / most : 1;
-}
-
 static himc_mat3 selective(const himc_arm_jacobian *jacobian, double damping, himc_vec3 error)
 {
     (void)damping;
     spectrum s = spectrum_of(&jacobian->gram);
     himc_mat3 inverse = {{{0}}};
     himc_vec3 step[HIMC_ARM_JOINTS];
+    double most;
     for (int i = 0; i < 3; i++) {
         double square = fmax(s.square[i], HIMC_NULL_FLOOR), a = himc_vec3_dot(s.axis[i], error);
-        add_outer(&inverse, selective_gain(jacobian, square, s.axis[i], a) / square, s.axis[i]);
+        double distance = most = 0;
+        himc_ik_apply_transposed(jacobian, himc_vec3_scale(s.axis[i], 1 / square), step);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            himc_vec3 r = jacobian->lever[k];
+            distance += fabs(step[k].x) * hypot(r.y, r.z) + fabs(step[k].y) * hypot(r.x, r.z) +
+                        fabs(step[k].z) * hypot(r.x, r.y);
+            most = fmax(most, fabs(a) * largest_component(step[k]));
+        }
+        double gamma = fmin(1, 1 / distance) * SDLS_MOST_ROTATION;
+        add_outer(&inverse, (most > gamma ? gamma / most : 1) / square, s.axis[i]);
     }
-    double most = 0;
+    most = 0;
     himc_ik_apply_transposed(jacobian, himc_mat3_apply(&inverse, error), step);
     for (int k = 0; k < HIMC_ARM_JOINTS; k++)
         most = fmax(most, largest_component(step[k]));

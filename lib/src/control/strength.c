@@ -29,20 +29,6 @@ void himc_controller_set_human_strength(himc_controller_config *c, double mass)
         c->strength[j] = (j < 3 ? spine[j] : limb[(j - 3) / 2]) * mass / MEASURED_MASS;
 }
 
-// shortens a torque to what a muscle of this strength has left at the joint's speed along it; true
-// if it was above
-static bool shorten(double strength, himc_vec3 spin, himc_vec3 *torque)
-{
-    double asked = himc_vec3_length(*torque), most = strength;
-    if (asked > 0) {
-        double speed = himc_vec3_dot(spin, *torque) / asked;
-        most = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
-    }
-    if (asked > most)
-        *torque = himc_vec3_scale(*torque, most / asked);
-    return asked > most;
-}
-
 void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton,
                          const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS])
 {
@@ -51,10 +37,16 @@ void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton
         double square = himc_vec3_dot(torque[j], torque[j]), strength = c->config.strength[j];
         if (counts && square > counts->torque[j] * counts->torque[j])
             counts->torque[j] = sqrt(square);
-        bool weak =
-            strength > 0 && shorten(strength, himc_relative_spin(skeleton, s, j), &torque[j]);
+        if (strength <= 0 || square <= 0)
+            continue;
+        // what a muscle of this strength has left at the joint's speed along the torque
+        double asked = sqrt(square);
+        double speed = himc_vec3_dot(himc_relative_spin(skeleton, s, j), torque[j]) / asked;
+        double most = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
+        if (asked > most)
+            torque[j] = himc_vec3_scale(torque[j], most / asked);
         if (counts)
-            counts->weak[j] += weak;
+            counts->weak[j] += asked > most;
     }
     if (counts)
         counts->steps++;

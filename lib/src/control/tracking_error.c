@@ -68,26 +68,6 @@ static void solve_demand(const arm_tasks *tasks, himc_vec3 demand, himc_vec3 *al
     himc_arm_scatter(solution, tasks->hand, all);
 }
 
-himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
-                                 himc_hand hand, const himc_vec3 *relative, himc_vec3 wanted)
-{
-    return himc_vec3_sub(wanted, himc_tip_carried(skeleton, s, hand, relative));
-}
-
-// The Jacobian is true near the target only: an arm pushed far away would follow it in circles. So
-// the arm returns by its joint targets; their posture has the tip at the target.
-static void return_by_joints(const tracking_error *joints, double away, himc_hand hand,
-                             tracking_error *e)
-{
-    double share = fmin((away - JOINTS_BEGIN) / (JOINTS_ALONE - JOINTS_BEGIN), 1);
-    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
-        int j = himc_arm_joint(hand, k);
-        e->angle[j] = mix(e->angle[j], joints->angle[j], share);
-        e->rate[j] = mix(e->rate[j], joints->rate[j], share);
-        e->acceleration[j] = mix(e->acceleration[j], joints->acceleration[j], share);
-    }
-}
-
 // equation 3
 void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_target *asked, himc_hand hand,
@@ -105,7 +85,7 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
     if (away > LARGEST_TIP_STEP)
         missing = himc_vec3_scale(way, LARGEST_TIP_STEP / away);
     himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
-    himc_vec3 a = himc_acceleration_left(skeleton, s, hand, e->acceleration, target.a);
+    himc_vec3 a = himc_vec3_sub(target.a, himc_tip_carried(skeleton, s, hand, e->acceleration));
     arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
     tasks.inverse = himc_solvers[config->solver].inverse(jacobian, config->damping, missing);
     if (config->elbow)
@@ -115,6 +95,13 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
     solve_demand(&tasks, missing, e->angle);
     solve_demand(&tasks, slower, e->rate);
     solve_demand(&tasks, a, e->acceleration);
-    if (away > JOINTS_BEGIN)
-        return_by_joints(&joints, away, hand, e);
+    // The Jacobian is true near the target only: an arm pushed far away would follow it in circles.
+    // So the arm returns by its joint targets; their posture has the tip at the target.
+    double share = fmin((away - JOINTS_BEGIN) / (JOINTS_ALONE - JOINTS_BEGIN), 1);
+    for (int k = 0; k < HIMC_ARM_JOINTS && away > JOINTS_BEGIN; k++) {
+        int j = himc_arm_joint(hand, k);
+        e->angle[j] = mix(e->angle[j], joints.angle[j], share);
+        e->rate[j] = mix(e->rate[j], joints.rate[j], share);
+        e->acceleration[j] = mix(e->acceleration[j], joints.acceleration[j], share);
+    }
 }

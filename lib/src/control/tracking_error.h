@@ -23,12 +23,6 @@ HIMC_RT void himc_tracking_error_tip(const himc_controller *c, const himc_skelet
                                      himc_hand hand, const himc_arm_jacobian *jacobian,
                                      tracking_error *e);
 
-/// Tip acceleration (m/s^2) that the arm's joints must make: the wanted one less that of the
-/// state's spins and of the trunk, which accelerates as in `relative`.
-HIMC_RT himc_vec3 himc_acceleration_left(const himc_skeleton *skeleton, const himc_body_state *s,
-                                         himc_hand hand, const himc_vec3 *relative,
-                                         himc_vec3 wanted);
-
 /// Of a joint: its child's spin in the parent's, in the world (rad/s).
 static inline himc_vec3 himc_relative_spin(const himc_skeleton *skeleton, const himc_body_state *s,
                                            int j)
