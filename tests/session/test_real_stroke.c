@@ -40,7 +40,7 @@ static void compare(void *user, const himc_tick *tick)
     comparison *c = user;
     const himc_track *track = c->performance->motion->track;
     double length = (himc_take_frames(c->take) - 1) / himc_take_rate(c->take);
-    double t = tick->time - c->performance->motion->track_start, at[3];
+    double t = himc_motion_take_time(c->performance->motion, tick->time), at[3];
     if (!(t >= -0.5 * HIMC_TRACK_RAMP && t <= himc_track_length(track)))
         return;
     himc_track_warp(length, t, at);

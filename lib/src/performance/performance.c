@@ -128,7 +128,8 @@ static void performance_step(himc_performance *p)
         double beat = himc_motion_score_beat(p->motion, t);
         himc_planner *planner = p->motion->planner;
         himc_drums_turn_heads(&p->drums, beat,
-                              p->motion->track ? 0 : himc_planner_round(planner, t),
+                              himc_motion_plays_score(p->motion) ? himc_planner_round(planner, t)
+                                                                 : 0,
                               himc_planner_length(planner), &p->events);
         himc_body_begin_pushes(
             p->body, beat, himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);

@@ -97,7 +97,8 @@ static himc_job_state install(himc_job *job, himc_error *error)
     himc_job_state state = j->insertion         ? add_head(j, now, error)
                            : add_push(j, error) ? HIMC_JOB_DONE
                                                 : HIMC_JOB_FAILED;
-    bool comes_again = !p->motion->track && himc_planner_is_looped(p->motion->planner);
+    bool comes_again =
+        himc_motion_plays_score(p->motion) && himc_planner_is_looped(p->motion->planner);
     if (state == HIMC_JOB_DONE && now > line->beat && !comes_again) // before the next `play`
         himc_events_note(&p->events, "at %g %s%s%s: given up, that beat is past", line->beat,
                          line->drum, line->drum[0] ? " " : "",

@@ -362,7 +362,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     himc_statistics_strokes(s->statistics, 1, played);
     himc_statistics_landed(s->statistics, -velocity, next.speed, next.yields);
     char name[HIMC_PLANNER_NAME];
-    if (off > PLAYED_PLACE && !s->motion->track && himc_statistics_aside(s->statistics) == 0 &&
+    if (off > PLAYED_PLACE && himc_motion_plays_score(s->motion) &&
+        himc_statistics_aside(s->statistics) == 0 &&
         name_stroke(s, hand, time, name)) // once: a stroke of a score, or a hit
         himc_events_note(s->events, "%s: landed at %.3g %.3g, %.2g m from its place", name,
                          c->strike.x, c->strike.y, off);

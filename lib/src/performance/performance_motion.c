@@ -45,13 +45,15 @@
 static const double rests_at[] = {0.06, 0.09}; // (s)
 #define RESTS_BELOW 0.002                      // (m)
 
-// the piece is the take if there is one; it moves the hands that it has, while it plays
-static void choose_sources(performance_motion *m)
+// the piece is the take if there is one; it moves the hands that it has, from `play` on
+static void choose_sources(performance_motion *m, bool played)
 {
     const hand_source planner = {&himc_planner_source, m->planner};
     m->piece = m->track ? (hand_source){&himc_track_source, m->track} : planner;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        m->source[hand] = himc_motion_tracks(m, (himc_hand)hand) ? m->piece : planner;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        bool takes = played && m->track && himc_track_present(m->track, (himc_hand)hand);
+        m->source[hand] = takes ? m->piece : planner;
+    }
 }
 
 performance_motion *himc_motion_new(himc_error *error)
@@ -70,8 +72,7 @@ performance_motion *himc_motion_new(himc_error *error)
         return NULL;
     }
     m->body.posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
-    m->track_start = INFINITY;
-    choose_sources(m);
+    choose_sources(m, false);
     m->last_beat = -1;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         m->answered[hand] = -INFINITY;
@@ -100,7 +101,7 @@ void himc_motion_seat(performance_motion *m, double height)
 bool himc_motion_rests_elsewhere(const performance_motion *m)
 {
     double far = 0;
-    for (int hand = 0; hand < HIMC_HANDS && !m->track; hand++)
+    for (int hand = 0; hand < HIMC_HANDS && himc_motion_plays_score(m); hand++)
         far += himc_vec3_length(himc_vec3_sub(himc_planner_target(m->planner, (himc_hand)hand, 0).x,
                                               m->from.tip[hand].x));
     return far > 0;
@@ -116,29 +117,41 @@ void himc_motion_set_drum(performance_motion *m, int index, const himc_head_fram
 
 // take or planner
 
+bool himc_motion_plays_score(const performance_motion *m)
+{
+    return m->piece.kind == &himc_planner_source;
+}
+
 bool himc_motion_tracks(const performance_motion *m, himc_hand hand)
 {
-    return m->track && isfinite(m->track_start) && himc_track_present(m->track, hand);
+    return m->source[hand].kind == &himc_track_source;
+}
+
+double himc_motion_take_time(const performance_motion *m, double t)
+{
+    bool moves = himc_motion_tracks(m, HIMC_LEFT) || himc_motion_tracks(m, HIMC_RIGHT);
+    return moves ? t - himc_track_start(m->track) : -INFINITY;
 }
 
 bool himc_motion_is_idle(const performance_motion *m, himc_hand hand, double t)
 {
-    return (m->track && !himc_track_present(m->track, hand)) ||
-           (himc_motion_tracks(m, hand) && t < m->track_start);
+    return himc_motion_tracks(m, hand) ? himc_motion_take_time(m, t) < 0
+                                       : m->track && !himc_track_present(m->track, hand);
 }
 
 bool himc_motion_captured(const performance_motion *m, himc_hand hand, double t, himc_vec3 *x)
 {
     return himc_motion_tracks(m, hand) &&
-           himc_track_captured(m->track, hand, t - m->track_start, x);
+           himc_track_captured(m->track, hand, himc_motion_take_time(m, t), x);
 }
 
 bool himc_motion_captured_joints(const performance_motion *m, double t, himc_posture_motion *joints)
 {
-    if (!m->track || !isfinite(m->track_start) || !himc_track_has_posture(m->track))
+    double at = himc_motion_take_time(m, t);
+    if (!isfinite(at) || !himc_track_has_posture(m->track))
         return false;
     *joints = m->reference.posture;
-    himc_track_posture(m->track, &m->body.posture.skeleton, t - m->track_start, NULL, joints);
+    himc_track_posture(m->track, &m->body.posture.skeleton, at, NULL, joints);
     return true;
 }
 
@@ -151,8 +164,7 @@ static void take_hands_back(performance_motion *m, double t)
             himc_planner_resume(m->planner, t, (himc_hand)hand, &m->reference.tip[hand]);
             tracked = true;
         }
-    m->track_start = INFINITY;
-    choose_sources(m);
+    choose_sources(m, false);
     m->crossfade_due = m->crossfade_due || tracked;
     m->replan = true;
 }
@@ -170,7 +182,7 @@ himc_track *himc_motion_set_track(performance_motion *m, himc_track *track,
     himc_track *old = m->track;
     take_hands_back(m, t);
     m->track = track;
-    choose_sources(m);
+    choose_sources(m, false);
     m->over = false;
     m->has_learned = learned != NULL;
     if (learned)
@@ -236,21 +248,6 @@ static himc_trunk_posture trunk_at(const performance_motion *m, double t)
                                        fmin(fmax(t - m->body.time, 0), TRUNK_STEP));
 }
 
-// head, weight and breath; a take shows its own
-static void enliven(performance_motion *m, const performance_drums *drums, double t)
-{
-    himc_next_stroke next = {.in = INFINITY, .since = INFINITY};
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        himc_source_stroke s = himc_motion_stroke(m, drums, (himc_hand)hand, t);
-        next.since = fmin(next.since, t - m->answered[hand]);
-        if (!s.any || s.time < t || s.time - t >= next.in)
-            continue;
-        next.in = s.time - t;
-        next.at = himc_head_frame_to_world(himc_drums_frame(drums, s.drum), s.x, s.y);
-    }
-    himc_alive_add(&m->body.posture, &next, t, &m->body.goal);
-}
-
 // hands lie on heads that are damped; a take shows its own
 static void damp(performance_motion *m, const performance_drums *drums, double t)
 {
@@ -271,12 +268,38 @@ static void damp(performance_motion *m, const performance_drums *drums, double t
         m->replan = true;
 }
 
-// keeps the arms clear along the planned way of the tips
-static void avoid(performance_motion *m, double t)
+// sets a new course, from trunk and grip at `t` to those for the next strokes
+static void set_course(performance_motion *m, const performance_settings *s,
+                       const performance_drums *drums, double t)
 {
     himc_planned_body *b = &m->body;
+    himc_vec3 place[HIMC_HANDS]; // of each hand: its next strike point, or its position
     himc_vec3 tip[HIMC_FORESEEN][HIMC_HANDS];
-    if (t - b->avoided >= HIMC_AVOIDANCE_PERIOD) {
+    himc_next_stroke first = {.in = INFINITY, .since = INFINITY};
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_source_stroke next = himc_motion_stroke(m, drums, (himc_hand)hand, t);
+        himc_vec3 at = {0, 0, 0};
+        if (next.any)
+            at = himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y);
+        place[hand] = next.any && next.time <= t + TRUNK_FORESIGHT
+                          ? at
+                          : himc_motion_planned(m, (himc_hand)hand, t).x;
+        first.since = fmin(first.since, t - m->answered[hand]);
+        if (next.any && next.time >= t && next.time - t < first.in) {
+            first.in = next.time - t;
+            first.at = at;
+        }
+    }
+    b->from = trunk_at(m, t);
+    b->goal = himc_posture_trunk(place, s->grip);
+    if (m->track && himc_settings_trunk_known(s)) {
+        const double *captured = s->captured.trunk.value;
+        b->goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
+        b->goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
+    }
+    if (s->alive && !m->track) // a take shows its own
+        himc_alive_add(&b->posture, &first, t, &b->goal);
+    if (t - b->avoided >= HIMC_AVOIDANCE_PERIOD) { // the arms stay clear along the tips' way
         for (int k = 0; k < HIMC_FORESEEN; k++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)
                 tip[k][hand] =
@@ -286,31 +309,7 @@ static void avoid(performance_motion *m, double t)
         b->avoided = t;
     }
     himc_avoidance_apply(&b->avoidance, &b->goal);
-}
-
-// sets a new course, from trunk and grip at `t` to those for the next strokes
-static void set_course(performance_motion *m, const performance_settings *s,
-                       const performance_drums *drums, double t)
-{
-    himc_vec3 place[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++) { // its next strike point, or its position
-        himc_source_stroke next = himc_motion_stroke(m, drums, (himc_hand)hand, t);
-        place[hand] =
-            next.any && next.time <= t + TRUNK_FORESIGHT
-                ? himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y)
-                : himc_motion_planned(m, (himc_hand)hand, t).x;
-    }
-    m->body.from = trunk_at(m, t);
-    m->body.goal = himc_posture_trunk(place, s->grip);
-    if (m->track && himc_settings_trunk_known(s)) {
-        const double *captured = s->captured.trunk.value;
-        m->body.goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
-        m->body.goal.value[HIMC_TRUNK_POSTURE_LEAN] = captured[HIMC_TRUNK_POSTURE_LEAN];
-    }
-    if (s->alive && !m->track)
-        enliven(m, drums, t);
-    avoid(m, t);
-    m->body.time = t;
+    b->time = t;
 }
 
 // the joints
@@ -319,27 +318,10 @@ static void set_course(performance_motion *m, const performance_settings *s,
 static void find_posture(const performance_motion *m, const performance_settings *s, double t,
                          const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
 {
+    double at = himc_motion_take_time(m, t);
     himc_posture_moving(&m->body.posture, tip, motion);
-    bool captured = s->control.mode != HIMC_PIPELINE_HIMC && m->track && isfinite(m->track_start) &&
-                    himc_track_has_posture(m->track);
-    if (captured)
-        himc_track_posture(m->track, &m->body.posture.skeleton, t - m->track_start,
-                           s->bend ? tip : NULL, motion);
-}
-
-// the posture regression in place of the natural posture
-static void follow_regression(const performance_motion *m, const performance_settings *s,
-                              himc_setpoint *tick)
-{
-    himc_target tip[HIMC_REGRESSION_OFFSETS][HIMC_HANDS];
-    if (s->control.mode != HIMC_PIPELINE_HIMC || !m->has_regression)
-        return;
-    for (int k = 0; k < HIMC_REGRESSION_OFFSETS; k++)
-        for (int hand = 0; hand < HIMC_HANDS; hand++)
-            tip[k][hand] = himc_motion_planned(m, (himc_hand)hand,
-                                               tick->time + k * HIMC_REGRESSION_OFFSET_STEP);
-    himc_posture_regression_moving(&m->regression, (const himc_target(*)[HIMC_HANDS])tip,
-                                   &tick->posture);
+    if (s->control.mode != HIMC_PIPELINE_HIMC && isfinite(at) && himc_track_has_posture(m->track))
+        himc_track_posture(m->track, &m->body.posture.skeleton, at, s->bend ? tip : NULL, motion);
 }
 
 void himc_motion_set_regression(performance_motion *m, const performance_settings *s,
@@ -363,18 +345,6 @@ void himc_motion_set_regression(performance_motion *m, const performance_setting
     held.trunk_posture = s->captured.trunk;
     himc_posture_at(&held, tip, &pose);
     m->regression.player.natural_trunk = pose.joint[HIMC_TRUNK - 1];
-}
-
-// cross-fades a tick's joint targets from the source before to this one, during a cross-fade
-static void crossfade(performance_motion *m, himc_setpoint *tick)
-{
-    if (m->crossfade_due && tick == &m->from) {
-        himc_posture_crossfade_begin(&m->crossfade, tick->time, &m->reference.posture,
-                                     &tick->posture);
-        m->crossfade_due = false;
-    }
-    if (!m->crossfade_due)
-        himc_posture_crossfade_apply(&m->crossfade, tick->time, &tick->posture);
 }
 
 // setpoints
@@ -407,6 +377,7 @@ static void limit_depth(const performance_motion *m, himc_hand hand, himc_target
 static void fill_tick(performance_motion *m, const performance_settings *s, himc_setpoint *tick,
                       double t)
 {
+    himc_target ahead[HIMC_REGRESSION_OFFSETS][HIMC_HANDS];
     m->body.posture.trunk_posture = trunk_at(m, t);
     tick->time = t;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
@@ -414,8 +385,20 @@ static void fill_tick(performance_motion *m, const performance_settings *s, himc
         limit_depth(m, (himc_hand)hand, &tick->tip[hand]);
     }
     find_posture(m, s, t, tick->tip, &tick->posture);
-    follow_regression(m, s, tick);
-    crossfade(m, tick);
+    if (s->control.mode == HIMC_PIPELINE_HIMC && m->has_regression) {
+        for (int k = 0; k < HIMC_REGRESSION_OFFSETS; k++)
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                ahead[k][hand] =
+                    himc_motion_planned(m, (himc_hand)hand, t + k * HIMC_REGRESSION_OFFSET_STEP);
+        himc_posture_regression_moving(&m->regression, (const himc_target(*)[HIMC_HANDS])ahead,
+                                       &tick->posture);
+    }
+    if (m->crossfade_due && tick == &m->from) {
+        himc_posture_crossfade_begin(&m->crossfade, t, &m->reference.posture, &tick->posture);
+        m->crossfade_due = false;
+    }
+    if (!m->crossfade_due)
+        himc_posture_crossfade_apply(&m->crossfade, t, &tick->posture);
 }
 
 void himc_motion_read_task(performance_motion *m, const performance_settings *s,
@@ -458,22 +441,32 @@ void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skelet
             posture->rest.joint[j] = captured->rest.joint[j];
 }
 
-// the trunk turned to the tips, elbows and wrists where nothing is near
-static void begin_clear(performance_motion *m, const performance_settings *s, double t)
+// Targets and reference at `t`, without a cross-fade; with `clear` from a new course: the trunk
+// turned to the tips, elbows and wrists where nothing is near.
+static void begin_at(performance_motion *m, const performance_settings *s, double t, bool clear)
 {
     himc_foreseen f[HIMC_FORESEEN];
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        f[0].tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
-    f[0].trunk = himc_posture_trunk(f[0].tip, s->grip);
-    for (int k = 1; k < HIMC_FORESEEN; k++)
-        f[k] = f[0];
-    m->body.avoidance = (himc_avoidance){{0}, 0};
-    for (int i = 0; i < CLEARING_STEPS; i++)
-        himc_avoidance_update(&m->body.avoidance, &m->body.posture, &m->body.shells, f,
-                              HIMC_AVOIDANCE_PERIOD);
-    m->body.goal = f[0].trunk;
-    himc_avoidance_apply(&m->body.avoidance, &m->body.goal);
-    m->body.from = m->body.goal;
+    m->crossfade_due = false;
+    himc_posture_crossfade_cancel(&m->crossfade);
+    if (clear) {
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            f[0].tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
+        f[0].trunk = himc_posture_trunk(f[0].tip, s->grip);
+        for (int k = 1; k < HIMC_FORESEEN; k++)
+            f[k] = f[0];
+        m->body.avoidance = (himc_avoidance){{0}, 0};
+        for (int i = 0; i < CLEARING_STEPS; i++)
+            himc_avoidance_update(&m->body.avoidance, &m->body.posture, &m->body.shells, f,
+                                  HIMC_AVOIDANCE_PERIOD);
+        m->body.goal = f[0].trunk;
+        himc_avoidance_apply(&m->body.avoidance, &m->body.goal);
+        m->body.from = m->body.goal;
+        m->body.time = t;
+    }
+    fill_tick(m, s, &m->from, t);
+    memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
+    m->reference.posture = m->from.posture;
+    m->replan = true;
 }
 
 bool himc_motion_is_finite(const performance_motion *m)
@@ -486,40 +479,26 @@ void himc_motion_recover(performance_motion *m, const performance_settings *s, d
     if (himc_motion_is_finite(m))
         return;
     himc_planner_recover(m->planner, t);
+    bool sound = true;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_target planned = himc_motion_planned(m, (himc_hand)hand, t);
-        if (!himc_target_finite(&planned))
-            m->track_start = INFINITY;
+        sound = sound && himc_target_finite(&planned);
         m->live[hand] = (live_target){.time = 0};
     }
-    choose_sources(m);
-    m->crossfade_due = false;
-    himc_posture_crossfade_cancel(&m->crossfade);
-    begin_clear(m, s, t);
-    m->body.time = t;
-    fill_tick(m, s, &m->from, t);
+    if (!sound)
+        choose_sources(m, false);
+    begin_at(m, s, t, true);
     m->to = m->from;
     m->to.time += USUAL_TICK; // until the setpoints are read again
-    memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
-    m->reference.posture = m->from.posture;
     himc_setpoint_course_make(&m->between, &m->from, &m->to);
-    m->replan = true;
 }
 
 void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
                        const performance_settings *s, double t)
 {
-    // the body begins in the posture: no cross-fade
-    m->crossfade_due = false;
-    himc_posture_crossfade_cancel(&m->crossfade);
     himc_motion_init_posture(&m->body.posture, skeleton, &s->captured, m->body.posture.level);
     himc_planner_set_body(m->planner);
-    if (m->body.time == 0)
-        begin_clear(m, s, t);
-    fill_tick(m, s, &m->from, t);
-    memcpy(m->reference.tip, m->from.tip, sizeof m->from.tip);
-    m->reference.posture = m->from.posture;
-    m->replan = true;
+    begin_at(m, s, t, m->body.time == 0);
 }
 
 void himc_motion_resting_pose(const performance_motion *m, himc_pose *pose)
@@ -586,10 +565,8 @@ void himc_motion_move_tip(performance_motion *m, const performance_settings *s, 
 void himc_motion_play(performance_motion *m, double t)
 {
     m->piece.kind->play(m->piece.of, t, m->reference.tip, &m->reference.posture);
-    if (m->track) {
-        m->track_start = himc_track_start(m->track);
-        choose_sources(m);
-    }
+    if (m->track)
+        choose_sources(m, true);
     m->playing = true;
     m->over = false;
     m->replan = true;
@@ -597,7 +574,7 @@ void himc_motion_play(performance_motion *m, double t)
 
 void himc_motion_go_on(performance_motion *m, double t)
 {
-    if (!m->over || m->track || !himc_planner_goes_on(m->planner))
+    if (!m->over || !himc_motion_plays_score(m) || !himc_planner_goes_on(m->planner))
         return;
     m->playing = true;
     m->over = false;
@@ -607,7 +584,7 @@ void himc_motion_go_on(performance_motion *m, double t)
 void himc_motion_stop(performance_motion *m, double t)
 {
     m->piece.kind->stop(m->piece.of, t, m->reference.tip);
-    if (m->track) // it has moved the hand that the take has not
+    if (!himc_motion_plays_score(m)) // it moves the hand that a one-handed take has not
         himc_planner_stop(m->planner, t);
     m->playing = m->over = false;
     m->replan = true;
@@ -655,7 +632,7 @@ himc_vec3 himc_motion_beyond(const performance_motion *m, const himc_head_frame 
 }
 
 // of a score, or of the count before it
-static double score_beat(const performance_motion *m, double t)
+static double counted_beat(const performance_motion *m, double t)
 {
     bool prepares = himc_planner_is_preparing(m->planner, t);
     return prepares ? himc_planner_count(m->planner, t) : himc_planner_beat(m->planner, t);
@@ -663,13 +640,15 @@ static double score_beat(const performance_motion *m, double t)
 
 static long whole_beat(const performance_motion *m, double t)
 {
-    double beat = score_beat(m, t);
-    return m->track || m->over || !(beat >= 0) ? -1 : (long)floor(beat + BEAT_ROUNDING);
+    double beat = counted_beat(m, t);
+    bool counts = himc_motion_plays_score(m) && !m->over && beat >= 0;
+    return counts ? (long)floor(beat + BEAT_ROUNDING) : -1;
 }
 
 double himc_motion_score_beat(const performance_motion *m, double t)
 {
-    return m->track && !m->playing && !m->over ? -1 : m->piece.kind->beat(m->piece.of, t);
+    bool stopped = !himc_motion_plays_score(m) && !m->playing && !m->over;
+    return stopped ? -1 : m->piece.kind->beat(m->piece.of, t);
 }
 
 /// True if a beat begins by t: another one, or the same one of a later round or behind a count. A
@@ -677,19 +656,20 @@ double himc_motion_score_beat(const performance_motion *m, double t)
 static bool begins_beat(const performance_motion *m, double t)
 {
     long whole = whole_beat(m, t);
-    double beat = score_beat(m, t);
+    double beat = counted_beat(m, t);
     bool within = beat - floor(beat + BEAT_ROUNDING) >= BEAT_BEGINNING;
     bool other = whole != m->last_beat && (m->last_beat >= 0 || whole < 0 || !within);
     return other || himc_planner_round(m->planner, t) > m->last_round ||
            (m->counted && !himc_planner_is_preparing(m->planner, t));
 }
 
+// the planner's end is behind its last change of a head and its last push, another one's need not be
 static bool is_over(const performance_motion *m, double t)
 {
-    double end = m->piece.kind->end(m->piece.of);
-    if (m->track)
-        end = fmax(end, m->track_start + himc_planner_until(m->planner));
-    return m->playing && t >= end;
+    const hand_source *piece = &m->piece;
+    return m->playing && t >= piece->kind->end(piece->of) &&
+           (himc_motion_plays_score(m) ||
+            piece->kind->beat(piece->of, t) >= himc_planner_until(m->planner));
 }
 
 bool himc_motion_is_calm(const performance_motion *m, double t)

@@ -27,8 +27,7 @@ typedef struct hand_source {
 
 typedef struct performance_motion {
     himc_planner *planner;          ///< owned
-    himc_track *track;              ///< owned; instead of the planner when a take is loaded
-    double track_start;             ///< (s); infinite while the planner moves the hands
+    himc_track *track;              ///< owned; of the take that is loaded, NULL: none
     hand_source piece;              ///< what is played: the track, or else the planner
     hand_source source[HIMC_HANDS]; ///< the planner, or the track while it plays that hand
     bool has_learned;
@@ -128,8 +127,13 @@ HIMC_RT void himc_motion_set_normal(performance_motion *motion, himc_hand hand, 
 HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_settings *settings,
                                   himc_hand hand, const himc_target *tip, double t);
 
+/// True if the piece is the planner's score, with its beats and rounds; false for any other source
+/// of motion. What is so for a take of recorded motion alone asks for `track`.
+HIMC_RT bool himc_motion_plays_score(const performance_motion *motion);
 /// True while the take moves that hand.
 HIMC_RT bool himc_motion_tracks(const performance_motion *motion, himc_hand hand);
+/// Time since the first frame of the take that moves hands at `t` (s); -infinity if none does.
+HIMC_RT double himc_motion_take_time(const performance_motion *motion, double t);
 /// True for a hand without a task: not in the take, or on its way to the take's first frame.
 HIMC_RT bool himc_motion_is_idle(const performance_motion *motion, himc_hand hand, double t);
 /// Place of that hand's tip in the take that moves it; false if none does.

@@ -220,7 +220,7 @@ bool himc_performance_play(himc_performance *p, himc_error *error)
     if (!himc_performance_ensure_drum(p, "", HIMC_SPOT_NORMAL, &first, error))
         return false;
     tell_places(p);
-    if (!p->motion->track && himc_planner_length(p->motion->planner) <= 0)
+    if (himc_motion_plays_score(p->motion) && himc_planner_length(p->motion->planner) <= 0)
         himc_events_note(&p->events, "play: nothing to play: no strokes, no take");
     himc_motion_play(p->motion, step_time(p));
     return true;

@@ -543,7 +543,7 @@ static himc_job_state begin(score_job *j, himc_error *error)
         return HIMC_JOB_AGAIN;
     }
     // while a score is played the next one waits for its end, if it finds room behind it
-    j->queued = p->motion->playing && !p->motion->track;
+    j->queued = p->motion->playing && himc_motion_plays_score(p->motion);
     for (int i = 0; i < score->change_count; i++)
         pushes += !score->changes[i].drum[0];
     if (j->queued &&
@@ -646,7 +646,7 @@ bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *ot
     himc_track *track = p->motion->track;
     bool good = himc_body_may_exchange_pushes(p->body, with->planned, with->planned_count) &&
                 (track ? himc_track_exchange(track, other->motion->track,
-                                             step_time(p) - p->motion->track_start)
+                                             himc_motion_take_time(p->motion, step_time(p)))
                        : himc_planner_exchange(p->motion->planner, other->motion->planner));
     if (good)
         himc_body_plan_pushes(p->body, with->planned, with->planned_count, PUSHES_INSTEAD, NULL);
