@@ -2,6 +2,8 @@
 /// hand and the block; what cannot land in time is counted; `play` waits for its first stroke.
 #include "session.h"
 
+#include "take_files.h"
+
 #define RATE 48000.0
 #define LATENCY 0.15 // (s) as a performer is made
 
@@ -286,26 +288,12 @@ static void test_a_stick_that_drifts_is_brought_back_before_it_lands(void)
     himc_performance_free(p);
 }
 
-/// Writes a take, y up, of the right tip alone: a blow of 4 m/s every 0.4 s.
-static void write_one_hand(const char *name)
-{
-    FILE *f = fopen(name, "w");
-    TEST_ASSERT_NOT_NULL(f);
-    fputs("PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n500\t1000\t1\tm\n", f);
-    fputs("Frame#\tTime\tRTIP\t\t\n\n", f);
-    for (int i = 0; i < 1000; i++) {
-        double u = fmod(i / 500.0, 0.4); // up at 4 m/s, down at 4 m/s
-        fprintf(f, "%d\t%.4f\t0.5\t%.6f\t0.1\n", i + 1, i / 500.0, 0.8 + 10 * u * (0.4 - u));
-    }
-    fclose(f);
-}
-
 static void test_the_hand_that_a_take_leaves_free_plays_what_any_hand_may(void)
 {
     static const char name[] = "build/hits.trc";
     himc_performance *p = with_kettle("150");
     heard h = {0};
-    write_one_hand(name);
+    TEST_ASSERT_TRUE(write_one_hand(name));
     session_do(p, "take %s", name);
     session_do(p, "play");
     session_play(p, 1.5, NULL);

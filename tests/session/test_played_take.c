@@ -9,6 +9,7 @@
 
 #define SECONDS 2.5
 #define FILE_NAME "build/played.bvh"
+#define ONE_HAND "build/one-hand.trc"
 
 static himc_skeleton skeleton;
 
@@ -236,6 +237,60 @@ static void test_a_head_changes_at_its_time_in_a_take(void)
     TEST_ASSERT_TRUE(over[2] >= last && over[2] < last + 0.5);
 }
 
+static int strikes_of(const heard *h, himc_hand hand)
+{
+    int n = 0;
+    for (int i = 0; i < h->strikes; i++)
+        n += h->strike[i].hand == hand;
+    return n;
+}
+
+static void test_a_piece_of_one_hand_waits_for_its_last_change_of_a_head(void)
+{
+    for (int given = 0; given < 2; given++) {
+        himc_performance *p = session_new();
+        heard h = {0};
+        TEST_ASSERT_TRUE(write_one_hand(ONE_HAND));
+        session_score(p, "build/one-hand.txt", "drum low 26; take " ONE_HAND "; at 4 low damp 1;");
+        session_do(p, "play");
+        session_play(p, 4.5, &h);
+        TEST_ASSERT_TRUE(strikes_of(&h, HIMC_RIGHT) > 2);
+        if (given) // the take is past, and its hand follows targets
+            session_do(p, "target right 0.5 -0.2 1.2");
+        session_play(p, 0.4, &h);
+        TEST_ASSERT_EQUAL_INT(0, h.dones);
+        session_play(p, 0.6, &h);
+        const himc_membrane *head = himc_drum_membrane(himc_performance_drum(p, 0));
+        TEST_ASSERT_TRUE(himc_membrane_head(head)->damp > 0);
+        TEST_ASSERT_EQUAL_INT(1, h.dones);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
+static void test_stop_ends_the_score_of_the_hand_that_a_take_leaves_free(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    TEST_ASSERT_TRUE(write_one_hand(ONE_HAND));
+    session_do(p, "drum low 26");
+    session_do(p, "tempo 120");
+    for (int beat = 0; beat < 12; beat++)
+        session_do(p, "stroke %d left legato f", beat);
+    session_do(p, "play");
+    session_play(p, 0.5, NULL);
+    session_do(p, "take %s", ONE_HAND);
+    session_do(p, "play");
+    session_play(p, 2, &h);
+    TEST_ASSERT_TRUE(strikes_of(&h, HIMC_LEFT) > 2 && strikes_of(&h, HIMC_RIGHT) > 1);
+    session_do(p, "stop");
+    session_play(p, 0.1, &h);
+    heard_free(&h);
+    session_play(p, 2, &h);
+    TEST_ASSERT_EQUAL_INT(0, h.strikes);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -248,5 +303,7 @@ int main(void)
     RUN_TEST(test_another_take_and_a_score_follow_a_take);
     RUN_TEST(test_a_take_that_is_refused_changes_nothing);
     RUN_TEST(test_a_head_changes_at_its_time_in_a_take);
+    RUN_TEST(test_a_piece_of_one_hand_waits_for_its_last_change_of_a_head);
+    RUN_TEST(test_stop_ends_the_score_of_the_hand_that_a_take_leaves_free);
     return UNITY_END();
 }

@@ -5,6 +5,7 @@
 
 #include "capture/take.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,6 +46,22 @@ static inline himc_take *read_text(const char *text, const char *name,
 {
     error->text[0] = 0;
     return himc_take_read(text, strlen(text), name, options, error);
+}
+
+/// Writes a take of 1.8 s, y up, of the right tip alone: a blow of 4 m/s every 0.4 s. False if it
+/// cannot be written.
+static inline bool write_one_hand(const char *name)
+{
+    FILE *f = fopen(name, "w");
+    if (!f)
+        return false;
+    fputs("PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n500\t900\t1\tm\n", f);
+    fputs("Frame#\tTime\tRTIP\t\t\n\n", f);
+    for (int i = 0; i < 900; i++) {
+        double u = fmod(i / 500.0, 0.4); // up at 4 m/s, down at 4 m/s
+        fprintf(f, "%d\t%.4f\t0.5\t%.6f\t0.1\n", i + 1, i / 500.0, 0.8 + 10 * u * (0.4 - u));
+    }
+    return fclose(f) == 0;
 }
 
 #endif
