@@ -174,36 +174,13 @@ static bool refuse_drum(const score_job *j, const named_drum *drum, himc_error *
 
 // the score tried
 
-static bool rehearse_record(score_job *j, const himc_command *c, himc_error *error)
-{
-    if (!himc_performance_allows(j->recording, c, error))
-        return false;
-    j->recording = !j->recording;
-    if (!j->recording)
-        return true;
-    himc_recording *trial = himc_recording_new(c->atom[0].symbol, &j->skeleton, j->clock.task_rate,
-                                               TRIAL_RECORDING, error);
-    himc_recording_free(trial);
-    return (trial && himc_recording_may_replace(c->atom[0].symbol, error)) ||
-           himc_error_prefix(error, "record");
-}
-
-static bool rehearse_units(score_job *j, const himc_command *c, himc_error *error)
-{
-    int file, more = 0;
-    if (himc_command_file(c, &file) == HIMC_FILE_NONE)
-        j->units = 0; // `units clear`
-    else
-        more = himc_performance_count_units(c, &j->host.take_options, error);
-    j->units += more;
-    return more >= 0 && himc_planner_check_units(j->units - more, more, error);
-}
-
 /// True if a line can be carried out after those before; reads the file that it names.
 static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error *error)
 {
     const himc_command *c = &line->command;
     performance_settings aside = {.alive = false};
+    int file, more;
+    himc_recording *trial;
     if (line->drum[0])
         return himc_drum_settings_command(&find_drum(j, line->drum)->trial, c, error) ||
                himc_error_prefix(error, "%s", line->drum);
@@ -216,8 +193,27 @@ static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error 
                (j->score->stroke_count == 0 ||
                 himc_error_set(error, "take: a score with strokes cannot play a take"));
     case HIMC_COMMAND_NUDGE: return himc_performance_try_nudge(j->take, c, error);
-    case HIMC_COMMAND_UNITS: return rehearse_units(j, c, error);
-    case HIMC_COMMAND_RECORD: return rehearse_record(j, c, error);
+    case HIMC_COMMAND_UNITS:
+        if (himc_command_file(c, &file) == HIMC_FILE_NONE) { // clear
+            j->units = 0;
+            return true;
+        }
+        more = himc_performance_count_units(c, &j->host.take_options, error);
+        if (more < 0 || !himc_planner_check_units(j->units, more, error))
+            return false;
+        j->units += more;
+        return true;
+    case HIMC_COMMAND_RECORD:
+        if (!himc_performance_allows(j->recording, c, error))
+            return false;
+        j->recording = !j->recording;
+        if (!j->recording)
+            return true;
+        trial = himc_recording_new(c->atom[0].symbol, &j->skeleton, j->clock.task_rate,
+                                   TRIAL_RECORDING, error);
+        himc_recording_free(trial);
+        return (trial && himc_recording_may_replace(c->atom[0].symbol, error)) ||
+               himc_error_prefix(error, "record");
     default: // the network's are always refused
         return himc_performance_allows(j->recording, c, error) &&
                himc_settings_read(&aside, &j->host.usual, c, error) &&
@@ -226,9 +222,8 @@ static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error 
     }
 }
 
-/// Reads the changes of heads that the score has for drums as the trial has left them; and computes
-/// the heads, so that they are there when they are needed.
-static bool read_heads(score_job *j, bool compute, himc_error *error)
+/// Reads the changes of heads that the score has for drums as the trial has left them.
+static bool read_heads(score_job *j, himc_error *error)
 {
     for (int i = 0; i < j->score->change_count; i++) {
         const himc_score_line *line = &j->score->changes[i];
@@ -239,10 +234,7 @@ static bool read_heads(score_job *j, bool compute, himc_error *error)
                   !himc_drum_heads_add(d->heads, j->from + line->beat, &line->command, error)))
             return himc_error_prefix(error, "%s:%d: %s", j->path, line->line, line->drum);
     }
-    bool good = true;
-    for (int i = 0; i < j->drums && compute; i++)
-        good = good && (!j->drum[i].heads || himc_drum_heads_prepare(j->drum[i].heads, error));
-    return good;
+    return true;
 }
 
 /// The pushes of the score (*count, HIMC_PUSHES at most).
@@ -274,7 +266,7 @@ static bool rehearse(score_job *j, himc_error *error)
             !rehearse_line(j, line, error))
             return himc_error_prefix(error, "%s:%d", j->path, line->line);
     }
-    if (!read_pushes(j, pushes, &count, error) || !read_heads(j, false, error))
+    if (!read_pushes(j, pushes, &count, error) || !read_heads(j, error))
         return false;
     for (int i = 0; i < j->drums && good; i++) {
         score_drum *d = &j->drum[i];
@@ -301,8 +293,12 @@ static bool prepare(himc_job *job, himc_error *error)
     j->done = NULL;
     if (j->line)
         return j->line->prepare(j->line, error) || prefix_line(j, error);
-    if (j->part == CHANGES)
-        return read_heads(j, true, error);
+    if (j->part == CHANGES) { // the heads are computed before they are needed
+        bool good = read_heads(j, error);
+        for (int k = 0; k < j->drums && good; k++)
+            good = !j->drum[k].heads || himc_drum_heads_prepare(j->drum[k].heads, error);
+        return good;
+    }
     himc_score_free(j->score);
     j->score = j->text ? himc_score_parse(j->text, j->path, error)
                        : himc_score_load_in(j->command.folder, j->path, error);
@@ -350,41 +346,40 @@ static bool run_on_drum(score_job *j, const himc_score_line *line, himc_error *e
     return good;
 }
 
-// of the present line
-static himc_job_state failed(const score_job *j, himc_error *error)
-{
-    himc_command_id id = j->score->lines[j->at].command.id;
-    prefix_line(j, error);
-    if (id != HIMC_COMMAND_HIT && id != HIMC_COMMAND_STRIKE)
-        return HIMC_JOB_FAILED;
-    himc_events_note(&j->performance->events, "%s", error->text);
-    error->text[0] = '\0';
-    return HIMC_JOB_DONE;
-}
-
-// a line for the performer, or the next part of one that takes long
+// A line, or the next part of one that takes long. A hit or a blow that is refused is left out.
 static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_error *error)
 {
     himc_performance *p = j->performance;
-    if (line->drum[0])
-        return run_on_drum(j, line, error) ? HIMC_JOB_DONE : failed(j, error);
-    if (line->command.id == HIMC_COMMAND_MAKE_DRUM) {
-        int index;
-        return installed_drum(j, line->command.atom[0].symbol, &index, error) ? HIMC_JOB_DONE
-                                                                              : failed(j, error);
-    }
-    if (j->line) {
+    const himc_command *c = &line->command;
+    bool good;
+    int index;
+    if (line->drum[0]) {
+        good = run_on_drum(j, line, error);
+    } else if (c->id == HIMC_COMMAND_MAKE_DRUM) {
+        good = installed_drum(j, c->atom[0].symbol, &index, error);
+    } else if (j->line) {
         himc_job_state state = j->line->install(j->line, error);
         if (state == HIMC_JOB_MORE || state == HIMC_JOB_AGAIN)
             return state;
         j->done = j->line;
         j->line = NULL;
-        return state == HIMC_JOB_DONE ? state : failed(j, error);
+        good = state == HIMC_JOB_DONE;
+    } else if (p->runner.takes_long(p, c)) {
+        j->line = p->runner.job(p, c, error);
+        if (j->line)
+            return HIMC_JOB_AGAIN;
+        good = false;
+    } else {
+        good = p->runner.run(p, c, 0, error);
     }
-    if (!p->runner.takes_long(p, &line->command))
-        return p->runner.run(p, &line->command, 0, error) ? HIMC_JOB_DONE : failed(j, error);
-    j->line = p->runner.job(p, &line->command, error);
-    return j->line ? HIMC_JOB_AGAIN : failed(j, error);
+    if (good)
+        return HIMC_JOB_DONE;
+    prefix_line(j, error);
+    if (c->id != HIMC_COMMAND_HIT && c->id != HIMC_COMMAND_STRIKE)
+        return HIMC_JOB_FAILED;
+    himc_events_note(&p->events, "%s", error->text);
+    error->text[0] = '\0';
+    return HIMC_JOB_DONE;
 }
 
 // a portion of the lines before or after the strokes; DONE after the last
@@ -406,31 +401,29 @@ static himc_job_state run_lines(score_job *j, bool after, himc_error *error)
     return HIMC_JOB_DONE;
 }
 
-static himc_job_state begin_strokes(score_job *j, himc_error *error)
-{
-    himc_performance *p = j->performance;
-    himc_planner *planner = p->motion->planner;
-    himc_performance_notice_drums(p);
-    if (!j->queued) {
-        himc_planner_clear(planner);
-        himc_text_clear(&p->written.score);
-    }
-    j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
-    if (himc_planner_append_tempi(planner, j->score->tempi, j->score->tempo_count, j->from, error))
-        return HIMC_JOB_DONE;
-    himc_error_prefix(error, "%s", j->path);
-    return HIMC_JOB_FAILED;
-}
-
-// the heads that the score changes, the end of those of the score before, and its pushes
+// the tempi; the heads that the score changes, the end of those of the score before, and its pushes
 static himc_job_state install_changes(score_job *j, himc_error *error)
 {
     himc_performance *p = j->performance;
+    const himc_score *score = j->score;
     double now = himc_motion_score_beat(p->motion, step_time(p));
     planned_push list[HIMC_PUSHES];
     int count, first;
-    if (j->score->change_count > 0 && !j->asked) {
-        if (j->score->stroke_count > 0 && !installed_drum(j, "", &first, error))
+    if (!j->asked) {
+        himc_planner *planner = p->motion->planner;
+        himc_performance_notice_drums(p);
+        if (!j->queued) {
+            himc_planner_clear(planner);
+            himc_text_clear(&p->written.score);
+        }
+        j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
+        if (!himc_planner_append_tempi(planner, score->tempi, score->tempo_count, j->from, error)) {
+            himc_error_prefix(error, "%s", j->path);
+            return HIMC_JOB_FAILED;
+        }
+    }
+    if (score->change_count > 0 && !j->asked) {
+        if (score->stroke_count > 0 && !installed_drum(j, "", &first, error))
             return HIMC_JOB_FAILED;
         copy_performance(j);
         j->asked = true;
@@ -453,52 +446,39 @@ static himc_job_state install_changes(score_job *j, himc_error *error)
     return good ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
 }
 
-// tells a stroke or a change as the file has it, for `dump`; a push is told as it is planned
-static bool write_line(score_job *j, int place, himc_error *error)
-{
-    himc_text_lines *written = &j->performance->written.score;
-    if (!himc_written_room(written, "score", error))
-        return false;
-    if (place >= 0) {
-        himc_stroke stroke = j->score->strokes[place];
-        stroke.beat += j->from;
-        himc_written_stroke(written, &stroke);
-    } else if (j->score->changes[-1 - place].drum[0]) {
-        himc_written_change(written, &j->score->changes[-1 - place], j->from);
-    }
-    return true;
-}
-
-static bool add_stroke(score_job *j, himc_stroke stroke, bool ornament, himc_error *error)
-{
-    int drum;
-    stroke.beat += j->from;
-    if (!installed_drum(j, stroke.drum, &drum, error))
-        return false;
-    if (ornament)
-        himc_performance_add_ornament(j->performance, &stroke, drum);
-    if (ornament || stroke.ornament >= HIMC_ROLL_SINGLE)
-        return true;
-    stroke.ornament = HIMC_PLAIN;
-    return himc_performance_put_stroke(j->performance, &stroke, error);
-}
-
-// what is written, then the strokes, then what ornaments add, which leaves out what does not fit
+// What is written, as the file has it, for `dump` (a push is told as it is planned); then the
+// strokes; then what ornaments add, which leaves out what does not fit.
 static himc_job_state add_strokes(score_job *j, himc_error *error)
 {
+    himc_performance *p = j->performance;
     const himc_score *score = j->score;
     int count = score->stroke_count, lines = count + score->change_count;
+    himc_text_lines *written = &p->written.score;
     for (int added = 0; j->at < lines + 2 * count; j->at++, added++) {
+        bool good, writes = j->at < lines, ornament = j->at - lines >= count;
+        int drum, place = writes ? score->order[j->at] : (j->at - lines) % count;
+        himc_stroke stroke = {.beat = 0};
         if (added >= STROKES_AT_ONCE)
             return HIMC_JOB_MORE;
-        bool good = true, ornament = j->at - lines >= count;
-        if (j->at < lines) {
-            good = write_line(j, score->order[j->at], error);
+        if (place >= 0)
+            stroke = score->strokes[place];
+        stroke.beat += j->from;
+        if (writes) {
+            good = himc_written_room(written, "score", error);
+            if (good && place >= 0)
+                himc_written_stroke(written, &stroke);
+            else if (good && score->changes[-1 - place].drum[0])
+                himc_written_change(written, &score->changes[-1 - place], j->from);
         } else {
-            const himc_stroke *stroke = &score->strokes[(j->at - lines) % count];
-            // a roll may be long: it is a portion by itself
-            added += ornament && stroke->ornament >= HIMC_ROLL_SINGLE ? STROKES_AT_ONCE : 0;
-            good = add_stroke(j, *stroke, ornament, error);
+            bool rolls = stroke.ornament >= HIMC_ROLL_SINGLE;
+            good = installed_drum(j, stroke.drum, &drum, error);
+            if (good && ornament) {
+                himc_performance_add_ornament(p, &stroke, drum);
+                added += rolls ? STROKES_AT_ONCE : 0; // it may be long
+            } else if (good && !rolls) {
+                stroke.ornament = HIMC_PLAIN;
+                good = himc_performance_put_stroke(p, &stroke, error);
+            }
         }
         if (!good) {
             himc_error_prefix(error, "%s", j->path);
@@ -508,28 +488,22 @@ static himc_job_state add_strokes(score_job *j, himc_error *error)
     return HIMC_JOB_DONE;
 }
 
-// asks the host for the drums that the performance does not have: for one that the score makes, it
-// may have one that sounds
-static bool ask_host(score_job *j, himc_error *error)
-{
-    himc_performance *p = j->performance;
-    named_drum unknown;
-    for (int k = 0; k < j->drums; k++)
-        himc_performance_find_drum(p, j->drum[k].trial.name);
-    for (int i = 0; j->unknown && find_unknown(j, &i, &unknown); i++)
-        if (!himc_performance_find_drum(p, unknown.name) ||
-            himc_drums_find(&p->drums, unknown.name) < 0)
-            return refuse_drum(j, &unknown, error);
-    return true;
-}
-
 static himc_job_state begin(score_job *j, himc_error *error)
 {
     himc_performance *p = j->performance;
     const himc_score *score = j->score;
+    named_drum unknown;
     int pushes = 0;
-    if (!ask_host(j, error))
-        return HIMC_JOB_FAILED;
+    // the host may have the drums that the performance does not have; for one that the score makes,
+    // it may have one that sounds
+    for (int k = 0; k < j->drums; k++)
+        himc_performance_find_drum(p, j->drum[k].trial.name);
+    for (int i = 0; j->unknown && find_unknown(j, &i, &unknown); i++)
+        if (!himc_performance_find_drum(p, unknown.name) ||
+            himc_drums_find(&p->drums, unknown.name) < 0) {
+            refuse_drum(j, &unknown, error);
+            return HIMC_JOB_FAILED;
+        }
     // the drums should be those with which the score was tried
     bool same =
         !j->unknown && p->drums.count == j->present && j->clock.sample_rate == p->clock.sample_rate;
@@ -564,10 +538,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     error = error ? error : &why;
     switch (j->part) {
     case BEGINNING: state = begin(j, error); break;
-    case BEFORE_STROKES:
-        state = run_lines(j, false, error);
-        state = state == HIMC_JOB_DONE ? begin_strokes(j, error) : state;
-        break;
+    case BEFORE_STROKES: state = run_lines(j, false, error); break;
     case CHANGES: state = install_changes(j, error); break;
     case STROKES: state = add_strokes(j, error); break;
     default: state = run_lines(j, true, error);
