@@ -99,7 +99,7 @@ static void test_latency_is_of_the_last_hit_and_the_longest_of_all(void)
     himc_statistics_hit(&s, 0.1);
     himc_statistics_hit(&s, 0.3);
     himc_statistics_hit(&s, 0.2);
-    himc_statistics_read(&s, &out);
+    out = himc_statistics_told(&s);
     TEST_ASSERT_EQUAL_INT(3, out.hits);
     TEST_ASSERT_EQUAL_DOUBLE(0.2, out.hit_latency);
     TEST_ASSERT_EQUAL_DOUBLE(0.3, out.longest_latency);
@@ -114,7 +114,7 @@ static void test_height_of_strokes_is_the_mean_apex_between_touches(void)
     for (int i = 0; i < 9; i++)
         himc_statistics_height(&s, HIMC_LEFT, height[i], height[i] == 0);
     himc_statistics_tip(&s, (himc_vec3){0.003, 0, 0.004});
-    himc_statistics_read(&s, &out);
+    out = himc_statistics_told(&s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.25, out.stroke_height);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.005, out.tip_rms);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2, out.tip_rms_percent);

@@ -521,7 +521,7 @@ static void test_stick_and_body_tip_stay_together_and_the_plan_joins_the_tip(voi
                 himc_vec3_sub(p->body->state.tip_velocity[hand], p->motion->reference.tip[hand].v);
             if (c->touching)
                 parted = fmax(parted, fabs(c->offset));
-            if (c->touching || c->released)
+            if (c->touching || p->motion->reference.released[hand])
                 continue;
             away = fmax(away, himc_vec3_length(d));
             slip = fmax(slip, himc_vec3_length(v));

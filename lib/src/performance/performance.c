@@ -49,7 +49,7 @@ static void measure(himc_performance *p, double t, bool tick)
             double height = over.z - p->body->skeleton.mallet_radius;
             himc_statistics_height(&p->statistics, (himc_hand)hand, height, c->touching);
         }
-        if (!c->released && !c->touching)
+        if (!r->released[hand] && !c->touching)
             himc_statistics_tip(&p->statistics,
                                 himc_vec3_sub(p->body->state.tip[hand], r->tip[hand].x));
     }

@@ -44,18 +44,6 @@ static double energy(const himc_character *c)
     return himc_character_kinetic(c) + himc_character_potential(c);
 }
 
-// of all but the bytes between the fields
-static bool same_segments(const himc_skeleton *a, const himc_skeleton *b)
-{
-    for (int i = 0; i < HIMC_SEGMENTS; i++) {
-        const himc_segment *s = &a->segment[i], *t = &b->segment[i];
-        if (s->parent != t->parent ||
-            memcmp(&s->mass, &t->mass, sizeof *s - offsetof(himc_segment, mass)) != 0)
-            return false;
-    }
-    return true;
-}
-
 void himc_body_adopt(performance_body *b, const body_parts *parts)
 {
     if (b->accounting) {
@@ -66,7 +54,12 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
     b->character = parts->character;
     b->skeleton = parts->skeleton;
     b->plant = parts->plant;
-    b->shares = same_segments(&b->skeleton, &b->plant);
+    b->shares = true;
+    for (int i = 0; i < HIMC_SEGMENTS; i++) { // all but the bytes between the fields
+        const himc_segment *s = &b->skeleton.segment[i], *t = &b->plant.segment[i];
+        b->shares = b->shares && s->parent == t->parent &&
+                    memcmp(&s->mass, &t->mass, sizeof *s - offsetof(himc_segment, mass)) == 0;
+    }
 }
 
 performance_body *himc_body_new(const performance_settings *s, himc_error *error)

@@ -8,48 +8,17 @@
 
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
 
-// what follows from a command that has changed a setting
-static void follow(himc_performance *p, const himc_command *c, himc_pipeline before)
-{
-    const performance_settings *s = &p->settings;
-    himc_planner *planner = p->motion->planner;
-    enum { DRUMS = 3 }; // form of `gain`
-    switch (himc_settings_effect(c->id)) {
-    case AFTER_MODE:
-        if (before == HIMC_PIPELINE_IK && s->control.mode != HIMC_PIPELINE_IK)
-            himc_body_take_up(p->body);
-        if (p->motion->has_regression)
-            himc_motion_replan(p->motion);
-        return;
-    case AFTER_LIMITS:
-        himc_performance_renew_limits(p);
-        himc_body_clear_limit_counts(p->body); // the counts belong to other limits
-        return;
-    case AFTER_FADER:
-        if (c->form == DRUMS)
-            himc_drums_fade(&p->drums, pow(10, c->atom[0].number / 20), p->drums.mute);
-        return;
-    case AFTER_STEPS: himc_performance_restart_steps(p); return;
-    case AFTER_GRIP:
-        himc_planner_set_grip(planner, s->grip);
-        himc_planner_set_servo(planner, s->servo);
-        break;
-    case AFTER_HUMAN: himc_planner_set_human(planner, s->human); break;
-    case AFTER_REPLAN: break;
-    default: return;
-    }
-    himc_motion_replan(p->motion);
-}
-
+// a setting, and what follows from its change
 static bool set(himc_performance *p, const himc_command *c, himc_error *error)
 {
-    performance_settings s = p->settings;
-    himc_pipeline before = s.control.mode;
+    performance_settings s = p->settings, old = p->settings;
+    setting_effect effect = himc_settings_effect(c->id);
+    himc_planner *planner = p->motion->planner;
+    enum { DRUMS = 3 }; // form of `gain`
     if (!himc_performance_allows(p->recording.file, c, error) ||
         !himc_settings_read(&s, &p->host.usual, c, error))
         return false;
-    if (himc_settings_effect(c->id) == AFTER_BODY) {
-        performance_settings old = p->settings;
+    if (effect == AFTER_BODY) {
         if (!p->motion->track || p->written.take_command.count == 0)
             return himc_performance_rebuild(p, &s, error);
         p->settings = s; // a take is loaded again for a body of other size: its lengths stay
@@ -59,7 +28,31 @@ static bool set(himc_performance *p, const himc_command *c, himc_error *error)
         return false;
     }
     himc_performance_adopt(p, &s);
-    follow(p, c, before);
+    bool replans = effect == AFTER_REPLAN || effect == AFTER_GRIP || effect == AFTER_HUMAN;
+    switch (effect) {
+    case AFTER_MODE:
+        if (old.control.mode == HIMC_PIPELINE_IK && s.control.mode != HIMC_PIPELINE_IK)
+            himc_body_take_up(p->body);
+        replans = p->motion->has_regression;
+        break;
+    case AFTER_LIMITS:
+        himc_performance_renew_limits(p);
+        himc_body_clear_limit_counts(p->body); // the counts belong to other limits
+        break;
+    case AFTER_FADER:
+        if (c->form == DRUMS)
+            himc_drums_fade(&p->drums, pow(10, c->atom[0].number / 20), p->drums.mute);
+        break;
+    case AFTER_STEPS: himc_performance_restart_steps(p); break;
+    case AFTER_GRIP:
+        himc_planner_set_grip(planner, s.grip);
+        himc_planner_set_servo(planner, s.servo);
+        break;
+    case AFTER_HUMAN: himc_planner_set_human(planner, s.human); break;
+    default: break;
+    }
+    if (replans)
+        himc_motion_replan(p->motion);
     return true;
 }
 

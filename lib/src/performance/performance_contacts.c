@@ -236,17 +236,17 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
         due = false;
     }
     int drum = is_free(c) ? c->drum : next.drum;
-    c->released = is_free(c) || (due && !rests_after(s, hand, next.drum, next.time));
-    c->hand = 0; // the hand's acceleration of the stick along the normal
+    bool released = is_free(c) || (due && !rests_after(s, hand, next.drum, next.time));
+    double yield = 0; // the hand's acceleration of the stick along the normal
     if (c->bounce.on) {
-        c->hand =
+        yield =
             himc_bounce_acceleration(&c->bounce, height_of(c, s, hand), velocity_of(c, s, hand));
     } else if (c->touching && c->pressed) {
         himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
-        c->hand = himc_grip_press(&s->motion->reference.tip[hand], &tip, normal_of(s, c->drum),
-                                  c->stick.mass);
+        yield = himc_grip_press(&s->motion->reference.tip[hand], &tip, normal_of(s, c->drum),
+                                c->stick.mass);
     }
-    himc_motion_release(s->motion, hand, c->released, c->hand);
+    himc_motion_release(s->motion, hand, released, yield);
     if (drum < s->drums->count)
         himc_motion_set_normal(s->motion, hand, normal_of(s, drum));
     if (!is_free(c) || !is_kinematic(s))
@@ -312,11 +312,11 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.one_way = s->settings->coupling == HIMC_COUPLING_ONE_WAY;
     c->stick.x = local.x;
     c->stick.y = local.y;
-    c->stick.acceleration = c->hand;
+    double a = s->motion->reference.yield[hand];
     if (!is_kinematic(s))
-        c->stick.acceleration =
-            bounded(himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative)),
+        a = bounded(himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative)),
                     FASTEST_TIP * s->clock->physics_rate);
+    c->stick.acceleration = a;
     if (is_kinematic(s) && is_free(c))
         return;
     c->stick.height = local.z + c->offset;
@@ -400,7 +400,6 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
 typedef struct near_sticks {
     int below[HIMC_HANDS]; // drum, or -1
     himc_vec3 local[HIMC_HANDS];
-    double velocity[HIMC_HANDS]; // at the beginning of the step (m/s)
     const himc_articulation *art;
     himc_articulation kinematic; // in `ik`, where the body is not simulated
     himc_vec3 relative[HIMC_JOINTS];
@@ -481,7 +480,6 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
             continue;
         contact->drum = near.below[hand];
         load_stick(contact, s, (himc_hand)hand, near.local[hand], near.art, near.relative);
-        near.velocity[hand] = contact->stick.velocity;
     }
     himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
     advance_drums(c, s, n, &near);
@@ -489,11 +487,11 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         tip_force[hand] = himc_vec3_make(0, 0, 0);
         if (near.below[hand] < 0)
             continue;
+        const himc_stick *a = &before[hand], *b = &c->hand[hand].stick;
         double impulse =
-            note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, near.velocity[hand]);
+            note_forces(&c->hand[hand], s, (himc_hand)hand, c->force[hand], n, a->velocity);
         // work of the head on the stick (J): it is a free body under this and the hand's
         // acceleration, both constant in a sample
-        const himc_stick *a = &before[hand], *b = &c->hand[hand].stick;
         double kinetic = 0.5 * b->mass * (b->velocity * b->velocity - a->velocity * a->velocity);
         double work =
             impulse > 0 ? kinetic - b->mass * b->acceleration * (b->height - a->height) : 0;
@@ -503,18 +501,6 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         tip_force[hand] =
             himc_vec3_scale(normal_of(s, near.below[hand]), c->hand[hand].share * force);
     }
-}
-
-// reports the strike, once; a head raised into a resting stick is none, nor is a stick laid down
-// again
-static void tell(stick_contact *c, const contact_scene *s)
-{
-    himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
-    bool resting =
-        c->pressed && c->strike.velocity < RESTING_SPEED && c->strike.time < c->left + RESTING_TIME;
-    if (c->strike.velocity > SLOWEST_STRIKE && !resting && !c->told)
-        himc_events_add(s->events, &event);
-    c->told = true;
 }
 
 // the hand takes up a stick that has bounced, also when the next stroke is near
@@ -549,7 +535,14 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
         c->offset = c->stick.height - height;
     if (!separated && !late)
         return;
-    tell(c, s);
+    // the strike is reported once; a head raised into a resting stick is none, nor is a stick laid
+    // down again
+    himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
+    bool resting =
+        c->pressed && c->strike.velocity < RESTING_SPEED && c->strike.time < c->left + RESTING_TIME;
+    if (c->strike.velocity > SLOWEST_STRIKE && !resting && !c->told)
+        himc_events_add(s->events, &event);
+    c->told = true;
     if (separated && c->bounce.on)
         himc_bounce_separated(&c->bounce, t, t - c->last_force, height_of(c, s, hand),
                               velocity_of(c, s, hand));

@@ -16,11 +16,9 @@
 /// A hand's stick on a head.
 typedef struct stick_contact {
     bool touching;      ///< from the first force to separation
-    bool released;      ///< control acts along the normal as the hand does (grip.h)
     bool pressed;       ///< while touching: not a stroke of the plan, or one that stays
     bool told;          ///< while touching: the strike has been reported
     himc_bounce bounce; ///< of the last stroke
-    double hand;        ///< acceleration that the hand gives it along the normal (m/s^2)
     double left;        ///< when the last contact ended (s)
     int drum;           ///< slot
     himc_stick stick;   ///< in micro-contact

@@ -121,18 +121,6 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
             himc_hand_name(himc_other_hand(own.hand)));
 }
 
-/// Leaves a hit to the hands that no take moves; false if there is none.
-static bool give_to_free_hands(himc_performance *p, himc_stroke *stroke, bool *alone)
-{
-    double now = step_time(p);
-    bool left = himc_motion_free_hand(p->motion, HIMC_LEFT, now),
-         right = himc_motion_free_hand(p->motion, HIMC_RIGHT, now);
-    *alone = !left || !right;
-    if (*alone && stroke->hand == HIMC_HAND_ANY)
-        stroke->hand = left ? HIMC_LEFT : HIMC_RIGHT;
-    return stroke->hand == HIMC_HAND_ANY || (stroke->hand == HIMC_LEFT ? left : right);
-}
-
 // "too low" and so on, from the direction in which the reach ends
 static const char *direction_of(himc_vec3 beyond, himc_vec3 center)
 {
@@ -184,7 +172,14 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     himc_planner *planner = p->motion->planner;
     if (!check_stroke(stroke, true, error))
         return false;
-    if (!give_to_free_hands(p, &own, &asked.alone))
+    // to the hands that no take moves
+    double now = step_time(p);
+    bool left = himc_motion_free_hand(p->motion, HIMC_LEFT, now),
+         right = himc_motion_free_hand(p->motion, HIMC_RIGHT, now);
+    asked.alone = !left || !right;
+    if (asked.alone && own.hand == HIMC_HAND_ANY)
+        own.hand = left ? HIMC_LEFT : HIMC_RIGHT;
+    if (own.hand != HIMC_HAND_ANY && !(own.hand == HIMC_LEFT ? left : right))
         return himc_error_set(error, "hit: not possible while a take is playing");
     if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
         return false;
@@ -192,7 +187,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     tell_places(p);
     // a command that acts in this step was meant for its sample, up to a step before
     int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
-    double now = step_time(p), from = (double)sample / p->clock.sample_rate;
+    double from = (double)sample / p->clock.sample_rate;
     asked.at = from + p->settings.latency;
     // to the contact, from the moment it was asked; infinite if it is given up
     double latency = p->settings.latency > 0

@@ -39,13 +39,13 @@ void himc_performance_on_tick(himc_performance *p, void (*tick)(void *, const hi
 himc_performance_stats himc_performance_measure(const himc_performance *p)
 {
     const performance_clock *c = &p->clock;
-    himc_performance_stats s = {.seconds = fmax((double)c->played, 0) / c->sample_rate,
-                                .limit_hits = himc_body_limit_hits(p->body),
-                                .events_lost = p->events.lost,
-                                .sample_rate = c->sample_rate,
-                                .physics_rate = c->physics_rate,
-                                .task_rate = c->task_rate};
-    himc_statistics_read(&p->statistics, &s);
+    himc_performance_stats s = himc_statistics_told(&p->statistics);
+    s.seconds = fmax((double)c->played, 0) / c->sample_rate;
+    s.limit_hits = himc_body_limit_hits(p->body);
+    s.events_lost = p->events.lost;
+    s.sample_rate = c->sample_rate;
+    s.physics_rate = c->physics_rate;
+    s.task_rate = c->task_rate;
     return s;
 }
 

@@ -5,7 +5,7 @@
 
 void himc_statistics_clear(performance_statistics *s)
 {
-    *s = (performance_statistics){.strokes = 0};
+    *s = (performance_statistics){.square_sum = 0};
 }
 
 // the target's largest height between two strikes is the stroke's height
@@ -58,7 +58,7 @@ void himc_statistics_joints(performance_statistics *s, const himc_skeleton *skel
 
 bool himc_statistics_too_fast(performance_statistics *s, int *joint, double *rate)
 {
-    if (s->told_fast || s->recoveries > 0)
+    if (s->told_fast || s->told.recoveries > 0)
         return false;
     *rate = peak(s->rate, joint);
     s->told_fast = *rate > HIMC_FASTEST_JOINT;
@@ -67,27 +67,27 @@ bool himc_statistics_too_fast(performance_statistics *s, int *joint, double *rat
 
 void himc_statistics_unplanned(performance_statistics *s)
 {
-    s->unplanned++;
+    s->told.unplanned_contacts++;
 }
 
 void himc_statistics_contact(performance_statistics *s, double force, double duration)
 {
-    s->peak_force = fmax(s->peak_force, force);
-    s->longest_contact = fmax(s->longest_contact, duration);
+    s->told.peak_force = fmax(s->told.peak_force, force);
+    s->told.longest_contact = fmax(s->told.longest_contact, duration);
 }
 
 void himc_statistics_strokes(performance_statistics *s, int strokes, int played)
 {
-    s->strokes += strokes;
-    s->played += played;
+    s->told.strokes += strokes;
+    s->told.played += played;
 }
 
 void himc_statistics_landed(performance_statistics *s, double speed, double captured, double yields)
 {
     s->impact_sum += isfinite(captured) ? speed : 0;
     s->captured_impact_sum += isfinite(captured) ? captured : 0;
-    s->moved += yields > 0;
-    s->moved_most = fmax(s->moved_most, yields);
+    s->told.moved += yields > 0;
+    s->told.moved_most = fmax(s->told.moved_most, yields);
 }
 
 long himc_statistics_aside(performance_statistics *s)
@@ -97,9 +97,9 @@ long himc_statistics_aside(performance_statistics *s)
 
 void himc_statistics_hit(performance_statistics *s, double latency)
 {
-    s->hit_latency = latency;
-    s->longest_latency = fmax(s->longest_latency, latency);
-    s->hits++;
+    s->told.hit_latency = latency;
+    s->told.longest_latency = fmax(s->told.longest_latency, latency);
+    s->told.hits++;
 }
 
 void himc_statistics_contact_work(performance_statistics *s, himc_hand hand, double work,
@@ -113,33 +113,24 @@ long himc_statistics_recovery(performance_statistics *s)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         s->apex[hand] = 0;
-    return s->recoveries++;
+    return s->told.recoveries++;
 }
 
-void himc_statistics_read(const performance_statistics *s, himc_performance_stats *out)
+himc_performance_stats himc_statistics_told(const performance_statistics *s)
 {
-    out->strokes = s->strokes;
-    out->played = s->played;
-    out->missed = s->strokes - s->played;
-    out->moved = s->moved;
-    out->moved_most = s->moved_most;
-    out->peak_force = s->peak_force;
-    out->hits = s->hits;
-    out->hit_latency = s->hit_latency;
-    out->longest_latency = s->longest_latency;
-    out->recoveries = s->recoveries;
-    out->tip_rms = s->square_count ? sqrt(s->square_sum / (double)s->square_count) : 0;
-    out->stroke_height = s->height_count ? s->height_sum / (double)s->height_count : 0;
-    out->tip_rms_percent = out->stroke_height > 0 ? 100 * out->tip_rms / out->stroke_height : NAN;
-    out->unplanned_contacts = s->unplanned;
-    out->longest_contact = s->longest_contact;
-    out->peak_rate = peak(s->rate, &out->peak_rate_joint);
-    out->peak_torque = peak(s->torque, &out->peak_torque_joint);
-    double percent = out->stroke_height > 0 ? 100 / out->stroke_height : NAN;
-    out->captured_rms = s->captured_count ? sqrt(s->captured_sum / (double)s->captured_count) : NAN;
-    out->captured_most = s->captured_count ? sqrt(s->captured_most) : NAN;
-    out->captured_rms_percent = percent * out->captured_rms;
-    out->captured_most_percent = percent * out->captured_most;
-    out->captured_speed_ratio =
+    himc_performance_stats out = s->told;
+    out.missed = out.strokes - out.played;
+    out.tip_rms = s->square_count ? sqrt(s->square_sum / (double)s->square_count) : 0;
+    out.stroke_height = s->height_count ? s->height_sum / (double)s->height_count : 0;
+    double percent = out.stroke_height > 0 ? 100 / out.stroke_height : NAN;
+    out.tip_rms_percent = out.stroke_height > 0 ? 100 * out.tip_rms / out.stroke_height : NAN;
+    out.peak_rate = peak(s->rate, &out.peak_rate_joint);
+    out.peak_torque = peak(s->torque, &out.peak_torque_joint);
+    out.captured_rms = s->captured_count ? sqrt(s->captured_sum / (double)s->captured_count) : NAN;
+    out.captured_most = s->captured_count ? sqrt(s->captured_most) : NAN;
+    out.captured_rms_percent = percent * out.captured_rms;
+    out.captured_most_percent = percent * out.captured_most;
+    out.captured_speed_ratio =
         s->captured_impact_sum > 0 ? s->impact_sum / s->captured_impact_sum : NAN;
+    return out;
 }

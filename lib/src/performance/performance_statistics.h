@@ -11,28 +11,21 @@
 #define HIMC_FASTEST_JOINT 160.0 // (rad/s)
 
 typedef struct performance_statistics {
-    double square_sum; ///< of the distances from tip to target outside contact (m^2)
+    himc_performance_stats told; ///< the counts and largest values that it tells as they are
+    double square_sum;           ///< of the distances from tip to target outside contact (m^2)
     long square_count;
     double height_sum; ///< of strokes, apex to contact (m)
     long height_count;
     double apex[HIMC_HANDS]; ///< highest target over the head since the last strike (m)
-    int strokes, played, hits;
-    int moved;         ///< strokes that were moved aside, as the hands would have met ...
-    double moved_most; ///< ... by so much at most (m)
-    long aside;        ///< landed beside their place
-    double hit_latency, longest_latency; ///< from a hit's command to its planned contact (s)
-    double peak_force;                   ///< (N)
-    int unplanned;                       ///< contacts
-    double longest_contact;              ///< (s)
-    double captured_sum;                 ///< of squared distances from tip to capture (m^2)
+    long aside;              ///< strokes that have landed beside their place
+    double captured_sum;     ///< of squared distances from tip to capture (m^2)
     long captured_count;
     double captured_most;                   ///< the largest of them (m^2)
     double impact_sum, captured_impact_sum; ///< of the same impacts, played and captured (m/s)
     double rate[HIMC_JOINTS];               ///< largest squared rate of each joint (rad^2/s^2)
     bool told_fast;                         ///< himc_statistics_too_fast has been true
     double torque[HIMC_JOINTS];             ///< largest squared torque (N^2 m^2)
-    long recoveries;
-    double given; ///< by sticks to heads (J)
+    double given;                           ///< by sticks to heads (J)
     double
         mallet[HIMC_HANDS]; ///< work of the heads on mallets' own masses since the rows began (J)
 } performance_statistics;
@@ -73,8 +66,7 @@ HIMC_RT void himc_statistics_contact_work(performance_statistics *statistics, hi
 /// Counts a state that was not finite and was replaced; returns the count before.
 HIMC_RT long himc_statistics_recovery(performance_statistics *statistics);
 
-/// Fills the fields that this part measures.
-HIMC_RT void himc_statistics_read(const performance_statistics *statistics,
-                                  himc_performance_stats *out);
+/// The figures; 0 in the fields that this part does not measure.
+HIMC_RT himc_performance_stats himc_statistics_told(const performance_statistics *statistics);
 
 #endif
