@@ -129,126 +129,107 @@ static bool dump_written(const himc_text_lines *lines, size_t *at, const himc_li
     return end && *line;
 }
 
-// settings
-
-static void dump_hearing(const performance_drums *d, const himc_line_sink *to)
+static void tell_push(const planned_push *push, const himc_line_sink *to)
 {
+    const double how[] = {push->force.x, push->force.y, push->force.z, push->seconds, push->along};
+    himc_state_line line = himc_state_begin("at");
+    himc_state_numbers(&line, 1, &push->beat);
+    himc_state_word(&line, "push");
+    himc_state_word(&line, himc_segment_name(push->segment));
+    himc_state_numbers(&line, push->along < 0 ? 4 : 5, how);
+    himc_state_end(&line, to);
+}
+
+// what is told, in this order
+typedef enum dump_part {
+    NAMES,
+    DRUMS,
+    RATES,
+    NUDGES,
+    SETTINGS,
+    UNITS,
+    TEMPI,
+    LOOP,
+    SCORE,
+    PUSHES,
+    END
+} dump_part;
+
+// tells item i of a part, if it has so many; returns their number
+static int tell_item(const himc_performance *p, dump_part part, int i, const himc_line_sink *to)
+{
+    const performance_drums *d = &p->drums;
     const himc_listener *l = &d->listener;
-    if (l->on)
-        himc_state_tell(to, "listener", NULL, 4,
-                        (double[]){l->place.x, l->place.y, l->place.z, l->yaw});
-    else
-        himc_state_tell(to, "listener", "off", 0, NULL);
-    himc_state_tell(to, "room", NULL, 2, (double[]){d->walls.seconds, d->walls.volume});
-    himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(d->gain)});
-    himc_state_tell(to, "mute", NULL, 1, (double[]){d->mute});
-}
-
-// drums
-
-// no line can be for the silent drum of strokes without a drum's name, whose name is a command's
-static bool can_be_named(const himc_drum *drum)
-{
-    return !himc_command_find(HIMC_PERFORMER, himc_drum_name(drum));
-}
-
-static void dump_drums(const himc_performance *p, const himc_line_sink *to)
-{
-    for (int i = 0; i < p->drums.count; i++) {
-        const himc_drum *drum = p->drums.slot[i].drum;
-        double inches = 2 * himc_drum_usual_radius(drum) / METRES_PER_INCH;
-        if (can_be_named(drum))
-            himc_state_tell(to, "drum", himc_drum_name(drum), 1, &inches);
-    }
-}
-
-// one drum
-static bool dump_drum(const himc_performance *p, size_t *at, const himc_line_sink *to)
-{
-    if (*at >= (size_t)p->drums.count)
-        return false;
-    const himc_drum *drum = p->drums.slot[(*at)++].drum;
-    if (can_be_named(drum))
-        himc_performance_describe_drum(drum, HIMC_DESCRIBE_STATE, himc_drum_name(drum), "", to);
-    return true;
-}
-
-// the end of what is told now of a list
-static size_t list_end(size_t at, int count)
-{
-    return at + LINES_AT_ONCE < (size_t)count ? at + LINES_AT_ONCE : (size_t)count;
-}
-
-static bool dump_tempi(const himc_planner *planner, size_t *at, const himc_line_sink *to)
-{
-    int count;
-    const himc_tempo_change *tempi = himc_planner_tempi(planner, &count);
-    for (size_t end = list_end(*at, count); *at < end; ++*at)
-        himc_state_tell(to, "tempo", NULL, tempi[*at].beat > 0 ? 2 : 1,
-                        (double[]){tempi[*at].bpm, tempi[*at].beat});
-    return *at < (size_t)count;
-}
-
-static bool dump_nudges(const himc_track *track, size_t *at, const himc_line_sink *to)
-{
+    const himc_drum *drum = i < d->count ? d->slot[i].drum : NULL;
+    // no line can be for the silent drum of strokes without a drum's name: that is a command's
+    bool named = drum && !himc_command_find(HIMC_PERFORMER, himc_drum_name(drum));
     int count = 0;
-    const himc_nudge *nudges = track ? himc_track_nudges(track, &count) : NULL;
-    for (size_t end = list_end(*at, count); *at < end; ++*at) {
-        const himc_nudge *n = &nudges[*at];
-        himc_state_tell(to, "nudge", himc_hand_name(n->hand), 5,
-                        (double[]){n->time, n->span, n->way.x, n->way.y, n->way.z});
+    switch (part) {
+    case NAMES:
+        if (named)
+            himc_state_tell(to, "drum", himc_drum_name(drum), 1,
+                            (double[]){2 * himc_drum_usual_radius(drum) / METRES_PER_INCH});
+        return d->count;
+    case DRUMS:
+        if (named)
+            himc_performance_describe_drum(drum, HIMC_DESCRIBE_STATE, himc_drum_name(drum), "", to);
+        return d->count;
+    case RATES:
+        himc_settings_tell(&p->settings, HIMC_COMMAND_RATE, HIMC_COMMAND_PLAYER, to);
+        if (p->written.take[0])
+            himc_state_tell(to, "take", p->written.take, 0, NULL);
+        return 1;
+    case NUDGES:
+        if (p->motion->track) {
+            const himc_nudge *n = himc_track_nudges(p->motion->track, &count) + i;
+            if (i < count)
+                himc_state_tell(to, "nudge", himc_hand_name(n->hand), 5,
+                                (double[]){n->time, n->span, n->way.x, n->way.y, n->way.z});
+        }
+        return count;
+    case SETTINGS:
+        himc_settings_tell(&p->settings, HIMC_COMMAND_PLAYER, HIMC_COMMANDS, to);
+        himc_state_tell(to, "listener", l->on ? NULL : "off", l->on ? 4 : 0,
+                        (double[]){l->place.x, l->place.y, l->place.z, l->yaw});
+        himc_state_tell(to, "room", NULL, 2, (double[]){d->walls.seconds, d->walls.volume});
+        himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(d->gain)});
+        himc_state_tell(to, "mute", NULL, 1, (double[]){d->mute});
+        return 1;
+    case TEMPI: {
+        const himc_tempo_change *tempo = himc_planner_tempi(p->motion->planner, &count) + i;
+        if (i < count)
+            himc_state_tell(to, "tempo", NULL, tempo->beat > 0 ? 2 : 1,
+                            (double[]){tempo->bpm, tempo->beat});
+        return count;
     }
-    return *at < (size_t)count;
-}
-
-static bool dump_pushes(const performance_body *b, size_t *at, const himc_line_sink *to)
-{
-    for (size_t end = list_end(*at, b->planned_count); *at < end; ++*at) {
-        const planned_push *push = &b->planned[*at];
-        himc_state_line line = himc_state_begin("at");
-        himc_state_numbers(&line, 1, &push->beat);
-        himc_state_word(&line, "push");
-        himc_state_word(&line, himc_segment_name(push->segment));
-        const double how[] = {push->force.x, push->force.y, push->force.z, push->seconds,
-                              push->along};
-        himc_state_numbers(&line, push->along < 0 ? 4 : 5, how);
-        himc_state_end(&line, to);
+    case LOOP:
+        himc_state_tell(to, "loop", NULL, 1,
+                        (double[]){himc_planner_is_looped(p->motion->planner)});
+        return 1;
+    case PUSHES:
+        if (i < p->body->planned_count)
+            tell_push(&p->body->planned[i], to);
+        return p->body->planned_count;
+    default: return 0;
     }
-    return *at < (size_t)b->planned_count;
 }
 
 bool himc_performance_describe_on(const himc_performance *p, himc_describe_place *place,
                                   void (*line)(void *, const char *), void *user)
 {
-    enum { NAMES, DRUMS, RATES, NUDGES, SETTINGS, UNITS, TEMPI, LOOP, SCORE, PUSHES, END };
-    const himc_line_sink sink = {line, user}, *to = &sink;
-    size_t *at = &place->at;
-    bool more = false;
-    switch (place->part) {
-    case NAMES: dump_drums(p, to); break;
-    case DRUMS: more = dump_drum(p, at, to); break;
-    case RATES:
-        himc_settings_tell(&p->settings, HIMC_COMMAND_RATE, HIMC_COMMAND_PLAYER, to);
-        if (p->written.take[0])
-            himc_state_tell(to, "take", p->written.take, 0, NULL);
-        break;
-    case NUDGES: more = dump_nudges(p->motion->track, at, to); break;
-    case SETTINGS:
-        himc_settings_tell(&p->settings, HIMC_COMMAND_PLAYER, HIMC_COMMANDS, to);
-        dump_hearing(&p->drums, to);
-        break;
-    case UNITS: more = dump_written(&p->written.units, at, to); break;
-    case TEMPI: more = dump_tempi(p->motion->planner, at, to); break;
-    case LOOP:
-        himc_state_tell(to, "loop", NULL, 1,
-                        (double[]){himc_planner_is_looped(p->motion->planner)});
-        break;
-    case SCORE: more = !p->written.take[0] && dump_written(&p->written.score, at, to); break;
-    case PUSHES: more = dump_pushes(p->body, at, to); break;
-    default: return false;
-    }
+    const himc_line_sink to = {line, user};
+    dump_part part = (dump_part)place->part;
+    size_t *at = &place->at, end = *at + (part == DRUMS ? 1 : LINES_AT_ONCE);
+    bool more = true;
+    if (part == UNITS || (part == SCORE && !p->written.take[0]))
+        more = dump_written(part == UNITS ? &p->written.units : &p->written.score, at, &to);
+    else
+        while (more && *at < end) {
+            int count = tell_item(p, part, (int)*at, &to);
+            more = ++*at < (size_t)count;
+        }
     if (!more)
-        *place = (himc_describe_place){place->part + 1, 0};
+        *place = (himc_describe_place){part + 1, 0};
     return place->part < END;
 }
 

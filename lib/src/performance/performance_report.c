@@ -88,27 +88,6 @@ static double null_share(const himc_body_state *state, himc_hand hand, const him
     return all > 0 ? share / all : 0;
 }
 
-static void fill_hands(himc_performance *p, himc_motion_row *row)
-{
-    const performance_body *b = p->body;
-    for (int i = 0; i < HIMC_HANDS; i++) {
-        himc_hand hand = (himc_hand)i;
-        const himc_target *target = &p->motion->reference.tip[i];
-        row->target[i] = target->x;
-        row->target_velocity[i] = target->v;
-        row->tip[i] = b->state.tip[i];
-        row->tip_velocity[i] = b->state.tip_velocity[i];
-        row->tip_error[i] = himc_vec3_sub(row->tip[i], row->target[i]);
-        himc_contacts_take_row(&p->contacts, hand, &row->force[i], &row->impulse[i]);
-        row->elbow[i] = b->state.origin[HIMC_LEFT_FOREARM + i];
-        row->tip_force[i] = b->tip_force[i];
-        // the head's force on the mallet's own mass, as a share of that on the body's stick
-        double share = p->contacts.hand[i].share;
-        row->mallet_force[i] = himc_vec3_scale(b->tip_force[i], share > 0 ? 1 / share - 1 : 0);
-        row->null_space[i] = null_share(&b->state, hand, row->rate);
-    }
-}
-
 static himc_vec3 push_point(const performance_body *b, const himc_body_state *state, int i,
                             double t)
 {
@@ -171,7 +150,22 @@ static void fill_row(himc_performance *p, double t, himc_motion_row *row)
         row->limit[j] = b->controller.limits ? b->saturation.measure[j] : 0;
         row->rate[j] = himc_relative_spin(&b->skeleton, &b->state, j);
     }
-    fill_hands(p, row);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        const himc_target *target = &p->motion->reference.tip[i];
+        row->target[i] = target->x;
+        row->target_velocity[i] = target->v;
+        row->tip[i] = b->state.tip[i];
+        row->tip_velocity[i] = b->state.tip_velocity[i];
+        row->tip_error[i] = himc_vec3_sub(row->tip[i], row->target[i]);
+        himc_contacts_take_row(&p->contacts, hand, &row->force[i], &row->impulse[i]);
+        row->elbow[i] = b->state.origin[HIMC_LEFT_FOREARM + i];
+        row->tip_force[i] = b->tip_force[i];
+        // the head's force on the mallet's own mass, as a share of that on the body's stick
+        double share = p->contacts.hand[i].share;
+        row->mallet_force[i] = himc_vec3_scale(b->tip_force[i], share > 0 ? 1 / share - 1 : 0);
+        row->null_space[i] = null_share(&b->state, hand, row->rate);
+    }
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
         row->segment[i] = b->state.origin[i];
         row->orientation[i] = b->state.orientation[i];

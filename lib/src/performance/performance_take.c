@@ -68,25 +68,6 @@ static bool same_place(himc_vec3 a, himc_vec3 b)
     return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
 }
 
-// the part of the take out of reach; there the arm stretches towards the tips
-static void find_reach(take_job *j, const himc_posture *posture)
-{
-    double length = himc_track_length(j->track);
-    j->placed = j->far = 0;
-    j->farthest = 0;
-    for (double t = 0; t < length; t += REACH_CHECK_STEP)
-        for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            if (!himc_track_present(j->track, (himc_hand)hand))
-                continue;
-            himc_vec3 x = himc_track_target(j->track, (himc_hand)hand, t).x;
-            himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
-            double missing = himc_vec3_length(himc_vec3_sub(x, near));
-            j->placed++;
-            j->far += missing > OUT_OF_REACH;
-            j->farthest = fmax(j->farthest, missing);
-        }
-}
-
 static himc_trunk_posture mean_trunk(const himc_player *player)
 {
     himc_trunk_posture b = {.value = {0}};
@@ -124,43 +105,15 @@ static void postures_at(const himc_posture *posture, const himc_track *track, do
     memcpy(pose[1].joint, motion.joint, sizeof motion.joint);
 }
 
-// learns the limits of arms without sticks again, from the postures for the tips
-static bool learn_bent(const himc_player *player, const himc_track *track,
-                       const himc_posture *posture, himc_limits *learned, himc_error *error)
-{
-    bool lacks[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        int known = himc_player_known_arm(player, (himc_hand)hand);
-        lacks[hand] =
-            himc_track_present(track, (himc_hand)hand) && known > 0 && known < HIMC_ARM_JOINTS;
-    }
-    if (!lacks[HIMC_LEFT] && !lacks[HIMC_RIGHT])
-        return true;
-    himc_limits bent;
-    himc_pose *pose = malloc(2 * POSTURES_SEEN * sizeof *pose);
-    for (int i = 0; pose && i < POSTURES_SEEN; i++)
-        postures_at(posture, track, himc_track_length(track) * i / POSTURES_SEEN, &pose[2 * i]);
-    if (!pose)
-        himc_error_set(error, "limits: out of memory");
-    bool fitted = pose && himc_performance_learn_limits(pose, 2 * POSTURES_SEEN, &bent, error);
-    free(pose);
-    if (!fitted)
-        return false;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        for (int k = 0; lacks[hand] && k < HIMC_ARM_JOINTS; k++) {
-            int j = himc_arm_joint((himc_hand)hand, k);
-            if (player->known[j])
-                learned->joint[j] = bent.joint[j];
-        }
-    return true;
-}
-
-// the limits of the take's player, the sticks striking a head at that place
+// The limits of the take's player, the sticks striking a head at that place. Those of arms without
+// sticks are learned again, from the postures for the tips.
 static bool learn_limits(const himc_player *player, const himc_track *track,
                          const himc_head_frame *place, himc_limits *learned, himc_error *error)
 {
     himc_skeleton skeleton;
     himc_posture posture;
+    himc_limits bent;
+    bool lacks[HIMC_HANDS];
     if (!player->pose)
         return true;
     if (!himc_performance_learn_limits(player->pose, player->frames, learned, error) ||
@@ -168,7 +121,27 @@ static bool learn_limits(const himc_player *player, const himc_track *track,
         return false;
     himc_posture_init(&posture, &skeleton, place->center.z + skeleton.mallet_radius);
     posture.trunk_posture = mean_trunk(player);
-    return learn_bent(player, track, &posture, learned, error);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        int known = himc_player_known_arm(player, (himc_hand)hand);
+        lacks[hand] =
+            himc_track_present(track, (himc_hand)hand) && known > 0 && known < HIMC_ARM_JOINTS;
+    }
+    if (!lacks[HIMC_LEFT] && !lacks[HIMC_RIGHT])
+        return true;
+    himc_pose *pose = malloc(2 * POSTURES_SEEN * sizeof *pose);
+    if (!pose)
+        return himc_error_set(error, "limits: out of memory");
+    for (int i = 0; i < POSTURES_SEEN; i++)
+        postures_at(&posture, track, himc_track_length(track) * i / POSTURES_SEEN, &pose[2 * i]);
+    bool fitted = himc_performance_learn_limits(pose, 2 * POSTURES_SEEN, &bent, error);
+    free(pose);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        for (int k = 0; fitted && lacks[hand] && k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint((himc_hand)hand, k);
+            if (player->known[j])
+                learned->joint[j] = bent.joint[j];
+        }
+    return fitted;
 }
 
 // trunk, neck, head and legs of this player
@@ -181,8 +154,9 @@ static captured_player captured_of(const himc_player *player)
     return c;
 }
 
-// counts the strikes of a take, and those beside the drum as it will stand
-static bool count_strikes(take_job *j, himc_error *error)
+// counts the strikes of a take, those beside the drum as it will stand, and the part of the take out
+// of reach, where the arm stretches towards the tips
+static bool survey(take_job *j, const himc_posture *posture, himc_error *error)
 {
     if (!himc_take_tips(j->take, &j->options, j->tips, error))
         return false;
@@ -191,8 +165,8 @@ static bool count_strikes(take_job *j, himc_error *error)
         return himc_error_set(error, "out of memory");
     j->strikes = s.count;
     j->left_out = s.left_out;
-    j->outside = 0;
-    j->fastest = j->seen = 0;
+    j->outside = j->placed = j->far = 0;
+    j->fastest = j->seen = j->farthest = 0;
     for (int i = 0; i < s.count; i++) {
         himc_vec3 at = himc_vec3_add(s.strikes[i].x, himc_track_offset(j->track));
         himc_vec3 local = himc_head_frame_from_world(&j->frame, at);
@@ -202,6 +176,18 @@ static bool count_strikes(take_job *j, himc_error *error)
                        himc_take_fastest_fall(j->take, &j->tips[s.strikes[i].hand], &s.strikes[i]));
     }
     free(s.strikes);
+    double length = himc_track_length(j->track);
+    for (double t = 0; t < length; t += REACH_CHECK_STEP)
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            if (!himc_track_present(j->track, (himc_hand)hand))
+                continue;
+            himc_vec3 x = himc_track_target(j->track, (himc_hand)hand, t).x;
+            himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
+            double missing = himc_vec3_length(himc_vec3_sub(x, near));
+            j->placed++;
+            j->far += missing > OUT_OF_REACH;
+            j->farthest = fmax(j->farthest, missing);
+        }
     return true;
 }
 
@@ -261,8 +247,7 @@ static bool make_track(take_job *j, himc_error *error)
     if (!j->track || !learn_limits(player, j->track, &j->frame, &j->learned, error) ||
         (moves && !himc_drum_check_place(j->frame.center, error)) ||
         !himc_skeleton_init(&skeleton,
-                            player->lengths > 0 ? &player->config : &j->settings.skeleton, error) ||
-        !count_strikes(j, error))
+                            player->lengths > 0 ? &player->config : &j->settings.skeleton, error))
         return false;
     // the natural posture of the player before the drum
     captured_player captured = captured_of(player);
@@ -271,8 +256,7 @@ static bool make_track(take_job *j, himc_error *error)
         himc_motion_init_posture(&posture, &skeleton, &captured, posture.level);
     if (moves)
         posture.level = j->frame.center.z + skeleton.mallet_radius;
-    find_reach(j, &posture);
-    return fit_regression(j, &skeleton, error);
+    return survey(j, &posture, error) && fit_regression(j, &skeleton, error);
 }
 
 static bool prepare(himc_job *job, himc_error *error)
