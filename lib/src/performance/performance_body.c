@@ -169,18 +169,27 @@ bool himc_body_plan_pushes(performance_body *b, const planned_push *list, int co
     return true;
 }
 
-static bool same_push(const planned_push *a, const planned_push *b)
+bool himc_body_insert_push(performance_body *b, const planned_push *push, himc_error *error)
 {
-    return a->beat == b->beat && a->segment == b->segment && a->seconds == b->seconds &&
-           a->along == b->along && a->force.x == b->force.x && a->force.y == b->force.y &&
-           a->force.z == b->force.z;
+    int at = b->planned_count;
+    if (at == HIMC_PUSHES)
+        return himc_error_set(error, "push: one too many, expected %d", HIMC_PUSHES);
+    for (; at > 0 && b->planned[at - 1].beat > push->beat; at--)
+        b->planned[at] = b->planned[at - 1];
+    b->planned[at] = *push;
+    b->planned_count++;
+    return true;
 }
 
 bool himc_body_may_exchange_pushes(const performance_body *b, const planned_push *list, int count)
 {
     int same = 0;
-    while (same < count && same < b->planned_count && same_push(&list[same], &b->planned[same]))
-        same++;
+    for (; same < count && same < b->planned_count; same++) {
+        const planned_push *a = &list[same], *c = &b->planned[same];
+        if (a->beat != c->beat || a->segment != c->segment || a->seconds != c->seconds ||
+            a->along != c->along || himc_vec3_length(himc_vec3_sub(a->force, c->force)) != 0)
+            break;
+    }
     return (same == count || list[same].beat >= b->pushed_to) &&
            (same == b->planned_count || b->planned[same].beat >= b->pushed_to);
 }

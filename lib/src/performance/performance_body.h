@@ -90,6 +90,10 @@ HIMC_RT bool himc_body_make_push_room(performance_body *body, int count, himc_er
 /// for them.
 HIMC_RT bool himc_body_plan_pushes(performance_body *body, const planned_push *list, int count,
                                    push_order order, himc_error *error);
+/// Plans one more push of the score that plays or will be played. False with the reason if there is
+/// no room.
+HIMC_RT bool himc_body_insert_push(performance_body *body, const planned_push *push,
+                                   himc_error *error);
 /// True if these pushes may take the place of the planned ones: all that differ are to come.
 HIMC_RT bool himc_body_may_exchange_pushes(const performance_body *body, const planned_push *list,
                                            int count);

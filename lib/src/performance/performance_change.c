@@ -28,23 +28,6 @@ void himc_performance_find_end(himc_performance *p)
     himc_planner_last_until(p->motion->planner, end);
 }
 
-/// The pushes of the score with one more, in the order of beats.
-static bool add_push(change_job *j, himc_error *error)
-{
-    performance_body *body = j->performance->body;
-    planned_push list[HIMC_PUSHES];
-    int count = body->planned_count, at = count;
-    if (count == HIMC_PUSHES)
-        return himc_error_set(error, "push: one too many, expected %d", HIMC_PUSHES);
-    memcpy(list, body->planned, sizeof *list * (size_t)count);
-    for (; at > 0 && list[at - 1].beat > j->line.beat; at--)
-        list[at] = list[at - 1];
-    if (!himc_body_read_push(&j->line.command, &list[at], error))
-        return false;
-    list[at].beat = j->line.beat;
-    return himc_body_plan_pushes(body, list, count + 1, PUSHES_INSTEAD, error);
-}
-
 /// Begins with the heads as they are now.
 static bool begin(change_job *j, himc_error *error)
 {
@@ -69,43 +52,41 @@ static bool prepare(himc_job *job, himc_error *error)
            himc_error_prefix(error, "%s", j->line.drum);
 }
 
-static himc_job_state add_head(change_job *j, double now, himc_error *error)
-{
-    himc_performance *p = j->performance;
-    int index;
-    if (!himc_written_room(&p->written.score, "at", error) ||
-        !himc_performance_index_drum(p, j->line.drum, HIMC_SPOT_XY, &index, error))
-        return HIMC_JOB_FAILED;
-    if (!himc_head_insertion_install(j->insertion, &p->drums.slot[index].heads, now)) {
-        if (++j->tries < HIMC_JOB_TRIES)
-            return begin(j, error) ? HIMC_JOB_AGAIN : HIMC_JOB_FAILED;
-        himc_error_set(error, "at: drum %s changes all the time", j->line.drum);
-        return HIMC_JOB_FAILED;
-    }
-    himc_written_change(&p->written.score, &j->line, 0);
-    return HIMC_JOB_DONE;
-}
-
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     change_job *j = (change_job *)job;
     himc_performance *p = j->performance;
     const himc_score_line *line = &j->line;
     himc_error why = {""};
+    planned_push push;
     double now = himc_motion_score_beat(p->motion, step_time(p));
+    int index;
+    bool good;
     error = error ? error : &why;
-    himc_job_state state = j->insertion         ? add_head(j, now, error)
-                           : add_push(j, error) ? HIMC_JOB_DONE
-                                                : HIMC_JOB_FAILED;
+    if (!j->insertion) {
+        good = himc_body_read_push(&line->command, &push, error);
+        push.beat = line->beat;
+        good = good && himc_body_insert_push(p->body, &push, error);
+    } else {
+        good = himc_written_room(&p->written.score, "at", error) &&
+               himc_performance_index_drum(p, line->drum, HIMC_SPOT_XY, &index, error);
+        if (good && !himc_head_insertion_install(j->insertion, &p->drums.slot[index].heads, now)) {
+            if (++j->tries < HIMC_JOB_TRIES)
+                return begin(j, error) ? HIMC_JOB_AGAIN : HIMC_JOB_FAILED;
+            good = himc_error_set(error, "at: drum %s changes all the time", line->drum);
+        }
+        if (good)
+            himc_written_change(&p->written.score, line, 0);
+    }
     bool comes_again =
         himc_motion_plays_score(p->motion) && himc_planner_is_looped(p->motion->planner);
-    if (state == HIMC_JOB_DONE && now > line->beat && !comes_again) // before the next `play`
+    if (good && now > line->beat && !comes_again) // before the next `play`
         himc_events_note(&p->events, "at %g %s%s%s: given up, that beat is past", line->beat,
                          line->drum, line->drum[0] ? " " : "",
                          himc_command_table((int)line->command.id)->name);
     himc_performance_find_end(p);
     himc_motion_stir(p->motion);
-    return state;
+    return good ? HIMC_JOB_DONE : HIMC_JOB_FAILED;
 }
 
 static void free_job(himc_job *job)

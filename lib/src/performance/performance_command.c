@@ -206,22 +206,6 @@ static himc_drum *drum_of(himc_performance *p, const himc_command *c, himc_error
     return NULL;
 }
 
-// DRUM COMMAND ...
-static bool command_drum(himc_performance *p, const himc_command *c, int delay, himc_error *error)
-{
-    himc_drum *drum = drum_of(p, c, error);
-    if (!drum)
-        return false;
-    himc_motion_stir(p->motion);
-    int ahead = himc_clock_ahead(&p->clock);
-    bool good =
-        c->id == HIMC_COMMAND_STRIKE
-            ? himc_drum_strike_at(drum, delay > ahead ? delay - ahead : 0, c->atom[0].number,
-                                  c->atom[1].number, c->atom[2].number, error)
-            : himc_drum_command(drum, c, error);
-    return good || himc_error_prefix(error, "%s", c->drum);
-}
-
 const himc_runner himc_performance_runner = {takes_long, himc_performance_command, job_of,
                                              himc_performance_state_job, drum_of};
 
@@ -231,8 +215,19 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     const himc_command_row *row = himc_command_table((int)command->id);
     if (!row)
         return himc_error_set(error, "command %d: not from the parser", (int)command->id);
-    if (command->drum[0])
-        return command_drum(p, command, delay, error);
+    if (command->drum[0]) { // DRUM COMMAND ...
+        himc_drum *drum = drum_of(p, command, error);
+        const himc_atom *atom = command->atom;
+        if (!drum)
+            return false;
+        himc_motion_stir(p->motion);
+        int ahead = himc_clock_ahead(&p->clock);
+        bool good = command->id == HIMC_COMMAND_STRIKE
+                        ? himc_drum_strike_at(drum, delay > ahead ? delay - ahead : 0,
+                                              atom[0].number, atom[1].number, atom[2].number, error)
+                        : himc_drum_command(drum, command, error);
+        return good || himc_error_prefix(error, "%s", command->drum);
+    }
     if (row->receiver != HIMC_PERFORMER)
         return himc_error_set(error, "a drum's command, not the performer's");
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates

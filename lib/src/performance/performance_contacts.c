@@ -396,45 +396,15 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     return impulse;
 }
 
-/// The sticks near heads in this step.
-typedef struct near_sticks {
-    int below[HIMC_HANDS]; // drum, or -1
-    himc_vec3 local[HIMC_HANDS];
-    const himc_articulation *art;
-    himc_articulation kinematic; // in `ik`, where the body is not simulated
-    himc_vec3 relative[HIMC_JOINTS];
-} near_sticks;
-
-static void find_near(performance_contacts *c, const contact_scene *s, near_sticks *near)
-{
-    const performance_body *b = s->body;
-    bool any = false;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        near->below[hand] = drum_below(&c->hand[hand], s, (himc_hand)hand, &near->local[hand]);
-        any = any || near->below[hand] >= 0;
-        if (near->below[hand] != c->hand[hand].drum)
-            c->hand[hand].stick.touching = false; // it has left the head that it touched
-    }
-    if (!any)
-        return;
-    if (is_kinematic(s)) {
-        himc_articulate(&b->plant, &b->state, &near->kinematic);
-        near->art = &near->kinematic;
-        return;
-    }
-    near->art = himc_character_articulation(b->character);
-    himc_forward_dynamics(&b->plant, &b->state, near->art, b->torque, NULL, near->relative);
-}
-
 // n samples from sample `done` of the step on
 static void advance_drum(performance_contacts *c, const contact_scene *s, int drum, int done, int n,
-                         const near_sticks *near)
+                         const int below[HIMC_HANDS])
 {
     himc_stick *sticks[HIMC_HANDS];
     double *forces[HIMC_HANDS];
     int count = 0;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (near->below[hand] == drum) {
+        if (below[hand] == drum) {
             sticks[count] = &c->hand[hand].stick;
             forces[count++] = c->force[hand] + done;
         }
@@ -450,7 +420,7 @@ static void advance_drum(performance_contacts *c, const contact_scene *s, int dr
 
 // all drums, together from one exchange through the air between them to the next
 static void advance_drums(performance_contacts *c, const contact_scene *s, int n,
-                          const near_sticks *near)
+                          const int below[HIMC_HANDS])
 {
     for (int done = 0, run; done < n; done += run) {
         int64_t now = s->clock->made + done;
@@ -461,31 +431,45 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
         }
         run = air ? himc_air_between_until(air, now, n - done) : n - done;
         for (int i = 0; i < s->drums->count; i++)
-            advance_drum(c, s, i, done, run, near);
+            advance_drum(c, s, i, done, run, below);
     }
 }
 
 void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int n,
                            himc_vec3 tip_force[HIMC_HANDS])
 {
-    near_sticks near;
-    find_near(c, s, &near);
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        memset(c->force[hand], 0, (size_t)n * sizeof(double));
+    const performance_body *body = s->body;
+    int below[HIMC_HANDS]; // drum, or -1
+    himc_vec3 local[HIMC_HANDS], relative[HIMC_JOINTS];
+    himc_articulation kinematic; // in `ik`, where the body is not simulated
+    const himc_articulation *art = &kinematic;
+    bool any = false;
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        below[hand] = drum_below(&c->hand[hand], s, (himc_hand)hand, &local[hand]);
+        any = any || below[hand] >= 0;
+        if (below[hand] != c->hand[hand].drum)
+            c->hand[hand].stick.touching = false; // it has left the head that it touched
+    }
+    if (any && is_kinematic(s)) {
+        himc_articulate(&body->plant, &body->state, &kinematic);
+    } else if (any) {
+        art = himc_character_articulation(body->character);
+        himc_forward_dynamics(&body->plant, &body->state, art, body->torque, NULL, relative);
+    }
     c->force_count = n;
     c->quiet += n / s->clock->sample_rate;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        stick_contact *contact = &c->hand[hand];
-        if (near.below[hand] < 0)
+        memset(c->force[hand], 0, (size_t)n * sizeof(double));
+        if (below[hand] < 0)
             continue;
-        contact->drum = near.below[hand];
-        load_stick(contact, s, (himc_hand)hand, near.local[hand], near.art, near.relative);
+        c->hand[hand].drum = below[hand];
+        load_stick(&c->hand[hand], s, (himc_hand)hand, local[hand], art, relative);
     }
     himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
-    advance_drums(c, s, n, &near);
+    advance_drums(c, s, n, below);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         tip_force[hand] = himc_vec3_make(0, 0, 0);
-        if (near.below[hand] < 0)
+        if (below[hand] < 0)
             continue;
         const himc_stick *a = &before[hand], *b = &c->hand[hand].stick;
         double impulse =
@@ -498,23 +482,8 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         himc_statistics_contact_work(s->statistics, (himc_hand)hand, work,
                                      (1 - c->hand[hand].share) * work);
         double force = impulse * s->clock->sample_rate / n;
-        tip_force[hand] =
-            himc_vec3_scale(normal_of(s, near.below[hand]), c->hand[hand].share * force);
+        tip_force[hand] = himc_vec3_scale(normal_of(s, below[hand]), c->hand[hand].share * force);
     }
-}
-
-// the hand takes up a stick that has bounced, also when the next stroke is near
-static void end_bounces(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
-{
-    himc_source_contact next = himc_motion_next(s->motion, s->drums, hand, t);
-    bool near = next.any && t > next.time - LEAST_PREPARATION;
-    bool presses = c->touching && t < c->strike.time + RESTING_CONTACT;
-    if (!near && (presses || !himc_bounce_is_over(&c->bounce, t, velocity_of(c, s, hand))))
-        return;
-    c->bounce.on = false;
-    himc_motion_release(s->motion, hand, true, 0); // the plan begins without their acceleration
-    go_on_from_here(c, s, hand, t);
-    c->pressed = true; // a contact that goes on is no stroke
 }
 
 static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t,
@@ -556,9 +525,21 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
 void himc_contacts_finish(performance_contacts *c, const contact_scene *s, double t)
 {
     double h = c->force_count / s->clock->sample_rate, kept = exp(-h / OFFSET_TIME);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        finish_hand(&c->hand[hand], s, (himc_hand)hand, t, kept);
-        if (c->hand[hand].bounce.on)
-            end_bounces(&c->hand[hand], s, (himc_hand)hand, t);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        stick_contact *own = &c->hand[i];
+        finish_hand(own, s, hand, t, kept);
+        if (!own->bounce.on)
+            continue;
+        // the hand takes up a stick that has bounced, also when the next stroke is near
+        himc_source_contact next = himc_motion_next(s->motion, s->drums, hand, t);
+        bool near = next.any && t > next.time - LEAST_PREPARATION;
+        bool presses = own->touching && t < own->strike.time + RESTING_CONTACT;
+        if (!near && (presses || !himc_bounce_is_over(&own->bounce, t, velocity_of(own, s, hand))))
+            continue;
+        own->bounce.on = false;
+        himc_motion_release(s->motion, hand, true, 0); // the plan begins without their acceleration
+        go_on_from_here(own, s, hand, t);
+        own->pressed = true; // a contact that goes on is no stroke
     }
 }

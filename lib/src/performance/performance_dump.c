@@ -67,28 +67,21 @@ void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
     himc_text_add(lines, line.text);
 }
 
-// A note is told by its name: its frequency is no number in single precision.
-static bool add_note(himc_state_line *line, double hz)
+static void add_command(himc_state_line *line, const himc_command *c)
 {
     static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
                                         "F#", "G",  "G#", "A",  "A#", "B"};
     char note[8];
-    double of_note;
-    for (int key = 0; key < 12 * 10; key++) {
-        himc_format(note, sizeof note, "%s%d", names[key % 12], key / 12);
-        if (!himc_note_frequency(note, &of_note) || of_note != hz)
-            continue;
-        himc_state_word(line, note);
-        return true;
-    }
-    return false;
-}
-
-static void add_command(himc_state_line *line, const himc_command *c)
-{
+    double hz;
     himc_state_word(line, himc_command_table((int)c->id)->name);
-    if (c->id == HIMC_COMMAND_TUNE && add_note(line, c->atom[0].number))
-        return;
+    // a note is told by its name: its frequency is no number in single precision
+    for (int key = 0; c->id == HIMC_COMMAND_TUNE && key < 12 * 10; key++) {
+        himc_format(note, sizeof note, "%s%d", names[key % 12], key / 12);
+        if (himc_note_frequency(note, &hz) && hz == c->atom[0].number) {
+            himc_state_word(line, note);
+            return;
+        }
+    }
     for (int i = 0; i < c->count; i++)
         if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
             himc_state_word(line, c->atom[i].symbol);
@@ -224,10 +217,8 @@ bool himc_performance_describe_on(const himc_performance *p, himc_describe_place
     if (part == UNITS || (part == SCORE && !p->written.take[0]))
         more = dump_written(part == UNITS ? &p->written.units : &p->written.score, at, &to);
     else
-        while (more && *at < end) {
-            int count = tell_item(p, part, (int)*at, &to);
-            more = ++*at < (size_t)count;
-        }
+        for (; more && *at < end; ++*at)
+            more = (int)*at + 1 < tell_item(p, part, (int)*at, &to);
     if (!more)
         *place = (himc_describe_place){part + 1, 0};
     return place->part < END;

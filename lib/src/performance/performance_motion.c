@@ -248,26 +248,6 @@ static himc_trunk_posture trunk_at(const performance_motion *m, double t)
                                        fmin(fmax(t - m->body.time, 0), TRUNK_STEP));
 }
 
-// hands lie on heads that are damped; a take shows its own
-static void damp(performance_motion *m, const performance_drums *drums, double t)
-{
-    himc_free_hand hand[HIMC_HANDS];
-    himc_damped_head head[HIMC_DRUMS];
-    double soon = himc_motion_score_beat(m, t + HIMC_DAMPING_FORESIGHT);
-    for (int i = 0; i < HIMC_HANDS; i++) { // free while it has nothing to play or to follow
-        himc_source_stroke next = himc_motion_stroke(m, drums, (himc_hand)i, t);
-        bool live = m->live[i].time > 0 && m->live[i].time > m->answered[i];
-        double until = next.any ? next.time : INFINITY;
-        hand[i] = (himc_free_hand){m->answered[i], live ? m->answered[i] : until};
-    }
-    for (int i = 0; i < drums->count; i++)
-        head[i] = (himc_damped_head){.frame = himc_drums_frame(drums, i),
-                                     .now = himc_drums_damped(drums, i),
-                                     .soon = himc_drums_will_be_damped(drums, i, soon)};
-    if (himc_damping_move(&m->damping, m->planner, &m->body.posture, head, drums->count, hand, t))
-        m->replan = true;
-}
-
 // sets a new course, from trunk and grip at `t` to those for the next strokes
 static void set_course(performance_motion *m, const performance_settings *s,
                        const performance_drums *drums, double t)
@@ -355,25 +335,6 @@ static double height_over(const performance_motion *m, const himc_head_frame *he
     return himc_head_frame_from_world(head, tip).z - m->body.posture.skeleton.mallet_radius;
 }
 
-// a target below the head under the hand becomes a press; towards the rim it may go deeper, so that
-// one that goes past the rim does not jump
-static void limit_depth(const performance_motion *m, himc_hand hand, himc_target *tip)
-{
-    const himc_head_frame *head = &m->under[hand];
-    if (head->radius == 0)
-        return;
-    himc_vec3 at = himc_head_frame_from_world(head, tip->x), n = himc_head_frame_normal(head);
-    double out = fmax(himc_head_frame_out(head, at.x, at.y) - PRESS_RIM, 0) / (1 - PRESS_RIM);
-    double h = at.z - m->body.posture.skeleton.mallet_radius, v = himc_vec3_dot(n, tip->v),
-           a = himc_vec3_dot(n, tip->a), free = h, free_v = v, free_a = a;
-    if (out >= 1)
-        return;
-    himc_grip_limit_depth(HIMC_GRIP_DEPTH / (1 - out), &h, &v, &a);
-    tip->x = himc_vec3_madd(tip->x, h - free, n);
-    tip->v = himc_vec3_madd(tip->v, v - free_v, n);
-    tip->a = himc_vec3_madd(tip->a, a - free_a, n);
-}
-
 static void fill_tick(performance_motion *m, const performance_settings *s, himc_setpoint *tick,
                       double t)
 {
@@ -381,8 +342,23 @@ static void fill_tick(performance_motion *m, const performance_settings *s, himc
     m->body.posture.trunk_posture = trunk_at(m, t);
     tick->time = t;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        tick->tip[hand] = himc_motion_planned(m, (himc_hand)hand, t);
-        limit_depth(m, (himc_hand)hand, &tick->tip[hand]);
+        const himc_head_frame *head = &m->under[hand];
+        himc_target *tip = &tick->tip[hand];
+        *tip = himc_motion_planned(m, (himc_hand)hand, t);
+        if (head->radius == 0)
+            continue;
+        // a target below the head becomes a press; towards the rim it may go deeper, so that one
+        // that goes past the rim does not jump
+        himc_vec3 at = himc_head_frame_from_world(head, tip->x), n = himc_head_frame_normal(head);
+        double out = fmax(himc_head_frame_out(head, at.x, at.y) - PRESS_RIM, 0) / (1 - PRESS_RIM);
+        double h = at.z - m->body.posture.skeleton.mallet_radius, v = himc_vec3_dot(n, tip->v),
+               a = himc_vec3_dot(n, tip->a), free = h, free_v = v, free_a = a;
+        if (out >= 1)
+            continue;
+        himc_grip_limit_depth(HIMC_GRIP_DEPTH / (1 - out), &h, &v, &a);
+        tip->x = himc_vec3_madd(tip->x, h - free, n);
+        tip->v = himc_vec3_madd(tip->v, v - free_v, n);
+        tip->a = himc_vec3_madd(tip->a, a - free_a, n);
     }
     find_posture(m, s, t, tick->tip, &tick->posture);
     if (s->control.mode == HIMC_PIPELINE_HIMC && m->has_regression) {
@@ -404,14 +380,30 @@ static void fill_tick(performance_motion *m, const performance_settings *s, himc
 void himc_motion_read_task(performance_motion *m, const performance_settings *s,
                            const performance_drums *drums, double t, double next)
 {
+    himc_free_hand hand[HIMC_HANDS];
+    himc_damped_head head[HIMC_DRUMS];
     m->body.grip = s->grip;
     m->body.shells.count = drums->count;
     for (int i = 0; i < drums->count; i++)
         m->body.shells.head[i] = *himc_drums_frame(drums, i);
     himc_planner_advance(m->planner, t);
     himc_motion_stir(m);
-    if (s->alive && !m->track)
-        damp(m, drums, t);
+    if (s->alive && !m->track) { // hands lie on heads that are damped; a take shows its own
+        double soon = himc_motion_score_beat(m, t + HIMC_DAMPING_FORESIGHT);
+        for (int i = 0; i < HIMC_HANDS; i++) { // free while it has nothing to play or to follow
+            himc_source_stroke stroke = himc_motion_stroke(m, drums, (himc_hand)i, t);
+            bool live = m->live[i].time > 0 && m->live[i].time > m->answered[i];
+            double until = stroke.any ? stroke.time : INFINITY;
+            hand[i] = (himc_free_hand){m->answered[i], live ? m->answered[i] : until};
+        }
+        for (int i = 0; i < drums->count; i++)
+            head[i] = (himc_damped_head){.frame = himc_drums_frame(drums, i),
+                                         .now = himc_drums_damped(drums, i),
+                                         .soon = himc_drums_will_be_damped(drums, i, soon)};
+        if (himc_damping_move(&m->damping, m->planner, &m->body.posture, head, drums->count, hand,
+                              t))
+            m->replan = true;
+    }
     set_course(m, s, drums, t);
     if (m->replan)
         fill_tick(m, s, &m->from, t);

@@ -343,7 +343,9 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
                                  himc_error *error)
 {
     units_job *j = units_job_new(command, options, error);
-    int count = j && cut_units(&j->job, error) ? j->count : -1;
-    free(j);
+    if (!j)
+        return -1;
+    int count = cut_units(&j->job, error) ? j->count : -1;
+    free_units(&j->job);
     return count;
 }

@@ -39,19 +39,6 @@ void himc_queue_add(performance_queue *q, const himc_command *command, int64_t d
     }
 }
 
-static void take_out(const waiting_command *w, himc_command *command)
-{
-    const char *symbol = command->storage;
-    memcpy(command, w->fields, sizeof w->fields);
-    memcpy(command->storage, w->text, sizeof w->text);
-    command->folder = NULL;
-    for (int i = 0; i < command->count; i++)
-        if (command->atom[i].kind == HIMC_ATOM_SYMBOL) {
-            command->atom[i].symbol = symbol;
-            symbol += strlen(symbol) + 1;
-        }
-}
-
 void himc_queue_run(performance_queue *q, int64_t sample, performance_action *act,
                     himc_performance *performance, performance_events *events)
 {
@@ -59,12 +46,21 @@ void himc_queue_run(performance_queue *q, int64_t sample, performance_action *ac
     for (int i = 0; i < q->count; i++) {
         himc_error error;
         himc_command command;
-        q->acting = q->waiting[i].due;
-        if (q->waiting[i].due > sample) {
-            q->waiting[kept++] = q->waiting[i];
+        const waiting_command *w = &q->waiting[i];
+        q->acting = w->due;
+        if (w->due > sample) {
+            q->waiting[kept++] = *w;
             continue;
         }
-        take_out(&q->waiting[i], &command);
+        const char *symbol = command.storage;
+        memcpy(&command, w->fields, sizeof w->fields);
+        memcpy(command.storage, w->text, sizeof w->text);
+        command.folder = NULL;
+        for (int k = 0; k < command.count; k++)
+            if (command.atom[k].kind == HIMC_ATOM_SYMBOL) {
+                command.atom[k].symbol = symbol;
+                symbol += strlen(symbol) + 1;
+            }
         if (!act(performance, &command, &error))
             himc_events_note_as(events, NOTE_REFUSED, "%s", error.text);
     }

@@ -95,14 +95,26 @@ static himc_vec3 push_point(const performance_body *b, const himc_body_state *st
                          himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
 }
 
-// torques, and the accelerations that they, the tips' forces and the pushes make
-static void fill_dynamics(const performance_body *b, himc_motion_row *row)
+// torques, and the accelerations that they, the tips' forces and the pushes make; a body that is
+// moved by inverse kinematics has none
+static void fill_dynamics(const performance_body *b, bool kinematic, himc_motion_row *row)
 {
+    himc_energy *e = &row->energy;
     himc_articulation art;
     himc_body_state state;
     himc_vec3 load[HIMC_JOINTS];
     himc_pose pose;
-    himc_vec3 rate[HIMC_JOINTS];
+    himc_vec3 rate[HIMC_JOINTS], none = {NAN, NAN, NAN};
+    for (int j = 0; kinematic && j < HIMC_JOINTS; j++) {
+        row->acceleration[j] = row->torque[j] = none;
+        row->power[j] = e->joint[j] = NAN;
+    }
+    if (kinematic) {
+        e->push = e->placed = e->numerical = e->kinetic = e->potential = NAN;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            e->contact[hand] = e->mallet[hand] = NAN;
+        return;
+    }
     // the state of the row's pose and rates: without the joints' gaps, which are the engine's
     memcpy(pose.joint, row->rotation, sizeof pose.joint);
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -119,20 +131,6 @@ static void fill_dynamics(const performance_body *b, himc_motion_row *row)
     for (int j = 0; j < HIMC_JOINTS; j++) {
         row->torque[j] = b->torque[j];
         row->power[j] = himc_vec3_dot(row->torque[j], row->rate[j]);
-    }
-}
-
-// a body that is moved by inverse kinematics has no forces
-static void fill_no_dynamics(himc_motion_row *row)
-{
-    himc_vec3 none = {NAN, NAN, NAN};
-    himc_energy *e = &row->energy;
-    e->push = e->placed = e->numerical = e->kinetic = e->potential = NAN;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        e->contact[hand] = e->mallet[hand] = NAN;
-    for (int j = 0; j < HIMC_JOINTS; j++) {
-        row->acceleration[j] = row->torque[j] = none;
-        row->power[j] = e->joint[j] = NAN;
     }
 }
 
@@ -173,10 +171,7 @@ static void fill_row(himc_performance *p, double t, himc_motion_row *row)
         row->push[i] = himc_body_pushed(b, i, t);
         row->push_at[i] = push_point(b, &b->state, i, t);
     }
-    if (p->settings.control.mode == HIMC_PIPELINE_IK)
-        fill_no_dynamics(row);
-    else
-        fill_dynamics(b, row);
+    fill_dynamics(b, p->settings.control.mode == HIMC_PIPELINE_IK, row);
 }
 
 static void note_written(himc_performance *p, const himc_recording *file)

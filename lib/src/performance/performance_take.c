@@ -337,21 +337,6 @@ static bool has_own_regression(const himc_performance *p)
     return p->motion->has_regression && !p->motion->regression_of_take;
 }
 
-// the take's regression, unless another has been set
-static void adopt_regression(const take_job *j)
-{
-    himc_performance *p = j->performance;
-    if (has_own_regression(p)) {
-        himc_motion_set_regression(p->motion, &p->settings, &p->motion->regression, false);
-        return;
-    }
-    if (j->unfitted.text[0])
-        himc_events_note(&p->events, "%s: %s: the arms follow the natural posture", j->name,
-                         j->unfitted.text);
-    himc_motion_set_regression(p->motion, &p->settings, j->fitted ? &j->regression : NULL,
-                               j->fitted);
-}
-
 // the drum before the take
 static himc_head_frame drum_place(const take_job *j)
 {
@@ -372,16 +357,6 @@ static void copy_performance(take_job *j)
         j->place = drum_place(j);
 }
 
-// true if the drum is that for which the track was made
-static bool drum_as_seen(const take_job *j)
-{
-    const himc_performance *p = j->performance;
-    if (!j->has_drum)
-        return p->drums.count == 0 && j->sample_rate == p->clock.sample_rate;
-    himc_head_frame now = drum_place(j);
-    return j->tries == HIMC_JOB_TRIES || himc_head_frame_equal(&now, &j->place);
-}
-
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     take_job *j = (take_job *)job;
@@ -389,20 +364,25 @@ static himc_job_state install(himc_job *job, himc_error *error)
     body_parts parts = {.character = NULL};
     performance_settings s = p->settings;
     int first;
-    j->tries++;
-    if (!drum_as_seen(j)) {
+    bool measured = j->player->lengths > 0;
+    himc_head_frame now = p->drums.count > 0 ? drum_place(j) : j->place;
+    // the drum should be that for which the track was made
+    bool same = j->has_drum == (p->drums.count > 0) &&
+                (j->has_drum ? himc_head_frame_equal(&now, &j->place)
+                             : j->sample_rate == p->clock.sample_rate);
+    if (!same && (++j->tries < HIMC_JOB_TRIES || !j->has_drum || p->drums.count == 0)) {
         copy_performance(j);
         return HIMC_JOB_AGAIN;
     }
     // the settings with the body of the take's player, if the take shows one
     memset(s.captured.known, 0, sizeof s.captured.known);
-    if (j->player->lengths > 0) {
+    if (measured) {
         s.skeleton = j->player->config;
         s.skeleton.seat = himc_skeleton_seat(&s.skeleton); // as captured, whatever the drum
         s.captured = captured_of(j->player);
     }
     // in this thread: the engine keeps data for each
-    if (j->player->lengths > 0 && !himc_body_make_parts(&parts, &s, error)) {
+    if (measured && !himc_body_make_parts(&parts, &s, error)) {
         himc_take_name_error(j->name, error);
         return HIMC_JOB_FAILED;
     }
@@ -410,7 +390,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
         himc_performance_adopt_drum(p, j->drum, DRUM_SILENT, &first, NULL);
     j->drum = NULL;
     move_drum(j);
-    if (j->player->lengths > 0) {
+    if (measured) {
         himc_performance_embody(p, &s, &parts);
         himc_events_note(&p->events,
                          "%s: the player's body: %d lengths from the take, %.2f m, %.0f kg",
@@ -427,7 +407,13 @@ static himc_job_state install(himc_job *job, himc_error *error)
     snprintf(p->written.take, sizeof p->written.take, "%s", j->name);
     himc_command_copy(&p->written.take_command, &j->command);
     himc_performance_renew_limits(p);
-    adopt_regression(j);
+    // the take's regression, unless another has been set
+    bool own = has_own_regression(p), fitted = !own && j->fitted;
+    if (!own && j->unfitted.text[0])
+        himc_events_note(&p->events, "%s: %s: the arms follow the natural posture", j->name,
+                         j->unfitted.text);
+    const himc_posture_regression *regression = own ? &p->motion->regression : &j->regression;
+    himc_motion_set_regression(p->motion, &p->settings, own || fitted ? regression : NULL, fitted);
     return HIMC_JOB_DONE;
 }
 
