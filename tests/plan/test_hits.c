@@ -1,8 +1,8 @@
 /// test_hits.c: hits land so long after their message as `latency` says, whatever the interval, the
 /// hand and the block; what cannot land in time is counted; `play` waits for its first stroke.
-#include "session.h"
-
 #include "take_files.h"
+
+#include "session.h"
 
 #define RATE 48000.0
 #define LATENCY 0.15 // (s) as a performer is made

@@ -23,8 +23,8 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS]
     const himc_controller *c = in->controller;
     tracking_error *e = in->error;
     himc_vec3 wanted[HIMC_JOINTS], arm[HIMC_ARM_JOINTS];
-    // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq; w^2 and 2 w are those of the bandwidth or, where
-    // the user has set gains, those over the inertia
+    // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq; w^2 and 2 w are those of the bandwidth or,
+    // where the user has set gains, those over the inertia
     for (int j = 0; j < HIMC_JOINTS; j++) {
         double w = 2 * HIMC_PI * c->config.bandwidth, x[2], y[2], z[2];
         e->rate[j] = himc_vec3_madd(e->rate[j], -0.5 * c->step, e->acceleration[j]);

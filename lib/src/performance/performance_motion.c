@@ -655,7 +655,7 @@ static bool begins_beat(const performance_motion *m, double t)
            (m->counted && !himc_planner_is_preparing(m->planner, t));
 }
 
-// the planner's end is behind its last change of a head and its last push, another one's need not be
+// the planner's end is behind the last change of a head and push, that of others need not be
 static bool is_over(const performance_motion *m, double t)
 {
     const hand_source *piece = &m->piece;

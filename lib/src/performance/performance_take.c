@@ -154,8 +154,8 @@ static captured_player captured_of(const himc_player *player)
     return c;
 }
 
-// counts the strikes of a take, those beside the drum as it will stand, and the part of the take out
-// of reach, where the arm stretches towards the tips
+// counts the strikes of a take, those beside the drum as it will stand, and the part of the take
+// out of reach, where the arm stretches towards the tips
 static bool survey(take_job *j, const himc_posture *posture, himc_error *error)
 {
     if (!himc_take_tips(j->take, &j->options, j->tips, error))
