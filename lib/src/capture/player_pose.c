@@ -55,7 +55,7 @@ typedef struct reader {
     himc_player *player;
     himc_quat *node; // world rotations of the file's joints, or NULL
     limb_frame frame[LIMBS][HIMC_HANDS];
-    himc_vec3 waist; // where the held pelvis ends (m), if hips are shown
+    himc_vec3 waist; // where the held pelvis ends (m)
     himc_vec3 hips;  // mean of the centre between the hip joints (m)
     bool has_trunk;
 } reader;
@@ -318,20 +318,19 @@ static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand ha
 }
 
 // fits the arms that are wholly shown
-static void fit_arms(himc_player *player, const player_points *points,
-                     const himc_skeleton *skeleton)
+static void fit_arms(const reader *r)
 {
-    himc_vec3 waist = himc_vec3_add(player->hips, skeleton->segment[HIMC_TRUNK].origin);
+    himc_player *player = r->player;
     for (int i = 0; i < HIMC_HANDS && player->placed && !player->walks; i++) {
         himc_hand hand = (himc_hand)i;
         bool shown = true;
         for (int k = 0; k < HIMC_ARM_JOINTS; k++)
             shown = shown && player->known[himc_arm_joint(hand, k)];
-        for (int frame = 0; shown && frame < points->frames; frame++) {
+        for (int frame = 0; shown && frame < r->points->frames; frame++) {
             himc_vec3 center[HIMC_ARM_JOINTS + 1];
             for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
-                center[k] = points->x[POINT_SHOULDER + HIMC_HANDS * k + i][frame];
-            fit_arm(skeleton, waist, hand, center, &player->pose[frame]);
+                center[k] = r->points->x[POINT_SHOULDER + HIMC_HANDS * k + i][frame];
+            fit_arm(r->skeleton, r->waist, hand, center, &player->pose[frame]);
         }
     }
 }
@@ -355,9 +354,13 @@ static himc_quat mean_rotation(const himc_pose *pose, int frames, int j)
 }
 
 bool himc_player_read_poses(himc_player *player, const player_points *points,
-                            const himc_skeleton *skeleton, const himc_vec3 *waist)
+                            const himc_skeleton *skeleton)
 {
-    reader r = {.points = points, .skeleton = skeleton, .player = player};
+    const himc_vec3 *hips = points->x[POINT_HIPS];
+    reader r = {.points = points,
+                .skeleton = skeleton,
+                .player = player,
+                .waist = himc_vec3_add(player->hips, skeleton->segment[HIMC_TRUNK].origin)};
     bool skeletal = himc_take_has_skeleton(points->take);
     if (skeletal)
         r.node = calloc((size_t)himc_take_points(points->take), sizeof *r.node);
@@ -368,17 +371,15 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
     }
     // a shoulder that is not seen is taken at the neck, for the direction across
     int across = !!points->x[POINT_SHOULDER] + !!points->x[POINT_SHOULDER + 1];
-    r.has_trunk = waist && across + !!points->x[POINT_NECK] >= 2 && across > 0;
-    if (waist)
-        r.waist = *waist;
-    for (int i = 0; waist && i < points->frames; i++)
-        r.hips = himc_vec3_madd(r.hips, 1.0 / points->frames, points->x[POINT_HIPS][i]);
+    r.has_trunk = hips && across + !!points->x[POINT_NECK] >= 2 && across > 0;
+    for (int i = 0; hips && i < points->frames; i++)
+        r.hips = himc_vec3_madd(r.hips, 1.0 / points->frames, hips[i]);
     for (int i = 0; i < LIMBS; i++)
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             prepare_limb(&r, i, hand);
     for (int frame = 0; frame < points->frames; frame++)
         read_frame(&r, frame);
-    fit_arms(player, points, skeleton);
+    fit_arms(&r);
     int known = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (player->known[j])

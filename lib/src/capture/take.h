@@ -117,6 +117,16 @@ void himc_take_drop_spikes(himc_take *take);
 int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
                    himc_take_gap *gap);
 
+/// a + b u + c u^2, u in frames from `origin`.
+typedef struct himc_parabola {
+    himc_vec3 a, b, c;
+    int origin;
+} himc_parabola;
+
+/// Least squares over n samples origin, origin + step (1 or -1), ...; fewer than 3 give a line or a
+/// constant.
+himc_parabola himc_take_parabola(const himc_vec3 *x, int origin, int step, int n);
+
 // Stick tips and strikes: take_tips.c, take_strikes.c.
 
 /// Index of the point that is a hand's tip by its name, or -1.

@@ -43,12 +43,6 @@ typedef struct track {
     double noise; // one standard deviation (m)
 } track;
 
-// a + b u + c u^2, u in frames from `origin`
-typedef struct parabola {
-    double a, b, c;
-    int origin;
-} parabola;
-
 static double speed(const track *t, int from, int to)
 {
     return (t->x[to].z - t->x[from].z) * t->rate / (to - from);
@@ -74,50 +68,20 @@ static double noise_bend(const track *t, int h)
     return NOISE_DEVIATIONS * sqrt(6) * t->noise * s * s;
 }
 
-// least squares over n samples origin, origin + step, ...; fewer than 3 at the take's edges give a
-// line or a constant
-static parabola fit(const track *t, int origin, int step, int n)
-{
-    double s[5] = {0, 0, 0, 0, 0}, r[3] = {0, 0, 0};
-    for (int k = 0; k < n; k++) {
-        double u = step * k, z = t->x[origin + step * k].z - t->x[origin].z;
-        for (int j = 0; j < 5; j++)
-            s[j] += pow(u, j);
-        r[0] += z, r[1] += u * z, r[2] += u * u * z;
-    }
-    parabola p = {t->x[origin].z, 0, 0, origin};
-    double det = s[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (s[1] * s[4] - s[2] * s[3]) +
-                 s[2] * (s[1] * s[3] - s[2] * s[2]);
-    if (n < 3) {
-        p.b = n == 2 ? (t->x[origin + step].z - t->x[origin].z) / step : 0;
-        return p;
-    }
-    p.a += (r[0] * (s[2] * s[4] - s[3] * s[3]) + r[1] * (s[2] * s[3] - s[1] * s[4]) +
-            r[2] * (s[1] * s[3] - s[2] * s[2])) /
-           det;
-    p.b = (r[0] * (s[2] * s[3] - s[1] * s[4]) + r[1] * (s[0] * s[4] - s[2] * s[2]) +
-           r[2] * (s[1] * s[2] - s[0] * s[3])) /
-          det;
-    p.c = (r[0] * (s[1] * s[3] - s[2] * s[2]) + r[1] * (s[1] * s[2] - s[0] * s[3]) +
-           r[2] * (s[0] * s[2] - s[1] * s[1])) /
-          det;
-    return p;
-}
-
-static double value(const parabola *p, double frame)
+static double height(const himc_parabola *p, double frame)
 {
     double u = frame - p->origin;
-    return p->a + u * (p->b + u * p->c);
+    return p->a.z + u * (p->b.z + u * p->c.z);
 }
 
 // where p - q passes zero going down, between frames from and to, by bisection; `to` if it does not
-static double crossing(const parabola *p, const parabola *q, double from, double to)
+static double crossing(const himc_parabola *p, const himc_parabola *q, double from, double to)
 {
-    if (value(p, to) > value(q, to))
+    if (height(p, to) > height(q, to))
         return to;
     for (int i = 0; i < 60; i++) {
         double middle = 0.5 * (from + to);
-        if (value(p, middle) > value(q, middle))
+        if (height(p, middle) > height(q, middle))
             from = middle;
         else
             to = middle;
@@ -181,18 +145,6 @@ static int sharpest(const track *t, int frame, int h)
     return best;
 }
 
-// the last frame before a blunt peak in which the fall is still undisturbed: its bends, of 4 ms
-// (chosen), are less than a tenth of the largest
-static int clean_end(const track *t, int frame)
-{
-    int h = frames_of(t, 0.004, 1), limit = frame - frames_of(t, STRIKE_WINDOW, 3);
-    double largest = bend_or_zero(t, sharpest(t, frame, h), h);
-    for (int i = frame - h; i > limit && i >= h; i--)
-        if (bend(t, i, h) < 0.1 * largest && t->x[i + h].z < t->x[i].z)
-            return i + h;
-    return frame > 0 ? frame - 1 : 0;
-}
-
 static himc_take_strike measure(const track *t, const candidate *s, himc_hand hand)
 {
     bool quiet = noise_bend(t, 1) < (1 - SHARP) * (s->down + s->up) * t->rate;
@@ -205,19 +157,31 @@ static himc_take_strike measure(const track *t, const candidate *s, himc_hand ha
         if (t->x[i].z < t->x[low].z)
             low = i;
     // a kink between two frames bends the track in both: the fall ends with the earlier one
-    int end = sharp ? peak - (earlier > later) : clean_end(t, peak);
+    int end = peak - (earlier > later);
+    if (!sharp) {
+        // the last frame before a blunt peak in which the fall is still undisturbed: its bends, of
+        // 4 ms (chosen), are less than a tenth of the largest
+        int h = frames_of(t, 0.004, 1), i = peak - h, least = peak - frames_of(t, STRIKE_WINDOW, 3);
+        double largest = bend_or_zero(t, sharpest(t, peak, h), h);
+        least = least < h - 1 ? h - 1 : least;
+        while (i > least && !(bend(t, i, h) < 0.1 * largest && t->x[i + h].z < t->x[i].z))
+            i--;
+        end = i > least ? i + h : peak > 0 ? peak - 1 : 0;
+    }
     int n = frames_of(t, 0.024, 4); // chosen: short beside a fall of 0.2 s
-    parabola before = fit(t, end, -1, n < end + 1 ? n : end + 1);
-    parabola after = {t->x[low].z, 0, 0, low};
-    if (sharp)
-        after = fit(t, end + 1, 1, n < t->frames - end - 1 ? n : t->frames - end - 1);
+    int left = t->frames - end - 1;
+    himc_parabola before = himc_take_parabola(t->x, end, -1, n < end + 1 ? n : end + 1),
+                  after = himc_take_parabola(t->x, sharp ? end + 1 : low, 1,
+                                             !sharp     ? 1
+                                             : n < left ? n
+                                                        : left);
     double touch = crossing(&before, &after, end, sharp ? end + 1 : low + 1);
     double u = sharp ? touch - end : 0;
-    double up = sharp ? (after.b + 2 * after.c * (touch - end - 1)) * t->rate : 0;
-    double down = -(before.b + 2 * before.c * u) * t->rate;
+    double up = sharp ? (after.b.z + 2 * after.c.z * (touch - end - 1)) * t->rate : 0;
+    double down = -(before.b.z + 2 * before.c.z * u) * t->rate;
     int i = (int)touch < t->frames - 1 ? (int)touch : t->frames - 2;
     himc_vec3 x = himc_vec3_madd(t->x[i], touch - i, himc_vec3_sub(t->x[i + 1], t->x[i]));
-    x.z = sharp ? value(&before, touch) : t->x[low].z;
+    x.z = sharp ? height(&before, touch) : t->x[low].z;
     // chosen bounds: noise changes the fall's speed over SPEED_TIME less than the parabola's slope
     return (himc_take_strike){.hand = hand,
                               .frame = low,
@@ -310,70 +274,30 @@ static bool is_same(const found *f, int i, int k)
            fabs(f->strike[k].time - f->strike[i].time) < REFRACTORY;
 }
 
-static void list_left_out(const found *f, const himc_strike_head *head, himc_strike_survey *to)
-{
-    for (int i = 0; i < f->count; i++) {
-        const himc_fall *fall = &f->fall[i];
-        if (fall->head >= 0 || !fall->sharp || is_same(f, i, i - 1) || is_same(f, i, i + 1))
-            continue;
-        double over = fall->x.z - himc_strike_head_at(head, fall->x.x, fall->x.y);
-        to->lowest = to->left_out ? fmin(to->lowest, over) : over;
-        to->highest = to->left_out ? fmax(to->highest, over) : over;
-        to->fastest = fmax(to->fastest, fall->speed);
-        to->left_out++;
-    }
-}
-
-// moves the strikes to the front of the list, without those that follow a faster one closely
-static void keep_strikes(found *f, himc_strike_survey *to)
-{
-    for (int i = 0; i < f->count; i++) {
-        himc_take_strike *last = to->count ? &to->strikes[to->count - 1] : NULL, s = f->strike[i];
-        s.head = f->fall[i].head;
-        if (s.head < 0)
-            continue;
-        if (!last || last->hand != s.hand || s.time - last->time >= REFRACTORY)
-            to->strikes[to->count++] = s;
-        else if (s.velocity > last->velocity)
-            *last = s;
-    }
-}
-
 static int by_time(const void *a, const void *b)
 {
     double s = ((const himc_take_strike *)a)->time, t = ((const himc_take_strike *)b)->time;
     return (s > t) - (s < t);
 }
 
-// the median position of one hand's strikes on a head along one axis, for z above their
-// intersection; false if it has none
-static bool hand_median(const himc_strike_survey *s, int head, int hand, int axis, double *scratch,
-                        double *middle)
-{
-    int n = 0;
-    for (int i = 0; i < s->count; i++) {
-        const himc_take_strike *strike = &s->strikes[i];
-        if ((int)strike->hand == hand && strike->head == head)
-            scratch[n++] = axis == 0   ? strike->x.x
-                           : axis == 1 ? strike->x.y
-                                       : above_intersection(strike);
-    }
-    if (n == 0)
-        return false;
-    *middle = himc_median(scratch, n);
-    return true;
-}
-
-// the middle of the strikes on a head, on its plane
+// the middle of the strikes on a head, on its plane: the mean over the hands of the median of each,
+// also of the height above their intersection
 static himc_vec3 place_on(const himc_strike_survey *s, int head, const himc_strike_head *plane,
                           double *scratch)
 {
     double middle[3];
     for (int axis = 0; axis < 3; axis++) {
-        double l = 0, r = 0;
-        bool left = hand_median(s, head, HIMC_LEFT, axis, scratch, &l);
-        bool right = hand_median(s, head, HIMC_RIGHT, axis, scratch, &r);
-        middle[axis] = left && right ? 0.5 * (l + r) : l + r;
+        double sum = 0;
+        int hands = 0;
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            int n = 0;
+            for (const himc_take_strike *k = s->strikes; k < s->strikes + s->count; k++)
+                if ((int)k->hand == hand && k->head == head)
+                    scratch[n++] = axis == 0 ? k->x.x : axis == 1 ? k->x.y : above_intersection(k);
+            sum += n > 0 ? himc_median(scratch, n) : 0;
+            hands += n > 0;
+        }
+        middle[axis] = hands > 1 ? sum / hands : sum;
     }
     double z = himc_strike_head_at(plane, middle[0], middle[1]);
     return himc_vec3_make(middle[0], middle[1], z + (plane->at_rest ? 0 : middle[2]));
@@ -390,11 +314,30 @@ bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HAND
     survey->strikes = f.strike;
     if (scratch)
         survey->heads = himc_strike_heads(f.fall, f.count, heads);
-    if (survey->heads > 0) {
-        list_left_out(&f, &heads[0], survey);
-        keep_strikes(&f, survey);
-        qsort(survey->strikes, (size_t)survey->count, sizeof *survey->strikes, by_time);
+    for (int i = 0; i < f.count && survey->heads > 0; i++) {
+        const himc_fall *fall = &f.fall[i];
+        if (fall->head >= 0 || !fall->sharp || is_same(&f, i, i - 1) || is_same(&f, i, i + 1))
+            continue;
+        double over = fall->x.z - himc_strike_head_at(&heads[0], fall->x.x, fall->x.y);
+        survey->lowest = survey->left_out ? fmin(survey->lowest, over) : over;
+        survey->highest = survey->left_out ? fmax(survey->highest, over) : over;
+        survey->fastest = fmax(survey->fastest, fall->speed);
+        survey->left_out++;
     }
+    // moves the strikes to the front of the list, without those that follow a faster one closely
+    for (int i = 0; i < f.count && survey->heads > 0; i++) {
+        himc_take_strike *last = survey->count ? &f.strike[survey->count - 1] : NULL;
+        himc_take_strike s = f.strike[i];
+        s.head = f.fall[i].head;
+        if (s.head < 0)
+            continue;
+        if (!last || last->hand != s.hand || s.time - last->time >= REFRACTORY)
+            f.strike[survey->count++] = s;
+        else if (s.velocity > last->velocity)
+            *last = s;
+    }
+    if (survey->count > 0)
+        qsort(f.strike, (size_t)survey->count, sizeof *f.strike, by_time);
     for (int i = 0; i < survey->heads; i++)
         survey->head[i] = place_on(survey, i, &heads[i], scratch);
     free(scratch);
