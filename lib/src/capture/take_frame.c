@@ -75,25 +75,6 @@ double himc_take_unit(const char *name)
     return 0;
 }
 
-// the longest path along the bones between any two nodes (file units); -1 without memory
-static double skeleton_size(const himc_take *take)
-{
-    double *deepest = calloc((size_t)take->points, sizeof *deepest), size = 0;
-    if (!deepest)
-        return -1;
-    // children come after parents, so backwards every branch is complete before it joins
-    for (int i = take->points - 1; i > 0; i--) {
-        int parent = take->parents[i];
-        if (parent < 0)
-            continue;
-        double down = deepest[i] + himc_vec3_length(take->offsets[i]);
-        size = fmax(size, deepest[parent] + down);
-        deepest[parent] = fmax(deepest[parent], down);
-    }
-    free(deepest);
-    return size;
-}
-
 static double guess_unit(double size, double least, double most, int candidates)
 {
     for (int i = 0; i < candidates; i++)
@@ -124,32 +105,6 @@ static double box_size(const box *b)
     return b->high.x >= b->low.x ? himc_vec3_length(himc_vec3_sub(b->high, b->low)) : 0;
 }
 
-// in file units
-typedef struct sizes {
-    double typical; // median over the frames of the diagonal of the box around the points
-    double all;     // diagonal of the box around all frames
-    double far;     // largest coordinate
-} sizes;
-
-static sizes marker_sizes(const himc_take *take)
-{
-    double spread[SAMPLED + 1];
-    int count = 0;
-    box whole = box_empty();
-    for (int frame = 0; frame < take->frames; frame += sample_step(take)) {
-        box one = box_empty();
-        for (int i = 0; i < take->points; i++) {
-            box_add(&one, *himc_take_at(take, frame, i));
-            box_add(&whole, *himc_take_at(take, frame, i));
-        }
-        spread[count++] = box_size(&one);
-    }
-    qsort(spread, (size_t)count, sizeof spread[0], himc_order_doubles);
-    double low = fmax(-whole.low.x, fmax(-whole.low.y, -whole.low.z));
-    double high = fmax(whole.high.x, fmax(whole.high.y, whole.high.z));
-    return (sizes){spread[count / 2], box_size(&whole), fmax(low, high)};
-}
-
 static int named(const himc_take *take, int point, const char *const *words, char rest[TAKE_NAME])
 {
     char plain[TAKE_NAME];
@@ -170,9 +125,20 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
 {
     static const char *const words[] = {"foot", "toe", "base", "end",   "ankle", "knee",
                                         "leg",  "up",  "low",  "lower", NULL};
-    double size = skeleton_size(take);
-    if (size < 0)
+    // the longest path along the bones between any two nodes (file units): children come after
+    // parents, so backwards every branch is complete before it joins
+    double *deepest = calloc((size_t)take->points, sizeof *deepest), size = 0;
+    if (!deepest)
         return himc_error_set(error, "%s: no memory", take->file);
+    for (int i = take->points - 1; i > 0; i--) {
+        int parent = take->parents[i];
+        if (parent < 0)
+            continue;
+        double down = deepest[i] + himc_vec3_length(take->offsets[i]);
+        size = fmax(size, deepest[parent] + down);
+        deepest[parent] = fmax(deepest[parent], down);
+    }
+    free(deepest);
     bool legs = false;
     for (int i = 0; i < take->points && !legs; i++) {
         char rest[TAKE_NAME];
@@ -197,19 +163,35 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
 
 static bool settle_markers(himc_take *take, double *unit, himc_error *error)
 {
-    sizes s = marker_sizes(take);
+    // of the box around the points the diagonals: the median over the frames, and of the whole take;
+    // and the largest coordinate (file units)
+    double spread[SAMPLED + 1];
+    int count = 0;
+    box whole = box_empty();
+    for (int frame = 0; frame < take->frames; frame += sample_step(take)) {
+        box one = box_empty();
+        for (int i = 0; i < take->points; i++)
+            box_add(&one, *himc_take_at(take, frame, i));
+        box_add(&whole, one.low);
+        box_add(&whole, one.high);
+        spread[count++] = box_size(&one);
+    }
+    qsort(spread, (size_t)count, sizeof spread[0], himc_order_doubles);
+    double typical = spread[count / 2], all = box_size(&whole);
+    double far = fmax(fmax(-whole.low.x, fmax(-whole.low.y, -whole.low.z)),
+                      fmax(whole.high.x, fmax(whole.high.y, whole.high.z)));
     double said = take->file_unit, in = said > 0 ? said : 1;
     // chosen: a tip that plays moves by more than 2 cm, players and drums are less than 8 m apart
-    bool small = s.all * said < 0.02 && s.all > 0 && take->frames > 1;
-    bool fits = said > 0 && s.typical * said <= 8 && !small;
+    bool small = all * said < 0.02 && all > 0 && take->frames > 1;
+    bool fits = said > 0 && typical * said <= 8 && !small;
     char text[32], other[32];
     *unit = said;
     if (!fits) {
         // the metric unit that makes the points a player's size, up to 100 m from a room's origin;
         // chosen: a spread below 5 % of the whole is that of one marker
-        double size = s.typical > 0.05 * s.all ? s.typical : s.all;
+        double size = typical > 0.05 * all ? typical : all;
         *unit = guess_unit(size, LEAST_SPREAD, MOST_SPREAD, METRIC);
-        *unit = s.far * *unit <= 100 ? *unit : 0;
+        *unit = far * *unit <= 100 ? *unit : 0;
     }
     // one marker may hardly move: a small size that no other unit explains is accepted
     if (*unit == 0 && said > 0 && small) {
@@ -220,13 +202,13 @@ static bool settle_markers(himc_take *take, double *unit, himc_error *error)
         return himc_error_set(error,
                               "%s: the points are %.4g m apart if the unit is %s, no metric unit "
                               "makes that a player's size, expected %g .. %g m",
-                              take->file, fmax(s.typical, small ? s.all : 0) * in,
-                              unit_name(in, text), LEAST_SPREAD, MOST_SPREAD);
+                              take->file, fmax(typical, small ? all : 0) * in, unit_name(in, text),
+                              LEAST_SPREAD, MOST_SPREAD);
     snprintf(take->units_text, sizeof take->units_text, "%s, %s", unit_name(*unit, text),
              fits ? "stated by the file" : "guessed from the distances between points");
     if (said > 0 && !fits)
         himc_take_note(take, "units: read as %s, because in %s the points are %.4g m apart",
-                       unit_name(*unit, text), unit_name(said, other), s.typical * said);
+                       unit_name(*unit, text), unit_name(said, other), typical * said);
     return true;
 }
 
@@ -341,16 +323,6 @@ static himc_vec3 find_up(himc_take *take, himc_up asked)
     }
     snprintf(take->axes_text, sizeof take->axes_text, "as usual in %.4s files", take->format);
     return take->format_up;
-}
-
-// the rotation that makes `up` z, and x what is forward: to the screen's right if that is known
-static himc_mat3 upright_axes(himc_vec3 up, himc_vec3 right)
-{
-    himc_vec3 x = right;
-    if (himc_vec3_length(right) == 0 || himc_vec3_dot(right, up) != 0)
-        x = up.x == 0 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
-    himc_vec3 y = himc_vec3_cross(up, x);
-    return (himc_mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
 }
 
 // the upright axes, rotated about z so that a horizontal direction in them becomes +y
@@ -492,7 +464,12 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
         himc_take_note(take, "rate: at %g Hz strikes are blurred, some may be missed or misplaced",
                        take->rate);
     himc_vec3 up = find_up(take, options->up), left;
-    himc_mat3 upright = upright_axes(up, take->file_right), a = upright;
+    // x is what is forward: to the screen's right if that is known
+    himc_vec3 x = take->file_right;
+    if (himc_vec3_length(x) == 0 || himc_vec3_dot(x, up) != 0)
+        x = up.x == 0 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
+    himc_vec3 y = himc_vec3_cross(up, x);
+    himc_mat3 upright = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}}, a = upright;
     const char *heading = "heading as in the file";
     if (left_of_body(take, &upright, &left)) {
         a = rotate_to_left(&upright, left, false);
