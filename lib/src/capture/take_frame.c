@@ -392,37 +392,34 @@ static bool left_of_tips(const himc_take *take, const himc_take_options *options
     return false;
 }
 
-// the left side in the zero pose: positions are sums of offsets
-static bool left_of_rest(const himc_take *take, const himc_mat3 *upright, himc_vec3 *left)
-{
-    pair pairs[MOST_PAIRS];
-    himc_vec3 sum = {0, 0, 0};
-    int count = find_pairs(take, pairs, MOST_PAIRS);
-    for (int i = 0; i < count; i++) {
-        for (int j = pairs[i].left; j >= 0; j = take->parents[j])
-            sum = himc_vec3_add(sum, take->offsets[j]);
-        for (int j = pairs[i].right; j >= 0; j = take->parents[j])
-            sum = himc_vec3_sub(sum, take->offsets[j]);
-    }
-    *left = himc_mat3_apply(upright, sum);
-    return is_long_enough(*left);
-}
-
-// rotates the points by `a`, and the skeleton's zero pose by `b`
-static void rotate(himc_take *take, const himc_mat3 *a, const himc_mat3 *b)
+// rotates the points by `a`, and the skeleton's zero pose by what brings its left side, if it has
+// one, to the left of the upright frame
+static void rotate(himc_take *take, const himc_mat3 *upright, const himc_mat3 *a)
 {
     size_t all = (size_t)take->frames * (size_t)take->points;
     for (size_t i = 0; i < all; i++)
         take->x[i] = himc_mat3_apply(a, take->x[i]);
     if (!take->parents)
         return;
-    himc_quat qa = himc_quat_from_mat3(*a), qb = himc_quat_from_mat3(*b), back = himc_quat_conj(qb);
+    // positions in the zero pose are sums of offsets
+    pair pairs[MOST_PAIRS];
+    himc_vec3 left = {0, 0, 0};
+    int count = find_pairs(take, pairs, MOST_PAIRS);
+    for (int i = 0; i < count; i++) {
+        for (int j = pairs[i].left; j >= 0; j = take->parents[j])
+            left = himc_vec3_add(left, take->offsets[j]);
+        for (int j = pairs[i].right; j >= 0; j = take->parents[j])
+            left = himc_vec3_sub(left, take->offsets[j]);
+    }
+    left = himc_mat3_apply(upright, left);
+    himc_mat3 b = is_long_enough(left) ? rotate_to_left(upright, left, false) : *a;
+    himc_quat qa = himc_quat_from_mat3(*a), qb = himc_quat_from_mat3(b), back = himc_quat_conj(qb);
     for (int i = 0; i < take->points; i++)
-        take->offsets[i] = himc_mat3_apply(b, take->offsets[i]);
-    for (int frame = 0; frame < take->frames; frame++) {
-        himc_quat *q = take->rotations + (size_t)frame * (size_t)take->points;
-        for (int i = 0; i < take->points; i++)
-            q[i] = himc_quat_mul(himc_quat_mul(take->parents[i] < 0 ? qa : qb, q[i]), back);
+        take->offsets[i] = himc_mat3_apply(&b, take->offsets[i]);
+    for (size_t i = 0; i < all; i++) {
+        bool root = take->parents[i % (size_t)take->points] < 0;
+        himc_quat *q = &take->rotations[i];
+        *q = himc_quat_mul(himc_quat_mul(root ? qa : qb, *q), back);
     }
 }
 
@@ -477,10 +474,7 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
     } else if (left_of_tips(take, options, &upright, &left, &heading)) {
         a = rotate_to_left(&upright, left, true);
     }
-    himc_mat3 b = a;
-    if (take->parents && left_of_rest(take, &upright, &left))
-        b = rotate_to_left(&upright, left, false);
-    rotate(take, &a, &b);
+    rotate(take, &upright, &a);
     char axis = fabs(up.x) > 0.5 ? 'x' : fabs(up.y) > 0.5 ? 'y' : 'z', reason[128];
     snprintf(reason, sizeof reason, "%.127s", take->axes_text);
     snprintf(take->axes_text, sizeof take->axes_text, "%s%c up, %s; %s",
