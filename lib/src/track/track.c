@@ -188,25 +188,6 @@ void himc_track_approach(himc_track *track, himc_hand hand, const himc_target *n
     h->approach = himc_quintic_make(now, &begin, h->approach_time);
 }
 
-void himc_track_stop(himc_track *track, double t, const himc_target now[HIMC_HANDS])
-{
-    if (t >= track->stop || t > himc_track_length(track))
-        return;
-    track->stop = t;
-    // the motion goes on a little and comes to rest; a tip that falls is caught above the head
-    himc_vec3 n = himc_head_frame_normal(&track->head);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const himc_target *s = &now[hand];
-        himc_target rest = {.x = himc_vec3_madd(s->x, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT, s->v)};
-        double fall = fmax(-himc_vec3_dot(n, s->v), 0);
-        double height = himc_head_frame_from_world(&track->head, rest.x).z,
-               least = HOVER_HEIGHT + HOVER_FALL * HIMC_TRACK_HALT * fall;
-        if (height < least)
-            rest.x = himc_vec3_madd(rest.x, least - height, n);
-        track->hand[hand].settle = himc_quintic_make(s, &rest, HIMC_TRACK_HALT);
-    }
-}
-
 double himc_track_start(const himc_track *track)
 {
     return track->start;
@@ -338,58 +319,6 @@ bool himc_track_current(const himc_track *track, himc_hand hand, double t, doubl
     return true;
 }
 
-double himc_track_captured_speed(const himc_track *track, himc_hand hand, double t)
-{
-    const bridge *b = current(track, hand, t);
-    return b ? b->speed : NAN;
-}
-
-void himc_track_separated(himc_track *track, himc_hand hand, double now,
-                          const himc_target *measured)
-{
-    hand_track *h = &track->hand[hand];
-    double at[3];
-    himc_track_warp(himc_track_take_length(track), now, at);
-    double t = at[0];
-    if (at[1] < SLOWEST_REJOIN)
-        return;
-    himc_target from = *measured;
-    from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
-    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
-    from = himc_target_sub(from, aside_at(track, hand, t));
-    int i = bridge_at(h->bridges, h->bridge_count, t);
-    if (i == h->bridge_count || t < h->bridges[i].from) {
-        if (i == 0 || h->bridges[i - 1].to < t - REJOIN_TIME)
-            return;
-        i--; // separated after the bridge's end: it is lengthened
-    }
-    bridge *b = &h->bridges[i];
-    // between last and next nothing is known
-    double first = fmax(t + REJOIN_TIME, b->next / track->rate), to = first, least = b->spot.z;
-    // where the capture is then below the level of a contact, the time at which it is well above: a
-    // way back to a place under the head would strike it again. One that stays there is pressed
-    while (himc_head_frame_from_world(&track->head, captured_at(track, h, to).x).z < least) {
-        least = b->spot.z + REJOIN_HEIGHT;
-        to += 1 / track->rate;
-        if (to >= first + LATEST_REJOIN) {
-            to = first;
-            break;
-        }
-    }
-    himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, from.x);
-    if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
-        to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
-    if (i + 1 < h->bridge_count)
-        to = fmin(to, h->bridges[i + 1].from - NEXT_STRIKE_GAP);
-    to = fmin(to, himc_track_take_length(track));
-    if (to < t + LEAST_REJOIN)
-        return;
-    b->to = to;
-    himc_target back = captured_at(track, h, b->to);
-    b->restart = t;
-    b->path = himc_quintic_make(&from, &back, b->to - t);
-}
-
 bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error)
 {
     double length = himc_track_take_length(track);
@@ -442,3 +371,123 @@ bool himc_track_exchange(himc_track *track, const himc_track *other, double t)
     track->nudges = other->nudges;
     return true;
 }
+
+// the source of motion (body/source.h), with times of the performance
+
+static himc_target target(const void *source, himc_hand hand, double t)
+{
+    const himc_track *track = source;
+    return himc_track_target(track, hand, t - track->start);
+}
+
+static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
+{
+    const himc_track *track = source;
+    const bridge *b = current(track, hand, t - track->start);
+    himc_source_stroke next = {.beat = NAN, .speed = b ? b->speed : NAN, .nuance = "none"};
+    next.any = himc_track_current(track, hand, t - track->start, &next.time, &next.x, &next.y);
+    next.time += track->start;
+    return next;
+}
+
+static himc_source_contact next(const void *source, himc_hand hand, double t)
+{
+    const himc_track *track = source;
+    himc_source_contact next = {.any = false};
+    double x, y;
+    next.any = himc_track_current(track, hand, t - track->start, &next.time, &x, &y);
+    next.time += track->start;
+    return next;
+}
+
+static void separated(void *source, himc_hand hand, double now, const himc_target *measured)
+{
+    himc_track *track = source;
+    hand_track *h = &track->hand[hand];
+    double at[3];
+    himc_track_warp(himc_track_take_length(track), now - track->start, at);
+    double t = at[0];
+    if (at[1] < SLOWEST_REJOIN)
+        return;
+    himc_target from = *measured;
+    from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
+    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
+    from = himc_target_sub(from, aside_at(track, hand, t));
+    int i = bridge_at(h->bridges, h->bridge_count, t);
+    if (i == h->bridge_count || t < h->bridges[i].from) {
+        if (i == 0 || h->bridges[i - 1].to < t - REJOIN_TIME)
+            return;
+        i--; // separated after the bridge's end: it is lengthened
+    }
+    bridge *b = &h->bridges[i];
+    // between last and next nothing is known
+    double first = fmax(t + REJOIN_TIME, b->next / track->rate), to = first, least = b->spot.z;
+    // where the capture is then below the level of a contact, the time at which it is well above: a
+    // way back to a place under the head would strike it again. One that stays there is pressed
+    while (himc_head_frame_from_world(&track->head, captured_at(track, h, to).x).z < least) {
+        least = b->spot.z + REJOIN_HEIGHT;
+        to += 1 / track->rate;
+        if (to >= first + LATEST_REJOIN) {
+            to = first;
+            break;
+        }
+    }
+    himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, from.x);
+    if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
+        to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
+    if (i + 1 < h->bridge_count)
+        to = fmin(to, h->bridges[i + 1].from - NEXT_STRIKE_GAP);
+    to = fmin(to, himc_track_take_length(track));
+    if (to < t + LEAST_REJOIN)
+        return;
+    b->to = to;
+    himc_target back = captured_at(track, h, b->to);
+    b->restart = t;
+    b->path = himc_quintic_make(&from, &back, b->to - t);
+}
+
+static void play(void *source, double t, const himc_target *tip, const himc_posture_motion *joints)
+{
+    himc_track *track = source;
+    himc_track_rewind(track, t + HIMC_APPROACH);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (himc_track_present(track, (himc_hand)hand))
+            himc_track_approach(track, (himc_hand)hand, &tip[hand], HIMC_APPROACH);
+    himc_track_approach_posture(track, joints);
+}
+
+static void stop(void *source, double t, const himc_target *now)
+{
+    himc_track *track = source;
+    t -= track->start;
+    if (t >= track->stop || t > himc_track_length(track))
+        return;
+    track->stop = t;
+    // the motion goes on a little and comes to rest; a tip that falls is caught above the head
+    himc_vec3 n = himc_head_frame_normal(&track->head);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const himc_target *s = &now[hand];
+        himc_target rest = {.x = himc_vec3_madd(s->x, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT, s->v)};
+        double fall = fmax(-himc_vec3_dot(n, s->v), 0);
+        double height = himc_head_frame_from_world(&track->head, rest.x).z,
+               least = HOVER_HEIGHT + HOVER_FALL * HIMC_TRACK_HALT * fall;
+        if (height < least)
+            rest.x = himc_vec3_madd(rest.x, least - height, n);
+        track->hand[hand].settle = himc_quintic_make(s, &rest, HIMC_TRACK_HALT);
+    }
+}
+
+static double beat(const void *source, double t)
+{
+    const himc_track *track = source;
+    return t - track->start;
+}
+
+static double end(const void *source)
+{
+    const himc_track *track = source;
+    return track->start + himc_track_length(track);
+}
+
+const himc_source himc_track_source = {target, next, stroke, separated, NULL,
+                                       play,   stop, beat,   end};

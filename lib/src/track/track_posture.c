@@ -67,24 +67,6 @@ static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, i
     }
 }
 
-// true if an arm that is not all known ends elsewhere than its tip in most frames
-static bool is_empty(const himc_track *track, const himc_player *player,
-                     const himc_skeleton *skeleton, himc_hand hand)
-{
-    int known = himc_player_known_arm(player, hand);
-    double off[SAMPLED_FRAMES];
-    himc_vec3 waist = himc_skeleton_waist(skeleton);
-    if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
-        return false;
-    for (int i = 0; i < SAMPLED_FRAMES; i++) {
-        int f = (int)((double)(track->frames - 1) * i / (SAMPLED_FRAMES - 1));
-        himc_vec3 tip =
-            himc_arm_levers_of(skeleton, waist, &player->pose[f], hand).at[HIMC_ARM_JOINTS];
-        off[i] = himc_vec3_length(himc_vec3_sub(tip, track->hand[hand].frame[f].x));
-    }
-    return himc_median(off, SAMPLED_FRAMES) > NO_STICK;
-}
-
 bool himc_track_fit_postures(himc_track *track, const himc_player *player)
 {
     for (int j = 0; j < TRACK_JOINTS; j++) {
@@ -111,8 +93,22 @@ bool himc_track_fit_postures(himc_track *track, const himc_player *player)
     himc_skeleton skeleton;
     if (!player->pose || !himc_skeleton_init(&skeleton, &player->config, NULL))
         return !player->pose;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        track->joints.empty[hand] = is_empty(track, player, &skeleton, (himc_hand)hand);
+    // an arm that is not all known is empty if it ends elsewhere than its tip in most frames
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        int known = himc_player_known_arm(player, hand);
+        double off[SAMPLED_FRAMES];
+        if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
+            continue;
+        for (int k = 0; k < SAMPLED_FRAMES; k++) {
+            int f = (int)((double)(track->frames - 1) * k / (SAMPLED_FRAMES - 1));
+            himc_arm_levers arm = himc_arm_levers_of(&skeleton, himc_skeleton_waist(&skeleton),
+                                                     &player->pose[f], hand);
+            himc_vec3 tip = track->hand[hand].frame[f].x;
+            off[k] = himc_vec3_length(himc_vec3_sub(arm.at[HIMC_ARM_JOINTS], tip));
+        }
+        track->joints.empty[hand] = himc_median(off, SAMPLED_FRAMES) > NO_STICK;
+    }
     return true;
 }
 
@@ -216,26 +212,6 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
     return far;
 }
 
-// the joints `dt` later at constant acceleration, the arms bent to the tips of that time, or as
-// near as they reach
-static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_motion *m,
-                            const himc_target tip[HIMC_HANDS], double dt)
-{
-    himc_pose pose;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        pose.joint[j] = himc_posture_joint_after(m, j, dt);
-    for (int i = 0; i < HIMC_HANDS; i++) {
-        himc_hand hand = (himc_hand)i;
-        himc_vec3 shoulder = himc_shoulder(skeleton, pose.joint[HIMC_TRUNK - 1], hand);
-        himc_target asked = {.x = himc_target_after(&tip[i], dt).x};
-        himc_vec3 to = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, hand)).x;
-        double far = INFINITY;
-        for (int k = 0; k < BENDS || (k < MOST_BENDS && far > BENT_WITHIN); k++)
-            far = bend_once(skeleton, hand, to, &pose);
-    }
-    return pose;
-}
-
 void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, double t,
                         const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
 {
@@ -249,9 +225,24 @@ void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, 
     }
     if (!tip)
         return;
+    // the joints a little before, now and after at constant acceleration, the arms bent to the tips
+    // of that time, or as near as they reach
     himc_pose bent[3];
-    for (int k = 0; k < 3; k++)
-        bent[k] = pose_after(skeleton, motion, tip, (k - 1) * BEND_DIFFERENCE);
+    for (int i = 0; i < 3; i++) {
+        himc_pose *pose = &bent[i];
+        double dt = (i - 1) * BEND_DIFFERENCE;
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            pose->joint[j] = himc_posture_joint_after(motion, j, dt);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_hand of = (himc_hand)hand;
+            himc_vec3 shoulder = himc_shoulder(skeleton, pose->joint[HIMC_TRUNK - 1], of);
+            himc_target asked = {.x = himc_target_after(&tip[hand], dt).x};
+            himc_vec3 to = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, of)).x;
+            double far = INFINITY;
+            for (int k = 0; k < BENDS || (k < MOST_BENDS && far > BENT_WITHIN); k++)
+                far = bend_once(skeleton, of, to, pose);
+        }
+    }
     himc_posture_differentiate(bent, BEND_DIFFERENCE, HIMC_LEFT_UPPER_ARM - 1, TRACK_JOINTS,
                                motion);
 }
