@@ -343,12 +343,12 @@ static bool is_long_enough(himc_vec3 d)
     return hypot(d.x, d.y) > 0.03;
 }
 
-// the body's left side in the upright frame: mean over the take, or at its start if the player
-// turns round
-static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_vec3 *left)
+// the upright axes, rotated so that the body's left side is +y, and how it is known
+static himc_mat3 find_axes(const himc_take *take, const himc_take_options *options,
+                           const himc_mat3 *upright, const char **heading)
 {
     pair pairs[MOST_PAIRS];
-    himc_vec3 sum = {0, 0, 0}, first = {0, 0, 0}, d;
+    himc_vec3 sum = {0, 0, 0}, first = {0, 0, 0}, left, d = {0, 0, 0};
     double lengths = 0;
     int count = find_pairs(take, pairs, MOST_PAIRS);
     for (int frame = 0; frame < take->frames && count; frame += sample_step(take)) {
@@ -363,33 +363,26 @@ static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_v
         sum = himc_vec3_add(sum, now);
         lengths += hypot(now.x, now.y);
     }
-    *left = hypot(sum.x, sum.y) > 0.5 * lengths ? sum : first; // chosen
-    return is_long_enough(*left);
-}
-
-// the left side by the sticks: from the right tip to the left one, or a quarter turn from the
-// direction of the arm
-static bool left_of_tips(const himc_take *take, const himc_take_options *options,
-                         const himc_mat3 *upright, himc_vec3 *left, const char **reason)
-{
+    // the mean over the take, or at its start if the player turns round
+    left = hypot(sum.x, sum.y) > 0.5 * lengths ? sum : first; // chosen
+    *heading = "rotated so that the body faces along x";
+    if (is_long_enough(left))
+        return rotate_to_left(upright, left, false);
+    // by the sticks: from the right tip to the left one, or a quarter turn from the arm's direction
     int l = himc_take_find_tip(take, HIMC_LEFT, options),
-        r = himc_take_find_tip(take, HIMC_RIGHT, options);
+        r = himc_take_find_tip(take, HIMC_RIGHT, options), tip = l >= 0 ? l : r;
     char rest[TAKE_NAME];
-    himc_vec3 d;
-    if (l >= 0 && r >= 0 && mean_difference(take, r, l, &d)) {
-        *left = himc_mat3_apply(upright, d);
-        *reason = "rotated so that the left tip is left of the right one";
-        return is_long_enough(*left);
-    }
-    for (int i = 0; i < take->points && (l >= 0 || r >= 0); i++)
-        if (named(take, i, shoulder_words, rest) >= 0 &&
-            mean_difference(take, i, l >= 0 ? l : r, &d)) {
-            d = himc_mat3_apply(upright, d);
-            *left = himc_vec3_make(-d.y, d.x, 0);
-            *reason = "rotated by quarter turns so that the tip is before the shoulder";
-            return is_long_enough(*left);
-        }
-    return false;
+    bool both = l >= 0 && r >= 0 && mean_difference(take, r, l, &d), found = both;
+    for (int i = 0; i < take->points && tip >= 0 && !found; i++)
+        found = named(take, i, shoulder_words, rest) >= 0 && mean_difference(take, i, tip, &d);
+    d = himc_mat3_apply(upright, d);
+    left = both ? d : himc_vec3_make(-d.y, d.x, 0);
+    *heading = both ? "rotated so that the left tip is left of the right one"
+                    : "rotated by quarter turns so that the tip is before the shoulder";
+    if (found && is_long_enough(left))
+        return rotate_to_left(upright, left, true);
+    *heading = "heading as in the file";
+    return *upright;
 }
 
 // rotates the points by `a`, and the skeleton's zero pose by what brings its left side, if it has
@@ -460,23 +453,18 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
     if (take->rate < 40) // chosen: a contact of some 7 ms is less than a third of a frame
         himc_take_note(take, "rate: at %g Hz strikes are blurred, some may be missed or misplaced",
                        take->rate);
-    himc_vec3 up = find_up(take, options->up), left;
+    himc_vec3 up = find_up(take, options->up);
     // x is what is forward: to the screen's right if that is known
     himc_vec3 x = take->file_right;
     if (himc_vec3_length(x) == 0 || himc_vec3_dot(x, up) != 0)
         x = up.x == 0 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
     himc_vec3 y = himc_vec3_cross(up, x);
-    himc_mat3 upright = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}}, a = upright;
-    const char *heading = "heading as in the file";
-    if (left_of_body(take, &upright, &left)) {
-        a = rotate_to_left(&upright, left, false);
-        heading = "rotated so that the body faces along x";
-    } else if (left_of_tips(take, options, &upright, &left, &heading)) {
-        a = rotate_to_left(&upright, left, true);
-    }
+    himc_mat3 upright = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
+    const char *heading;
+    himc_mat3 a = find_axes(take, options, &upright, &heading);
     rotate(take, &upright, &a);
-    char axis = fabs(up.x) > 0.5 ? 'x' : fabs(up.y) > 0.5 ? 'y' : 'z', reason[128];
-    snprintf(reason, sizeof reason, "%.127s", take->axes_text);
+    char axis = fabs(up.x) > 0.5 ? 'x' : fabs(up.y) > 0.5 ? 'y' : 'z', reason[112];
+    snprintf(reason, sizeof reason, "%.111s", take->axes_text);
     snprintf(take->axes_text, sizeof take->axes_text, "%s%c up, %s; %s",
              up.x + up.y + up.z < 0 ? "-" : "", axis, reason, heading);
     return true;

@@ -207,8 +207,17 @@ static double above_intersection(const himc_take_strike *s)
     return sum > 0 ? 0.007 * s->velocity * s->rebound / sum : 0;
 }
 
-static void find_falls(const track *t, himc_hand hand, found *f)
+// adds the falls of a hand; false without memory
+static bool find_falls(const himc_take *take, const himc_take_tip *tip, himc_hand hand, found *f)
 {
+    track made = {take, tip->point, tip->x, take->frames, take->rate, 0}, *t = &made;
+    size_t most = (size_t)(f->count + take->frames / frames_of(t, APART, 1) + 2);
+    himc_take_strike *strikes = realloc(f->strike, most * sizeof *strikes);
+    f->strike = strikes ? strikes : f->strike;
+    himc_fall *falls = realloc(f->fall, most * sizeof *falls);
+    f->fall = falls ? falls : f->fall;
+    if (!strikes || !falls || !himc_noise(tip->x, take->frames, &t->noise))
+        return false;
     // chosen: differences of about a contact in quiet tracks, and of up to 12 ms in noisy ones,
     // until noise bends them by less than 100 m/s^2
     int h = frames_of(t, 0.006, 1);
@@ -245,25 +254,7 @@ static void find_falls(const track *t, himc_hand hand, found *f)
                                           .within = within,
                                           .sharp = width < widest && s.bend > noise_bend(t, h)};
     }
-}
-
-// the falls of both hands, one hand after the other; false without memory
-static bool find(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], found *f)
-{
-    int most = 0;
-    track t[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        t[hand] = (track){take, tips[hand].point, tips[hand].x, take->frames, take->rate, 0};
-        if (tips[hand].present && !himc_noise(tips[hand].x, take->frames, &t[hand].noise))
-            return false;
-        most += tips[hand].present ? take->frames / frames_of(&t[hand], APART, 1) + 1 : 0;
-    }
-    f->strike = calloc((size_t)most + 1, sizeof *f->strike);
-    f->fall = calloc((size_t)most + 1, sizeof *f->fall);
-    for (int hand = 0; f->strike && f->fall && hand < HIMC_HANDS; hand++)
-        if (tips[hand].present)
-            find_falls(&t[hand], (himc_hand)hand, f);
-    return f->strike && f->fall;
+    return true;
 }
 
 // true if fall k is a strike of the same hand as fall i, and too close in time to be another
@@ -306,10 +297,13 @@ static himc_vec3 place_on(const himc_strike_survey *s, int head, const himc_stri
 bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                        himc_strike_survey *survey)
 {
-    found f = {NULL, NULL, 0};
+    found f = {malloc(sizeof *f.strike), NULL, 0}; // not NULL without falls
     himc_strike_head heads[HIMC_STRIKE_HEADS];
     *survey = (himc_strike_survey){.heads = -1};
-    bool all = find(take, tips, &f);
+    bool all = f.strike != NULL;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (all && tips[hand].present)
+            all = find_falls(take, &tips[hand], (himc_hand)hand, &f);
     double *scratch = all ? malloc(((size_t)f.count + 1) * sizeof *scratch) : NULL;
     survey->strikes = f.strike;
     if (scratch)
