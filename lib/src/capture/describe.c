@@ -40,21 +40,16 @@ static void tell_gaps(const himc_take *take, const himc_line_sink *to)
             continue;
         char text[200] = "";
         size_t used = 0;
-        for (int i = 0, begin = -1; i <= take->frames && shown <= GAP_RANGES; i++) {
-            bool seen = i == take->frames || himc_vec3_finite(*himc_take_at(take, i, point));
-            if (!seen && begin < 0)
-                begin = i;
-            if (!seen || begin < 0)
-                continue;
-            int first = take->first_frame + begin, last = take->first_frame + i - 1;
+        himc_take_gap g = himc_take_next_gap(take, point, 0);
+        for (; g.begin < take->frames && shown <= GAP_RANGES; shown++) {
+            int first = take->first_frame + g.begin, last = take->first_frame + g.end - 1;
             if (shown == GAP_RANGES)
                 used += himc_format(text + used, sizeof text - used, " ...");
             else if (first == last)
                 used += himc_format(text + used, sizeof text - used, " %d", first);
             else
                 used += himc_format(text + used, sizeof text - used, " %d-%d", first, last);
-            begin = -1;
-            shown++;
+            g = himc_take_next_gap(take, point, g.end);
         }
         himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
     }

@@ -504,40 +504,37 @@ static bool read_row(const plan *p, himc_span line, int frame, double *time)
     return true;
 }
 
-// the rate of a table that has only a time column: from its first to its last row
-static bool find_rate(plan *p, int rows)
-{
-    himc_span line;
-    double first = NAN, second = NAN, last = NAN;
-    plan look = *p;
-    for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
-        if (!is_filled(line, p->separator))
-            continue;
-        himc_span cell = {"", 0};
-        for (int column = 0; column <= p->time; column++)
-            cell = himc_span_cell(&line, p->separator);
-        bool is_read = row < 2 || row == rows - 1;
-        if (is_read && !read_number(&look, cell, "the time", row == 0 ? &first : &last))
-            return false;
-        second = row++ == 1 ? last : second;
-    }
-    double step = (last - first) / (rows - 1), early = second - first;
-    // chosen: 2 % are more than the rounding of the column
-    if (rows > 2 && !(fabs(early - step) <= 0.02 * fabs(step) + 1e-6))
-        himc_take_note(p->take, "rate: the first rows are %.6g s apart, all on average %.6g s",
-                       early, step);
-    p->rate = 1 / step;
-    return rows > 1 || refuse(p, "one row: no rate");
-}
-
 static bool read_table(plan *p)
 {
     himc_span line;
     int rows = count_rows(p);
     if (rows == 0)
         return refuse(p, "no rows");
-    if (p->rate == 0 && !p->strict && !find_rate(p, rows))
-        return false;
+    if (p->rate == 0 && !p->strict) {
+        // a table that has only a time column: from its first to its last row
+        double time[3] = {NAN, NAN, NAN}; // of the first, second and last row (s)
+        plan look = *p;
+        for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
+            himc_span cell = {"", 0};
+            if (!is_filled(line, p->separator))
+                continue;
+            for (int column = 0; column <= p->time; column++)
+                cell = himc_span_cell(&line, p->separator);
+            bool is_read = row < 2 || row == rows - 1;
+            if (is_read && !read_number(&look, cell, "the time", &time[row < 2 ? row : 2]))
+                return false;
+            row++;
+        }
+        double last = time[rows < 3 ? rows - 1 : 2];
+        double step = (last - time[0]) / (rows - 1), early = time[1] - time[0];
+        // chosen: 2 % are more than the rounding of the column
+        if (rows > 2 && !(fabs(early - step) <= 0.02 * fabs(step) + 1e-6))
+            himc_take_note(p->take, "rate: the first rows are %.6g s apart, all on average %.6g s",
+                           early, step);
+        if (rows == 1)
+            return refuse(p, "one row: no rate");
+        p->rate = 1 / step;
+    }
     if (p->size / (size_t)p->points < (size_t)rows)
         return refuse(p, "more markers than the rows have cells for");
     if (!himc_take_allocate(p->take, p->rate, rows, p->points, false, p->error))

@@ -106,6 +106,9 @@ typedef struct himc_take_gap {
     int begin, end;
 } himc_take_gap;
 
+/// The point's first gap in the frames from `from` on; it begins behind the last frame if there is
+/// none.
+himc_take_gap himc_take_next_gap(const himc_take *take, int point, int from);
 /// Turns runs of exact zeros to which a trajectory jumps into gaps, with a note (marker files, in
 /// the file's unit).
 void himc_take_drop_zeros(himc_take *take);

@@ -104,7 +104,7 @@ void himc_take_drop_spikes(himc_take *take)
             frames, points, FASTEST, name, frame);
 }
 
-static himc_take_gap next_gap(const himc_take *take, int point, int from)
+himc_take_gap himc_take_next_gap(const himc_take *take, int point, int from)
 {
     while (from < take->frames && himc_vec3_finite(*himc_take_at(take, from, point)))
         from++;
@@ -166,8 +166,8 @@ int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *
     int filled = 0, frames = take->frames;
     for (int i = 0; i < frames; i++)
         x[i] = *himc_take_at(take, i, point);
-    for (*gap = next_gap(take, point, 0); gap->begin < frames;
-         *gap = next_gap(take, point, gap->end)) {
+    for (*gap = himc_take_next_gap(take, point, 0); gap->begin < frames;
+         *gap = himc_take_next_gap(take, point, gap->end)) {
         int a = gap->begin - 1, b = gap->end, length = b - gap->begin;
         if (length / take->rate > longest || length == frames)
             return -1;

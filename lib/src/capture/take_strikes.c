@@ -123,18 +123,6 @@ static double bend_or_zero(const track *t, int i, int h)
     return i >= h && i + h < t->frames ? fmax(0, bend(t, i, h)) : 0;
 }
 
-// true if the track bends upwards, and by no less than nearby
-static bool is_peak(const track *t, int i, int h)
-{
-    double here = bend(t, i, h);
-    if (!(here > 0))
-        return false;
-    for (int k = 1; k <= frames_of(t, APART, 1); k++)
-        if (bend_or_zero(t, i - k, h) >= here || bend_or_zero(t, i + k, h) > here)
-            return false;
-    return true;
-}
-
 // the frame of the largest bend by differences of h frames, near `frame`; chosen: within 8 ms
 static int sharpest(const track *t, int frame, int h)
 {
@@ -211,7 +199,8 @@ static double above_intersection(const himc_take_strike *s)
 static bool find_falls(const himc_take *take, const himc_take_tip *tip, himc_hand hand, found *f)
 {
     track made = {take, tip->point, tip->x, take->frames, take->rate, 0}, *t = &made;
-    size_t most = (size_t)(f->count + take->frames / frames_of(t, APART, 1) + 2);
+    int near = frames_of(t, APART, 1); // peaks are further apart (frames)
+    size_t most = (size_t)(f->count + take->frames / near + 2);
     himc_take_strike *strikes = realloc(f->strike, most * sizeof *strikes);
     f->strike = strikes ? strikes : f->strike;
     himc_fall *falls = realloc(f->fall, most * sizeof *falls);
@@ -229,9 +218,13 @@ static bool find_falls(const himc_take *take, const himc_take_tip *tip, himc_han
     // chosen: most of D / A, between a head's 18 ms and the air's 55; and in frames
     double widest = fmax(0.026, 3.2 / t->rate);
     for (int i = h; i + h < t->frames; i++) {
-        if (!is_peak(t, i, h))
-            continue;
+        // a peak: the track bends upwards, and by no less than nearby
         candidate s = {i, bend(t, i, h), -INFINITY, -INFINITY};
+        bool peak = s.bend > 0;
+        for (int k = 1; peak && k <= near; k++)
+            peak = bend_or_zero(t, i - k, h) < s.bend && bend_or_zero(t, i + k, h) <= s.bend;
+        if (!peak)
+            continue;
         for (int k = i < window ? 0 : i - window; k + n <= i; k++)
             s.down = fmax(s.down, -speed(t, k, k + n));
         for (int k = i; k + n < t->frames && k + n <= i + window; k++)
