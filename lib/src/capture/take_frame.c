@@ -421,26 +421,6 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-// points with equal names: himc_take_find gives the first; false without memory
-static bool note_names(himc_take *take, himc_error *error)
-{
-    size_t count = (size_t)take->points;
-    const char **name = malloc(count * sizeof *name);
-    if (!name)
-        return himc_error_set(error, "%s: no memory for %zu names", take->file, count);
-    for (size_t i = 0; i < count; i++)
-        name[i] = take->names[i];
-    qsort(name, count, sizeof *name, by_name);
-    for (size_t i = 1; i < count; i++)
-        if (strcmp(name[i - 1], name[i]) == 0) {
-            himc_take_note(take, "names: more than one point is called %s, the first is read",
-                           name[i]);
-            break;
-        }
-    free(name);
-    return true;
-}
-
 bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_error *error)
 {
     if (!take->parents)
@@ -448,8 +428,19 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
     if (!settle_units(take, options, error))
         return false;
     himc_take_drop_spikes(take);
-    if (!note_names(take, error))
-        return false;
+    const char **name = malloc((size_t)take->points * sizeof *name);
+    if (!name)
+        return himc_error_set(error, "%s: no memory for %d names", take->file, take->points);
+    for (int i = 0; i < take->points; i++)
+        name[i] = take->names[i];
+    qsort(name, (size_t)take->points, sizeof *name, by_name);
+    int twice = 1;
+    while (twice < take->points && strcmp(name[twice - 1], name[twice]) != 0)
+        twice++;
+    if (twice < take->points) // himc_take_find gives the first
+        himc_take_note(take, "names: more than one point is called %s, the first is read",
+                       name[twice]);
+    free(name);
     if (take->rate < 40) // chosen: a contact of some 7 ms is less than a third of a frame
         himc_take_note(take, "rate: at %g Hz strikes are blurred, some may be missed or misplaced",
                        take->rate);
