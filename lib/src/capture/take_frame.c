@@ -163,8 +163,8 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
 
 static bool settle_markers(himc_take *take, double *unit, himc_error *error)
 {
-    // of the box around the points the diagonals: the median over the frames, and of the whole take;
-    // and the largest coordinate (file units)
+    // diagonals of the box around the points: the median over the frames, and that of the whole
+    // take; and the largest coordinate (file units)
     double spread[SAMPLED + 1];
     int count = 0;
     box whole = box_empty();

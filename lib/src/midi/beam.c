@@ -1,8 +1,8 @@
 /// beam.c: the cheapest row of choices for the strokes of a part, by a beam search.
 ///
-/// After each stroke the WIDTH cheapest states are kept, of those with equal keys only the cheapest;
-/// on parts of usual length these hold the best way, which is walked back from the cheapest of the
-/// last.
+/// After each stroke the WIDTH cheapest states are kept, of those with equal keys only the
+/// cheapest; on parts of usual length these hold the best way, which is walked back from the
+/// cheapest of the last.
 #include "midi/part.h"
 
 #include <stdlib.h>
@@ -43,10 +43,10 @@ static int keep(way *best, int count, const way *made)
 bool himc_midi_search(const midi_part *part, const midi_state *first, int choices,
                       midi_choose *choose, int8_t *chosen)
 {
-    way *ways = malloc(2 * WIDTH * sizeof *ways), *now = ways, *next = ways + WIDTH;
+    way *now = malloc(WIDTH * sizeof *now), *next = malloc(WIDTH * sizeof *next);
     step *steps = malloc(((size_t)part->count * WIDTH + 1) * sizeof *steps);
     int count = 1, best = 0;
-    bool good = ways && steps;
+    bool good = now && next && steps;
     if (good)
         now[0].state = *first;
     for (int k = 0; good && k < part->count; k++) {
@@ -74,7 +74,8 @@ bool himc_midi_search(const midi_part *part, const midi_state *first, int choice
         chosen[k] = at.choice;
         best = at.from;
     }
-    free(ways);
+    free(now);
+    free(next);
     free(steps);
     return good;
 }

@@ -82,8 +82,8 @@ void himc_midi_join(midi_part *part);
 typedef struct midi_state {
     double cost;
     int32_t key[MIDI_KEYS];  ///< states with equal ones are one, the cheapest of them
-    double ready[MIDI_KEYS]; ///< from then on (s)
-    double foot;             ///< is free from then on (s)
+    double ready[MIDI_KEYS]; ///< of timpani: a drum may be retuned from then on ...
+    double foot;             ///< ... and the foot is free (s)
 } midi_state;
 
 /// The state after a stroke for which that was chosen; false if it cannot be.

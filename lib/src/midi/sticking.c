@@ -1,10 +1,10 @@
 /// sticking.c: which hand plays which stroke.
 ///
-/// A beam search over the strokes in time. Its state is the last stroke of each hand; a stroke costs
-/// its hand what plan/sticking.h says, a little more the left one, and more the hand that has just
-/// struck the same drum: hand by hand, as players do also where one hand had the time. A stroke
-/// nearer to its hand's last than the planner can move (hand.c) is not possible; one that is left
-/// out costs more than any that is played, and the more the louder it is.
+/// A beam search over the strokes in time. Its state is the last stroke of each hand; a stroke
+/// costs its hand what plan/sticking.h says, a little more the left one, and more the hand that has
+/// just struck the same drum: hand by hand, as players do also where one hand had the time. A
+/// stroke nearer to its hand's last than the planner can move (hand.c) is not possible; one that is
+/// left out costs more than any that is played, and the more the louder it is.
 #include "midi/part.h"
 #include "plan/hand.h"
 #include "plan/sticking.h"

@@ -2,10 +2,10 @@
 ///
 /// A beam search over the notes in time: its state is the pitch of each drum, when it can be
 /// retuned, and when the foot is free; a note in tune costs nothing, a change 1 and 0.1 a semitone,
-/// a note left out more than any change. A drum is retuned when it rings no
-/// more (1 s after its stroke) or a hand has damped it at the end of its note. The first pitch of a
-/// drum is free: it is tuned so before the piece. Ranges: of the usual four sizes, widened by what
-/// heads bear; costs and times are chosen, no measurement of players was found.
+/// a note left out more than any change. A drum is retuned when it rings no more (1 s after its
+/// stroke) or a hand has damped it at the end of its note. The first pitch of a drum is free: it is
+/// tuned so before the piece. Ranges: of the usual four sizes, widened by what heads bear; costs
+/// and times are chosen, no measurement of players was found.
 #include "midi/part.h"
 
 #include <math.h>
