@@ -278,7 +278,7 @@ static double share_of_the_speed(himc_take *take, const himc_head_frame *head)
             if (himc_track_current(track, hand, now, &t, &x, &y) && t > before) {
                 before = t;
                 played -= himc_track_target(track, hand, t - 1e-6).v.z;
-                captured += himc_track_captured_speed(track, hand, now);
+                captured += himc_track_source.stroke(track, hand, now).speed;
             }
     }
     himc_track_free(track);

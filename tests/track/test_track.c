@@ -140,7 +140,7 @@ static void test_after_separation_the_target_continues_from_the_measured_state_a
     measured.x.z += 0.002;
     measured.v = himc_vec3_make(0.1, -0.05, 3.2);
     measured.a = himc_vec3_make(1, 2, -30);
-    himc_track_separated(track, HIMC_RIGHT, left, &measured);
+    himc_track_source.separated(track, HIMC_RIGHT, left, &measured);
     himc_target now = at(left);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(measured.x, now.x));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(measured.v, now.v));
@@ -163,7 +163,7 @@ static void test_20_ms_after_separation_the_take_is_followed_at_any_speed_of_the
         himc_track_current(track, HIMC_RIGHT, 0.2, &time, &x, &y);
         himc_target measured = at(time);
         measured.v = himc_vec3_make(0, 0, i ? 3.6 : 1.8);
-        himc_track_separated(track, HIMC_RIGHT, time + 0.0065, &measured);
+        himc_track_source.separated(track, HIMC_RIGHT, time + 0.0065, &measured);
         rejoined[i] = at(time + 0.0065 + 0.0201).x;
         tearDown();
         setUp();
@@ -179,9 +179,9 @@ static void test_after_rewind_the_track_is_the_same_bit_by_bit(void)
     for (int i = 0; i < N; i++)
         first[i] = at(i * 1e-3);
     himc_target measured = at(0.4);
-    himc_track_separated(track, HIMC_RIGHT, 0.407, &measured);
+    himc_track_source.separated(track, HIMC_RIGHT, 0.407, &measured);
     himc_target now[HIMC_HANDS] = {measured, measured};
-    himc_track_stop(track, 1.3, now);
+    himc_track_source.stop(track, 1.3, now);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.7, himc_track_length(track));
     himc_track_rewind(track, 0);
     for (int i = 0; i < N; i++) {
@@ -202,7 +202,7 @@ static void test_approach_and_stop_lead_in_and_out_smoothly(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, distance(before.v, after.v));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0, distance(before.a, after.a));
     now[0] = now[1] = at(1.2);
-    himc_track_stop(track, 1.2, now);
+    himc_track_source.stop(track, 1.2, now);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(now[1].x, at(1.2).x));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(now[1].v, at(1.2).v));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, himc_vec3_length(at(himc_track_length(track)).v));
@@ -215,7 +215,7 @@ static void test_a_stop_after_the_end_changes_nothing(void)
     himc_target far = {.x = {0.1, -0.4, 1.4}}, now[HIMC_HANDS] = {far, far};
     double length = himc_track_length(track);
     himc_vec3 before = at(length + 1).x;
-    himc_track_stop(track, length + 0.1, now);
+    himc_track_source.stop(track, length + 0.1, now);
     TEST_ASSERT_EQUAL_DOUBLE(length, himc_track_length(track));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, distance(before, at(length + 1).x));
 }
@@ -256,8 +256,8 @@ static void test_playing_allocates_nothing(void)
     for (double t = -0.5; t < 4; t += 1e-3)
         s = at(t);
     himc_track_current(track, HIMC_RIGHT, 0.2, &time, &x, &y);
-    himc_track_separated(track, HIMC_RIGHT, time + 0.007, &s);
-    himc_track_stop(track, 2, both);
+    himc_track_source.separated(track, HIMC_RIGHT, time + 0.007, &s);
+    himc_track_source.stop(track, 2, both);
     himc_track_rewind(track, 0);
     TEST_ASSERT_EQUAL_INT(0, allocations_seen());
 }

@@ -97,7 +97,7 @@ static void test_after_separation_the_joints_follow_the_measured_stick(void)
     himc_target measured = himc_track_target(track, HIMC_RIGHT, time);
     measured.v = himc_vec3_make(0.1, 0, 2.9);
     measured.a = himc_vec3_make(0, 0, -40);
-    himc_track_separated(track, HIMC_RIGHT, time + 0.007, &measured);
+    himc_track_source.separated(track, HIMC_RIGHT, time + 0.007, &measured);
     for (double t = time + 0.007; t < time + 0.1; t += 0.0005)
         compare_tips(t, off);
     TEST_ASSERT_TRUE(off[0] < 1e-9);
@@ -196,7 +196,7 @@ static void test_joints_approach_from_their_present_state_and_come_to_rest_after
         himc_quat off = himc_quat_mul(himc_quat_conj(now.joint[j]), at_first.joint[j]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, himc_vec3_length(himc_quat_log(off)));
     }
-    himc_track_stop(track, 2, tip);
+    himc_track_source.stop(track, 2, tip);
     later = posture_at(2.4);
     for (int j = 0; j < HIMC_LEFT_UPPER_LEG - 1; j++)
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, himc_vec3_length(later.rate[j]));

@@ -83,7 +83,7 @@ static void test_near_the_end_rejoining_begins_in_the_measured_state_as_time_slo
     make_take(beaten, 250, 107);
     double time = contact_after(0.2);
     himc_target s = as_measured(time + 0.008);
-    himc_track_separated(track, HIMC_RIGHT, time + 0.008, &s);
+    himc_track_source.separated(track, HIMC_RIGHT, time + 0.008, &s);
     goes_on_from(&s, time + 0.008);
 }
 
@@ -94,12 +94,12 @@ static void test_from_far_off_rejoining_is_slow_and_no_throw_is_followed(void)
     double time = contact_after(0.2) + 0.008, hardest = 0, fastest = 0;
     himc_target s = as_measured(time), off = s, thrown = s;
     off.x.z += 0.4;
-    himc_track_separated(track, HIMC_RIGHT, time, &off);
+    himc_track_source.separated(track, HIMC_RIGHT, time, &off);
     for (double t = time; t < time + 0.09; t += 0.0005)
         hardest = fmax(hardest, himc_vec3_length(at(t).a));
     himc_track_rewind(track, 0);
     thrown.v = himc_vec3_make(-40, 0, 0);
-    himc_track_separated(track, HIMC_RIGHT, time, &thrown);
+    himc_track_source.separated(track, HIMC_RIGHT, time, &thrown);
     for (double t = time; t < time + 0.02; t += 0.0005)
         fastest = fmax(fastest, himc_vec3_length(at(t).v));
     printf("at most %.0f m/s^2, %.1f m/s\n", hardest, fastest);
@@ -123,7 +123,7 @@ static void test_rejoining_ends_before_the_next_strike_begins(void)
     for (double late = 0.0065; late < 0.032; late += 0.006) {
         himc_track_rewind(track, 0);
         himc_target s = as_measured(time + late);
-        himc_track_separated(track, HIMC_RIGHT, time + late, &s);
+        himc_track_source.separated(track, HIMC_RIGHT, time + late, &s);
         goes_on_from(&s, time + late);
         double next = contact_after(time + late);
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, time + 0.06, next);
@@ -149,7 +149,7 @@ static void test_rejoining_does_not_go_below_the_head_for_a_capture_that_is_ther
     TEST_ASSERT_TRUE(himc_track_target(track, HIMC_RIGHT, time + 0.022).x.z < LEVEL + RADIUS);
     himc_target s = as_measured(time + 0.008);
     s.x.z = LEVEL + RADIUS;
-    himc_track_separated(track, HIMC_RIGHT, time + 0.008, &s);
+    himc_track_source.separated(track, HIMC_RIGHT, time + 0.008, &s);
     for (double t = time + 0.008; t < time + 0.2; t += 1e-3)
         TEST_ASSERT_TRUE(at(t).x.z > LEVEL + RADIUS - 1e-3);
 }
@@ -165,7 +165,7 @@ static void test_a_stick_that_leaves_too_late_changes_nothing(void)
         himc_target s = as_measured(time + late);
         for (int i = 0; i < 20; i++)
             before[i] = at(time + late + 1e-3 * i).x;
-        himc_track_separated(track, HIMC_RIGHT, time + late, &s);
+        himc_track_source.separated(track, HIMC_RIGHT, time + late, &s);
         for (int i = 0; i < 20; i++)
             TEST_ASSERT_EQUAL_DOUBLE(before[i].z, at(time + late + 1e-3 * i).x.z);
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, time + 0.06, contact_after(time + late));
@@ -190,7 +190,7 @@ static void test_at_25_hz_a_tick_never_moves_a_tip_faster_than_12_metres_per_sec
             if (himc_track_current(track, HIMC_RIGHT, t, &contact, &x, &y) &&
                 t > contact + 0.0065 && contact > struck) {
                 himc_target measured = {.x = at(t).x, .v = {0, 0, 2}};
-                himc_track_separated(track, HIMC_RIGHT, t, &measured);
+                himc_track_source.separated(track, HIMC_RIGHT, t, &measured);
                 struck = contact;
             }
             himc_vec3 now = at(t).x;

@@ -1,5 +1,5 @@
 /// source.h: where the motion of a hand comes from. A source is one file with a table of functions:
-/// plan/planner_source.c plays a score, hits and live targets, track/track_source.c a take.
+/// plan/planner_source.c plays a score, hits and live targets, track/track.c a take.
 #ifndef HIMC_SOURCE_H
 #define HIMC_SOURCE_H
 

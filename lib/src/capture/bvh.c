@@ -74,36 +74,6 @@ static bool number(bvh *r, const char *what, double *value)
            refuse(r, what, w, "a number up to 1e8");
 }
 
-// a name is the rest of its line, because some contain blanks; a brace at its end begins the block
-static bool read_name(bvh *r, node *n)
-{
-    himc_span rest = himc_span_trim(r->line);
-    const char *brace = rest.length ? memchr(rest.at, '{', rest.length) : NULL;
-    size_t length = brace ? (size_t)(brace - rest.at) : rest.length;
-    himc_span name = himc_span_trim((himc_span){rest.at, length});
-    if (name.length == 0)
-        return refuse(r, "joint's name", rest, "a name on the same line");
-    r->line = (himc_span){rest.at + length, rest.length - length};
-    snprintf(n->name, sizeof n->name, "%.*s",
-             (int)(name.length < TAKE_NAME ? name.length : TAKE_NAME - 1), name.at);
-    return expect(r, "{", "before the joint's block");
-}
-
-// names an end site by its joint; a second one of the same joint must not have the same name
-static bool name_end_site(bvh *r, node *n)
-{
-    char of[TAKE_NAME];
-    memcpy(of, r->nodes[n->parent].name, sizeof of);
-    int before = 0;
-    for (const node *other = r->nodes; other < n; other++)
-        before += other->parent == n->parent && other->is_end;
-    if (before)
-        snprintf(n->name, sizeof n->name, "%.48s_end%d", of, before + 1);
-    else
-        snprintf(n->name, sizeof n->name, "%.59s_end", of);
-    return expect(r, "Site", "after End") && expect(r, "{", "before the end site's block");
-}
-
 static bool read_channels(bvh *r, node *n)
 {
     static const char *const kinds[6] = {"Xposition", "Yposition", "Zposition",
@@ -150,7 +120,31 @@ static bool open_node(bvh *r, int parent, bool is_end)
     }
     node *n = &r->nodes[r->count++];
     *n = (node){.parent = parent, .depth = depth, .is_end = is_end};
-    return is_end ? name_end_site(r, n) : read_name(r, n);
+    if (is_end) {
+        // named by its joint; a second one of the same joint must not have the same name
+        char of[TAKE_NAME];
+        int before = 0;
+        memcpy(of, r->nodes[parent].name, sizeof of);
+        for (const node *other = r->nodes; other < n; other++)
+            before += other->parent == parent && other->is_end;
+        if (before)
+            snprintf(n->name, sizeof n->name, "%.48s_end%d", of, before + 1);
+        else
+            snprintf(n->name, sizeof n->name, "%.59s_end", of);
+        return expect(r, "Site", "after End") && expect(r, "{", "before the end site's block");
+    }
+    // a name is the rest of its line, because some contain blanks; a brace at its end begins the
+    // block
+    himc_span rest = himc_span_trim(r->line);
+    const char *brace = rest.length ? memchr(rest.at, '{', rest.length) : NULL;
+    size_t length = brace ? (size_t)(brace - rest.at) : rest.length;
+    himc_span name = himc_span_trim((himc_span){rest.at, length});
+    if (name.length == 0)
+        return refuse(r, "joint's name", rest, "a name on the same line");
+    r->line = (himc_span){rest.at + length, rest.length - length};
+    snprintf(n->name, sizeof n->name, "%.*s",
+             (int)(name.length < TAKE_NAME ? name.length : TAKE_NAME - 1), name.at);
+    return expect(r, "{", "before the joint's block");
 }
 
 static bool read_hierarchy(bvh *r)
@@ -266,36 +260,28 @@ static bool read_row(bvh *r, int frame, himc_quat *world)
            refuse(r, "after the row's last channel", w, "a new line");
 }
 
-static bool read_all(bvh *r)
-{
-    int frames = 0;
-    double rate = 0;
-    if (!read_hierarchy(r) || !read_motion_header(r, &frames, &rate) ||
-        !himc_take_allocate(r->take, rate, frames, r->count, true, r->error))
-        return false;
-    for (int i = 0; i < r->count; i++) {
-        himc_take_set_name(r->take, i, r->nodes[i].name, strlen(r->nodes[i].name));
-        r->take->parents[i] = r->nodes[i].parent;
-        // the origin of the zero pose is arbitrary
-        r->take->offsets[i] = r->nodes[i].parent < 0 ? himc_vec3_make(0, 0, 0) : r->nodes[i].offset;
-    }
-    himc_quat *world = calloc((size_t)r->count, sizeof *world);
-    if (!world)
-        return himc_error_set(r->error, "%s: no memory", r->take->file);
-    bool ok = true;
-    for (int frame = 0; frame < frames && ok; frame++)
-        ok = read_row(r, frame, world);
-    free(world);
-    return ok;
-}
-
 bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
 {
     bvh r = {.take = take, .text = himc_text_open(bytes, size), .line = {bytes, 0}, .error = error};
+    int frames = 0;
+    double rate = 0;
     memcpy(take->format, "BVH", 4);
     take->first_frame = 1;
     take->format_up = himc_vec3_make(0, 1, 0);
-    bool ok = read_all(&r);
+    bool ok = read_hierarchy(&r) && read_motion_header(&r, &frames, &rate) &&
+              himc_take_allocate(take, rate, frames, r.count, true, error);
+    for (int i = 0; i < r.count && ok; i++) {
+        const node *n = &r.nodes[i];
+        himc_take_set_name(take, i, n->name, strlen(n->name));
+        take->parents[i] = n->parent;
+        // the origin of the zero pose is arbitrary
+        take->offsets[i] = n->parent < 0 ? himc_vec3_make(0, 0, 0) : n->offset;
+    }
+    himc_quat *world = ok ? calloc((size_t)r.count, sizeof *world) : NULL;
+    ok = ok && (world || himc_error_set(error, "%s: no memory", take->file));
+    for (int frame = 0; frame < frames && ok; frame++)
+        ok = read_row(&r, frame, world);
+    free(world);
     free(r.nodes);
     return ok;
 }

@@ -131,37 +131,28 @@ static int by_text(const void *a, const void *b)
     return x->length ? memcmp(x->at, y->at, x->length) : 0;
 }
 
-// the trimmed labels of a model's values, sorted; `*count` of them, to be freed
-static himc_span *model_labels(const c3d *r, size_t *count)
+// labels the points, from POINT:LABELS, LABELS2, ..., and keeps those that are positions
+static bool choose_points(c3d *r, int *count)
 {
     static const char *const lists[] = {"ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS"};
     const c3d_parameter *list[5];
-    size_t most = 1;
+    size_t models = 0, most = 1;
     for (int k = 0; k < 5; k++) {
         list[k] = himc_c3d_find(&r->parameters, "POINT", lists[k]);
         most += list[k] ? (size_t)list[k]->count : 0; // a label has a byte at least
     }
-    himc_span *found = malloc(most * sizeof *found), label;
-    *count = 0;
-    for (int k = 0; k < 5 && found; k++)
-        for (int i = 0; himc_c3d_string(list[k], i, &label.at, &label.length); i++)
-            found[(*count)++] = himc_span_trim(label);
-    if (found)
-        qsort(found, *count, sizeof *found, by_text);
-    return found;
-}
-
-// labels the points, from POINT:LABELS, LABELS2, ..., and keeps those that are positions
-static bool choose_points(c3d *r, int *count)
-{
-    size_t models;
-    himc_span *model = model_labels(r, &models);
+    himc_span *model = malloc(most * sizeof *model), label;
     r->kept = malloc((size_t)r->points * sizeof *r->kept);
     r->label = calloc((size_t)r->points, sizeof *r->label);
     if (!model || !r->kept || !r->label) {
         free(model);
         return himc_error_set(r->error, "%s: no memory", r->take->file);
     }
+    // the trimmed labels of a model's values, sorted
+    for (int k = 0; k < 5; k++)
+        for (int i = 0; himc_c3d_string(list[k], i, &label.at, &label.length); i++)
+            model[models++] = himc_span_trim(label);
+    qsort(model, models, sizeof *model, by_text);
     char name[24] = "LABELS";
     for (int k = 2, point = 0; k < 256; k++) {
         const c3d_parameter *labels = himc_c3d_find(&r->parameters, "POINT", name);
@@ -174,7 +165,7 @@ static bool choose_points(c3d *r, int *count)
     }
     *count = 0;
     for (int i = 0; i < r->points; i++) {
-        himc_span label = himc_span_trim(r->label[i]);
+        label = himc_span_trim(r->label[i]);
         bool is_model = label.length && bsearch(&label, model, models, sizeof label, by_text);
         r->kept[i] = is_model ? -1 : (*count)++;
     }
@@ -224,29 +215,6 @@ static himc_vec3 read_axis(const c3d *r, const char *name)
     return himc_vec3_make(axis == 'x' ? sign : 0, axis == 'y' ? sign : 0, axis == 'z' ? sign : 0);
 }
 
-// the player's mass and height if the file has them; Vicon writes them in kg and mm
-static void read_subject(c3d *r)
-{
-    static const char *const groups[] = {"SUBJECT", "SUBJECTS", "PROCESSING"};
-    static const char *const masses[] = {"MASS", "BODYMASS", "WEIGHT"};
-    double mass = 0, height = 0;
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3 && mass <= 0; k++)
-            mass = parameter(r, groups[i], masses[k], 0, 0);
-        if (height <= 0)
-            height = parameter(r, groups[i], "HEIGHT", 0, 0);
-    }
-    height *= height > 100 ? 0.001 : 1;
-    r->take->mass = mass >= TAKE_LEAST_MASS && mass <= TAKE_MOST_MASS ? mass : 0;
-    r->take->height = height >= TAKE_LEAST_HEIGHT && height <= TAKE_MOST_HEIGHT ? height : 0;
-    if ((mass > 0 && r->take->mass == 0) || (height > 0 && r->take->height == 0))
-        himc_take_note(r->take,
-                       "player: the file states %g kg and %g m, ignored outside %g .. %g kg and "
-                       "%g .. %g m",
-                       mass, height, TAKE_LEAST_MASS, TAKE_MOST_MASS, TAKE_LEAST_HEIGHT,
-                       TAKE_MOST_HEIGHT);
-}
-
 static void add_event(c3d *r, double time, himc_span context, himc_span label)
 {
     himc_take *take = r->take;
@@ -285,19 +253,6 @@ static bool read_events(c3d *r)
     return true;
 }
 
-// "EMG1 (V)" of ANALOG:LABELS and UNITS
-static void name_channel(const c3d *r, int channel, char name[TAKE_NAME])
-{
-    himc_span label = string(r, "ANALOG", "LABELS", channel);
-    himc_span unit = string(r, "ANALOG", "UNITS", channel);
-    char a[44], b[44];
-    himc_span_text(label, a);
-    if (label.length == 0)
-        snprintf(a, sizeof a, "channel %d", channel + 1);
-    snprintf(name, TAKE_NAME, "%s%s%.15s%s", a, unit.length ? " (" : "", himc_span_text(unit, b),
-             unit.length ? ")" : "");
-}
-
 // The analog samples behind the points of each frame: (raw - OFFSET) SCALE GEN_SCALE. Their counts
 // were compared with the length of the file.
 static bool read_analog(c3d *r)
@@ -320,7 +275,15 @@ static bool read_analog(c3d *r)
     for (int channel = 0; channel < channels; channel++) {
         double offset = parameter(r, "ANALOG", "OFFSET", channel, 0);
         double scale = general * parameter(r, "ANALOG", "SCALE", channel, 1);
-        name_channel(r, channel, take->analog_names[channel]);
+        // "EMG1 (V)"
+        himc_span label = string(r, "ANALOG", "LABELS", channel),
+                  unit = string(r, "ANALOG", "UNITS", channel);
+        char a[44], b[44];
+        himc_span_text(label, a);
+        if (label.length == 0)
+            snprintf(a, sizeof a, "channel %d", channel + 1);
+        snprintf(take->analog_names[channel], TAKE_NAME, "%s%s%.15s%s", a, unit.length ? " (" : "",
+                 himc_span_text(unit, b), unit.length ? ")" : "");
         for (int i = 0; i < take->analog_samples; i++) {
             size_t frame = (size_t)(i / each), sample = (size_t)(i % each);
             const unsigned char *at =
@@ -335,41 +298,51 @@ static bool read_analog(c3d *r)
     return true;
 }
 
-static bool read_all(c3d *r)
+// what the file says of its unit, axes, numbers and player
+static bool read_statements(c3d *r)
 {
-    int frames = 0, points = 0;
-    if (!himc_c3d_parameters_read(&r->parameters, r->bytes, r->size,
-                                  (size_t)(r->bytes[0] - 1) * C3D_BLOCK, r->error))
-        return himc_error_prefix(r->error, "%s", r->take->file);
-    double rate =
-        parameter(r, "POINT", "RATE", 0, himc_c3d_real(r->parameters.processor, r->bytes + 20));
-    if (!read_layout(r) || !count_frames(r, &frames) || !choose_points(r, &points) ||
-        !himc_take_allocate(r->take, rate, frames, points, false, r->error))
-        return false;
+    static const char *const processors[] = {"Intel", "DEC", "MIPS"};
+    static const char *const groups[] = {"SUBJECT", "SUBJECTS", "PROCESSING"};
+    static const char *const masses[] = {"MASS", "BODYMASS", "WEIGHT"};
+    himc_take *take = r->take;
     char text[44];
     himc_span unit = string(r, "POINT", "UNITS", 0);
     const char *nul = memchr(unit.at, 0, unit.length); // some fill with it
     if (nul)
         unit = himc_span_trim((himc_span){unit.at, (size_t)(nul - unit.at)});
-    r->take->file_unit = himc_take_unit(himc_span_text(unit, text));
-    if (unit.length > 0 && r->take->file_unit == 0)
-        return himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", expected mm, cm, m, in or ft",
-                              r->take->file, text);
-    static const char *const processors[] = {"Intel", "DEC", "MIPS"};
-    snprintf(r->take->format, sizeof r->take->format, "C3D (%s, %s)",
+    take->file_unit = himc_take_unit(himc_span_text(unit, text));
+    snprintf(take->format, sizeof take->format, "C3D (%s, %s)",
              processors[r->parameters.processor - C3D_INTEL], r->is_float ? "floats" : "integers");
-    read_subject(r);
-    r->take->file_up = read_axis(r, "Y_SCREEN");
-    r->take->file_right = read_axis(r, "X_SCREEN");
-    read_points(r);
-    return read_events(r) && read_analog(r);
+    take->format_up = himc_vec3_make(0, 0, 1);
+    take->file_up = read_axis(r, "Y_SCREEN");
+    take->file_right = read_axis(r, "X_SCREEN");
+    // the player's mass and height if the file has them; Vicon writes them in kg and mm
+    double mass = 0, height = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3 && mass <= 0; k++)
+            mass = parameter(r, groups[i], masses[k], 0, 0);
+        if (height <= 0)
+            height = parameter(r, groups[i], "HEIGHT", 0, 0);
+    }
+    height *= height > 100 ? 0.001 : 1;
+    take->mass = mass >= TAKE_LEAST_MASS && mass <= TAKE_MOST_MASS ? mass : 0;
+    take->height = height >= TAKE_LEAST_HEIGHT && height <= TAKE_MOST_HEIGHT ? height : 0;
+    if ((mass > 0 && take->mass == 0) || (height > 0 && take->height == 0))
+        himc_take_note(take,
+                       "player: the file states %g kg and %g m, ignored outside %g .. %g kg and "
+                       "%g .. %g m",
+                       mass, height, TAKE_LEAST_MASS, TAKE_MOST_MASS, TAKE_LEAST_HEIGHT,
+                       TAKE_MOST_HEIGHT);
+    return unit.length == 0 || take->file_unit > 0 ||
+           himc_error_set(r->error, "%s: POINT:UNITS is \"%s\", expected mm, cm, m, in or ft",
+                          take->file, text);
 }
 
 bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *error)
 {
     const unsigned char *bytes = file;
     c3d r = {.take = take, .bytes = bytes, .size = size, .error = error};
-    take->format_up = himc_vec3_make(0, 0, 1);
+    int frames = 0, points = 0;
     if (size < C3D_BLOCK)
         return himc_error_set(error, "%s: %zu bytes, expected at least a header of %d", take->file,
                               size, C3D_BLOCK);
@@ -377,7 +350,18 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
         return himc_error_set(error,
                               "%s: begins with bytes %d %d, expected for C3D: 2 .. 255 and 80",
                               take->file, bytes[0], bytes[1]);
-    bool ok = read_all(&r);
+    bool ok = himc_c3d_parameters_read(&r.parameters, bytes, size,
+                                       (size_t)(bytes[0] - 1) * C3D_BLOCK, error) ||
+              himc_error_prefix(error, "%s", take->file);
+    ok = ok && read_layout(&r) && count_frames(&r, &frames) && choose_points(&r, &points);
+    if (ok) {
+        double rate =
+            parameter(&r, "POINT", "RATE", 0, himc_c3d_real(r.parameters.processor, bytes + 20));
+        ok = himc_take_allocate(take, rate, frames, points, false, error) && read_statements(&r);
+    }
+    if (ok)
+        read_points(&r);
+    ok = ok && read_events(&r) && read_analog(&r);
     free(r.kept);
     free(r.label);
     himc_c3d_parameters_free(&r.parameters);

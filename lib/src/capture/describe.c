@@ -40,47 +40,20 @@ static void tell_gaps(const himc_take *take, const himc_line_sink *to)
             continue;
         char text[200] = "";
         size_t used = 0;
-        for (int i = 0, begin = -1; i <= take->frames && shown <= GAP_RANGES; i++) {
-            bool seen = i == take->frames || himc_vec3_finite(*himc_take_at(take, i, point));
-            if (!seen && begin < 0)
-                begin = i;
-            if (!seen || begin < 0)
-                continue;
-            int first = take->first_frame + begin, last = take->first_frame + i - 1;
+        himc_take_gap g = himc_take_next_gap(take, point, 0);
+        for (; g.begin < take->frames && shown <= GAP_RANGES; shown++) {
+            int first = take->first_frame + g.begin, last = take->first_frame + g.end - 1;
             if (shown == GAP_RANGES)
                 used += himc_format(text + used, sizeof text - used, " ...");
             else if (first == last)
                 used += himc_format(text + used, sizeof text - used, " %d", first);
             else
                 used += himc_format(text + used, sizeof text - used, " %d-%d", first, last);
-            begin = -1;
-            shown++;
+            g = himc_take_next_gap(take, point, g.end);
         }
         himc_tell(to, "gap: %s is missing in %d frames:%s", take->names[point], missing, text);
     }
     himc_tell(to, "gaps: %d frames in %d points", all, points);
-}
-
-static void tell_heads(const himc_strike_survey *s, const himc_line_sink *to)
-{
-    himc_vec3 place = s->head[0];
-    int far = 0, there[HIMC_STRIKE_HEADS] = {0};
-    for (int i = 0; i < s->count; i++) {
-        far += hypot(s->strikes[i].x.x - place.x, s->strikes[i].x.y - place.y) > ONE_DRUM;
-        there[s->strikes[i].head]++;
-    }
-    himc_tell(to, "struck: around %.3f %.3f m on the head, which tips touch at a height of %.3f m",
-              place.x, place.y, place.z);
-    for (int i = 1; i < s->heads; i++)
-        himc_tell(to,
-                  "drum: %d strikes are on another head, at a height of %.3f m, but a take is "
-                  "played on one drum",
-                  there[i], s->head[i].z);
-    if (far > 0)
-        himc_tell(to,
-                  "drum: %d strikes are more than %g m from there, but a take is played "
-                  "on one drum",
-                  far, ONE_DRUM);
 }
 
 static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
@@ -110,9 +83,27 @@ static void tell_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HA
             "left out: %d motions as sharp as strikes, up to %.2f m/s, that end %.3f .. %.3f m "
             "above the head",
             s.left_out, s.fastest, s.lowest, s.highest);
-    if (s.heads > 0)
-        tell_heads(&s, to);
+    himc_vec3 place = s.head[0];
+    int far = 0, there[HIMC_STRIKE_HEADS] = {0};
+    for (int i = 0; i < s.count; i++) {
+        far += hypot(s.strikes[i].x.x - place.x, s.strikes[i].x.y - place.y) > ONE_DRUM;
+        there[s.strikes[i].head]++;
+    }
     free(s.strikes);
+    if (s.heads > 0)
+        himc_tell(to,
+                  "struck: around %.3f %.3f m on the head, which tips touch at a height of %.3f m",
+                  place.x, place.y, place.z);
+    for (int i = 1; i < s.heads; i++)
+        himc_tell(to,
+                  "drum: %d strikes are on another head, at a height of %.3f m, but a take is "
+                  "played on one drum",
+                  there[i], s.head[i].z);
+    if (far > 0)
+        himc_tell(to,
+                  "drum: %d strikes are more than %g m from there, but a take is played "
+                  "on one drum",
+                  far, ONE_DRUM);
 }
 
 void himc_take_describe(himc_take *take, const himc_take_options *options,
@@ -149,35 +140,6 @@ void himc_take_describe(himc_take *take, const himc_take_options *options,
     tell_strikes(take, tips, &to);
 }
 
-static void tell_measures(const himc_player *player, const himc_line_sink *to)
-{
-    const himc_skeleton_config *c = &player->config;
-    const char *from = player->height_from[0] ? player->height_from : "the default";
-    if (player->mass_stated)
-        himc_tell(to, "player: %.3f m tall (by %s), %.1f kg (stated by the file)", c->height, from,
-                  c->mass);
-    else
-        himc_tell(to,
-                  "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f; the "
-                  "command player says otherwise)",
-                  c->height, from, c->mass, c->mass / (c->height * c->height));
-    // "upper-arm 0.281 0.283": left and right
-    char text[220] = "";
-    size_t used = 0;
-    for (int i = 0; i < HIMC_SEGMENTS; i++) {
-        const char *name = himc_segment_name(i);
-        bool paired = i >= HIMC_LEFT_UPPER_ARM;
-        if (c->length[i] <= 0)
-            continue;
-        used += himc_format(text + used, sizeof text - used, "%s %s %.3f", used ? "," : "",
-                            paired ? name + strlen("left-") : name, c->length[i]);
-        if (paired)
-            used += himc_format(text + used, sizeof text - used, " %.3f", c->length[++i]);
-    }
-    if (used)
-        himc_tell(to, "lengths (m):%s", text);
-}
-
 // in the world, with its origin on the floor under the player, and in the take
 static void tell_places(const himc_player *player, const himc_head_frame *drum,
                         const himc_line_sink *to)
@@ -208,9 +170,33 @@ void himc_player_describe(const himc_player *player, const himc_head_frame *drum
                           void (*line)(void *, const char *), void *user)
 {
     himc_line_sink to = {line, user};
-    tell_measures(player, &to);
+    const himc_skeleton_config *c = &player->config;
+    const char *from = player->height_from[0] ? player->height_from : "the default";
+    if (player->mass_stated)
+        himc_tell(&to, "player: %.3f m tall (by %s), %.1f kg (stated by the file)", c->height, from,
+                  c->mass);
+    else
+        himc_tell(&to,
+                  "player: %.3f m tall (by %s), %.1f kg (by a body mass index of %.1f; the "
+                  "command player says otherwise)",
+                  c->height, from, c->mass, c->mass / (c->height * c->height));
+    // "upper-arm 0.281 0.283": left and right
     char text[220] = "";
     size_t used = 0;
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        const char *name = himc_segment_name(i);
+        bool paired = i >= HIMC_LEFT_UPPER_ARM;
+        if (c->length[i] <= 0)
+            continue;
+        used += himc_format(text + used, sizeof text - used, "%s %s %.3f", used ? "," : "",
+                            paired ? name + strlen("left-") : name, c->length[i]);
+        if (paired)
+            used += himc_format(text + used, sizeof text - used, " %.3f", c->length[++i]);
+    }
+    if (used)
+        himc_tell(&to, "lengths (m):%s", text);
+    used = 0;
+    text[0] = 0;
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (player->known[j])
             used += himc_format(text + used, sizeof text - used, " %s", himc_joint_name(j));

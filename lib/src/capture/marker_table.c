@@ -146,14 +146,8 @@ static himc_span unquoted(himc_span cell)
 // metres per unit; 0 if the word is no unit
 static double unit_of(himc_span word)
 {
-    static const struct {
-        const char *word;
-        double unit;
-    } known[] = {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-        if (himc_span_is(word, known[i].word))
-            return known[i].unit;
-    return 0;
+    char text[44];
+    return himc_take_unit(himc_span_text(word, text));
 }
 
 // sets the unit of the file if one is given; a file has one
@@ -210,38 +204,11 @@ static bool read_nexus(plan *p)
 
 // Motive
 
-static bool motive_columns(plan *p, himc_span types, himc_span names, himc_span properties,
-                           himc_span axes)
-{
-    bool measured = false;
-    for (himc_span rest = types; rest.at && !measured;)
-        measured = himc_span_is(himc_span_cell(&rest, ','), "marker");
-    int next = 0; // axis that goes on with the point
-    if (!make_room(p, count_cells(axes, ',')))
-        return false;
-    for (int column = 0; axes.at; column++) {
-        himc_span type = himc_span_cell(&types, ','), name = himc_span_cell(&names, ',');
-        himc_span property = himc_span_cell(&properties, ','), axis = himc_span_cell(&axes, ',');
-        bool expected =
-            himc_span_is(type, "rigid body marker") || himc_span_is(type, "bone marker");
-        bool here = himc_span_is(property, "position") && !(measured && expected);
-        if (!here || axis.length != 1 || (axis.at[0] | 32) != 'x' + next) {
-            next = 0;
-            continue;
-        }
-        if (next == 2)
-            add_point(p, unquoted(name), column - 2);
-        next = (next + 1) % 3;
-    }
-    return p->points > 0 || refuse(p, "no columns Position, expected an export with markers, rigid "
-                                      "bodies or bones");
-}
-
 static bool read_motive(plan *p)
 {
     himc_span line, types = {"", 0}, names = {"", 0}, properties = {"", 0};
     double capture = 0;
-    char unit[44];
+    bool is_head = true, measured = false;
     memcpy(p->take->format, "CSV (OptiTrack Motive)", 23);
     p->take->format_up = himc_vec3_make(0, 1, 0);
     himc_text_line(&p->text, &line); // there: it names the format
@@ -253,21 +220,38 @@ static bool read_motive(plan *p)
         if (himc_span_is(key, "capture frame rate") && !himc_span_number(value, &capture))
             return refuse(p, "Capture Frame Rate is no number (Hz)");
         if (himc_span_is(key, "length units"))
-            p->take->file_unit = himc_take_unit(himc_span_text(value, unit));
+            p->take->file_unit = unit_of(value);
     }
     p->rate = p->rate > 0 ? p->rate : capture;
-    for (int row = 0; himc_text_filled_line(&p->text, &line); row++) {
+    for (int row = 0; is_head && himc_text_filled_line(&p->text, &line); row++) {
         himc_span rest = line;
-        if (himc_span_is(himc_span_cell(&rest, ','), "frame")) {
-            p->frame = 0;
-            p->time = p->rate > 0 ? NOT_THERE : 1;
-            return motive_columns(p, types, names, properties, line);
-        }
+        is_head = !himc_span_is(himc_span_cell(&rest, ','), "frame");
         types = row == 0 ? line : types;
         names = row == 1 ? line : names;
-        properties = line;
+        properties = is_head ? line : properties;
     }
-    return refuse(p, "no line Frame,Time (Seconds),X,Y,Z,..., expected an export with a header");
+    if (is_head)
+        return refuse(p,
+                      "no line Frame,Time (Seconds),X,Y,Z,..., expected an export with a header");
+    p->frame = 0;
+    p->time = p->rate > 0 ? NOT_THERE : 1;
+    for (himc_span rest = types; rest.at && !measured;)
+        measured = himc_span_is(himc_span_cell(&rest, ','), "marker");
+    if (!make_room(p, count_cells(line, ',')))
+        return false;
+    for (int column = 0, next = 0; line.at; column++) { // next: axis that goes on with the point
+        himc_span type = himc_span_cell(&types, ','), name = himc_span_cell(&names, ',');
+        himc_span property = himc_span_cell(&properties, ','), axis = himc_span_cell(&line, ',');
+        bool expected =
+            himc_span_is(type, "rigid body marker") || himc_span_is(type, "bone marker");
+        bool here = himc_span_is(property, "position") && !(measured && expected) &&
+                    axis.length == 1 && (axis.at[0] | 32) == 'x' + next;
+        if (here && next == 2)
+            add_point(p, unquoted(name), column - 2);
+        next = here ? (next + 1) % 3 : 0;
+    }
+    return p->points > 0 || refuse(p, "no columns Position, expected an export with markers, rigid "
+                                      "bodies or bones");
 }
 
 // Qualisys
@@ -369,7 +353,6 @@ static bool read_trc(plan *p)
 {
     himc_span keys, values, names;
     long frames, markers;
-    char text[44];
     memcpy(p->take->format, "TRC", 4);
     p->take->format_up = himc_vec3_make(0, 1, 0);
     if (!himc_text_line(&p->text, &keys) || !himc_text_line(&p->text, &keys) ||
@@ -386,7 +369,7 @@ static bool read_trc(plan *p)
         return refuse_value(p, "NumFrames", said_frames, "1 .. 1000000");
     if (!himc_span_integer(said_markers, 1, TAKE_MOST_POINTS, &markers))
         return refuse_value(p, "NumMarkers", said_markers, "1 .. 65536");
-    p->take->file_unit = himc_take_unit(himc_span_text(unit, text));
+    p->take->file_unit = unit_of(unit);
     if (unit.length > 0 && p->take->file_unit == 0)
         return refuse_value(p, "Units", unit, "mm, cm, m, in or ft");
     if (!himc_text_line(&p->text, &names))
@@ -427,20 +410,6 @@ static himc_span last_word(himc_span *rest)
     return word;
 }
 
-// the coordinate 0 .. 2 of a column "NAME_x_mm", its name and unit (0: none said); else NOT_THERE
-static int coordinate_of(himc_span cell, himc_span *name, double *unit)
-{
-    himc_span word = last_word(&cell);
-    *unit = unit_of(word);
-    if (*unit != 0)
-        word = last_word(&cell);
-    *name = cell;
-    for (int axis = 0; axis < 3; axis++)
-        if (word.length == 1 && cell.length > 0 && (word.at[0] | 32) == 'x' + axis)
-            return axis;
-    return NOT_THERE;
-}
-
 static bool read_any(plan *p)
 {
     himc_span line, last = {"", 0};
@@ -455,20 +424,24 @@ static bool read_any(plan *p)
         bool seconds = himc_span_is(last_word(&name), "s");
         if (p->time == NOT_THERE && himc_span_is(seconds ? name : cell, "time"))
             p->time = column;
-        double unit;
-        int axis = coordinate_of(cell, &name, &unit);
-        bool goes_on = next > 0 && axis == next && name.length == last.length &&
-                       memcmp(name.at, last.at, name.length) == 0;
+        // a coordinate is "NAME_x_mm": its name, axis and unit, if one is said
+        himc_span word = last_word(&cell);
+        double unit = unit_of(word);
+        if (unit != 0)
+            word = last_word(&cell);
+        int axis = word.length == 1 && cell.length > 0 ? (word.at[0] | 32) - 'x' : NOT_THERE;
+        bool goes_on = next > 0 && axis == next && cell.length == last.length &&
+                       memcmp(cell.at, last.at, cell.length) == 0;
         if (axis != 0 && !goes_on) {
             next = 0;
             continue;
         }
         next = (axis + 1) % 3;
-        last = name;
+        last = cell;
         if (!set_unit(p, unit))
             return false;
         if (axis == 2)
-            add_point(p, name, column - 2);
+            add_point(p, cell, column - 2);
     }
     if (p->points == 0)
         return refuse(p,
@@ -485,89 +458,50 @@ static bool read_number(const plan *p, himc_span cell, const char *column, doubl
            refuse_value(p, column, cell, "a number");
 }
 
-// takes the three cells of a point off the row
-static bool read_point(const plan *p, himc_span *rest, int frame, int point)
-{
-    double v[3] = {0, 0, 0};
-    const char *name = p->take->names[point];
-    int seen = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        char what[TAKE_NAME + 2];
-        himc_span cell = himc_span_cell(rest, p->separator);
-        bool number = cell_number(cell, p->separator, &v[axis]);
-        if (cell.length == 0 || himc_span_is(cell, "nan") || himc_span_is(cell, "-nan") ||
-            v[axis] == 9999999)
-            continue;
-        snprintf(what, sizeof what, "%s %c", name, "XYZ"[axis]);
-        if (!number || !(fabs(v[axis]) <= TAKE_LARGEST))
-            return refuse_value(p, what, cell, "a number up to 1e8, or an empty cell for a gap");
-        seen++;
-    }
-    if (seen != 0 && seen != 3)
-        return himc_error_set(p->error,
-                              "%s:%d: %s has %d of its 3 coordinates, expected all or none",
-                              p->take->file, p->text.line, name, seen);
-    *himc_take_at(p->take, frame, point) =
-        seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
-    return true;
-}
-
 // `time` becomes NaN in a strict table if it is no number: it has a rate
 static bool read_row(const plan *p, himc_span line, int frame, double *time)
 {
+    double v[3];
     long label;
-    int point = 0;
-    for (int column = 0; point < p->points || column <= p->time;) {
-        if (point < p->points && column == p->begin[point]) {
-            if (!read_point(p, &line, frame, point++))
-                return false;
-            column += 3;
-            continue;
-        }
+    int point = 0, seen = 0, column = 0;
+    for (; point < p->points || column <= p->time || (p->strict && line.at); column++) {
         himc_span cell = himc_span_cell(&line, p->separator);
-        if (column == p->frame && (frame == 0 || p->strict)) {
+        int axis = point < p->points ? column - p->begin[point] : NOT_THERE;
+        if (axis >= 0) {
+            const char *name = p->take->names[point];
+            bool number = cell_number(cell, p->separator, &v[axis]);
+            bool gap = cell.length == 0 || himc_span_is(cell, "nan") ||
+                       himc_span_is(cell, "-nan") || (number && v[axis] == 9999999);
+            if (!gap && !(number && fabs(v[axis]) <= TAKE_LARGEST)) {
+                char what[TAKE_NAME + 2];
+                snprintf(what, sizeof what, "%s %c", name, "XYZ"[axis]);
+                return refuse_value(p, what, cell,
+                                    "a number up to 1e8, or an empty cell for a gap");
+            }
+            seen += !gap;
+            if (axis == 2 && seen % 3 != 0)
+                return himc_error_set(p->error,
+                                      "%s:%d: %s has %d of its 3 coordinates, expected all or none",
+                                      p->take->file, p->text.line, name, seen);
+            if (axis == 2) {
+                *himc_take_at(p->take, frame, point++) =
+                    seen ? himc_vec3_make(v[0], v[1], v[2]) : himc_vec3_gap();
+                seen = 0;
+            }
+        } else if (column == p->frame && (frame == 0 || p->strict)) {
             if (!himc_span_integer(cell, -2000000000, 2000000000, &label))
                 return refuse_value(p, "Frame#", cell, "a whole number");
             p->take->first_frame = frame == 0 ? (int)label : p->take->first_frame;
-        }
-        if (column == p->time && p->strict && !cell_number(cell, p->separator, time))
-            *time = NAN;
-        if (column == p->time && !p->strict && !read_number(p, cell, "the time", time))
-            return false;
-        column++;
-    }
-    while (p->strict && line.at) {
-        himc_span cell = himc_span_cell(&line, p->separator);
-        if (cell.length > 0)
+        } else if (column == p->time && p->strict) {
+            *time = cell_number(cell, p->separator, time) ? *time : NAN;
+        } else if (column == p->time) {
+            if (!read_number(p, cell, "the time", time))
+                return false;
+        } else if (p->strict && point == p->points && cell.length > 0) {
             return refuse_value(p, "the cell after the last marker", cell, "an empty cell");
+        }
     }
     return true;
-}
-
-// the rate of a table that has only a time column: from its first to its last row
-static bool find_rate(plan *p, int rows)
-{
-    himc_span line;
-    double first = NAN, second = NAN, last = NAN;
-    plan look = *p;
-    for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
-        if (!is_filled(line, p->separator))
-            continue;
-        himc_span cell = {"", 0};
-        for (int column = 0; column <= p->time; column++)
-            cell = himc_span_cell(&line, p->separator);
-        bool is_read = row < 2 || row == rows - 1;
-        if (is_read && !read_number(&look, cell, "the time", row == 0 ? &first : &last))
-            return false;
-        second = row++ == 1 ? last : second;
-    }
-    double step = (last - first) / (rows - 1), early = second - first;
-    // chosen: 2 % are more than the rounding of the column
-    if (rows > 2 && !(fabs(early - step) <= 0.02 * fabs(step) + 1e-6))
-        himc_take_note(p->take, "rate: the first rows are %.6g s apart, all on average %.6g s",
-                       early, step);
-    p->rate = 1 / step;
-    return rows > 1 || refuse(p, "one row: no rate");
 }
 
 static bool read_table(plan *p)
@@ -576,8 +510,31 @@ static bool read_table(plan *p)
     int rows = count_rows(p);
     if (rows == 0)
         return refuse(p, "no rows");
-    if (p->rate == 0 && !p->strict && !find_rate(p, rows))
-        return false;
+    if (p->rate == 0 && !p->strict) {
+        // a table that has only a time column: from its first to its last row
+        double time[3] = {NAN, NAN, NAN}; // of the first, second and last row (s)
+        plan look = *p;
+        for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
+            himc_span cell = {"", 0};
+            if (!is_filled(line, p->separator))
+                continue;
+            for (int column = 0; column <= p->time; column++)
+                cell = himc_span_cell(&line, p->separator);
+            bool is_read = row < 2 || row == rows - 1;
+            if (is_read && !read_number(&look, cell, "the time", &time[row < 2 ? row : 2]))
+                return false;
+            row++;
+        }
+        double last = time[rows < 3 ? rows - 1 : 2];
+        double step = (last - time[0]) / (rows - 1), early = time[1] - time[0];
+        // chosen: 2 % are more than the rounding of the column
+        if (rows > 2 && !(fabs(early - step) <= 0.02 * fabs(step) + 1e-6))
+            himc_take_note(p->take, "rate: the first rows are %.6g s apart, all on average %.6g s",
+                           early, step);
+        if (rows == 1)
+            return refuse(p, "one row: no rate");
+        p->rate = 1 / step;
+    }
     if (p->size / (size_t)p->points < (size_t)rows)
         return refuse(p, "more markers than the rows have cells for");
     if (!himc_take_allocate(p->take, p->rate, rows, p->points, false, p->error))

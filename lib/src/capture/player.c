@@ -52,11 +52,7 @@ static void measure_lengths(const player_points *p, himc_player *player)
     // 0.37 m between the shoulder joints of de Leva's man, at least 0.2 m by himc_skeleton_config
     double breadth = himc_player_distance(p, POINT_SHOULDER, POINT_SHOULDER + 1, 0.5);
     c->shoulders = breadth >= 0.2 ? himc_player_plausible(breadth, 0.37) : 0;
-}
-
-// a tip within a hand's length of the wrist is no stick's: the body's stick is then to be put there
-static void note_hands(const player_points *p, himc_player *player)
-{
+    // a tip within a hand's length of the wrist is no stick's: the body's stick is put there
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         double far = himc_player_distance(p, POINT_WRIST + hand, POINT_TIP + hand, 0.5);
         int node = p->node[POINT_TIP + hand];
@@ -122,15 +118,36 @@ static himc_vec3 mean_position(const player_points *p, int which)
     return sum;
 }
 
-// a held pelvis replaces one that sways a little, not one that walks; false without memory
-static bool find_walk(const player_points *p, himc_player *player)
+// position of the player by the hips, else by the shoulders of a body in the natural pose; false
+// without memory
+static bool find_place(const player_points *p, const himc_skeleton *s, himc_player *player)
 {
+    himc_vec3 up = s->segment[HIMC_TRUNK].origin, sum = {0, 0, 0};
+    const himc_vec3 *hips = p->x[POINT_HIPS];
+    int shown = 0;
+    for (int hand = 0; hand < HIMC_HANDS && !hips; hand++) {
+        if (!p->x[POINT_SHOULDER + hand])
+            continue;
+        himc_vec3 model = himc_quat_rotate(player->mean.joint[HIMC_TRUNK - 1],
+                                           s->segment[HIMC_LEFT_UPPER_ARM + hand].origin);
+        sum = himc_vec3_add(
+            sum, himc_vec3_sub(mean_position(p, POINT_SHOULDER + hand), himc_vec3_add(up, model)));
+        shown++;
+    }
+    player->placed = hips || shown > 0;
+    if (shown)
+        player->hips = himc_vec3_scale(sum, 1.0 / shown);
+    if (!hips)
+        return true;
+    bool waist = p->x[POINT_WAIST] && player->config.length[HIMC_PELVIS] > 0;
     double square = 0;
     himc_vec3 mean = mean_position(p, POINT_HIPS);
+    player->hips = waist ? himc_vec3_sub(mean_position(p, POINT_WAIST), up) : mean;
     for (int i = 0; i < p->frames; i++) {
-        himc_vec3 d = himc_vec3_sub(p->x[POINT_HIPS][i], mean);
+        himc_vec3 d = himc_vec3_sub(hips[i], mean);
         square += himc_vec3_dot(d, d) / p->frames;
     }
+    // a held pelvis replaces one that sways a little, not one that walks
     player->walks = sqrt(square) > 0.15; // chosen: a seated player's hips sway by less
     if (!player->walks)
         return true;
@@ -141,81 +158,43 @@ static bool find_walk(const player_points *p, himc_player *player)
         sqrt(square));
     player->walk = malloc((size_t)p->frames * sizeof *player->walk);
     for (int i = 0; player->walk && i < p->frames; i++)
-        player->walk[i] = himc_vec3_sub(p->x[POINT_HIPS][i], mean);
+        player->walk[i] = himc_vec3_sub(hips[i], mean);
     return player->walk != NULL;
-}
-
-// position of the player by the hips, else by the shoulders of a body in the natural pose; false
-// without memory
-static bool find_place(const player_points *p, const himc_skeleton *s, himc_player *player)
-{
-    himc_vec3 up = s->segment[HIMC_TRUNK].origin, sum = {0, 0, 0};
-    int shown = 0;
-    if (p->x[POINT_HIPS]) {
-        bool waist = p->x[POINT_WAIST] && player->config.length[HIMC_PELVIS] > 0;
-        player->hips =
-            waist ? himc_vec3_sub(mean_position(p, POINT_WAIST), up) : mean_position(p, POINT_HIPS);
-        player->placed = true;
-        return find_walk(p, player);
-    }
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        if (!p->x[POINT_SHOULDER + hand])
-            continue;
-        himc_vec3 model = himc_quat_rotate(player->mean.joint[HIMC_TRUNK - 1],
-                                           s->segment[HIMC_LEFT_UPPER_ARM + hand].origin);
-        sum = himc_vec3_add(
-            sum, himc_vec3_sub(mean_position(p, POINT_SHOULDER + hand), himc_vec3_add(up, model)));
-        shown++;
-    }
-    player->placed = shown > 0;
-    if (shown)
-        player->hips = himc_vec3_scale(sum, 1.0 / shown);
-    return true;
-}
-
-static bool read_player(himc_player *player, player_points *p, himc_error *error)
-{
-    himc_skeleton skeleton;
-    himc_posture natural;
-    if (!himc_player_check(p, player, error))
-        return false;
-    measure_lengths(p, player);
-    note_hands(p, player);
-    if (!find_height(p, player, error) || !himc_skeleton_init(&skeleton, &player->config, error))
-        return false;
-    // what the take does not show is in the natural pose, before a timpano's head
-    himc_posture_init(&natural, &skeleton, 0.85);
-    double lean = natural.trunk_posture.value[HIMC_TRUNK_POSTURE_LEAN];
-    player->mean = natural.rest;
-    player->mean.joint[HIMC_TRUNK - 1] = himc_quat_exp(himc_vec3_make(0, lean, 0));
-    bool found = find_place(p, &skeleton, player);
-    himc_vec3 waist = himc_vec3_add(player->hips, skeleton.segment[HIMC_TRUNK].origin);
-    if (!found || !himc_player_read_poses(player, p, &skeleton, p->x[POINT_HIPS] ? &waist : NULL))
-        return himc_error_set(error, "%s: no memory for %d postures", p->take->file, p->frames);
-    return true;
 }
 
 himc_player *himc_player_new(himc_take *take, const himc_take_options *options,
                              const himc_skeleton_config *given, himc_error *error)
 {
     himc_take_options usual = himc_take_default();
-    player_points points = {.frames = 0};
+    player_points p = {.frames = 0};
+    himc_skeleton skeleton;
+    himc_posture natural;
     himc_player *player = calloc(1, sizeof *player);
-    if (!player || !himc_player_points_find(&points, take, options ? options : &usual, player)) {
-        himc_player_points_free(&points);
-        himc_player_free(player);
-        himc_error_set(error, "%s: no memory", take->file);
-        return NULL;
+    bool memory = player && himc_player_points_find(&p, take, options ? options : &usual, player);
+    bool good = memory && himc_player_check(&p, player, error);
+    if (good) {
+        player->config = *given;
+        player->config.seat = player->config.shoulders = 0;
+        memset(player->config.length, 0, sizeof player->config.length);
+        player->frames = himc_take_frames(take);
+        measure_lengths(&p, player);
+        good =
+            find_height(&p, player, error) && himc_skeleton_init(&skeleton, &player->config, error);
     }
-    player->config = *given;
-    player->config.seat = player->config.shoulders = 0;
-    memset(player->config.length, 0, sizeof player->config.length);
-    player->frames = himc_take_frames(take);
-    bool ok = read_player(player, &points, error);
-    himc_player_points_free(&points);
-    if (ok)
+    if (good) {
+        // what the take does not show is in the natural pose, before a timpano's head
+        himc_posture_init(&natural, &skeleton, 0.85);
+        double lean = natural.trunk_posture.value[HIMC_TRUNK_POSTURE_LEAN];
+        player->mean = natural.rest;
+        player->mean.joint[HIMC_TRUNK - 1] = himc_quat_exp(himc_vec3_make(0, lean, 0));
+        memory = find_place(&p, &skeleton, player) && himc_player_read_poses(player, &p, &skeleton);
+    }
+    himc_player_points_free(&p);
+    if (good && memory)
         return player;
     himc_player_free(player);
+    if (!memory)
+        himc_error_set(error, "%s: no memory for %d postures", take->file, himc_take_frames(take));
     return NULL;
 }
 
@@ -344,36 +323,28 @@ static bool bring_into_reach(himc_player *player, const himc_take *take,
     return true;
 }
 
-// how far a head is to be lowered for a stick that comes from rest over it, where the planner has
-// it, to the take's first place `first`, in the head's frame (m)
-static double under_approach(const himc_head_frame *drum, himc_hand hand, himc_vec3 first)
-{
-    const int parts = 20;
-    double under = 0, x, aside;
-    usual_place(drum, &x, &aside);
-    const himc_vec3 rest = himc_vec3_make(x, hand == HIMC_LEFT ? aside : -aside, 0.085);
-    for (int i = 1; i <= parts; i++) {
-        double part = (double)i / parts;
-        himc_vec3 at = himc_vec3_madd(rest, part, himc_vec3_sub(first, rest));
-        if (hypot(at.x, at.y) < drum->radius + BESIDE_HEAD)
-            under = fmax(under, (OVER_HEAD - at.z) / part);
-    }
-    return under;
-}
-
 // lowers a head under a take that strikes nothing until no tip touches it, nor on the way there
 static void clear_drum(himc_head_frame *drum, const himc_take *take,
                        const himc_take_tip tips[HIMC_HANDS], himc_vec3 offset)
 {
-    double under = 0;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    const int parts = 20; // of the way from rest over the head, where the planner has the stick
+    double under = 0, x, aside;
+    usual_place(drum, &x, &aside);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 rest = himc_vec3_make(x, hand == HIMC_LEFT ? aside : -aside, 0.085), first = rest;
         for (int i = 0; tips[hand].present && i < himc_take_frames(take); i++) {
-            himc_vec3 x = himc_head_frame_from_world(drum, himc_vec3_add(tips[hand].x[i], offset));
-            if (i == 0)
-                under = fmax(under, under_approach(drum, (himc_hand)hand, x));
-            if (hypot(x.x, x.y) < drum->radius + BESIDE_HEAD)
-                under = fmax(under, OVER_HEAD - x.z);
+            himc_vec3 at = himc_head_frame_from_world(drum, himc_vec3_add(tips[hand].x[i], offset));
+            first = i == 0 ? at : first;
+            if (hypot(at.x, at.y) < drum->radius + BESIDE_HEAD)
+                under = fmax(under, OVER_HEAD - at.z);
         }
+        for (int i = 1; tips[hand].present && i <= parts; i++) {
+            double part = (double)i / parts;
+            himc_vec3 at = himc_vec3_madd(rest, part, himc_vec3_sub(first, rest));
+            if (hypot(at.x, at.y) < drum->radius + BESIDE_HEAD)
+                under = fmax(under, (OVER_HEAD - at.z) / part);
+        }
+    }
     // chosen: 0.1 m above the floor at least
     drum->center.z = fmax(drum->center.z - under / cos(drum->tilt), 0.1);
 }

@@ -70,10 +70,10 @@ void himc_player_note(himc_player *player, const char *format, ...)
 
 // Poses: player_pose.c.
 
-/// Fills pose, known and, for the known joints, mean; the others keep their mean. `waist` is where
-/// the held pelvis ends (m, in the take), NULL if the take does not show it. False without memory.
+/// Fills pose, known and, for the known joints, mean; the others keep their mean. False without
+/// memory.
 bool himc_player_read_poses(himc_player *player, const player_points *points,
-                            const himc_skeleton *skeleton, const himc_vec3 *waist);
+                            const himc_skeleton *skeleton);
 
 // The seat: player.c.
 

@@ -160,86 +160,74 @@ static int find_named(const himc_take *take, const char *name, int hand)
     return found;
 }
 
-// the mean of the markers, gaps filled; false without memory
-static bool add_centre(player_points *p, int which, const int *point, int count, double below,
-                       const himc_take_options *options, himc_player *player)
-{
-    size_t frames = (size_t)p->frames;
-    himc_vec3 *sum = calloc(frames, sizeof *sum), *one = malloc(frames * sizeof *one);
-    bool shown = sum && one;
-    for (int i = 0; shown && i < count; i++) {
-        himc_take_gap gap;
-        if (himc_take_fill(p->take, point[i], options->longest_gap, one, &gap) < 0) {
-            himc_player_note(player,
-                             "%s: %s is missing in frames %d .. %d, expected gaps up to %g s",
-                             point_name(which), himc_take_point_name(p->take, point[i]),
-                             himc_take_first_frame(p->take) + gap.begin,
-                             himc_take_first_frame(p->take) + gap.end - 1, options->longest_gap);
-            shown = false;
-        }
-        for (size_t k = 0; shown && k < frames; k++)
-            sum[k] = himc_vec3_madd(sum[k], 1.0 / count, one[k]);
-    }
-    bool memory = sum && one;
-    for (size_t k = 0; shown && k < frames; k++)
-        sum[k].z -= below;
-    p->x[which] = shown ? sum : NULL;
-    p->node[which] = shown && count == 1 ? point[0] : -1;
-    if (!shown)
-        free(sum);
-    free(one);
-    return memory;
-}
-
-// a centre by the first row with all points in the take; hand HIMC_HANDS: names without side
+// a centre by the first row with all points in the take: the mean of the markers, gaps filled; hand
+// HIMC_HANDS: names without side. False without memory
 static bool find_centre(player_points *p, int which, int hand, const himc_take_options *options,
                         himc_player *player)
 {
-    for (const row *r = rows; r < rows + ROWS; r++) {
-        if (which != r->point && !(r->sided && which == r->point + 1))
+    int point[MARKERS], count = 0, first = himc_take_first_frame(p->take);
+    const row *r = NULL;
+    for (const row *k = rows; k < rows + ROWS && !r; k++) {
+        if (which != k->point && !(k->sided && which == k->point + 1))
             continue;
-        int point[MARKERS], count = 0;
-        bool all = !r->beside || find_named(p->take, r->beside, hand) >= 0;
-        for (; all && count < MARKERS && r->name[count]; count++) {
-            point[count] = find_named(p->take, r->name[count], hand);
+        bool all = !k->beside || find_named(p->take, k->beside, hand) >= 0;
+        for (count = 0; all && count < MARKERS && k->name[count]; count++) {
+            point[count] = find_named(p->take, k->name[count], hand);
             all = point[count] >= 0;
         }
-        if (all)
-            return add_centre(p, which, point, count, r->below, options, player);
+        r = all ? k : NULL;
     }
-    return true;
-}
-
-// the tips, filled in the same way as for playing
-static bool find_tips(player_points *p, himc_take *take, const himc_take_options *options,
-                      bool present[HIMC_HANDS])
-{
-    himc_take_tip tips[HIMC_HANDS] = {{.present = false}, {.present = false}};
-    bool found = himc_take_tips(take, options, tips, NULL);
-    size_t size = (size_t)p->frames * sizeof(himc_vec3);
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        present[hand] = found && tips[hand].present;
-        if (!present[hand])
-            continue;
-        p->x[POINT_TIP + hand] = malloc(size);
-        if (!p->x[POINT_TIP + hand])
-            return false;
-        memcpy(p->x[POINT_TIP + hand], tips[hand].x, size);
-        p->node[POINT_TIP + hand] = himc_take_find(take, tips[hand].name);
+    if (!r)
+        return true;
+    size_t frames = (size_t)p->frames;
+    himc_vec3 *sum = calloc(frames, sizeof *sum), *one = malloc(frames * sizeof *one);
+    bool memory = sum && one, shown = memory;
+    for (int i = 0; shown && i < count; i++) {
+        himc_take_gap gap;
+        shown = himc_take_fill(p->take, point[i], options->longest_gap, one, &gap) >= 0;
+        if (!shown)
+            himc_player_note(player,
+                             "%s: %s is missing in frames %d .. %d, expected gaps up to %g s",
+                             point_name(which), himc_take_point_name(p->take, point[i]),
+                             first + gap.begin, first + gap.end - 1, options->longest_gap);
+        for (size_t k = 0; shown && k < frames; k++)
+            sum[k] = himc_vec3_madd(sum[k], 1.0 / count, one[k]);
     }
+    free(one);
+    if (!shown) {
+        free(sum);
+        return memory;
+    }
+    for (size_t k = 0; k < frames; k++)
+        sum[k].z -= r->below;
+    p->x[which] = sum;
+    p->node[which] = count == 1 ? point[0] : -1;
     return true;
 }
 
 bool himc_player_points_find(player_points *p, himc_take *take, const himc_take_options *options,
                              himc_player *player)
 {
-    bool present[HIMC_HANDS];
+    himc_take_tip tips[HIMC_HANDS] = {{.present = false}, {.present = false}};
+    bool found = himc_take_tips(take, options, tips, NULL), present[HIMC_HANDS];
     *p = (player_points){.take = take, .frames = himc_take_frames(take)};
+    size_t size = (size_t)p->frames * sizeof(himc_vec3);
     for (int i = 0; i < POINT_COUNT; i++)
         p->node[i] = -1;
     p->distance = malloc((size_t)p->frames * sizeof *p->distance);
-    if (!p->distance || !find_tips(p, take, options, present))
+    if (!p->distance)
         return false;
+    // the tips, filled in the same way as for playing
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        present[hand] = found && tips[hand].present;
+        if (!present[hand])
+            continue;
+        himc_vec3 *x = p->x[POINT_TIP + hand] = malloc(size);
+        if (!x)
+            return false;
+        memcpy(x, tips[hand].x, size);
+        p->node[POINT_TIP + hand] = himc_take_find(take, tips[hand].name);
+    }
     int lone = present[HIMC_LEFT] && !present[HIMC_RIGHT] ? HIMC_LEFT : HIMC_RIGHT;
     for (int i = 0; i < POINT_COUNT; i++) {
         bool paired =
@@ -257,7 +245,7 @@ bool himc_player_points_find(player_points *p, himc_take *take, const himc_take_
     if (!left || !right)
         return true;
     if (!p->x[POINT_HIPS])
-        p->x[POINT_HIPS] = malloc((size_t)p->frames * sizeof(himc_vec3));
+        p->x[POINT_HIPS] = malloc(size);
     for (int i = 0; p->x[POINT_HIPS] && i < p->frames; i++)
         p->x[POINT_HIPS][i] = himc_vec3_scale(himc_vec3_add(left[i], right[i]), 0.5);
     return p->x[POINT_HIPS] != NULL;
@@ -300,38 +288,31 @@ double himc_player_plausible(double length, double usual)
     return length >= LEAST_LENGTH * usual && length <= MOST_LENGTH * usual ? length : 0;
 }
 
-// if most of the limbs are not of human size the file's unit is not the stated one
-static bool check_size(const player_points *p, himc_error *error)
+// of limb i / 2, on the left for even i
+static double limb_length(const player_points *p, int i, double quantile)
 {
-    int good = 0, bad = 0;
-    const player_measure *first = NULL;
-    int side = 0;
-    double length = 0;
-    for (int i = 0; i < PLAYER_LIMBS; i++)
-        for (int hand = 0; hand < HIMC_HANDS && himc_player_limbs[i].tells_size; hand++) {
-            const player_measure *m = &himc_player_limbs[i];
-            double l = himc_player_distance(p, (int)m->from + hand, (int)m->to + hand, 0.5);
-            bool fits = himc_player_plausible(l, m->usual) > 0;
-            good += fits;
-            bad += l > 0 && !fits;
-            if (l > 0 && !fits && !first) {
-                first = m;
-                side = hand;
-                length = l;
-            }
-        }
-    if (bad <= good)
-        return true;
-    return himc_error_set(error,
-                          "%s: player: %s of %.3g m, expected %.2f .. %.2f m: is the unit right?",
-                          p->take->file, himc_segment_name(first->segment + side), length,
-                          LEAST_LENGTH * first->usual, MOST_LENGTH * first->usual);
+    const player_measure *m = &himc_player_limbs[i / 2];
+    return himc_player_distance(p, (int)m->from + i % 2, (int)m->to + i % 2, quantile);
 }
 
 bool himc_player_check(player_points *p, himc_player *player, himc_error *error)
 {
-    if (!check_size(p, error))
-        return false;
+    int good = 0, bad = 0, first = 0;
+    for (int i = 0; i < HIMC_HANDS * PLAYER_LIMBS; i++) {
+        const player_measure *m = &himc_player_limbs[i / 2];
+        double l = limb_length(p, i, 0.5);
+        bool fits = himc_player_plausible(l, m->usual) > 0, wrong = l > 0 && !fits;
+        first = bad == 0 ? i : first;
+        good += m->tells_size && fits;
+        bad += m->tells_size && wrong;
+    }
+    // if most of the limbs are not of human size the file's unit is not the stated one
+    const player_measure *m = &himc_player_limbs[first / 2];
+    if (bad > good)
+        return himc_error_set(
+            error, "%s: player: %s of %.3g m, expected %.2f .. %.2f m: is the unit right?",
+            p->take->file, himc_segment_name(m->segment + first % 2), limb_length(p, first, 0.5),
+            LEAST_LENGTH * m->usual, MOST_LENGTH * m->usual);
     const himc_vec3 *left = p->x[POINT_SHOULDER], *right = p->x[POINT_SHOULDER + 1],
                     *left_hip = p->x[POINT_HIP], *right_hip = p->x[POINT_HIP + 1];
     double same = 0;
@@ -343,21 +324,18 @@ bool himc_player_check(player_points *p, himc_player *player, himc_error *error)
                               "%s: player: the left shoulder is over the right hip, expected "
                               "over the left one: are left and right exchanged?",
                               p->take->file);
-    for (int i = 0; i < PLAYER_LIMBS; i++)
-        for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            const player_measure *m = &himc_player_limbs[i];
-            int from = (int)m->from + hand, to = (int)m->to + hand;
-            double low = himc_player_distance(p, from, to, 0.1),
-                   high = himc_player_distance(p, from, to, 0.9);
-            if (high - low <= 0.25 * m->usual) // chosen: markers on skin move by far less
-                continue;
-            himc_player_note(
-                player,
-                "%s: its length varies from %.3f to %.3f m, a bone's does not: are the points' "
-                "names right?",
-                himc_segment_name(m->segment + hand), low, high);
-            free(p->x[to]);
-            p->x[to] = NULL;
-        }
+    for (int i = 0; i < HIMC_HANDS * PLAYER_LIMBS; i++) {
+        double low = limb_length(p, i, 0.1), high = limb_length(p, i, 0.9);
+        m = &himc_player_limbs[i / 2];
+        if (high - low <= 0.25 * m->usual) // chosen: markers on skin move by far less
+            continue;
+        himc_player_note(
+            player,
+            "%s: its length varies from %.3f to %.3f m, a bone's does not: are the points' "
+            "names right?",
+            himc_segment_name(m->segment + i % 2), low, high);
+        free(p->x[(int)m->to + i % 2]);
+        p->x[(int)m->to + i % 2] = NULL;
+    }
     return true;
 }

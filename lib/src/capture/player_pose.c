@@ -25,21 +25,11 @@
 
 #include <stdlib.h>
 
-typedef struct limb {
-    int segment; // left
-    player_point from, to;
-    bool is_hand; // rotates with the palm: all beyond the elbow
-} limb;
-
-static const limb limbs[] = {
-    {HIMC_LEFT_UPPER_ARM, POINT_SHOULDER, POINT_ELBOW, false},
-    {HIMC_LEFT_FOREARM, POINT_ELBOW, POINT_WRIST, true},
-    {HIMC_LEFT_HAND, POINT_WRIST, POINT_GRIP, true},
-    {HIMC_LEFT_STICK, POINT_GRIP, POINT_TIP, true},
-    {HIMC_LEFT_UPPER_LEG, POINT_HIP, POINT_KNEE, false},
-    {HIMC_LEFT_LOWER_LEG, POINT_KNEE, POINT_ANKLE, false},
-};
-#define LIMBS ((int)(sizeof limbs / sizeof limbs[0]))
+// true for what rotates with the palm: all beyond the elbow
+static bool is_hand(const player_measure *limb)
+{
+    return limb->segment >= HIMC_LEFT_FOREARM && limb->segment <= HIMC_LEFT_STICK;
+}
 
 // the source of a limb's rotation about its own axis
 typedef struct limb_frame {
@@ -54,8 +44,8 @@ typedef struct reader {
     const himc_skeleton *skeleton;
     himc_player *player;
     himc_quat *node; // world rotations of the file's joints, or NULL
-    limb_frame frame[LIMBS][HIMC_HANDS];
-    himc_vec3 waist; // where the held pelvis ends (m), if hips are shown
+    limb_frame frame[PLAYER_LIMBS][HIMC_HANDS];
+    himc_vec3 waist; // where the held pelvis ends (m)
     himc_vec3 hips;  // mean of the centre between the hip joints (m)
     bool has_trunk;
 } reader;
@@ -80,19 +70,8 @@ static himc_vec3 between_points(const reader *r, int from, int to, int frame)
     return himc_vec3_length(d) > 1e-9 ? himc_vec3_unit(d) : himc_vec3_make(0, 0, -1);
 }
 
-// from node to node in the file's zero pose; false if `from` is no ancestor
-static bool zero_direction(const himc_take *take, int from, int to, himc_vec3 *direction)
-{
-    himc_vec3 sum = {0, 0, 0};
-    int i = to;
-    for (; i >= 0 && i != from; i = himc_take_parent(take, i))
-        sum = himc_vec3_add(sum, himc_take_offset(take, i));
-    *direction = himc_vec3_unit(sum);
-    return i == from && i >= 0 && himc_vec3_length(sum) > 1e-6;
-}
-
 // normal of the plane in which elbow or knee bends, its length the sine of the angle; 0 elsewhere
-static himc_vec3 bend_plane(const reader *r, const limb *l, int hand, int frame)
+static himc_vec3 bend_plane(const reader *r, const player_measure *l, int hand, int frame)
 {
     bool leg = l->segment >= HIMC_LEFT_UPPER_LEG;
     int a = (leg ? POINT_HIP : POINT_SHOULDER) + hand, b = (leg ? POINT_KNEE : POINT_ELBOW) + hand,
@@ -107,35 +86,40 @@ static himc_vec3 bend_plane(const reader *r, const limb *l, int hand, int frame)
 // finds the source of a limb's rotation about its axis: a skeleton's node, else the bend plane
 static void prepare_limb(reader *r, int i, int hand)
 {
-    const limb *l = &limbs[i];
-    const int *node = r->points->node;
+    const player_measure *l = &himc_player_limbs[i];
+    const int *nodes = r->points->node;
     limb_frame *f = &r->frame[i][hand];
-    himc_vec3 *const *x = r->points->x, sum = {0, 0, 0}, zero;
+    himc_vec3 *const *x = r->points->x, sum = {0, 0, 0};
     f->shown = x[(int)l->from + hand] && x[(int)l->to + hand];
     if (!f->shown)
         return;
-    int from = node[(int)l->from + hand], to = node[(int)l->to + hand];
+    int from = nodes[(int)l->from + hand], to = nodes[(int)l->to + hand];
     // in some files stick and hand are one segment
     if (l->from == POINT_GRIP && from < 0)
-        from = node[POINT_WRIST + hand];
+        from = nodes[POINT_WRIST + hand];
     if (l->to == POINT_GRIP && to < 0)
-        to = node[POINT_TIP + hand];
-    f->node = -1;
-    if (r->node && from >= 0 && to >= 0 && zero_direction(r->points->take, from, to, &zero)) {
-        f->node = from;
+        to = nodes[POINT_TIP + hand];
+    // from node to node in the file's zero pose, if one is the other's ancestor
+    himc_vec3 zero = {0, 0, 0};
+    int node = r->node && from >= 0 ? to : -1;
+    for (; node >= 0 && node != from; node = himc_take_parent(r->points->take, node))
+        zero = himc_vec3_add(zero, himc_take_offset(r->points->take, node));
+    f->node = himc_vec3_length(zero) > 1e-6 ? node : -1;
+    if (f->node >= 0) {
+        zero = himc_vec3_unit(zero);
         f->align = smallest_rotation(himc_vec3_make(0, 0, -1), zero);
         // chosen: an arm whose direction is so much sideways is a T-pose's
-        if (l->is_hand && fabs(zero.y) > 0.5)
+        if (is_hand(l) && fabs(zero.y) > 0.5)
             f->align = himc_quat_from_limb(zero, himc_vec3_make(hand == HIMC_LEFT ? -1 : 1, 0, 0));
     }
-    for (int k = 0; k < r->points->frames && !l->is_hand; k++)
+    for (int k = 0; k < r->points->frames && !is_hand(l); k++)
         sum = himc_vec3_add(sum, bend_plane(r, l, hand, k));
     f->plane = himc_vec3_scale(himc_vec3_unit(sum), 0.1); // chosen: its weight beside a frame's own
 }
 
 static himc_quat limb_rotation(const reader *r, int i, int hand, int frame)
 {
-    const limb *l = &limbs[i];
+    const player_measure *l = &himc_player_limbs[i];
     const limb_frame *f = &r->frame[i][hand];
     himc_vec3 *const *x = r->points->x;
     himc_vec3 along = between_points(r, (int)l->from + hand, (int)l->to + hand, frame);
@@ -147,7 +131,7 @@ static himc_quat limb_rotation(const reader *r, int i, int hand, int frame)
     int beside = POINT_BESIDE + l->segment + hand;
     if (x[beside])
         return himc_quat_from_limb(along, between_points(r, (int)l->from + hand, beside, frame));
-    if (!l->is_hand)
+    if (!is_hand(l))
         return himc_quat_from_limb(along, himc_vec3_add(bend_plane(r, l, hand, frame), f->plane));
     // across the stroke: horizontal, to the left of the line from elbow to tip, since a raised
     // stick itself may point up or back
@@ -190,18 +174,6 @@ static const struct {
               {HIMC_LEFT_TOES, POINT_TOE, POINT_TOE_END},
               {HIMC_RIGHT_TOES, POINT_TOE + 1, POINT_TOE_END + 1}};
 
-// takes the segment's direction `own`, across y, to `along`, and y as near to `side` as possible
-static himc_quat frame_of(himc_vec3 own, himc_vec3 along, himc_vec3 side)
-{
-    himc_vec3 y = himc_vec3_madd(side, -himc_vec3_dot(side, along), along), left = {0, 1, 0};
-    if (himc_vec3_length(y) < 1e-6)
-        return smallest_rotation(own, along);
-    y = himc_vec3_unit(y);
-    himc_mat3 world = himc_mat3_from_axes(along, y, himc_vec3_cross(along, y));
-    himc_mat3 body = himc_mat3_from_axes(own, left, himc_vec3_cross(own, left));
-    return himc_quat_mul(himc_quat_from_mat3(world), himc_quat_conj(himc_quat_from_mat3(body)));
-}
-
 static bool other_rotation(const reader *r, int segment, int frame, himc_quat *q)
 {
     himc_vec3 *const *x = r->points->x;
@@ -226,26 +198,21 @@ static bool other_rotation(const reader *r, int segment, int frame, himc_quat *q
         himc_vec3 toes = r->skeleton->segment[segment + 2].origin;
         own = himc_vec3_unit(himc_vec3_make(toes.x, 0, toes.z));
     }
-    *q = frame_of(own, between_points(r, from, to, frame), between_points(r, from, beside, frame));
+    // `own`, across y, goes along the line, and y as near to the marker's side as possible
+    himc_vec3 along = between_points(r, from, to, frame), left = {0, 1, 0},
+              side = between_points(r, from, beside, frame),
+              y = himc_vec3_madd(side, -himc_vec3_dot(side, along), along);
+    *q = smallest_rotation(own, along);
+    if (himc_vec3_length(y) < 1e-6)
+        return true;
+    y = himc_vec3_unit(y);
+    himc_mat3 world = himc_mat3_from_axes(along, y, himc_vec3_cross(along, y));
+    himc_mat3 body = himc_mat3_from_axes(own, left, himc_vec3_cross(own, left));
+    *q = himc_quat_mul(himc_quat_from_mat3(world), himc_quat_conj(himc_quat_from_mat3(body)));
     return true;
 }
 
-// a segment in the world; false if the take does not show it
-static bool segment_rotation(const reader *r, int segment, int frame, himc_quat *q)
-{
-    if (segment == HIMC_TRUNK)
-        return trunk_rotation(r, frame, q);
-    for (int i = 0; i < LIMBS; i++) {
-        int hand = segment - limbs[i].segment;
-        if (hand != HIMC_LEFT && hand != HIMC_RIGHT)
-            continue;
-        if (r->frame[i][hand].shown)
-            *q = limb_rotation(r, i, hand, frame);
-        return r->frame[i][hand].shown;
-    }
-    return other_rotation(r, segment, frame, q);
-}
-
+// the world rotations of the segments, and from them the pose
 static void read_frame(reader *r, int frame)
 {
     himc_quat world[HIMC_SEGMENTS] = {himc_quat_identity()};
@@ -258,7 +225,16 @@ static void read_frame(reader *r, int frame)
     }
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         himc_quat parent = world[r->skeleton->segment[i].parent], q;
-        bool shown = segment_rotation(r, i, frame, &q);
+        int limb = 0; // a left side's segment is even
+        while (limb < PLAYER_LIMBS && i / 2 != himc_player_limbs[limb].segment / 2)
+            limb++;
+        bool shown = false;
+        if (i == HIMC_TRUNK)
+            shown = trunk_rotation(r, frame, &q);
+        else if (limb == PLAYER_LIMBS)
+            shown = other_rotation(r, i, frame, &q);
+        else if ((shown = r->frame[limb][i % 2].shown))
+            q = limb_rotation(r, limb, i % 2, frame);
         r->player->known[i - 1] = shown;
         pose->joint[i - 1] =
             shown ? himc_quat_mul(himc_quat_conj(parent), q) : r->player->mean.joint[i - 1];
@@ -318,20 +294,17 @@ static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand ha
 }
 
 // fits the arms that are wholly shown
-static void fit_arms(himc_player *player, const player_points *points,
-                     const himc_skeleton *skeleton)
+static void fit_arms(const reader *r)
 {
-    himc_vec3 waist = himc_vec3_add(player->hips, skeleton->segment[HIMC_TRUNK].origin);
+    himc_player *player = r->player;
     for (int i = 0; i < HIMC_HANDS && player->placed && !player->walks; i++) {
         himc_hand hand = (himc_hand)i;
-        bool shown = true;
-        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
-            shown = shown && player->known[himc_arm_joint(hand, k)];
-        for (int frame = 0; shown && frame < points->frames; frame++) {
+        bool shown = himc_player_known_arm(player, hand) == HIMC_ARM_JOINTS;
+        for (int frame = 0; shown && frame < r->points->frames; frame++) {
             himc_vec3 center[HIMC_ARM_JOINTS + 1];
             for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
-                center[k] = points->x[POINT_SHOULDER + HIMC_HANDS * k + i][frame];
-            fit_arm(skeleton, waist, hand, center, &player->pose[frame]);
+                center[k] = r->points->x[POINT_SHOULDER + HIMC_HANDS * k + i][frame];
+            fit_arm(r->skeleton, r->waist, hand, center, &player->pose[frame]);
         }
     }
 }
@@ -355,9 +328,13 @@ static himc_quat mean_rotation(const himc_pose *pose, int frames, int j)
 }
 
 bool himc_player_read_poses(himc_player *player, const player_points *points,
-                            const himc_skeleton *skeleton, const himc_vec3 *waist)
+                            const himc_skeleton *skeleton)
 {
-    reader r = {.points = points, .skeleton = skeleton, .player = player};
+    const himc_vec3 *hips = points->x[POINT_HIPS];
+    reader r = {.points = points,
+                .skeleton = skeleton,
+                .player = player,
+                .waist = himc_vec3_add(player->hips, skeleton->segment[HIMC_TRUNK].origin)};
     bool skeletal = himc_take_has_skeleton(points->take);
     if (skeletal)
         r.node = calloc((size_t)himc_take_points(points->take), sizeof *r.node);
@@ -368,17 +345,15 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
     }
     // a shoulder that is not seen is taken at the neck, for the direction across
     int across = !!points->x[POINT_SHOULDER] + !!points->x[POINT_SHOULDER + 1];
-    r.has_trunk = waist && across + !!points->x[POINT_NECK] >= 2 && across > 0;
-    if (waist)
-        r.waist = *waist;
-    for (int i = 0; waist && i < points->frames; i++)
-        r.hips = himc_vec3_madd(r.hips, 1.0 / points->frames, points->x[POINT_HIPS][i]);
-    for (int i = 0; i < LIMBS; i++)
+    r.has_trunk = hips && across + !!points->x[POINT_NECK] >= 2 && across > 0;
+    for (int i = 0; hips && i < points->frames; i++)
+        r.hips = himc_vec3_madd(r.hips, 1.0 / points->frames, hips[i]);
+    for (int i = 0; i < PLAYER_LIMBS; i++)
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             prepare_limb(&r, i, hand);
     for (int frame = 0; frame < points->frames; frame++)
         read_frame(&r, frame);
-    fit_arms(player, points, skeleton);
+    fit_arms(&r);
     int known = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (player->known[j])

@@ -128,28 +128,6 @@ static himc_vec3 on_segment(const himc_body_state *state, int i, himc_vec3 x)
     return himc_vec3_add(state->origin[i], himc_mat3_apply(&state->rotation[i], x));
 }
 
-static void fill_frame(himc_take *take, int index, const himc_skeleton *skeleton, const frame *f)
-{
-    himc_pose pose;
-    himc_body_state state;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        pose.joint[j] = himc_quat_unit((himc_quat){f->q[j][0], f->q[j][1], f->q[j][2], f->q[j][3]});
-    himc_pose_to_state(skeleton, &pose, NULL, &state);
-    himc_vec3 *x = himc_take_at(take, index, 0);
-    memcpy(x, state.origin, sizeof state.origin);
-    memcpy(x + HIMC_SEGMENTS, state.tip, sizeof state.tip);
-    for (int i = 0; i < ENDS; i++)
-        x[HIMC_SEGMENTS + HIMC_HANDS + i] = on_segment(&state, ends[i], far_end(skeleton, ends[i]));
-    if (take->rotations) {
-        himc_quat *rotation = take->rotations + (size_t)index * POINTS;
-        for (int i = 0; i < POINTS; i++)
-            rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
-    } else {
-        for (int i = 0; i < HIMC_SEGMENTS; i++)
-            x[POINTS + i] = on_segment(&state, i, himc_vec3_make(0, BESIDE, 0));
-    }
-}
-
 himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
 {
     himc_take *take = calloc(1, sizeof *take);
@@ -161,31 +139,46 @@ himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
     snprintf(take->format, sizeof take->format, "recording");
     const char *dot = strrchr(r->path, '.');
     bool has_skeleton = dot && strcasecmp(dot, ".bvh") == 0;
-    if (!himc_take_allocate(take, r->rate, r->count, has_skeleton ? POINTS : MARKERS, has_skeleton,
-                            error)) {
+    int points = has_skeleton ? POINTS : MARKERS;
+    if (!himc_take_allocate(take, r->rate, r->count, points, has_skeleton, error)) {
         himc_take_free(take);
         return NULL;
     }
-    for (int i = 0; i < POINTS; i++)
-        himc_take_set_name(take, i, names[i], strlen(names[i]));
-    for (int i = 0; has_skeleton && i < POINTS; i++) {
-        int tip = i - HIMC_SEGMENTS, end = tip - HIMC_HANDS;
+    for (int i = 0; i < points; i++) {
+        char name[32];
+        int side = i - POINTS, tip = i - HIMC_SEGMENTS, end = tip - HIMC_HANDS;
+        int n = snprintf(name, sizeof name, "%s%s", names[side >= 0 ? side : i],
+                         side >= 0 ? "_side" : "");
+        himc_take_set_name(take, i, name, (size_t)n);
+        if (!has_skeleton)
+            continue;
         take->parents[i] = end >= 0   ? ends[end]
                            : tip >= 0 ? HIMC_LEFT_STICK + tip
                                       : r->skeleton.segment[i].parent;
-        take->offsets[i] = end >= 0   ? far_end(&r->skeleton, ends[end])
+        take->offsets[i] = i == 0     ? himc_vec3_make(0, 0, 0)
+                           : end >= 0 ? far_end(&r->skeleton, ends[end])
                            : tip >= 0 ? r->skeleton.tip
                                       : r->skeleton.segment[i].origin;
     }
-    if (has_skeleton)
-        take->offsets[0] = himc_vec3_make(0, 0, 0);
-    for (int i = 0; !has_skeleton && i < HIMC_SEGMENTS; i++) {
-        char side[32];
-        int n = snprintf(side, sizeof side, "%s_side", names[i]);
-        himc_take_set_name(take, POINTS + i, side, (size_t)n);
+    for (int index = 0; index < r->count; index++) {
+        himc_pose pose;
+        himc_body_state state;
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            const float *q = r->frames[index].q[j];
+            pose.joint[j] = himc_quat_unit((himc_quat){q[0], q[1], q[2], q[3]});
+        }
+        himc_pose_to_state(&r->skeleton, &pose, NULL, &state);
+        himc_vec3 *x = himc_take_at(take, index, 0);
+        memcpy(x, state.origin, sizeof state.origin);
+        memcpy(x + HIMC_SEGMENTS, state.tip, sizeof state.tip);
+        for (int i = 0; i < ENDS; i++)
+            x[POINTS - ENDS + i] = on_segment(&state, ends[i], far_end(&r->skeleton, ends[i]));
+        for (int i = 0; i < HIMC_SEGMENTS && !has_skeleton; i++)
+            x[POINTS + i] = on_segment(&state, i, himc_vec3_make(0, BESIDE, 0));
+        himc_quat *rotation = has_skeleton ? take->rotations + (size_t)index * POINTS : NULL;
+        for (int i = 0; i < POINTS && has_skeleton; i++)
+            rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();
     }
-    for (int i = 0; i < r->count; i++)
-        fill_frame(take, i, &r->skeleton, &r->frames[i]);
     return take;
 }
 

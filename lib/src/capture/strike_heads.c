@@ -187,40 +187,32 @@ static int seeds_on(const seeds *s, int head)
     return n;
 }
 
-// a good part of the seeds off the heads so far is another drum's if most of them agree on a plane
-static int find_heads(himc_fall *falls, int count, const seeds *s,
-                      himc_strike_head heads[HIMC_STRIKE_HEADS])
-{
-    int n = 0;
-    for (; n < HIMC_STRIKE_HEADS; n++) {
-        int rest = seeds_on(s, -1);
-        if (rest == 0 || (n > 0 && rest <= 0.2 * s->count))
-            break;
-        heads[n] = best_plane(s);
-        settle(&heads[n], falls, count, n);
-        settle_at_rest(&heads[n], falls, count, n);
-        int on = seeds_on(s, n);
-        if (n > 0 && (on < LEAST_SEEDS || on < 0.6 * rest)) {
-            for (int i = 0; i < count; i++)
-                falls[i].head = falls[i].head == n ? -1 : falls[i].head;
-            break;
-        }
-    }
-    return n;
-}
-
 int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_STRIKE_HEADS])
 {
     double *speeds = calloc((size_t)count + 1, sizeof *speeds);
     seeds s = {calloc((size_t)count + 1, sizeof(himc_fall *)), 0};
-    int n = -1;
+    bool memory = speeds && s.fall;
+    int n = 0;
     for (int i = 0; i < count; i++)
         falls[i].head = -1;
-    if (speeds && s.fall) {
+    if (memory)
         find_seeds(falls, count, dividing_speed(falls, count, speeds), &s);
-        if (s.count < LEAST_SEEDS)
-            find_seeds(falls, count, 0, &s);
-        n = find_heads(falls, count, &s, heads);
+    if (memory && s.count < LEAST_SEEDS)
+        find_seeds(falls, count, 0, &s);
+    // a good part of the seeds off the heads so far is another drum's if most of them agree on a
+    // plane
+    for (int rest = seeds_on(&s, -1); n < HIMC_STRIKE_HEADS; n++, rest = seeds_on(&s, -1)) {
+        if (rest == 0 || (n > 0 && rest <= 0.2 * s.count))
+            break;
+        heads[n] = best_plane(&s);
+        settle(&heads[n], falls, count, n);
+        settle_at_rest(&heads[n], falls, count, n);
+        int on = seeds_on(&s, n);
+        bool other = n == 0 || (on >= LEAST_SEEDS && on >= 0.6 * rest);
+        for (int i = 0; i < count && !other; i++)
+            falls[i].head = falls[i].head == n ? -1 : falls[i].head;
+        if (!other)
+            break;
     }
     // the most struck first
     for (int i = 1; i < n; i++)
@@ -234,5 +226,5 @@ int himc_strike_heads(himc_fall *falls, int count, himc_strike_head heads[HIMC_S
         }
     free(speeds);
     free((void *)(uintptr_t)s.fall);
-    return n;
+    return memory ? n : -1;
 }

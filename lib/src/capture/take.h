@@ -106,6 +106,9 @@ typedef struct himc_take_gap {
     int begin, end;
 } himc_take_gap;
 
+/// The point's first gap in the frames from `from` on; it begins behind the last frame if there is
+/// none.
+himc_take_gap himc_take_next_gap(const himc_take *take, int point, int from);
 /// Turns runs of exact zeros to which a trajectory jumps into gaps, with a note (marker files, in
 /// the file's unit).
 void himc_take_drop_zeros(himc_take *take);
@@ -116,6 +119,16 @@ void himc_take_drop_spikes(himc_take *take);
 /// gap.
 int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
                    himc_take_gap *gap);
+
+/// a + b u + c u^2, u in frames from `origin`.
+typedef struct himc_parabola {
+    himc_vec3 a, b, c;
+    int origin;
+} himc_parabola;
+
+/// Least squares over n samples origin, origin + step (1 or -1), ...; fewer than 3 give a line or a
+/// constant.
+himc_parabola himc_take_parabola(const himc_vec3 *x, int origin, int step, int n);
 
 // Stick tips and strikes: take_tips.c, take_strikes.c.
 

@@ -75,25 +75,6 @@ double himc_take_unit(const char *name)
     return 0;
 }
 
-// the longest path along the bones between any two nodes (file units); -1 without memory
-static double skeleton_size(const himc_take *take)
-{
-    double *deepest = calloc((size_t)take->points, sizeof *deepest), size = 0;
-    if (!deepest)
-        return -1;
-    // children come after parents, so backwards every branch is complete before it joins
-    for (int i = take->points - 1; i > 0; i--) {
-        int parent = take->parents[i];
-        if (parent < 0)
-            continue;
-        double down = deepest[i] + himc_vec3_length(take->offsets[i]);
-        size = fmax(size, deepest[parent] + down);
-        deepest[parent] = fmax(deepest[parent], down);
-    }
-    free(deepest);
-    return size;
-}
-
 static double guess_unit(double size, double least, double most, int candidates)
 {
     for (int i = 0; i < candidates; i++)
@@ -124,32 +105,6 @@ static double box_size(const box *b)
     return b->high.x >= b->low.x ? himc_vec3_length(himc_vec3_sub(b->high, b->low)) : 0;
 }
 
-// in file units
-typedef struct sizes {
-    double typical; // median over the frames of the diagonal of the box around the points
-    double all;     // diagonal of the box around all frames
-    double far;     // largest coordinate
-} sizes;
-
-static sizes marker_sizes(const himc_take *take)
-{
-    double spread[SAMPLED + 1];
-    int count = 0;
-    box whole = box_empty();
-    for (int frame = 0; frame < take->frames; frame += sample_step(take)) {
-        box one = box_empty();
-        for (int i = 0; i < take->points; i++) {
-            box_add(&one, *himc_take_at(take, frame, i));
-            box_add(&whole, *himc_take_at(take, frame, i));
-        }
-        spread[count++] = box_size(&one);
-    }
-    qsort(spread, (size_t)count, sizeof spread[0], himc_order_doubles);
-    double low = fmax(-whole.low.x, fmax(-whole.low.y, -whole.low.z));
-    double high = fmax(whole.high.x, fmax(whole.high.y, whole.high.z));
-    return (sizes){spread[count / 2], box_size(&whole), fmax(low, high)};
-}
-
 static int named(const himc_take *take, int point, const char *const *words, char rest[TAKE_NAME])
 {
     char plain[TAKE_NAME];
@@ -170,9 +125,20 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
 {
     static const char *const words[] = {"foot", "toe", "base", "end",   "ankle", "knee",
                                         "leg",  "up",  "low",  "lower", NULL};
-    double size = skeleton_size(take);
-    if (size < 0)
+    // the longest path along the bones between any two nodes (file units): children come after
+    // parents, so backwards every branch is complete before it joins
+    double *deepest = calloc((size_t)take->points, sizeof *deepest), size = 0;
+    if (!deepest)
         return himc_error_set(error, "%s: no memory", take->file);
+    for (int i = take->points - 1; i > 0; i--) {
+        int parent = take->parents[i];
+        if (parent < 0)
+            continue;
+        double down = deepest[i] + himc_vec3_length(take->offsets[i]);
+        size = fmax(size, deepest[parent] + down);
+        deepest[parent] = fmax(deepest[parent], down);
+    }
+    free(deepest);
     bool legs = false;
     for (int i = 0; i < take->points && !legs; i++) {
         char rest[TAKE_NAME];
@@ -197,19 +163,35 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
 
 static bool settle_markers(himc_take *take, double *unit, himc_error *error)
 {
-    sizes s = marker_sizes(take);
+    // diagonals of the box around the points: the median over the frames, and that of the whole
+    // take; and the largest coordinate (file units)
+    double spread[SAMPLED + 1];
+    int count = 0;
+    box whole = box_empty();
+    for (int frame = 0; frame < take->frames; frame += sample_step(take)) {
+        box one = box_empty();
+        for (int i = 0; i < take->points; i++)
+            box_add(&one, *himc_take_at(take, frame, i));
+        box_add(&whole, one.low);
+        box_add(&whole, one.high);
+        spread[count++] = box_size(&one);
+    }
+    qsort(spread, (size_t)count, sizeof spread[0], himc_order_doubles);
+    double typical = spread[count / 2], all = box_size(&whole);
+    double far = fmax(fmax(-whole.low.x, fmax(-whole.low.y, -whole.low.z)),
+                      fmax(whole.high.x, fmax(whole.high.y, whole.high.z)));
     double said = take->file_unit, in = said > 0 ? said : 1;
     // chosen: a tip that plays moves by more than 2 cm, players and drums are less than 8 m apart
-    bool small = s.all * said < 0.02 && s.all > 0 && take->frames > 1;
-    bool fits = said > 0 && s.typical * said <= 8 && !small;
+    bool small = all * said < 0.02 && all > 0 && take->frames > 1;
+    bool fits = said > 0 && typical * said <= 8 && !small;
     char text[32], other[32];
     *unit = said;
     if (!fits) {
         // the metric unit that makes the points a player's size, up to 100 m from a room's origin;
         // chosen: a spread below 5 % of the whole is that of one marker
-        double size = s.typical > 0.05 * s.all ? s.typical : s.all;
+        double size = typical > 0.05 * all ? typical : all;
         *unit = guess_unit(size, LEAST_SPREAD, MOST_SPREAD, METRIC);
-        *unit = s.far * *unit <= 100 ? *unit : 0;
+        *unit = far * *unit <= 100 ? *unit : 0;
     }
     // one marker may hardly move: a small size that no other unit explains is accepted
     if (*unit == 0 && said > 0 && small) {
@@ -220,13 +202,13 @@ static bool settle_markers(himc_take *take, double *unit, himc_error *error)
         return himc_error_set(error,
                               "%s: the points are %.4g m apart if the unit is %s, no metric unit "
                               "makes that a player's size, expected %g .. %g m",
-                              take->file, fmax(s.typical, small ? s.all : 0) * in,
-                              unit_name(in, text), LEAST_SPREAD, MOST_SPREAD);
+                              take->file, fmax(typical, small ? all : 0) * in, unit_name(in, text),
+                              LEAST_SPREAD, MOST_SPREAD);
     snprintf(take->units_text, sizeof take->units_text, "%s, %s", unit_name(*unit, text),
              fits ? "stated by the file" : "guessed from the distances between points");
     if (said > 0 && !fits)
         himc_take_note(take, "units: read as %s, because in %s the points are %.4g m apart",
-                       unit_name(*unit, text), unit_name(said, other), s.typical * said);
+                       unit_name(*unit, text), unit_name(said, other), typical * said);
     return true;
 }
 
@@ -343,16 +325,6 @@ static himc_vec3 find_up(himc_take *take, himc_up asked)
     return take->format_up;
 }
 
-// the rotation that makes `up` z, and x what is forward: to the screen's right if that is known
-static himc_mat3 upright_axes(himc_vec3 up, himc_vec3 right)
-{
-    himc_vec3 x = right;
-    if (himc_vec3_length(right) == 0 || himc_vec3_dot(right, up) != 0)
-        x = up.x == 0 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
-    himc_vec3 y = himc_vec3_cross(up, x);
-    return (himc_mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
-}
-
 // the upright axes, rotated about z so that a horizontal direction in them becomes +y
 static himc_mat3 rotate_to_left(const himc_mat3 *upright, himc_vec3 d, bool quarters)
 {
@@ -371,12 +343,12 @@ static bool is_long_enough(himc_vec3 d)
     return hypot(d.x, d.y) > 0.03;
 }
 
-// the body's left side in the upright frame: mean over the take, or at its start if the player
-// turns round
-static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_vec3 *left)
+// the upright axes, rotated so that the body's left side is +y, and how it is known
+static himc_mat3 find_axes(const himc_take *take, const himc_take_options *options,
+                           const himc_mat3 *upright, const char **heading)
 {
     pair pairs[MOST_PAIRS];
-    himc_vec3 sum = {0, 0, 0}, first = {0, 0, 0}, d;
+    himc_vec3 sum = {0, 0, 0}, first = {0, 0, 0}, left, d = {0, 0, 0};
     double lengths = 0;
     int count = find_pairs(take, pairs, MOST_PAIRS);
     for (int frame = 0; frame < take->frames && count; frame += sample_step(take)) {
@@ -391,92 +363,62 @@ static bool left_of_body(const himc_take *take, const himc_mat3 *upright, himc_v
         sum = himc_vec3_add(sum, now);
         lengths += hypot(now.x, now.y);
     }
-    *left = hypot(sum.x, sum.y) > 0.5 * lengths ? sum : first; // chosen
-    return is_long_enough(*left);
-}
-
-// the left side by the sticks: from the right tip to the left one, or a quarter turn from the
-// direction of the arm
-static bool left_of_tips(const himc_take *take, const himc_take_options *options,
-                         const himc_mat3 *upright, himc_vec3 *left, const char **reason)
-{
+    // the mean over the take, or at its start if the player turns round
+    left = hypot(sum.x, sum.y) > 0.5 * lengths ? sum : first; // chosen
+    *heading = "rotated so that the body faces along x";
+    if (is_long_enough(left))
+        return rotate_to_left(upright, left, false);
+    // by the sticks: from the right tip to the left one, or a quarter turn from the arm's direction
     int l = himc_take_find_tip(take, HIMC_LEFT, options),
-        r = himc_take_find_tip(take, HIMC_RIGHT, options);
+        r = himc_take_find_tip(take, HIMC_RIGHT, options), tip = l >= 0 ? l : r;
     char rest[TAKE_NAME];
-    himc_vec3 d;
-    if (l >= 0 && r >= 0 && mean_difference(take, r, l, &d)) {
-        *left = himc_mat3_apply(upright, d);
-        *reason = "rotated so that the left tip is left of the right one";
-        return is_long_enough(*left);
-    }
-    for (int i = 0; i < take->points && (l >= 0 || r >= 0); i++)
-        if (named(take, i, shoulder_words, rest) >= 0 &&
-            mean_difference(take, i, l >= 0 ? l : r, &d)) {
-            d = himc_mat3_apply(upright, d);
-            *left = himc_vec3_make(-d.y, d.x, 0);
-            *reason = "rotated by quarter turns so that the tip is before the shoulder";
-            return is_long_enough(*left);
-        }
-    return false;
+    bool both = l >= 0 && r >= 0 && mean_difference(take, r, l, &d), found = both;
+    for (int i = 0; i < take->points && tip >= 0 && !found; i++)
+        found = named(take, i, shoulder_words, rest) >= 0 && mean_difference(take, i, tip, &d);
+    d = himc_mat3_apply(upright, d);
+    left = both ? d : himc_vec3_make(-d.y, d.x, 0);
+    *heading = both ? "rotated so that the left tip is left of the right one"
+                    : "rotated by quarter turns so that the tip is before the shoulder";
+    if (found && is_long_enough(left))
+        return rotate_to_left(upright, left, true);
+    *heading = "heading as in the file";
+    return *upright;
 }
 
-// the left side in the zero pose: positions are sums of offsets
-static bool left_of_rest(const himc_take *take, const himc_mat3 *upright, himc_vec3 *left)
-{
-    pair pairs[MOST_PAIRS];
-    himc_vec3 sum = {0, 0, 0};
-    int count = find_pairs(take, pairs, MOST_PAIRS);
-    for (int i = 0; i < count; i++) {
-        for (int j = pairs[i].left; j >= 0; j = take->parents[j])
-            sum = himc_vec3_add(sum, take->offsets[j]);
-        for (int j = pairs[i].right; j >= 0; j = take->parents[j])
-            sum = himc_vec3_sub(sum, take->offsets[j]);
-    }
-    *left = himc_mat3_apply(upright, sum);
-    return is_long_enough(*left);
-}
-
-// rotates the points by `a`, and the skeleton's zero pose by `b`
-static void rotate(himc_take *take, const himc_mat3 *a, const himc_mat3 *b)
+// rotates the points by `a`, and the skeleton's zero pose by what brings its left side, if it has
+// one, to the left of the upright frame
+static void rotate(himc_take *take, const himc_mat3 *upright, const himc_mat3 *a)
 {
     size_t all = (size_t)take->frames * (size_t)take->points;
     for (size_t i = 0; i < all; i++)
         take->x[i] = himc_mat3_apply(a, take->x[i]);
     if (!take->parents)
         return;
-    himc_quat qa = himc_quat_from_mat3(*a), qb = himc_quat_from_mat3(*b), back = himc_quat_conj(qb);
+    // positions in the zero pose are sums of offsets
+    pair pairs[MOST_PAIRS];
+    himc_vec3 left = {0, 0, 0};
+    int count = find_pairs(take, pairs, MOST_PAIRS);
+    for (int i = 0; i < count; i++) {
+        for (int j = pairs[i].left; j >= 0; j = take->parents[j])
+            left = himc_vec3_add(left, take->offsets[j]);
+        for (int j = pairs[i].right; j >= 0; j = take->parents[j])
+            left = himc_vec3_sub(left, take->offsets[j]);
+    }
+    left = himc_mat3_apply(upright, left);
+    himc_mat3 b = is_long_enough(left) ? rotate_to_left(upright, left, false) : *a;
+    himc_quat qa = himc_quat_from_mat3(*a), qb = himc_quat_from_mat3(b), back = himc_quat_conj(qb);
     for (int i = 0; i < take->points; i++)
-        take->offsets[i] = himc_mat3_apply(b, take->offsets[i]);
-    for (int frame = 0; frame < take->frames; frame++) {
-        himc_quat *q = take->rotations + (size_t)frame * (size_t)take->points;
-        for (int i = 0; i < take->points; i++)
-            q[i] = himc_quat_mul(himc_quat_mul(take->parents[i] < 0 ? qa : qb, q[i]), back);
+        take->offsets[i] = himc_mat3_apply(&b, take->offsets[i]);
+    for (size_t i = 0; i < all; i++) {
+        bool root = take->parents[i % (size_t)take->points] < 0;
+        himc_quat *q = &take->rotations[i];
+        *q = himc_quat_mul(himc_quat_mul(root ? qa : qb, *q), back);
     }
 }
 
 static int by_name(const void *a, const void *b)
 {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
-// points with equal names: himc_take_find gives the first; false without memory
-static bool note_names(himc_take *take, himc_error *error)
-{
-    size_t count = (size_t)take->points;
-    const char **name = malloc(count * sizeof *name);
-    if (!name)
-        return himc_error_set(error, "%s: no memory for %zu names", take->file, count);
-    for (size_t i = 0; i < count; i++)
-        name[i] = take->names[i];
-    qsort(name, count, sizeof *name, by_name);
-    for (size_t i = 1; i < count; i++)
-        if (strcmp(name[i - 1], name[i]) == 0) {
-            himc_take_note(take, "names: more than one point is called %s, the first is read",
-                           name[i]);
-            break;
-        }
-    free(name);
-    return true;
 }
 
 bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_error *error)
@@ -486,26 +428,34 @@ bool himc_take_settle(himc_take *take, const himc_take_options *options, himc_er
     if (!settle_units(take, options, error))
         return false;
     himc_take_drop_spikes(take);
-    if (!note_names(take, error))
-        return false;
+    const char **name = malloc((size_t)take->points * sizeof *name);
+    if (!name)
+        return himc_error_set(error, "%s: no memory for %d names", take->file, take->points);
+    for (int i = 0; i < take->points; i++)
+        name[i] = take->names[i];
+    qsort(name, (size_t)take->points, sizeof *name, by_name);
+    int twice = 1;
+    while (twice < take->points && strcmp(name[twice - 1], name[twice]) != 0)
+        twice++;
+    if (twice < take->points) // himc_take_find gives the first
+        himc_take_note(take, "names: more than one point is called %s, the first is read",
+                       name[twice]);
+    free(name);
     if (take->rate < 40) // chosen: a contact of some 7 ms is less than a third of a frame
         himc_take_note(take, "rate: at %g Hz strikes are blurred, some may be missed or misplaced",
                        take->rate);
-    himc_vec3 up = find_up(take, options->up), left;
-    himc_mat3 upright = upright_axes(up, take->file_right), a = upright;
-    const char *heading = "heading as in the file";
-    if (left_of_body(take, &upright, &left)) {
-        a = rotate_to_left(&upright, left, false);
-        heading = "rotated so that the body faces along x";
-    } else if (left_of_tips(take, options, &upright, &left, &heading)) {
-        a = rotate_to_left(&upright, left, true);
-    }
-    himc_mat3 b = a;
-    if (take->parents && left_of_rest(take, &upright, &left))
-        b = rotate_to_left(&upright, left, false);
-    rotate(take, &a, &b);
-    char axis = fabs(up.x) > 0.5 ? 'x' : fabs(up.y) > 0.5 ? 'y' : 'z', reason[128];
-    snprintf(reason, sizeof reason, "%.127s", take->axes_text);
+    himc_vec3 up = find_up(take, options->up);
+    // x is what is forward: to the screen's right if that is known
+    himc_vec3 x = take->file_right;
+    if (himc_vec3_length(x) == 0 || himc_vec3_dot(x, up) != 0)
+        x = up.x == 0 ? himc_vec3_make(1, 0, 0) : himc_vec3_make(0, 1, 0);
+    himc_vec3 y = himc_vec3_cross(up, x);
+    himc_mat3 upright = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
+    const char *heading;
+    himc_mat3 a = find_axes(take, options, &upright, &heading);
+    rotate(take, &upright, &a);
+    char axis = fabs(up.x) > 0.5 ? 'x' : fabs(up.y) > 0.5 ? 'y' : 'z', reason[112];
+    snprintf(reason, sizeof reason, "%.111s", take->axes_text);
     snprintf(take->axes_text, sizeof take->axes_text, "%s%c up, %s; %s",
              up.x + up.y + up.z < 0 ? "-" : "", axis, reason, heading);
     return true;

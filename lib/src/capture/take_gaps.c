@@ -104,78 +104,90 @@ void himc_take_drop_spikes(himc_take *take)
             frames, points, FASTEST, name, frame);
 }
 
-static himc_take_gap next_gap(const himc_take *take, int point, int from)
+himc_take_gap himc_take_next_gap(const himc_take *take, int point, int from)
 {
     while (from < take->frames && himc_vec3_finite(*himc_take_at(take, from, point)))
         from++;
     return (himc_take_gap){from, next_seen(take, point, from)};
 }
 
-// slope at the sample `edge`, from it and its neighbours in the direction `step`; false with fewer
-// than three
-static bool edge_slope(const himc_vec3 *x, int frames, int edge, int step, double rate,
-                       himc_vec3 *slope)
+himc_parabola himc_take_parabola(const himc_vec3 *x, int origin, int step, int n)
+{
+    himc_vec3 zero = {0, 0, 0}, b[3] = {zero, zero, zero};
+    double s[5] = {0, 0, 0, 0, 0};
+    himc_parabola p = {x[origin], zero, zero, origin};
+    if (n < 3) {
+        if (n == 2)
+            p.b = himc_vec3_scale(himc_vec3_sub(x[origin + step], x[origin]), step);
+        return p;
+    }
+    for (int k = 0; k < n; k++) {
+        // differences from the origin keep the sums small
+        double u = step * k, power[5] = {1, u, u * u, u * u * u, u * u * u * u};
+        himc_vec3 d = himc_vec3_sub(x[origin + step * k], x[origin]);
+        for (int j = 0; j < 5; j++)
+            s[j] += power[j];
+        for (int j = 0; j < 3; j++)
+            b[j] = himc_vec3_madd(b[j], power[j], d);
+    }
+    // Cramer's rule on the normal equations, whose matrix is symmetric
+    double m[3][3] = {
+        {s[2] * s[4] - s[3] * s[3], s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] * s[2]},
+        {s[2] * s[3] - s[1] * s[4], s[0] * s[4] - s[2] * s[2], s[1] * s[2] - s[0] * s[3]},
+        {s[1] * s[3] - s[2] * s[2], s[1] * s[2] - s[0] * s[3], s[0] * s[2] - s[1] * s[1]}};
+    double det = s[0] * m[0][0] - s[1] * (s[1] * s[4] - s[2] * s[3]) + s[2] * m[0][2];
+    himc_vec3 c[3] = {zero, zero, zero};
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            c[i] = himc_vec3_madd(c[i], m[i][j], b[j]);
+        c[i] = himc_vec3_make(c[i].x / det, c[i].y / det, c[i].z / det);
+    }
+    p.a = himc_vec3_add(p.a, c[0]);
+    p.b = c[1];
+    p.c = c[2];
+    return p;
+}
+
+// slope at the sample `edge`, from it and its neighbours in the direction `step`; `chord` with
+// fewer than three
+static himc_vec3 edge_slope(const himc_vec3 *x, int frames, int edge, int step, double rate,
+                            himc_vec3 chord)
 {
     // chosen: the parabola is short beside a stroke of 0.2 s
     int most = (int)fmax(3, floor(0.02 * rate)), n = 0;
-    double s[5] = {0, 0, 0, 0, 0};
-    himc_vec3 b[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    for (int i = edge; n < most && i >= 0 && i < frames && himc_vec3_finite(x[i]); i += step, n++) {
-        // differences from the edge keep the sums small; u counts frames
-        himc_vec3 d = himc_vec3_sub(x[i], x[edge]);
-        double u = step * n, p = 1;
-        for (int k = 0; k < 5; k++, p *= u)
-            s[k] += p;
-        for (int k = 0, m = 1; k < 3; k++, m *= step * n)
-            b[k] = himc_vec3_madd(b[k], m, d);
-    }
-    if (n < 3)
-        return false;
-    // the slope of a + c u + e u^2 at u = 0 by Cramer's rule on the normal equations
-    double det = s[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (s[1] * s[4] - s[2] * s[3]) +
-                 s[2] * (s[1] * s[3] - s[2] * s[2]);
-    himc_vec3 c = himc_vec3_scale(b[0], s[2] * s[3] - s[1] * s[4]);
-    c = himc_vec3_madd(c, s[0] * s[4] - s[2] * s[2], b[1]);
-    c = himc_vec3_madd(c, s[1] * s[2] - s[0] * s[3], b[2]);
-    *slope = himc_vec3_scale(c, 1 / det);
-    return true;
-}
-
-static void bridge(himc_vec3 *x, int frames, himc_take_gap g, double rate)
-{
-    int a = g.begin - 1, b = g.end;
-    if (a < 0 || b == frames) { // held at the take's ends
-        for (int i = g.begin; i < g.end; i++)
-            x[i] = x[a < 0 ? b : a];
-        return;
-    }
-    double h = b - a;
-    himc_vec3 xa = x[a], xb = x[b], chord = himc_vec3_scale(himc_vec3_sub(xb, xa), 1 / h),
-              va = chord, vb = chord;
-    edge_slope(x, frames, a, -1, rate, &va);
-    edge_slope(x, frames, b, 1, rate, &vb);
-    for (int i = g.begin; i < g.end; i++) {
-        double u = (i - a) / h, w = 1 - u;
-        himc_vec3 y = himc_vec3_scale(xa, w * w * (1 + 2 * u));
-        y = himc_vec3_madd(y, u * u * (1 + 2 * w), xb);
-        y = himc_vec3_madd(y, h * u * w * w, va);
-        x[i] = himc_vec3_madd(y, -h * u * u * w, vb);
-    }
+    for (int i = edge; n < most && i >= 0 && i < frames && himc_vec3_finite(x[i]); i += step)
+        n++;
+    return n < 3 ? chord : himc_take_parabola(x, edge, step, n).b;
 }
 
 int himc_take_fill(const himc_take *take, int point, double longest, himc_vec3 *x,
                    himc_take_gap *gap)
 {
-    int filled = 0;
-    for (int i = 0; i < take->frames; i++)
+    int filled = 0, frames = take->frames;
+    for (int i = 0; i < frames; i++)
         x[i] = *himc_take_at(take, i, point);
-    for (*gap = next_gap(take, point, 0); gap->begin < take->frames;
-         *gap = next_gap(take, point, gap->end)) {
-        int length = gap->end - gap->begin;
-        if (length / take->rate > longest || length == take->frames)
+    for (*gap = himc_take_next_gap(take, point, 0); gap->begin < frames;
+         *gap = himc_take_next_gap(take, point, gap->end)) {
+        int a = gap->begin - 1, b = gap->end, length = b - gap->begin;
+        if (length / take->rate > longest || length == frames)
             return -1;
-        bridge(x, take->frames, *gap, take->rate);
         filled += length;
+        if (a < 0 || b == frames) { // held at the take's ends
+            for (int i = gap->begin; i < b; i++)
+                x[i] = x[a < 0 ? b : a];
+            continue;
+        }
+        double h = b - a;
+        himc_vec3 xa = x[a], xb = x[b], chord = himc_vec3_scale(himc_vec3_sub(xb, xa), 1 / h),
+                  va = edge_slope(x, frames, a, -1, take->rate, chord),
+                  vb = edge_slope(x, frames, b, 1, take->rate, chord);
+        for (int i = gap->begin; i < b; i++) {
+            double u = (i - a) / h, w = 1 - u;
+            himc_vec3 y = himc_vec3_scale(xa, w * w * (1 + 2 * u));
+            y = himc_vec3_madd(y, u * u * (1 + 2 * w), xb);
+            y = himc_vec3_madd(y, h * u * w * w, va);
+            x[i] = himc_vec3_madd(y, -h * u * u * w, vb);
+        }
     }
     return filled;
 }

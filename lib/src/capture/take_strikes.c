@@ -43,12 +43,6 @@ typedef struct track {
     double noise; // one standard deviation (m)
 } track;
 
-// a + b u + c u^2, u in frames from `origin`
-typedef struct parabola {
-    double a, b, c;
-    int origin;
-} parabola;
-
 static double speed(const track *t, int from, int to)
 {
     return (t->x[to].z - t->x[from].z) * t->rate / (to - from);
@@ -74,50 +68,20 @@ static double noise_bend(const track *t, int h)
     return NOISE_DEVIATIONS * sqrt(6) * t->noise * s * s;
 }
 
-// least squares over n samples origin, origin + step, ...; fewer than 3 at the take's edges give a
-// line or a constant
-static parabola fit(const track *t, int origin, int step, int n)
-{
-    double s[5] = {0, 0, 0, 0, 0}, r[3] = {0, 0, 0};
-    for (int k = 0; k < n; k++) {
-        double u = step * k, z = t->x[origin + step * k].z - t->x[origin].z;
-        for (int j = 0; j < 5; j++)
-            s[j] += pow(u, j);
-        r[0] += z, r[1] += u * z, r[2] += u * u * z;
-    }
-    parabola p = {t->x[origin].z, 0, 0, origin};
-    double det = s[0] * (s[2] * s[4] - s[3] * s[3]) - s[1] * (s[1] * s[4] - s[2] * s[3]) +
-                 s[2] * (s[1] * s[3] - s[2] * s[2]);
-    if (n < 3) {
-        p.b = n == 2 ? (t->x[origin + step].z - t->x[origin].z) / step : 0;
-        return p;
-    }
-    p.a += (r[0] * (s[2] * s[4] - s[3] * s[3]) + r[1] * (s[2] * s[3] - s[1] * s[4]) +
-            r[2] * (s[1] * s[3] - s[2] * s[2])) /
-           det;
-    p.b = (r[0] * (s[2] * s[3] - s[1] * s[4]) + r[1] * (s[0] * s[4] - s[2] * s[2]) +
-           r[2] * (s[1] * s[2] - s[0] * s[3])) /
-          det;
-    p.c = (r[0] * (s[1] * s[3] - s[2] * s[2]) + r[1] * (s[1] * s[2] - s[0] * s[3]) +
-           r[2] * (s[0] * s[2] - s[1] * s[1])) /
-          det;
-    return p;
-}
-
-static double value(const parabola *p, double frame)
+static double height(const himc_parabola *p, double frame)
 {
     double u = frame - p->origin;
-    return p->a + u * (p->b + u * p->c);
+    return p->a.z + u * (p->b.z + u * p->c.z);
 }
 
 // where p - q passes zero going down, between frames from and to, by bisection; `to` if it does not
-static double crossing(const parabola *p, const parabola *q, double from, double to)
+static double crossing(const himc_parabola *p, const himc_parabola *q, double from, double to)
 {
-    if (value(p, to) > value(q, to))
+    if (height(p, to) > height(q, to))
         return to;
     for (int i = 0; i < 60; i++) {
         double middle = 0.5 * (from + to);
-        if (value(p, middle) > value(q, middle))
+        if (height(p, middle) > height(q, middle))
             from = middle;
         else
             to = middle;
@@ -159,18 +123,6 @@ static double bend_or_zero(const track *t, int i, int h)
     return i >= h && i + h < t->frames ? fmax(0, bend(t, i, h)) : 0;
 }
 
-// true if the track bends upwards, and by no less than nearby
-static bool is_peak(const track *t, int i, int h)
-{
-    double here = bend(t, i, h);
-    if (!(here > 0))
-        return false;
-    for (int k = 1; k <= frames_of(t, APART, 1); k++)
-        if (bend_or_zero(t, i - k, h) >= here || bend_or_zero(t, i + k, h) > here)
-            return false;
-    return true;
-}
-
 // the frame of the largest bend by differences of h frames, near `frame`; chosen: within 8 ms
 static int sharpest(const track *t, int frame, int h)
 {
@@ -179,18 +131,6 @@ static int sharpest(const track *t, int frame, int h)
         if (bend_or_zero(t, i, h) > bend_or_zero(t, best, h))
             best = i;
     return best;
-}
-
-// the last frame before a blunt peak in which the fall is still undisturbed: its bends, of 4 ms
-// (chosen), are less than a tenth of the largest
-static int clean_end(const track *t, int frame)
-{
-    int h = frames_of(t, 0.004, 1), limit = frame - frames_of(t, STRIKE_WINDOW, 3);
-    double largest = bend_or_zero(t, sharpest(t, frame, h), h);
-    for (int i = frame - h; i > limit && i >= h; i--)
-        if (bend(t, i, h) < 0.1 * largest && t->x[i + h].z < t->x[i].z)
-            return i + h;
-    return frame > 0 ? frame - 1 : 0;
 }
 
 static himc_take_strike measure(const track *t, const candidate *s, himc_hand hand)
@@ -205,19 +145,31 @@ static himc_take_strike measure(const track *t, const candidate *s, himc_hand ha
         if (t->x[i].z < t->x[low].z)
             low = i;
     // a kink between two frames bends the track in both: the fall ends with the earlier one
-    int end = sharp ? peak - (earlier > later) : clean_end(t, peak);
+    int end = peak - (earlier > later);
+    if (!sharp) {
+        // the last frame before a blunt peak in which the fall is still undisturbed: its bends, of
+        // 4 ms (chosen), are less than a tenth of the largest
+        int h = frames_of(t, 0.004, 1), i = peak - h, least = peak - frames_of(t, STRIKE_WINDOW, 3);
+        double largest = bend_or_zero(t, sharpest(t, peak, h), h);
+        least = least < h - 1 ? h - 1 : least;
+        while (i > least && !(bend(t, i, h) < 0.1 * largest && t->x[i + h].z < t->x[i].z))
+            i--;
+        end = i > least ? i + h : peak > 0 ? peak - 1 : 0;
+    }
     int n = frames_of(t, 0.024, 4); // chosen: short beside a fall of 0.2 s
-    parabola before = fit(t, end, -1, n < end + 1 ? n : end + 1);
-    parabola after = {t->x[low].z, 0, 0, low};
-    if (sharp)
-        after = fit(t, end + 1, 1, n < t->frames - end - 1 ? n : t->frames - end - 1);
+    int left = t->frames - end - 1;
+    himc_parabola before = himc_take_parabola(t->x, end, -1, n < end + 1 ? n : end + 1),
+                  after = himc_take_parabola(t->x, sharp ? end + 1 : low, 1,
+                                             !sharp     ? 1
+                                             : n < left ? n
+                                                        : left);
     double touch = crossing(&before, &after, end, sharp ? end + 1 : low + 1);
     double u = sharp ? touch - end : 0;
-    double up = sharp ? (after.b + 2 * after.c * (touch - end - 1)) * t->rate : 0;
-    double down = -(before.b + 2 * before.c * u) * t->rate;
+    double up = sharp ? (after.b.z + 2 * after.c.z * (touch - end - 1)) * t->rate : 0;
+    double down = -(before.b.z + 2 * before.c.z * u) * t->rate;
     int i = (int)touch < t->frames - 1 ? (int)touch : t->frames - 2;
     himc_vec3 x = himc_vec3_madd(t->x[i], touch - i, himc_vec3_sub(t->x[i + 1], t->x[i]));
-    x.z = sharp ? value(&before, touch) : t->x[low].z;
+    x.z = sharp ? height(&before, touch) : t->x[low].z;
     // chosen bounds: noise changes the fall's speed over SPEED_TIME less than the parabola's slope
     return (himc_take_strike){.hand = hand,
                               .frame = low,
@@ -243,8 +195,18 @@ static double above_intersection(const himc_take_strike *s)
     return sum > 0 ? 0.007 * s->velocity * s->rebound / sum : 0;
 }
 
-static void find_falls(const track *t, himc_hand hand, found *f)
+// adds the falls of a hand; false without memory
+static bool find_falls(const himc_take *take, const himc_take_tip *tip, himc_hand hand, found *f)
 {
+    track made = {take, tip->point, tip->x, take->frames, take->rate, 0}, *t = &made;
+    int near = frames_of(t, APART, 1); // peaks are further apart (frames)
+    size_t most = (size_t)(f->count + take->frames / near + 2);
+    himc_take_strike *strikes = realloc(f->strike, most * sizeof *strikes);
+    f->strike = strikes ? strikes : f->strike;
+    himc_fall *falls = realloc(f->fall, most * sizeof *falls);
+    f->fall = falls ? falls : f->fall;
+    if (!strikes || !falls || !himc_noise(tip->x, take->frames, &t->noise))
+        return false;
     // chosen: differences of about a contact in quiet tracks, and of up to 12 ms in noisy ones,
     // until noise bends them by less than 100 m/s^2
     int h = frames_of(t, 0.006, 1);
@@ -256,9 +218,13 @@ static void find_falls(const track *t, himc_hand hand, found *f)
     // chosen: most of D / A, between a head's 18 ms and the air's 55; and in frames
     double widest = fmax(0.026, 3.2 / t->rate);
     for (int i = h; i + h < t->frames; i++) {
-        if (!is_peak(t, i, h))
-            continue;
+        // a peak: the track bends upwards, and by no less than nearby
         candidate s = {i, bend(t, i, h), -INFINITY, -INFINITY};
+        bool peak = s.bend > 0;
+        for (int k = 1; peak && k <= near; k++)
+            peak = bend_or_zero(t, i - k, h) < s.bend && bend_or_zero(t, i + k, h) <= s.bend;
+        if (!peak)
+            continue;
         for (int k = i < window ? 0 : i - window; k + n <= i; k++)
             s.down = fmax(s.down, -speed(t, k, k + n));
         for (int k = i; k + n < t->frames && k + n <= i + window; k++)
@@ -281,25 +247,7 @@ static void find_falls(const track *t, himc_hand hand, found *f)
                                           .within = within,
                                           .sharp = width < widest && s.bend > noise_bend(t, h)};
     }
-}
-
-// the falls of both hands, one hand after the other; false without memory
-static bool find(const himc_take *take, const himc_take_tip tips[HIMC_HANDS], found *f)
-{
-    int most = 0;
-    track t[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        t[hand] = (track){take, tips[hand].point, tips[hand].x, take->frames, take->rate, 0};
-        if (tips[hand].present && !himc_noise(tips[hand].x, take->frames, &t[hand].noise))
-            return false;
-        most += tips[hand].present ? take->frames / frames_of(&t[hand], APART, 1) + 1 : 0;
-    }
-    f->strike = calloc((size_t)most + 1, sizeof *f->strike);
-    f->fall = calloc((size_t)most + 1, sizeof *f->fall);
-    for (int hand = 0; f->strike && f->fall && hand < HIMC_HANDS; hand++)
-        if (tips[hand].present)
-            find_falls(&t[hand], (himc_hand)hand, f);
-    return f->strike && f->fall;
+    return true;
 }
 
 // true if fall k is a strike of the same hand as fall i, and too close in time to be another
@@ -310,70 +258,30 @@ static bool is_same(const found *f, int i, int k)
            fabs(f->strike[k].time - f->strike[i].time) < REFRACTORY;
 }
 
-static void list_left_out(const found *f, const himc_strike_head *head, himc_strike_survey *to)
-{
-    for (int i = 0; i < f->count; i++) {
-        const himc_fall *fall = &f->fall[i];
-        if (fall->head >= 0 || !fall->sharp || is_same(f, i, i - 1) || is_same(f, i, i + 1))
-            continue;
-        double over = fall->x.z - himc_strike_head_at(head, fall->x.x, fall->x.y);
-        to->lowest = to->left_out ? fmin(to->lowest, over) : over;
-        to->highest = to->left_out ? fmax(to->highest, over) : over;
-        to->fastest = fmax(to->fastest, fall->speed);
-        to->left_out++;
-    }
-}
-
-// moves the strikes to the front of the list, without those that follow a faster one closely
-static void keep_strikes(found *f, himc_strike_survey *to)
-{
-    for (int i = 0; i < f->count; i++) {
-        himc_take_strike *last = to->count ? &to->strikes[to->count - 1] : NULL, s = f->strike[i];
-        s.head = f->fall[i].head;
-        if (s.head < 0)
-            continue;
-        if (!last || last->hand != s.hand || s.time - last->time >= REFRACTORY)
-            to->strikes[to->count++] = s;
-        else if (s.velocity > last->velocity)
-            *last = s;
-    }
-}
-
 static int by_time(const void *a, const void *b)
 {
     double s = ((const himc_take_strike *)a)->time, t = ((const himc_take_strike *)b)->time;
     return (s > t) - (s < t);
 }
 
-// the median position of one hand's strikes on a head along one axis, for z above their
-// intersection; false if it has none
-static bool hand_median(const himc_strike_survey *s, int head, int hand, int axis, double *scratch,
-                        double *middle)
-{
-    int n = 0;
-    for (int i = 0; i < s->count; i++) {
-        const himc_take_strike *strike = &s->strikes[i];
-        if ((int)strike->hand == hand && strike->head == head)
-            scratch[n++] = axis == 0   ? strike->x.x
-                           : axis == 1 ? strike->x.y
-                                       : above_intersection(strike);
-    }
-    if (n == 0)
-        return false;
-    *middle = himc_median(scratch, n);
-    return true;
-}
-
-// the middle of the strikes on a head, on its plane
+// the middle of the strikes on a head, on its plane: the mean over the hands of the median of each,
+// also of the height above their intersection
 static himc_vec3 place_on(const himc_strike_survey *s, int head, const himc_strike_head *plane,
                           double *scratch)
 {
     double middle[3];
     for (int axis = 0; axis < 3; axis++) {
-        double l = 0, r = 0;
-        bool left = hand_median(s, head, HIMC_LEFT, axis, scratch, &l);
-        bool right = hand_median(s, head, HIMC_RIGHT, axis, scratch, &r);
-        middle[axis] = left && right ? 0.5 * (l + r) : l + r;
+        double sum = 0;
+        int hands = 0;
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            int n = 0;
+            for (const himc_take_strike *k = s->strikes; k < s->strikes + s->count; k++)
+                if ((int)k->hand == hand && k->head == head)
+                    scratch[n++] = axis == 0 ? k->x.x : axis == 1 ? k->x.y : above_intersection(k);
+            sum += n > 0 ? himc_median(scratch, n) : 0;
+            hands += n > 0;
+        }
+        middle[axis] = hands > 1 ? sum / hands : sum;
     }
     double z = himc_strike_head_at(plane, middle[0], middle[1]);
     return himc_vec3_make(middle[0], middle[1], z + (plane->at_rest ? 0 : middle[2]));
@@ -382,19 +290,41 @@ static himc_vec3 place_on(const himc_strike_survey *s, int head, const himc_stri
 bool himc_take_strikes(const himc_take *take, const himc_take_tip tips[HIMC_HANDS],
                        himc_strike_survey *survey)
 {
-    found f = {NULL, NULL, 0};
+    found f = {malloc(sizeof *f.strike), NULL, 0}; // not NULL without falls
     himc_strike_head heads[HIMC_STRIKE_HEADS];
     *survey = (himc_strike_survey){.heads = -1};
-    bool all = find(take, tips, &f);
+    bool all = f.strike != NULL;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (all && tips[hand].present)
+            all = find_falls(take, &tips[hand], (himc_hand)hand, &f);
     double *scratch = all ? malloc(((size_t)f.count + 1) * sizeof *scratch) : NULL;
     survey->strikes = f.strike;
     if (scratch)
         survey->heads = himc_strike_heads(f.fall, f.count, heads);
-    if (survey->heads > 0) {
-        list_left_out(&f, &heads[0], survey);
-        keep_strikes(&f, survey);
-        qsort(survey->strikes, (size_t)survey->count, sizeof *survey->strikes, by_time);
+    for (int i = 0; i < f.count && survey->heads > 0; i++) {
+        const himc_fall *fall = &f.fall[i];
+        if (fall->head >= 0 || !fall->sharp || is_same(&f, i, i - 1) || is_same(&f, i, i + 1))
+            continue;
+        double over = fall->x.z - himc_strike_head_at(&heads[0], fall->x.x, fall->x.y);
+        survey->lowest = survey->left_out ? fmin(survey->lowest, over) : over;
+        survey->highest = survey->left_out ? fmax(survey->highest, over) : over;
+        survey->fastest = fmax(survey->fastest, fall->speed);
+        survey->left_out++;
     }
+    // moves the strikes to the front of the list, without those that follow a faster one closely
+    for (int i = 0; i < f.count && survey->heads > 0; i++) {
+        himc_take_strike *last = survey->count ? &f.strike[survey->count - 1] : NULL;
+        himc_take_strike s = f.strike[i];
+        s.head = f.fall[i].head;
+        if (s.head < 0)
+            continue;
+        if (!last || last->hand != s.hand || s.time - last->time >= REFRACTORY)
+            f.strike[survey->count++] = s;
+        else if (s.velocity > last->velocity)
+            *last = s;
+    }
+    if (survey->count > 0)
+        qsort(f.strike, (size_t)survey->count, sizeof *f.strike, by_time);
     for (int i = 0; i < survey->heads; i++)
         survey->head[i] = place_on(survey, i, &heads[i], scratch);
     free(scratch);

@@ -48,29 +48,6 @@ static int list_subjects(const himc_take *take, char text[256])
     return count;
 }
 
-// keeps the points `kept` (count, rising), in place: what is read is never behind what is written
-static void keep_points(himc_take *take, const int *kept, int count)
-{
-    for (int i = 0; take->parents && i < count; i++) {
-        int parent = take->parents[kept[i]], now = 0;
-        while (parent >= 0 && kept[now] != parent)
-            now++;
-        take->parents[i] = parent < 0 ? -1 : now;
-        take->offsets[i] = take->offsets[kept[i]];
-    }
-    for (int i = 0; i < count; i++)
-        memmove(take->names[i], take->names[kept[i]], TAKE_NAME);
-    for (int frame = 0; frame < take->frames; frame++)
-        for (int i = 0; i < count; i++) {
-            size_t to = (size_t)frame * (size_t)count + (size_t)i;
-            size_t from = (size_t)frame * (size_t)take->points + (size_t)kept[i];
-            take->x[to] = take->x[from];
-            if (take->rotations)
-                take->rotations[to] = take->rotations[from];
-        }
-    take->points = count;
-}
-
 bool himc_take_choose_subject(himc_take *take, const char *wanted, himc_error *error)
 {
     char subject[TAKE_NAME], text[256];
@@ -89,8 +66,23 @@ bool himc_take_choose_subject(himc_take *take, const char *wanted, himc_error *e
         if (!strcasecmp(subject, wanted))
             kept[count++] = i;
     }
-    if (count > 0)
-        keep_points(take, kept, count);
+    // in place: what is read is never behind what is written
+    for (int i = 0; take->parents && i < count; i++) {
+        int parent = take->parents[kept[i]], now = 0;
+        while (parent >= 0 && kept[now] != parent)
+            now++;
+        take->parents[i] = parent < 0 ? -1 : now;
+        take->offsets[i] = take->offsets[kept[i]];
+    }
+    for (int i = 0; i < count; i++)
+        memmove(take->names[i], take->names[kept[i]], TAKE_NAME);
+    for (size_t i = 0; i < (size_t)take->frames * (size_t)count; i++) {
+        size_t from = i / (size_t)count * (size_t)take->points + (size_t)kept[i % (size_t)count];
+        take->x[i] = take->x[from];
+        if (take->rotations)
+            take->rotations[i] = take->rotations[from];
+    }
+    take->points = count > 0 ? count : take->points;
     free(kept);
     return count > 0 || himc_error_set(error, "%s: no subject %s, expected%s", take->file, wanted,
                                        subjects ? text : ": none, the file has one player");

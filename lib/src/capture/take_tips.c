@@ -4,28 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-// 0 for a name that is not a stick's; higher for a name closer to the very end of the stick
-static int tip_rank(const char *rest)
-{
-    if (strstr(rest, "tip"))
-        return 4;
-    if (strstr(rest, "bead") || strstr(rest, "end"))
-        return strcmp(rest, "end") && strcmp(rest, "headend") ? 3 : 0;
-    if (strstr(rest, "mallet") || strstr(rest, "beater"))
-        return 2;
-    return strstr(rest, "stick") ? 1 : 0;
-}
-
 static int best_tip(const himc_take *take, int side)
 {
     // longer words first: "drumstick" must not be read as "drum" and a remainder
     static const char *const words[] = {"stick",   "mallet", "beater", "bead", "drum",
                                         "timpani", "tip",    "head",   "end",  NULL};
+    // the closer to the very end of the stick, the later
+    static const struct {
+        const char *word;
+        int rank;
+    } ends[] = {{"stick", 1}, {"beater", 2}, {"mallet", 2}, {"end", 3}, {"bead", 3}, {"tip", 4}};
     int best = -1, best_rank = 0;
     for (int i = 0; i < take->points; i++) {
         char plain[TAKE_NAME], rest[TAKE_NAME];
         himc_take_plain_name(take->names[i], plain);
-        int hand = himc_take_side(plain, words, rest), rank = hand == side ? tip_rank(rest) : 0;
+        if (himc_take_side(plain, words, rest) != side || !strcmp(rest, "end") ||
+            !strcmp(rest, "headend"))
+            continue;
+        int rank = 0;
+        for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++)
+            rank = strstr(rest, ends[k].word) ? ends[k].rank : rank;
         if (rank > best_rank) {
             best = i;
             best_rank = rank;
@@ -44,24 +42,6 @@ int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_op
         found = best_tip(take, HIMC_HANDS);
     const char *other = hand == HIMC_LEFT ? options->right_tip : options->left_tip;
     return found >= 0 && other && himc_take_find(take, other) == found ? -1 : found;
-}
-
-static bool fill_tip(himc_take *take, himc_hand hand, int point, double longest, himc_take_tip *tip,
-                     himc_error *error)
-{
-    himc_take_gap g;
-    tip->filled = himc_take_fill(take, point, longest, take->tip[hand], &g);
-    if (tip->filled < 0)
-        return himc_error_set(
-            error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), expected gaps up to %g s",
-            take->file, himc_hand_name(hand), take->names[point],
-            g.end - g.begin == take->frames ? "never seen" : "missing", take->first_frame + g.begin,
-            take->first_frame + g.end - 1, (g.end - g.begin) / take->rate, longest);
-    snprintf(tip->name, sizeof tip->name, "%s", take->names[point]);
-    tip->x = take->tip[hand];
-    tip->point = point;
-    tip->present = true;
-    return true;
 }
 
 // "A, B, C ..." for an error line
@@ -103,8 +83,20 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
             return himc_error_set(error,
                                   "%s: %s is named as both tips, expected one point for each tip",
                                   take->file, take->names[point]);
-        if (!fill_tip(take, hand, point, options->longest_gap, &tips[hand], error))
-            return false;
+        himc_take_gap g;
+        himc_take_tip *tip = &tips[hand];
+        tip->filled = himc_take_fill(take, point, options->longest_gap, take->tip[hand], &g);
+        if (tip->filled < 0)
+            return himc_error_set(
+                error, "%s: %s tip %s is %s in frames %d .. %d (%.3g s), expected gaps up to %g s",
+                take->file, himc_hand_name(hand), take->names[point],
+                g.end - g.begin == take->frames ? "never seen" : "missing",
+                take->first_frame + g.begin, take->first_frame + g.end - 1,
+                (g.end - g.begin) / take->rate, options->longest_gap);
+        snprintf(tip->name, sizeof tip->name, "%s", take->names[point]);
+        tip->x = take->tip[hand];
+        tip->point = point;
+        tip->present = true;
         found++;
     }
     return found || himc_error_set(error,

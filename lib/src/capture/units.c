@@ -51,23 +51,6 @@ void himc_unit_at(const himc_unit *unit, double share, double landing, double fa
     }
 }
 
-// solves the normal equations in place; false if they are singular
-static bool solve(double a[UNKNOWNS][UNKNOWNS + 1])
-{
-    for (int k = 0; k < UNKNOWNS; k++) {
-        a[k][k] += 1e-9; // chosen: keeps the equations regular, far below their entries
-        for (int i = 0; i < UNKNOWNS; i++) {
-            double f = i == k ? 0 : a[i][k] / a[k][k];
-            for (int j = k; j <= UNKNOWNS; j++)
-                a[i][j] -= f * a[k][j];
-        }
-    }
-    for (int k = 0; k < UNKNOWNS; k++)
-        if (!isfinite(a[k][UNKNOWNS] /= a[k][k]))
-            return false;
-    return true;
-}
-
 // the capture of one hand around one strike
 typedef struct cut {
     const himc_vec3 *x;
@@ -98,8 +81,19 @@ static bool fit_fall(const cut *c, int first, himc_unit *unit)
             a[r][UNKNOWNS] += x[1 + r] * missing;
         }
     }
-    if (count < UNKNOWNS + 1 || !solve(a))
+    if (count < UNKNOWNS + 1)
         return false;
+    for (int k = 0; k < UNKNOWNS; k++) {
+        a[k][k] += 1e-9; // chosen: keeps the equations regular, far below their entries
+        for (int i = 0; i < UNKNOWNS; i++) {
+            double f = i == k ? 0 : a[i][k] / a[k][k];
+            for (int j = k; j <= UNKNOWNS; j++)
+                a[i][j] -= f * a[k][j];
+        }
+    }
+    for (int k = 0; k < UNKNOWNS; k++)
+        if (!isfinite(a[k][UNKNOWNS] /= a[k][k]))
+            return false;
     double landing = a[1][UNKNOWNS];
     unit->start = a[0][UNKNOWNS];
     for (int i = 0; i < 3; i++)

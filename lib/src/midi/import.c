@@ -165,23 +165,6 @@ static double frequency(int key)
     return 440 * pow(2, (key - 69) / 12.0);
 }
 
-static void put_strokes(himc_text_lines *t, const midi_part *part, double lead)
-{
-    for (int i = 0; i < part->count; i++) {
-        const midi_stroke *s = &part->stroke[i];
-        if (s->fate != MIDI_PLAYED || s->in_roll)
-            continue;
-        const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
-        double beat = s->note->beat + lead;
-        if (s->roll.length > 0)
-            put(t, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length, s->dynamic,
-                s->roll.last_dynamic, spot, drum);
-        else
-            put(t, "stroke %.9g %s legato %.3g %s %s;\n", beat, himc_hand_name(s->hand), s->dynamic,
-                spot, drum);
-    }
-}
-
 /// A line of a drum's head.
 typedef struct change {
     double seconds;
@@ -278,7 +261,19 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
         double beat = file->tempi[i].beat;
         put(&score, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);
     }
-    put_strokes(&score, part, lead);
+    for (int i = 0; i < part->count; i++) {
+        const midi_stroke *s = &part->stroke[i];
+        if (s->fate != MIDI_PLAYED || s->in_roll)
+            continue;
+        const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
+        double beat = s->note->beat + lead;
+        if (s->roll.length > 0)
+            put(&score, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length,
+                s->dynamic, s->roll.last_dynamic, spot, drum);
+        else
+            put(&score, "stroke %.9g %s legato %.3g %s %s;\n", beat, himc_hand_name(s->hand),
+                s->dynamic, spot, drum);
+    }
     score.failed |= !put_changes(&score, file, part, lead);
     *made = (midi_score){score.bytes, said.bytes,
                          part->count - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER] +

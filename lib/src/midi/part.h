@@ -76,6 +76,24 @@ typedef struct midi_part {
 /// louder.
 void himc_midi_join(midi_part *part);
 
+#define MIDI_KEYS 4 ///< of a state; as many as timpani
+
+/// A state of a search after a stroke; what its parts mean is the search's own.
+typedef struct midi_state {
+    double cost;
+    int32_t key[MIDI_KEYS];  ///< states with equal ones are one, the cheapest of them
+    double ready[MIDI_KEYS]; ///< of timpani: a drum may be retuned from then on ...
+    double foot;             ///< ... and the foot is free (s)
+} midi_state;
+
+/// The state after a stroke for which that was chosen; false if it cannot be.
+typedef bool midi_choose(const midi_part *part, int stroke, int choice, midi_state *state);
+
+/// beam.c: finds for each stroke that is to be played one of the `choices` (`chosen`: count), so
+/// that all together cost least. The last choice must always be possible. False without memory.
+bool himc_midi_search(const midi_part *part, const midi_state *first, int choices,
+                      midi_choose *choose, int8_t *chosen);
+
 /// timpani.c: gives each stroke one of four timpani, with pedals that move between notes. False
 /// without memory.
 bool himc_midi_tune(midi_part *part, himc_error *error);

@@ -40,51 +40,41 @@ static bool is_straight(const midi_part *part, int first, int last)
     return true;
 }
 
-// The roll that may begin with a stroke: its last stroke, and how many strokes they are. It ends
-// early enough for a hand to go to the next drum: the strokes after it keep the hands that
-// sticking.c gave them, one of which may go ahead.
-static int find_roll(const midi_part *part, int first, int *notes)
-{
-    const midi_stroke *s = part->stroke;
-    int last = first, next, count = 1;
-    while (count < MOST_NOTES && (next = next_played(part, last)) >= 0 &&
-           s[next].head == s[first].head &&
-           s[next].note->seconds - s[last].note->seconds <= 1 / SLOWEST &&
-           s[next].note->seconds - s[first].note->seconds <= LONGEST &&
-           is_straight(part, first, next)) {
-        last = next;
-        count++;
-    }
-    next = last;
-    while (next >= 0 && s[next].head == s[first].head)
-        next = next_played(part, next);
-    double until = next >= 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
-    int end = first;
-    *notes = 1;
-    for (int k = next_played(part, first); k >= 0 && k <= last && s[k].note->seconds <= until;
-         k = next_played(part, k)) {
-        end = k;
-        ++*notes;
-    }
-    return end;
-}
-
+// A roll ends early enough for a hand to go to the next drum: the strokes after it keep the hands
+// that sticking.c gave them, one of which may go ahead.
 void himc_midi_find_rolls(midi_part *part)
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
-    int notes, last;
-    for (int i = next_played(part, -1); i >= 0; i = next_played(part, last)) {
-        last = find_roll(part, i, &notes);
+    midi_stroke *s = part->stroke;
+    for (int first = next_played(part, -1), last; first >= 0; first = next_played(part, last)) {
+        int end = first, row = 1, next, notes = 1;
+        while (row < MOST_NOTES && (next = next_played(part, end)) >= 0 &&
+               s[next].head == s[first].head &&
+               s[next].note->seconds - s[end].note->seconds <= 1 / SLOWEST &&
+               s[next].note->seconds - s[first].note->seconds <= LONGEST &&
+               is_straight(part, first, next)) {
+            end = next;
+            row++;
+        }
+        next = end;
+        while (next >= 0 && s[next].head == s[first].head)
+            next = next_played(part, next);
+        double until = next >= 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
+        last = first;
+        while (last != end && s[next_played(part, last)].note->seconds <= until) {
+            last = next_played(part, last);
+            notes++;
+        }
         // the last stroke lasts as long as the others
-        double beats = part->stroke[last].note->beat - part->stroke[i].note->beat;
+        double beats = s[last].note->beat - s[first].note->beat;
         double length = notes >= LEAST_NOTES ? beats * notes / (notes - 1) : 0;
         if (length < range->low || length > range->high) {
-            last = i;
+            last = first;
             continue;
         }
-        part->stroke[i].roll = (midi_roll){length, part->stroke[last].dynamic};
-        for (int k = next_played(part, i); k >= 0 && k <= last; k = next_played(part, k))
-            part->stroke[k].in_roll = true;
+        s[first].roll = (midi_roll){length, s[last].dynamic};
+        for (int k = first; k != last;)
+            s[k = next_played(part, k)].in_roll = true;
         part->rolls++;
         part->rolled += notes;
     }

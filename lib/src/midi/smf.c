@@ -31,6 +31,8 @@ typedef struct reader {
     const uint8_t *at, *end; ///< of the present chunk
     bool cut;                ///< a byte was wanted after the end
     int track, format;
+    double per_second;  ///< ticks, of SMPTE; 0: they are parts of a quarter note
+    double quarter;     ///< ticks
     int64_t tick, from; ///< now; where the track begins
     int64_t cut_at;     ///< where the shortest cut track ends
     uint8_t status;     ///< of the last channel message, 0 for none
@@ -202,71 +204,11 @@ static int by_tick(const void *a, const void *b)
                               : (x->order > y->order) - (x->order < y->order);
 }
 
-typedef struct tempo_clock {
-    double per_second; ///< ticks, of SMPTE; 0: they are parts of a quarter note
-    double quarter;    ///< ticks
-    int64_t tick;      ///< where the present tempo began ...
-    double seconds;    ///< ... and when
-    double tempo;      ///< (microseconds per quarter note)
-} tempo_clock;
-
-static double seconds_at(const tempo_clock *c, int64_t tick)
-{
-    return c->per_second > 0
-               ? (double)tick / c->per_second
-               : c->seconds + (double)(tick - c->tick) * c->tempo / (1e6 * c->quarter);
-}
-
-/// What has to be remembered of each channel.
-typedef struct channels {
-    uint8_t program[16];
-    int sounding[16][128]; ///< index of the note, + 1
-} channels;
-
-static void take_event(midi_file *file, channels *c, tempo_clock *clock, const event *e,
-                       const bool *timpani)
-{
-    double beat = (double)e->tick / clock->quarter, seconds = seconds_at(clock, e->tick);
-    int *sounding = &c->sounding[e->channel][e->first];
-    switch (e->kind) {
-    case NOTE_ON:
-    case NOTE_OFF:
-        if (*sounding > 0)
-            file->notes[*sounding - 1].off = seconds;
-        *sounding = 0;
-        if (e->kind == NOTE_OFF)
-            break;
-        file->notes[file->note_count++] = (midi_note){.beat = beat,
-                                                      .seconds = seconds,
-                                                      .off = -1,
-                                                      .track = e->track,
-                                                      .channel = e->channel,
-                                                      .key = e->first,
-                                                      .velocity = e->second,
-                                                      .program = c->program[e->channel],
-                                                      .timpani = timpani[e->track]};
-        *sounding = file->note_count;
-        break;
-    case PROGRAM: c->program[e->channel] = e->first; break;
-    case TEMPO:
-        if (clock->per_second > 0)
-            break;
-        clock->seconds = seconds;
-        clock->tick = e->tick;
-        clock->tempo = e->tempo;
-        double bpm = 60e6 / (e->tempo ? e->tempo : 1);
-        bool again = file->tempi[file->tempo_count - 1].beat == beat;
-        // a score has lines for 10000 changes
-        file->converted |= bpm < HIMC_BPM_MIN || bpm > HIMC_BPM_MAX || file->tempo_count > 10000;
-        file->tempo_count += !again;
-        file->tempi[file->tempo_count - 1] = (himc_tempo_change){beat, bpm};
-    }
-}
-
 // from events to notes and tempi
-static bool collect(midi_file *file, reader *r, tempo_clock *clock)
+static bool collect(midi_file *file, reader *r)
 {
-    channels c = {0};
+    uint8_t program[16] = {0};
+    midi_note *sounding[16][128] = {{NULL}};
     file->notes = calloc((size_t)r->count + 1, sizeof *file->notes);
     file->tempi = calloc((size_t)r->count + 1, sizeof *file->tempi);
     if (!file->notes || !file->tempi)
@@ -274,18 +216,59 @@ static bool collect(midi_file *file, reader *r, tempo_clock *clock)
     if (r->count > 0)
         qsort(r->events, (size_t)r->count, sizeof *r->events, by_tick);
     file->tempi[file->tempo_count++] = (himc_tempo_change){0, 60e6 / USUAL_TEMPO};
-    for (int i = 0; i < r->count; i++)
-        take_event(file, &c, clock, &r->events[i], r->timpani);
-    double end = r->count > 0 ? seconds_at(clock, r->events[r->count - 1].tick) : 0;
+    int64_t tick = 0;                                         // where the present tempo began ...
+    double beat, seconds = 0, since = 0, tempo = USUAL_TEMPO; // ... and when (s)
+    for (const event *e = r->events; e < r->events + r->count; e++) {
+        beat = (double)e->tick / r->quarter;
+        seconds = r->per_second > 0 ? (double)e->tick / r->per_second
+                                    : since + (double)(e->tick - tick) * tempo / (1e6 * r->quarter);
+        midi_note **note = &sounding[e->channel][e->first];
+        if (e->kind == PROGRAM)
+            program[e->channel] = e->first;
+        if ((e->kind == NOTE_ON || e->kind == NOTE_OFF) && *note) {
+            (*note)->off = seconds;
+            *note = NULL;
+        }
+        if (e->kind == NOTE_ON) {
+            *note = &file->notes[file->note_count++];
+            **note = (midi_note){.beat = beat,
+                                 .seconds = seconds,
+                                 .off = -1,
+                                 .track = e->track,
+                                 .channel = e->channel,
+                                 .key = e->first,
+                                 .velocity = e->second,
+                                 .program = program[e->channel],
+                                 .timpani = r->timpani[e->track]};
+        }
+        if (e->kind == TEMPO && r->per_second == 0) {
+            since = seconds;
+            tick = e->tick;
+            tempo = e->tempo;
+            double bpm = 60e6 / (e->tempo ? e->tempo : 1);
+            bool again = file->tempi[file->tempo_count - 1].beat == beat;
+            // a score has lines for 10000 changes
+            file->converted |=
+                bpm < HIMC_BPM_MIN || bpm > HIMC_BPM_MAX || file->tempo_count > 10000;
+            file->tempo_count += !again;
+            file->tempi[file->tempo_count - 1] = (himc_tempo_change){beat, bpm};
+        }
+    }
     for (int i = 0; i < file->note_count; i++)
         if (file->notes[i].off < 0)
-            file->notes[i].off = end;
-    double beat = (double)r->cut_at / clock->quarter;
-    file->cut_at = clock->per_second > 0 ? (double)r->cut_at / clock->per_second
-                                         : himc_score_seconds(file->tempi, file->tempo_count, beat);
-    file->converted |= clock->per_second > 0;
+            file->notes[i].off = seconds;
+    return true;
+}
+
+// beats that a score can have: half seconds where the file's are none
+static bool settle_beats(midi_file *file, const reader *r)
+{
+    double beat = (double)r->cut_at / r->quarter;
+    file->cut_at = r->per_second > 0 ? (double)r->cut_at / r->per_second
+                                     : himc_score_seconds(file->tempi, file->tempo_count, beat);
+    file->converted |= r->per_second > 0;
     if (file->converted) {
-        const double bpm = 120; // beats that a score can have: half seconds
+        const double bpm = 120;
         for (int i = 0; i < file->note_count; i++)
             file->notes[i].beat = file->notes[i].seconds * bpm / 60;
         file->tempi[0] = (himc_tempo_change){0, bpm};
@@ -316,12 +299,13 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
     int rate = 256 - division[0], ticks = frames ? division[1] : (int)number_of(division, 2);
     if (ticks == 0)
         return himc_error_set(error, "a division of 0 ticks, expected 1 or more");
-    tempo_clock clock = {.tempo = USUAL_TEMPO, .quarter = ticks};
+    r.quarter = ticks;
     if (frames)
-        clock.per_second = (rate == 29 ? 30000.0 / 1001 : rate) * ticks;
+        r.per_second = (rate == 29 ? 30000.0 / 1001 : rate) * ticks;
     r.timpani = calloc(UINT16_MAX, sizeof *r.timpani);
     bool good = r.timpani || himc_error_set(error, "out of memory");
-    good = good && read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r, &clock);
+    good = good && read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r) &&
+           settle_beats(file, &r);
     int promised = (int)number_of(at + 10, 2);
     file->missing = promised > file->tracks ? promised - file->tracks : 0;
     free(r.timpani);

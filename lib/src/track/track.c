@@ -88,19 +88,6 @@ static void make_bridge(himc_track *track, hand_track *h, bridge *b, double mall
     b->path = himc_quintic_make(&touch, &after, b->to - b->contact);
 }
 
-// the motion goes on a little and comes to rest; a tip that falls is caught above the head
-static himc_quintic come_to_rest(const himc_head_frame *head, const himc_target *s)
-{
-    himc_vec3 n = himc_head_frame_normal(head);
-    himc_target rest = {.x = himc_vec3_madd(s->x, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT, s->v)};
-    double fall = fmax(-himc_vec3_dot(n, s->v), 0);
-    double height = himc_head_frame_from_world(head, rest.x).z,
-           least = HOVER_HEIGHT + HOVER_FALL * HIMC_TRACK_HALT * fall;
-    if (height < least)
-        rest.x = himc_vec3_madd(rest.x, least - height, n);
-    return himc_quintic_make(s, &rest, HIMC_TRACK_HALT);
-}
-
 // a hand's capture with its strikes cut out: fits of the stretches between them, and the bridges
 static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captured,
                        const himc_take_strike *strikes, int count, double mallet_radius)
@@ -137,46 +124,42 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     return true;
 }
 
-static bool build(himc_track *track, himc_take *take, const himc_take_tip tips[HIMC_HANDS],
-                  const himc_head_frame *head, const himc_player *player, double mallet_radius)
-{
-    int count;
-    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
-    bool ok = strikes != NULL;
-    track->rate = himc_take_rate(take);
-    track->frames = himc_take_frames(take);
-    track->head = *head;
-    track->stop = INFINITY;
-    if (player && player->seated)
-        track->offset = player->offset;
-    else
-        ok = ok && himc_strike_offset(take, tips, head, mallet_radius, &track->offset);
-    for (int hand = 0; ok && hand < HIMC_HANDS; hand++)
-        if (tips[hand].present) {
-            double noise;
-            ok = himc_noise(tips[hand].x, track->frames, &noise);
-            track->edge = himc_fit_edge(noise, track->rate);
-            ok = ok &&
-                 build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
-        }
-    free(strikes);
-    return ok && (!player || himc_track_fit_postures(track, player));
-}
-
 himc_track *himc_track_new(himc_take *take, const himc_take_options *options,
                            const himc_head_frame *head, const himc_player *player,
                            double mallet_radius, himc_error *error)
 {
     himc_take_tip tips[HIMC_HANDS];
+    int count, frames = himc_take_frames(take);
     if (!himc_take_tips(take, options, tips, error))
         return NULL;
-    if (himc_take_frames(take) < LEAST_FRAMES) {
-        himc_error_set(error, "%d frames, expected %d or more", himc_take_frames(take),
-                       LEAST_FRAMES);
+    if (frames < LEAST_FRAMES) {
+        himc_error_set(error, "%d frames, expected %d or more", frames, LEAST_FRAMES);
         return NULL;
     }
     himc_track *track = calloc(1, sizeof *track);
-    if (track && build(track, take, tips, head, player, mallet_radius))
+    himc_take_strike *strikes = himc_take_find_strikes(take, tips, &count);
+    bool good = track && strikes;
+    if (good) {
+        track->rate = himc_take_rate(take);
+        track->frames = frames;
+        track->head = *head;
+        track->stop = INFINITY;
+        if (player && player->seated)
+            track->offset = player->offset;
+        else
+            good = himc_strike_offset(take, tips, head, mallet_radius, &track->offset);
+    }
+    for (int hand = 0; good && hand < HIMC_HANDS; hand++) {
+        double noise;
+        if (!tips[hand].present)
+            continue;
+        good = himc_noise(tips[hand].x, frames, &noise);
+        track->edge = himc_fit_edge(noise, track->rate);
+        good =
+            good && build_hand(track, (himc_hand)hand, tips[hand].x, strikes, count, mallet_radius);
+    }
+    free(strikes);
+    if (good && (!player || himc_track_fit_postures(track, player)))
         return track;
     himc_track_free(track);
     himc_error_set(error, "out of memory");
@@ -203,15 +186,6 @@ void himc_track_approach(himc_track *track, himc_hand hand, const himc_target *n
     himc_target begin = {.x = h->frame[0].x};
     h->approach_time = duration - 0.5 * HIMC_TRACK_RAMP;
     h->approach = himc_quintic_make(now, &begin, h->approach_time);
-}
-
-void himc_track_stop(himc_track *track, double t, const himc_target now[HIMC_HANDS])
-{
-    if (t >= track->stop || t > himc_track_length(track))
-        return;
-    track->stop = t;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        track->hand[hand].settle = come_to_rest(&track->head, &now[hand]);
 }
 
 double himc_track_start(const himc_track *track)
@@ -265,20 +239,6 @@ static int bridge_at(const bridge *list, int count, double t)
     return lo;
 }
 
-// the take with its strikes bridged
-static himc_target played_at(const himc_track *track, const hand_track *h, double t)
-{
-    int i = bridge_at(h->bridges, h->bridge_count, t);
-    if (i == h->bridge_count || t < h->bridges[i].from)
-        return captured_at(track, h, t);
-    const bridge *b = &h->bridges[i];
-    if (b->restart > b->from)
-        return himc_quintic_at(&b->path, t - b->restart);
-    if (t < b->contact)
-        return himc_quintic_at(&b->approach, t - b->from);
-    return himc_quintic_at(&b->path, t - b->contact);
-}
-
 // all nudges of a hand at take time `t`
 static himc_target aside_at(const himc_track *track, himc_hand hand, double t)
 {
@@ -302,7 +262,16 @@ himc_target himc_track_target(const himc_track *track, himc_hand hand, double t)
     if (t < -0.5 * HIMC_TRACK_RAMP && h->approach_time > 0)
         return himc_quintic_at(&h->approach, fmax(t + 0.5 * HIMC_TRACK_RAMP + h->approach_time, 0));
     himc_track_warp(himc_track_take_length(track), t, at);
-    himc_target s = himc_target_add(played_at(track, h, at[0]), aside_at(track, hand, at[0]));
+    // the take with its strikes bridged
+    const bridge *b = &h->bridges[bridge_at(h->bridges, h->bridge_count, at[0])];
+    himc_target s;
+    if (b == h->bridges + h->bridge_count || at[0] < b->from)
+        s = captured_at(track, h, at[0]);
+    else if (b->restart == b->from && at[0] < b->contact)
+        s = himc_quintic_at(&b->approach, at[0] - b->from);
+    else
+        s = himc_quintic_at(&b->path, at[0] - (b->restart > b->from ? b->restart : b->contact));
+    s = himc_target_add(s, aside_at(track, hand, at[0]));
     s.a = himc_vec3_madd(himc_vec3_scale(s.a, at[1] * at[1]), at[2], s.v);
     s.v = himc_vec3_scale(s.v, at[1]);
     return s;
@@ -348,62 +317,6 @@ bool himc_track_current(const himc_track *track, himc_hand hand, double t, doubl
     *x = b->spot.x + aside.x;
     *y = b->spot.y + aside.y;
     return true;
-}
-
-double himc_track_captured_speed(const himc_track *track, himc_hand hand, double t)
-{
-    const bridge *b = current(track, hand, t);
-    return b ? b->speed : NAN;
-}
-
-// `t`, or if the capture is then below the level of a contact the time at which it is well above: a
-// way back to a place under the head would strike it again. A capture that stays there is pressed
-static double above_head(const himc_track *track, const hand_track *h, double t, double level)
-{
-    double least = level;
-    for (double at = t; at < t + LATEST_REJOIN; at += 1 / track->rate) {
-        if (himc_head_frame_from_world(&track->head, captured_at(track, h, at).x).z >= least)
-            return at;
-        least = level + REJOIN_HEIGHT;
-    }
-    return t;
-}
-
-void himc_track_separated(himc_track *track, himc_hand hand, double now,
-                          const himc_target *measured)
-{
-    hand_track *h = &track->hand[hand];
-    double at[3];
-    himc_track_warp(himc_track_take_length(track), now, at);
-    double t = at[0];
-    if (at[1] < SLOWEST_REJOIN)
-        return;
-    himc_target from = *measured;
-    from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
-    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
-    from = himc_target_sub(from, aside_at(track, hand, t));
-    int i = bridge_at(h->bridges, h->bridge_count, t);
-    if (i == h->bridge_count || t < h->bridges[i].from) {
-        if (i == 0 || h->bridges[i - 1].to < t - REJOIN_TIME)
-            return;
-        i--; // separated after the bridge's end: it is lengthened
-    }
-    bridge *b = &h->bridges[i];
-    double to =
-        fmax(t + REJOIN_TIME, b->next / track->rate); // between last and next nothing is known
-    to = above_head(track, h, to, b->spot.z);
-    himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, from.x);
-    if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
-        to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
-    if (i + 1 < h->bridge_count)
-        to = fmin(to, h->bridges[i + 1].from - NEXT_STRIKE_GAP);
-    to = fmin(to, himc_track_take_length(track));
-    if (to < t + LEAST_REJOIN)
-        return;
-    b->to = to;
-    himc_target back = captured_at(track, h, b->to);
-    b->restart = t;
-    b->path = himc_quintic_make(&from, &back, b->to - t);
 }
 
 bool himc_track_nudge(himc_track *track, const himc_nudge *nudge, himc_error *error)
@@ -458,3 +371,123 @@ bool himc_track_exchange(himc_track *track, const himc_track *other, double t)
     track->nudges = other->nudges;
     return true;
 }
+
+// the source of motion (body/source.h), with times of the performance
+
+static himc_target target(const void *source, himc_hand hand, double t)
+{
+    const himc_track *track = source;
+    return himc_track_target(track, hand, t - track->start);
+}
+
+static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
+{
+    const himc_track *track = source;
+    const bridge *b = current(track, hand, t - track->start);
+    himc_source_stroke next = {.beat = NAN, .speed = b ? b->speed : NAN, .nuance = "none"};
+    next.any = himc_track_current(track, hand, t - track->start, &next.time, &next.x, &next.y);
+    next.time += track->start;
+    return next;
+}
+
+static himc_source_contact next(const void *source, himc_hand hand, double t)
+{
+    const himc_track *track = source;
+    himc_source_contact next = {.any = false};
+    double x, y;
+    next.any = himc_track_current(track, hand, t - track->start, &next.time, &x, &y);
+    next.time += track->start;
+    return next;
+}
+
+static void separated(void *source, himc_hand hand, double now, const himc_target *measured)
+{
+    himc_track *track = source;
+    hand_track *h = &track->hand[hand];
+    double at[3];
+    himc_track_warp(himc_track_take_length(track), now - track->start, at);
+    double t = at[0];
+    if (at[1] < SLOWEST_REJOIN)
+        return;
+    himc_target from = *measured;
+    from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
+    from.a = himc_vec3_scale(himc_vec3_madd(from.a, -at[2], from.v), 1 / (at[1] * at[1]));
+    from = himc_target_sub(from, aside_at(track, hand, t));
+    int i = bridge_at(h->bridges, h->bridge_count, t);
+    if (i == h->bridge_count || t < h->bridges[i].from) {
+        if (i == 0 || h->bridges[i - 1].to < t - REJOIN_TIME)
+            return;
+        i--; // separated after the bridge's end: it is lengthened
+    }
+    bridge *b = &h->bridges[i];
+    // between last and next nothing is known
+    double first = fmax(t + REJOIN_TIME, b->next / track->rate), to = first, least = b->spot.z;
+    // where the capture is then below the level of a contact, the time at which it is well above: a
+    // way back to a place under the head would strike it again. One that stays there is pressed
+    while (himc_head_frame_from_world(&track->head, captured_at(track, h, to).x).z < least) {
+        least = b->spot.z + REJOIN_HEIGHT;
+        to += 1 / track->rate;
+        if (to >= first + LATEST_REJOIN) {
+            to = first;
+            break;
+        }
+    }
+    himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, from.x);
+    if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
+        to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
+    if (i + 1 < h->bridge_count)
+        to = fmin(to, h->bridges[i + 1].from - NEXT_STRIKE_GAP);
+    to = fmin(to, himc_track_take_length(track));
+    if (to < t + LEAST_REJOIN)
+        return;
+    b->to = to;
+    himc_target back = captured_at(track, h, b->to);
+    b->restart = t;
+    b->path = himc_quintic_make(&from, &back, b->to - t);
+}
+
+static void play(void *source, double t, const himc_target *tip, const himc_posture_motion *joints)
+{
+    himc_track *track = source;
+    himc_track_rewind(track, t + HIMC_APPROACH);
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        if (himc_track_present(track, (himc_hand)hand))
+            himc_track_approach(track, (himc_hand)hand, &tip[hand], HIMC_APPROACH);
+    himc_track_approach_posture(track, joints);
+}
+
+static void stop(void *source, double t, const himc_target *now)
+{
+    himc_track *track = source;
+    t -= track->start;
+    if (t >= track->stop || t > himc_track_length(track))
+        return;
+    track->stop = t;
+    // the motion goes on a little and comes to rest; a tip that falls is caught above the head
+    himc_vec3 n = himc_head_frame_normal(&track->head);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const himc_target *s = &now[hand];
+        himc_target rest = {.x = himc_vec3_madd(s->x, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT, s->v)};
+        double fall = fmax(-himc_vec3_dot(n, s->v), 0);
+        double height = himc_head_frame_from_world(&track->head, rest.x).z,
+               least = HOVER_HEIGHT + HOVER_FALL * HIMC_TRACK_HALT * fall;
+        if (height < least)
+            rest.x = himc_vec3_madd(rest.x, least - height, n);
+        track->hand[hand].settle = himc_quintic_make(s, &rest, HIMC_TRACK_HALT);
+    }
+}
+
+static double beat(const void *source, double t)
+{
+    const himc_track *track = source;
+    return t - track->start;
+}
+
+static double end(const void *source)
+{
+    const himc_track *track = source;
+    return track->start + himc_track_length(track);
+}
+
+const himc_source himc_track_source = {target, next, stroke, separated, NULL,
+                                       play,   stop, beat,   end};

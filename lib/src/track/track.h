@@ -14,7 +14,9 @@
 #include "track/nudge.h"
 
 typedef struct himc_track himc_track;
-extern const himc_source himc_track_source; ///< of a himc_track
+/// Of a himc_track. After a separation a quintic of 20 ms, or a longer one from far off, leads back
+/// to the capture; after a stop the tips leave the take and come to rest.
+extern const himc_source himc_track_source;
 
 /// Builds the track of a take for a drumhead at `head`; the take is moved (not turned or scaled) so
 /// that its strikes fall on the head's usual spot, or by player->offset if a player is seated.
@@ -30,8 +32,6 @@ HIMC_RT void himc_track_approach(himc_track *track, himc_hand hand, const himc_t
                                  double duration);
 /// Before its first frame the joints come from `now` as long as the tips take.
 HIMC_RT void himc_track_approach_posture(himc_track *track, const himc_posture_motion *now);
-/// At `t` the tips, in the states `now`, leave the take and come to rest.
-HIMC_RT void himc_track_stop(himc_track *track, double t, const himc_target now[HIMC_HANDS]);
 /// Back to the state before the first strike: its first frame comes at `start` (s) of the
 /// performance.
 HIMC_RT void himc_track_rewind(himc_track *track, double start);
@@ -75,11 +75,5 @@ HIMC_RT void himc_track_posture(const himc_track *track, const himc_skeleton *sk
 /// there is none.
 HIMC_RT bool himc_track_current(const himc_track *track, himc_hand hand, double t,
                                 double *contact_time, double *x, double *y);
-/// Speed of that strike in the capture itself (m/s); NaN if there is none.
-HIMC_RT double himc_track_captured_speed(const himc_track *track, himc_hand hand, double t);
-/// The tip left the head at `t` in this state: a quintic of 20 ms, or a longer one from far off,
-/// leads back to the capture.
-HIMC_RT void himc_track_separated(himc_track *track, himc_hand hand, double t,
-                                  const himc_target *measured);
 
 #endif

@@ -67,57 +67,48 @@ static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, i
     }
 }
 
-// the joints of an arm stretch by stretch, as its tip is cut; others in one
-static void fit_frames(himc_track *track, const himc_pose *pose, int j)
-{
-    const hand_track *h = is_arm(j) ? &track->hand[hand_of(j)] : NULL;
-    int gaps = h ? h->bridge_count : 0, lo = 0;
-    for (int i = 0; i <= gaps; i++) {
-        fit_stretch(track, pose, j, lo, i < gaps ? h->built[i].last : track->frames - 1,
-                    track->joints.joint[j]);
-        lo = i < gaps ? h->built[i].next : 0;
-    }
-    if (track->joints.uncut[j])
-        fit_stretch(track, pose, j, 0, track->frames - 1, track->joints.uncut[j]);
-}
-
-// true if an arm that is not all known ends elsewhere than its tip in most frames
-static bool is_empty(const himc_track *track, const himc_player *player,
-                     const himc_skeleton *skeleton, himc_hand hand)
-{
-    int known = himc_player_known_arm(player, hand);
-    double off[SAMPLED_FRAMES];
-    himc_vec3 waist = himc_skeleton_waist(skeleton);
-    if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
-        return false;
-    for (int i = 0; i < SAMPLED_FRAMES; i++) {
-        int f = (int)((double)(track->frames - 1) * i / (SAMPLED_FRAMES - 1));
-        himc_vec3 tip =
-            himc_arm_levers_of(skeleton, waist, &player->pose[f], hand).at[HIMC_ARM_JOINTS];
-        off[i] = himc_vec3_length(himc_vec3_sub(tip, track->hand[hand].frame[f].x));
-    }
-    return himc_median(off, SAMPLED_FRAMES) > NO_STICK;
-}
-
 bool himc_track_fit_postures(himc_track *track, const himc_player *player)
 {
     for (int j = 0; j < TRACK_JOINTS; j++) {
-        if (!player->pose || !player->known[j] || (is_arm(j) && !track->hand[hand_of(j)].present))
+        const hand_track *h = is_arm(j) ? &track->hand[hand_of(j)] : NULL;
+        if (!player->pose || !player->known[j] || (h && !h->present))
             continue;
-        track->joints.joint[j] = malloc((size_t)track->frames * sizeof *track->joints.joint[j]);
-        if (is_arm(j))
-            track->joints.uncut[j] = malloc((size_t)track->frames * sizeof *track->joints.uncut[j]);
-        if (!track->joints.joint[j] || (is_arm(j) && !track->joints.uncut[j]))
+        size_t size = (size_t)track->frames * sizeof(joint_state);
+        joint_state *joint = track->joints.joint[j] = malloc(size);
+        joint_state *uncut = track->joints.uncut[j] = h ? malloc(size) : NULL;
+        if (!joint || (h && !uncut))
             return false;
         track->joints.known[j] = true;
-        fit_frames(track, player->pose, j);
-        track->joints.before[j] = (joint_state){.q = track->joints.joint[j][0].q};
+        // an arm stretch by stretch, as its tip is cut; other joints in one
+        int lo = 0, last = track->frames - 1;
+        for (int i = 0; h && i < h->bridge_count; i++) {
+            fit_stretch(track, player->pose, j, lo, h->built[i].last, joint);
+            lo = h->built[i].next;
+        }
+        fit_stretch(track, player->pose, j, lo, last, joint);
+        if (uncut)
+            fit_stretch(track, player->pose, j, 0, last, uncut);
+        track->joints.before[j] = (joint_state){.q = joint[0].q};
     }
     himc_skeleton skeleton;
     if (!player->pose || !himc_skeleton_init(&skeleton, &player->config, NULL))
         return !player->pose;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        track->joints.empty[hand] = is_empty(track, player, &skeleton, (himc_hand)hand);
+    // an arm that is not all known is empty if it ends elsewhere than its tip in most frames
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        int known = himc_player_known_arm(player, hand);
+        double off[SAMPLED_FRAMES];
+        if (!track->hand[hand].present || known == 0 || known == HIMC_ARM_JOINTS)
+            continue;
+        for (int k = 0; k < SAMPLED_FRAMES; k++) {
+            int f = (int)((double)(track->frames - 1) * k / (SAMPLED_FRAMES - 1));
+            himc_arm_levers arm = himc_arm_levers_of(&skeleton, himc_skeleton_waist(&skeleton),
+                                                     &player->pose[f], hand);
+            himc_vec3 tip = track->hand[hand].frame[f].x;
+            off[k] = himc_vec3_length(himc_vec3_sub(arm.at[HIMC_ARM_JOINTS], tip));
+        }
+        track->joints.empty[hand] = himc_median(off, SAMPLED_FRAMES) > NO_STICK;
+    }
     return true;
 }
 
@@ -137,10 +128,14 @@ bool himc_track_has_posture(const himc_track *track)
     return false;
 }
 
-// the first gap that does not end before frame u, by bisection
-static int gap_at(const hand_track *h, double u)
+// at `t` of the take itself; the gap that does not end before it is found by bisection
+static joint_state captured_joint(const himc_track *track, int j, double t, bool cut)
 {
-    int lo = 0, hi = h->bridge_count;
+    const joint_state *joint = is_arm(j) && !cut ? track->joints.uncut[j] : track->joints.joint[j];
+    double u = fmin(fmax(t * track->rate, 0), track->frames - 1);
+    int from = u < track->frames - 2 ? (int)u : track->frames - 2, to = from + 1;
+    const hand_track *h = is_arm(j) && cut ? &track->hand[hand_of(j)] : NULL;
+    int lo = 0, hi = h ? h->bridge_count : 0;
     while (lo < hi) {
         int mid = (lo + hi) / 2;
         if (h->built[mid].next > u)
@@ -148,51 +143,36 @@ static int gap_at(const hand_track *h, double u)
         else
             lo = mid + 1;
     }
-    return lo;
-}
-
-// at `t` of the take itself
-static joint_state captured_joint(const himc_track *track, int j, double t, bool cut)
-{
-    const joint_state *joint = is_arm(j) && !cut ? track->joints.uncut[j] : track->joints.joint[j];
-    double u = fmin(fmax(t * track->rate, 0), track->frames - 1);
-    int from = u < track->frames - 2 ? (int)u : track->frames - 2, to = from + 1;
-    const hand_track *h = is_arm(j) && cut ? &track->hand[hand_of(j)] : NULL;
-    int i = h ? gap_at(h, u) : 0;
-    if (h && i < h->bridge_count && h->built[i].last <= u) {
-        from = h->built[i].last;
-        to = h->built[i].next;
+    if (h && lo < h->bridge_count && h->built[lo].last <= u) {
+        from = h->built[lo].last;
+        to = h->built[lo].next;
     }
     return himc_interpolate_joints((u - from) / track->rate, (to - from) / track->rate,
                                    &joint[from], &joint[to]);
 }
 
-// with the approach before the first frame
-static joint_state entered_joint(const himc_track *track, int j, double t, bool cut)
+// with the approach before the first frame, and the halt after a stop
+static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
 {
     double approach =
         fmax(track->hand[HIMC_LEFT].approach_time, track->hand[HIMC_RIGHT].approach_time);
-    double since = t + 0.5 * HIMC_TRACK_RAMP + approach, at[3];
-    if (t < -0.5 * HIMC_TRACK_RAMP && approach > 0) {
+    double taken = fmin(t, track->stop), since = taken + 0.5 * HIMC_TRACK_RAMP + approach, at[3];
+    joint_state s;
+    if (taken < -0.5 * HIMC_TRACK_RAMP && approach > 0) {
         joint_state first = {.q = track->joints.joint[j][0].q};
-        return himc_interpolate_joints(fmax(since, 0), approach, &track->joints.before[j], &first);
+        s = himc_interpolate_joints(fmax(since, 0), approach, &track->joints.before[j], &first);
+    } else {
+        himc_track_warp(himc_track_take_length(track), taken, at);
+        s = captured_joint(track, j, at[0], cut);
+        s.acceleration =
+            himc_vec3_madd(himc_vec3_scale(s.acceleration, at[1] * at[1]), at[2], s.rate);
+        s.rate = himc_vec3_scale(s.rate, at[1]);
     }
-    himc_track_warp(himc_track_take_length(track), t, at);
-    joint_state s = captured_joint(track, j, at[0], cut);
-    s.acceleration = himc_vec3_madd(himc_vec3_scale(s.acceleration, at[1] * at[1]), at[2], s.rate);
-    s.rate = himc_vec3_scale(s.rate, at[1]);
-    return s;
-}
-
-// and the halt after a stop
-static joint_state played_joint(const himc_track *track, int j, double t, bool cut)
-{
-    joint_state left = entered_joint(track, j, fmin(t, track->stop), cut), rest = {.q = left.q};
     if (t < track->stop)
-        return left;
-    himc_vec3 way = himc_vec3_scale(left.rate, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT);
-    rest.q = himc_quat_mul(himc_quat_exp(way), left.q);
-    return himc_interpolate_joints(fmin(t - track->stop, HIMC_TRACK_HALT), HIMC_TRACK_HALT, &left,
+        return s;
+    himc_vec3 way = himc_vec3_scale(s.rate, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT);
+    joint_state rest = {.q = himc_quat_mul(himc_quat_exp(way), s.q)};
+    return himc_interpolate_joints(fmin(t - track->stop, HIMC_TRACK_HALT), HIMC_TRACK_HALT, &s,
                                    &rest);
 }
 
@@ -232,26 +212,6 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
     return far;
 }
 
-// the joints `dt` later at constant acceleration, the arms bent to the tips of that time, or as
-// near as they reach
-static himc_pose pose_after(const himc_skeleton *skeleton, const himc_posture_motion *m,
-                            const himc_target tip[HIMC_HANDS], double dt)
-{
-    himc_pose pose;
-    for (int j = 0; j < HIMC_JOINTS; j++)
-        pose.joint[j] = himc_posture_joint_after(m, j, dt);
-    for (int i = 0; i < HIMC_HANDS; i++) {
-        himc_hand hand = (himc_hand)i;
-        himc_vec3 shoulder = himc_shoulder(skeleton, pose.joint[HIMC_TRUNK - 1], hand);
-        himc_target asked = {.x = himc_target_after(&tip[i], dt).x};
-        himc_vec3 to = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, hand)).x;
-        double far = INFINITY;
-        for (int k = 0; k < BENDS || (k < MOST_BENDS && far > BENT_WITHIN); k++)
-            far = bend_once(skeleton, hand, to, &pose);
-    }
-    return pose;
-}
-
 void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, double t,
                         const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
 {
@@ -265,9 +225,24 @@ void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, 
     }
     if (!tip)
         return;
+    // the joints a little before, now and after at constant acceleration, the arms bent to the tips
+    // of that time, or as near as they reach
     himc_pose bent[3];
-    for (int k = 0; k < 3; k++)
-        bent[k] = pose_after(skeleton, motion, tip, (k - 1) * BEND_DIFFERENCE);
+    for (int i = 0; i < 3; i++) {
+        himc_pose *pose = &bent[i];
+        double dt = (i - 1) * BEND_DIFFERENCE;
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            pose->joint[j] = himc_posture_joint_after(motion, j, dt);
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            himc_hand of = (himc_hand)hand;
+            himc_vec3 shoulder = himc_shoulder(skeleton, pose->joint[HIMC_TRUNK - 1], of);
+            himc_target asked = {.x = himc_target_after(&tip[hand], dt).x};
+            himc_vec3 to = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, of)).x;
+            double far = INFINITY;
+            for (int k = 0; k < BENDS || (k < MOST_BENDS && far > BENT_WITHIN); k++)
+                far = bend_once(skeleton, of, to, pose);
+        }
+    }
     himc_posture_differentiate(bent, BEND_DIFFERENCE, HIMC_LEFT_UPPER_ARM - 1, TRACK_JOINTS,
                                motion);
 }
