@@ -30,8 +30,8 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS]
         e->rate[j] = himc_vec3_madd(e->rate[j], -0.5 * c->step, e->acceleration[j]);
         himc_vec3 angle = himc_vec3_scale(e->angle[j], w * w);
         himc_vec3 feedback = himc_vec3_madd(angle, 2 * w, e->rate[j]);
-        if (c->config
-                .gain_set[j]) { // the bandwidth is always slow beside the step, gains need not be
+        // the bandwidth is always slow beside the step, gains need not be
+        if (c->config.gain_set[j]) {
             himc_vec3 i = c->inertia[j], ks = c->gain[j].stiffness, kd = c->gain[j].damping;
             const himc_mat3 *r = &in->state->rotation[j + 1];
             implicit_rates(ks.x / i.x, kd.x / i.x, c->step, x);
