@@ -105,19 +105,6 @@ static void push_apart(field *f, himc_capsule_pair pair, const himc_capsule_near
     push(f, pair.other, near->t, -size, near->n);
 }
 
-// of crossed parts the gap is counted downwards from the right order
-static void push_arms(field *f, himc_capsule_pair pair, const himc_capsule *p,
-                      const himc_capsule *q, himc_capsule_near near, int order)
-{
-    himc_capsule_near crossed;
-    if (order != 0 && crosses(p, q, &crossed)) {
-        crossed.gap = fmax(order * crossed.gap - p->radius - q->radius, LARGEST_LACK);
-        crossed.n.z = order;
-        near = crossed;
-    }
-    push_apart(f, pair, &near, NEAR_ARM);
-}
-
 static bool is_stick(int part)
 {
     return part == HIMC_LEFT_STICK || part == HIMC_RIGHT_STICK;
@@ -134,17 +121,22 @@ static void push_pairs(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
         if (himc_balls_are_far(&ball[pair.part], &ball[pair.other], arms ? SEEN : NEAR_BODY) &&
             (!arms || order == 0))
             continue;
-        himc_capsule_near near = himc_capsule_nearest(p, q);
+        himc_capsule_near near = himc_capsule_nearest(p, q), crossed;
         if (!arms || !sticks)
             f->clear.body = fmin(f->clear.body, near.gap);
         else if (near.gap < f->clear.sticks) {
             f->clear.sticks = near.gap;
             f->clear.order = fabs(near.n.z) > LEVEL ? (near.n.z > 0 ? 1 : -1) : 0;
         }
-        if (!arms)
-            push_apart(f, pair, &near, NEAR_BODY);
-        else if (!(is_stick(pair.part) && is_stick(pair.other)))
-            push_arms(f, pair, p, q, near, order);
+        if (arms && is_stick(pair.part) && is_stick(pair.other))
+            continue;
+        // of crossed parts the gap is counted downwards from the right order
+        if (arms && order != 0 && crosses(p, q, &crossed)) {
+            crossed.gap = fmax(order * crossed.gap - p->radius - q->radius, LARGEST_LACK);
+            crossed.n.z = order;
+            near = crossed;
+        }
+        push_apart(f, pair, &near, arms ? NEAR_ARM : NEAR_BODY);
     }
 }
 
@@ -213,17 +205,6 @@ static void add_descent(const himc_posture *then, const himc_foreseen *foreseen,
     }
 }
 
-static void step(himc_avoidance *a, const double rate[HIMC_AVOIDANCE_PARTS], double dt)
-{
-    for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++) {
-        bool clear = rate[i] == 0;
-        double more = fmin(fmax(rate[i], -FASTEST), FASTEST) - a->goal[i] / RETURN_TIME;
-        double goal = a->goal[i] + dt * more;
-        goal = fmin(fmax(goal, least[i / HIMC_HANDS]), most[i / HIMC_HANDS]);
-        a->goal[i] = clear && fabs(goal) < LEAST_GOAL ? 0 : goal;
-    }
-}
-
 // The order in which the arms cross at first is kept until they do not cross any more. The last
 // posture has no time, so it decides nothing.
 static void foresee_order(himc_avoidance *a, himc_capsule capsule[HIMC_FORESEEN][HIMC_SEGMENTS])
@@ -261,7 +242,13 @@ int himc_avoidance_update(himc_avoidance *a, const himc_posture *posture, const 
         add_descent(&then, &foreseen[k], &f, rate);
         work += DESCENT_WORK;
     }
-    step(a, rate, fmin(dt, LONGEST_STEP));
+    dt = fmin(dt, LONGEST_STEP);
+    for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++) {
+        double more = fmin(fmax(rate[i], -FASTEST), FASTEST) - a->goal[i] / RETURN_TIME;
+        double goal = a->goal[i] + dt * more;
+        goal = fmin(fmax(goal, least[i / HIMC_HANDS]), most[i / HIMC_HANDS]);
+        a->goal[i] = rate[i] == 0 && fabs(goal) < LEAST_GOAL ? 0 : goal;
+    }
     return work;
 }
 

@@ -79,21 +79,6 @@ static himc_vec3 from_ode(const dReal *v)
     return himc_vec3_make(v[0], v[1], v[2]);
 }
 
-static void take_from_ode(himc_character *c)
-{
-    himc_body_state *s = &c->state.joints;
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        const dReal *q = dBodyGetQuaternion(c->body[i]), *r = dBodyGetRotation(c->body[i]);
-        s->orientation[i] = (himc_quat){q[0], q[1], q[2], q[3]};
-        s->rotation[i] = (himc_mat3){{{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, {r[8], r[9], r[10]}}};
-        s->spin[i] = from_ode(dBodyGetAngularVel(c->body[i]));
-        c->state.position[i] = from_ode(dBodyGetPosition(c->body[i]));
-        c->state.velocity[i] = from_ode(dBodyGetLinearVel(c->body[i]));
-        himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
-        s->origin[i] = himc_vec3_sub(c->state.position[i], center);
-    }
-}
-
 himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *error)
 {
     himc_character *c = calloc(1, sizeof *c);
@@ -173,17 +158,17 @@ void himc_character_account(himc_character *c, himc_body_work *work)
     c->work = work;
 }
 
-static void set_state(himc_character *c, const himc_body_state *state)
+bool himc_character_place(himc_character *c, const himc_body_state *state)
 {
+    double before = c->work ? energy(c) : 0;
     himc_body_state *s = &c->state.joints;
-    himc_vec3 v[HIMC_SEGMENTS];
+    himc_vec3 v[HIMC_SEGMENTS]; // of the joints: the sum of w x r from the pelvis outwards
     *s = *state;
     s->orientation[0] = himc_quat_identity();
-    s->spin[0] = himc_vec3_make(0, 0, 0);
+    s->spin[0] = v[0] = himc_vec3_make(0, 0, 0);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         s->orientation[i] = himc_quat_unit(s->orientation[i]);
     himc_body_state_complete(&c->skeleton, s);
-    v[0] = himc_vec3_make(0, 0, 0); // of the joints: the sum of w x r from the pelvis outwards
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = c->skeleton.segment[i].parent;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
@@ -192,12 +177,6 @@ static void set_state(himc_character *c, const himc_body_state *state)
         c->state.position[i] = himc_vec3_add(s->origin[i], center);
         c->state.velocity[i] = himc_vec3_add(v[i], himc_vec3_cross(s->spin[i], center));
     }
-}
-
-bool himc_character_place(himc_character *c, const himc_body_state *state)
-{
-    double before = c->work ? energy(c) : 0;
-    set_state(c, state);
     c->sound = is_sound(&c->state, HIMC_SEGMENTS);
     if (c->work && isfinite(before))
         c->work->placed += energy(c) - before;
@@ -278,7 +257,17 @@ static void step_ode(himc_character *c, const segment_forces *f, double h)
         dBodySetTorque(c->body[i], f->torque[i].x, f->torque[i].y, f->torque[i].z);
     }
     dWorldStep(c->world, h);
-    take_from_ode(c);
+    himc_body_state *s = &c->state.joints;
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        const dReal *q = dBodyGetQuaternion(c->body[i]), *r = dBodyGetRotation(c->body[i]);
+        s->orientation[i] = (himc_quat){q[0], q[1], q[2], q[3]};
+        s->rotation[i] = (himc_mat3){{{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, {r[8], r[9], r[10]}}};
+        s->spin[i] = from_ode(dBodyGetAngularVel(c->body[i]));
+        c->state.position[i] = from_ode(dBodyGetPosition(c->body[i]));
+        c->state.velocity[i] = from_ode(dBodyGetLinearVel(c->body[i]));
+        himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
+        s->origin[i] = himc_vec3_sub(c->state.position[i], center);
+    }
     c->still = 0;
 }
 
@@ -294,8 +283,15 @@ static bool legs_rest(const himc_character *c, const segment_forces *f)
     return same;
 }
 
-static void note_legs(himc_character *c, const segment_forces *f)
+static void step_tree(himc_character *c, const segment_forces *f, double h)
 {
+    bool rest = legs_rest(c, f);
+    c->articulated = c->articulated && rest == (c->still > STILL_STEPS);
+    c->still = rest ? STILL_STEPS + 1 : c->still < STILL_STEPS ? c->still : STILL_STEPS;
+    himc_character_articulation(c);
+    himc_tree_step(&c->skeleton, &c->articulation, f, JOINT_ERP, h, &c->state);
+    if (rest)
+        return;
     bool still = true;
     for (int i = HIMC_LEGS; i < HIMC_SEGMENTS; i++) {
         himc_vec3 w = c->state.joints.spin[i];
@@ -304,17 +300,6 @@ static void note_legs(himc_character *c, const segment_forces *f)
     c->still = still ? c->still + (c->still < STILL_STEPS) : 0;
     memcpy(&c->resting.force[HIMC_LEGS], &f->force[HIMC_LEGS], LEGS_SIZE);
     memcpy(&c->resting.torque[HIMC_LEGS], &f->torque[HIMC_LEGS], LEGS_SIZE);
-}
-
-static void step_tree(himc_character *c, const segment_forces *f, double h)
-{
-    bool rest = legs_rest(c, f);
-    c->articulated = c->articulated && rest == (c->still > STILL_STEPS);
-    c->still = rest ? STILL_STEPS + 1 : c->still < STILL_STEPS ? c->still : STILL_STEPS;
-    himc_character_articulation(c);
-    himc_tree_step(&c->skeleton, &c->articulation, f, JOINT_ERP, h, &c->state);
-    if (!rest)
-        note_legs(c, f);
 }
 
 bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],

@@ -87,17 +87,6 @@ static void place_segment(const himc_skeleton *skeleton, const himc_body_state *
     own->m = (himc_symmetric){.xx = m, .yy = m, .zz = m};
 }
 
-// the matrices of a joint that resists its acceleration; J becomes J + D
-static void add_resistance(himc_articulation *art, int i, const himc_symmetric *d, block *own)
-{
-    own->j = sum(&own->j, d);
-    art->inverse[i] = inverse(&own->j);
-    himc_mat3 k = full(&art->inverse[i]);
-    art->resistance[i] = full(d);
-    art->transfer[i] = himc_mat3_mul(&art->resistance[i], &k);
-    art->parent_coupling[i] = himc_mat3_mul(&art->transfer[i], &own->h);
-}
-
 // adds E and G of segment `i`, moved to its parent's joint, to the parent's J and H
 static void add_parent_moments(const himc_articulation *art, int i, block *parent)
 {
@@ -157,11 +146,16 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
         place_segment(skeleton, s, i, art, &own[i]);
     for (int i = end - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
-        if (resistance) {
+        if (resistance) { // J becomes J + D
             himc_symmetric d = himc_world_tensor(&s->rotation[i], resistance[i - 1]);
-            add_resistance(art, i, &d, &own[i]);
-        } else {
-            art->inverse[i] = inverse(&own[i].j);
+            own[i].j = sum(&own[i].j, &d);
+            art->resistance[i] = full(&d);
+        }
+        art->inverse[i] = inverse(&own[i].j);
+        if (resistance) { // D K and G
+            himc_mat3 k = full(&art->inverse[i]);
+            art->transfer[i] = himc_mat3_mul(&art->resistance[i], &k);
+            art->parent_coupling[i] = himc_mat3_mul(&art->transfer[i], &own[i].h);
         }
         eliminate(art, i, &own[i]);
         if (skeleton->segment[p].joint == HIMC_JOINT_FIXED)
@@ -229,21 +223,6 @@ static himc_vec3 centripetal(himc_vec3 spin, himc_vec3 r)
     return himc_vec3_cross(spin, himc_vec3_cross(spin, r));
 }
 
-// a segment alone: gyroscopic moment, centripetal force, weight, and its joint's centripetal
-// acceleration
-static tree_load own_load(const himc_skeleton *skeleton, const himc_articulation *art,
-                          const himc_vec3 *spin, int i)
-{
-    const himc_segment *segment = &skeleton->segment[i];
-    tree_load own = {.force = centripetal(spin[i], art->center[i]),
-                     .gap = centripetal(spin[segment->parent], art->lever[i])};
-    own.force.z += HIMC_GRAVITY;
-    own.force = himc_vec3_scale(own.force, segment->mass);
-    own.moment = himc_vec3_cross(spin[i], himc_symmetric_apply(&art->inertia[i], spin[i]));
-    own.moment = himc_vec3_add(own.moment, himc_vec3_cross(art->center[i], own.force));
-    return own;
-}
-
 void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state *s,
                            const himc_articulation *art, const himc_vec3 *torque,
                            const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS])
@@ -252,8 +231,16 @@ void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state 
     himc_vec3 alpha[HIMC_SEGMENTS], a[HIMC_SEGMENTS];
     load[0] = (tree_load){.gap = {0, 0, 0}};
     for (int i = 1; i < art->end; i++) {
-        tree_load *parent = &load[skeleton->segment[i].parent];
-        load[i] = own_load(skeleton, art, s->spin, i);
+        const himc_segment *segment = &skeleton->segment[i];
+        tree_load *parent = &load[segment->parent];
+        himc_vec3 spin = s->spin[i];
+        load[i].gap = centripetal(s->spin[segment->parent], art->lever[i]);
+        load[i].force = centripetal(spin, art->center[i]);
+        load[i].force.z += HIMC_GRAVITY;
+        load[i].force = himc_vec3_scale(load[i].force, segment->mass);
+        load[i].moment = himc_vec3_cross(spin, himc_symmetric_apply(&art->inertia[i], spin));
+        load[i].moment =
+            himc_vec3_add(load[i].moment, himc_vec3_cross(art->center[i], load[i].force));
         load[i].moment = himc_vec3_sub(load[i].moment, torque[i - 1]);
         parent->moment = himc_vec3_add(parent->moment, torque[i - 1]);
     }

@@ -193,16 +193,12 @@ static const printed arm[3] = {
 // rotation of the head to the side; with the arms held sideways the wrist's shortest axis is its
 // own length and its longest the flexion. In this library arms hang in the zero pose: x, the left
 // arm's length, becomes -z, and y stays the axis of flexion.
-static himc_vec3 from_capture(const double v[3], bool is_arm)
-{
-    return is_arm ? himc_vec3_make(v[2], v[1], -v[0]) : himc_vec3_make(v[2], v[0], v[1]);
-}
-
 static himc_limit printed_limit(const printed *p, bool is_arm, bool right, himc_quat mean)
 {
     himc_vec3 e[3];
     for (int k = 0; k < 3; k++) {
-        e[k] = from_capture(p->axis[k], is_arm);
+        const double *v = p->axis[k];
+        e[k] = is_arm ? himc_vec3_make(v[2], v[1], -v[0]) : himc_vec3_make(v[2], v[0], v[1]);
         // mirrored, a rotation axis (x, y, z) becomes (-x, y, -z): the same line as (x, -y, z)
         if (right)
             e[k].y = -e[k].y;
@@ -283,25 +279,6 @@ static bool fit_ellipsoid(himc_limit *l, const himc_vec3 *t, int count)
     return true;
 }
 
-static void fit_box(himc_limit *l, const himc_pose *pose, int frames, int joint)
-{
-    for (int f = 0; f < frames; f++) {
-        himc_vec3 e =
-            himc_euler_from_quat(himc_quat_mul(himc_quat_conj(l->mean), pose[f].joint[joint]));
-        himc_vec3 low = f ? l->lower : e, high = f ? l->upper : e;
-        l->lower = himc_vec3_make(fmin(low.x, e.x), fmin(low.y, e.y), fmin(low.z, e.z));
-        l->upper = himc_vec3_make(fmax(high.x, e.x), fmax(high.y, e.y), fmax(high.z, e.z));
-    }
-}
-
-static void widen(himc_limit *l, double margin)
-{
-    himc_vec3 more = himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5 * margin);
-    l->lower = himc_vec3_sub(l->lower, more);
-    l->upper = himc_vec3_add(l->upper, more);
-    l->radius = at_least(himc_vec3_scale(l->radius, 1 + margin), THINNEST);
-}
-
 void himc_limits_loosen(himc_limits *limits, double least)
 {
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -312,8 +289,8 @@ void himc_limits_loosen(himc_limits *limits, double least)
     }
 }
 
-// `tangent` has room for the frames
-static bool learn_joint(himc_limit *l, const himc_pose *pose, int frames, int joint,
+// ellipsoid and box around a joint's rotations; `tangent` has room for the frames
+static bool learn_joint(himc_limit *l, const himc_pose *pose, int frames, int joint, double margin,
                         himc_vec3 *tangent)
 {
     double most = 0;
@@ -322,16 +299,28 @@ static bool learn_joint(himc_limit *l, const himc_pose *pose, int frames, int jo
         himc_quat away = himc_quat_mul(himc_quat_conj(l->mean), pose[f].joint[joint]);
         tangent[f] = himc_quat_log(away);
         most = fmax(most, himc_vec3_length(tangent[f]));
+        himc_vec3 e = himc_euler_from_quat(away);
+        himc_vec3 low = f ? l->lower : e, high = f ? l->upper : e;
+        l->lower = himc_vec3_make(fmin(low.x, e.x), fmin(low.y, e.y), fmin(low.z, e.z));
+        l->upper = himc_vec3_make(fmax(high.x, e.x), fmax(high.y, e.y), fmax(high.z, e.z));
     }
     l->bound = most > THINNEST;
-    if (!fit_ellipsoid(l, tangent, frames))
-        return false;
-    fit_box(l, pose, frames, joint);
-    return true;
+    himc_vec3 more = himc_vec3_scale(himc_vec3_sub(l->upper, l->lower), 0.5 * margin);
+    l->lower = himc_vec3_sub(l->lower, more);
+    l->upper = himc_vec3_add(l->upper, more);
+    bool fitted = fit_ellipsoid(l, tangent, frames);
+    l->radius = at_least(himc_vec3_scale(l->radius, 1 + margin), THINNEST);
+    return fitted;
 }
 
-static bool poses_valid(const himc_pose *pose, int frames, himc_error *error)
+bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, double margin,
+                       himc_error *error)
 {
+    himc_limits learned = {.kind = HIMC_LIMITS_ELLIPSOID};
+    if (frames < 1)
+        return himc_error_set(error, "limits: %d frames, expected at least 1", frames);
+    if (!himc_check_range("limits: margin", margin, 0, 1, "", error))
+        return false;
     for (int f = 0; f < frames; f++)
         for (int j = 0; j < HIMC_JOINTS; j++) {
             double square = himc_quat_dot(pose[f].joint[j], pose[f].joint[j]);
@@ -341,24 +330,10 @@ static bool poses_valid(const himc_pose *pose, int frames, himc_error *error)
                                       "expected 1",
                                       f + 1, himc_joint_name(j), sqrt(square));
         }
-    return true;
-}
-
-bool himc_limits_learn(himc_limits *limits, const himc_pose *pose, int frames, double margin,
-                       himc_error *error)
-{
-    himc_limits learned = {.kind = HIMC_LIMITS_ELLIPSOID};
-    if (frames < 1)
-        return himc_error_set(error, "limits: %d frames, expected at least 1", frames);
-    if (!himc_check_range("limits: margin", margin, 0, 1, "", error) ||
-        !poses_valid(pose, frames, error))
-        return false;
     himc_vec3 *tangent = malloc(sizeof *tangent * (size_t)frames);
     bool fitted = tangent != NULL;
-    for (int j = 0; fitted && j < HIMC_JOINTS; j++) {
-        fitted = learn_joint(&learned.joint[j], pose, frames, j, tangent);
-        widen(&learned.joint[j], margin);
-    }
+    for (int j = 0; fitted && j < HIMC_JOINTS; j++)
+        fitted = learn_joint(&learned.joint[j], pose, frames, j, margin, tangent);
     free(tangent);
     if (!fitted)
         return himc_error_set(error, "limits: out of memory for %d frames", frames);

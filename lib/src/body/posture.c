@@ -121,21 +121,15 @@ static double azimuth(himc_vec3 a)
     return fmin(fmax(atan2(a.y, a.x), -most), most);
 }
 
-// The azimuth of the middle of two places; of places on both sides, whose middle may lie behind the
-// player, the middle of their directions.
-static double mean_azimuth(himc_vec3 a, himc_vec3 b)
-{
-    himc_vec3 both = himc_vec3_add(a, b);
-    if (a.x * b.x + a.y * b.y < BOTH_SIDES * hypot(a.x, a.y) * hypot(b.x, b.y))
-        return 0.5 * (azimuth(a) + azimuth(b));
-    return both.x * both.x + both.y * both.y > 1e-6 ? atan2(both.y, both.x) : 0;
-}
-
 himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip)
 {
-    double turn = TURN_SHARE * mean_azimuth(strike[HIMC_LEFT], strike[HIMC_RIGHT]);
-    double far = fmax(hypot(strike[HIMC_LEFT].x, strike[HIMC_LEFT].y),
-                      hypot(strike[HIMC_RIGHT].x, strike[HIMC_RIGHT].y));
+    himc_vec3 l = strike[HIMC_LEFT], r = strike[HIMC_RIGHT], both = himc_vec3_add(l, r);
+    // the azimuth of the middle of the two places; of places on both sides, whose middle may lie
+    // behind the player, the middle of their directions
+    double azimuths = both.x * both.x + both.y * both.y > 1e-6 ? atan2(both.y, both.x) : 0;
+    if (l.x * r.x + l.y * r.y < BOTH_SIDES * hypot(l.x, l.y) * hypot(r.x, r.y))
+        azimuths = 0.5 * (azimuth(l) + azimuth(r));
+    double turn = TURN_SHARE * azimuths, far = fmax(hypot(l.x, l.y), hypot(r.x, r.y));
     double more = fmin(LEAN_SLOPE * fmax(far - LEAN_BEGINS, 0), LEAN_LIMIT - TRUNK_LEAN);
     himc_trunk_posture b = {{0}, {0}, {0}};
     b.value[HIMC_TRUNK_POSTURE_TURN] = fmin(fmax(turn, -TURN_LIMIT), TURN_LIMIT);

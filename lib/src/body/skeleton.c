@@ -127,21 +127,11 @@ static bool config_valid(const himc_skeleton_config *c, himc_error *error)
     return valid;
 }
 
-static double share(const row *r, himc_anthropometry anthropometry)
+// a segment's share of the mass in its table, which may not sum up to 1
+static double share(int segment, himc_anthropometry anthropometry)
 {
-    return anthropometry == HIMC_TABLE_1 ? r->table1 : r->fraction;
-}
-
-// a segment's share of the body's mass, normalised by the table's sum
-static double mass_share(int segment, himc_anthropometry anthropometry)
-{
-    double sum = 0;
-    for (int i = 0; i < HIMC_SEGMENTS; i++) {
-        row r = row_of(i);
-        sum += share(&r, anthropometry);
-    }
-    row own = row_of(segment);
-    return share(&own, anthropometry) / sum;
+    row r = row_of(segment);
+    return anthropometry == HIMC_TABLE_1 ? r.table1 : r.fraction;
 }
 
 // de Leva's upper and middle trunk as one segment: centre and inertia by the parallel axis theorem
@@ -189,7 +179,8 @@ static void build_stick(himc_segment *stick, himc_vec3 tip, const himc_skeleton_
     stick->inertia = himc_vec3_make(across, across, along);
 }
 
-static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_config *c)
+// `sum`: of all segments' shares
+static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_config *c, double sum)
 {
     row r = row_of(i);
     himc_segment *s = &skeleton->segment[i];
@@ -200,7 +191,7 @@ static void build_segment(himc_skeleton *skeleton, int i, const himc_skeleton_co
     s->axis = himc_vec3_make(r.axis[0], r.axis[1], r.axis[2]);
     s->radius = stick ? r.radius : r.radius * scale;
     s->length = c->length[i] > 0 ? c->length[i] : r.length * scale;
-    s->mass = c->mass * mass_share(i, c->anthropometry);
+    s->mass = c->mass * (share(i, c->anthropometry) / sum);
     // positions along the parent scale with its length, positions across it with the body's height
     double stretch = scale;
     if (r.parent >= 0)
@@ -222,6 +213,7 @@ double himc_skeleton_seat(const himc_skeleton_config *config)
 bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *config,
                         himc_error *error)
 {
+    double sum = 0;
     if (!config_valid(config, error))
         return false;
     skeleton->height = config->height;
@@ -230,7 +222,9 @@ bool himc_skeleton_init(himc_skeleton *skeleton, const himc_skeleton_config *con
     skeleton->tip =
         himc_vec3_make(0, 0, -(config->stick_length - config->mallet_radius - config->grip));
     for (int i = 0; i < HIMC_SEGMENTS; i++)
-        build_segment(skeleton, i, config);
+        sum += share(i, config->anthropometry);
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        build_segment(skeleton, i, config, sum);
     merge_trunk(&skeleton->segment[HIMC_TRUNK]);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         build_stick(&skeleton->segment[HIMC_LEFT_STICK + hand], skeleton->tip, config);

@@ -51,22 +51,6 @@ static void fill_loads(const himc_skeleton *skeleton, const himc_articulation *a
     }
 }
 
-// a segment under its accelerations: that of the joint and the angular one
-static void integrate(const himc_segment *segment, himc_vec3 center, himc_vec3 a, himc_vec3 alpha,
-                      double h, segment_states *s, int i)
-{
-    himc_body_state *b = &s->joints;
-    a = himc_vec3_add(a, himc_vec3_cross(alpha, center));
-    s->velocity[i] = himc_vec3_madd(s->velocity[i], h, a);
-    s->position[i] = himc_vec3_madd(s->position[i], h, s->velocity[i]);
-    b->spin[i] = himc_vec3_madd(b->spin[i], h, alpha);
-    himc_vec3 w = himc_vec3_scale(b->spin[i], 0.5 * h);
-    himc_quat q = b->orientation[i], dq = himc_quat_mul((himc_quat){0, w.x, w.y, w.z}, q);
-    b->orientation[i] = himc_quat_unit((himc_quat){q.w + dq.w, q.x + dq.x, q.y + dq.y, q.z + dq.z});
-    b->rotation[i] = himc_mat3_from_quat(b->orientation[i]);
-    b->origin[i] = himc_vec3_sub(s->position[i], himc_mat3_apply(&b->rotation[i], segment->center));
-}
-
 void himc_tree_step(const himc_skeleton *skeleton, const himc_articulation *art,
                     const segment_forces *forces, double erp, double h, segment_states *states)
 {
@@ -74,6 +58,18 @@ void himc_tree_step(const himc_skeleton *skeleton, const himc_articulation *art,
     himc_vec3 alpha[HIMC_SEGMENTS], a[HIMC_SEGMENTS];
     fill_loads(skeleton, art, forces, states, erp, h, load);
     himc_articulation_solve(skeleton, art, load, alpha, a);
-    for (int i = 1; i < art->end; i++)
-        integrate(&skeleton->segment[i], art->center[i], a[i], alpha[i], h, states, i);
+    himc_body_state *b = &states->joints;
+    for (int i = 1; i < art->end; i++) {
+        a[i] = himc_vec3_add(a[i], himc_vec3_cross(alpha[i], art->center[i])); // of the centre
+        states->velocity[i] = himc_vec3_madd(states->velocity[i], h, a[i]);
+        states->position[i] = himc_vec3_madd(states->position[i], h, states->velocity[i]);
+        b->spin[i] = himc_vec3_madd(b->spin[i], h, alpha[i]);
+        himc_vec3 w = himc_vec3_scale(b->spin[i], 0.5 * h);
+        himc_quat q = b->orientation[i], dq = himc_quat_mul((himc_quat){0, w.x, w.y, w.z}, q);
+        q = (himc_quat){q.w + dq.w, q.x + dq.x, q.y + dq.y, q.z + dq.z};
+        b->orientation[i] = himc_quat_unit(q);
+        b->rotation[i] = himc_mat3_from_quat(b->orientation[i]);
+        himc_vec3 center = himc_mat3_apply(&b->rotation[i], skeleton->segment[i].center);
+        b->origin[i] = himc_vec3_sub(states->position[i], center);
+    }
 }
