@@ -167,21 +167,17 @@ bool himc_note_frequency(const char *note, double *hz)
     return true;
 }
 
-// a drum's name must stay itself in a score line, an OSC address and as a stroke's last atom
-static bool is_name(const char *word)
-{
-    if (!word[0] || strlen(word) >= HIMC_NAME_SIZE || strpbrk(word, " \t/#*?,;:[]{}\\\"$"))
-        return false;
-    return himc_line_is_clean(word) && strcmp(word, "comment") != 0 && find_word(spots, word) < 0 &&
-           !himc_command_find(HIMC_PERFORMER, word);
-}
-
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
 {
     const char *word = atom->kind == HIMC_ATOM_SYMBOL ? atom->symbol : NULL;
     double value = atom->number;
     switch (argument->kind) {
-    case HIMC_ARGUMENT_NAME: return word && is_name(word);
+    case HIMC_ARGUMENT_NAME:
+        // it must stay itself in a score line, an OSC address and as a stroke's last atom
+        return word && word[0] && strlen(word) < HIMC_NAME_SIZE &&
+               !strpbrk(word, " \t/#*?,;:[]{}\\\"$") && himc_line_is_clean(word) &&
+               strcmp(word, "comment") != 0 && find_word(spots, word) < 0 &&
+               !himc_command_find(HIMC_PERFORMER, word);
     case HIMC_ARGUMENT_TEXT:
         return word && strlen(word) >= argument->low && strlen(word) <= argument->high;
     case HIMC_ARGUMENT_NOTE:

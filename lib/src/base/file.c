@@ -177,33 +177,6 @@ void himc_file_draft_drop(himc_file_draft *draft)
     draft->temp[0] = '\0';
 }
 
-// the whole stream, at most some bytes more than `most`; NULL with errno
-static char *read_all(FILE *stream, size_t most, size_t *size)
-{
-    struct stat status;
-    bool known = fstat(fileno(stream), &status) == 0 && status.st_size >= 0;
-    // one byte more than the file, to meet its end; that of /proc say 0 and grow here
-    size_t room = (known && (size_t)status.st_size < most ? (size_t)status.st_size : most) + 1;
-    size_t used = 0, got;
-    char *bytes = malloc(room + 1);
-    errno = 0;
-    while (bytes && used <= most && (got = fread(bytes + used, 1, room - used, stream)) > 0) {
-        used += got;
-        char *more = used < room ? bytes : realloc(bytes, (room *= 2) + 1);
-        if (!more)
-            free(bytes);
-        bytes = more;
-    }
-    if (bytes && ferror(stream)) {
-        free(bytes);
-        return NULL;
-    }
-    if (bytes)
-        bytes[used] = '\0';
-    *size = used;
-    return bytes;
-}
-
 char *himc_file_load_in(const char *folder, const char *path, size_t most, size_t *size,
                         himc_error *error)
 {
@@ -218,12 +191,28 @@ char *himc_file_load_in(const char *folder, const char *path, size_t most, size_
     FILE *stream = stream_of(path, file, "rb", error);
     if (!stream)
         return NULL;
-    char *bytes = read_all(stream, most, size);
+    bool known = fstat(file, &status) == 0 && status.st_size >= 0;
+    // one byte more than the file, to meet its end; that of /proc say 0 and grow here
+    size_t room = (known && (size_t)status.st_size < most ? (size_t)status.st_size : most) + 1;
+    size_t used = 0, got;
+    char *bytes = malloc(room + 1);
+    errno = 0;
+    while (bytes && used <= most && (got = fread(bytes + used, 1, room - used, stream)) > 0) {
+        used += got;
+        char *more = used < room ? bytes : realloc(bytes, (room *= 2) + 1);
+        if (!more)
+            free(bytes);
+        bytes = more;
+    }
+    bool good = bytes && !ferror(stream);
     int why = errno;
     fclose(stream);
-    if (bytes && *size <= most)
+    if (good && used <= most) {
+        bytes[used] = '\0';
+        *size = used;
         return bytes;
-    if (bytes)
+    }
+    if (good)
         himc_error_set(error, "%s: too long, expected %zu MiB", path, most >> 20);
     else
         himc_error_set(error, "%s: cannot be read: %s", path, strerror(why));
@@ -269,6 +258,7 @@ static void free_lines(himc_job *job)
 himc_job *himc_file_write_job(const char *command, const char *path, himc_text_lines *lines,
                               himc_error *error)
 {
+    himc_job functions = {write_lines, lines_written, free_lines};
     write_job *j = NULL;
     size_t length = strlen(path);
     if (lines->failed)
@@ -277,13 +267,12 @@ himc_job *himc_file_write_job(const char *command, const char *path, himc_text_l
     else if (!himc_line_is_clean(path) || length <= 4 || strcmp(path + length - 4, ".txt") != 0)
         himc_error_set(error, "%s: FILE: %.80s, expected a name that ends with .txt", command,
                        path);
-    else if (!(j = calloc(1, sizeof *j)))
-        himc_error_set(error, "%s: out of memory", command);
+    else
+        j = himc_job_new(sizeof *j, command, functions, error);
     if (!j) {
         free(lines->bytes);
         return NULL;
     }
-    j->job = (himc_job){write_lines, lines_written, free_lines};
     j->command = command;
     j->lines = *lines;
     snprintf(j->path, sizeof j->path, "%s", path);

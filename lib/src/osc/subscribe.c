@@ -145,34 +145,25 @@ static bool has_room(const osc_subscriptions *s, const osc_change *change, const
     return refuse(change, error, why);
 }
 
-static bool unsubscribe(osc_subscriptions *s, const osc_change *change, const osc_address *to,
-                        himc_error *error)
-{
-    int removed = 0;
-    for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++)
-        if (one->used && (change->stream == STREAM_ANY || one->stream == change->stream) &&
-            himc_osc_address_same(&one->to, to)) {
-            one->used = false;
-            removed++;
-        }
-    update(s);
-    return removed || refuse(change, error, "not subscribed");
-}
-
 static bool make_change(osc_subscriptions *s, const osc_change *change, const osc_address *to,
                         double now, himc_error *error)
 {
-    osc_subscription *place = NULL;
-    if (change->remove)
-        return unsubscribe(s, change, to, error);
+    osc_subscription *same = NULL, *unused = NULL;
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
-        if (one->used && one->stream == change->stream && himc_osc_address_same(&one->to, to)) {
-            place = one;
-            break;
+        bool all = change->remove && change->stream == STREAM_ANY;
+        if (!one->used) {
+            unused = unused ? unused : one;
+        } else if ((all || one->stream == change->stream) && himc_osc_address_same(&one->to, to)) {
+            same = one;
+            if (change->remove)
+                one->used = false;
         }
-        if (!one->used && !place)
-            place = one;
     }
+    if (change->remove) {
+        update(s);
+        return same || refuse(change, error, "not subscribed");
+    }
+    osc_subscription *place = same ? same : unused;
     if (!place)
         return refuse(change, error, "256 subscriptions already, expected no more");
     double expires = 0; // never

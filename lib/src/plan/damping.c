@@ -44,27 +44,20 @@ static bool send(himc_damping *d, himc_planner *planner, const himc_posture *pos
     return false;
 }
 
-// a hand that has struck since, or has another task, does not lie any more
-static bool lift(himc_damping *d, himc_planner *planner, const himc_damped_head *head, int heads,
-                 const himc_free_hand *free, double t)
+bool himc_damping_move(himc_damping *d, himc_planner *planner, const himc_posture *posture,
+                       const himc_damped_head *head, int heads,
+                       const himc_free_hand hand[HIMC_HANDS], double t)
 {
     bool moved = false;
+    // a hand that has struck since, or has another task, does not lie any more
     for (int i = 0; i < HIMC_HANDS; i++) {
         int drum = d->lies_on[i] - 1;
-        bool left = drum >= heads || free[i].until <= t || free[i].from > d->lies[i];
+        bool left = drum >= heads || hand[i].until <= t || hand[i].from > d->lies[i];
         if (drum < 0 || (!left && (head[drum].now || t < d->lies[i] + LEAST_STAY)))
             continue;
         d->lies_on[i] = 0;
         moved = (!left && himc_planner_lift(planner, t, (himc_hand)i)) || moved;
     }
-    return moved;
-}
-
-bool himc_damping_move(himc_damping *d, himc_planner *planner, const himc_posture *posture,
-                       const himc_damped_head *head, int heads,
-                       const himc_free_hand hand[HIMC_HANDS], double t)
-{
-    bool moved = lift(d, planner, head, heads, hand, t);
     for (int i = 0; i < heads; i++) {
         if (head[i].soon && !d->damped[i]) {
             d->wanted[i] = true;

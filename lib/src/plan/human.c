@@ -131,19 +131,6 @@ static double drift_at(const himc_human *human, drift *d, double beat)
     return sum / d->size;
 }
 
-/// The motor delays of the hands that strike on a beat, their mean (s at amount 1).
-static double motor_delay(const himc_human *human, const planner_onset *onset)
-{
-    double sum = 0;
-    int count = 0;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (onset->strikes[hand]) {
-            sum += MOTOR_DELAY * normal(human, MOTOR, hand, onset->beat);
-            count++;
-        }
-    return sum / count;
-}
-
 /// The clock's error K at the last of `count` onsets, newest first (s at amount 1); a beat takes
 /// `period` (s).
 static double clock_error(const himc_human *human, const planner_onset *onset, int count,
@@ -154,7 +141,14 @@ static double clock_error(const himc_human *human, const planner_onset *onset, i
     for (int i = count - 2; i >= 0; i--) {
         double interval = fmin((onset[i].beat - onset[i + 1].beat) * period, LONGEST_INTERVAL);
         double sd = interval * (interval < ROLL_INTERVAL ? ROLL_SHARE : CLOCK_SHARE);
-        error -= CORRECTION * (error + motor_delay(human, &onset[i + 1]));
+        double delays = 0; // of the hands that struck on the beat before
+        int hands = 0;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            if (onset[i + 1].strikes[hand]) {
+                delays += MOTOR_DELAY * normal(human, MOTOR, hand, onset[i + 1].beat);
+                hands++;
+            }
+        error -= CORRECTION * (error + delays / hands);
         error += sd * normal(human, CLOCK, 0, onset[i].beat);
         error += CLOCK_DRIFT * drift_at(human, &slow, onset[i].beat);
     }

@@ -82,35 +82,6 @@ static void rebase(himc_planner *planner, double t)
     }
 }
 
-/// End of the last contact or bounce that waits or is planned (s); -infinity if there is none.
-static double last_contact(const himc_planner *planner)
-{
-    double last = -HUGE_VAL;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_hand *h = &planner->hand[hand];
-        for (int i = 0; i < h->waiting_count; i++)
-            last = fmax(last, himc_goal_end(&h->waiting[i].goal));
-        if (h->planned_count > 0)
-            last = fmax(last, himc_goal_end(&h->planned[h->planned_count - 1].goal));
-    }
-    return last;
-}
-
-/// The last time at which a stroke is written that a hand has planned or has taken over (s).
-static double last_written(const himc_planner *planner)
-{
-    double last = -HUGE_VAL;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        const planner_hand *h = &planner->hand[hand];
-        for (int i = 0; i < h->waiting_count; i++)
-            if (h->waiting[i].reassigned)
-                last = fmax(last, himc_planner_waiting_time(planner, &h->waiting[i]));
-        if (h->planned_count > 0)
-            last = fmax(last, h->planned[h->planned_count - 1].written.time);
-    }
-    return last;
-}
-
 /// Rolls are about to change at t, with the tempo or what follows them: what of a roll is not
 /// planned yet is counted anew.
 static void before_change(himc_planner *planner, double t)
@@ -118,7 +89,16 @@ static void before_change(himc_planner *planner, double t)
     if (!planner->score.playing || planner->score.roll_count == 0)
         return;
     himc_planner_cut_both(planner, t);
-    himc_planner_score_anchor(&planner->score, fmax(t, last_written(planner)));
+    // what a hand has planned or has taken over stays
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_hand *h = &planner->hand[hand];
+        for (int i = 0; i < h->waiting_count; i++)
+            if (h->waiting[i].reassigned)
+                t = fmax(t, himc_planner_waiting_time(planner, &h->waiting[i]));
+        if (h->planned_count > 0)
+            t = fmax(t, h->planned[h->planned_count - 1].written.time);
+    }
+    himc_planner_score_anchor(&planner->score, t);
 }
 
 bool himc_planner_set_drum(himc_planner *planner, int index, const himc_head_frame *place)
@@ -192,38 +172,20 @@ void himc_planner_set_human(himc_planner *planner, himc_human human)
     himc_planner_replan(planner, planner->now + PLANNER_AHEAD);
 }
 
-/// A stroke added without a loop is the next one if it comes before it; given up if its beat is
-/// past.
-static void fit_in_once(himc_planner *planner, himc_hand hand, int at)
-{
-    const planner_part *part = &planner->score.part[hand];
-    const planner_stroke *added = &part->list[at];
-    double time = himc_planner_score_touch(&planner->score, part->listed.round, &added->stroke);
-    if (at >= part->listed.number)
-        return;
-    if (time > planner->hand[hand].plan.end) {
-        himc_planner_score_go(&planner->score, hand, (planner_place){-1, at, part->listed.round});
-        return;
-    }
-    char name[HIMC_PLANNER_NAME];
-    timed_stroke past = {.stroke = added->stroke, .place = {-1, 0, -1}};
-    himc_planner_tell_miss(planner,
-                           &(himc_planner_miss){added->stroke, added->drum, false, time, PAST},
-                           himc_planner_name(planner, &past, name));
-}
-
 /// While playing, a stroke before the planned ones is fitted in.
 static void fit_in(himc_planner *planner, himc_hand hand, int at, bool first)
 {
     planner_score *score = &planner->score;
     planner_hand *h = &planner->hand[hand];
+    const planner_place *next = &score->part[hand].listed;
+    const planner_stroke *line = &score->part[hand].list[at];
+    const himc_stroke *added = &line->stroke;
     double t = planner->now + PLANNER_AHEAD;
     himc_planner_cut(planner, hand, t);
+    double time = himc_planner_score_touch(score, next->round, added);
     if (score->loop) {
         // the next one in the first round in which the hand is free by then, if it comes before the
         // present next one; planned strokes of a later round are put back already
-        const planner_place *next = &score->part[hand].listed;
-        const himc_stroke *added = &score->part[hand].list[at].stroke;
         int round = 0;
         while (himc_planner_score_touch(score, round, added) <= h->plan.end)
             round++;
@@ -234,8 +196,13 @@ static void fit_in(himc_planner *planner, himc_hand hand, int at, bool first)
         else if (round > next->round && at == next->number)
             himc_planner_score_go(score, hand, (planner_place){-1, at + 1, next->round});
         h->added = at + 1;
-    } else {
-        fit_in_once(planner, hand, at);
+    } else if (at < next->number && time > h->plan.end) {
+        himc_planner_score_go(score, hand, (planner_place){-1, at, next->round});
+    } else if (at < next->number) { // its beat is past
+        char name[HIMC_PLANNER_NAME];
+        timed_stroke past = {.stroke = *added, .place = {-1, 0, -1}};
+        himc_planner_tell_miss(planner, &(himc_planner_miss){*added, line->drum, false, time, PAST},
+                               himc_planner_name(planner, &past, name));
     }
     himc_planner_extend(planner, hand, t + PLANNER_HORIZON);
     h->added = 0;
@@ -684,7 +651,14 @@ double himc_planner_end(const himc_planner *planner)
     double last = himc_planner_score_last_beat(score);
     if (!score->playing || (score->loop && (last >= 0 || score->empties)))
         return HUGE_VAL;
-    double end = last_contact(planner);
+    double end = -HUGE_VAL; // of the last contact or bounce that waits or is planned
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        const planner_hand *h = &planner->hand[hand];
+        for (int i = 0; i < h->waiting_count; i++)
+            end = fmax(end, himc_goal_end(&h->waiting[i].goal));
+        if (h->planned_count > 0)
+            end = fmax(end, himc_goal_end(&h->planned[h->planned_count - 1].goal));
+    }
     if (last >= 0)
         end = fmax(end, himc_planner_score_time(score, score->rounds, last) + HIMC_CONTACT_TIME);
     return fmax(score->origin, end);

@@ -305,15 +305,6 @@ static bool can_vary(himc_planner *planner, const timed_stroke *s)
            !himc_hand_can_follow(&s->written, &after.written);
 }
 
-/// Appends a wait over the last spot, if it leaves the stroke all its time.
-static void wait_first(himc_hand_plan *plan, const himc_goal *goal)
-{
-    himc_hand_plan before = *plan;
-    himc_hand_wait(plan, plan->end, true);
-    if (plan->end + himc_hand_time(plan, goal) > goal->time)
-        *plan = before;
-}
-
 /// Appends a stroke to its hand's plan, if the hand can play it; in the way found for it, if there
 /// is one.
 static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
@@ -339,8 +330,12 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
         s->goal.spot = to;
         s->varied = true;
     }
-    if (way->waits)
-        wait_first(&h->plan, &s->goal);
+    if (way->waits) { // over the last spot, if that leaves the stroke all its time
+        himc_hand_plan before = h->plan;
+        himc_hand_wait(&h->plan, h->plan.end, true);
+        if (h->plan.end + himc_hand_time(&h->plan, &s->goal) > s->goal.time)
+            h->plan = before;
+    }
     if (n == PLANNER_PLANNED || !himc_hand_can_strike(&h->plan, &s->goal))
         return NO_TIME;
     himc_goal goal = s->goal;
@@ -664,22 +659,6 @@ double himc_planner_lateness(himc_planner *planner)
     return late;
 }
 
-/// Drops the strokes that are past but the last, which may still bounce, and the motion before
-/// `now`.
-static void drop_past(planner_hand *h, double now)
-{
-    int past = 0;
-    while (past + 1 < h->planned_count && h->planned[past + 1].goal.time + PLANNER_CURRENT < now)
-        past++;
-    for (int i = past; past > 0 && i < h->planned_count; i++)
-        h->planned[i - past] = h->planned[i];
-    h->planned_count -= past;
-    himc_spline_drop(&h->plan.tangential_path, now);
-    himc_spline_drop(&h->plan.height_profile, now);
-    if (h->plan.lift.count > 0)
-        himc_spline_drop(&h->plan.lift, now);
-}
-
 /// A loop that turns without strokes begins again with those that it has got, on the next of its
 /// beats for which they can be prepared.
 static void fill_loop(himc_planner *planner)
@@ -705,11 +684,25 @@ void himc_planner_advance(himc_planner *planner, double t)
     planner->begun = true;
     if (planner->score.empties)
         fill_loop(planner);
+    double now = planner->now;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        drop_past(&planner->hand[hand], planner->now);
-        himc_planner_extend(planner, (himc_hand)hand, planner->now + PLANNER_HORIZON);
+        // drops the strokes that are past but the last, which may still bounce, and the motion
+        // before now
+        planner_hand *h = &planner->hand[hand];
+        int past = 0;
+        while (past + 1 < h->planned_count &&
+               h->planned[past + 1].goal.time + PLANNER_CURRENT < now)
+            past++;
+        for (int i = past; past > 0 && i < h->planned_count; i++)
+            h->planned[i - past] = h->planned[i];
+        h->planned_count -= past;
+        himc_spline_drop(&h->plan.tangential_path, now);
+        himc_spline_drop(&h->plan.height_profile, now);
+        if (h->plan.lift.count > 0)
+            himc_spline_drop(&h->plan.lift, now);
+        himc_planner_extend(planner, (himc_hand)hand, now + PLANNER_HORIZON);
     }
-    himc_planner_notes_tell(&planner->notes, planner->now);
+    himc_planner_notes_tell(&planner->notes, now);
 }
 
 void himc_planner_recover(himc_planner *planner, double t)

@@ -199,14 +199,6 @@ bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *o
                row->name);
 }
 
-/// "at 12 kettle tune 110": a line for a drum, at a beat; "at 12 push ...": one for the performer.
-static bool read_timed_line(reader *r, const himc_atom *atom, int count)
-{
-    himc_command at;
-    return himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) &&
-           himc_score_read_change(at.atom, at.count, &r->now, r->error) && add_line(r, true);
-}
-
 static bool read_performer_line(reader *r, const himc_atom *atom, int count)
 {
     if (!himc_command_parse(&r->now.command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
@@ -249,8 +241,11 @@ static bool read_statement(reader *r, const himc_text_statement *s)
                               "more than %zu characters without a ;, expected a score, commands "
                               "that each end with one",
                               s->size);
-    if (strcmp(atom[0].symbol, "at") == 0)
-        return read_timed_line(r, atom, count);
+    if (strcmp(atom[0].symbol, "at") == 0) { // "at 12 kettle tune 110", "at 12 push ..."
+        himc_command at;
+        return himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) &&
+               himc_score_read_change(at.atom, at.count, &r->now, r->error) && add_line(r, true);
+    }
     bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, atom[0].symbol);
     if (two_words && is_for_drum(r, atom))
         return read_drum_line(r, atom, count);
