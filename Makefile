@@ -342,7 +342,7 @@ levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks bel
 check-levels: all $(BUILD)/tools/research/sound/loudness
 	@HIMC_BUILD=$(BUILD) JOBS=1 TEST_TIMEOUT=900 tests/run.sh tests/sound/test_levels.sh
 
-sound-report: deps ## how near the timpano is to recorded ones: table and plot in build/sound-report (two minutes)
+sound-report: deps ## how near the timpano is to recorded ones: table and plot in build/sound-report (a minute)
 	@tools/build/deps.sh tools/build/deps-sound.txt
 	@$(MAKE) check-sound-report
 
@@ -378,7 +378,7 @@ papers: $(PROGRAM) $(BUILD)/tools/research/papers/measure ## remake the table of
 	@mv $(BUILD)/papers.new docs/results/evaluation.md
 	@echo "wrote docs/results/papers.md and the tables of docs/results/evaluation.md"
 
-air-table: ## lib/src/head/air_table.c anew (under a minute): the modes of four timpani in air
+air-table: ## lib/src/head/air_table.c anew (a minute): the modes of five timpani in air
 	@$(MAKE) $(BUILD)/tools/research/air/table
 	$(BUILD)/tools/research/air/table >$(BUILD)/air_table.c
 	cmp -s $(BUILD)/air_table.c lib/src/head/air_table.c || mv $(BUILD)/air_table.c lib/src/head/air_table.c

@@ -176,6 +176,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     saved_bind(&x->x_obj.ob_pd);
     himc_performance_config config = himc_performance_default();
     config.sample_rate = sys_getsr();
+    config.heard = true;
     config.find_drum = himc_tilde_find_drum;
     config.find_user = x;
     if (himc_tilde_arguments(argc, argv, &error))

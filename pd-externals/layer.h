@@ -32,26 +32,34 @@ static inline double layer_declick(t_layer *layer)
     return layer->l_level;
 }
 
+/* Reads a drum from sample `start` on: its sound, in one channel of what both ears hear or one for
+each of several, and after them the displacement. */
+static inline void layer_read(const himc_drum *drum, int channels, uint64_t start, int n,
+                              double out[LAYER_OUTS][LAYER_CHUNK])
+{
+    himc_drum_read(drum, start, n, out[0], out[channels]);
+    for (int k = 0; k < channels && channels > 1; k++)
+        himc_drum_read_channel(drum, k, start, n, out[k]);
+}
+
 /* Adds the response to the force in[0] at in[1], in[2] to the sound of `channels` channels and to
 the displacement, which comes after them. */
 static inline void layer_play(t_layer *layer, int channels, int n, double in[3][LAYER_CHUNK],
                               double out[LAYER_OUTS][LAYER_CHUNK])
 {
-    double heard[HIMC_PICKUPS][LAYER_CHUNK], seen[LAYER_CHUNK];
+    double heard[LAYER_OUTS][LAYER_CHUNK];
     for (int i = 0; i < n && !layer->l_sounds; i++)
         layer->l_sounds = in[0][i] != 0;
     if (!layer->l_sounds)
         return;
     uint64_t start = himc_drum_time(layer->l_drum);
     himc_drum_advance(layer->l_drum, n, in[0], in[1], in[2]);
-    himc_drum_read(layer->l_drum, start, n, NULL, seen);
-    for (int k = 0; k < channels; k++)
-        himc_drum_read_channel(layer->l_drum, k, start, n, heard[k]);
+    layer_read(layer->l_drum, channels, start, n, heard);
     for (int i = 0; i < n; i++) {
         double level = layer_declick(layer);
         for (int k = 0; k < channels; k++)
             out[k][i] += level * heard[k][i];
-        out[channels][i] += seen[i];
+        out[channels][i] += heard[channels][i];
     }
 }
 

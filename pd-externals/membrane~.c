@@ -4,8 +4,9 @@ signal or a message strikes.
 inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
          (himc/command.h); x and y of the spot (m from the head's centre, x away from the
          performer, signal or float)
-outlets  sound, one for each of CHANNELS pickups, or of the left and the right ear of its
-         performer's `listener`; displacement under the spot (m); messages:
+outlets  sound, of two ears in front of it or of its performer's `listener`: the left one and the
+         right one, or both in one of 1 channel; or of CHANNELS pickups; displacement under the
+         spot (m); messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
          touch TIME X Y VELOCITY PLACE PITCH       a blow begins: distance from the centre
                                                    per radius, the principal mode's frequency (Hz)
@@ -125,19 +126,11 @@ static void membrane_refit(t_membrane *x, bool again)
     x->x_fits_soon = true;
 }
 
-/* Reads the drum: its channels, then the displacement. */
-static void membrane_read(t_membrane *x, int n, double out[LAYER_OUTS][LAYER_CHUNK])
-{
-    for (int k = 0; k < x->x_channels; k++)
-        himc_drum_read_channel(x->x_link.l_drum, k, x->x_stream.s_count, n, out[k]);
-    himc_drum_read(x->x_link.l_drum, x->x_stream.s_count, n, NULL, out[x->x_channels]);
-}
-
 /* Adds what further performers play; a guest whose performer has gone rings on. */
 static void membrane_add_guests(t_membrane *x, int n, double out[LAYER_OUTS][LAYER_CHUNK])
 {
     uint64_t start = x->x_stream.s_count;
-    double heard[LAYER_CHUNK];
+    double heard[LAYER_OUTS][LAYER_CHUNK];
     for (int g = 0; g < x->x_guests; g++) {
         himc_drum *guest = x->x_guest[g];
         himc_drum_driver driver = himc_drum_get_driver(guest);
@@ -145,14 +138,10 @@ static void membrane_add_guests(t_membrane *x, int n, double out[LAYER_OUTS][LAY
             driver.advance_to(driver.performer, start + (uint64_t)n);
         else
             himc_drum_advance(guest, n, NULL, NULL, NULL);
-        for (int k = 0; k <= x->x_channels; k++) {
-            if (k < x->x_channels)
-                himc_drum_read_channel(guest, k, start, n, heard);
-            else
-                himc_drum_read(guest, start, n, NULL, heard);
+        layer_read(guest, x->x_channels, start, n, heard);
+        for (int k = 0; k <= x->x_channels; k++)
             for (int i = 0; i < n; i++)
-                out[k][i] += heard[i];
-        }
+                out[k][i] += heard[k][i];
     }
 }
 
@@ -167,13 +156,13 @@ static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
     } else if (driver.performer) {
         himc_membrane_watch(himc_drum_membrane(drum), in[1][0], in[2][0]);
         driver.advance_to(driver.performer, x->x_stream.s_count + (uint64_t)n);
-        membrane_read(x, n, out);
+        layer_read(drum, x->x_channels, x->x_stream.s_count, n, out);
         membrane_add_guests(x, n, out);
         x->x_layer.l_silent = himc_drum_technique(drum) != HIMC_TECHNIQUE_MODAL;
         layer_play(&x->x_layer, x->x_channels, n, in, out);
     } else {
         himc_drum_advance(drum, n, in[0], in[1], in[2]);
-        membrane_read(x, n, out);
+        layer_read(drum, x->x_channels, x->x_stream.s_count, n, out);
     }
     x->x_stream.s_count += (uint64_t)n;
 }
@@ -622,7 +611,7 @@ static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer,
     himc_command pickups;
     himc_drum *drum = himc_drum_new(name, wish->w_inches, rate, error);
     if (drum && himc_command_parse(&pickups, HIMC_DRUM, "pickups", &channels, 1, error) &&
-        himc_drum_command(drum, &pickups, error))
+        himc_drum_command(drum, &pickups, error) && himc_drum_hear(drum, error))
         layer->l_drum = himc_drum_new(name, wish->w_inches, rate, error);
     if (layer->l_drum) {
         himc_drum_set_external_sound(drum, true);

@@ -54,8 +54,8 @@ HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [DRUM] | "
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [DRUM]",
-    "adds a roll, from one dynamic to another: single strokes of both hands, or strokes "
-    "that bounce once (double) or until the next (press)")
+    "adds a roll, from one dynamic to another: single strokes of both hands, or, as drummers "
+    "play it, strokes that bounce once (double) or until the next (press)")
 HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with a grace note by the other hand")
 HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
@@ -63,8 +63,8 @@ HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
 HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes as `drag`, a little slower")
 HIMC_COMMAND_ROW(AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
-                 "moves a drum's pedal or lays a hand on it at a beat: tune, tension, damp, decay "
-                 "or glide; or pushes the performer")
+                 "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, damp, "
+                 "muffle, decay or glide; or pushes the performer")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, 100 by default, from that beat or from now on")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
@@ -141,12 +141,12 @@ HIMC_SETTING_ROW(
 HIMC_COMMAND_ROW(
     PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",
     "pushes a segment with a force for a time, at its centre of mass or ALONG m from its joint")
-HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | X Y Z [YAW]",
-                 "has all drums heard by two ears there, facing the performer or that way; off: by "
-                 "the drums' pickups")
+HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | usual | X Y Z [YAW]",
+                 "has all drums heard by two ears there, facing the performer or that way; usual: "
+                 "in front, but for drums whose pickups are asked for; off: by the drums' pickups")
 HIMC_COMMAND_ROW(ROOM, room, PERFORMER, AT_SAMPLE, 0, "SECONDS [VOLUME]",
-                 "sets the reverberation time and the size of the room around the listener, 1.2 s "
-                 "and 600 m^3 by default; 0: no walls")
+                 "sets the reverberation time and the size of the room around the listener, 2 s "
+                 "and 1500 m^3 by default; 0: no walls")
 HIMC_COMMAND_ROW(MUTE, mute, PERFORMER, AT_SAMPLE, 0, "SWITCH",
                  "1: silences all drums, which play on unheard")
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
@@ -178,6 +178,9 @@ HIMC_COMMAND_ROW(DENSITY, density, DRUM, NOW, HIMC_CHANGES_HEAD, "DENSITY",
                  "sets the head's mass per area")
 HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "HZ | NOTE",
                  "sets the tension so that the principal mode sounds there")
+HIMC_COMMAND_ROW(GLISS, gliss, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT,
+                 "HZ SECONDS | NOTE SECONDS",
+                 "moves the pedal evenly to that pitch in that time while the head sounds")
 HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT | auto",
                  "sets the number of modes; auto: exact where they overlap little, statistical "
                  "above, up to 8 kHz and more")
@@ -191,14 +194,20 @@ HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMO
                  "sets how much the tension rises as the head bows out")
 HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a hand on the head")
+HIMC_COMMAND_ROW(MUFFLE, muffle, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+                 "lays a cloth on the head, 1: coperto, a dry thud with a pitch")
+HIMC_COMMAND_ROW(SKIN, skin, DRUM, NOW, HIMC_CHANGES_HEAD, "plastic|calf",
+                 "sets density and losses of a head of that skin, tuned as it was")
 HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",
                  "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes "
                  "split and beat, each seed in its own way")
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, "circle | rectangle LENGTH WIDTH | FILE",
     "makes a head of another outline, or one of up to 800 masses on springs from a file")
-HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0, "soft|medium|hard|wood | K ALPHA MASS",
-                 "chooses the mallet, or its stiffness, exponent and mass")
+HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0,
+                 "soft|medium|hard|wood | K ALPHA MASS | HAND soft|medium|hard|wood | "
+                 "HAND K ALPHA MASS",
+                 "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both")
 HIMC_COMMAND_ROW(NOISE, noise, DRUM, NOW, 0, "AMOUNT",
                  "sets how loud felt, shaft, shell and stand answer a blow")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
@@ -211,6 +220,8 @@ HIMC_COMMAND_ROW(PICKUPS, pickups, DRUM, NOW, HIMC_CHANGES_HEAD, "CHANNELS",
 HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, HIMC_CHANGES_HEAD,
                  "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
                  "sets where the sound of one pickup is taken")
+HIMC_COMMAND_ROW(DRUM_LISTENER, listener, DRUM, NOW, 0, "off | usual",
+                 "off: the drum is heard by its pickups, as after `pickup`; usual: by two ears")
 HIMC_COMMAND_ROW(DRUM_GAIN, gain, DRUM, NOW, 0, "DB",
                  "sets how loud the drum is heard, 0 by default: a fader, which changes no motion")
 HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",

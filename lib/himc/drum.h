@@ -17,7 +17,7 @@ HIMC_BEGIN
 typedef struct himc_drum himc_drum;
 typedef struct himc_membrane himc_membrane; ///< membrane.h
 
-/// A drum of the given diameter (inches, 12 .. 60; the timpani have 23, 26, 29, 32) at
+/// A drum of the given diameter (inches, 12 .. 60; the timpani have 20, 23, 26, 29, 32) at
 /// `sample_rate` (Hz, 8000 .. 192000). The name has less than HIMC_NAME_SIZE characters. One
 /// reference belongs to the caller.
 himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error);
@@ -64,14 +64,18 @@ HIMC_RT void himc_drum_advance(himc_drum *drum, int n, const double *force, cons
 
 #define HIMC_DRUM_RING 32768 ///< samples that can be read back
 
-/// Copies the sound of the first pickup (1.0 as the pickup says, membrane.h) and the displacement
-/// of the watched point (m, up positive) of samples [start, start + n), counted since the last
-/// realign. Either may be NULL. Samples outside the ring are 0.
+/// Has the drum heard by two ears at the usual place while no performer has it, as the performer's
+/// `listener usual` does; at first it is heard by its pickups. False with the reason: no memory.
+bool himc_drum_hear(himc_drum *drum, himc_error *error);
+/// Copies the sound in one channel (of the first pickup, 1.0 as it says, membrane.h; or of both
+/// ears, their mean) and the displacement of the watched point (m, up positive) of samples
+/// [start, start + n), counted since the last realign. Either may be NULL. Samples outside the ring
+/// are 0.
 HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
                             double *displacement);
 /// The sound of pickup `channel` (0 .. HIMC_PICKUPS - 1; the command `pickups CHANNELS` sets how
-/// many there are, the others are silent). While the performer's `listener` hears the drum, channel
-/// 0 is the left ear, 1 the right one, and the others are silent.
+/// many there are, the others are silent, but a single one is also channel 1). While a `listener`
+/// hears the drum, channel 0 is the left ear, 1 the right one, and the others are silent.
 HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
                                     double *sound);
 /// Whether the displacement of the watched point is computed, as it is at first; without, it reads

@@ -25,6 +25,7 @@ typedef struct himc_head {
     double kettle;         ///< volume under it (m^3), half to twice the usual; 0 is the usual
     double glide;          ///< tension modulation, 0 none .. 1 a Mylar film's
     double damp;           ///< a hand on the head: 0 none .. 1 dead at once
+    double muffle;         ///< a cloth on the head: 0 none .. 1 all over it
     double uniformity;     ///< of the lugs' tension, 0 (2 % off) .. 1 even; of round heads only
     int uniformity_seed;   ///< which lugs are off, 0 .. HIMC_SEED_MAX
 } himc_head;
@@ -54,6 +55,10 @@ typedef struct himc_mode {
 
 /// Added to the decay of a bare head by `damp` 1 (1/s); chosen: T60 = 0.1 s.
 #define HIMC_DAMP 69.0
+/// Added by `muffle` 1 (1/s), and per omega (1); chosen: at D3 (1,1) has T60 = 0.3 s, what is
+/// higher less.
+#define HIMC_MUFFLE 30.0
+#define HIMC_MUFFLE_HIGH 0.012
 
 /// A timpano of 26 inches in air that sounds D3 (146.83 Hz): 0.2653 kg/m^2 (Christian et al. 1984),
 /// HIMC_MODES_AUTO, lugs 1.6 % off (uniformity 0.2).
@@ -65,8 +70,8 @@ typedef enum himc_pickup_kind {
     HIMC_PICKUP_POINT ///< velocity of a point of the head; a sound of 1.0 is HIMC_PICKUP_VELOCITY
 } himc_pickup_kind;
 
-/// (Pa) chosen: the strongest stroke on a timpano, heard from one metre, peaks at 0.7 to 0.9
-#define HIMC_PICKUP_PRESSURE 180.0
+/// (Pa) chosen: the strongest stroke on a timpano, heard from one metre, stays below 1
+#define HIMC_PICKUP_PRESSURE 130.0
 #define HIMC_PICKUP_VELOCITY 10.0 ///< (m/s) chosen
 
 /// Where the sound is read. Azimuth 0 is beyond the drum as the performer sees it, positive to
@@ -152,6 +157,7 @@ typedef struct himc_mallet_head {
     double radius;     ///< (m); 0 touches the head at a point
     double relaxation; ///< tau (s)
     double core;       ///< k_2 (N/m^2.5), 0 for none
+    double noise;      ///< of a stroke, beside the head's sound, per that of medium felt
 } himc_mallet_head;
 
 /// A stick's end, moving along the head's normal. Heights are above the head at rest, less the

@@ -18,6 +18,8 @@ typedef struct himc_performance_config {
     double sample_rate;  ///< (Hz) 8000 .. 192000, default 48000
     double physics_rate; ///< (Hz) 500 .. 48000, default 10000; never above sample_rate
     double task_rate;    ///< (Hz) 50 .. 2000, default 250; never above physics_rate
+    bool heard; ///< at first by two ears, as after the command `listener usual`; default: by the
+                ///< drums' pickups
     /// Called where a command names a drum that the performance does not have, in the command's
     /// thread: it may add the drum and return true. NULL, the default: the host has no others.
     bool (*find_drum)(void *user, const char *name);

@@ -27,7 +27,7 @@ __version__ = ffi.string(lib.himc_version()).decode()
 
 _HANDS = ("left", "right")
 _CHANNELS = 8  # HIMC_PICKUPS
-_LISTENER = "listener 2.3 0.5 1.3"  # where `himc render` listens unless the score says
+_LISTENER = "listener usual"  # where `himc render` listens unless the score says
 _CELL = 0.2  # s; the end of a piece is looked for so often, as in `himc render`
 _REST = 2.5  # s after the last contact, until the sticks are at rest
 _TAIL = 8.0  # s; a drum rings no longer
@@ -164,7 +164,7 @@ class Performance:
         ## Sample rate of the sound (Hz).
         self.rate = rate
         lib.session_keep_rows(self._session, motion)
-        if channels == 2:
+        if 1 <= channels <= 2:
             self.command(_LISTENER)
 
     def command(self, text: str, word: Union[None, str, Path] = None) -> list[str]:
@@ -177,7 +177,7 @@ class Performance:
         error = ffi.new("himc_error *")
         name = ffi.NULL if word is None else ffi.new("char[]", _text(word))
         _check(lib.session_command(self._session, _text(text), name, error), error)
-        if self._channels == 2 and text.split()[:1] == ["reset"]:
+        if 1 <= self._channels <= 2 and text.split()[:1] == ["reset"]:
             self.command(_LISTENER)
         return self.notes[before:]
 
@@ -296,14 +296,11 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
     p.take_options(left_tip, right_tip, up)
     if not makes:
         p.add_drum()
-    if channels == 2:
-        p.command(_LISTENER)
+    p.command(_LISTENER)
     commands = [(text, None) for text in settings]
     whole = [("take" if take else "score", path)]
     for text, word in commands + whole if take else whole + commands:
         p.command(text, word)
-    if channels == 1:
-        p.command("listener off")
     if not take:
         p.command("loop 0")  # one round
     p.command("play")

@@ -474,7 +474,8 @@ static void test_errors_name_field_value_and_allowed_values(void)
     refused(drum("tune H2"), "tune: H2, expected 1 .. 20000 Hz or a note such as A2 or f#3");
     refused(drum("mallet 5"), "mallet: 5, expected soft medium hard wood");
     refused(drum("mallet 1e6 2.5"),
-            "mallet: MASS missing, expected mallet soft|medium|hard|wood | K ALPHA MASS");
+            "mallet: MASS missing, expected mallet soft|medium|hard|wood | K ALPHA MASS | HAND "
+            "soft|medium|hard|wood | HAND K ALPHA MASS");
     refused(drum("pickup air 0 0"),
             "pickup: DISTANCE missing, expected pickup air AZIMUTH ELEVATION DISTANCE | X Y");
     refused(drum("kettle"), "kettle: atoms missing, expected kettle usual | VOLUME");
@@ -482,7 +483,7 @@ static void test_errors_name_field_value_and_allowed_values(void)
 
 static void test_a_word_that_fits_no_form_is_answered_with_all_forms(void)
 {
-    refused(perform("listener here"), "listener: here, expected listener off | X Y Z [YAW]");
+    refused(perform("listener here"), "listener: here, expected listener off | usual | X Y Z [YAW]");
     refused(perform("gain loud"),
             "gain: loud, expected gain reset | frequency FACTOR | JOINT KS KD | DB");
     refused(perform("gain 100"), "gain: 100, expected reset or -60 .. 24 dB");

@@ -273,11 +273,8 @@ static void test_forces_and_works_of_a_contact_add_up_with_any_mallet(void)
         TEST_ASSERT_TRUE_MESSAGE(s.impulse > 0.1 && given > 0.01, line);
         TEST_ASSERT_TRUE_MESSAGE(fabs(all - s.impulse) < 1e-9 * s.impulse, line);
         TEST_ASSERT_TRUE_MESSAGE(fabs(work + given) < 2e-3 * given, line);
-        // soft is heavier than the body's stick, wood lighter
-        TEST_ASSERT_TRUE_MESSAGE(k == 0   ? body < 0.95 * s.impulse && -own < 0.95 * given
-                                 : k == 3 ? body > 1.05 * s.impulse && -own > 1.05 * given
-                                          : true,
-                                 line);
+        // the head feels 9 to 12 g, the body moves a stick of 24.5
+        TEST_ASSERT_TRUE_MESSAGE(body > 1.9 * s.impulse && -own > 1.9 * given, line);
     }
 }
 

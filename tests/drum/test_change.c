@@ -153,7 +153,7 @@ static void change_in_contact(const char *modes, const char *change)
     }
     himc_contact_report report;
     TEST_ASSERT_TRUE_MESSAGE(himc_drum_strike_next(drum, &report), change);
-    TEST_ASSERT_TRUE_MESSAGE(report.force > 40 && report.force < 100, change);
+    TEST_ASSERT_TRUE_MESSAGE(report.force > 20 && report.force < 60, change);
 }
 
 static void test_any_change_in_contact_makes_no_larger_step_than_a_strike(void)

@@ -71,14 +71,14 @@ static void test_drum_commands_set_their_parameters(void)
     says("place 0.7 0 0.8");
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.8, himc_drum_head_frame(drum)->center.z);
     says("mallet wood");
-    TEST_ASSERT_EQUAL_DOUBLE(3e8, himc_drum_mallet(drum)->stiffness);
-    TEST_ASSERT_EQUAL_DOUBLE(1.5, himc_drum_mallet(drum)->exponent);
-    TEST_ASSERT_EQUAL_DOUBLE(0.008, himc_drum_mallet(drum)->radius);
+    TEST_ASSERT_EQUAL_DOUBLE(3e8, himc_drum_mallet(drum, HIMC_RIGHT)->stiffness);
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, himc_drum_mallet(drum, HIMC_RIGHT)->exponent);
+    TEST_ASSERT_EQUAL_DOUBLE(0.008, himc_drum_mallet(drum, HIMC_RIGHT)->radius);
     says("mallet 1e8 2.5 0.025");
-    TEST_ASSERT_DOUBLE_WITHIN(10, 1e8, himc_drum_mallet(drum)->stiffness);
-    TEST_ASSERT_EQUAL_DOUBLE(2.5, himc_drum_mallet(drum)->exponent);
-    TEST_ASSERT_EQUAL_DOUBLE(0, himc_drum_mallet(drum)->loss);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.025, himc_drum_mallet(drum)->mass);
+    TEST_ASSERT_DOUBLE_WITHIN(10, 1e8, himc_drum_mallet(drum, HIMC_RIGHT)->stiffness);
+    TEST_ASSERT_EQUAL_DOUBLE(2.5, himc_drum_mallet(drum, HIMC_RIGHT)->exponent);
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_drum_mallet(drum, HIMC_RIGHT)->loss);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.025, himc_drum_mallet(drum, HIMC_RIGHT)->mass);
     TEST_ASSERT_EQUAL_UINT(revision + 5, himc_drum_revision(drum));
     says("pickup 0.1 0.1");
     int count;
@@ -89,6 +89,26 @@ static void test_drum_commands_set_their_parameters(void)
     char text[512];
     himc_drum_describe(drum, HIMC_DESCRIBE_INFO, keep_line, text);
     TEST_ASSERT_NOT_NULL(strstr(text, "2000 modes"));
+}
+
+static void count_line(void *user, const char *line)
+{
+    (void)line;
+    ++*(int *)user;
+}
+
+static void test_info_says_what_few_modes_lack(void)
+{
+    static const char *const modes[] = {"modes auto", "modes 50", "modes 2000"};
+    for (int i = 0; i < 3; i++) {
+        int lines = 0;
+        char last[512];
+        says(modes[i]);
+        himc_drum_describe(drum, HIMC_DESCRIBE_INFO, count_line, &lines);
+        himc_drum_describe(drum, HIMC_DESCRIBE_INFO, keep_line, last);
+        TEST_ASSERT_EQUAL_INT(i == 1 ? 2 : 1, lines);
+        TEST_ASSERT_TRUE((strstr(last, "nothing sounds above") != NULL) == (i == 1));
+    }
 }
 
 static void test_drum_refuses_impossible_values_and_its_sound_does_not_change(void)
@@ -203,6 +223,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_drum_tunes_its_principal_mode);
     RUN_TEST(test_drum_commands_set_their_parameters);
+    RUN_TEST(test_info_says_what_few_modes_lack);
     RUN_TEST(test_drum_refuses_impossible_values_and_its_sound_does_not_change);
     RUN_TEST(test_drum_checks_commands_that_no_parser_has_seen);
     RUN_TEST(test_drum_survives_any_change_in_the_middle_of_a_contact);

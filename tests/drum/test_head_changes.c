@@ -106,9 +106,9 @@ static void test_a_score_changes_the_surface_of_a_drum_that_is_there(void)
 
 static void test_a_change_sounds_as_the_command_given_then(void)
 {
-    enum { LENGTH = 3 * 48000, AT = 72000 }; // beat 3.0 at 120 per minute
+    enum { LENGTH = 3 * 48000, AT = 48000 }; // beat 2 at 120 per minute
     static double written[LENGTH], given[LENGTH];
-    himc_performance *p = with_score(DRUM "at 3 low tune C3; " STROKES "play;");
+    himc_performance *p = with_score(DRUM "at 2 low tune C3; " STROKES "play;");
     read_all(p, written, 0, LENGTH);
     himc_performance_free(p);
     p = with_score(DRUM STROKES "play;");
@@ -209,7 +209,7 @@ static void test_a_wrong_change_is_refused_with_its_line(void)
 {
     refused(
         "drum low;\nat 2 low mallet hard;", SCORE
-        ":2: at: mallet, expected a command that changes a drumhead: tune, tension, damp, decay, glide");
+        ":2: at: mallet, expected a command that changes a drumhead: tune, gliss, tension, damp, muffle, decay, glide");
     refused("drum low;\n\nat 2 low tune;",
             SCORE ":3: low: tune: HZ missing, expected tune HZ | NOTE");
     refused("drum low;\nat -1 low tune A2;", SCORE ":2: at: BEAT: -1, expected 0 .. 1e+06");
@@ -299,7 +299,7 @@ static void test_at_as_a_message_is_refused_as_in_a_file(void)
     TEST_ASSERT_EQUAL_STRING("high: no drum (low)", error.text);
     TEST_ASSERT_FALSE(session_try(p, "at 2 low mallet hard"));
     TEST_ASSERT_EQUAL_STRING(
-        "at: mallet, expected a command that changes a drumhead: tune, tension, damp, decay, glide",
+        "at: mallet, expected a command that changes a drumhead: tune, gliss, tension, damp, muffle, decay, glide",
         error.text);
     TEST_ASSERT_FALSE(session_try(p, "at 2 low tune"));
     TEST_ASSERT_EQUAL_STRING("low: tune: HZ missing, expected tune HZ | NOTE", error.text);

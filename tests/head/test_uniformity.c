@@ -7,6 +7,7 @@
 
 #include "head/bessel.h"
 #include "head/modes.h"
+#include "head/uneven.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -79,9 +80,12 @@ static void test_lugs_2_percent_off_split_as_their_harmonics_say(void)
             double th = 2 * HIMC_PI * (l + 0.5) / 8;
             // the sine of an order is on the tighter axis
             error_of[l] = -cos(2 * (th - pairs[1].axis)) - 0.5 * cos(4 * (th - pairs[2].axis)) +
-                          0.5 * cos(8 * pairs[4].axis);
+                          -0.5 * cos(16 * pairs[8].axis);
         }
-        for (int m = 1; m <= 9; m++) {
+        // the lugs themselves, tight where they pull, half a step from the x axis
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, closed_form(4) * 0.75 * 0.1, pairs[4].split);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, pairs[4].axis);
+        for (int m = 1; m <= 9; m += m == 3 ? 2 : 1) {
             double even = 0, odd = 0, k = 2 * m, hoop = m > 2 ? 1 / (1 + pow(k / 4, 4)) : 1;
             for (int l = 0; l < 8; l++) {
                 even += error_of[l] * cos(k * 2 * HIMC_PI * (l + 0.5) / 8);
@@ -131,8 +135,9 @@ static void test_both_members_keep_the_mean_frequency_mass_and_air(void)
     himc_lugs_split(0.3, 5, pairs);
     double mean = 0.5 * (low.frequency + high.frequency);
     TEST_ASSERT_TRUE(low.m == 1 && !low.sine && high.m == 1 && high.sine);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, pairs[1].split, (high.frequency - low.frequency) / mean);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, even.frequency, mean);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * pairs[1].split, pairs[1].split,
+                              (high.frequency - low.frequency) / mean);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5 * mean, even.frequency, mean); // mixing takes some
     TEST_ASSERT_EQUAL_DOUBLE(even.mass, low.mass);
     TEST_ASSERT_EQUAL_DOUBLE(even.mass, high.mass);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * even.decay, even.decay, high.decay);
@@ -260,7 +265,7 @@ static void test_turned_axes_keep_the_shape_and_never_add_energy(void)
 
 static void test_upright_amplitudes_are_those_of_the_x_axis(void)
 {
-    double q[62], w[8], own, v;
+    double q[500], w[8], own, v;
     says("modes 61"); // whole pairs
     says("uniformity 0.4 3");
     says("strike -0.17 0.08 6");
@@ -270,6 +275,7 @@ static void test_upright_amplitudes_are_those_of_the_x_axis(void)
     himc_modes *even = himc_modes_new(&circle, 61, &error);
     himc_membrane_upright(head, 61, NULL, q);
     double modal[61], same[61];
+    char text[20];
     for (int i = 0; i < 61; i++)
         himc_membrane_state(head, i, &modal[i], &v);
     himc_membrane_upright(head, 61, modal, same);
@@ -283,14 +289,19 @@ static void test_upright_amplitudes_are_those_of_the_x_axis(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-6 * peak(w, 8), w[i], sum);
     }
     himc_modes_free(even);
-    says("modes 62"); // the last pair has no sine
+    int count = 100; // the last pair has no sine, and mixes with no other order
+    for (himc_mode last = {.sine = true}; last.sine || last.m < HIMC_UNEVEN_ORDERS;) {
+        TEST_ASSERT_TRUE(++count < 500);
+        snprintf(text, sizeof text, "modes %d", count);
+        says(text);
+        last = himc_membrane_mode(head, count - 1);
+    }
     says("strike -0.17 0.08 6");
     advance(2400);
-    himc_mode last = himc_membrane_mode(head, 61);
-    TEST_ASSERT_TRUE(last.m > 0 && !last.sine);
-    himc_membrane_upright(head, 62, NULL, q);
-    himc_membrane_state(head, 61, &own, &v);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, own * cos(last.m * last.axis), q[61]);
+    himc_mode last = himc_membrane_mode(head, count - 1);
+    himc_membrane_upright(head, count, NULL, q);
+    himc_membrane_state(head, count - 1, &own, &v);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, own * cos(last.m * last.axis), q[count - 1]);
     TEST_ASSERT_TRUE(fabs(own) > 1e-9);
 }
 

@@ -56,8 +56,11 @@ static void random_setting(himc_command *command, himc_receiver receiver, random
         if (row->receiver != receiver || is_no_setting(row->id))
             continue;
         random_command(&said, row, seed);
-        if (himc_command_parse(command, receiver, said.name, said.atom, said.count, &error))
-            return;
+        if (!himc_command_parse(command, receiver, said.name, said.atom, said.count, &error))
+            continue;
+        if (command->id == HIMC_COMMAND_GLISS)
+            command->atom[1].number = 0; // a pedal on its way is no part of the state
+        return;
     }
 }
 
@@ -100,7 +103,7 @@ static void send_to_drum(himc_drum *drum, const char *state)
 static void sound_of(himc_drum *drum, double sound[HIMC_PICKUPS][LENGTH])
 {
     himc_drum_advance(drum, LENGTH, NULL, NULL, NULL); // what changed over has changed
-    TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, 0.03, 0.01, 3, &error));
+    TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, 0.01, 0.01, 3, &error));
     himc_drum_advance(drum, LENGTH, NULL, NULL, NULL);
     for (int k = 0; k < HIMC_PICKUPS; k++)
         himc_drum_read_channel(drum, k, himc_drum_time(drum) - LENGTH, LENGTH, sound[k]);
@@ -316,6 +319,7 @@ static void test_a_dump_sent_back_line_by_line_makes_the_same_performance(void)
             himc_performance_command(p, &command, 0, NULL);
         }
         session_do(p, "clear"); // what `at` was among them
+        session_do(p, "engine tree"); // ODE's bits also depend on what it did before
         session_do(p, "drum low 29");
         session_do(p, "drum high 23");
         for (int i = 0; i < 6; i++) {

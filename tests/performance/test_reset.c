@@ -241,7 +241,7 @@ static void test_reset_keeps_the_hosts_drums_where_their_owner_put_them(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, at[0].y);
     TEST_ASSERT_TRUE(at[1].y < -0.3); // placed again, to its right
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.9, at[2].y);
-    TEST_ASSERT_EQUAL_DOUBLE(3e8, himc_drum_mallet(drum[1])->stiffness);
+    TEST_ASSERT_EQUAL_DOUBLE(3e8, himc_drum_mallet(drum[1], HIMC_RIGHT)->stiffness);
     himc_performance_free(p);
 }
 

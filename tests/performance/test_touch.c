@@ -146,7 +146,7 @@ static void test_contact_keeps_its_mallet_to_its_end(void)
     himc_command wood;
     himc_drum *drum = himc_performance_drum(performance, 0);
     const stick_contact *c = &performance->contacts.hand[HIMC_RIGHT];
-    const double medium = himc_drum_mallet(drum)->stiffness;
+    const double medium = himc_drum_mallet(drum, HIMC_RIGHT)->stiffness;
     TEST_ASSERT_TRUE(himc_command_parse_text(&wood, HIMC_DRUM, "mallet wood", &error));
     while (c->stick.force < 20 && performance->clock.made < SAMPLES)
         step();

@@ -62,6 +62,43 @@ static double usual_interval(const char *kind, double tempo)
     return mean;
 }
 
+/// Strokes a second of a single roll.
+static double single_rate(double inches, const char *pitch, const char *dynamic)
+{
+    heard h = {0};
+    char tune[20];
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle %g", inches);
+    snprintf(tune, sizeof tune, "tune %s", pitch);
+    session_drum(p, 0, tune);
+    session_do(p, "roll 1 6 single %s", dynamic);
+    session_do(p, "play");
+    session_play(p, 6, &h);
+    sort(&h);
+    double rate = 1 / intervals_of(&h, 0, h.strikes).mean;
+    heard_free(&h);
+    himc_performance_free(p);
+    return rate;
+}
+
+static void test_a_single_roll_is_faster_on_a_higher_drum_and_when_loud(void)
+{
+    static const char *const pitch[] = {"C2", "A2", "A3"}, *const dynamic[] = {"ppp", "mf", "f"};
+    static const double inches[] = {32, 26, 23};
+    double rate[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            rate[i][k] = single_rate(inches[i], pitch[i], dynamic[k]);
+            printf("%s %s: %.1f/s\n", pitch[i], dynamic[k], rate[i][k]);
+            TEST_ASSERT_TRUE(i == 0 || rate[i][k] > 1.1 * rate[i - 1][k]);
+            TEST_ASSERT_TRUE(k == 0 || rate[i][k] > 1.03 * rate[i][k - 1]);
+        }
+    TEST_ASSERT_DOUBLE_WITHIN(1.2, 8, rate[0][0]); // as practised: 7 to 9, 11 to 14
+    TEST_ASSERT_DOUBLE_WITHIN(1.2, 8, rate[0][2]);
+    TEST_ASSERT_DOUBLE_WITHIN(1.7, 12.5, rate[2][0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1.7, 12.5, rate[2][2]);
+}
+
 static void test_rate_of_a_roll_does_not_depend_on_the_tempo(void)
 {
     static const char *const kind[] = {"single", "double", "press"};
@@ -226,6 +263,7 @@ test_a_roll_added_while_its_beats_play_is_played_from_there_and_a_past_one_is_mi
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_single_roll_is_faster_on_a_higher_drum_and_when_loud);
     RUN_TEST(test_rate_of_a_roll_does_not_depend_on_the_tempo);
     RUN_TEST(test_intervals_of_a_roll_stay_when_the_tempo_changes_in_it);
     RUN_TEST(test_a_slider_of_the_tempo_leaves_a_roll_even);

@@ -13,7 +13,11 @@
 #define BLOWS 5
 #define SECONDS 13
 
-static const char *const experiment[] = {"tempo 60",
+// as heavy as the whole stick at its tip
+#define PAPERS_MALLET "kettle mallet 1.6e8 2.54 0.0245"
+
+static const char *const experiment[] = {PAPERS_MALLET,
+                                         "tempo 60",
                                          "stroke 1 right accent 0.55",
                                          "stroke 3 right accent 0.75",
                                          "stroke 5 right vertical-accent 0.73",
@@ -100,9 +104,9 @@ static void test_equal_strike_sounds_louder_on_the_ringing_head(void)
     for (int i = 0; i < 8; i++) {
         char second[64];
         snprintf(second, sizeof second, "stroke %.5f left accent 0.84", 1.4 + 0.001 * i);
-        const char *const score[] = {"tempo 60", "stroke 1 right vertical-accent 0.735", second,
-                                     "play"};
-        play(score, 4, 2.5);
+        const char *const score[] = {PAPERS_MALLET, "tempo 60",
+                                     "stroke 1 right vertical-accent 0.735", second, "play"};
+        play(score, 5, 2.5);
         TEST_ASSERT_EQUAL_INT(2, blows);
         TEST_ASSERT_DOUBLE_WITHIN(0.10 * force, force, blow[1].force); // the head moves under it
         ringing += loudness[1] / 8;

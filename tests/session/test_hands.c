@@ -32,7 +32,7 @@ static bool was_said(himc_performance *p, double seconds, heard *h, const char *
 
 static void test_stroke_without_time_is_reassigned_to_the_other_hand(void)
 {
-    himc_performance *p = with_two_drums(0.2, 0.9);
+    himc_performance *p = with_two_drums(0.2, 0.85);
     heard h = {0};
     session_do(p, "stroke 2 left legato f");
     session_do(p, "stroke 2.06 left legato f side");
@@ -53,7 +53,7 @@ static void test_stroke_without_time_is_reassigned_to_the_other_hand(void)
 
 static void test_stroke_that_neither_hand_can_play_is_given_up_and_missed(void)
 {
-    himc_performance *p = with_two_drums(0.2, 0.9);
+    himc_performance *p = with_two_drums(0.2, 0.85);
     heard h = {0};
     session_do(p, "stroke 2 left legato f");
     session_do(p, "stroke 2 right legato f");

@@ -22,7 +22,7 @@ outside() { # outside VALUE LOW HIGH UNIT: says so
 
 piece() { # piece NAME: the sound in $work/NAME.wav
     local lufs range peak
-    read -r lufs range peak <<<"$("$loudness" "$work/$1.wav")"
+    read -r lufs range peak _ <<<"$("$loudness" "$work/$1.wav")"
     echo "$1: $lufs LUFS, range $range LU, true peak $peak dBTP"
     report "${1}_is_as_loud_as_broadcasters_want" "$(outside "${lufs:-none}" -25 -21 LUFS)"
     report "${1}_has_room_below_full_scale" "$(outside "${peak:-none}" -60 -1 dBTP)"

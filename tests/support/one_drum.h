@@ -61,7 +61,7 @@ static inline void scene(int block, double *out, double *place, double *force0)
     tearDown();
     setUp();
     static double outside[LENGTH], x[LENGTH], y[LENGTH], force1[LENGTH];
-    himc_stick a = {.head = *himc_drum_mallet(drum),
+    himc_stick a = {.head = *himc_drum_mallet(drum, HIMC_RIGHT),
                     .mass = 0.03,
                     .acceleration = -9.81,
                     .x = -0.2,

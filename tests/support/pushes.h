@@ -24,7 +24,7 @@ typedef struct push_piece {
 } push_piece;
 
 static const push_piece push_pieces[] = {
-    {"score patches/improvisation.txt", NULL, NULL, NULL, 1.55},
+    {"score patches/improvisation.txt", NULL, NULL, NULL, 1.65},
     {"take %s", "drumstroke_pearl_240hz/stroke.trc", NULL, NULL, 1.3},
     {"take %s", "cmu131_bvh_120hz/131_03.bvh", "LFingers_end", "RFingers_end", 1.5},
     {"take %s", "upperlimb_pyomeca_100hz/markers_analogs.c3d", NULL, "Daphnee:INDEX", 1.5},

@@ -121,7 +121,7 @@ himc_performance *cli_load(const char *source, double rate, const char *listener
 /// Where a piece is heard if it does not say; chosen: beyond the first drum and a little to the
 /// left, 1.7 m from its centre, facing the player. From the side, the node of (1,1), a drum is weak
 /// and its noise strong.
-#define CLI_LISTENER "listener 2.3 0.5 1.3"
+#define CLI_LISTENER "listener usual"
 #define CLI_BLOCK 8192 ///< most samples at a time; chosen: the longest block of Pd
 
 /// The displacement of drums is not wanted. cli_load does this.

@@ -51,7 +51,10 @@ static double mix(himc_performance *performance, uint64_t start, int n, int chan
     double heard[MIXED], sum[MIXED] = {0}, peak = 0;
     himc_drum *drum;
     for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
-        himc_drum_read_channel(drum, channel, start, n, heard);
+        if (channels == 1)
+            himc_drum_read(drum, start, n, heard, NULL);
+        else
+            himc_drum_read_channel(drum, channel, start, n, heard);
         for (int i = 0; i < n; i++)
             sum[i] += heard[i];
     }

@@ -50,8 +50,7 @@ static const cli_option options[] = {
     {"rate", 0, "HZ", "sample rate, 8000 .. 192000 (48000)"},
     {"block", 0, "N", "samples computed at a time, 1 .. 8192 (64); the result is the same"},
     {"channels", 0, "N",
-     "2: two ears in front of the drums, or where the score has them; 1: the "
-     "drums' pickups, no ears (2)"},
+     "2: two ears in front of the drums, or where the score has them; 1: both in one (2)"},
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
     {"motion", 0, "F", "a row every 4 ms, as CSV, or for NumPy if F ends with .npz"},
     {"columns", 0, "LIST",
@@ -297,7 +296,7 @@ static bool prepare(himc_performance *performance, job *wanted, himc_error *erro
         return false;
     if (!makes_drums && !cli_add_drum(performance, wanted->rate, error))
         return false;
-    if (wanted->channels == HEARD_BY_TWO && !cli_tell(performance, CLI_LISTENER, NULL, error))
+    if (!cli_tell(performance, CLI_LISTENER, NULL, error))
         return false;
     if (take && !apply_settings(performance, wanted->arguments, error))
         return false;
@@ -310,9 +309,7 @@ static bool prepare(himc_performance *performance, job *wanted, himc_error *erro
         himc_error_set(&note, "%s: loop: one round is rendered", wanted->source);
         cli_say("note: %s\n", note.text);
     }
-    return (wanted->channels == HEARD_BY_TWO ||
-            cli_tell(performance, "listener off", NULL, error)) &&
-           (!loops || cli_tell(performance, "loop 0", NULL, error)) &&
+    return (!loops || cli_tell(performance, "loop 0", NULL, error)) &&
            cli_tell(performance, "play", NULL, error);
 }
 

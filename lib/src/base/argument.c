@@ -73,6 +73,7 @@ static const himc_argument arguments[] = {
     {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
     // principal mode; chosen: wider than any head's range, which do_tune tells
     {"HZ", "tune", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
+    {"HZ", "gliss", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
     {"PORT", "listen", HIMC_ARGUMENT_COUNT, 0, 65535, "", NULL},

@@ -166,7 +166,8 @@ static const char *follow(const char *grammar, walk w, attempt *result)
     if (result->end == FITS && w.at < w.count)
         result->end = TOO_MANY;
     result->at = w.at;
-    result->rank = 1000 * w.literal + 100 * (w.count >= least && w.count <= most) + w.at;
+    // the right number of atoms counts for more than one that fits, and for less than two
+    result->rank = 1000 * w.literal + 3 * (w.count >= least && w.count <= most) + 2 * w.at;
     return *grammar ? grammar + 2 : NULL;
 }
 
@@ -265,7 +266,8 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
         out->atom[i] = (himc_atom){HIMC_ATOM_NUMBER, read->number[i], NULL};
         if (atoms[i].kind != HIMC_ATOM_SYMBOL)
             continue;
-        if (out->id == HIMC_COMMAND_TUNE && himc_note_frequency(atoms[i].symbol, &hz)) {
+        bool pitch = out->id == HIMC_COMMAND_TUNE || out->id == HIMC_COMMAND_GLISS;
+        if (pitch && himc_note_frequency(atoms[i].symbol, &hz)) {
             out->atom[i].number = hz;
             continue;
         }

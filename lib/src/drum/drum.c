@@ -22,6 +22,7 @@
 #define WATCHED HIMC_PICKUPS // index of the ring of displacements
 #define NOISE_UNIT (100 / HIMC_PICKUP_PRESSURE) // the noise was fitted where 1.0 was 100 Pa
 #define LEVEL_RAMP 0.010  // (s) of the head's own sound from on to off; chosen: no click
+#define MUFFLED_DAMP 0.5  // a cloth ends noise as such a hand does; chosen: in 0.2 s
 #define NOISE_MOVES 400.0 // of a pickup's nearness to noise (1/m in a second); chosen: no click
 #define METRES_PER_INCH 0.0254
 #define FIRST_WATCHED (-0.75) // x per radius: where strokes `normal` land
@@ -109,7 +110,7 @@ himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *erro
     drum->set = *settings;
     drum->rate = settings->head.rate;
     drum->noise = himc_stroke_noise_at(drum->rate);
-    drum->noise.amount = settings->noise;
+    himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);
     settle_noise(drum);
     drum->outside_x = FIRST_WATCHED * settings->place.radius;
     himc_membrane_watch(membrane, drum->outside_x, drum->outside_y);
@@ -119,7 +120,8 @@ himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *erro
 himc_drum_settings himc_drum_settings_of(const himc_drum *drum)
 {
     himc_drum_settings settings = drum->set;
-    settings.head = *himc_membrane_config_of(drum->membrane);
+    settings.head = himc_drum_head_config(drum);
+    settings.pedal = false;
     settings.head.muted = false;
     return himc_drum_settings_copy(&settings);
 }
@@ -136,14 +138,24 @@ void himc_drum_settings_free(himc_drum_settings *settings)
     settings->head.shape.grid = NULL;
 }
 
-bool himc_drum_has_head(const himc_drum *drum, const himc_drum_settings *settings)
+void himc_drum_settings_take_head(himc_drum_settings *settings, const himc_drum_settings *from)
 {
-    return himc_membrane_config_equal(himc_membrane_config_of(drum->membrane), &settings->head);
+    settings->head = from->head;
+    settings->picked = from->picked;
+    settings->pedal = from->pedal;
+    settings->gliss = from->gliss;
+    settings->place = himc_head_frame_at(&settings->place, &from->place);
 }
 
-// gives the drum's head another config, or the model that was made of it
-static bool set_head(himc_drum *drum, const himc_membrane_config *to, himc_model **made,
-                     himc_error *error)
+bool himc_drum_has_head(const himc_drum *drum, const himc_drum_settings *settings)
+{
+    himc_membrane_config head = himc_drum_head_config(drum);
+    return himc_membrane_config_equal(&head, &settings->head);
+}
+
+// gives the drum's head another config, or the model that was made of it, in that time
+static bool set_head(himc_drum *drum, const himc_membrane_config *to, double seconds,
+                     himc_model **made, himc_error *error)
 {
     const himc_membrane_config *now = himc_membrane_config_of(drum->membrane);
     himc_membrane_config here = *to;
@@ -152,36 +164,40 @@ static bool set_head(himc_drum *drum, const himc_membrane_config *to, himc_model
     if (made && *made) {
         if (here.rate != (*made)->config.rate || here.shares != (*made)->config.shares)
             himc_model_make(*made, &here);
-        *made = himc_membrane_exchange(drum->membrane, *made);
-        return true;
+        return himc_drum_take_head(drum, &here, seconds, made, error);
     }
     here.rays = false;
     himc_membrane_config_set_rays(&here, now->rays ? now->pickups + HIMC_PICKUPS : NULL);
-    if (himc_membrane_config_equal(now, &here))
+    himc_membrane_config was = himc_drum_head_config(drum);
+    bool moves = seconds >= 0 && himc_drum_glides(drum);
+    if (!moves && himc_membrane_config_equal(&was, &here))
         return true;
-    return himc_head_equal(&now->head, &here.head) && himc_shape_equal(&now->shape, &here.shape)
+    return !moves && himc_head_equal(&was.head, &here.head) &&
+                   himc_shape_equal(&was.shape, &here.shape)
                ? himc_membrane_set_pickups(drum->membrane, here.pickups, here.pickup_count, error)
-               : himc_membrane_become(drum->membrane, &here, error);
+               : himc_drum_take_head(drum, &here, seconds, NULL, error);
 }
 
 bool himc_drum_set(himc_drum *drum, const himc_drum_settings *to, himc_model **made,
                    himc_error *error)
 {
-    const himc_mallet_head *mallet = &drum->set.mallet;
+    const himc_mallet_head *mallet = drum->set.mallet;
     const himc_head_frame *place = &drum->set.place;
     himc_head_frame there = himc_head_frame_at(&to->place, place);
     bool moves = !himc_head_frame_equal(place, &there);
     bool grows = !himc_head_frame_equal(&to->place, &there) ||
                  himc_membrane_config_of(drum->membrane)->shape.kind != to->head.shape.kind;
     bool exchanges = made && *made;
-    if (!set_head(drum, &to->head, made, error))
+    if (!set_head(drum, &to->head, to->pedal ? to->gliss : -1, made, error))
         return false;
+    bool hears = himc_drum_hears(drum);
     drum->revision += moves || grows || drum->set.placed != to->placed ||
-                      memcmp(mallet, &to->mallet, sizeof *mallet) != 0;
+                      memcmp(mallet, to->mallet, sizeof to->mallet) != 0;
     drum->set = *to;
-    drum->noise.amount = to->noise;
+    drum->set.pedal = false;
+    himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);
     settle_noise(drum);
-    if (moves || exchanges)
+    if (moves || exchanges || hears != himc_drum_hears(drum))
         himc_drum_find_ways(drum);
     return true;
 }
@@ -197,6 +213,7 @@ void himc_drum_release(himc_drum *drum)
     if (!drum || --drum->references > 0)
         return;
     himc_membrane_free(drum->membrane);
+    himc_model_free(drum->gliss.goal);
     free(drum->ears);
     free(drum);
 }
@@ -247,9 +264,9 @@ himc_membrane *himc_drum_membrane(himc_drum *drum)
     return drum->membrane;
 }
 
-const himc_mallet_head *himc_drum_mallet(const himc_drum *drum)
+const himc_mallet_head *himc_drum_mallet(const himc_drum *drum, himc_hand hand)
 {
-    return &drum->set.mallet;
+    return &drum->set.mallet[hand];
 }
 
 unsigned himc_drum_revision(const himc_drum *drum)
@@ -323,7 +340,10 @@ static int listen_in(himc_drum *drum, int n, double *const *sound, bool silent)
         return count;
     for (int k = himc_ears_alone(ears) ? 0 : count; k < some; k++)
         memset(sound[k], 0, (size_t)n * sizeof(double));
-    himc_ears_hear(ears, n, !silent && head->rays ? sound + HIMC_PICKUPS : NULL, some, sound);
+    if (count == 1 && !himc_ears_alone(ears))
+        memcpy(sound[1], sound[0], (size_t)n * sizeof(double));
+    himc_ears_hear(ears, n, !silent && head->rays ? sound + HIMC_PICKUPS : NULL, some, sound,
+                   drum->set.gain * drum->fader);
     if (himc_ears_alone(ears))
         himc_membrane_mute_pickups(drum->membrane, true);
     if (!himc_ears_heard(ears))
@@ -345,8 +365,12 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
         }
         levels[i] = drum->level;
     }
-    for (int k = 0; k < HIMC_PICKUPS; k++)
-        store_row(drum, k, n, k < count ? sound[k] : NULL, levels);
+    for (int k = 0; k < HIMC_PICKUPS; k++) // a single pickup is heard on both sides
+        store_row(drum, k, n,
+                  k < count              ? sound[k]
+                  : k == 1 && count == 1 ? sound[0]
+                                         : NULL,
+                  levels);
     store_row(drum, WATCHED, n, silent ? NULL : watched, NULL);
     drum->time += (uint64_t)n;
 }
@@ -363,6 +387,9 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
         settle_noise(drum);
         return;
     }
+    double held = fmin(head->head.damp + MUFFLED_DAMP * head->head.muffle, 1);
+    if (drum->noise.damp != held)
+        himc_stroke_noise_damp(&drum->noise, held);
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
     for (int k = 0; k < head->pickup_count && !himc_ears_alone(drum->ears); k++) {
         double *at = &drum->nearness[k], to = nearness(&pickups[k]);
@@ -431,6 +458,8 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     for (int k = 0; k < count; k++) {
         if (all[k]->contacts != known[k]) {
             store_singles(drum, made); // an onset has the drum's time
+            if (drum->set.mallet[HIMC_LEFT].noise != drum->set.mallet[HIMC_RIGHT].noise)
+                himc_drum_find_noise(drum, &all[k]->head);
             himc_stroke_noise_begin(&drum->noise, all[k]->x, all[k]->y);
             himc_drum_keep_onset(drum, all[k]);
         }
@@ -446,7 +475,9 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     }
     made->watched[made->count++] = drum->unwatched ? 0 : himc_membrane_watched(drum->membrane);
     add_noise(drum, 1, pressing, into);
-    if (count > given || drum->waiting_count > 0 || made->count == RUN_BLOCK)
+    // launches and pedal go by the drum's time
+    if (count > given || drum->waiting_count > 0 || himc_drum_glides(drum) ||
+        made->count == RUN_BLOCK)
         store_singles(drum, made);
     himc_drum_follow_mallets(drum);
 }
@@ -464,6 +495,7 @@ bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
         all[i] = sticks[i];
     int at = 0;
     while (at < n) {
+        himc_drum_go_gliss(drum);
         himc_drum_launch(drum);
         if (moves_at(drum, o, at)) {
             drum->outside_x = o->x[at];
@@ -474,7 +506,7 @@ bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
         int most = n - at < RUN_BLOCK ? n - at : RUN_BLOCK, run = 0;
         while (alone && run < most && force_at(o, at + run) == 0 && !moves_at(drum, o, at + run))
             run++;
-        run = himc_drum_until_launch(drum, run);
+        run = himc_drum_until_gliss(drum, himc_drum_until_launch(drum, run));
         run = himc_contact_clear(drum->membrane, all, count, run);
         near = near || run == 0;
         if (run > 0) {
@@ -508,8 +540,14 @@ static void copy(const himc_drum *drum, const double *ring, uint64_t start, int 
 void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
                     double *displacement)
 {
+    bool pair = himc_membrane_config_of(drum->membrane)->pickup_count == 1 || himc_drum_hears(drum);
     if (sound)
         copy(drum, drum->ring[0], start, n, sound);
+    for (int i = 0; sound && pair && i < n; i++) {
+        double other;
+        copy(drum, drum->ring[1], start + (uint64_t)i, 1, &other);
+        sound[i] = 0.5 * (sound[i] + other);
+    }
     if (displacement)
         copy(drum, drum->ring[WATCHED], start, n, displacement);
 }

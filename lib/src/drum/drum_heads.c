@@ -19,6 +19,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// a gliss whose beat is past by more, after `seek`, has arrived; chosen: a stick on the head delays
+// it by less
+#define GLISS_LATE 0.5 // (beats)
 #define MOST_SPARES 48 // of a drum, under 1 MB each; chosen: two octaves, sounding and damped
 
 typedef struct head_change {
@@ -137,10 +140,16 @@ static bool add_spare(himc_drum_heads *heads, const himc_membrane_config *config
 bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error)
 {
     himc_membrane_config config = heads->settings.head;
-    bool good = true;
+    bool good = true, used[MOST_SPARES] = {false}; // a gliss has started from that one
     for (int i = 0; good && i < heads->count && heads->spares < MOST_SPARES; i++) {
+        bool gliss = heads->change[i].id == HIMC_COMMAND_GLISS, known = false;
+        for (int k = 0; k < heads->spares; k++) {
+            const himc_head *spare = &heads->spare[k]->config.head;
+            known = known || (!used[k] && himc_head_equal(spare, head_of(heads, i)));
+            used[k] = used[k] || (gliss && himc_head_equal(spare, head_of(heads, i - 1)));
+        }
         config.head = *head_of(heads, i);
-        good = find_spare(heads, &config) || add_spare(heads, &config, error);
+        good = (known && !gliss) || add_spare(heads, &config, error);
     }
     return good;
 }
@@ -183,14 +192,13 @@ bool himc_drum_heads_due(const himc_drum_heads *heads, double beat)
 
 void himc_drum_heads_notice(himc_drum_heads *heads, const himc_drum *drum)
 {
-    const himc_head *now = himc_membrane_head(drum->membrane);
-    if (himc_head_equal(&heads->told.known, now))
+    himc_head now = himc_drum_head_config(drum).head, was = heads->told.known;
+    if (himc_head_equal(&was, &now))
         return;
-    himc_head was = heads->told.known;
-    heads->told.known = *now;
+    heads->told.known = now;
     for (; heads; heads = heads->before) {
-        himc_head_keep_edits(&heads->first, &was, now);
-        himc_head_keep_edits(&heads->told.base, &was, now);
+        himc_head_keep_edits(&heads->first, &was, &now);
+        himc_head_keep_edits(&heads->told.base, &was, &now);
         heads->edited = true;
     }
 }
@@ -235,16 +243,17 @@ static bool redo(const himc_drum *drum, const head_change *change, himc_head *he
 static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int change,
                     himc_head *head, himc_error *error)
 {
-    enum { PITCH = 1, DECAY = 2, GLIDE = 4, DAMP = 8, ALL = 15 };
+    enum { PITCH = 1, DECAY = 2, GLIDE = 4, DAMP = 8, MUFFLE = 16, ALL = 31 };
     int from = first_to_act(heads, change);
     bool onward = from > 0 || heads->now == -1, good = true;
-    *head = onward ? *himc_membrane_head(drum->membrane) : heads->first;
+    *head = onward ? himc_drum_head_config(drum).head : heads->first;
     for (int i = change, set = 0; i >= from && set != ALL; i--) {
         himc_command_id id = heads->change[i].id;
-        int sets = id == HIMC_COMMAND_DECAY   ? DECAY
-                   : id == HIMC_COMMAND_GLIDE ? GLIDE
-                   : id == HIMC_COMMAND_DAMP  ? DAMP
-                                              : PITCH;
+        int sets = id == HIMC_COMMAND_DECAY    ? DECAY
+                   : id == HIMC_COMMAND_GLIDE  ? GLIDE
+                   : id == HIMC_COMMAND_DAMP   ? DAMP
+                   : id == HIMC_COMMAND_MUFFLE ? MUFFLE
+                                               : PITCH;
         if (!(set & sets))
             good = redo(drum, &heads->change[i], head, error) && good;
         set |= sets;
@@ -252,18 +261,34 @@ static bool overlay(const himc_drum_heads *heads, const himc_drum *drum, int cha
     return good;
 }
 
-/// Gives the drum that head.
-static bool give(himc_drum_heads *heads, himc_drum *drum, const himc_head *head, himc_error *error)
+/// Gives the drum that head; see himc_drum_take_head for the time.
+static bool give(himc_drum_heads *heads, himc_drum *drum, const himc_head *head, double seconds,
+                 himc_error *error)
 {
-    himc_membrane_config config = *himc_membrane_config_of(drum->membrane);
-    if (himc_head_equal(&config.head, head))
+    himc_membrane_config config = himc_drum_head_config(drum);
+    if (himc_head_equal(&config.head, head) && !(seconds >= 0 && himc_drum_glides(drum)))
         return true;
     config.head = *head;
     himc_model **spare = find_spare(heads, &config);
-    if (!spare)
-        return himc_membrane_become(drum->membrane, &config, error);
-    *spare = himc_membrane_exchange(drum->membrane, *spare);
-    return true;
+    bool good = himc_drum_take_head(drum, &config, seconds, spare, error);
+    himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);
+    if (spare && !*spare)
+        *spare = heads->spare[--heads->spares];
+    return good;
+}
+
+/// The time of the pedal on its way to a change, as of himc_drum_take_head.
+static double pedal_time(const himc_drum_heads *heads, int change, double beat)
+{
+    int from = first_to_act(heads, change);
+    for (int i = change; i >= from; i--) {
+        const head_change *c = &heads->change[i];
+        if (c->id == HIMC_COMMAND_GLISS)
+            return beat - c->beat < GLISS_LATE ? c->number[1] : 0;
+        if (c->id == HIMC_COMMAND_TUNE || c->id == HIMC_COMMAND_TENSION)
+            return 0;
+    }
+    return -1;
 }
 
 bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, himc_error *error)
@@ -280,9 +305,9 @@ bool himc_drum_heads_turn(himc_drum_heads *heads, himc_drum *drum, double beat, 
     heads->since = 0;
     himc_head head = *head_of(heads, change);
     bool good = !heads->edited || overlay(heads, drum, change, &head, error);
-    good = give(heads, drum, &head, error) && good;
+    good = give(heads, drum, &head, pedal_time(heads, change, beat), error) && good;
     heads->now = change;
-    latest->told.known = *himc_membrane_head(drum->membrane);
+    latest->told.known = himc_drum_head_config(drum).head;
     return good;
 }
 
@@ -299,11 +324,11 @@ bool himc_drum_heads_begin_again(himc_drum_heads *heads, himc_drum *drum, double
     bool good = true;
     for (int i = from; i < heads->count; i++)
         good = redo(drum, &heads->change[i], &head, error) && good;
-    good = give(heads, drum, &head, error) && good;
+    good = give(heads, drum, &head, 0, error) && good;
     heads->edited = true; // the next changes act on this head
     heads->now = -1;
     heads->since = 0;
-    heads->told.known = *himc_membrane_head(drum->membrane);
+    heads->told.known = himc_drum_head_config(drum).head;
     return good;
 }
 
@@ -415,7 +440,8 @@ bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
     for (int i = from; i < made->count && good; i++) {
         good = find_head(&after, &made->change[i], error);
         bool room = j->known_count + made->spares < MOST_SPARES;
-        if (good && room && !is_known(j, &after.head.head))
+        bool gliss = made->change[i].id == HIMC_COMMAND_GLISS;
+        if (good && room && (gliss || !is_known(j, &after.head.head)))
             good = add_spare(made, &after.head, error);
     }
     himc_drum_settings_free(&after);

@@ -37,7 +37,7 @@ bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command)
 {
     int pickups;
     himc_membrane_pickups(drum->membrane, &pickups);
-    bool heard = drum->listener.on;
+    bool heard = himc_drum_hears(drum);
     int readouts = pickups + 1 + (heard ? HIMC_RAYS : 0); // and the watched point
     if (command->id == HIMC_COMMAND_PICKUPS)
         readouts = 1 + (int)fmax(pickups, command->atom[0].number);
@@ -45,8 +45,8 @@ bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command)
         return command->count > 0;
     if (command->id == HIMC_COMMAND_PLACE)
         return heard && himc_drum_listening_takes_long(drum);
-    return command->id == HIMC_COMMAND_SHAPE || command->id == HIMC_COMMAND_DRUM_PRESET ||
-           command->id == HIMC_COMMAND_MODES ||
+    return command->id == HIMC_COMMAND_GLISS || command->id == HIMC_COMMAND_SHAPE ||
+           command->id == HIMC_COMMAND_DRUM_PRESET || command->id == HIMC_COMMAND_MODES ||
            ((himc_command_table((int)command->id)->marks & HIMC_CHANGES_HEAD) &&
             mode_work(drum->membrane) * readouts > SHORT_WORK);
 }
@@ -128,11 +128,12 @@ static bool prepare(himc_job *job, himc_error *error)
                     : himc_drum_settings_command(&j->after, &j->command, error);
     if (!good)
         return false;
-    if (j->listener.on) {
+    bool heard = himc_listener_hears(&j->listener, j->after.picked);
+    if (heard) {
         himc_ear_paths paths = himc_ears_trace(&j->listener, &j->after.place);
         himc_membrane_config_set_rays(&j->after.head, paths.ray);
     }
-    if (j->listener.on && !j->ears && !(j->ears = calloc(1, sizeof *j->ears)))
+    if (heard && !j->ears && !(j->ears = calloc(1, sizeof *j->ears)))
         return himc_error_set(error, "listener: out of memory");
     if (himc_membrane_config_equal(&j->before.head, &j->after.head))
         return true;
@@ -161,8 +162,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     if (preset) {
         to = j->after;
     } else {
-        to.head = j->after.head;
-        to.place = himc_head_frame_at(&to.place, &j->after.place);
+        himc_drum_settings_take_head(&to, &j->after);
         if (j->command.id == HIMC_COMMAND_PLACE && !j->listens) {
             to.place = j->after.place;
             to.placed = true;

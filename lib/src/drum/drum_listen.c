@@ -12,9 +12,23 @@ bool himc_drum_open_ears(himc_drum *drum, himc_error *error)
     return drum->ears || himc_error_set(error, "listener: out of memory");
 }
 
+bool himc_drum_hears(const himc_drum *drum)
+{
+    return himc_listener_hears(&drum->listener, drum->set.picked);
+}
+
+bool himc_drum_hear(himc_drum *drum, himc_error *error)
+{
+    if (!himc_drum_open_ears(drum, error))
+        return false;
+    drum->alone = himc_listener_usual();
+    himc_drum_listen(drum, &drum->alone);
+    return true;
+}
+
 void himc_drum_find_ways(himc_drum *drum)
 {
-    if (!drum->listener.on) {
+    if (!himc_drum_hears(drum)) {
         himc_membrane_mute_pickups(drum->membrane, false);
         if (drum->ears)
             himc_ears_close(drum->ears);
@@ -29,6 +43,7 @@ void himc_drum_find_ways(himc_drum *drum)
 
 void himc_drum_listen(himc_drum *drum, const himc_listener *listener)
 {
+    listener = listener ? listener : &drum->alone;
     if (himc_listener_equal(&drum->listener, listener))
         return;
     drum->listener = *listener;
@@ -47,20 +62,20 @@ void himc_drum_enclose(himc_drum *drum, const himc_walls *walls)
 static bool hears_with(const himc_drum *drum, const himc_drum *other)
 {
     return drum->driver.performer || (himc_listener_equal(&drum->listener, &other->listener) &&
+                                      drum->set.picked == other->set.picked &&
                                       himc_head_frame_equal(&drum->set.place, &other->set.place));
 }
 
 bool himc_drum_follows(const himc_drum *drum, const himc_drum *other)
 {
-    return hears_with(drum, other) &&
-           himc_membrane_config_alike(himc_membrane_config_of(drum->membrane),
-                                      himc_membrane_config_of(other->membrane));
+    himc_membrane_config own = himc_drum_head_config(drum), its = himc_drum_head_config(other);
+    return hears_with(drum, other) && himc_membrane_config_alike(&own, &its);
 }
 
 bool himc_drum_follow(himc_drum *drum, const himc_drum *other, himc_error *error)
 {
     const himc_membrane_config *now = himc_membrane_config_of(drum->membrane);
-    himc_membrane_config to = *himc_membrane_config_of(other->membrane);
+    himc_membrane_config to = himc_drum_head_config(other), own = himc_drum_head_config(drum);
     bool hears = hears_with(drum, other);
     if (!hears && other->listener.on && !himc_drum_open_ears(drum, error))
         return false;
@@ -70,16 +85,23 @@ bool himc_drum_follow(himc_drum *drum, const himc_drum *other, himc_error *error
     if (drum->driver.performer)
         to.rays = false,
         himc_membrane_config_set_rays(&to, now->rays ? now->pickups + HIMC_PICKUPS : NULL);
-    if (!himc_membrane_config_equal(now, &to)) {
+    if (himc_drum_glides(other)) {
+        if (!himc_membrane_config_equal(&own, &to) &&
+            !himc_drum_take_head(drum, &to, himc_drum_gliss_rest(other), NULL, error))
+            return false;
+    } else if (!himc_membrane_config_equal(&own, &to)) {
+        drum->gliss.left = 0;
         himc_model *made = himc_model_new(&to, other->membrane->model, error);
         if (!made)
             return false;
         himc_model_free(himc_membrane_exchange(drum->membrane, made));
     }
+    himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);
     drum->set.place = himc_head_frame_at(&drum->set.place, &other->set.place);
     if (hears)
         return true;
     drum->listener = other->listener;
+    drum->set.picked = other->set.picked;
     drum->set.place = other->set.place;
     himc_drum_find_ways(drum);
     return true;

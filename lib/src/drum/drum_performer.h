@@ -27,6 +27,7 @@ HIMC_RT bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const 
 bool himc_drum_open_ears(himc_drum *drum, himc_error *error);
 /// Who hears the drum by two ears: from now on they are its first two channels, instead of pickups.
 /// A listener who is off, as at first, leaves them to the pickups; one who is on needs open ears.
+/// NULL: the one that the drum has without a performer.
 /// It changes over in 5 ms.
 HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);
 
@@ -46,8 +47,9 @@ bool himc_drum_check_place(himc_vec3 center, himc_error *error);
 HIMC_RT void himc_drum_rest(himc_drum *drum);
 /// Moves the head's centre (m), until the command `place` does.
 HIMC_RT void himc_drum_stand(himc_drum *drum, himc_vec3 center);
-/// The mallet that strikes it, set by the command `mallet`. Borrowed.
-HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum);
+/// The mallet with which a hand strikes it, set by the command `mallet`; a strike without a
+/// performer has the right one. Borrowed.
+HIMC_RT const himc_mallet_head *himc_drum_mallet(const himc_drum *drum, himc_hand hand);
 /// Grows by one with every change of place, radius or mallet, so that a performer notices.
 HIMC_RT unsigned himc_drum_revision(const himc_drum *drum);
 /// Frequency of the head's principal mode (Hz).
@@ -69,12 +71,15 @@ typedef struct himc_drum_settings {
     himc_membrane_config head;
     himc_head usual; ///< when the drum was made
     himc_head_frame place;
-    bool placed; ///< by the command `place`
-    himc_mallet_head mallet;
-    himc_word mallet_name; ///< "medium", or "own" when given by numbers
-    double noise;          ///< its amount
-    double gain;           ///< of its sound (factor)
+    bool placed;  ///< by the command `place`
+    bool pedal;   ///< a command has moved the pedal, and not yet a drum's; ...
+    double gliss; ///< ... in that time (s), 0: at once
+    himc_mallet_head mallet[HIMC_HANDS];
+    himc_word mallet_name[HIMC_HANDS]; ///< "medium", or "own" when given by numbers
+    double noise;                      ///< its amount
+    double gain;                       ///< of its sound (factor)
     bool mute;
+    bool picked; ///< its pickups have been asked for: a usual listener leaves it to them
     himc_technique technique;
     bool external_sound;
 } himc_drum_settings;
@@ -83,6 +88,9 @@ typedef struct himc_drum_settings {
 HIMC_RT himc_drum_settings himc_drum_settings_of(const himc_drum *drum);
 himc_drum_settings himc_drum_settings_copy(const himc_drum_settings *settings);
 void himc_drum_settings_free(himc_drum_settings *settings);
+/// Takes what commands that change the head have made of `from`: head, pedal, pickups.
+HIMC_RT void himc_drum_settings_take_head(himc_drum_settings *settings,
+                                          const himc_drum_settings *from);
 /// Carries out a command, but for what it does once: a strike, an answer, a file, a preset. False
 /// with the reason, and nothing changed, if it is refused.
 bool himc_drum_settings_command(himc_drum_settings *settings, const himc_command *command,

@@ -38,10 +38,19 @@ typedef struct drum_told_head {
     himc_head known; ///< of the drum, when it was last looked at
 } drum_told_head;
 
+/// A pedal on its way (drum_gliss.c).
+typedef struct drum_gliss {
+    himc_model *goal; ///< owned; the head at the end; else of no use, or NULL
+    double tension;   ///< there (N/m)
+    int left;         ///< steps to go; 0: the pedal rests
+    uint64_t next;    ///< sample before which the next step is made
+} drum_gliss;
+
 struct himc_drum {
     himc_drum_settings set; ///< but for its head, which the membrane has
     int references;
     himc_membrane *membrane;
+    drum_gliss gliss;
     const drum_told_head *told; ///< borrowed; of its changes in a score, NULL for none
     unsigned revision;
     himc_drum_driver driver;
@@ -64,7 +73,8 @@ struct himc_drum {
     himc_stroke_noise noise;
     double
         nearness[HIMC_PICKUPS]; ///< 1/distance of a pickup in the air, as its noise is heard (1/m)
-    himc_listener listener;
+    himc_listener listener; ///< of its performer, or `alone`
+    himc_listener alone;    ///< without a performer
     himc_walls walls; ///< around the listener
     himc_ears *ears;  ///< owned; of the listener; NULL before the first one
 };
@@ -76,6 +86,35 @@ HIMC_RT bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual
 /// False with the reason if that surface cannot be struck so.
 HIMC_RT bool himc_drum_may_strike(const himc_head_frame *surface, double x, double y,
                                   double velocity, himc_error *error);
+
+/// True if two ears hear the drum, and not its pickups.
+HIMC_RT bool himc_drum_hears(const himc_drum *drum);
+/// True while the pedal moves.
+HIMC_RT bool himc_drum_glides(const himc_drum *drum);
+/// Its head, with the tension to which the pedal moves.
+HIMC_RT himc_membrane_config himc_drum_head_config(const himc_drum *drum);
+/// Time that the pedal still needs (s).
+HIMC_RT double himc_drum_gliss_rest(const himc_drum *drum);
+/// Gives the drum that head: at once, or with a pedal that takes `seconds`; if they are negative, a
+/// pedal that moves to the same tension goes on. *made, or NULL, is a model of the head, and
+/// afterwards one that is of no use, or NULL; with it no memory is allocated. False with the
+/// reason.
+bool himc_drum_take_head(himc_drum *drum, const himc_membrane_config *to, double seconds,
+                         himc_model **made, himc_error *error);
+/// Samples until the pedal's next step, at most `most`.
+HIMC_RT int himc_drum_until_gliss(const himc_drum *drum, int most);
+/// The step of the pedal that is due, if any.
+HIMC_RT void himc_drum_go_gliss(himc_drum *drum);
+
+/// Of a stroke's noise a cloth all over the head takes this part; chosen: 10 dB.
+#define HIMC_MUFFLED_NOISE 0.7
+
+/// How loud the noise of a stroke with that mallet is.
+static inline void himc_drum_find_noise(himc_drum *drum, const himc_mallet_head *mallet)
+{
+    double bare = 1 - HIMC_MUFFLED_NOISE * himc_membrane_head(drum->membrane)->muffle;
+    drum->noise.amount = drum->set.noise * mallet->noise * bare;
+}
 
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.
 HIMC_RT void himc_drum_find_ways(himc_drum *drum);

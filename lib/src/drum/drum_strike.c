@@ -95,8 +95,8 @@ void himc_drum_launch(himc_drum *drum)
         for (int i = next; i < drum->waiting_count; i++)
             drum->waiting[i] = drum->waiting[i + 1];
         *m = (drum_mallet){.used = true,
-                           .stick = {.head = drum->set.mallet,
-                                     .mass = drum->set.mallet.mass,
+                           .stick = {.head = drum->set.mallet[HIMC_RIGHT],
+                                     .mass = drum->set.mallet[HIMC_RIGHT].mass,
                                      .x = w.x,
                                      .y = w.y,
                                      .velocity = -w.velocity},

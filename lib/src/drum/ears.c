@@ -15,6 +15,10 @@
 ///     H = (1 + i a w/2w0)/(1 + i w/2w0),   w0 = c/h,   a = 1.05 + 0.95 cos(1.2 t),
 /// which is a + (1 - a) L with one L for all sources: each ear has one L, whatever it hears.
 ///
+/// What an ear hears of a drum, with its gain, is bent above half of full scale and never passes
+/// it, as a sound card would cut it off: |y| = 1/2 + tanh(2 |x| - 1)/2. A lower gain leaves it
+/// alone.
+///
 /// A time between two samples is Lagrange's cubic through four. When paths change, the old and the
 /// new are both heard for a moment: no delay line ever jumps or slides. All is counted in samples,
 /// so how many are asked for at a time does not matter.
@@ -40,13 +44,26 @@
 himc_listener himc_listener_at(himc_vec3 place)
 {
     bool there = place.x == 0 && place.y == 0;
-    return (himc_listener){true, place, there ? 0 : atan2(-place.y, -place.x)};
+    return (himc_listener){true, false, place, there ? 0 : atan2(-place.y, -place.x)};
+}
+
+himc_listener himc_listener_usual(void)
+{
+    himc_listener usual = himc_listener_at(himc_vec3_make(2.3, 0.5, 1.3)); // (m) chosen
+    usual.yields = true;
+    return usual;
+}
+
+bool himc_listener_hears(const himc_listener *listener, bool picked)
+{
+    return listener->on && !(listener->yields && picked);
 }
 
 bool himc_listener_equal(const himc_listener *a, const himc_listener *b)
 {
-    return a->on == b->on && (!a->on || (a->place.x == b->place.x && a->place.y == b->place.y &&
-                                         a->place.z == b->place.z && a->yaw == b->yaw));
+    return a->on == b->on &&
+           (!a->on || (a->yields == b->yields && a->place.x == b->place.x &&
+                       a->place.y == b->place.y && a->place.z == b->place.z && a->yaw == b->yaw));
 }
 
 // unit vector from the middle of the head out of an ear
@@ -281,7 +298,15 @@ static int steady(const himc_ears *e, int n)
     return himc_room_steady(&e->room, n);
 }
 
-void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double *const *rows)
+// never above full scale once it has that gain
+static double bend(double x, double gain)
+{
+    double loud = gain * fabs(x) - HIMC_EARS_LINEAR;
+    return loud <= 0 ? x : copysign((0.5 + 0.5 * tanh(2 * loud)) / gain, x);
+}
+
+void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double *const *rows,
+                    double gain)
 {
     static double silence[HIMC_ROOM_RUN];
     for (int from = 0, run; from < n; from += run) {
@@ -309,6 +334,7 @@ void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double 
         for (int k = 0; k < count; k++)
             for (int i = 0; i < run; i++) {
                 double ear = k < HIMC_EARS ? heard[k][i] + HIMC_EARS_LEVEL * walls[k][i] : 0;
+                ear = bend(ear, gain);
                 rows[k][from + i] = rows[k][from + i] * (1 - level) + level * ear;
             }
         e->at = (e->at + run) & (HIMC_EARS_LINE - 1);

@@ -9,19 +9,26 @@
 /// Where a listener is.
 typedef struct himc_listener {
     bool on;
+    bool yields;     ///< to the pickups of a drum, where these have been asked for
     himc_vec3 place; ///< midway between the ears, in the world (m)
     double yaw;      ///< the way the face looks, to the left of the world's x axis (rad)
 } himc_listener;
 
 /// A listener there who faces the performer at the world's origin; one who is there looks along x.
 himc_listener himc_listener_at(himc_vec3 place);
-/// True if both are off, or in one place and facing one way.
+/// The one who hears what has been asked for by nobody: in front of the drums and a little to the
+/// left, and yields.
+himc_listener himc_listener_usual(void);
+/// Whether a drum is heard by that listener; `picked`: its pickups have been asked for.
+HIMC_RT bool himc_listener_hears(const himc_listener *listener, bool picked);
+/// True if both are off, or in one place and facing one way, and both yield or none.
 bool himc_listener_equal(const himc_listener *a, const himc_listener *b);
 
-/// Sound of the ears per sound of a pickup at the same distance: a sound of 1.0 is 100 Pa.
-/// Chosen: listeners are 1.5 to 2.5 m from the drums, pickups 1 m, and the strongest stroke on any
-/// of four timpani around a performer stays below 1 at both.
-#define HIMC_EARS_LEVEL (HIMC_PICKUP_PRESSURE / 100)
+/// Sound of the ears per sound of a pickup at the same distance: a sound of 1.0 is 27 Pa.
+/// Chosen: one mf stroke on any timpano has a momentary loudness of -30 LUFS and more, as in
+/// libraries of samples; the strongest strokes would pass full scale, and are bent to it.
+#define HIMC_EARS_LEVEL (HIMC_PICKUP_PRESSURE / 27)
+#define HIMC_EARS_LINEAR 0.5 ///< what a drum's sound at an ear may be without being bent
 
 enum { HIMC_EAR_LEFT, HIMC_EAR_RIGHT, HIMC_EARS };
 
@@ -95,7 +102,8 @@ HIMC_RT bool himc_ears_at_rest(const himc_ears *ears);
 
 /// `n` samples: takes the rays (NULL: silence), and turns the `count` rows of pickups, two at
 /// least, into what is heard: the ears in the first two, and of the pickups what the ears leave.
+/// `gain` is what the sound is multiplied with afterwards.
 HIMC_RT void himc_ears_hear(himc_ears *ears, int n, double *const *rays, int count,
-                            double *const *rows);
+                            double *const *rows, double gain);
 
 #endif

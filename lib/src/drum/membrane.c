@@ -8,6 +8,7 @@
 #include "drum/membrane_state.h"
 
 #include "head/pickup.h"
+#include "head/uneven.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -147,14 +148,43 @@ static void bend(himc_membrane *m, double times)
     himc_bank_find_film(m->model->bank);
 }
 
-// Pairs whose axis was another in `before` go on in the same shape: what vibrated along the old
-// axes is taken apart along the new ones. Of amplitudes times frequency and of velocities, as here,
+// Of amplitudes times frequency and of velocities of a block's modes, those of the even head's
+// shapes, or back: the parts are orthogonal in the modes' masses, so this keeps the energy.
+static void mix_state(himc_membrane *m, const himc_uneven_block *block, bool back)
+{
+    const himc_oscillator *o = m->model->oscillators;
+    double a[HIMC_UNEVEN_MODES], v[HIMC_UNEVEN_MODES];
+    for (int i = 0; i < block->count; i++) {
+        himc_bank_state(m->model->bank, block->index[i], &a[i], &v[i]);
+        a[i] *= o[block->index[i]].omega;
+    }
+    for (int i = 0; i < block->count; i++) {
+        double sum[2] = {0, 0};
+        for (int l = 0; l < block->count; l++) {
+            double part =
+                back ? block->part[i][l] * o[block->index[l]].mass / o[block->index[i]].mass
+                     : block->part[l][i];
+            sum[0] += part * a[l];
+            sum[1] += part * v[l];
+        }
+        himc_bank_excite(m->model->bank, block->index[i], sum[0] / o[block->index[i]].omega,
+                         sum[1]);
+    }
+}
+
+// Pairs whose axis was another in `before`, and orders that mixed otherwise, go on in the same
+// shape: what vibrated along the old axes is taken apart along the new ones. Orders do not if the
+// list of modes is another, not `whole`. Of amplitudes times frequency and of velocities, as here,
 // a rotation keeps the energy, since both members have one mass.
-static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before)
+static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before,
+                       const himc_uneven_block mixed[2], bool whole)
 {
     const himc_lugs_pair *after = himc_modes_pairs(m->model->modes);
     if (memcmp(before, after, sizeof *before * HIMC_LUGS_ORDERS) == 0)
         return;
+    const himc_modes *modes = m->model->modes;
+    for (int parity = 0; parity < 2 && whole; parity++)
+        mix_state(m, &mixed[parity], false);
     for (int i = 1; i < himc_bank_count(m->model->bank); i++) {
         himc_mode mode = himc_modes_get(m->model->modes, &m->model->config.head, i);
         if (!mode.sine || before[mode.m].axis == after[mode.m].axis)
@@ -170,11 +200,14 @@ static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before)
         himc_bank_excite(m->model->bank, i, (c * second * q[1] - s * first * q[0]) / second,
                          c * v[1] - s * v[0]);
     }
+    for (int parity = 0; parity < 2 && whole; parity++)
+        mix_state(m, himc_uneven_block_of(modes, parity), true);
 }
 
 // Gives the membrane the model `made`, whose config this is, or if that is NULL makes that of
-// `config` in its place.
-static void change(himc_membrane *m, const himc_membrane_config *config, himc_model *made)
+// `config` in its place. With a share below 1 its own goes that share of the way to `made`.
+static void change(himc_membrane *m, const himc_membrane_config *config, himc_model *made,
+                   double share)
 {
     himc_model *was = m->model;
     double energy = himc_membrane_energy(m), samples = was->config.rate / config->rate;
@@ -183,18 +216,26 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
     bool outline = himc_shape_equal(&was->config.shape, &config->shape);
     bool bends = outline && !himc_head_equal(&was->config.head, &config->head);
     memcpy(pairs, himc_modes_pairs(was->modes), sizeof pairs);
+    int count = himc_modes_count(was->modes);
+    himc_uneven_block mixed[2] = {*himc_uneven_block_of(was->modes, 0),
+                                  *himc_uneven_block_of(was->modes, 1)};
     if (bends)
         bend(m, -1);
     m->revision++;
     if (made) {
         bool lacks = made->config.muted && !was->config.muted;
-        m->model = made;
         made->config.muted = was->config.muted;
-        himc_bank_set_step(made->bank, m->step);
         for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
             made->points[i].used = false; // what they know may be of pickups as they were then
         if (lacks)
             himc_model_find_outputs(made, 0, HIMC_PICKUPS);
+    }
+    if (made && share < 1) {
+        himc_model_approach(was, made, share);
+        himc_bank_set_step(was->bank, m->step);
+    } else if (made) {
+        m->model = made;
+        himc_bank_set_step(made->bank, m->step);
         if (outline)
             himc_bank_continue(made->bank, was->bank, himc_modes_common(was->modes, made->modes));
         else
@@ -204,7 +245,7 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
     }
     himc_model_watch(m->model, m->watch_x, m->watch_y);
     if (bends) {
-        turn_pairs(m, pairs);
+        turn_pairs(m, pairs, mixed, count == himc_modes_count(m->model->modes));
         bend(m, 1);
     }
     keep_energy(m, energy);
@@ -218,8 +259,13 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
 himc_model *himc_membrane_exchange(himc_membrane *m, himc_model *made)
 {
     himc_model *was = m->model;
-    change(m, &made->config, made);
+    change(m, &made->config, made, 1);
     return was;
+}
+
+void himc_membrane_approach(himc_membrane *m, himc_model *goal, double share)
+{
+    change(m, &goal->config, goal, share);
 }
 
 bool himc_membrane_become(himc_membrane *m, const himc_membrane_config *config, himc_error *error)
@@ -227,7 +273,7 @@ bool himc_membrane_become(himc_membrane *m, const himc_membrane_config *config, 
     if (!himc_membrane_config_check(config, error))
         return false;
     if (himc_model_has_room(m->model, config)) {
-        change(m, config, NULL);
+        change(m, config, NULL, 1);
         return true;
     }
     himc_model *made = himc_model_new(config, NULL, error);
@@ -279,7 +325,7 @@ void himc_membrane_share(himc_membrane *m, bool shares)
     himc_membrane_config config = m->model->config;
     config.shares = shares;
     if (m->model->config.shares != shares)
-        change(m, &config, NULL);
+        change(m, &config, NULL, 1);
 }
 
 const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count)

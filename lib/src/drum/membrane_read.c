@@ -2,6 +2,7 @@
 /// has now. Nothing changes it.
 #include "drum/drum_performer.h"
 #include "drum/membrane_state.h"
+#include "head/uneven.h"
 
 #include <math.h>
 
@@ -35,10 +36,12 @@ himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
     if (index >= himc_membrane_modes(membrane))
         return (himc_mode){0};
-    himc_mode bare = himc_modes_get(membrane->model->modes, &membrane->model->config.head, index);
-    return membrane->model->config.head.air
-               ? himc_air_mode(&membrane->model->air, &membrane->model->config.head, &bare)
-               : bare;
+    const himc_model *model = membrane->model;
+    himc_mode mode = himc_model_mode(model, index);
+    for (int i = 0; i < model->shared_count; i++)
+        mode.decay += model->shared[i].index == index ? model->shared[i].decay : 0;
+    mode.stiffness = mode.mass * pow(2 * HIMC_PI * mode.frequency, 2);
+    return mode;
 }
 
 double himc_membrane_principal(const himc_membrane *membrane, const himc_head *head)
@@ -66,32 +69,52 @@ static double coordinate(const himc_membrane *membrane, int count, const double 
     return q;
 }
 
+// displacements of the bare shapes of order 0, from those of what a kettle makes of them
+static void unmix(const himc_modes *modes, int count, double *displacement)
+{
+    const himc_mixture *mix = himc_modes_mixture(modes);
+    double mixed[HIMC_MIXED];
+    for (int n = 0; n < mix->count; n++)
+        mixed[n] = mix->index[n] < count ? displacement[mix->index[n]] : 0;
+    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
+        double sum = 0;
+        for (int n = 0; n < mix->count; n++)
+            sum += mix->part[n][k] * mixed[n];
+        displacement[mix->index[k]] = sum;
+    }
+}
+
+// of the even head's shape `index`, in what the uneven head's modes make of them
+static double even_displacement(const himc_membrane *m, int count, const double *modal, int index)
+{
+    int row;
+    const himc_uneven_block *block = himc_uneven_of(m->model->modes, index, &row);
+    double sum = 0;
+    if (!block)
+        return coordinate(m, count, modal, index);
+    for (int i = 0; i < block->count; i++)
+        sum += block->part[i][row] * coordinate(m, count, modal, block->index[i]);
+    return sum;
+}
+
 void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
                            double *displacement)
 {
     const himc_modes *modes = membrane->model->modes;
-    double pair[2] = {0, 0};
-    for (int i = 0; i < count; i++) {
-        himc_mode mode = himc_modes_get(modes, &membrane->model->config.head, i);
-        displacement[i] = coordinate(membrane, count, modal, i);
-        if (mode.m <= 0 || !membrane->model->config.shape.kind->air)
+    const himc_head *head = &membrane->model->config.head;
+    for (int i = 0; i < count; i++)
+        displacement[i] = even_displacement(membrane, count, modal, i);
+    unmix(modes, count, displacement);
+    for (int i = 0; i < count && membrane->model->config.shape.kind->air; i++) {
+        himc_mode mode = himc_modes_get(modes, head, i);
+        if (mode.m <= 0 || mode.sine)
             continue;
         const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
-        bool whole = i + 1 < himc_modes_count(modes) &&
-                     himc_modes_get(modes, &membrane->model->config.head, i + 1).sine;
-        if (!mode.sine) {
-            pair[0] = displacement[i];
-            pair[1] = whole ? coordinate(membrane, count, modal, i + 1) : 0;
-        }
-        displacement[i] = mode.sine ? pair[1] * axis->cosine + pair[0] * axis->sine
-                                    : pair[0] * axis->cosine - pair[1] * axis->sine;
-    }
-    // the bare shapes of order 0, from what a kettle makes of them
-    const himc_mixture *mix = himc_modes_mixture(modes);
-    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
-        double *sum = &displacement[mix->index[k]];
-        *sum = 0;
-        for (int n = 0; n < mix->count; n++)
-            *sum += mix->part[n][k] * coordinate(membrane, count, modal, mix->index[n]);
+        bool whole = i + 1 < himc_modes_count(modes) && himc_modes_get(modes, head, i + 1).sine;
+        double cosine = displacement[i],
+               sine = whole ? even_displacement(membrane, count, modal, i + 1) : 0;
+        displacement[i] = cosine * axis->cosine - sine * axis->sine;
+        if (i + 1 < count && whole)
+            displacement[i + 1] = sine * axis->cosine + cosine * axis->sine;
     }
 }

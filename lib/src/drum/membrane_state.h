@@ -68,8 +68,12 @@ himc_membrane *himc_membrane_new_of(himc_model *model, himc_error *error);
 /// now on. Modes of the same outline keep energy and phase, the sound of those that no longer exist
 /// ends in 5 ms, and there is no click; another outline begins at rest.
 HIMC_RT himc_model *himc_membrane_exchange(himc_membrane *membrane, himc_model *model);
-/// The same for a config; without allocation if its model has room in the present one's place
-/// (himc_model_has_room). False with the reason, and nothing changed, if there is no such head.
+/// Takes its model a share (0 .. 1) of the way to another one of the same head at another tension;
+/// otherwise the same.
+HIMC_RT void himc_membrane_approach(himc_membrane *membrane, himc_model *goal, double share);
+/// The same as an exchange for a config; without allocation if its model has room in the present
+/// one's place (himc_model_has_room). False with the reason, and nothing changed, if there is no
+/// such head.
 bool himc_membrane_become(himc_membrane *membrane, const himc_membrane_config *config,
                           himc_error *error);
 

@@ -161,6 +161,67 @@ int himc_membrane_substeps(double rate)
     return (int)ceil(SUBSTEP_RATE / rate);
 }
 
+himc_mode himc_model_mode(const himc_model *m, int i)
+{
+    const himc_oscillator *o = &m->oscillators[i];
+    himc_mode mode = himc_modes_get(m->modes, &m->config.head, i);
+    mode.frequency = o->omega / (2 * HIMC_PI);
+    mode.decay = o->decay;
+    mode.mass = o->mass;
+    return mode;
+}
+
+// mean of numbers of a block's modes by their parts in the energy of the mode in that row
+static double mean_of(const himc_uneven_block *block, int row, const double *mass,
+                      const double *numbers)
+{
+    double sum = 0;
+    for (int l = 0; l < block->count; l++) {
+        double part = block->part[row][l];
+        sum += part * part * mass[block->index[l]] * numbers[block->index[l]];
+    }
+    return sum / mass[block->index[row]];
+}
+
+// Makes of the even head's oscillators those of the uneven one: each loses what its parts lose, and
+// what it sends in orders that are not its own.
+static void mix_orders(himc_model *m)
+{
+    const himc_head *head = &m->config.head;
+    double *stiffness = m->on_q, *mass = m->on_v, *decay = m->on_force, *stretch = m->scratch;
+    himc_uneven_clear(m->modes);
+    if (!m->config.shape.kind->air || head->uniformity == 1)
+        return;
+    int count = himc_modes_count(m->modes), row;
+    for (int i = 0; i < count; i++) {
+        const himc_oscillator *o = &m->oscillators[i];
+        stiffness[i] = o->mass * o->omega * o->omega;
+        mass[i] = o->mass;
+        decay[i] = o->decay;
+        stretch[i] = m->stretch[i];
+    }
+    himc_uneven_find(m->modes, head->tension, mass, stiffness);
+    for (int i = 0; i < count; i++) {
+        const himc_uneven_block *block = himc_uneven_of(m->modes, i, &row);
+        himc_oscillator *o = &m->oscillators[i];
+        if (!block)
+            continue;
+        o->omega = sqrt(stiffness[i] / mass[i]);
+        himc_mode mode = himc_model_mode(m, i);
+        o->decay = mean_of(block, row, mass, decay);
+        if (head->air)
+            o->decay += himc_shared_by_other_orders(head, m->modes, i, &mode);
+        o->decay = fmin(o->decay, HIMC_LARGEST_DECAY * o->omega);
+        m->stretch[i] = mean_of(block, row, mass, stretch);
+    }
+    memcpy(m->scratch, m->most, sizeof *m->most * (size_t)count);
+    for (int i = 0; i < count; i++) {
+        const himc_uneven_block *block = himc_uneven_of(m->modes, i, &row);
+        for (int l = 0; block && l < block->count; l++)
+            m->most[i] += l == row ? 0 : fabs(block->part[row][l]) * m->scratch[block->index[l]];
+    }
+}
+
 // Oscillators of all modes, what strike points need of the bare ones, and a_i = sqrt(2 kappa) Lam_i
 // of the film; Lam_i is the stiffness of a mode's film per tension. The members of a pair have one
 // load.
@@ -189,6 +250,7 @@ static void find_oscillators(himc_model *m)
     for (int n = 0; n < mix->count; n++)
         for (int k = 0; k < mix->count; k++)
             m->most[mix->index[n]] += k == n ? 0 : fabs(mix->part[n][k]);
+    mix_orders(m);
 }
 
 // the modes that other heads hear, and what the air between takes of their decay
@@ -199,8 +261,10 @@ static void find_shared(himc_model *m)
     double highest = SHARED_ANGLE * m->config.rate / (2 * HIMC_PI * interval);
     m->shared_count =
         shares ? himc_shared_find(&m->config.head, m->modes, &m->air, highest, m->shared) : 0;
-    for (int i = 0; i < m->shared_count; i++)
-        m->oscillators[m->shared[i].index].decay -= m->shared[i].decay;
+    for (int i = 0; i < m->shared_count; i++) {
+        himc_oscillator *o = &m->oscillators[m->shared[i].index];
+        o->decay = fmax(o->decay - m->shared[i].decay, 0);
+    }
     himc_bank_set_pass(m->bank, shares ? interval : HIMC_BANK_PASS);
 }
 
@@ -212,15 +276,21 @@ int himc_membrane_interval(double rate)
     return samples;
 }
 
-// as its oscillator has it
-static himc_mode sounding_mode(const himc_model *m, int i)
+// an output of the weights in on_q, on_v, on_force
+static void take_weights(himc_model *m, int index)
 {
-    const himc_oscillator *o = &m->oscillators[i];
-    himc_mode mode = himc_modes_get(m->modes, &m->config.head, i);
-    mode.frequency = o->omega / (2 * HIMC_PI);
-    mode.decay = o->decay;
-    mode.mass = o->mass;
-    return mode;
+    himc_output *o = &m->outputs[index];
+    himc_bank_readout(m->bank, m->on_q, m->on_v,
+                      m->config.pickups[index].kind == HIMC_PICKUP_AIR ? m->on_force : NULL,
+                      &o->readout);
+    // responses to modal forces: through the state and, for accelerations, direct ones
+    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
+        himc_bank_set_step(m->bank, (himc_step_length)k);
+        himc_bank_step_response(m->bank, &o->readout, o->response[k]);
+        for (int i = 0; i < himc_bank_count(m->bank); i++)
+            o->response[k][i] += m->on_force[i];
+    }
+    himc_bank_set_step(m->bank, HIMC_STEP_SAMPLE);
 }
 
 static void find_output(himc_model *m, int index)
@@ -232,7 +302,7 @@ static void find_output(himc_model *m, int index)
         himc_modes_mix(m->modes, m->scratch);
     }
     for (int i = 0; i < himc_modes_count(m->modes); i++) {
-        himc_mode mode = sounding_mode(m, i);
+        himc_mode mode = himc_model_mode(m, i);
         pickup_weights w =
             himc_pickup_weights(pickup, &m->config.head, m->modes, i, &mode, m->scratch[i]);
         m->on_q[i] = unit * w.displacement;
@@ -241,17 +311,22 @@ static void find_output(himc_model *m, int index)
         if (index >= HIMC_PICKUPS)
             m->rays.gain[index - HIMC_PICKUPS][i] = unit * w.gain;
     }
-    himc_output *o = &m->outputs[index];
-    himc_bank_readout(m->bank, m->on_q, m->on_v,
-                      pickup->kind == HIMC_PICKUP_AIR ? m->on_force : NULL, &o->readout);
-    // responses to modal forces: through the state and, for accelerations, direct ones
-    for (int k = 0; k < HIMC_STEP_LENGTHS; k++) {
-        himc_bank_set_step(m->bank, (himc_step_length)k);
-        himc_bank_step_response(m->bank, &o->readout, o->response[k]);
-        for (int i = 0; i < himc_bank_count(m->bank); i++)
-            o->response[k][i] += m->on_force[i];
+    take_weights(m, index);
+}
+
+// what all rays have in common
+static void find_form(himc_model *m)
+{
+    if (!m->config.rays || !m->config.shape.kind->form)
+        return;
+    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+        himc_mode mode = himc_model_mode(m, i);
+        pickup_weights w = m->config.shape.kind->form(&mode);
+        m->on_q[i] = w.displacement;
+        m->on_v[i] = w.velocity;
+        m->on_force[i] = w.force;
     }
-    himc_bank_set_step(m->bank, HIMC_STEP_SAMPLE);
+    himc_bank_readout(m->bank, m->on_q, m->on_v, m->on_force, &m->rays.form);
 }
 
 void himc_model_find_outputs(himc_model *m, int first, int end)
@@ -261,16 +336,8 @@ void himc_model_find_outputs(himc_model *m, int first, int end)
     for (int i = first; i < end; i++)
         if (himc_membrane_config_has(&m->config, i))
             find_output(m, i);
-    if (end <= HIMC_PICKUPS || !m->config.rays || !m->config.shape.kind->form)
-        return;
-    for (int i = 0; i < himc_modes_count(m->modes); i++) { // what all rays have in common
-        himc_mode mode = sounding_mode(m, i);
-        pickup_weights w = m->config.shape.kind->form(&mode);
-        m->on_q[i] = w.displacement;
-        m->on_v[i] = w.velocity;
-        m->on_force[i] = w.force;
-    }
-    himc_bank_readout(m->bank, m->on_q, m->on_v, m->on_force, &m->rays.form);
+    if (end > HIMC_PICKUPS)
+        find_form(m);
 }
 
 void himc_model_watch(himc_model *m, double x, double y)
@@ -278,6 +345,15 @@ void himc_model_watch(himc_model *m, double x, double y)
     himc_modes_shapes(m->modes, m->config.head.radius, x, y, m->scratch);
     himc_modes_mix(m->modes, m->scratch);
     himc_bank_readout(m->bank, m->scratch, NULL, NULL, &m->watched);
+}
+
+static void set_bank(himc_model *m)
+{
+    himc_bank_set(m->bank, m->oscillators, himc_modes_count(m->modes), m->config.rate);
+    // off while it could not raise the tension by SLACK of it, even with twice the energy
+    double stiffness = himc_model_film_stiffness(m), tension = m->config.head.tension;
+    himc_bank_set_film(m->bank, stiffness > 0 ? m->stretch : NULL,
+                       SLACK * tension * tension / (2 * stiffness));
 }
 
 void himc_model_make(himc_model *m, const himc_membrane_config *config)
@@ -295,10 +371,88 @@ void himc_model_make(himc_model *m, const himc_membrane_config *config)
     find_oscillators(m);
     find_shared(m);
     himc_bank_set_substeps(m->bank, himc_membrane_substeps(m->config.rate));
-    himc_bank_set(m->bank, m->oscillators, himc_modes_count(m->modes), m->config.rate);
-    // off while it could not raise the tension by SLACK of it, even with twice the energy
-    double stiffness = himc_model_film_stiffness(m);
-    himc_bank_set_film(m->bank, stiffness > 0 ? m->stretch : NULL,
-                       SLACK * head->tension * head->tension / (2 * stiffness));
+    set_bank(m);
     himc_model_find_outputs(m, 0, HIMC_OUTPUTS);
+}
+
+static double between(double from, double to, double share)
+{
+    return from + share * (to - from);
+}
+
+// Of an output of a model: the weight on each mode's force and on its velocity, as find_output had
+// them; the former into `force` (modes).
+static void find_weights(himc_model *m, const himc_output *o, double *force)
+{
+    himc_bank_set_step(m->bank, HIMC_STEP_SAMPLE);
+    himc_bank_step_response(m->bank, &o->readout, force);
+    for (int i = 0; i < himc_bank_count(m->bank); i++)
+        force[i] = o->response[HIMC_STEP_SAMPLE][i] - force[i];
+}
+
+// Of an output in the air, a share of the way to the goal's, into its responses: the pressure per
+// acceleration of each mode, in phase with it, and a quarter of a period apart. Unlike the weights
+// that follow from them these change slowly with the tension, and sound and force keep together.
+static void approach_pressures(himc_model *m, himc_model *goal, int index, double share)
+{
+    himc_output *o = &m->outputs[index];
+    const himc_output *to = &goal->outputs[index];
+    find_weights(m, o, m->on_q);
+    find_weights(goal, to, m->on_v);
+    for (int i = 0; i < himc_bank_count(m->bank); i++) {
+        const himc_oscillator *a = &m->oscillators[i], *b = &goal->oscillators[i];
+        double even = m->on_q[i] * a->mass, goal_even = m->on_v[i] * b->mass;
+        double odd = (o->readout.s[i] + 2 * a->decay * even) / a->omega;
+        double goal_odd = (to->readout.s[i] + 2 * b->decay * goal_even) / b->omega;
+        o->response[0][i] = between(even, goal_even, share);
+        o->response[1][i] = between(odd, goal_odd, share);
+    }
+}
+
+// the weights that follow from the pressures
+static void weigh_pressures(himc_model *m, int index)
+{
+    const himc_output *o = &m->outputs[index];
+    bool air = m->config.pickups[index].kind == HIMC_PICKUP_AIR;
+    for (int i = 0; i < himc_bank_count(m->bank); i++) {
+        const himc_oscillator *by = &m->oscillators[i];
+        double even = o->response[0][i], odd = o->response[1][i];
+        m->on_q[i] = air ? -even * by->omega * by->omega : 0;
+        m->on_v[i] = air ? by->omega * odd - 2 * by->decay * even : o->readout.s[i];
+        m->on_force[i] = air ? even / by->mass : 0;
+    }
+    take_weights(m, index);
+}
+
+_Static_assert(HIMC_STEP_LENGTHS >= 2, "a response for each of two pressures");
+
+void himc_model_approach(himc_model *m, himc_model *goal, double share)
+{
+    double before = m->config.head.tension;
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        if (himc_membrane_config_has(&m->config, k) && m->config.pickups[k].kind == HIMC_PICKUP_AIR)
+            approach_pressures(m, goal, k, share);
+    m->config.head.tension *= pow(goal->config.head.tension / before, share);
+    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+        himc_oscillator *o = &m->oscillators[i];
+        const himc_oscillator *to = &goal->oscillators[i];
+        o->omega *= pow(to->omega / o->omega, share);
+        o->decay = fmin(between(o->decay, to->decay, share), HIMC_LARGEST_DECAY * o->omega);
+        o->mass = between(o->mass, to->mass, share);
+        m->stretch[i] = between(m->stretch[i], goal->stretch[i], share);
+        m->per_stiffness[i] *= before / m->config.head.tension;
+        for (int k = 0; k < HIMC_RAYS && m->config.rays; k++)
+            m->rays.gain[k][i] = between(m->rays.gain[k][i], goal->rays.gain[k][i], share);
+    }
+    for (int i = 0; i < m->shared_count; i++) {
+        m->shared[i].omega = m->oscillators[m->shared[i].index].omega;
+        m->shared[i].mass = m->oscillators[m->shared[i].index].mass;
+    }
+    set_bank(m);
+    for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
+        m->points[i].used = false;
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        if (himc_membrane_config_has(&m->config, k))
+            weigh_pressures(m, k);
+    find_form(m);
 }

@@ -82,11 +82,17 @@ HIMC_RT bool himc_model_has_room(const himc_model *model, const himc_membrane_co
 /// Makes the model anew, in its own place; what is in its bank keeps energy and phase, and what is
 /// muted stays so.
 HIMC_RT void himc_model_make(himc_model *model, const himc_membrane_config *config);
+/// Takes the model a share (0 .. 1) of the way to `goal`, the same head at another tension: all
+/// frequencies by that share of their ratio. Shapes stay, what is in its bank keeps energy and
+/// phase.
+HIMC_RT void himc_model_approach(himc_model *model, himc_model *goal, double share);
 /// Outputs from `first` to `end` that sound; strike points are forgotten, as they hold responses to
 /// them.
 HIMC_RT void himc_model_find_outputs(himc_model *model, int first, int end);
 /// The readout of the displacement at a point.
 HIMC_RT void himc_model_watch(himc_model *model, double x, double y);
+/// A mode as its oscillator has it: without the decay that the air between heads takes over.
+HIMC_RT himc_mode himc_model_mode(const himc_model *model, int index);
 /// The film's constant kappa: int |grad w|^2 dS times kappa is the rise of tension (N/m^3).
 HIMC_RT double himc_model_film_stiffness(const himc_model *model);
 /// Interval between two exchanges with other heads at a rate (Hz): 8, 16, 32 or 64 samples.

@@ -17,7 +17,7 @@ typedef struct himc_walls {
 #define HIMC_WALLS_USUAL \
     (himc_walls)         \
     {                    \
-        1.2, 600         \
+        2.0, 1500        \
     }
 
 #define HIMC_ROOM_LINES 16

@@ -20,12 +20,13 @@
 #include "drum/stroke_noise.h"
 
 #include "base/random.h"
+#include "himc/membrane.h"
 
 #include <math.h>
 #include <string.h>
 
-#define FORCE 25.0     // F1 (N): of a medium blow
-#define BETA 0.8       // chosen: 1 is a felt core, 0 its friction; brightness with force
+#define FORCE 12.0     // F1 (N): of a medium blow
+#define BETA 1.2       // chosen: hard and loud is twice as bright as soft and low
 #define STRONGEST 55.0 // (N) chosen: fff is louder than ff, not noisier
 #define SLOPE 1e4      // G1 (N/s): of a loud medium blow; chosen: a wooden stick is not all noise
 #define LEAST_SLOPE 1e-30 // (N/s) of G; chosen: beside any blow's it is nothing
@@ -44,10 +45,10 @@
 // It shows that the form reaches them, and proves nothing about felt or stands.
 static const struct {
     double low, high, t60, drive; // edges (Hz), decay (s)
-} bands[HIMC_NOISE_BANDS] = {{250, 1000, 0.35, 3.2e-7},
-                             {1000, 2000, 0.20, 5.2e-8},
-                             {2000, 4000, 0.12, 1.3e-8},
-                             {4000, 8000, 0.06, 1.0e-9}};
+} bands[HIMC_NOISE_BANDS] = {{250, 1000, 1.05, 2.9e-8},
+                             {1000, 2000, 0.60, 4.7e-9},
+                             {2000, 4000, 0.36, 1.2e-9},
+                             {4000, 8000, 0.18, 9.0e-11}};
 
 // a low or high pass with damping d = 1/Q, by the bilinear transform, for a band of both rows
 static void set_edge(himc_noise_edge *e, int band, double k, bool high, double d)
@@ -97,6 +98,7 @@ static void set_units(himc_stroke_noise *noise)
 void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate)
 {
     noise->rate = rate;
+    himc_stroke_noise_damp(noise, noise->damp);
     noise->follow = 1 - exp(-1 / (RISE * rate));
     noise->pole = exp(-2 * HIMC_PI * EDGE / rate);
     for (int k = 0; k < 3; k++)
@@ -112,6 +114,12 @@ void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate)
         set_edge(&noise->edge[2], i, top_k, false, 2 * sin(HIMC_PI / 8));
     }
     set_units(noise);
+}
+
+void himc_stroke_noise_damp(himc_stroke_noise *noise, double damp)
+{
+    noise->damp = damp;
+    noise->held = exp(-damp * HIMC_DAMP / noise->rate);
 }
 
 himc_stroke_noise himc_stroke_noise_at(double rate)
@@ -191,7 +199,7 @@ static int find_levels(himc_stroke_noise *noise, int n, double force, bool *rest
             himc_noise_band *b = &noise->band[i];
             double goal = noise->amount * b->root;
             b->level += noise->follow * (goal - b->level);
-            b->root *= b->keep;
+            b->root *= b->keep * noise->held;
             heard += goal * goal + b->level * b->level;
             level[k][i] = b->level * b->unit;
         }

@@ -29,7 +29,7 @@
 /// m = 0, where nothing counts beside the radiation, S = 2 - 1.8/j. Table and closed forms are
 /// without friction.
 ///
-/// The table holds ln(f/f_bare) and ln(delta) of four drums over log tension. Between its nodes:
+/// The table holds ln(f/f_bare) and ln(delta) of five drums over log tension. Between its nodes:
 /// monotone cubics (Fritsch & Butland 1984) along the tension; lines between drums. The ratio of
 /// table and closed form at the table's kettle multiplies the closed form at the actual kettle.
 /// Outside the table this ratio goes to 1 over a factor of four in tension, or two in epsilon: no
@@ -68,6 +68,11 @@
 #define VISCOSITY 1.81e-5 // eta of air at 20 degrees (Pa s)
 #define CONDUCTION 0.475  // 0.4/sqrt(0.71): gamma - 1 and Prandtl's number of air
 #define MOST_SLOSH 0.5    // of y; chosen: nearer the resonance its quality has the loss
+
+#define FREE 0.7    // of a baffle's radiation: boundary elements, 0.64 to 0.73
+#define HEIGHT 0.85 // of the head over the floor (m); chosen: as it stands at first
+#define STAND 0.3   // (1/s) at ...
+#define STAND_OMEGA (2 * HIMC_PI * 100) // ... this (rad/s)
 
 static const double SPEED2 = HIMC_AIR_SPEED * HIMC_AIR_SPEED;
 
@@ -413,6 +418,21 @@ himc_air_load himc_air_on(const himc_air *air, int m, int n, double zero)
     return load;
 }
 
+// radiation of a kettle that stands free over a floor, per that of the head in a baffle
+static double free_over_floor(int m, double omega)
+{
+    double z = 2 * omega / HIMC_AIR_SPEED * HEIGHT;
+    double image = m == 0 ? sin(z) / z : m == 1 ? 3 * (sin(z) / z - cos(z)) / (z * z) : 0;
+    return FREE * (1 + image);
+}
+
+// guessed: the rocking of kettle and stand, which the moment of (1,1) alone drives
+static double stand(int m, int n, double omega)
+{
+    double ratio = STAND_OMEGA / omega;
+    return m == 1 && n == 1 ? STAND * ratio * ratio * ratio : 0;
+}
+
 himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *head, const himc_mode *bare)
 {
     himc_mode mode = *bare;
@@ -420,8 +440,10 @@ himc_mode himc_air_loaded(const himc_air_load *load, const himc_head *head, cons
     mode.mass *= load->mass;
     mode.stiffness *= load->stiffness;
     double omega = 2 * HIMC_PI * mode.frequency;
-    mode.decay = fmin(himc_head_decay(head, omega, load->mass) + load->radiation + load->friction,
-                      HIMC_LARGEST_DECAY * omega);
+    double air = free_over_floor(bare->m, omega) * load->radiation + load->friction;
+    mode.decay =
+        fmin(himc_head_decay(head, omega, load->mass) + air + stand(bare->m, bare->n, omega),
+             HIMC_LARGEST_DECAY * omega);
     return mode;
 }
 

@@ -7,9 +7,9 @@
 /// without air needs none of these functions.
 ///
 /// In the head's own measures a drum is three numbers, tau = T/(sigma c^2), epsilon = rho a/sigma
-/// and L/a = V/(pi a^3). A table, made once by solving the whole problem for the 23, 26, 29 and 32
-/// inch drums, serves every head of like measures; closed forms do beyond it, joined without a step
-/// or a bend in tension.
+/// and L/a = V/(pi a^3). A table, made once by solving the whole problem for drums of 20, 23, 26,
+/// 29 and 32 inches, serves every head of like measures; closed forms do beyond it, joined without
+/// a step or a bend in tension.
 #ifndef HIMC_AIR_H
 #define HIMC_AIR_H
 
@@ -66,7 +66,7 @@ HIMC_RT himc_mode himc_air_mode(const himc_air *air, const himc_head *head, cons
 
 // The table (air_table.c), computed by tools/research/air/table.c.
 
-#define HIMC_AIR_DRUMS 4
+#define HIMC_AIR_DRUMS 5
 #define HIMC_AIR_ORDERS 11 ///< m = 0 .. 10
 #define HIMC_AIR_RANKS 4   ///< n = 1 .. 4
 #define HIMC_AIR_NODES 16  ///< tensions, equally spaced in their logarithm, both ends included

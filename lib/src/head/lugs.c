@@ -28,17 +28,48 @@
 #define LUGS 8         // L; chosen: a timpano has 6 or 8 (the phases are for 8)
 #define UNEVEN 0.02    // s with uniformity 0; chosen: a semitone is 12 % of tension
 #define HOOP_ORDER 4.0 // k that the hoop halves; chosen
+// t_8 with uniformity 0: eight points that pull have 2, of which the hoop keeps a 17th; guessed
+#define PULL 0.1
+
+// k th_k of the harmonics k = 0, 2 .. LUGS - 2, by k/2
+static void find_phases(int seed, double *phase)
+{
+    uint64_t state = (uint64_t)seed, bits = himc_random_bits(&state);
+    double part = ldexp((double)(himc_random_bits(&state) >> 11), -53);
+    double turn = (bits & 4 ? 1 : -1) * HIMC_PI * (1 + part) / 3;
+    phase[0] = bits & 1 ? 0 : HIMC_PI;
+    phase[1] = turn;
+    phase[2] = bits & 2 ? 0.5 * HIMC_PI : -0.5 * HIMC_PI;
+    phase[3] = HIMC_PI - turn;
+}
+
+static himc_lugs_harmonic harmonic(int k, double uniformity, const double *phase)
+{
+    if (k == LUGS) // tight at the lugs, half a step from the x axis
+        return (himc_lugs_harmonic){PULL * (1 - uniformity), HIMC_PI};
+    double hoop = k > LUGS / 2 ? 1 / (1 + pow(k / HOOP_ORDER, 4)) : 1;
+    return (himc_lugs_harmonic){UNEVEN * (1 - uniformity) * 2 / sqrt(LUGS) * hoop,
+                                phase[k % LUGS / 2] + k / LUGS * HIMC_PI};
+}
+
+void himc_lugs_fields(double uniformity, int seed,
+                      himc_lugs_harmonic field[HIMC_LUGS_FIELD / 2 + 1])
+{
+    double phase[LUGS / 2];
+    find_phases(seed, phase);
+    field[0] = (himc_lugs_harmonic){0};
+    for (int k = 2; k <= HIMC_LUGS_FIELD; k += 2)
+        field[k / 2] = harmonic(k, uniformity, phase);
+}
 
 static himc_lugs_pair split(int m, double uniformity, const double *phase)
 {
     int k = 2 * m;
-    double hoop = k > LUGS / 2 ? 1 / (1 + pow(k / HOOP_ORDER, 4)) : 1;
-    double harmonic = UNEVEN * (1 - uniformity) * 2 / sqrt(LUGS) * hoop;
-    double turned = phase[k % LUGS / 2] + k / LUGS * HIMC_PI;
+    himc_lugs_harmonic h = harmonic(k, uniformity, phase);
     // m th_k, and a quarter of a turn back to the cosine
-    double angle = 0.5 * (turned - HIMC_PI);
+    double angle = 0.5 * (h.phase - HIMC_PI);
     return (himc_lugs_pair){
-        .split = harmonic * (2 * k - 1) / (2.0 * (k * k - 1)),
+        .split = h.amount * (2 * k - 1) / (2.0 * (k * k - 1)),
         .axis = angle / m,
         .cosine = cos(angle),
         .sine = sin(angle),
@@ -47,12 +78,8 @@ static himc_lugs_pair split(int m, double uniformity, const double *phase)
 
 void himc_lugs_split(double uniformity, int seed, himc_lugs_pair *pairs)
 {
-    uint64_t state = (uint64_t)seed, bits = himc_random_bits(&state);
-    double part = ldexp((double)(himc_random_bits(&state) >> 11), -53);
-    double turn = (bits & 4 ? 1 : -1) * HIMC_PI * (1 + part) / 3;
-    // k th_k of the harmonics k = 0, 2 .. LUGS - 2, by k/2
-    double phase[LUGS / 2] = {bits & 1 ? 0 : HIMC_PI, turn,
-                              bits & 2 ? 0.5 * HIMC_PI : -0.5 * HIMC_PI, HIMC_PI - turn};
+    double phase[LUGS / 2];
+    find_phases(seed, phase);
     for (int m = 0; m < HIMC_LUGS_ORDERS; m++)
         pairs[m] =
             m > 0 && uniformity < 1 ? split(m, uniformity, phase) : (himc_lugs_pair){.cosine = 1};

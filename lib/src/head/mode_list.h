@@ -4,6 +4,7 @@
 
 #include "head/modes.h"
 #include "head/statistical.h"
+#include "head/uneven.h"
 
 /// One entry of the list, shared by the two modes of a pair.
 typedef struct himc_mode_entry {
@@ -25,11 +26,15 @@ struct himc_modes {
     int columns;              ///< its grid points
     double *table;            ///< (top + 1, columns, 2) of a round head, else NULL
     himc_statistical *statistical; ///< if any mode is
+    himc_uneven_pair *uneven; ///< (uneven_count) entries that an uneven tension couples; or NULL
+    int uneven_count;
     // for pairs only
     double uniformity; ///< of the lugs, and `seed`: what `pairs` were made for
     int seed;
     himc_lugs_pair pairs[HIMC_LUGS_ORDERS];
-    himc_mixture mixture; ///< by a kettle
+    himc_mixture mixture;                              ///< by a kettle
+    himc_lugs_harmonic field[HIMC_LUGS_FIELD / 2 + 1]; ///< of the tension, by k/2
+    himc_uneven_block block[2];                        ///< by the parity of the order
 };
 
 /// Sorts entries by z, then by m.

@@ -18,8 +18,8 @@ himc_head himc_head_default(void)
     return (himc_head){.radius = 0.3302,
                        .tension = 3830.3,
                        .density = 0.2653,
-                       .decay_constant = 0.5,
-                       .decay_square = 3e-7,
+                       .decay_constant = 0.3,
+                       .decay_square = 5e-8,
                        .modes = HIMC_MODES_AUTO,
                        .air = true,
                        .glide = 1,
@@ -41,7 +41,8 @@ bool himc_head_check(const himc_head *head, himc_error *error)
            himc_check_range("uniformity", head->uniformity, 0, 1, "", error) &&
            himc_check_range("uniformity seed", head->uniformity_seed, 0, HIMC_SEED_MAX, "",
                             error) &&
-           himc_check_range("damp", head->damp, 0, 1, "", error);
+           himc_check_range("damp", head->damp, 0, 1, "", error) &&
+           himc_check_range("muffle", head->muffle, 0, 1, "", error);
 }
 
 double himc_head_tension_for(const himc_head *head, double frequency)
@@ -53,7 +54,8 @@ double himc_head_tension_for(const himc_head *head, double frequency)
 double himc_head_decay(const himc_head *head, double omega, double loading)
 {
     double decay = head->decay_constant + head->decay_square * omega * omega;
-    return fmin(decay + head->damp * HIMC_DAMP / loading, HIMC_LARGEST_DECAY * omega);
+    double laid = head->damp * HIMC_DAMP + head->muffle * (HIMC_MUFFLE + HIMC_MUFFLE_HIGH * omega);
+    return fmin(decay + laid / loading, HIMC_LARGEST_DECAY * omega);
 }
 
 static int by_frequency(const void *a, const void *b)
@@ -127,6 +129,7 @@ void himc_modes_free(himc_modes *modes)
         free(modes->of);
         free(modes->table);
         free(modes->statistical);
+        free(modes->uneven);
         free((void *)modes->users);
     }
     free(modes);
@@ -151,8 +154,10 @@ const himc_shape *himc_modes_shape(const himc_modes *modes)
 
 void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed)
 {
-    if (modes->uniformity != uniformity || modes->seed != seed)
+    if (modes->uniformity != uniformity || modes->seed != seed) {
         himc_lugs_split(uniformity, seed, modes->pairs);
+        himc_lugs_fields(uniformity, seed, modes->field);
+    }
     modes->uniformity = uniformity;
     modes->seed = seed;
 }
@@ -190,6 +195,7 @@ void himc_modes_mix(const himc_modes *modes, double *numbers)
             sum += mix->part[n][k] * bare[k];
         numbers[mix->index[n]] = sum;
     }
+    himc_uneven_mix(modes, numbers);
 }
 
 himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int index)

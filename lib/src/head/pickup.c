@@ -53,26 +53,26 @@ bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_er
 
 // The integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2. J_{m+1}(j) is in the mode's
 // norm; its sign changes from zero to zero.
-static double overlap(const himc_mode *mode, double x)
+static double overlap(const himc_mode *mode, double x, double bessel)
 {
     double j = mode->zero, size = sqrt(mode->m > 0 ? 2 * mode->norm : mode->norm);
     double next = mode->n % 2 ? size : -size;
     if (fabs(x - j) < 1e-6 * j)
         return 0.5 * next * next;
-    return j * next * himc_bessel_j(mode->m, x) / ((j - x) * (j + x));
+    return j * next * bessel / ((j - x) * (j + x));
 }
 
 // that of a mode, or of the mixture that a kettle makes of modes of order 0
 static double whole_overlap(const himc_head *head, const himc_modes *modes, const himc_mode *mode,
-                            double x)
+                            double x, double bessel)
 {
     const himc_mixture *mix = himc_modes_mixture(modes);
     if (mode->m != 0 || mode->n > mix->count)
-        return overlap(mode, x);
+        return overlap(mode, x, bessel);
     double sum = 0;
     for (int k = 0; k < mix->count; k++) {
         himc_mode bare = himc_modes_get(modes, head, mix->index[k]);
-        sum += mix->part[mode->n - 1][k] * overlap(&bare, x);
+        sum += mix->part[mode->n - 1][k] * overlap(&bare, x, bessel);
     }
     return sum;
 }
@@ -107,7 +107,33 @@ double himc_pickup_pressure(const himc_pickup *pickup, const himc_head *head,
     if (mode->m < 0)
         return scale * himc_statistical_pressure(modes->statistical, index - modes->exact, x,
                                                  pickup->azimuth);
-    return scale * whole_overlap(head, modes, mode, x) * (mode->sine ? sin(angle) : cos(angle));
+    return scale * whole_overlap(head, modes, mode, x, himc_bessel_j(mode->m, x)) *
+           (mode->sine ? sin(angle) : cos(angle));
+}
+
+bool himc_pickup_find_orders(const himc_pickup *pickup, const himc_head *head,
+                             const himc_modes *modes, int index, const himc_mode *mode,
+                             himc_pickup_orders *orders)
+{
+    int row;
+    const himc_uneven_block *block = himc_uneven_of(modes, index, &row);
+    if (!block)
+        return false;
+    double k = 2 * HIMC_PI * mode->frequency / HIMC_AIR_SPEED, j[HIMC_UNEVEN_ORDERS];
+    double x = k * head->radius * cos(pickup->elevation),
+           scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
+    *orders = (himc_pickup_orders){0};
+    himc_bessel_orders(x, HIMC_UNEVEN_ORDERS - 1, j);
+    for (int l = 0; l < block->count; l++) {
+        himc_mode even = himc_modes_get(modes, head, block->index[l]);
+        double turn = (even.m - mode->m) % 4 == 0 ? 1 : -1; // (-i)^(m - own order) of equal parity
+        double angle = even.m * even.axis + (even.sine ? HIMC_PI / 2 : 0);
+        double part =
+            turn * scale * block->part[row][l] * whole_overlap(head, modes, &even, x, j[even.m]);
+        orders->cosine[even.m] += part * cos(angle);
+        orders->sine[even.m] += part * sin(angle);
+    }
+    return true;
 }
 
 pickup_weights himc_pickup_of_outline(const himc_pickup *pickup, const himc_head *head,
@@ -146,11 +172,17 @@ pickup_weights himc_pickup_form(const himc_mode *mode)
 pickup_weights himc_pickup_of_round(const himc_pickup *pickup, const himc_head *head,
                                     const himc_modes *modes, int index, const himc_mode *mode)
 {
-    double weight = himc_pickup_pressure(pickup, head, modes, index, mode) * per_pascal(head);
-    double omega = 2 * HIMC_PI * mode->frequency;
-    weight *= near_field(mode->m,
-                         omega / HIMC_AIR_SPEED * fmax(pickup->distance, NEAREST * head->radius));
-    return of_gain(mode, weight);
+    himc_pickup_orders orders;
+    double omega = 2 * HIMC_PI * mode->frequency, pressure = 0;
+    double near = omega / HIMC_AIR_SPEED * fmax(pickup->distance, NEAREST * head->radius);
+    if (himc_pickup_find_orders(pickup, head, modes, index, mode, &orders))
+        for (int m = 0; m < HIMC_UNEVEN_ORDERS; m++)
+            pressure += near_field(m, near) * (orders.cosine[m] * cos(m * pickup->azimuth) +
+                                               orders.sine[m] * sin(m * pickup->azimuth));
+    else
+        pressure =
+            near_field(mode->m, near) * himc_pickup_pressure(pickup, head, modes, index, mode);
+    return of_gain(mode, pressure * per_pascal(head));
 }
 
 pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *head,

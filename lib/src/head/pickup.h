@@ -3,6 +3,7 @@
 #define HIMC_PICKUP_H
 
 #include "head/modes.h"
+#include "head/uneven.h"
 
 /// `form` and `far` of a round head (kind.h).
 HIMC_RT pickup_weights himc_pickup_form(const himc_mode *mode);
@@ -21,6 +22,18 @@ bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_er
 /// for the factor (-i)^m.
 HIMC_RT double himc_pickup_pressure(const himc_pickup *pickup, const himc_head *head,
                                     const himc_modes *modes, int index, const himc_mode *mode);
+
+/// What a mode of a round head, mixed by an uneven tension or not, sends by order and sign: its
+/// pressure (as of himc_pickup_pressure, with the factor (-i)^(m - own order)) is the sum over m of
+/// cosine[m] cos(m azimuth) + sine[m] sin(m azimuth).
+typedef struct himc_pickup_orders {
+    double cosine[HIMC_UNEVEN_ORDERS], sine[HIMC_UNEVEN_ORDERS];
+} himc_pickup_orders;
+
+/// False, and nothing, of a mode that mixes with no other.
+HIMC_RT bool himc_pickup_find_orders(const himc_pickup *pickup, const himc_head *head,
+                                     const himc_modes *modes, int index, const himc_mode *mode,
+                                     himc_pickup_orders *orders);
 
 /// The weights of mode `index` of `modes`, with the frequency, decay and mass of `mode` (in air, if
 /// any). `point_shape` is its shape at the pickup's point (not used by HIMC_PICKUP_AIR).

@@ -101,8 +101,9 @@ static bool list(himc_modes *modes, bool automatic)
             modes->of[mode++] = i;
     }
     modes->entry_count = i;
-    if (mode < modes->exact || !automatic)
-        return mode == modes->exact;
+    modes->uneven = himc_uneven_pairs(modes, &modes->uneven_count);
+    if (mode < modes->exact || !modes->uneven || !automatic)
+        return mode == modes->exact && modes->uneven;
     modes->statistical = malloc(sizeof *modes->statistical);
     if (!modes->statistical)
         return false;

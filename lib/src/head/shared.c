@@ -69,3 +69,22 @@ int himc_shared_find(const himc_head *head, const himc_modes *modes, const himc_
     }
     return count;
 }
+
+double himc_shared_by_other_orders(const himc_head *head, const himc_modes *modes, int index,
+                                   const himc_mode *mode)
+{
+    double omega = 2 * HIMC_PI * mode->frequency, power = 0;
+    himc_pickup_orders sent;
+    for (int ring = 0; ring < HIMC_SHARED_RINGS; ring++) {
+        himc_pickup to = {
+            .kind = HIMC_PICKUP_AIR, .elevation = asin(himc_shared_sine[ring]), .distance = 1};
+        if (!himc_pickup_find_orders(&to, head, modes, index, mode, &sent))
+            return 0;
+        for (int m = 0; m < HIMC_UNEVEN_ORDERS; m++) {
+            double square = sent.cosine[m] * sent.cosine[m] + sent.sine[m] * sent.sine[m];
+            double turn = m == 0 ? 2 * HIMC_PI : HIMC_PI;
+            power += m == mode->m ? 0 : turn * himc_shared_part[ring] * square;
+        }
+    }
+    return omega * omega * power / (HIMC_AIR_DENSITY * HIMC_AIR_SPEED) / (2 * mode->mass);
+}

@@ -24,6 +24,11 @@ typedef struct himc_shared_mode {
 /// Sines of the elevations, and their parts of the upper half of all directions (sum 1).
 extern const double himc_shared_sine[HIMC_SHARED_RINGS], himc_shared_part[HIMC_SHARED_RINGS];
 
+/// Decay (1/s) of a round head's mode by what it sends in orders that are not its own, mixed in by
+/// an uneven tension; in a baffle.
+HIMC_RT double himc_shared_by_other_orders(const himc_head *head, const himc_modes *modes,
+                                           int index, const himc_mode *mode);
+
 /// The shared modes of a round head in air, below `highest` (Hz). `mode` gives each as it sounds
 /// without neighbours. Returns their number, at most HIMC_SHARED.
 HIMC_RT int himc_shared_find(const himc_head *head, const himc_modes *modes, const himc_air *air,

@@ -133,11 +133,11 @@ static void mix(himc_performance *performance, uint64_t first, osc_sound *out)
     for (int channel = 0; channel < 2; channel++)
         for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
             himc_drum_read_channel(drum, channel, first, SOUND_FRAMES, heard);
-            for (int i = 0; i < SOUND_FRAMES; i++) {
+            for (int i = 0; i < SOUND_FRAMES; i++)
                 out->sample[i][channel] += (float)heard[i];
-                out->channels = channel && heard[i] != 0 ? 2 : out->channels;
-            }
         }
+    for (int i = 0; i < SOUND_FRAMES; i++)
+        out->channels = out->sample[i][1] != out->sample[i][0] ? 2 : out->channels;
 }
 
 static void put_sound(himc_osc *osc, himc_performance *performance, const himc_performance_stats *s)

@@ -60,9 +60,11 @@ static bool set(himc_performance *p, const himc_command *c, himc_error *error)
 
 static himc_listener listener_of(const himc_command *c)
 {
-    enum { OFF };
+    enum { OFF, USUAL };
     if (c->form == OFF)
         return (himc_listener){.on = false};
+    if (c->form == USUAL)
+        return himc_listener_usual();
     himc_listener listener =
         himc_listener_at(himc_vec3_make(c->atom[0].number, c->atom[1].number, c->atom[2].number));
     if (c->count > 3)

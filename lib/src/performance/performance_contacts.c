@@ -301,7 +301,7 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     const performance_body *b = s->body;
     himc_vec3 n = normal_of(s, c->drum);
     if (!c->stick.touching) // mallets are changed in the air
-        c->stick.head = *himc_drum_mallet(s->drums->slot[c->drum].drum);
+        c->stick.head = *himc_drum_mallet(s->drums->slot[c->drum].drum, hand);
     double body = himc_effective_mass(&b->plant, &b->state, art, hand, n);
     // effective mass of the body's own stick at its end, held at the grip
     const himc_segment *own = &b->skeleton.segment[HIMC_LEFT_STICK + hand];

@@ -112,9 +112,11 @@ static void fill_slot(performance_drums *d, int index, himc_drum *drum, drum_sou
     himc_drum_listen(drum, &d->listener);
 }
 
-void himc_drums_begin(performance_drums *d)
+void himc_drums_begin(performance_drums *d, bool heard)
 {
-    *d = (performance_drums){.walls = HIMC_WALLS_USUAL, .gain = 1};
+    *d = (performance_drums){.walls = HIMC_WALLS_USUAL, .gain = 1, .heard = heard};
+    if (heard)
+        d->listener = himc_listener_usual();
 }
 
 void himc_drums_catch_up_one(performance_drums *d, int index)
@@ -145,7 +147,7 @@ static void release(performance_drums *d, himc_drum *drum)
 {
     if (d->air)
         himc_air_between_leave(d->air, drum);
-    himc_drum_listen(drum, &(himc_listener){.on = false});
+    himc_drum_listen(drum, NULL);
     himc_drum_enclose(drum, &HIMC_WALLS_USUAL);
     himc_drum_fade(drum, 1);
     himc_drum_set_heads(drum, NULL);
@@ -249,7 +251,7 @@ void himc_drums_put_back(performance_drums *d)
     for (int i = 0; i < count && d->air; i++)
         himc_air_between_leave(d->air, old[i].drum);
     himc_air_between *air = d->air;
-    himc_drums_begin(d);
+    himc_drums_begin(d, d->heard);
     d->air = air;
     for (int i = 0; i < count; i++) {
         himc_drum *drum = old[i].drum;

@@ -39,6 +39,7 @@ typedef struct performance_drums {
     int count;
     himc_listener listener; ///< of all of them, as what follows
     himc_walls walls;
+    bool heard; ///< by the usual listener, at first
     double gain; ///< of their sound (factor)
     bool mute;
     long round;            ///< of a loop, at the last himc_drums_turn_heads
@@ -46,7 +47,7 @@ typedef struct performance_drums {
 } performance_drums;
 
 /// No drums, no listener, the usual walls.
-HIMC_RT void himc_drums_begin(performance_drums *drums);
+HIMC_RT void himc_drums_begin(performance_drums *drums, bool heard);
 /// Slot of the drum with that name, -1 if there is none.
 HIMC_RT int himc_drums_find(const performance_drums *drums, const char *name);
 HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, int index);

@@ -75,14 +75,14 @@ static void add_command(himc_state_line *line, const himc_command *c)
     double hz;
     himc_state_word(line, himc_command_table((int)c->id)->name);
     // a note is told by its name: its frequency is no number in single precision
-    for (int key = 0; c->id == HIMC_COMMAND_TUNE && key < 12 * 10; key++) {
+    bool pitch = c->id == HIMC_COMMAND_TUNE || c->id == HIMC_COMMAND_GLISS, told = false;
+    for (int key = 0; pitch && !told && key < 12 * 10; key++) {
         himc_format(note, sizeof note, "%s%d", names[key % 12], key / 12);
-        if (himc_note_frequency(note, &hz) && hz == c->atom[0].number) {
+        told = himc_note_frequency(note, &hz) && hz == c->atom[0].number;
+        if (told)
             himc_state_word(line, note);
-            return;
-        }
     }
-    for (int i = 0; i < c->count; i++)
+    for (int i = told; i < c->count; i++)
         if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
             himc_state_word(line, c->atom[i].symbol);
         else
@@ -182,7 +182,11 @@ static int tell_item(const himc_performance *p, dump_part part, int i, const him
         return count;
     case SETTINGS:
         himc_settings_tell(&p->settings, HIMC_COMMAND_PLAYER, HIMC_COMMANDS, to);
-        himc_state_tell(to, "listener", l->on ? NULL : "off", l->on ? 4 : 0,
+        himc_state_tell(to, "listener",
+                        !l->on      ? "off"
+                        : l->yields ? "usual"
+                                    : NULL,
+                        l->on && !l->yields ? 4 : 0,
                         (double[]){l->place.x, l->place.y, l->place.z, l->yaw});
         himc_state_tell(to, "room", NULL, 2, (double[]){d->walls.seconds, d->walls.volume});
         himc_state_tell(to, "gain", NULL, 1, (double[]){20 * log10(d->gain)});

@@ -339,8 +339,7 @@ static bool run_on_drum(score_job *j, const himc_score_line *line, himc_error *e
                himc_error_prefix(error, "%s", line->drum);
     himc_drum_settings to = himc_drum_settings_of(drum);
     himc_drum_settings_free(&to); // what is prepared has its own grid
-    to.head = d->trial.head;
-    to.place = himc_head_frame_at(&to.place, &d->trial.place);
+    himc_drum_settings_take_head(&to, &d->trial);
     bool good = d->exchanged || himc_drum_set(drum, &to, &d->made, error);
     d->exchanged = true;
     return good;

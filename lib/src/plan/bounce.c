@@ -23,17 +23,19 @@
 #define GRAVITY 10.9  // of a stick of 45 g about its fulcrum, at the tip (m/s^2)
 #define FINGERS 169.0 // 1 N m at the fulcrum: 4 N at the tip's 23.7 g (m/s^2)
 #define RESERVE 0.85  // share of that for a planned flight; chosen: a head that swings varies it
-#define GRIP_DAMPING 0.06 // zeta; chosen: a loose grip, a double keeps .7 to .8 of its speed
-#define RESTITUTION 0.9   // expected of a contact; measured: .85 to .95 of soft blows
-#define CONTACT 0.0105    // of a soft blow, until it is noticed that it has ended (s); as above
-#define LEAST_BUZZ 3      // contacts of a closed roll, at least ...
-#define BUZZ_CONTACTS 5   // ... and of one with time enough; chosen: a full sound
-#define BUZZ_KEPT 0.9     // of the speed in one of its flights; chosen: each is heard to be softer
-#define FLIGHT_STEP 5e-4  // of a trial flight (s)
-#define MOST_OMEGA 800.0  // of a grip that needs all of the fingers' bound (1/s)
-#define BISECTIONS 16     // to 0.01 1/s
-#define LATE_BUZZ 0.1     // a contact later by this share of a buzz's time is left out; chosen
-#define LATE_SHARE 1.5    // what lasts so many of its times is over; chosen: a drum may be moved
+#define GRIP_DAMPING 0.06      // zeta; chosen: a loose grip, a double keeps .7 to .8 of its speed
+#define RESTITUTION 0.9        // expected of a contact; measured: .85 to .95 of soft blows
+#define LEAST_RESTITUTION 0.77 // of the softest blows, on the largest drum
+#define LEAST_CONTACT 0.006    // of theirs on the smallest (s)
+#define CONTACT 0.0105   // of a soft blow, until it is noticed that it has ended (s); as above
+#define LEAST_BUZZ 3     // contacts of a closed roll, at least ...
+#define BUZZ_CONTACTS 5  // ... and of one with time enough; chosen: a full sound
+#define BUZZ_KEPT 0.9    // of the speed in one of its flights; chosen: each is heard to be softer
+#define FLIGHT_STEP 5e-4 // of a trial flight (s)
+#define MOST_OMEGA 800.0 // of a grip that needs all of the fingers' bound (1/s)
+#define BISECTIONS 16    // to 0.01 1/s
+#define LATE_BUZZ 0.1    // a contact later by this share of a buzz's time is left out; chosen
+#define LATE_SHARE 1.5   // what lasts so many of its times is over; chosen: a drum may be moved
 
 /// The time of so many flights in the air, over that of the first: 1 + r + r^2 ...
 static double flights_time(int flights)
@@ -47,6 +49,11 @@ double himc_bounce_fastest(int bounces, double time)
     int flights = bounces == HIMC_BUZZ ? LEAST_BUZZ - 1 : bounces;
     double first = fmax(time - flights * CONTACT, 0) / flights_time(flights);
     return bounces == 0 ? HUGE_VAL : 0.5 * first * RESERVE * FINGERS / RESTITUTION;
+}
+
+double himc_bounce_longest(double speed)
+{
+    return LEAST_CONTACT + 2 * LEAST_RESTITUTION * speed / GRAVITY;
 }
 
 double himc_bounce_full_time(int bounces, double speed)

@@ -22,6 +22,10 @@ typedef struct himc_bounce {
 /// time; infinite without bounces.
 HIMC_RT double himc_bounce_fastest(int bounces, double time);
 
+/// Longest time from a touch at that speed (m/s) to the bounce after it (s): fingers press a stick
+/// down, they do not hold it up.
+HIMC_RT double himc_bounce_longest(double speed);
+
 /// Time that fingers need for all contacts of a stroke of that speed (m/s), also of a full buzz.
 HIMC_RT double himc_bounce_full_time(int bounces, double speed);
 

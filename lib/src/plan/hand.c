@@ -3,15 +3,15 @@
 /// A stroke is planned in the frame of its head: the height along the normal n, and the tangential
 /// path, the rest. The height rises from the rebound to the apex of the *next* stroke
 /// (co-articulation, height_profile.c), falls to the touch with the speed asked for and no
-/// acceleration, and reverses in the predicted contact: from -v to e v in 7 ms. The tangential path
+/// acceleration, and reverses in the predicted contact: from -v to e v in 9 ms. The tangential path
 /// swings back towards the player while the tip rises, forward while it falls, and stands still
 /// before the touch. Invariant: position, velocity and acceleration of the sum are continuous
 /// wherever nothing was measured.
 #include "plan/stroke_plan.h"
 
 /// Restitution of the predicted contact, only until the measured state replaces the prediction at
-/// separation. Chosen: simulated strokes of 1.6 to 2.9 m/s leave with .88 to .92 of their speed.
-#define PREDICTED_RESTITUTION 0.89
+/// separation. Chosen: simulated strokes of 0.9 to 5 m/s leave with .77 to .86 of their speed.
+#define PREDICTED_RESTITUTION 0.82
 #define BOUNCE_RATIO 0.5 // of the speeds of the last bounce and the stroke; chosen, as above
 
 // limits of a hand: beyond them a stroke is refused; chosen: well beyond captured strokes

@@ -2,12 +2,12 @@
 ///
 /// No tables of their times have been published, and names differ by school; the figures are chosen
 /// as percussionists describe them. Timpani rolls are single strokes, faster on a higher drum and
-/// when loud: 11 strokes a second at 110 Hz, as the root of the pitch, in 8 .. 16. From f on they
-/// get no faster, as arms then need all the time for their speed. A double roll has fewer arm
-/// strokes, each of which bounces once, so that all contacts are even: the bounce comes half a
-/// stroke later. In a press roll each stroke bounces on a little longer than to the next one, so
-/// that the hands overlap. Both slow down when loud, until fingers can turn the stick round in time
-/// (bounce.c): a louder roll is louder.
+/// when loud: from ppp to f 7 to 9 a second at C2, 11 to 14 at A3. From f on they get no faster, as
+/// arms then need all the time for their speed. Doubles and presses are drummers': a double roll
+/// has fewer arm strokes, each of which bounces once, so that all contacts are even: the bounce
+/// comes half a stroke later. In a press roll each stroke bounces on a little longer than to the
+/// next one, so that the hands overlap. Both slow down when loud, until fingers can turn the stick
+/// round in time (bounce.c): a louder roll is louder.
 ///
 /// Grace notes keep their time before the beat at any tempo, a roll its rate (planner_roll.c). The
 /// other hand plays them all, the second of a drag or a ruff as a bounce, so that the hand of the
@@ -22,13 +22,15 @@
 #include "plan/sticking.h"
 
 // strokes of both arms together (1/s); chosen, see above
-#define USUAL_RATE 11.0
-#define USUAL_PITCH 110.0 // (Hz)
+#define USUAL_PITCH 110.0 // (Hz), at which single strokes and ...
+#define SINGLE_RATE 10.0
+#define SINGLE_RISE 0.37  // exponent of the pitch
+#define BOUNCED_RATE 11.0 // ... those that doubles and presses have their shares of, as its root
 #define SOFT_RATE 0.85    // share at ppp ...
 #define LOUD_RATE 0.3     // ... and so much more for a dynamic of 1, up to f
-#define SLOWEST_SINGLE 8.0
-#define FASTEST_SINGLE 16.0
-#define DOUBLE_SHARE 0.8 // of the rate of singles
+#define SLOWEST_SINGLE 7.0
+#define FASTEST_SINGLE 14.0
+#define DOUBLE_SHARE 0.8
 #define SLOWEST_DOUBLE 7.0
 #define FASTEST_DOUBLE 12.0
 #define PRESS_SHARE 0.6 // march tempo with five bounces each
@@ -44,12 +46,19 @@
 #define RUFF_TIME 0.045  // ... and of a ruff (s)
 #define GRACE_SHARE 0.35 // of the time since the stroke before, all together, at most
 #define GRACE_SPEED 0.4  // of the stroke's speed; of two their mean
-#define GRACE_FIRST 1.13 // of two the first over the mean, as a bounce keeps .77 of its speed
+#define GRACE_FIRST 1.18 // of two the first over the mean, as a bounce keeps .7 of its speed
 #define BESIDE 0.03      // of a written point, as at named spots (m) ...
 #define OUTERMOST 0.92   // ... up to this share of the radius, the spot named rim
 #define LOUD 0.8         // dynamic from which graces are wider
 #define SLOW_PERIOD 0.85 // a beat longer than this, too (s): 70 beats a minute
 #define WIDER 1.2
+
+/// Speed of a grace note, or of the first of two (m/s).
+static double grace_speed(const himc_stroke *stroke, bool two)
+{
+    double own = himc_gesture_of(stroke->nuance, stroke->dynamic).speed;
+    return GRACE_SPEED * (two ? GRACE_FIRST : 1) * own;
+}
 
 /// A grace note, or two: the second is a bounce. Returns 1 if it is left out.
 static int add_grace(himc_planner *planner, int drum, const himc_stroke *stroke, double early,
@@ -62,11 +71,9 @@ static int add_grace(himc_planner *planner, int drum, const himc_stroke *stroke,
     double y = grace.y + (grace.hand == HIMC_LEFT ? BESIDE : -BESIDE);
     if (grace.spot == HIMC_SPOT_XY && hypot(grace.x, y) <= OUTERMOST * planner->drum[drum].radius)
         grace.y = y;
-    double speed = GRACE_SPEED * himc_gesture_of(stroke->nuance, stroke->dynamic).speed;
     if (stroke->nuance != HIMC_STACCATO)
         grace.nuance = HIMC_LEGATO;
-    grace.dynamic =
-        himc_gesture_dynamic_at(grace.nuance, speed * (bounce_time > 0 ? GRACE_FIRST : 1));
+    grace.dynamic = himc_gesture_dynamic_at(grace.nuance, grace_speed(stroke, bounce_time > 0));
     grace.early = early;
     grace.bounces = bounce_time > 0;
     grace.bounce_time = bounce_time;
@@ -83,7 +90,8 @@ static double clip(double x, double low, double high)
 static double rate_of(const himc_stroke *roll, double pitch)
 {
     double dynamic = fmin(0.5 * (roll->dynamic + roll->last_dynamic), HIMC_FORTE);
-    double rate = USUAL_RATE * sqrt(pitch / USUAL_PITCH) * (SOFT_RATE + LOUD_RATE * dynamic);
+    double louder = SOFT_RATE + LOUD_RATE * dynamic, high = pitch / USUAL_PITCH;
+    double rate = BOUNCED_RATE * sqrt(high) * louder;
     // of its loudest stroke
     double speed = himc_gesture_of(roll->nuance, fmax(roll->dynamic, roll->last_dynamic)).speed,
            bounce = himc_bounce_full_time(roll->bounces, speed);
@@ -94,7 +102,9 @@ static double rate_of(const himc_stroke *roll, double pitch)
     case HIMC_ROLL_PRESS:
         rate = clip(PRESS_SHARE * rate, SLOWEST_PRESS, FASTEST_PRESS);
         return fmin(rate, fmax(PLANNER_PRESS_OVERLAP / bounce, SLOWEST_PRESS));
-    default: return clip(rate, SLOWEST_SINGLE, FASTEST_SINGLE);
+    default:
+        rate = SINGLE_RATE * pow(high, SINGLE_RISE) * louder;
+        return clip(rate, SLOWEST_SINGLE, FASTEST_SINGLE);
     }
 }
 
@@ -117,7 +127,7 @@ int himc_planner_add_ornament(himc_planner *planner, const himc_stroke *stroke, 
     if (himc_planner_score_period(score, fmax(stroke->beat, 1)) > SLOW_PERIOD)
         wide *= WIDER;
     double two = wide * (stroke->ornament == HIMC_DRAG ? DRAG_TIME : RUFF_TIME);
-    two = fmin(two, GRACE_SHARE * since / 2);
+    two = fmin(two, fmin(GRACE_SHARE * since / 2, himc_bounce_longest(grace_speed(stroke, true))));
     if (stroke->ornament == HIMC_FLAM)
         return add_grace(planner, drum, stroke, fmin(wide * FLAM_TIME, FLAM_SHARE * since), 0);
     return stroke->ornament == HIMC_PLAIN ? 0 : add_grace(planner, drum, stroke, 2 * two, two);

@@ -21,7 +21,7 @@
 // chosen: more than a day of drumming, and small enough for any machine's memory
 #define SCORE_LINES_MAX 10000
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
-#define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 16 a second
+#define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 14 a second
 
 /// A score being read.
 typedef struct reader {
@@ -195,7 +195,8 @@ bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *o
     return (row->marks & HIMC_AT_BEAT) ||
            himc_error_set(
                error,
-               "at: %s, expected a command that changes a drumhead: tune, tension, damp, decay, glide",
+               "at: %s, expected a command that changes a drumhead: tune, gliss, tension, damp, muffle, decay, "
+               "glide",
                row->name);
 }
 

@@ -230,7 +230,7 @@ static void measure_drum(void)
         fail();
     himc_drum *drum = himc_performance_drum(p, 0);
     fact("inches", 2 * himc_drum_usual_radius(drum) / METRES_PER_INCH);
-    fact("exponent", himc_drum_mallet(drum)->exponent);
+    fact("exponent", himc_drum_mallet(drum, HIMC_RIGHT)->exponent);
     himc_performance_free(p);
 }
 

@@ -4,10 +4,10 @@
     listen.py prepare FOLDER [PROGRAM]    render the six strokes into FOLDER, NAME-computed.wav each
     listen.py hear FOLDER [PLAYER]        play each pair twice in random order, and keep the answers
 
-FOLDER also has your recordings, NAME-recorded.wav. `hear` brings both of a pair to one length and
-loudness and the computed one into a room like the recording's (measure.py). PROGRAM is
-build/bin/himc; PLAYER any program that plays a WAV file, aplay if not given. The answers are added
-to FOLDER/answers.csv. Needs numpy, scipy and soundfile.
+FOLDER also has your recordings, NAME-recorded.wav. The computed stroke is heard by two ears in the
+default room as it is; `hear` brings both of a pair to one length, power and number of channels.
+PROGRAM is build/bin/himc; PLAYER any program that plays a WAV file, aplay if not given. The answers
+are added to FOLDER/answers.csv. Needs numpy, scipy and soundfile.
 """
 import csv
 import math
@@ -20,9 +20,9 @@ import time
 
 import numpy as np
 import soundfile
-from scipy.signal import fftconvolve, resample_poly
+from scipy.signal import resample_poly
 
-import measure
+import distance
 
 ROLL = [f'stroke {1 + i / 8:g} {"left" if i % 2 else "right"} legato {d} normal timpano'
         for i, d in enumerate(['p'] * 8 + ['mp'] * 8 + ['mf'] * 8 + ['f'] * 8)]
@@ -46,25 +46,22 @@ def prepare(folder, program='build/bin/himc'):
             file.write(';\n'.join(['human 0.5', f'drum timpano {inches}', f'timpano tune {note}',
                                    *lines]) + ';\n')
         sound = os.path.join(folder, name + '-computed.wav')
-        subprocess.run([program, 'render', score, '-o', sound, '--channels', '1'], check=True,
+        subprocess.run([program, 'render', score, '-o', sound], check=True,
                        stdout=subprocess.DEVNULL)
         print(f'{sound}: a recording to stand beside it is {name}-recorded.wav')
 
 
 def match(recorded, computed):
-    """both as one channel of one rate, length and power, the computed one in a room"""
-    (x, rate), (y, own) = measure.load(recorded), measure.load(computed)
-    x = measure.from_onset(x[0], rate)
-    y = measure.from_onset(resample_poly(y[0], rate, own), rate)
-    is_like = measure.describe(x, rate) | {'pitch_hz': 60, 'highest_hz': 5000}
-    room = measure.compare(y, rate, is_like)['room']
-    y = y + room * fftconvolve(y, measure.echo(rate))[:len(y)]
-    n = min(len(x), len(y))
-    x, y = x[:n], y[:n]
+    """both with the channels, rate and length that both have, and one power"""
+    (x, rate), (y, own) = distance.load(recorded), distance.load(computed)
+    y = resample_poly(y, rate, own, axis=1)
+    x, y = (z[:, distance.onset(z.sum(0), rate):] for z in (x, y))
+    channels, n = np.minimum(x.shape, y.shape)
+    x, y = x[:channels, :n], y[:channels, :n]
     y = y * np.sqrt((x ** 2).sum() / (y ** 2).sum())
     end = np.minimum(1, np.arange(n)[::-1] / (FADE * rate))
     top = max(np.abs(x).max(), np.abs(y).max()) / .7
-    return x * end / top, y * end / top, rate
+    return (x * end / top).T, (y * end / top).T, rate
 
 
 def ask(sounds, rate, player, work):

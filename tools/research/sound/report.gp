@@ -1,20 +1,17 @@
-# report.gp: third octaves of recorded and computed strokes; variable: folder
+# report.gp: ring times of the lines of recorded and computed strokes; variable: folder
 load "tools/research/figures/style.gp"
 kind = "png"
 eval(terminal(1100, 760))
-set output folder."/thirds.png"
-set multiplot layout 2,2 margins 0.07,0.98,0.08,0.95 spacing 0.06,0.1
-set logscale x 2
-set xrange [55:5800]
-set yrange [-72:0]
-set xtics (63, 125, 250, 500, "1k" 1000, "2k" 2000, "4k" 4000)
+set output folder."/lines.png"
+set multiplot layout 2,2 margins 0.06,0.98,0.08,0.95 spacing 0.06,0.1
+set logscale y
+set xrange [40:900]
+set yrange [0.3:60]
 set key top right samplen 2
-do for [name in "C2 G2"] {
-    do for [part in "onset tail"] {
-        column = part eq "onset" ? 2 : 4
-        when = part eq "onset" ? "the first 100 ms" : "0.3 to 0.8 s"
-        set title sprintf("%s, %s: level (dB) of the third octaves (Hz)", name, when)
-        plot folder."/".name.".dat" using 1:column with linespoints linewidth 2 linecolor rgb captured title "recorded", \
-             "" using 1:column+1 with linespoints linewidth 2 linecolor rgb himc title "computed, in the nearest room"
-    }
+do for [name in "C2 G2 A2 F#3"] {
+    data = folder."/".name.".dat"
+    set title name.": ring time T60 (s) of the lines (Hz)"
+    plot data index 0 using 1:2 with points pointtype 7 pointsize 1 linecolor rgb himc title "computed", \
+         "" index 1 using 1:2:3 with yerrorbars pointtype 5 pointsize 0.8 linecolor rgb captured title "recorded", \
+         "" index 2 using 1:2 with lines linewidth 2 linecolor rgb soft title "between the recorded lines: their hall"
 }
