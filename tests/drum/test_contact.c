@@ -34,11 +34,12 @@ static void christian(int modes)
 
 static void place(int i, double x, double y, double velocity)
 {
-    stick[i] = (himc_stick){.head = {1.6e8, 2.54, 0, 0.030, 0.0175, 0, 0},
-                            .mass = 0.030,
-                            .x = x * head.radius,
-                            .y = y * head.radius,
-                            .velocity = -velocity};
+    stick[i] = (himc_stick){
+        .head = {.stiffness = 1.6e8, .exponent = 2.54, .mass = 0.030, .radius = 0.0175},
+        .mass = 0.030,
+        .x = x * head.radius,
+        .y = y * head.radius,
+        .velocity = -velocity};
 }
 
 // as in the papers: the head has no patch under the mallet

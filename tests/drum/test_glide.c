@@ -51,11 +51,12 @@ void tearDown(void)
 
 static void place(int i, double x, double y, double velocity, double k)
 {
-    stick[i] = (himc_stick){.head = {k, 2.54, 0, 0.030, mallet_radius, 0, 0},
-                            .mass = 0.030,
-                            .x = x * head.radius,
-                            .y = y * head.radius,
-                            .velocity = -velocity};
+    stick[i] = (himc_stick){
+        .head = {.stiffness = k, .exponent = 2.54, .mass = 0.030, .radius = mallet_radius},
+        .mass = 0.030,
+        .x = x * head.radius,
+        .y = y * head.radius,
+        .velocity = -velocity};
 }
 
 // mean rise of the tension between two times after the impact, in cents of pitch

@@ -83,7 +83,8 @@ static result strike(double k, double radius, double rate, int samples, int step
     himc_membrane *membrane = himc_membrane_new(&head, rate, &error);
     TEST_ASSERT_TRUE_MESSAGE(body && membrane, error.text);
     himc_body_state state = start;
-    himc_stick stick = {.head = {k, 2.54, 0, 0.03, radius, 0, 0}, .x = -0.75 * head.radius},
+    himc_stick stick = {.head = {.stiffness = k, .exponent = 2.54, .mass = 0.03, .radius = radius},
+                        .x = -0.75 * head.radius},
                *one = &stick;
     himc_character_place(body, &start);
     double offset = 0;

@@ -146,11 +146,12 @@ static double growth_of(int count, double k)
     double start = 0, lowest, growth = 0;
     himc_membrane_rest(m);
     for (int i = 0; i < count; i++) {
-        stick[i] = (himc_stick){.head = {k, 2.54, 0.1, 0.03, 0.0175, 0, 0},
-                                .mass = 0.03,
-                                .x = -0.15 + 0.02 * i,
-                                .y = 0.03 * i,
-                                .velocity = -6 - i};
+        stick[i] = (himc_stick){
+            .head = {.stiffness = k, .exponent = 2.54, .loss = 0.1, .mass = 0.03, .radius = 0.0175},
+            .mass = 0.03,
+            .x = -0.15 + 0.02 * i,
+            .y = 0.03 * i,
+            .velocity = -6 - i};
         sticks[i] = &stick[i];
         start += himc_contact_energy(&stick[i]);
     }

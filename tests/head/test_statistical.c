@@ -357,8 +357,10 @@ static double total(const himc_membrane *membrane, const himc_stick *stick)
 static double largest_rise(const himc_head *head, double k, double radius, double *change)
 {
     himc_membrane *membrane = made(head);
-    himc_stick stick = {
-        .head = {k, 2.54, 0, 0.03, radius, 0, 0}, .mass = 0.03, .x = -0.24, .velocity = -6};
+    himc_stick stick = {.head = {.stiffness = k, .exponent = 2.54, .mass = 0.03, .radius = radius},
+                        .mass = 0.03,
+                        .x = -0.24,
+                        .velocity = -6};
     himc_stick *sticks = &stick;
     double start = total(membrane, &stick), before = start, rise = 0;
     for (int i = 0; i < 600; i++) {

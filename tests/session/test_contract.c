@@ -55,7 +55,10 @@ void tearDown(void)
 
 static void contact_step(void)
 {
-    himc_stick stick = {.head = {1e8, 2.5, 0.1, 0.03, 0.0175, 0, 0}, .mass = 0.03, .velocity = -2};
+    himc_stick stick = {
+        .head = {.stiffness = 1e8, .exponent = 2.5, .loss = 0.1, .mass = 0.03, .radius = 0.0175},
+        .mass = 0.03,
+        .velocity = -2};
     himc_contact_step(head, &(himc_stick *){&stick}, 1);
 }
 
