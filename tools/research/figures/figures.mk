@@ -102,9 +102,9 @@ $(DRAWN)/improvisation.png: $(BUILD)/demo/improvisation.wav
 	@mkdir -p $(@D) && echo "copy $@"
 	$(Q)cp $(BUILD)/demo/improvisation.png $@
 
-$(BUILD)/sounds/improvisation.ogg: $(BUILD)/demo/improvisation.wav
+$(BUILD)/sounds/improvisation.ogg: patches/improvisation.txt $(PROGRAM)
 	@mkdir -p $(@D) && echo "play $@"
-	$(Q)sox $< -C 2 $@
+	$(Q)$(PROGRAM) render $< -o $@ --quiet >$(BUILD)/sounds/improvisation.log
 
 # the trials: TRIALS of each row of the evaluation, RATES and LIMBS of each point of claim and measures
 TRIALS ?= 100
