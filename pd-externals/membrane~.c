@@ -611,7 +611,7 @@ static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer,
     himc_command pickups;
     himc_drum *drum = himc_drum_new(name, wish->w_inches, rate, error);
     if (drum && himc_command_parse(&pickups, HIMC_DRUM, "pickups", &channels, 1, error) &&
-        himc_drum_command(drum, &pickups, error) && himc_drum_hear(drum, error))
+        himc_drum_command(drum, &pickups, error) && himc_drum_set_usual_listener(drum, error))
         layer->l_drum = himc_drum_new(name, wish->w_inches, rate, error);
     if (layer->l_drum) {
         himc_drum_set_external_sound(drum, true);

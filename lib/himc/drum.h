@@ -66,7 +66,7 @@ HIMC_RT void himc_drum_advance(himc_drum *drum, int n, const double *force, cons
 
 /// Has the drum heard by two ears at the usual place while no performer has it, as the performer's
 /// `listener usual` does; at first it is heard by its pickups. False with the reason: no memory.
-bool himc_drum_hear(himc_drum *drum, himc_error *error);
+bool himc_drum_set_usual_listener(himc_drum *drum, himc_error *error);
 /// Copies the sound in one channel (of the first pickup, 1.0 as it says, membrane.h; or of both
 /// ears, their mean) and the displacement of the watched point (m, up positive) of samples
 /// [start, start + n), counted since the last realign. Either may be NULL. Samples outside the ring

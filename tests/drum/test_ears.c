@@ -420,6 +420,38 @@ static double correlation(const himc_drum *d, int n, double hz, bool above)
     return sum[0] / sqrt(sum[1] * sum[2]);
 }
 
+// the loudest difference of both sides after a strike, in a drum that is silent again
+static double apart(himc_drum *d)
+{
+    static double side[HIMC_EARS][4800];
+    double most = 0;
+    himc_drum_advance(d, HIMC_DRUM_RING, NULL, NULL, NULL);
+    himc_drum_strike_at(d, 0, -0.2, 0.05, 1, &error);
+    himc_drum_advance(d, 4800, NULL, NULL, NULL);
+    for (int ear = 0; ear < HIMC_EARS; ear++)
+        himc_drum_read_channel(d, ear, himc_drum_time(d) - 4800, 4800, side[ear]);
+    for (int i = 0; i < 4800; i++)
+        most = fmax(most, fabs(side[0][i] - side[1][i]));
+    return most;
+}
+
+static void test_a_drum_alone_is_heard_by_two_ears_until_a_pickup_is_asked_for(void)
+{
+    static const char *const dry[] = {"pickup air 0 0.5 1", "channel 1 0.1 0", "listener off"};
+    TEST_ASSERT_EQUAL_DOUBLE(0, apart(drum)); // a single pickup is heard on both sides
+    TEST_ASSERT_TRUE(himc_drum_set_usual_listener(drum, &error));
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_TRUE(apart(drum) > 1e-4);
+        says(dry[i]);
+        TEST_ASSERT_EQUAL_DOUBLE(0, apart(drum));
+        says("listener usual");
+    }
+    listens(drum, &(himc_listener){.on = false}); // of a performer, who leaves the drum again
+    TEST_ASSERT_EQUAL_DOUBLE(0, apart(drum));
+    himc_drum_listen(drum, NULL);
+    TEST_ASSERT_TRUE(apart(drum) > 1e-4);
+}
+
 // a stroke on a drum as it is made, from the side
 static void test_ears_beside_a_drum_hear_two_sounds(void)
 {
@@ -457,6 +489,7 @@ int main(void)
     RUN_TEST(test_pickups_sound_as_if_nobody_had_listened_once_ears_have_left);
     RUN_TEST(test_ears_find_a_drum_that_was_moved);
     RUN_TEST(test_a_drum_hears_as_another);
+    RUN_TEST(test_a_drum_alone_is_heard_by_two_ears_until_a_pickup_is_asked_for);
     RUN_TEST(test_ears_beside_a_drum_hear_two_sounds);
     RUN_TEST(test_listener_refuses_what_is_no_place);
     RUN_TEST(test_listener_hears_all_drums_of_a_performance_until_reset);

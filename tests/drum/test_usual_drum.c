@@ -148,12 +148,13 @@ static void test_switching_air_changes_the_loudness_by_less_than_2_dB(void)
         }
 }
 
-// one loss law for four drums, tuned as recorded ones are: what it gives, computed apart (T60 in s)
+// one loss law for four drums, tuned as recorded ones are: what it gives, computed apart (T60
+// in s); (1,1) of 32 inches as recorded, for which the stand's loss was guessed
 static void test_partials_ring_as_one_law_has_it_on_every_drum(void)
 {
     static const struct {
         double inches, hz, t60[11];
-    } law[] = {{32, 64.4, {0, 0, 12.3, 11.5, 10.5, 9.6, 8.8, 0, 7.6, 0, 6.7}},
+    } law[] = {{32, 64.4, {0, 3.2, 12.3, 11.5, 10.5, 9.6, 8.8, 0, 7.6, 0, 6.7}},
                {29, 99.4, {0, 0, 7.8, 8.4, 7.7, 7.0, 6.3, 0, 5.3, 0, 4.4}},
                {29, 109.9, {0, 2.6, 6.2, 7.3, 6.9, 6.3, 5.6, 0, 4.7, 0, 3.9}},
                {23, 186.2, {0, 1.2, 2.1, 3.3, 3.6, 3.5, 3.1, 0, 2.5, 0, 2.0}}};
@@ -175,7 +176,7 @@ static void test_partials_ring_as_one_law_has_it_on_every_drum(void)
         }
         himc_drum_release(drum);
     }
-    TEST_ASSERT_EQUAL_INT(30, found);
+    TEST_ASSERT_EQUAL_INT(31, found);
 }
 
 int main(void)

@@ -264,6 +264,29 @@ static void test_reset_undoes_the_place_that_a_take_gave_a_drum(void)
     himc_performance_free(p);
 }
 
+static void find_listener(void *user, const char *line)
+{
+    if (strncmp(line, "listener", 8) == 0)
+        snprintf(user, 40, "%s", line);
+}
+
+static void test_reset_is_heard_by_those_who_heard_it_at_first(void)
+{
+    for (int heard = 0; heard < 2; heard++) {
+        himc_performance_config config = config_of(false);
+        char first[40] = "", later[40] = "";
+        config.heard = heard;
+        himc_performance *p = performer(&config);
+        himc_performance_describe(p, HIMC_DESCRIBE_STATE, find_listener, first);
+        TEST_ASSERT_EQUAL_STRING(heard ? "listener usual" : "listener off", first);
+        session_do(p, heard ? "listener off" : "listener 2 0 1");
+        session_do(p, "reset");
+        himc_performance_describe(p, HIMC_DESCRIBE_STATE, find_listener, later);
+        TEST_ASSERT_EQUAL_STRING(first, later);
+        himc_performance_free(p);
+    }
+}
+
 static void test_reset_writes_a_recording_first_and_keeps_callbacks_and_events(void)
 {
     himc_performance_config config = himc_performance_default();
@@ -384,6 +407,7 @@ int main(void)
     RUN_TEST(test_reset_in_the_middle_of_a_stroke_leaves_no_strike);
     RUN_TEST(test_reset_keeps_the_hosts_drums_where_their_owner_put_them);
     RUN_TEST(test_reset_undoes_the_place_that_a_take_gave_a_drum);
+    RUN_TEST(test_reset_is_heard_by_those_who_heard_it_at_first);
     RUN_TEST(test_reset_writes_a_recording_first_and_keeps_callbacks_and_events);
     RUN_TEST(test_reset_drops_a_recording_that_has_no_frames_yet);
     RUN_TEST(test_reset_lets_the_planner_think_as_in_a_new_performance);

@@ -190,14 +190,14 @@ bool himc_drum_set(himc_drum *drum, const himc_drum_settings *to, himc_model **m
     bool exchanges = made && *made;
     if (!set_head(drum, &to->head, to->pedal ? to->gliss : -1, made, error))
         return false;
-    bool hears = himc_drum_hears(drum);
+    bool heard = himc_drum_is_heard(drum);
     drum->revision += moves || grows || drum->set.placed != to->placed ||
                       memcmp(mallet, to->mallet, sizeof to->mallet) != 0;
     drum->set = *to;
     drum->set.pedal = false;
     himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);
     settle_noise(drum);
-    if (moves || exchanges || hears != himc_drum_hears(drum))
+    if (moves || exchanges || heard != himc_drum_is_heard(drum))
         himc_drum_find_ways(drum);
     return true;
 }
@@ -365,12 +365,10 @@ static void store(himc_drum *drum, int n, double *const *sound, const double *wa
         }
         levels[i] = drum->level;
     }
-    for (int k = 0; k < HIMC_PICKUPS; k++) // a single pickup is heard on both sides
-        store_row(drum, k, n,
-                  k < count              ? sound[k]
-                  : k == 1 && count == 1 ? sound[0]
-                                         : NULL,
-                  levels);
+    for (int k = 0; k < HIMC_PICKUPS; k++) {
+        bool again = k == 1 && count == 1; // a single pickup is heard on both sides
+        store_row(drum, k, n, again ? sound[0] : k < count ? sound[k] : NULL, levels);
+    }
     store_row(drum, WATCHED, n, silent ? NULL : watched, NULL);
     drum->time += (uint64_t)n;
 }
@@ -527,35 +525,33 @@ void himc_drum_advance(himc_drum *drum, int n, const double *force, const double
     himc_drum_advance_sticks(drum, n, NULL, 0, NULL, &(himc_outside_force){force, x, y});
 }
 
-// samples [start, start + n) of a ring
-static void copy(const himc_drum *drum, const double *ring, uint64_t start, int n, double *out)
+// samples [start, start + n) of a ring, or the mean of two
+static void copy(const himc_drum *drum, const double *ring, const double *other, uint64_t start,
+                 int n, double *out)
 {
     uint64_t oldest = drum->time > HIMC_DRUM_RING ? drum->time - HIMC_DRUM_RING : 0;
     for (int i = 0; i < n; i++) {
-        uint64_t at = drum->zero + start + (uint64_t)i;
-        out[i] = at >= oldest && at < drum->time ? ring[at % HIMC_DRUM_RING] : 0;
+        uint64_t at = drum->zero + start + (uint64_t)i, k = at % HIMC_DRUM_RING;
+        out[i] = at >= oldest && at < drum->time ? 0.5 * (ring[k] + other[k]) : 0;
     }
 }
 
 void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
                     double *displacement)
 {
-    bool pair = himc_membrane_config_of(drum->membrane)->pickup_count == 1 || himc_drum_hears(drum);
+    int count = himc_membrane_config_of(drum->membrane)->pickup_count;
+    bool both = count == 1 || himc_drum_is_heard(drum);
+    const double *seen = drum->ring[WATCHED];
     if (sound)
-        copy(drum, drum->ring[0], start, n, sound);
-    for (int i = 0; sound && pair && i < n; i++) {
-        double other;
-        copy(drum, drum->ring[1], start + (uint64_t)i, 1, &other);
-        sound[i] = 0.5 * (sound[i] + other);
-    }
+        copy(drum, drum->ring[0], drum->ring[both ? 1 : 0], start, n, sound);
     if (displacement)
-        copy(drum, drum->ring[WATCHED], start, n, displacement);
+        copy(drum, seen, seen, start, n, displacement);
 }
 
 void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
                             double *sound)
 {
-    copy(drum, drum->ring[channel], start, n, sound);
+    copy(drum, drum->ring[channel], drum->ring[channel], start, n, sound);
 }
 
 void himc_drum_watch(himc_drum *drum, bool on)

@@ -31,11 +31,11 @@
 #define FELT 0.0074 // a mallet of felt (kg); chosen
 #define BEAD 0.0044 // one of wood (kg); chosen: its contact lasts 3 to 6 ms, as Wagner's (2006)
 
-// Found by trial on four recordings. A contact must end before half a period of (2,1), else its
-// spectrum has a gap there and the fifth is missing; with 24 to 30 g, as Rhaouti, Chaigne & Joly's
-// (1999), it is. The hard felt's exponent is from an open drum engine's range, the soft one's core
-// doubles the centroid of its sound from pp to ff. A light stick sounds all heads evenly, so
-// mallets differ most by the noise of their blows.
+// Found by trial on four recordings. The spectrum of a contact has its first gap at 1.5 over its
+// length. With 24 to 30 g, as Rhaouti, Chaigne & Joly's (1999), (2,1) falls into it on some drums,
+// and the fifth is missing. The hard felt's exponent is from an open drum engine's range, the soft
+// one's core doubles the centroid of its sound from pp to ff. A light stick sounds all heads
+// evenly, so mallets differ most by the noise of their blows.
 // In the order of the words of `mallet`.
 static const himc_mallet_head presets[] = {
     [DRUM_MALLET_SOFT] = {.stiffness = 6e6,

@@ -37,7 +37,7 @@ bool himc_drum_takes_long(const himc_drum *drum, const himc_command *command)
 {
     int pickups;
     himc_membrane_pickups(drum->membrane, &pickups);
-    bool heard = himc_drum_hears(drum);
+    bool heard = himc_drum_is_heard(drum);
     int readouts = pickups + 1 + (heard ? HIMC_RAYS : 0); // and the watched point
     if (command->id == HIMC_COMMAND_PICKUPS)
         readouts = 1 + (int)fmax(pickups, command->atom[0].number);

@@ -12,12 +12,12 @@ bool himc_drum_open_ears(himc_drum *drum, himc_error *error)
     return drum->ears || himc_error_set(error, "listener: out of memory");
 }
 
-bool himc_drum_hears(const himc_drum *drum)
+bool himc_drum_is_heard(const himc_drum *drum)
 {
     return himc_listener_hears(&drum->listener, drum->set.picked);
 }
 
-bool himc_drum_hear(himc_drum *drum, himc_error *error)
+bool himc_drum_set_usual_listener(himc_drum *drum, himc_error *error)
 {
     if (!himc_drum_open_ears(drum, error))
         return false;
@@ -28,7 +28,7 @@ bool himc_drum_hear(himc_drum *drum, himc_error *error)
 
 void himc_drum_find_ways(himc_drum *drum)
 {
-    if (!himc_drum_hears(drum)) {
+    if (!himc_drum_is_heard(drum)) {
         himc_membrane_mute_pickups(drum->membrane, false);
         if (drum->ears)
             himc_ears_close(drum->ears);

@@ -27,8 +27,7 @@ HIMC_RT bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const 
 bool himc_drum_open_ears(himc_drum *drum, himc_error *error);
 /// Who hears the drum by two ears: from now on they are its first two channels, instead of pickups.
 /// A listener who is off, as at first, leaves them to the pickups; one who is on needs open ears.
-/// NULL: the one that the drum has without a performer.
-/// It changes over in 5 ms.
+/// NULL: the one that the drum has without a performer. It changes over in 5 ms.
 HIMC_RT void himc_drum_listen(himc_drum *drum, const himc_listener *listener);
 
 /// The walls around who hears it; at first HIMC_WALLS_USUAL. They change in 5 ms.

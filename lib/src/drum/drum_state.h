@@ -87,8 +87,8 @@ HIMC_RT bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual
 HIMC_RT bool himc_drum_may_strike(const himc_head_frame *surface, double x, double y,
                                   double velocity, himc_error *error);
 
-/// True if two ears hear the drum, and not its pickups.
-HIMC_RT bool himc_drum_hears(const himc_drum *drum);
+/// True if the drum is heard by two ears, and not by its pickups.
+HIMC_RT bool himc_drum_is_heard(const himc_drum *drum);
 /// True while the pedal moves.
 HIMC_RT bool himc_drum_glides(const himc_drum *drum);
 /// Its head, with the tension to which the pedal moves.

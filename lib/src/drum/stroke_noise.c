@@ -39,10 +39,8 @@
 #define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
 #define MEASURED 0.04  // (s) of a filter's response; chosen: the lowest band's is over
 
-// q_b, fitted on numbers of two recordings, hall included: with the head's own sound an accent f of
-// the medium mallet, at C2 on 32 inches and at G2 on 29, has about -13 -18 -25 -38 dB in its first
-// 100 ms; upwards from 1 kHz nearer to the darker recording, whose tail would else be too bright.
-// It shows that the form reaches them, and proves nothing about felt or stands.
+// q_b and T60, found by trial on numbers of four recordings, hall included: so long the noise
+// stands for early reflections, too. It proves nothing about felt or stands.
 static const struct {
     double low, high, t60, drive; // edges (Hz), decay (s)
 } bands[HIMC_NOISE_BANDS] = {{250, 1000, 1.05, 2.9e-8},

@@ -29,8 +29,8 @@ typedef struct himc_stroke_noise {
     himc_noise_band band[HIMC_NOISE_BANDS];
     double amount; ///< 0 none .. 1; may change at any time
     double rate;   ///< (Hz)
-    double damp;   ///< of the head, 0 .. 1
-    double held;   ///< of an amplitude, a sample, by that
+    double damp;   ///< by what lies on the head, 0 .. 1 as `damp` of himc/membrane.h ...
+    double held;   ///< ... of an amplitude, a sample
     double follow; ///< of a level towards its goal, a sample
     uint64_t state;
     double force;    ///< of the last sample (N)
@@ -43,7 +43,8 @@ typedef struct himc_stroke_noise {
 himc_stroke_noise himc_stroke_noise_at(double rate);
 /// Sets another sample rate; the sound goes on.
 HIMC_RT void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate);
-/// A hand on the head (`damp`, himc/membrane.h) ends its noise as it ends its modes.
+/// What lies on the head ends its noise as it ends its modes: a hand of that `damp` (0 .. 1,
+/// himc/membrane.h), or a cloth as heavy.
 HIMC_RT void himc_stroke_noise_damp(himc_stroke_noise *noise, double damp);
 /// A contact begins at that place (m): its noise begins, the same for every blow within two
 /// centimetres.

@@ -71,7 +71,7 @@
 
 #define FREE 0.7    // of a baffle's radiation: boundary elements, 0.64 to 0.73
 #define HEIGHT 0.85 // of the head over the floor (m); chosen: as it stands at first
-#define STAND 0.3   // (1/s) at ...
+#define STAND 0.3   // of a rocking stand (1/s); guessed, at ...
 #define STAND_OMEGA (2 * HIMC_PI * 100) // ... this (rad/s)
 
 static const double SPEED2 = HIMC_AIR_SPEED * HIMC_AIR_SPEED;
