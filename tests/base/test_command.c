@@ -483,7 +483,8 @@ static void test_errors_name_field_value_and_allowed_values(void)
 
 static void test_a_word_that_fits_no_form_is_answered_with_all_forms(void)
 {
-    refused(perform("listener here"), "listener: here, expected listener off | usual | X Y Z [YAW]");
+    refused(perform("listener here"),
+            "listener: here, expected listener off | usual | X Y Z [YAW]");
     refused(perform("gain loud"),
             "gain: loud, expected gain reset | frequency FACTOR | JOINT KS KD | DB");
     refused(perform("gain 100"), "gain: 100, expected reset or -60 .. 24 dB");

@@ -318,7 +318,7 @@ static void test_a_dump_sent_back_line_by_line_makes_the_same_performance(void)
             random_setting(&command, HIMC_PERFORMER, &seed);
             himc_performance_command(p, &command, 0, NULL);
         }
-        session_do(p, "clear"); // what `at` was among them
+        session_do(p, "clear");       // what `at` was among them
         session_do(p, "engine tree"); // ODE's bits also depend on what it did before
         session_do(p, "drum low 29");
         session_do(p, "drum high 23");

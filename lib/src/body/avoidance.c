@@ -34,9 +34,10 @@
 #define LEAST_GOAL 1e-3 // a smaller goal of a clear body is 0 (rad)
 #define LONGEST_STEP 0.012 // (s); chosen: K dt stays below 1 / |F''|
 #define FASTEST 8.0        // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
+#define PATH_KNOWN 0.07    // of a hand's path (s); chosen: its filter looks so far ahead
 #define DESCENT_WORK (1 + HIMC_ARM_ANGLES) // postures of a descent
 // limits of the three angles of an arm; chosen: what shoulders and wrists allow
-static const double least[HIMC_ARM_ANGLES] = {-0.5, -0.4, -0.6},
+static const double least[HIMC_ARM_ANGLES] = {-0.5, -0.03, -0.6},
                     most[HIMC_ARM_ANGLES] = {1.5, 1.0, 1.0};
 
 const double himc_avoidance_times[HIMC_FORESEEN] = {0.06, 0.14};
@@ -63,10 +64,16 @@ void himc_avoidance_apply(const himc_avoidance *a, himc_trunk_posture *goal)
 }
 
 static himc_posture foreseen_posture(const himc_avoidance *a, const himc_posture *posture,
-                                     const himc_foreseen *f)
+                                     const himc_foreseen *f, double in)
 {
     himc_posture then = *posture;
     then.trunk_posture = f->trunk;
+    // a hand's path is known as far as its goal holds; later it rests where the tip has it
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_hand_path *path = &then.hand[hand];
+        *path = himc_hand_path_at(path, path->time + in);
+        path->moving = path->moving && in <= PATH_KNOWN;
+    }
     put(a->goal, &then.trunk_posture);
     return then;
 }
@@ -230,7 +237,7 @@ int himc_avoidance_update(himc_avoidance *a, const himc_posture *posture, const 
     himc_posture then;
     int work = HIMC_FORESEEN;
     for (int k = 0; k < HIMC_FORESEEN; k++) {
-        then = foreseen_posture(a, posture, &foreseen[k]);
+        then = foreseen_posture(a, posture, &foreseen[k], himc_avoidance_times[k]);
         missing[k] = himc_posture_capsules(&then, foreseen[k].tip, capsule[k]);
     }
     foresee_order(a, capsule);
@@ -238,7 +245,7 @@ int himc_avoidance_update(himc_avoidance *a, const himc_posture *posture, const 
         field f = field_of(a, capsule[k], shells);
         if (!f.pushed && missing[k] == 0)
             continue;
-        then = foreseen_posture(a, posture, &foreseen[k]);
+        then = foreseen_posture(a, posture, &foreseen[k], himc_avoidance_times[k]);
         add_descent(&then, &foreseen[k], &f, rate);
         work += DESCENT_WORK;
     }

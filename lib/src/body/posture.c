@@ -18,18 +18,11 @@
 #include "base/limb_frame.h"
 #include "body/stretch.h"
 
-// Elevation of stick and hand over the tip's height. Chosen: at 0.3 m, a normal stroke, the stick
-// then stands at 40 degrees and the hand has risen by 20, the raised stick and wrist seen in
-// players.
-#define STICK_SLOPE 2.6    // stick's elevation per tip height (rad/m)
-#define STICK_LIMIT 1.25   // (rad)
-#define HAND_SLOPE 1.3     // hand's elevation per tip height (rad/m)
-#define HAND_LIMIT 0.6     // (rad)
-#define HAND_LEVEL (-0.25) // hand's elevation at impact: fingers a little lower (rad)
-// French grip. Chosen: the fingers raise the stick more; 72 degrees of roll bring the thumbs up.
-#define FRENCH_STICK_SLOPE 3.5 // (rad/m)
-#define FRENCH_HAND_SLOPE 1.35 // (rad/m)
-#define FRENCH_ROLL 1.25       // of forearm, hand and stick about their lengths (rad)
+// The hand's share of the stick's elevation at rest. Chosen: in French grip the fingers raise the
+// stick more; 72 degrees of roll bring the thumbs up.
+#define WRIST 0.5        // in German grip
+#define FRENCH_WRIST 0.8 // in French grip, of that in German
+#define FRENCH_ROLL 1.25 // of forearm, hand and stick about their lengths (rad)
 // The elbow. Chosen: hangs a little outwards, less so with thumbs up; the stick's plane begins near
 // the elbow of a playing arm.
 #define ELBOW_OUT 0.35        // rotation of the elbow out of the vertical plane (rad)
@@ -192,16 +185,11 @@ himc_trunk_posture himc_trunk_posture_foreseen(const himc_trunk_posture *now,
     return then;
 }
 
-// an elevation with this slope at height 0 that saturates at +-limit
-static double elevation_at(double height, double slope, double limit)
-{
-    return limit * tanh(slope * height / limit);
-}
-
 typedef struct arm {
     himc_quat trunk;     // orientation in the world
     double turn, french; // of the trunk (rad); share of the French grip
     double out, raise;   // of elbow and wrist beyond the usual (rad)
+    double usually_out;  // of the elbow (rad)
     double aside;        // wrist to the left about the tip (rad)
     union {
         himc_vec3 point[HIMC_ARM_POINTS];
@@ -210,6 +198,7 @@ typedef struct arm {
         };
     };
     himc_vec3 stick, hand, side; // unit vectors; side is the flexion axis of wrist and grip
+    himc_vec3 line, hang, rests; // from shoulder to wrist, to the elbow, there at rest
 } arm;
 
 static double blend_grips(double german, double french, double share)
@@ -245,18 +234,28 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
     double outside = hand == HIMC_LEFT ? PLANE_BESIDE : -PLANE_BESIDE;
     double dx = tip.x - (a->shoulder.x - PLANE_BEHIND * cos(a->turn) - outside * sin(a->turn));
     double dy = tip.y - (a->shoulder.y - PLANE_BEHIND * sin(a->turn) + outside * cos(a->turn));
-    double azimuth = atan2(dy, dx) - a->aside, height = tip.z - posture->level;
-    double hand_slope = blend_grips(HAND_SLOPE, FRENCH_HAND_SLOPE, a->french);
+    double azimuth = atan2(dy, dx) - a->aside;
+    double length = himc_vec3_length(posture->skeleton.tip), resting[HIMC_HAND_PATH_PARTS];
+    const double *path = posture->hand[hand].moving ? posture->hand[hand].value : resting;
+    if (!posture->hand[hand].moving)
+        himc_hand_path_rest(tip.z - posture->level, posture->level, length, WRIST, resting);
     a->tip = tip;
-    double stick_slope = blend_grips(STICK_SLOPE, FRENCH_STICK_SLOPE, a->french);
-    a->stick =
-        himc_vec3_elevated(azimuth, elevation_at(height, stick_slope, STICK_LIMIT) - a->raise);
-    a->hand = himc_vec3_elevated(
-        azimuth, HAND_LEVEL + elevation_at(height, hand_slope, HAND_LIMIT) - a->raise);
+    azimuth += (hand == HIMC_LEFT ? 1 : -1) * path[HIMC_HAND_PATH_LOOP];
+    a->usually_out =
+        blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french) + path[HIMC_HAND_PATH_ELBOW];
+    double lower = tip.z - path[HIMC_HAND_PATH_GRIP];
+    double bent = blend_grips(1, FRENCH_WRIST, a->french) * path[HIMC_HAND_PATH_HAND];
+    a->stick = himc_vec3_elevated(azimuth, himc_hand_path_stick(lower, length) - a->raise);
+    a->hand = himc_vec3_elevated(azimuth, bent - a->raise);
     a->side = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
-    a->grip = himc_vec3_madd(tip, -himc_vec3_length(posture->skeleton.tip), a->stick);
+    a->grip = himc_vec3_madd(tip, -length, a->stick);
     double palm = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_STICK + hand].origin);
     a->wrist = himc_vec3_madd(a->grip, -palm, a->hand);
+}
+
+static himc_vec3 about(himc_vec3 axis, double angle, himc_vec3 v)
+{
+    return himc_quat_rotate(himc_quat_exp(himc_vec3_scale(axis, angle)), v);
 }
 
 // from 0 at 0 to 1 at 1, with no acceleration at either end
@@ -284,10 +283,16 @@ static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
     himc_vec3 down = himc_vec3_make(-back * cos(a->turn), -back * sin(a->turn), -1);
     down = himc_vec3_unit(himc_vec3_madd(down, -himc_vec3_dot(down, u), u));
     himc_vec3 out = himc_vec3_cross(down, u);
-    double elbow_out = blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french) + a->out;
-    double turn = hand == HIMC_LEFT ? -elbow_out : elbow_out;
-    himc_vec3 hang = himc_vec3_madd(himc_vec3_scale(down, cos(turn)), sin(turn), out);
-    a->elbow = himc_vec3_madd(himc_vec3_madd(a->shoulder, along, u), away, hang);
+    double side = hand == HIMC_LEFT ? -1 : 1, turn = side * a->usually_out;
+    a->rests = a->hang = himc_vec3_madd(himc_vec3_scale(down, cos(turn)), sin(turn), out);
+    a->line = u;
+    const himc_hand_path *path = &posture->hand[hand];
+    if (path->moving && himc_vec3_dot(path->hang, path->hang) > 0) {
+        himc_vec3 across = himc_vec3_madd(path->hang, -himc_vec3_dot(path->hang, u), u);
+        a->hang = about(u, path->swivel[0], himc_vec3_unit(across));
+    }
+    a->elbow = himc_vec3_madd(himc_vec3_madd(a->shoulder, along, u), away,
+                              about(u, -side * a->out, a->hang));
     a->wrist = himc_vec3_madd(a->shoulder, used, u);
     return fabs(used - distance);
 }
@@ -446,6 +451,29 @@ himc_arm_levers himc_arm_levers_of(const himc_skeleton *skeleton, himc_vec3 wais
     return himc_arm_levers_at(waist, pose->joint[HIMC_TRUNK - 1], joint, skeleton->tip, pose, hand);
 }
 
+void himc_posture_swing(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
+                        himc_hand_path *path)
+{
+    himc_posture now = *posture;
+    now.hand[hand] = *path;
+    arm a = arm_of(&now, hand);
+    solve_wrist(&now, hand, tip, &a);
+    solve_elbow(&now, hand, &a);
+    himc_vec3 across = himc_vec3_cross(a.line, a.hang);
+    himc_hand_path_swing(path, a.hang,
+                         atan2(himc_vec3_dot(a.rests, across), himc_vec3_dot(a.rests, a.hang)));
+}
+
+// before and after, as both sides of a tick have the same derivatives
+static himc_hand_path hand_path_after(const himc_hand_path *path, double dt)
+{
+    himc_hand_path after = *path;
+    for (int i = 0; i < HIMC_HAND_PATH_PARTS; i++)
+        after.value[i] += dt * (path->rate[i] + 0.5 * dt * path->acceleration[i]);
+    after.swivel[0] += dt * (path->swivel[1] + 0.5 * dt * path->swivel[2]);
+    return after;
+}
+
 void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],
                          himc_posture_motion *motion)
 {
@@ -457,6 +485,8 @@ void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC
         himc_posture now = *posture;
         now.trunk_posture =
             trunk_posture_after(&posture->trunk_posture, (k - 1) * HIMC_DIFFERENCE_STEP);
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            now.hand[hand] = hand_path_after(&posture->hand[hand], (k - 1) * HIMC_DIFFERENCE_STEP);
         himc_posture_at(&now, x, &pose[k]);
     }
     himc_posture_differentiate(pose, HIMC_DIFFERENCE_STEP, 0, HIMC_JOINTS, motion);

@@ -6,6 +6,7 @@
 
 #include "base/quintic.h"
 #include "body/capsules.h"
+#include "body/hand_path.h"
 #include "himc/body.h"
 
 /// A pose and its motion, joint by joint, in the parent's frame.
@@ -78,6 +79,7 @@ typedef struct himc_posture {
     himc_pose rest;                   ///< constant pose of neck, head and legs
     himc_trunk_posture trunk_posture; ///< updated by the caller whenever it moves
     double level;                     ///< tip height at impact, where the sticks are horizontal (m)
+    himc_hand_path hand[HIMC_HANDS];  ///< of hands that move; others rest as the tip has them
 } himc_posture;
 
 /// The model of a timpanist on a stool who leans a little forward and looks at the drumhead.
@@ -112,6 +114,10 @@ HIMC_RT double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[
 /// central differences.
 HIMC_RT void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],
                                  himc_posture_motion *motion);
+
+/// Lets the elbow of a hand that moves swing to where it would hang with the tip at `tip` (m).
+HIMC_RT void himc_posture_swing(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
+                                himc_hand_path *path);
 
 /// The capsules of arms, sticks, trunk, head and thighs in that posture; the others are left alone.
 /// Returns the larger distance of a tip out of reach (m).

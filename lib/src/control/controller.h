@@ -51,6 +51,7 @@ typedef struct himc_controller_config {
     double bandwidth;               ///< of computed torque, critically damped (Hz)
     bool gain_set[HIMC_JOINTS];     ///< the joint has the gain below; computed torque uses it, too
     himc_gain gain[HIMC_JOINTS];
+    bool usual_strength;          ///< a man's, but none for the published laws
     bool human_strength;          ///< himc_controller_set_human_strength has set `strength`
     double strength[HIMC_JOINTS]; ///< largest torque of each joint (N m); 0: no maximum
 } himc_controller_config;
@@ -75,6 +76,7 @@ typedef struct himc_reference {
     bool released[HIMC_HANDS];    ///< the tip is in contact: along the normal it has `yield`
     double yield[HIMC_HANDS];     ///< its acceleration there but for the contact's force (m/s^2)
     himc_vec3 normal[HIMC_HANDS]; ///< of the head it touches
+    bool struck[HIMC_HANDS];      ///< it touches in a stroke
 } himc_reference;
 
 /// himc, computed torque at 20 Hz, damped least squares with 0.01 m, all weights 1, no gain set, no

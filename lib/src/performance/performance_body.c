@@ -106,6 +106,7 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
     himc_body_state state;
     himc_pose_to_state(&b->skeleton, rest, NULL, &state);
     himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
+    himc_muscles_rest(&b->muscles);
     b->controller.saturation = &b->saturation;
     himc_character_use(b->character, s->engine);
 }
@@ -229,6 +230,9 @@ void himc_body_control(performance_body *b, const himc_reference *reference, dou
     b->controller.step = h;
     b->controller.articulation = b->shares ? himc_character_articulation(b->character) : NULL;
     himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
+    if (b->controller.config.human_strength)
+        himc_muscles_act(&b->muscles, reference->struck, b->controller.config.strength, h,
+                         b->torque);
 }
 
 himc_vec3 himc_body_pushed(const performance_body *b, int segment, double t)

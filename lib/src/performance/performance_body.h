@@ -4,6 +4,7 @@
 #define HIMC_PERFORMANCE_BODY_H
 
 #include "body/character.h"
+#include "control/muscle.h"
 #include "control/setpoint.h"
 #include "performance/performance_settings.h"
 
@@ -38,6 +39,7 @@ typedef struct performance_body {
     himc_controller controller; ///< borrows `limits` and `saturation`
     himc_limits limits;         ///< in force
     himc_saturation_counts saturation;
+    himc_muscles muscles;
     body_push push[HIMC_SEGMENTS];
     double push_end;                   ///< of all pushes (s)
     planned_push planned[HIMC_PUSHES]; ///< by beat

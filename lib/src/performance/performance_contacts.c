@@ -53,6 +53,7 @@
 #define LIFTED_SPEED 0.2    // ... or one that rises so fast (m/s)
 #define RESTING_SPEED 0.25  // a contact slower than this ...
 #define RESTING_TIME 0.1    // ... so soon after the last one is no strike (m/s, s)
+#define TAKEN_UP 0.6        // of a speed aside; chosen: tips then go astray least
 #define LEAST_STICK 0.25    // of the body's stick; chosen: about its shaft without its ball
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
@@ -131,6 +132,11 @@ static void go_on_from_here(const stick_contact *c, const contact_scene *s, himc
         m.x = r->tip[hand].x;
         m.v = r->tip[hand].v;
     }
+    // a blow pushes the stick aside, too; the arm takes most of that up
+    himc_vec3 pushed = himc_vec3_sub(m.v, r->tip[hand].v);
+    pushed = himc_vec3_madd(pushed, -himc_vec3_dot(pushed, n), n);
+    if (s->body->controller.config.human_strength)
+        m.v = himc_vec3_madd(m.v, -TAKEN_UP, pushed);
     himc_motion_go_on_from(s->motion, hand, t, &m);
 }
 
@@ -247,6 +253,7 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
                                 c->stick.mass);
     }
     himc_motion_release(s->motion, hand, released, yield);
+    s->motion->reference.struck[hand] = c->touching && !c->pressed && !c->bounce.on;
     if (drum < s->drums->count)
         himc_motion_set_normal(s->motion, hand, normal_of(s, drum));
     if (!is_free(c) || !is_kinematic(s))

@@ -12,6 +12,7 @@
 #include "body/limits.h"
 #include "base/head_frame.h"
 #include "control/grip.h"
+#include "plan/gesture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,6 +27,9 @@
 // contacts, whose steps cost most
 #define WORK 50000.0
 #define BUSY_WORK 5000.0
+#define CALM 0.5          // dynamic of hands without a stroke to play
+#define ROLLED 0.2        // strokes of one hand nearer to each other are a roll's (s)
+#define TOUCHING 1e-3     // before a contact, the plan has the stick's speed in it (s)
 #define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
 #define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
 #define LIMIT_HEIGHTS 8   // postures in that mean
@@ -284,12 +288,64 @@ static void set_course(performance_motion *m, const performance_settings *s,
             for (int hand = 0; hand < HIMC_HANDS; hand++)
                 tip[k][hand] =
                     himc_motion_planned(m, (himc_hand)hand, t + himc_avoidance_times[k]).x;
-        himc_avoidance_look_ahead(&b->avoidance, &b->posture, &b->shells, &b->from, &b->goal, tip,
+        himc_posture now = b->posture;
+        for (int hand = 0; hand < HIMC_HANDS; hand++)
+            now.hand[hand] = himc_hand_path_at(&m->path[hand], t);
+        himc_avoidance_look_ahead(&b->avoidance, &now, &b->shells, &b->from, &b->goal, tip,
                                   t - b->avoided);
         b->avoided = t;
     }
     himc_avoidance_apply(&b->avoidance, &b->goal);
     b->time = t;
+}
+
+// the hands
+
+// how a hand plays its next stroke
+static himc_hand_style style_of(const performance_motion *m, himc_hand hand,
+                                const himc_source_stroke *next)
+{
+    himc_nuance nuance = 0;
+    if (next->time - m->answered[hand] < ROLLED)
+        return himc_hand_style_roll();
+    while (nuance < HIMC_NUANCES && strcmp(next->nuance, himc_nuance_name(nuance)) != 0)
+        nuance++;
+    if (nuance == HIMC_NUANCES) // a take's stroke has none
+        nuance = HIMC_LEGATO;
+    double speed = -himc_motion_planned(m, hand, next->time - TOUCHING).v.z;
+    return himc_hand_style_of(nuance,
+                              himc_gesture_dynamic_at(nuance, fmax(speed, HIMC_SLOWEST_GESTURE)));
+}
+
+// aims the hands' paths at the plan, from a tick at `t` to the next
+static void aim_hands(performance_motion *m, const performance_drums *drums, double t, double next)
+{
+    double middle = 0.5 * (t + next), stick = himc_vec3_length(m->body.posture.skeleton.tip);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
+        himc_source_stroke stroke = himc_motion_stroke(m, drums, hand, t);
+        if (!m->path[i].moving) {
+            m->style[i] = himc_hand_style_of(HIMC_LEGATO, CALM);
+            m->level[i] = m->body.posture.level;
+        }
+        if (stroke.any) { // else it goes on as for the one before
+            m->style[i] = style_of(m, hand, &stroke);
+            m->level[i] = himc_drums_frame(drums, stroke.drum)->center.z +
+                          m->body.posture.skeleton.mallet_radius;
+        }
+        const himc_hand_style *style = &m->style[i];
+        double grip_at = middle + himc_hand_path_foresight(style->grip_lead),
+               hand_at = middle + himc_hand_path_foresight(style->hand_lead);
+        himc_hand_ahead ahead = {
+            .grip = himc_motion_planned(m, hand, grip_at).x.z - m->level[i],
+            .hand = himc_motion_planned(m, hand, hand_at).x.z - m->level[i],
+            .up = himc_motion_planned(m, hand, middle + HIMC_HAND_PATH_RISES).v.z,
+            .level = m->level[i]};
+        m->path[i] = himc_hand_path_at(&m->path[i], t);
+        himc_hand_path_aim(&m->path[i], style, &ahead, stick);
+        m->body.posture.trunk_posture = trunk_at(m, t);
+        himc_posture_swing(&m->body.posture, hand, himc_motion_planned(m, hand, t).x, &m->path[i]);
+    }
 }
 
 // the joints
@@ -299,7 +355,10 @@ static void find_posture(const performance_motion *m, const performance_settings
                          const himc_target tip[HIMC_HANDS], himc_posture_motion *motion)
 {
     double at = himc_motion_take_time(m, t);
-    himc_posture_moving(&m->body.posture, tip, motion);
+    himc_posture now = m->body.posture; // whose hands rest wherever the tips are
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        now.hand[hand] = himc_hand_path_at(&m->path[hand], t);
+    himc_posture_moving(&now, tip, motion);
     if (s->control.mode != HIMC_PIPELINE_HIMC && isfinite(at) && himc_track_has_posture(m->track))
         himc_track_posture(m->track, &m->body.posture.skeleton, at, s->bend ? tip : NULL, motion);
 }
@@ -405,6 +464,7 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
             m->replan = true;
     }
     set_course(m, s, drums, t);
+    aim_hands(m, drums, t, next);
     if (m->replan)
         fill_tick(m, s, &m->from, t);
     else
@@ -439,6 +499,8 @@ static void begin_at(performance_motion *m, const performance_settings *s, doubl
 {
     himc_foreseen f[HIMC_FORESEEN];
     m->crossfade_due = false;
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        m->path[hand] = (himc_hand_path){.moving = false};
     himc_posture_crossfade_cancel(&m->crossfade);
     if (clear) {
         for (int hand = 0; hand < HIMC_HANDS; hand++)

@@ -36,7 +36,10 @@ typedef struct performance_motion {
     bool has_regression;
     bool regression_of_take; ///< dropped with the take
     himc_posture_regression
-        regression; ///< null-space target; replaces the natural posture in `himc`
+        regression;                  ///< null-space target; replaces the natural posture in `himc`
+    himc_hand_path path[HIMC_HANDS]; ///< since the last tick
+    himc_hand_style style[HIMC_HANDS]; ///< of the present stroke ...
+    double level[HIMC_HANDS];          ///< ... and the tip's height in its contact (m)
     himc_damping damping;
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
