@@ -267,7 +267,7 @@ static bool prepare(himc_job *job, himc_error *error)
         j->player = NULL;
         if (!j->take && !himc_take_is_capture(j->name))
             return himc_error_set(error,
-                                  "take: %s: not a take by its suffix, expected " HIMC_TAKE_SUFFIXES
+                                  "take: %s: not a take by its suffix, expected" HIMC_TAKE_SUFFIXES
                                   "; a score or a MIDI file is loaded by score",
                                   j->name);
         if (!j->take)
