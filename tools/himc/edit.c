@@ -18,7 +18,6 @@
 #include "performance/performance_drums.h"
 #include "plan/score.h"
 #include "scene.h"
-#include "system/files.h"
 
 #include <errno.h>
 #include <math.h>
