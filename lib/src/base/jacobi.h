@@ -9,8 +9,7 @@
 
 #include <math.h>
 
-#define HIMC_JACOBI_SWEEPS 8       // chosen: matrices of 3 x 3 and 4 x 4 need 4 to 6
-#define HIMC_JACOBI_DIAGONAL 1e-17 // chosen: below the rounding of doubles, 1.1e-16, of the trace
+#define HIMC_JACOBI_SWEEPS 8 // chosen: matrices of 3 x 3 and 4 x 4 need 4 to 6
 
 // x' = c x - s y, y' = s x + c y for n pairs, neighbours `stride` apart in memory
 static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, double c, double s)
@@ -50,7 +49,7 @@ static inline void himc_jacobi(int n, double *a, double *v)
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)
                 off += fabs(a[p * n + q]);
-        if (!(off > HIMC_JACOBI_DIAGONAL * trace))
+        if (!(off > 1e-17 * trace)) // chosen: below the rounding of doubles, 1.1e-16
             return;
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)

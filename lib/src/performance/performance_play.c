@@ -13,11 +13,6 @@
 
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
-// chosen: shorter than a contact, longer than a slow bounce
-#define LEAST_BOUNCE 0.01 // (s)
-#define MOST_BOUNCE 0.5   // (s)
-#define LEAST_ROLL 0.01   // (beats)
-
 static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
 {
     bool hand = (unsigned)s->hand < HIMC_HANDS || (any_hand && s->hand == HIMC_HAND_ANY);
@@ -34,10 +29,11 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
            (bounces ||
             himc_error_set(error, "stroke: no such ornament, or %d bounces", s->bounces)) &&
            himc_check_range("stroke: early", s->early, 0, 1, "s", error) &&
-           himc_check_range("stroke: bounce_time", s->bounces ? s->bounce_time : LEAST_BOUNCE,
-                            LEAST_BOUNCE, MOST_BOUNCE, "s", error) &&
-           himc_check_range("roll: LENGTH", rolls ? s->length : LEAST_ROLL, LEAST_ROLL, LATEST_BEAT,
-                            "beats", error) &&
+           // chosen: shorter than a contact, longer than a slow bounce
+           himc_check_range("stroke: bounce_time", s->bounces ? s->bounce_time : 0.01, 0.01, 0.5,
+                            "s", error) &&
+           himc_check_range("roll: LENGTH", rolls ? s->length : 1, 0.01, LATEST_BEAT, "beats",
+                            error) &&
            himc_check_range("roll: DYNAMIC", rolls ? s->last_dynamic : 0, 0, 1, "", error);
 }
 

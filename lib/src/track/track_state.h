@@ -5,7 +5,6 @@
 #include "track/track.h"
 
 #include "base/interpolate.h"
-#include "track/nudge.h"
 #include "track/track_fit.h"
 
 /// From a stop to rest (s). Chosen: a stick at 5 m/s halts with less than 5 g.
