@@ -14,8 +14,8 @@ typedef enum himc_argument_kind {
 } himc_argument_kind;
 
 typedef struct himc_argument {
-    const char *name;    ///< as written in the grammar: "BEAT"
-    const char *context; ///< the command or the literal word before it, NULL for any
+    const char *names;    ///< as written in the grammar: "BEAT", "X|Y"
+    const char *contexts; ///< the commands or literal words before it, NULL for any
     himc_argument_kind kind;
     double low, high;
     const char *unit;
