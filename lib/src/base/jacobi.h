@@ -1,4 +1,5 @@
-/// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix; private.
+/// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix: means of rotations,
+/// solvers of the hands, modes of an uneven head.
 ///
 /// Cyclic Jacobi method: rotates in one plane p, q after the other by the smaller angle that makes
 /// a_pq zero. The tangent t of that angle solves t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2

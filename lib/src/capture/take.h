@@ -1,4 +1,5 @@
-/// take.h: the data of a take, shared by readers, writers and analysis; private.
+/// take.h: the data of a take, shared by readers, writers and analysis. The other
+/// rooms load one (take_file.c) and ask for tips and strikes.
 ///
 /// A reader fills format, rate, frames, points, and the unit and axes that the file states, all in
 /// the unit and axes of the file; himc_take_settle then converts everything into the library's

@@ -1,4 +1,4 @@
-/// track_state.h: the parts of a track: tips (track.c) and joints (track_posture.c); private.
+/// track_state.h: the parts of a track: tips (track.c) and joints (track_posture.c).
 #ifndef HIMC_TRACK_STATE_H
 #define HIMC_TRACK_STATE_H
 
