@@ -32,6 +32,19 @@ void himc_tilde_advance(void *player, uint64_t time)
     }
 }
 
+int himc_tilde_block(void *player)
+{
+    const t_himc *x = ((t_player *)player)->p_himc;
+    int longest = x->x_stream.s_length;
+    himc_error none;
+    for (int i = 0; i < x->x_count; i++) {
+        const t_drum_link *link = drum_link_find(x->x_drum[i].d_name, &none);
+        if (link && link->l_block > longest)
+            longest = link->l_block;
+    }
+    return longest;
+}
+
 static void himc_tilde_release(t_himc *x, const t_himc_drum *d)
 {
     if (d->d_drum && himc_drum_get_driver(d->d_drum).performer == &x->x_player)

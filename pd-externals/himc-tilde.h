@@ -60,6 +60,8 @@ bool himc_tilde_find_drum(void *x, const char *name);
 void himc_tilde_leave(t_himc *x);
 /* Advances the performance to sample `time`; called by the perform of x or of one of its drums. */
 void himc_tilde_advance(void *player, uint64_t time);
+/* The longest block of those that do so (samples). */
+int himc_tilde_block(void *player);
 
 /* himc-command.c */
 

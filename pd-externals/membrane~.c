@@ -256,6 +256,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
         if (x->x_stream.s_count > 0)
             x->x_before += (double)x->x_stream.s_count / x->x_stream.s_rate;
         stream_restart(&x->x_stream, sp[0]);
+        x->x_link.l_block = sp[0]->s_n;
         if (!driven) {
             x->x_link.l_rate = sp[0]->s_sr;
             himc_drum_realign(x->x_link.l_drum, 0);
@@ -423,7 +424,8 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     if (command.id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader)) {
         int delay = silence_holds(&x->x_silence, "strike")
                         ? HIMC_STRIKE_NEVER
-                        : stream_delay(&x->x_stream, himc_drum_time(drum));
+                        : stream_delay(&x->x_stream, himc_drum_time(drum),
+                                       drum_link_block(&x->x_link));
         return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
                                    command.atom[2].number, error);
     }
