@@ -34,6 +34,7 @@ other reads its ring. */
 
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
 #define DRUM_LINK_CLASS "membrane~"
+#define DRUM_LINK_PLAYERS 4  /* chosen: more do not find room around a drum */
 #define DRUM_LINK_ID_SIZE 32 /* chosen: room for two numbers of ten digits */
 #define LOAD_PERIOD 1.0 /* between two looks for what is loaded (ms); chosen: less than a block */
 
@@ -46,6 +47,8 @@ typedef struct t_drum_link {
     int l_block;   /* of the [membrane~] (samples) */
     /* The guest of a further performer, borrowed; NULL with the reason. */
     himc_drum *(*l_guest)(struct t_drum_link *link, const void *performer, himc_error *error);
+    /* The t_player of each performer, the one of l_drum first; NULL where there is none. */
+    void (*l_players)(struct t_drum_link *link, void *player[DRUM_LINK_PLAYERS]);
     /* Before a command by way of a performer: its file is beside the [membrane~]'s patch. */
     bool (*l_locate)(struct t_drum_link *link, himc_command *command, himc_error *error);
     /* After it: the guests take it, too. */

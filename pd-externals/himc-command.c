@@ -324,4 +324,5 @@ void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)
     himc_error error;
     if (!himc_tilde_command(x, s, argc, argv, &error))
         pd_error(x, "himc~: %s", error.text);
+    himc_tilde_share_room(x);
 }

@@ -233,6 +233,11 @@ report two_performers_on_a_drum_sound_as_the_sum_of_each_alone \
 report a_performer_that_stays_alone_plays_on \
     "$([ "$(grep -c '^touch: ' "$work/log")" = 5 ] || grep -c '^touch: ' "$work/log"; grep '^error' "$work/log")"
 
+play_pd room.pd
+rooms=$(awk '/^room: / { r = r $2 " " } /^listener: / { l = l $2 " " } END { print r l }' "$work/log")
+report the_last_room_and_listener_of_any_performer_at_a_drum_is_for_all \
+    "$([ "$rooms" = "3 3 0.5 0.5 1.5 1.5 2 2 1 1 off off 2 2 usual usual " ] || echo "$rooms")$(lines "tail: 0")"
+
 # --- bad input
 
 play_pd objects.pd
