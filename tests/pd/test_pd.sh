@@ -214,6 +214,22 @@ report technique_switched_is_told_each_time \
     "$([ "$(grep -c '^kettle: technique' "$work/log")" = 4 ] || grep '^kettle: technique' "$work/log")"
 report technique_switched_sounds_at_every_blow \
     "$(peaks switched | awk '{ for (k = 1; k < 6; k += 2) if (!($k > 5 && $(k + 1) > 1.5 * $k)) { print; exit } }')"
+# 0.3 s after the head has been damped a dry one is silent and the room sounds
+for technique in modal clip signal; do
+    why=
+    for listener in off usual; do
+        play_pd technique-ears.pd -send "himc-test $work/left.wav $work/right.wav $technique $listener"
+        level=$(numbers left | awk 'NR > 33600 && NR <= 43200 { s += $1 * $1 } END { print int(10 * log(s / 9600 + 1e-20) / log(10)) }')
+        alike=$(cmp -s "$work/left.wav" "$work/right.wav" && echo alike)
+        case "$technique $listener" in
+        "modal off") [ "$level" -lt -150 ] || why+="$level dB off " ;;
+        *off) [ "$alike" ] || why+="two ears off " ;;
+        *) [ -z "$alike" ] && [ "$level" -gt -55 ] && [ "$level" -lt -20 ] || why+="$level dB $alike" ;;
+        esac
+        why+=$(grep -m1 ^error "$work/log")
+    done
+    report "technique_${technique}_is_heard_by_two_ears_in_a_room_unless_off" "$why"
+done
 play_pd technique-himc.pd -send "himc-test $work/performed.wav"
 report technique_is_told_of_every_stroke_of_a_performer \
     "$(told=$(awk '/^kettle: touch/ { printf "%.4f %.3f %.3f\n", $3, $4, $5 }' "$work/log")
