@@ -5,8 +5,8 @@ inlets   force at the spot (N, signal or float) and commands: tune radius mallet
          (himc/command.h); x and y of the spot (m from the head's centre, x away from the
          performer, signal or float)
 outlets  sound, of two ears in front of it or of its performer's `listener`: the left one and the
-         right one, or both in one of 1 channel; or of CHANNELS pickups; displacement under the
-         spot (m); messages:
+         right one, or both in one of 1 channel; behind them pickups 3 to CHANNELS; after
+         `pickup` or `listener off` all pickups; displacement under the spot (m); messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
          touch TIME X Y VELOCITY PLACE PITCH       a blow begins: distance from the centre
                                                    per radius, the principal mode's frequency (Hz)

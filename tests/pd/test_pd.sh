@@ -168,6 +168,10 @@ report channels_each_sound_as_their_pickup_alone \
     "$([ "$(level difference1) $(level difference2) $(level difference3)" = "0 0 0" ] &&
         awk -v l="$(level channel3)" 'BEGIN { exit !(l > 40) }' || cat "$work/log")"
 
+play_pd three.pd
+report a_third_outlet_has_its_pickup_beside_the_ears \
+    "$(awk '{ if ($2 > most[$1]) most[$1] = $2 } END { if (!(most["one:"] > 70 && most["two:"] > 70 && most["three:"] > 60)) print most["one:"], most["two:"], most["three:"] }' "$work/log")"
+
 play_pd one-way.pd
 loudest=$(awk '$1 == "one-way:" && $2 > max { max = $2 } END { print max + 0 }' "$work/log")
 report force_by_cord_plays_another_drum \

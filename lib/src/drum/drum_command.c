@@ -269,7 +269,7 @@ static bool change_pickup(himc_drum_settings *s, const himc_command *c, int firs
     if (!himc_pickup_check(&pickup, &s->head.head, error))
         return false;
     s->head.pickups[index] = pickup;
-    s->picked = true;
+    s->picked = s->picked || index < HIMC_EARS; // the ears leave the others
     return true;
 }
 
@@ -291,7 +291,6 @@ static bool do_pickups(himc_drum_settings *s, const himc_command *c, himc_error 
         all[i].azimuth = himc_argument_single(remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI));
     }
     s->head.pickup_count = wanted;
-    s->picked = s->picked || wanted > HIMC_EARS;
     return true;
 }
 
