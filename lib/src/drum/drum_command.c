@@ -122,11 +122,13 @@ static bool find_tune(const himc_shape *shape, const himc_command *c, himc_head 
 {
     himc_head lowest = *head, highest = *head;
     double hz = number(c, 0);
+    const char *name = himc_command_table((int)c->id)->name;
+    char note[HIMC_NOTE_SIZE], what[40];
+    himc_format(what, sizeof what, himc_note_name(hz, note) ? "%s: %s" : "%s", name, note);
     lowest.tension = HIMC_TENSION_MIN;
     highest.tension = HIMC_TENSION_MAX;
-    if (!himc_check_range(himc_command_table((int)c->id)->name, hz,
-                          himc_head_principal(&lowest, shape), himc_head_principal(&highest, shape),
-                          "Hz", error))
+    if (!himc_check_range(what, hz, himc_head_principal(&lowest, shape),
+                          himc_head_principal(&highest, shape), "Hz", error))
         return false;
     head->tension = as_said("TENSION", himc_head_tension(head, shape, hz));
     return true;
