@@ -220,8 +220,10 @@ HIMC_COMMAND_ROW(PICKUPS, pickups, DRUM, NOW, HIMC_CHANGES_HEAD, "CHANNELS",
 HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, HIMC_CHANGES_HEAD,
                  "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
                  "sets where the sound of one pickup is taken")
-HIMC_COMMAND_ROW(DRUM_LISTENER, listener, DRUM, NOW, 0, "off | usual",
-                 "off: the drum is heard by its pickups, as after `pickup`; usual: by two ears")
+HIMC_COMMAND_ROW(
+    DRUM_LISTENER, listener, DRUM, NOW, 0, "off | usual",
+    "off: the drum is heard by its pickups, as after `pickup`; usual: by two ears, in place of "
+    "the first two pickups")
 HIMC_COMMAND_ROW(DRUM_GAIN, gain, DRUM, NOW, 0, "DB",
                  "sets how loud the drum is heard, 0 by default: a fader, which changes no motion")
 HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",

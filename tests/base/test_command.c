@@ -543,6 +543,8 @@ static void test_unknown_commands_are_answered_with_the_nearest_name(void)
     refused(drum("play"), "play: a command for the performer, not for a drum");
     TEST_ASSERT_FALSE(perform("a\001b"));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "a?b"));
+    TEST_ASSERT_FALSE(perform("preset /tmp/x"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "expected a name, without a folder"));
 }
 
 static void test_numbers_that_are_not_finite_are_refused(void)

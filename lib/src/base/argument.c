@@ -28,6 +28,7 @@ static const himc_argument arguments[] = {
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
+    {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"DRUM|NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"COMMAND", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_NAME_SIZE - 1, "", NULL},
     {"MS", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_LATENCY_MAX, "ms", NULL},
@@ -161,6 +162,18 @@ bool himc_note_frequency(const char *note, double *hz)
     return true;
 }
 
+bool himc_note_name(double hz, char name[HIMC_NOTE_SIZE])
+{
+    static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
+                                        "F#", "G",  "G#", "A",  "A#", "B"};
+    double its = 0;
+    for (int key = 0; key < 12 * 10 && its != hz; key++) {
+        snprintf(name, HIMC_NOTE_SIZE, "%s%d", names[key % 12], key / 12);
+        himc_note_frequency(name, &its);
+    }
+    return its == hz;
+}
+
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
 {
     const char *word = atom->kind == HIMC_ATOM_SYMBOL ? atom->symbol : NULL;
@@ -206,10 +219,10 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     switch (argument->kind) {
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", words); break;
     case HIMC_ARGUMENT_NAME:
-        snprintf(
-            text, size,
-            "a drum's name: up to %d letters and digits, no number, no spot, no command of the performer",
-            HIMC_NAME_SIZE - 1);
+        snprintf(text, size,
+                 "%s: up to %d letters and digits, no number, no spot, no command of the performer",
+                 argument->context ? "a name, without a folder" : "a drum's name",
+                 HIMC_NAME_SIZE - 1);
         break;
     case HIMC_ARGUMENT_TEXT:
         snprintf(text, size, "a word of up to %g characters", argument->high);

@@ -358,7 +358,7 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
     const himc_atom drum = {HIMC_ATOM_SYMBOL, 0, name};
     // DRUM COMMAND ...: no drum has the name of a performer's command
     if (!row && receiver == HIMC_PERFORMER && drum_command(atoms, count, 0) &&
-        himc_argument_accepts(himc_argument_find("NAME", NULL), &drum)) {
+        himc_argument_accepts(himc_argument_find("NAME", "drum"), &drum)) {
         if (!himc_command_parse(out, HIMC_DRUM, atoms[0].symbol, atoms + 1, count - 1, error))
             return himc_command_doubt_drum(name, error);
         snprintf(out->drum, sizeof out->drum, "%s", name);

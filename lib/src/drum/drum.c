@@ -338,11 +338,11 @@ static int listen_in(himc_drum *drum, int n, double *const *sound, bool silent)
     int count = silent ? 0 : head->pickup_count, some = count > HIMC_EARS ? count : HIMC_EARS;
     if (!himc_ears_heard(ears) || (silent && himc_ears_at_rest(ears)))
         return count;
-    for (int k = himc_ears_alone(ears) ? 0 : count; k < some; k++)
+    for (int k = himc_ears_alone(ears) ? 0 : count; k < HIMC_EARS; k++)
         memset(sound[k], 0, (size_t)n * sizeof(double));
     if (count == 1 && !himc_ears_alone(ears))
         memcpy(sound[1], sound[0], (size_t)n * sizeof(double));
-    himc_ears_hear(ears, n, !silent && head->rays ? sound + HIMC_PICKUPS : NULL, some, sound,
+    himc_ears_hear(ears, n, !silent && head->rays ? sound + HIMC_PICKUPS : NULL, sound,
                    drum->set.gain * drum->fader);
     if (himc_ears_alone(ears))
         himc_membrane_mute_pickups(drum->membrane, true);
@@ -389,7 +389,7 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
     if (drum->noise.damp != held)
         himc_stroke_noise_damp(&drum->noise, held);
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
-    for (int k = 0; k < head->pickup_count && !himc_ears_alone(drum->ears); k++) {
+    for (int k = himc_ears_alone(drum->ears) ? HIMC_EARS : 0; k < head->pickup_count; k++) {
         double *at = &drum->nearness[k], to = nearness(&pickups[k]);
         int i = 0;
         for (; i < n && *at != to; i++) { // the pickup has moved

@@ -122,11 +122,13 @@ static bool find_tune(const himc_shape *shape, const himc_command *c, himc_head 
 {
     himc_head lowest = *head, highest = *head;
     double hz = number(c, 0);
+    const char *name = himc_command_table((int)c->id)->name;
+    char note[HIMC_NOTE_SIZE], what[40];
+    himc_format(what, sizeof what, himc_note_name(hz, note) ? "%s: %s" : "%s", name, note);
     lowest.tension = HIMC_TENSION_MIN;
     highest.tension = HIMC_TENSION_MAX;
-    if (!himc_check_range(himc_command_table((int)c->id)->name, hz,
-                          himc_head_principal(&lowest, shape), himc_head_principal(&highest, shape),
-                          "Hz", error))
+    if (!himc_check_range(what, hz, himc_head_principal(&lowest, shape),
+                          himc_head_principal(&highest, shape), "Hz", error))
         return false;
     head->tension = as_said("TENSION", himc_head_tension(head, shape, hz));
     return true;
@@ -269,7 +271,7 @@ static bool change_pickup(himc_drum_settings *s, const himc_command *c, int firs
     if (!himc_pickup_check(&pickup, &s->head.head, error))
         return false;
     s->head.pickups[index] = pickup;
-    s->picked = true;
+    s->picked = s->picked || index < HIMC_EARS; // the ears leave the others
     return true;
 }
 
@@ -291,7 +293,6 @@ static bool do_pickups(himc_drum_settings *s, const himc_command *c, himc_error 
         all[i].azimuth = himc_argument_single(remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI));
     }
     s->head.pickup_count = wanted;
-    s->picked = s->picked || wanted > HIMC_EARS;
     return true;
 }
 

@@ -330,6 +330,7 @@ bool himc_drums_listen(performance_drums *d, const himc_listener *listener, himc
     for (int i = 0; i < d->count; i++)
         if (listener->on && !himc_drum_open_ears(d->slot[i].drum, error))
             return false;
+    d->hearings += !himc_listener_equal(&d->listener, listener);
     d->listener = *listener;
     for (int i = 0; i < d->count; i++)
         himc_drum_listen(d->slot[i].drum, listener);
@@ -338,6 +339,7 @@ bool himc_drums_listen(performance_drums *d, const himc_listener *listener, himc
 
 void himc_drums_enclose(performance_drums *d, const himc_walls *walls)
 {
+    d->hearings += d->walls.seconds != walls->seconds || d->walls.volume != walls->volume;
     d->walls = *walls;
     for (int i = 0; i < d->count; i++)
         himc_drum_enclose(d->slot[i].drum, walls);

@@ -41,6 +41,7 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
     s.seconds = fmax((double)c->played, 0) / c->sample_rate;
     s.limit_hits = himc_body_limit_hits(p->body);
     s.events_lost = p->events.lost;
+    s.hearings = p->drums.hearings;
     s.sample_rate = c->sample_rate;
     s.physics_rate = c->physics_rate;
     s.task_rate = c->task_rate;

@@ -281,6 +281,15 @@ bool himc_performance_add_drum(himc_performance *p, himc_drum *drum, himc_error 
     return himc_performance_adopt_drum(p, himc_drum_retain(drum), DRUM_GIVEN, &index, error);
 }
 
+bool himc_performance_hear_as(himc_performance *p, const himc_performance *other, himc_error *error)
+{
+    if (!himc_listener_equal(&p->drums.listener, &other->drums.listener) &&
+        !himc_drums_listen(&p->drums, &other->drums.listener, error))
+        return false;
+    himc_drums_enclose(&p->drums, &other->drums.walls);
+    return true;
+}
+
 bool himc_performance_find_drum(himc_performance *p, const char *name)
 {
     const himc_performance_config *host = &p->host.config;
