@@ -460,7 +460,7 @@ static void test_errors_name_field_value_and_allowed_values(void)
     refused(perform("stroke 1 left legatto f"),
             "stroke: NUANCE: legatto, expected legato tenuto accent vertical-accent staccato");
     refused(perform("stroke 1 left"),
-            "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]");
+            "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]");
     refused(perform("stroke 1 left legato f 0.1"),
             "stroke: SPOT: 0.1, expected center normal rim or X Y, both -1 .. 1 m");
     refused(perform("stroke x left legato f"), "stroke: BEAT: x, expected 0 .. 1e+06");

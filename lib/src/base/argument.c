@@ -183,7 +183,7 @@ bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
         // it must stay itself in a score line, an OSC address and as a stroke's last atom
         return word && word[0] && strlen(word) < HIMC_NAME_SIZE &&
                !strpbrk(word, " \t/#*?,;:[]{}\\\"$") && himc_line_is_clean(word) &&
-               strcmp(word, "comment") != 0 && find_word(spots, word) < 0 &&
+               strcmp(word, "comment") != 0 && strcmp(word, "dead") != 0 && find_word(spots, word) < 0 &&
                !himc_command_find(HIMC_PERFORMER, word);
     case HIMC_ARGUMENT_TEXT:
         return word && strlen(word) >= argument->low && strlen(word) <= argument->high;

@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#define DEAD_TIME 0.2 // of a mallet on the head (s); chosen: the tone is over by then
 #define WORD_SIZE 64
 #define EXPECTED_SIZE 256
 
@@ -297,6 +298,12 @@ static int ornament_of(himc_command_id id)
     }
 }
 
+static bool is_dead(const himc_command *c, int i)
+{
+    return i < c->count && c->atom[i].kind == HIMC_ATOM_SYMBOL &&
+           strcmp(c->atom[i].symbol, "dead") == 0;
+}
+
 /// The stroke in the checked atoms of a command that holds one.
 static himc_stroke read_stroke(const himc_command *c)
 {
@@ -324,8 +331,13 @@ static himc_stroke read_stroke(const himc_command *c)
         stroke.spot = HIMC_SPOT_XY;
         stroke.x = c->atom[i++].number;
         stroke.y = c->atom[i++].number;
-    } else if (i < c->count && c->choice[i] >= 0) {
+    } else if (i < c->count && c->choice[i] >= 0 && !is_dead(c, i)) {
         stroke.spot = (himc_spot)c->choice[i++];
+    }
+    if (is_dead(c, i)) {
+        stroke.bounces = HIMC_DEAD;
+        stroke.bounce_time = DEAD_TIME;
+        i++;
     }
     if (i < c->count)
         snprintf(stroke.drum, sizeof stroke.drum, "%s", c->atom[i].symbol);

@@ -22,14 +22,22 @@ static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, doub
     }
 }
 
+// cosine and sine of the rotation that makes a_pq zero
+static inline void himc_jacobi_angle(double pp, double pq, double qq, double *c, double *s)
+{
+    double theta = (qq - pp) / (2 * pq);
+    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    *c = 1 / sqrt(t * t + 1);
+    *s = t * *c;
+}
+
 // the rotation that makes a[p][q] zero
 static inline void himc_jacobi_rotate(int n, double *a, double *v, int p, int q)
 {
+    double c, s;
     if (a[p * n + q] == 0)
         return;
-    double theta = (a[q * n + q] - a[p * n + p]) / (2 * a[p * n + q]);
-    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
-    double c = 1 / sqrt(t * t + 1), s = t * c;
+    himc_jacobi_angle(a[p * n + p], a[p * n + q], a[q * n + q], &c, &s);
     himc_jacobi_mix(n, a + p, a + q, n, c, s);
     himc_jacobi_mix(n, a + p * n, a + q * n, 1, c, s);
     himc_jacobi_mix(n, v + p, v + q, n, c, s);

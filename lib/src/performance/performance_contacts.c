@@ -12,7 +12,7 @@
 ///
 /// A stroke that bounces (bounce.h) is left to the fingers from its first contact to its last, in
 /// the air, too; each contact is reported as a strike of its own. The plan continues after the
-/// last.
+/// last. A dead stroke is left to the arm in the same way; it is one contact, and damps the head.
 ///
 /// A contact that no stroke asked for is a press (grip.h), and so is a stroke after which the tip
 /// rests on the head: control acts on with a bounded force, and the plan is not changed. A press
@@ -33,6 +33,8 @@
 // No arm moves a stick faster. A body that is thrown about by gains or a rate that cannot hold it
 // does, up to 100 m/s; the head then feels a blow as of the fastest free mallet, in each step.
 #define FASTEST_TIP HIMC_STRIKE_VELOCITY_MAX // (m/s) along the normal, and its change in a step
+// chosen: a mallet that is kept on the head takes a quarter of what a hand does
+#define DEAD_DAMP 0.25
 // chosen: a few times the 5 .. 15 ms of a contact
 #define SAME_STROKE 0.100 // largest time between planned and real contact of one stroke (s)
 #define RESTING_TIME 0.1  // so soon after the last one a slow contact is no strike (s)
@@ -85,6 +87,12 @@ static himc_vec3 over_head(const contact_scene *s, int drum, himc_vec3 tip)
 static bool is_free(const stick_contact *c)
 {
     return c->touching || c->bounce.on;
+}
+
+// true while the fingers keep the mallet on the head
+static bool is_dead(const stick_contact *c)
+{
+    return c->bounce.on && c->bounce.bounces == HIMC_DEAD;
 }
 
 // height of a stick over its head (m), and its velocity along the normal (m/s), up
@@ -220,7 +228,9 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
     int drum = is_free(c) ? c->drum : next.drum;
     bool released = is_free(c) || (due && !rests_after(s, hand, next.drum, next.time));
     double yield = 0; // the hand's acceleration of the stick along the normal
-    if (c->bounce.on) {
+    if (is_dead(c)) {
+        yield = himc_bounce_dead(&c->bounce, t, velocity_of(c, s, hand));
+    } else if (c->bounce.on) {
         yield =
             himc_bounce_acceleration(&c->bounce, height_of(c, s, hand), velocity_of(c, s, hand));
     } else if (c->touching && c->pressed) {
@@ -293,6 +303,7 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     double added = c->stick.head.mass - turned / (b->skeleton.tip.z * b->skeleton.tip.z);
     c->stick.mass = fmax(body + added, 0.25 * body); // chosen: about its shaft without its ball
     c->share = body / c->stick.mass;
+    c->stick.hold = is_dead(c) ? DEAD_DAMP : 0;
     c->stick.one_way = s->settings->coupling == HIMC_COUPLING_ONE_WAY;
     c->stick.x = local.x;
     c->stick.y = local.y;
@@ -486,8 +497,9 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     bool late = !c->bounce.on && t >= c->strike.time + 0.06;
     // without force for 5 ms, a rising stick 1.5 ms; chosen: longer than the gaps inside one
     // contact of a mallet and a swinging head
-    bool separated =
-        quiet > 5e-3 ? !c->pressed || lifted : !c->pressed && quiet > 1.5e-3 && rise > 0;
+    bool separated = is_dead(c)     ? false
+                     : quiet > 5e-3 ? !c->pressed || lifted
+                                    : !c->pressed && quiet > 1.5e-3 && rise > 0;
     if (!is_kinematic(s))
         c->offset = c->stick.height - height;
     if (!separated && !late)

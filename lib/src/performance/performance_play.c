@@ -22,7 +22,7 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
         return himc_error_set(error, "stroke: no such hand, nuance or spot, or no drum's name");
     bool rolls = s->ornament >= HIMC_ROLL_SINGLE;
     bool bounces =
-        (unsigned)s->ornament <= HIMC_ROLL_PRESS && s->bounces >= HIMC_BUZZ && s->bounces <= 1;
+        (unsigned)s->ornament <= HIMC_ROLL_PRESS && s->bounces >= HIMC_DEAD && s->bounces <= 1;
     return himc_check_range("stroke: DYNAMIC", s->dynamic, 0, 1, "", error) &&
            himc_check_range("stroke: X", placed ? s->x : 0, -1, 1, "m", error) &&
            himc_check_range("stroke: Y", placed ? s->y : 0, -1, 1, "m", error) &&
