@@ -27,6 +27,7 @@
     SCRIPT(FILE, body)                                                     \
     SCRIPT(FILE, figure)                                                   \
     SCRIPT(FILE, sculpt)                                                   \
+    SCRIPT(FILE, solids)                                                   \
     SCRIPT(FILE, color)                                                    \
     SCRIPT(FILE, drum)                                                     \
     SCRIPT(FILE, modes)                                                    \
