@@ -34,6 +34,7 @@
     SCRIPT(FILE, strike)                                                   \
     SCRIPT(FILE, stage)                                                    \
     SCRIPT(FILE, camera)                                                   \
+    SCRIPT(FILE, rows)                                                     \
     SCRIPT(FILE, scene)                                                    \
     SCRIPT(FILE, playback)                                                 \
     SCRIPT(FILE, sound)                                                    \

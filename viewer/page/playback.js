@@ -136,9 +136,10 @@ export class Playback {
     // Amplitudes of a head's shapes. Between two frames the modes ring freely, on from the one before
     // and back from the one after, which are weighed by how near they are; a blow parts the two.
     head(drum, time) {
-        const i = before(drum.frames, time, f => f.time),
-            a = drum.frames[i],
-            b = drum.frames[i + 1],
+        const { frames } = drum,
+            i = before(frames.times, time),
+            a = i >= 0 && frames.get(i),
+            b = i + 1 < frames.times.length && frames.get(i + 1),
             out = this.amplitude.fill(0),
             known = drum.modes[Math.max(0, before(drum.modes, time, m => m.time))];
         if (!a || !known) return out;
