@@ -14,7 +14,8 @@ const presets = {
 };
 
 export const ALONE = 0.45; // what the cameras show on either side of a performer with one drum (m)
-const FOV = 38, // of the height (degrees)
+const FEET = 1.4, // how much farther off the feet are seen too; chosen
+    FOV = 38, // of the height (degrees)
     ASIDE = 0.25, // of the spread: how far before the performer the camera then looks
     NEARER = 0.65, // the drums to the camera than the target (m)
     NEAREST = 0.2, // from the target (m)
@@ -33,6 +34,7 @@ export class View {
         this.goal = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.lift = 0; // what is written below takes this share of the height, twice
         this.aside = 0; // what is written at the left takes this share of the width, twice
+        this.whole = false; // nothing of the performer behind the writing, not his feet either
         this.deep = 0; // how much nearer to the camera the outer performers are (m)
         this.spread = 0; // of all, on either side beyond ALONE (m)
         this.pointers = new Map();
@@ -67,7 +69,7 @@ export class View {
             const [target, azimuth, elevation, distance] = presets[name];
             const wide = (innerWidth / innerHeight) * (1 - 2 * this.aside), // that is left beside the writing
                 narrow = Math.max(1, 0.95 / Math.max(0.3, wide)),
-                above = 1 + 2 * this.lift, // what is left over the writing
+                above = this.whole ? FEET / (1 - 2 * this.lift) : 1 + 2 * this.lift, // what is left over the writing
                 half = Math.tan((FOV * Math.PI) / 360),
                 near = name === "top" ? 0 : NEARER + Math.max(0, this.deep - ASIDE * this.spread);
             this.name = name;

@@ -64,14 +64,17 @@ function shirt() {
                 joined(ellipsoid(u, [0.002, 0.004 * y, -0.024], [0.056, 0.051, 0.075]), 0.045),
                 joined(cone(u, [0, 0, -0.05], 0.049, [0, 0, -0.27], 0.0405), 0.02),
                 joined(ellipsoid(u, [0.008, 0, -0.14], [0.048, 0.044, 0.09]), 0.03),
-                joined(cone(f, [0.001, 0, -0.012], 0.0415, [0, 0, -0.06], 0.041), 0.02),
-                joined(cone(f, [0, 0, -0.062], 0.048, [0, 0, -0.09], 0.048), 0.006),
+                joined(cone(f, [0.001, 0, -0.012], 0.0415, [0, 0, -0.045], 0.0415), 0.02),
             ];
         }),
-    ], {
-        cut: HANDS.map(s => cone(bone(s + "-forearm"), [0, 0, -0.16], 0.08, [0, 0, -0.2], 0.07)),
-        cutSoft: 0.004,
-    });
+    ]);
+}
+
+// the edge of a sleeve, rolled up
+function cuff(side) {
+    const f = bone(side + "-forearm"),
+        edges = (d, local, x, y, z) => -smoothMin(-d, 0.016 - Math.abs(local(f, x, y, z)[2] + 0.066), 0.008);
+    return part("shirt", 0.007, 0.01, [cone(f, [0, 0, -0.03], 0.0465, [0, 0, -0.1], 0.0455)], { shape: edges });
 }
 
 function forearm(side) {
@@ -79,8 +82,8 @@ function forearm(side) {
         h = bone(side + "-hand"),
         y = side === "left" ? 1 : -1;
     return part("skin", 0.011, 0.04, [
-        cone(f, [0, 0, -0.05], 0.033, [0, 0, -0.225], 0.0255),
-        joined(ellipsoid(f, [0.004, 0, -0.105], [0.037, 0.039, 0.075]), 0.02),
+        cone(f, [0, 0, -0.08], 0.034, [0, 0, -0.225], 0.0255),
+        joined(ellipsoid(f, [0.003, 0, -0.115], [0.038, 0.039, 0.07]), 0.02),
         joined(ellipsoid(f, [0.002, 0.002 * y, -0.25], [0.02, 0.027, 0.04]), 0.03),
         joined(ellipsoid(h, [0.003, 0.003 * y, -0.008], [0.0195, 0.0275, 0.03]), 0.02),
     ]);
@@ -224,14 +227,14 @@ function features() {
         };
     const [ex, ey, ez] = EYE;
     return [
-        part("hair", 0.0095, 0.03, [ellipsoid(h, [-0.011, 0, 0.124], [0.1, 0.0785, 0.09])], { shape: hairline }),
+        part("hair", 0.0078, 0.03, [ellipsoid(h, [-0.011, 0, 0.124], [0.1, 0.0785, 0.09])], { shape: hairline }),
         part("lips", 0.0035, 0.004, [
             ellipsoid(h, [0.0803, 0, 0.0366], [0.0085, 0.022, 0.0042]),
             ellipsoid(h, [0.0798, 0, 0.0288], [0.0085, 0.0185, 0.005]),
         ]),
         ...both((s, y) => [
             part("skin", 0.0031, 0.004, [ellipsoid(h, [ex - 0.001, ey * y, ez], [0.0136, 0.0152, 0.0132])], {
-                cut: [ellipsoid(h, [ex + 0.015, (ey + 0.001) * y, ez - 0.0025], [0.02, 0.0125, 0.0038])],
+                cut: [ellipsoid(h, [ex + 0.015, (ey + 0.001) * y, ez - 0.003], [0.02, 0.0125, 0.0034])],
                 cutSoft: 0.001,
             }),
             part("hair", 0.0032, 0.004, [
@@ -294,7 +297,7 @@ function shoe(side) {
 
 // what is drawn at once, the head apart: the performer's own eye does not see it
 const surfaces = () => [
-    [shirt(), trousers(), ...HANDS.flatMap(side => [forearm(side), hand(side), shoe(side)])],
+    [shirt(), trousers(), ...HANDS.flatMap(side => [cuff(side), forearm(side), hand(side), shoe(side)])],
     [head(), ...features()],
 ];
 export const shirts = [
@@ -352,7 +355,7 @@ function stick() {
 // an eyeball that looks along x: white, iris, pupil
 function eye() {
     const ball = (from, to) => new THREE.SphereBufferGeometry(EYEBALL, 20, 6, 0, 2 * Math.PI, from, to - from),
-        rings = [0, 0.24, 0.6, 1.7];
+        rings = [0, 0.26, 0.66, 1.7];
     return merge(
         rings.slice(1).map((to, i) => ball(rings[i], to)),
         ["#0b0a0a", "#4a3a2c", "#b9b1a6"].map(rgb),

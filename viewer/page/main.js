@@ -396,7 +396,7 @@ for (const part of [footer, inspector]) resized.observe(part);
 for (const kind of [phone, lying]) kind.onchange = () => setLift(lifted());
 
 function setLift(lift) {
-    view.lift = lift;
+    ((view.lift = lift), (view.whole = phone.matches && !lying.matches));
     view.aside = aside();
     dispatchEvent(new Event("resize"));
 }
