@@ -13,7 +13,6 @@
 #include "base/random.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #define STEEPEST 4.5   // chosen: power of the fastest fall
 #define LEAST_RATE 0.1 // chosen: of an arrival, so that its time stays finite (1/s)

@@ -34,6 +34,7 @@ other reads its ring. */
 
 #define DRUM_LINK_MAGIC 0x68696d63u /* "himc" */
 #define DRUM_LINK_CLASS "membrane~"
+#define DRUM_LINK_PLAYERS 4  /* chosen: more do not find room around a drum */
 #define DRUM_LINK_ID_SIZE 32 /* chosen: room for two numbers of ten digits */
 #define LOAD_PERIOD 1.0 /* between two looks for what is loaded (ms); chosen: less than a block */
 
@@ -43,8 +44,11 @@ typedef struct t_drum_link {
     char l_build[DRUM_LINK_ID_SIZE]; /* HIMC_BUILD_ID of the binary that made the drum */
     himc_drum *l_drum;
     double l_rate; /* sample rate of the drum; kept by the object that drives it (Hz) */
+    int l_block;   /* of the [membrane~] (samples) */
     /* The guest of a further performer, borrowed; NULL with the reason. */
     himc_drum *(*l_guest)(struct t_drum_link *link, const void *performer, himc_error *error);
+    /* The t_player of each performer, the one of l_drum first; NULL where there is none. */
+    void (*l_players)(struct t_drum_link *link, void *player[DRUM_LINK_PLAYERS]);
     /* Before a command by way of a performer: its file is beside the [membrane~]'s patch. */
     bool (*l_locate)(struct t_drum_link *link, himc_command *command, himc_error *error);
     /* After it: the guests take it, too. */
@@ -115,7 +119,15 @@ static inline void watch_end(void)
 typedef struct t_player {
     void *p_himc;
     uint64_t p_time; /* of the performance; the head may be a few samples ahead (samples) */
+    int (*p_block)(void *player); /* the longest block of those that advance it (samples) */
 } t_player;
+
+/* The longest block of the objects that advance a drum (samples). */
+static inline int drum_link_block(const t_drum_link *link)
+{
+    t_player *player = himc_drum_get_driver(link->l_drum).performer;
+    return player ? player->p_block(player) : link->l_block;
+}
 
 /* An object's place in the stream of samples. */
 typedef struct t_stream {
@@ -165,11 +177,13 @@ static inline void stream_end(t_stream *s)
 #define STREAM_LONGEST_DELAY 8192 /* that the engine takes (samples) */
 
 /* Samples from where the engine is to where a message that arrives now belongs: messages come
-between blocks but have a time of their own. An engine that a longer block has pulled ahead can only
-take it at once. */
-static inline int stream_delay(const t_stream *s, uint64_t engine)
+between blocks but have a time of their own. The longest block pulls the engine ahead of a shorter
+one by up to their difference: all messages wait so long, and so come evenly. */
+static inline int stream_delay(const t_stream *s, uint64_t engine, int longest)
 {
-    double delay = (double)(int64_t)(s->s_count - engine) + stream_offset(s);
+    int own = s->s_length > sys_getblksize() ? s->s_length : sys_getblksize();
+    int lead = s->s_count > 0 && pd_getdspstate() && longest > own ? longest - own : 0;
+    double delay = (double)(int64_t)(s->s_count - engine) + stream_offset(s) + lead;
     return (int)lround(fmin(fmax(delay, 0), STREAM_LONGEST_DELAY));
 }
 

@@ -141,7 +141,8 @@ static void himc_tilde_loaded(void *object, const char *error)
 static bool himc_tilde_perform_command(t_himc *x, himc_drum *drum, const himc_command *command,
                                        himc_error *error)
 {
-    int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance));
+    int delay = stream_delay(&x->x_stream, himc_performance_time(x->x_performance),
+                             himc_tilde_block(&x->x_player));
     himc_load_target target = {.performance = x->x_performance,
                                .drum = drum,
                                .delay = delay,
@@ -202,7 +203,8 @@ static bool himc_tilde_command_drum(t_himc *x, const char *name, himc_command *c
     }
     if (good && command->id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader))
         good = himc_drum_strike_at(
-            link->l_drum, stream_delay(&x->x_stream, himc_drum_time(link->l_drum)),
+            link->l_drum,
+            stream_delay(&x->x_stream, himc_drum_time(link->l_drum), drum_link_block(link)),
             command->atom[0].number, command->atom[1].number, command->atom[2].number, error);
     else
         good = good && himc_tilde_perform_command(x, link->l_drum, command, error);
@@ -322,4 +324,5 @@ void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv)
     himc_error error;
     if (!himc_tilde_command(x, s, argc, argv, &error))
         pd_error(x, "himc~: %s", error.text);
+    himc_tilde_share_room(x);
 }

@@ -26,10 +26,46 @@ void himc_tilde_advance(void *player, uint64_t time)
             himc_osc_publish(x->x_osc, x->x_performance, himc_tilde_seconds() - start);
     }
     x->x_player.p_time = himc_performance_time(x->x_performance);
-    if (!x->x_waiting && himc_performance_event(x->x_performance, &x->x_event)) {
-        x->x_waiting = true;
+    bool moved = himc_performance_measure(x->x_performance).hearings != x->x_hearings,
+         waited = x->x_waiting;
+    x->x_waiting = waited || himc_performance_event(x->x_performance, &x->x_event);
+    if (moved || (x->x_waiting && !waited))
         clock_delay(x->x_clock, 0);
+}
+
+void himc_tilde_share_room(t_himc *x)
+{
+    long now = himc_performance_measure(x->x_performance).hearings;
+    bool moved = now != x->x_hearings;
+    himc_error error;
+    x->x_hearings = now;
+    for (int i = 0; moved && i < x->x_count; i++) {
+        void *player[DRUM_LINK_PLAYERS] = {NULL};
+        t_drum_link *link = drum_link_find(x->x_drum[i].d_name, &error);
+        if (link)
+            link->l_players(link, player);
+        for (int k = 0; k < DRUM_LINK_PLAYERS; k++) {
+            t_himc *other = player[k] ? ((t_player *)player[k])->p_himc : x;
+            if (other == x)
+                continue;
+            if (!himc_performance_hear_as(other->x_performance, x->x_performance, &error))
+                pd_error(other, "himc~: %s", error.text);
+            himc_tilde_share_room(other);
+        }
     }
+}
+
+int himc_tilde_block(void *player)
+{
+    const t_himc *x = ((t_player *)player)->p_himc;
+    int longest = x->x_stream.s_length;
+    himc_error none;
+    for (int i = 0; i < x->x_count; i++) {
+        const t_drum_link *link = drum_link_find(x->x_drum[i].d_name, &none);
+        if (link && link->l_block > longest)
+            longest = link->l_block;
+    }
+    return longest;
 }
 
 static void himc_tilde_release(t_himc *x, const t_himc_drum *d)
@@ -38,14 +74,17 @@ static void himc_tilde_release(t_himc *x, const t_himc_drum *d)
         himc_drum_set_driver(d->d_drum, (himc_drum_driver){NULL, NULL});
 }
 
-/* Takes `drum` in place of another of its name. */
+/* Takes `drum` in place of another of its name; a guest takes the room of those who are there. */
 static bool himc_tilde_take(t_himc *x, t_himc_drum *d, himc_drum *drum, himc_error *error)
 {
     if (!himc_performance_add_drum(x->x_performance, drum, error))
         return false;
     himc_drum_set_driver(drum, (himc_drum_driver){himc_tilde_advance, &x->x_player});
     d->d_drum = drum;
-    return true;
+    t_drum_link *link = drum_link_find(d->d_name, error);
+    t_player *first = link ? himc_drum_get_driver(link->l_drum).performer : NULL;
+    const t_himc *other = first ? first->p_himc : x;
+    return other == x || himc_performance_hear_as(x->x_performance, other->x_performance, error);
 }
 
 /* A guest of [membrane~ NAME], which another [himc~] plays. */

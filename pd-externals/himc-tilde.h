@@ -28,6 +28,7 @@ typedef struct t_himc {
     double x_rate; /* of the performance (Hz) */
     int x_count;
     t_himc_drum x_drum[HIMC_DRUMS];
+    long x_hearings; /* changes of listener and room that those at its drums have taken */
 
     t_stream x_stream;
     bool x_signals;              /* made with inlets for targets */
@@ -56,10 +57,14 @@ void himc_tilde_resolve(t_himc *x, bool tell);
 /* Takes the drum of [membrane~ NAME] that a command names and the arguments do not; false if there
 is none. */
 bool himc_tilde_find_drum(void *x, const char *name);
+/* Those who share a drum are in one room: the last `listener` or `room` of any of them holds. */
+void himc_tilde_share_room(t_himc *x);
 /* From now on no drum calls x. */
 void himc_tilde_leave(t_himc *x);
 /* Advances the performance to sample `time`; called by the perform of x or of one of its drums. */
 void himc_tilde_advance(void *player, uint64_t time);
+/* The longest block of those that do so (samples). */
+int himc_tilde_block(void *player);
 
 /* himc-command.c */
 

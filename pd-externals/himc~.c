@@ -125,6 +125,7 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
 
 static void himc_tilde_tick(t_himc *x)
 {
+    himc_tilde_share_room(x);
     if (x->x_spoilt && !x->x_told) {
         x->x_told = true;
         pd_error(x, "himc~: a target signal is not a finite number and is ignored");
@@ -188,6 +189,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
         return NULL;
     }
     x->x_player.p_himc = x;
+    x->x_player.p_block = himc_tilde_block;
     x->x_rate = config.sample_rate;
     x->x_count = argc;
     for (int i = 0; i < argc; i++)

@@ -5,8 +5,8 @@ inlets   force at the spot (N, signal or float) and commands: tune radius mallet
          (himc/command.h); x and y of the spot (m from the head's centre, x away from the
          performer, signal or float)
 outlets  sound, of two ears in front of it or of its performer's `listener`: the left one and the
-         right one, or both in one of 1 channel; or of CHANNELS pickups; displacement under the
-         spot (m); messages:
+         right one, or both in one of 1 channel; behind them pickups 3 to CHANNELS; after
+         `pickup` or `listener off` all pickups; displacement under the spot (m); messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
          touch TIME X Y VELOCITY PLACE PITCH       a blow begins: distance from the centre
                                                    per radius, the principal mode's frequency (Hz)
@@ -29,7 +29,7 @@ take the same commands and are heard with it. */
 #include "m_imp.h" /* obj_starttraverseoutlet */
 #include <float.h>
 
-#define GUESTS 3 /* performers beside the first; chosen: more do not find room around a drum */
+#define GUESTS (DRUM_LINK_PLAYERS - 1) /* performers beside the first */
 
 static t_class *membrane_class;
 
@@ -256,6 +256,7 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
         if (x->x_stream.s_count > 0)
             x->x_before += (double)x->x_stream.s_count / x->x_stream.s_rate;
         stream_restart(&x->x_stream, sp[0]);
+        x->x_link.l_block = sp[0]->s_n;
         if (!driven) {
             x->x_link.l_rate = sp[0]->s_sr;
             himc_drum_realign(x->x_link.l_drum, 0);
@@ -421,9 +422,10 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
     if (!pd_in_real_time())
         himc_loader_finish(x->x_loader);
     if (command.id == HIMC_COMMAND_STRIKE && !himc_loader_busy(x->x_loader)) {
-        int delay = silence_holds(&x->x_silence, "strike")
-                        ? HIMC_STRIKE_NEVER
-                        : stream_delay(&x->x_stream, himc_drum_time(drum));
+        int delay =
+            silence_holds(&x->x_silence, "strike")
+                ? HIMC_STRIKE_NEVER
+                : stream_delay(&x->x_stream, himc_drum_time(drum), drum_link_block(&x->x_link));
         return himc_drum_strike_at(drum, delay, command.atom[0].number, command.atom[1].number,
                                    command.atom[2].number, error);
     }
@@ -441,6 +443,14 @@ static bool membrane_command(t_membrane *x, t_symbol *s, int argc, t_atom *argv,
 static t_membrane *membrane_of(t_drum_link *link)
 {
     return (t_membrane *)((char *)link - offsetof(t_membrane, x_link));
+}
+
+static void membrane_players(t_drum_link *link, void *player[DRUM_LINK_PLAYERS])
+{
+    const t_membrane *x = membrane_of(link);
+    player[0] = himc_drum_get_driver(link->l_drum).performer;
+    for (int i = 0; i < GUESTS; i++)
+        player[1 + i] = i < x->x_guests ? himc_drum_get_driver(x->x_guest[i]).performer : NULL;
 }
 
 static bool membrane_locate(t_drum_link *link, himc_command *command, himc_error *error)
@@ -694,6 +704,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
                               .l_drum = drum,
                               .l_rate = rate,
                               .l_guest = membrane_invite,
+                              .l_players = membrane_players,
                               .l_locate = membrane_locate,
                               .l_commanded = membrane_commanded};
     x->x_layer = layer;

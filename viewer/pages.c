@@ -27,12 +27,14 @@
     SCRIPT(FILE, body)                                                     \
     SCRIPT(FILE, figure)                                                   \
     SCRIPT(FILE, sculpt)                                                   \
+    SCRIPT(FILE, solids)                                                   \
     SCRIPT(FILE, color)                                                    \
     SCRIPT(FILE, drum)                                                     \
     SCRIPT(FILE, modes)                                                    \
     SCRIPT(FILE, strike)                                                   \
     SCRIPT(FILE, stage)                                                    \
     SCRIPT(FILE, camera)                                                   \
+    SCRIPT(FILE, rows)                                                     \
     SCRIPT(FILE, scene)                                                    \
     SCRIPT(FILE, playback)                                                 \
     SCRIPT(FILE, sound)                                                    \

@@ -62,6 +62,7 @@ typedef enum himc_ornament {
 } himc_ornament;
 
 #define HIMC_BUZZ (-1) ///< bounces of a stroke: as many as fit
+#define HIMC_DEAD (-2) ///< no bounce: the fingers keep the mallet on the head
 
 /// One stroke, as written in a score.
 typedef struct himc_stroke {
@@ -74,8 +75,9 @@ typedef struct himc_stroke {
     double y;                  ///< and to the left (m)
     char drum[HIMC_NAME_SIZE]; ///< "" is the performer's first drum
     double early;              ///< of a grace note: so much before the beat (s), 0 .. 1
-    int bounces;               ///< contacts after the first without the arm: 0, 1 or HIMC_BUZZ
-    double bounce_time; ///< from the first contact to the bounce, or to the last (s), 0.01 .. 0.5
+    int bounces;        ///< contacts after the first without the arm: 0, 1, HIMC_BUZZ or HIMC_DEAD
+    double bounce_time; ///< from the first contact to the bounce, to the last, or to the end of a
+                        ///< dead stroke (s), 0.01 .. 0.5
     himc_ornament ornament; ///< what himc_performance_add_stroke makes of it
     double length;          ///< of a roll (beats)
     double last_dynamic;    ///< of a roll, at its end, 0 .. 1

@@ -40,13 +40,13 @@
     HIMC_COMMAND_ROW(ID, word, PERFORMER, when, 0, atoms, does)
 #endif
 
-#define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [DRUM]"
+#define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]"
 #define HIMC_ROW_ROLL "single|double|press"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc|sound|errors"
 
 // to the performer
 HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
-                 "adds one stroke to the score")
+                 "adds one stroke to the score; dead: the mallet stays on the head")
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
                  "that suits better, on one drum in turns")
@@ -221,8 +221,10 @@ HIMC_COMMAND_ROW(PICKUPS, pickups, DRUM, NOW, HIMC_CHANGES_HEAD, "CHANNELS",
 HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, HIMC_CHANGES_HEAD,
                  "CHANNEL air AZIMUTH ELEVATION DISTANCE | CHANNEL X Y",
                  "sets where the sound of one pickup is taken")
-HIMC_COMMAND_ROW(DRUM_LISTENER, listener, DRUM, NOW, 0, "off | usual",
-                 "off: the drum is heard by its pickups, as after `pickup`; usual: by two ears")
+HIMC_COMMAND_ROW(
+    DRUM_LISTENER, listener, DRUM, NOW, 0, "off | usual",
+    "off: the drum is heard by its pickups, as after `pickup`; usual: by two ears, in place of "
+    "the first two pickups")
 HIMC_COMMAND_ROW(DRUM_GAIN, gain, DRUM, NOW, 0, "DB",
                  "sets how loud the drum is heard, 0 by default: a fader, which changes no motion")
 HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",

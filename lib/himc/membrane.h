@@ -176,6 +176,7 @@ typedef struct himc_stick {
     double y;              ///< on the head, to the left (m)
     double height;         ///< up positive (m); the step moves it
     double velocity;       ///< up positive (m/s); the step changes it
+    double hold;           ///< while it presses, the head is damped as by so much `damp`, 0 .. 1
     bool one_way; ///< the stick meets a head at rest; the head's vibration does not push back
 
     double force;          ///< mean of the last sample (N, >= 0, on the stick upwards)

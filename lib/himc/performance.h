@@ -55,6 +55,10 @@ HIMC_RT himc_drum *himc_performance_drum(himc_performance *performance, int inde
 /// the drums of those names. False, and nothing changed, with the reason.
 bool himc_performance_command(himc_performance *performance, const himc_command *command, int delay,
                               himc_error *error);
+/// Takes the listener and the room of another performance. False, and nothing changed, with the
+/// reason: no memory.
+bool himc_performance_hear_as(himc_performance *performance, const himc_performance *other,
+                              himc_error *error);
 /// Whether drums made by the command `drum` sound (at first false: the host adds drums, and those
 /// that it does not have are silent).
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
@@ -251,6 +255,7 @@ typedef struct himc_performance_stats {
     long recoveries;     ///< times a non-finite state was met and the last good one restored
     long limit_hits;     ///< times a joint came to its bounds
     long events_lost;    ///< events dropped since the reset because the host did not take them
+    long hearings;       ///< changes of the listener or the room
     double sample_rate;  ///< in force (Hz)
     double physics_rate; ///< in force (Hz)
     double task_rate;    ///< in force (Hz)

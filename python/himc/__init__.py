@@ -266,7 +266,7 @@ class Rendering:
 
 
 def _is_take(path: str) -> bool:
-    return Path(path).suffix.lower() in (".bvh", ".c3d", ".trc", ".csv", ".tsv")
+    return bool(lib.himc_take_is_capture(path.encode()))
 
 
 def _is_text(score: str) -> bool:

@@ -116,6 +116,7 @@ bool session_command(session *s, const char *text, const char *word, himc_error 
 bool session_drum_command(session *s, const char *drum, const char *text, himc_error *error);
 bool session_add_drum(session *s, const char *name, double inches, himc_error *error);
 bool session_end_recording(session *s, himc_error *error);
+bool himc_take_is_capture(const char *path);
 bool session_is_command(const char *word);
 int session_makes_drums(const char *score, himc_error *error);
 void session_take_options(session *s, const char *left, const char *right, const char *up);

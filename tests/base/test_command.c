@@ -459,8 +459,9 @@ static void test_errors_name_field_value_and_allowed_values(void)
             "stroke: DYNAMIC: 1.7, expected ppp pp p mp mf f ff fff or 0 .. 1");
     refused(perform("stroke 1 left legatto f"),
             "stroke: NUANCE: legatto, expected legato tenuto accent vertical-accent staccato");
-    refused(perform("stroke 1 left"),
-            "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [DRUM]");
+    refused(
+        perform("stroke 1 left"),
+        "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]");
     refused(perform("stroke 1 left legato f 0.1"),
             "stroke: SPOT: 0.1, expected center normal rim or X Y, both -1 .. 1 m");
     refused(perform("stroke x left legato f"), "stroke: BEAT: x, expected 0 .. 1e+06");
@@ -544,6 +545,8 @@ static void test_unknown_commands_are_answered_with_the_nearest_name(void)
     refused(drum("play"), "play: a command for the performer, not for a drum");
     TEST_ASSERT_FALSE(perform("a\001b"));
     TEST_ASSERT_NOT_NULL(strstr(error.text, "a?b"));
+    TEST_ASSERT_FALSE(perform("preset /tmp/x"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "expected a name, without a folder"));
 }
 
 static void test_numbers_that_are_not_finite_are_refused(void)

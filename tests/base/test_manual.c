@@ -61,7 +61,7 @@ static void make_commands(himc_receiver receiver)
 // each atom in capitals once for each meaning it has
 static void make_atoms(void)
 {
-    char seen[4096] = "", line[640], allowed[512], key[128];
+    char seen[4096] = "", line[680], allowed[512], key[128];
     say("| atom | of | expected |\n|---|---|---|\n");
     const himc_command_row *row;
     for (int i = 0; (row = himc_command_table(i)); i++) {
@@ -75,13 +75,14 @@ static void make_atoms(void)
                 isupper((unsigned char)word[0]) ? himc_argument_find(word, context) : NULL;
             if (!a)
                 continue;
-            snprintf(key, sizeof key, ";%s/%s;", a->name, a->context ? a->context : "");
+            snprintf(key, sizeof key, "| %s | %s |", a->names, a->contexts ? a->contexts : "");
+            for (char *c = key; (c = strchr(c, '|')); c++) // those within a list
+                *c = c > key && c[-1] != ' ' ? ' ' : '|';
             if (strstr(seen, key))
                 continue;
             strncat(seen, key, sizeof seen - strlen(seen) - 1);
             himc_argument_describe(a, allowed, sizeof allowed);
-            snprintf(line, sizeof line, "| %s | %s | %s |\n", a->name, a->context ? a->context : "",
-                     allowed);
+            snprintf(line, sizeof line, "%s %s |\n", key, allowed);
             say(line);
         }
     }

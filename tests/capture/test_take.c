@@ -1,6 +1,8 @@
 /// test_take.c: tips, gaps, axes and units of takes made from known motions.
 #include "take_motions.h"
 
+#include "midi/score_file.h"
+
 void setUp(void)
 {
 }
@@ -197,6 +199,31 @@ static void test_files_of_other_formats_are_refused(void)
     TEST_ASSERT_EQUAL_STRING("longest gap: nan s, expected 0 .. 10 s", error.text);
 }
 
+// A format is its reader and its row: names, first bytes and errors follow from the row.
+static void test_the_row_of_a_format_tells_its_files(void)
+{
+    static const struct {
+        const char *suffix, *begins;
+    } rows[] = {
+#define ROW(suffix, begins) {"." #suffix, begins},
+        HIMC_TAKE_FORMATS(ROW, ROW)};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char ways[80], name[16];
+        snprintf(name, sizeof name, "take%s", rows[i].suffix);
+        TEST_ASSERT_TRUE_MESSAGE(himc_take_is_capture(name), name);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(HIMC_TAKE_SUFFIXES, rows[i].suffix), name);
+        snprintf(ways, sizeof ways, "%s", rows[i].begins);
+        for (char *way = strtok(ways, "|"); way; way = strtok(NULL, "|")) {
+            way[0] = way[0] == '\a' ? 2 : way[0];
+            TEST_ASSERT_EQUAL_STRING(rows[i].suffix, himc_take_suffix_of(way, strlen(way)));
+            TEST_ASSERT_NULL(himc_take_suffix_of(way, strlen(way) - 1));
+            TEST_ASSERT_FALSE(himc_score_is_text(way, strlen(way), "piece", &error));
+            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, rows[i].suffix), error.text);
+        }
+    }
+    TEST_ASSERT_NULL(himc_take_suffix_of("tempo 100;", 10));
+}
+
 static char told[8000];
 
 static void hear(void *user, const char *line)
@@ -299,6 +326,7 @@ int main(void)
     RUN_TEST(test_points_17_m_apart_are_refused);
     RUN_TEST(test_a_marker_that_hardly_moves_keeps_its_unit);
     RUN_TEST(test_files_of_other_formats_are_refused);
+    RUN_TEST(test_the_row_of_a_format_tells_its_files);
     RUN_TEST(test_describe_lists_contents_units_and_axes);
     RUN_TEST(test_describe_tells_of_strikes_too_far_apart_for_one_drum);
     RUN_TEST(test_describe_tells_which_speeds_are_extrapolated);

@@ -217,6 +217,11 @@ int sys_getblksize(void)
     return 64;
 }
 
+int pd_getdspstate(void)
+{
+    return 1;
+}
+
 static void test_a_message_to_pd_finds_its_sample_across_2_to_the_32_and_50(void)
 {
     for (int i = 0; i < 2; i++) {
@@ -230,7 +235,8 @@ static void test_a_message_to_pd_finds_its_sample_across_2_to_the_32_and_50(void
         TEST_ASSERT_EQUAL_UINT64(5, s.s_lag);
         for (int k = 0; k < 64; k++) {
             pd_time = k * 1000.0 / RATE;
-            TEST_ASSERT_EQUAL_INT(k < 5 ? 0 : k - 5, stream_delay(&s, engine));
+            TEST_ASSERT_EQUAL_INT(k < 5 ? 0 : k - 5, stream_delay(&s, engine, 64));
+            TEST_ASSERT_EQUAL_INT(k, stream_delay(&s, engine + 955, 1024));
         }
         s.s_count += 64;
         stream_end(&s);

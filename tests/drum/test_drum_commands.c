@@ -175,6 +175,8 @@ static void test_drum_checks_commands_that_no_parser_has_seen(void)
 {
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_RADIUS, 0, 0, 0, 1));
     TEST_ASSERT_EQUAL_STRING("radius: RADIUS: 0, expected 0.05 .. 1 m", error.text);
+    TEST_ASSERT_FALSE(say("gliss G9 1"));
+    TEST_ASSERT_NOT_NULL(strstr(error.text, "gliss: G9: 12543.9 Hz, expected "));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_RADIUS, NAN, 0, 0, 1));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_TENSION, INFINITY, 0, 0, 1));
     TEST_ASSERT_FALSE(raw(HIMC_COMMAND_MODES, NAN, 0, 0, 1));

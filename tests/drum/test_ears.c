@@ -36,7 +36,7 @@ static double complex response(const himc_ear_paths *paths, int ear, double hz, 
         row[0][i] = row[1][i] = SOFT * direct * cos(w * i / RATE);
         row[2][i] = SOFT * floor * cos(w * i / RATE);
     }
-    himc_ears_hear(&ears, PLENTY, rays, HIMC_EARS, rows, 1);
+    himc_ears_hear(&ears, PLENTY, rays, rows, 1);
     for (int i = PLENTY / 2; i < PLENTY; i++) // whole periods of multiples of 20 Hz
         sum += out[ear][i] * cexp(-I * w * i / RATE);
     return sum / (SOFT * PLENTY / 4);
@@ -452,6 +452,36 @@ static void test_a_drum_alone_is_heard_by_two_ears_until_a_pickup_is_asked_for(v
     TEST_ASSERT_TRUE(apart(drum) > 1e-4);
 }
 
+// three strokes in the pickups behind the first two, with ears that come, leave and come back
+static void hear_behind(bool ears, double out[2][3 * LENGTH])
+{
+    static const char *const listener[] = {"usual", "off", "usual"};
+    tearDown();
+    setUp();
+    TEST_ASSERT_TRUE(!ears || himc_drum_set_usual_listener(drum, &error));
+    says("pickups 4");
+    says("channel 3 0.1 0.05");
+    for (int i = 0; i < 3; i++) {
+        char text[40];
+        snprintf(text, sizeof text, "listener %s", ears ? listener[i] : "off");
+        says(text);
+        TEST_ASSERT_EQUAL(ears && i != 1, himc_drum_is_heard(drum));
+        himc_drum_strike_at(drum, 0, -0.2, 0.05, 1, &error);
+        advance(LENGTH);
+        for (int k = 0; k < 2; k++)
+            himc_drum_read_channel(drum, 2 + k, (uint64_t)i * LENGTH, LENGTH, out[k] + i * LENGTH);
+    }
+}
+
+static void test_ears_leave_the_pickups_behind_the_first_two_as_they_are(void)
+{
+    static double heard[2][3 * LENGTH], dry[2][3 * LENGTH];
+    hear_behind(true, heard);
+    hear_behind(false, dry);
+    TEST_ASSERT_TRUE(peak(dry[0], LENGTH) > 0 && peak(dry[1], LENGTH) > 0);
+    TEST_ASSERT_EQUAL_MEMORY(dry, heard, sizeof dry);
+}
+
 // a stroke on a drum as it is made, from the side
 static void test_ears_beside_a_drum_hear_two_sounds(void)
 {
@@ -490,6 +520,7 @@ int main(void)
     RUN_TEST(test_ears_find_a_drum_that_was_moved);
     RUN_TEST(test_a_drum_hears_as_another);
     RUN_TEST(test_a_drum_alone_is_heard_by_two_ears_until_a_pickup_is_asked_for);
+    RUN_TEST(test_ears_leave_the_pickups_behind_the_first_two_as_they_are);
     RUN_TEST(test_ears_beside_a_drum_hear_two_sounds);
     RUN_TEST(test_listener_refuses_what_is_no_place);
     RUN_TEST(test_listener_hears_all_drums_of_a_performance_until_reset);

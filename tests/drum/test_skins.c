@@ -106,6 +106,29 @@ static void test_a_calf_head_is_heavier_keeps_its_pitch_and_loses_its_upper_part
     himc_drum_release(drum);
 }
 
+static void test_a_calf_head_rings_shorter_on_every_drum_at_every_pitch(void)
+{
+    static const struct {
+        double inches;
+        const char *pitch[3];
+    } sets[] = {{32, {"C2", "F2", "A2"}},
+                {29, {"F2", "A2", "D3"}},
+                {26, {"A2", "D3", "F3"}},
+                {23, {"D3", "F3", "A3"}}};
+    for (int i = 0; i < 12; i++) {
+        himc_drum *drum = drum_of(sets[i / 3].inches, sets[i / 3].pitch[i % 3]);
+        double plastic[7];
+        for (int m = 1; m < 7; m++)
+            plastic[m] = t60(drum, m);
+        say(drum, "skin calf");
+        printf("%g %s: (1,1) %.2f of %.2f s\n", sets[i / 3].inches, sets[i / 3].pitch[i % 3],
+               t60(drum, 1), plastic[1]);
+        for (int m = 1; m < 7; m++)
+            TEST_ASSERT_TRUE(t60(drum, m) < 0.9 * plastic[m]);
+        himc_drum_release(drum);
+    }
+}
+
 static void test_a_cloth_lies_on_the_head_from_its_beat_on(void)
 {
     himc_performance *p = session_new();
@@ -131,6 +154,7 @@ int main(void)
     RUN_TEST(test_a_muffled_drum_is_dry_and_has_its_pitch);
     RUN_TEST(test_a_cloth_and_a_hand_add_up_and_are_two_things);
     RUN_TEST(test_a_calf_head_is_heavier_keeps_its_pitch_and_loses_its_upper_partials);
+    RUN_TEST(test_a_calf_head_rings_shorter_on_every_drum_at_every_pitch);
     RUN_TEST(test_a_cloth_lies_on_the_head_from_its_beat_on);
     return UNITY_END();
 }

@@ -184,6 +184,27 @@ static void test_noise_is_half_alike_at_two_places_and_goes_with_its_amount(void
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.25, product(half[0], half[0]) / power);
 }
 
+// bands fade from 20 dB of sound pressure at 1 m (2e-6 of 100 Pa) on, and then rest
+static void test_noise_rests_as_soon_as_nobody_hears_it_and_without_a_step(void)
+{
+    himc_stroke_noise noise = himc_stroke_noise_at(RATE);
+    double left = 0, right = 0, power = 0;
+    int at = 0, known = 0, rests = 0;
+    himc_stroke_noise_begin(&noise, -0.2, 0);
+    for (; at < 5 * RATE && (at < 200 || noise.sounds); at++) {
+        himc_stroke_noise_run(&noise, 1, at < 200 ? 25 * sin(HIMC_PI * at / 200) : 0, 2,
+                              (double *[]){&left, &right});
+        power += (left * left - power) / (0.02 * RATE);
+        rests += noise.sounds < known;
+        known = noise.sounds;
+        TEST_ASSERT_TRUE(at < 2000 || noise.band[0].root == 0 || power > 1e-12);
+    }
+    printf("rests after %.2f s, last sample %.1g\n", at / RATE, left);
+    TEST_ASSERT_EQUAL_INT(2, rests);
+    TEST_ASSERT_TRUE(at < 1.6 * RATE);
+    TEST_ASSERT_TRUE(fabs(left) < 1e-7 && fabs(right) < 1e-7); // -140 dB of 100 Pa
+}
+
 static void test_a_slow_press_makes_hardly_any_noise(void)
 {
     static double fast[LENGTH], slow[LENGTH], unused[LENGTH];
@@ -268,6 +289,7 @@ int main(void)
     RUN_TEST(test_equal_blows_are_equal_and_others_are_not);
     RUN_TEST(test_noise_is_the_same_in_all_blocks);
     RUN_TEST(test_noise_is_half_alike_at_two_places_and_goes_with_its_amount);
+    RUN_TEST(test_noise_rests_as_soon_as_nobody_hears_it_and_without_a_step);
     RUN_TEST(test_a_slow_press_makes_hardly_any_noise);
     RUN_TEST(test_pickups_on_the_head_hear_none_and_distance_weakens_it);
     RUN_TEST(test_noise_drive_ends_at_0_while_the_noise_still_sounds);

@@ -51,6 +51,14 @@ for name in himc membrane; do
         "$("$dir/words" <"$dir/messages" | sed '$d' | tr '\n' ';')$([ -s "$dir/messages" ] || echo "no messages")"
 done
 
+report boxes_of_the_help_patches_lie_beside_one_another "$(for patch in pd-externals/*-help.pd patches/techniques/*-help.pd patches/01*.pd; do
+    awk -f tests/pd/overprint.awk "$patch"
+done | tr '\n' ';')"
+for patch in pd-externals/membrane~-help.pd patches/01*.pd; do
+    report "$(basename "$patch" .pd | tr -c 'a-z0-9\n' _)_has_a_box_that_brings_the_ears_back" \
+        "$(grep -qx '#X msg [0-9]* [0-9]* listener usual;' "$patch" || echo none)"
+done
+
 echo "-----------------------"
 echo "$tests Tests $failures Failures 0 Ignored"
 [ $failures = 0 ]

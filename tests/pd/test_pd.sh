@@ -119,17 +119,21 @@ done <<<"10.3 64 494
 # a [metro] of hits from 700.3 ms on, with one hand, two in turn and any: each lands 150 ms after its
 # message, within half a millisecond
 for ms in 400 250 150 100; do
-    play_pd hits.pd -send "himc-test $ms 64"
+    play_pd hits.pd -send "himc-test $ms 64 64"
     report "taps_every_${ms}_ms_land_150_ms_after_their_messages" "$(awk -v interval=$ms '
         /^himc: strike/ { late = 1000 * $3 - 850.3 - interval * n++; if (late > 0.5 || late < -0.5) print "tap " n ": " late " ms; " }
         END { if (n != 24) print n + 0 " of 24 taps" }' "$work/log")"
 done
-taps() { # from the first one on: Pd delays what it gathers into larger blocks, here by 960 samples
-    awk '/^himc: strike/ { if (!n++) first = $3; $3 = sprintf("%.5f", $3 - first); print }' "$work/log"
+# by message to the performer and to the drum: all 960 samples later where one of the two has blocks
+# of 1024, as Pd gathers them
+taps() { # taps LATER
+    awk -v later=$1 '/^(himc|kettle): strike/ { $3 = sprintf("%.5f", $3 - later / 48000); print }' "$work/log" | sort -s -k 1,1
 }
-taps >"$work/taps"
-play_pd hits.pd -send "himc-test 100 1024"
-report taps_are_the_same_in_blocks_of_1024 "$(taps | cmp - "$work/taps" 2>&1)"
+taps 0 >"$work/taps"
+for blocks in "64 1024" "1024 64" "1024 1024"; do
+    play_pd hits.pd -send "himc-test 100 $blocks"
+    report "taps_are_the_same_in_blocks_of_${blocks/ /_and_}" "$(taps 960 | cmp - "$work/taps" 2>&1)"
+done
 
 play_pd missed.pd
 report strokes_and_hits_that_are_not_played_are_missed "$(lines "himc: missed 1 right far
@@ -163,6 +167,10 @@ play_pd channels.pd
 report channels_each_sound_as_their_pickup_alone \
     "$([ "$(level difference1) $(level difference2) $(level difference3)" = "0 0 0" ] &&
         awk -v l="$(level channel3)" 'BEGIN { exit !(l > 40) }' || cat "$work/log")"
+
+play_pd three.pd
+report a_third_outlet_has_its_pickup_beside_the_ears \
+    "$(awk '{ if ($2 > most[$1]) most[$1] = $2 } END { if (!(most["one:"] > 70 && most["two:"] > 70 && most["three:"] > 60)) print most["one:"], most["two:"], most["three:"] }' "$work/log")"
 
 play_pd one-way.pd
 loudest=$(awk '$1 == "one-way:" && $2 > max { max = $2 } END { print max + 0 }' "$work/log")
@@ -210,6 +218,22 @@ report technique_switched_is_told_each_time \
     "$([ "$(grep -c '^kettle: technique' "$work/log")" = 4 ] || grep '^kettle: technique' "$work/log")"
 report technique_switched_sounds_at_every_blow \
     "$(peaks switched | awk '{ for (k = 1; k < 6; k += 2) if (!($k > 5 && $(k + 1) > 1.5 * $k)) { print; exit } }')"
+# 0.3 s after the head has been damped a dry one is silent and the room sounds
+for technique in modal clip signal; do
+    why=
+    for listener in off usual; do
+        play_pd technique-ears.pd -send "himc-test $work/left.wav $work/right.wav $technique $listener"
+        level=$(numbers left | awk 'NR > 33600 && NR <= 43200 { s += $1 * $1 } END { print int(10 * log(s / 9600 + 1e-20) / log(10)) }')
+        alike=$(cmp -s "$work/left.wav" "$work/right.wav" && echo alike)
+        case "$technique $listener" in
+        "modal off") [ "$level" -lt -150 ] || why+="$level dB off " ;;
+        *off) [ "$alike" ] || why+="two ears off " ;;
+        *) [ -z "$alike" ] && [ "$level" -gt -55 ] && [ "$level" -lt -20 ] || why+="$level dB $alike" ;;
+        esac
+        why+=$(grep -m1 ^error "$work/log")
+    done
+    report "technique_${technique}_is_heard_by_two_ears_in_a_room_unless_off" "$why"
+done
 play_pd technique-himc.pd -send "himc-test $work/performed.wav"
 report technique_is_told_of_every_stroke_of_a_performer \
     "$(told=$(awk '/^kettle: touch/ { printf "%.4f %.3f %.3f\n", $3, $4, $5 }' "$work/log")
@@ -228,6 +252,11 @@ report two_performers_on_a_drum_sound_as_the_sum_of_each_alone \
     "$(awk '/^difference:/ { d = $2 } /^sound:/ { s = $2 } END { if (!(s > 0.05 && d < 1e-6 * s)) print d " of " s }' "$work/log")"
 report a_performer_that_stays_alone_plays_on \
     "$([ "$(grep -c '^touch: ' "$work/log")" = 5 ] || grep -c '^touch: ' "$work/log"; grep '^error' "$work/log")"
+
+play_pd room.pd
+rooms=$(awk '/^room: / { r = r $2 " " } /^listener: / { l = l $2 " " } END { print r l }' "$work/log")
+report the_last_room_and_listener_of_any_performer_at_a_drum_is_for_all \
+    "$([ "$rooms" = "3 3 0.5 0.5 1.5 1.5 2 2 1 1 off off 2 2 usual usual " ] || echo "$rooms")$(lines "tail: 0")"
 
 # --- bad input
 

@@ -70,7 +70,7 @@ static inline double random_number(const himc_argument *a, random_seed *seed)
     case 1: return high;
     default: break;
     }
-    if (strcmp(a->name, "BEAT") == 0 && x < 0.9)
+    if (strcmp(a->names, "BEAT") == 0 && x < 0.9)
         return 8 * any(seed);
     double value = low > 0 && high > 50 * low ? low * pow(high / low, x) : low + (high - low) * x;
     return a->kind == HIMC_ARGUMENT_COUNT ? floor(value) : value;
@@ -108,8 +108,9 @@ static inline void add_word(spoken *s, const char *word, size_t length)
     s->atom[s->count++] = (himc_atom){HIMC_ATOM_SYMBOL, 0, text};
 }
 
-static inline void add_argument(spoken *s, const himc_argument *a, random_seed *seed)
+static inline void add_argument(spoken *s, const char *name, const char *context, random_seed *seed)
 {
+    const himc_argument *a = himc_argument_find(name, context);
     int words = 0;
     char text[64];
     while (a->words && a->words[words])
@@ -121,7 +122,7 @@ static inline void add_argument(spoken *s, const himc_argument *a, random_seed *
     } else if (number) {
         add_number(s, random_number(a, seed));
     } else {
-        random_text(a->name, text, seed);
+        random_text(name, text, seed);
         add_word(s, text, strlen(text));
     }
 }
@@ -144,7 +145,7 @@ static inline void add_token(spoken *s, const char *token, size_t length, char c
             add_number(s, any(seed) * 0.4 - 0.2);
             return;
         }
-        add_argument(s, himc_argument_find(name, context), seed);
+        add_argument(s, name, context, seed);
         return;
     }
     int choices = 1;

@@ -106,6 +106,15 @@ class Browser:
             },
         )
 
+    def media(self, **features):
+        """What the page is told of the user's wishes: prefers_color_scheme="dark"."""
+        told = [{"name": k.replace("_", "-"), "value": v} for k, v in features.items()]
+        self.call(
+            "POST",
+            self.session + "/goog/cdp/execute",
+            {"cmd": "Emulation.setEmulatedMedia", "params": {"features": told}},
+        )
+
     def shot(self, path):
         with open(path, "wb") as file:
             file.write(base64.b64decode(self.call("GET", self.session + "/screenshot")))

@@ -725,7 +725,9 @@ def test_lanes_follow_the_limb_that_is_clicked():
             return import("/spectrum.js");
         }).then(({ spectrogram }) => {
             const rate = 48000, tone = Float32Array.from({ length: 24000 }, (_, i) => Math.sin((2 * Math.PI * 440 * i) / rate));
-            return spectrogram({ getChannelData: () => tone, sampleRate: rate }, () => true);
+            const b = new AudioBuffer({ length: tone.length, sampleRate: rate });
+            b.copyToChannel(tone, 0);
+            return spectrogram(b, () => true);
         }).then(picture => {
             const { data } = picture.getContext("2d").getImageData(picture.width >> 1, 0, 1, picture.height),
                 light = Array.from({ length: picture.height }, (_, r) => data[4 * r] + data[4 * r + 1] + data[4 * r + 2]),

@@ -19,6 +19,7 @@ LEAD = 2.5  # played before the picture, for the trails and the head's ringing (
 def still(scene, out, seconds, camera="stage", width=1280, height=720, bare=False):
     browser = Browser(width, height + 143)  # the window's own frame
     try:
+        browser.media(prefers_color_scheme="dark")
         with Viewer("--play", scene) as viewer:
             browser.open(f"http://127.0.0.1:{viewer.http}/")
             if not browser.wait("return !!(window.viewer && viewer.playback)", 60):

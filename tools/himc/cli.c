@@ -17,7 +17,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -262,7 +261,7 @@ bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES]
     out->subject = value[3];
     for (int i = 0; i < CLI_TAKE_VALUES; i++)
         if (value[i] && !cli_is_take(path))
-            return himc_error_set(error, "%s: %s is a score, expected a take: " HIMC_TAKE_SUFFIXES,
+            return himc_error_set(error, "%s: %s is a score, expected a take:" HIMC_TAKE_SUFFIXES,
                                   name[i], path);
     if (!up)
         return true;

@@ -18,7 +18,6 @@
 #include "performance/performance_drums.h"
 #include "plan/score.h"
 #include "scene.h"
-#include "system/files.h"
 
 #include <errno.h>
 #include <math.h>
@@ -396,8 +395,8 @@ static void stop_saving(session *s)
 static bool save_take(session *s, const char *name, himc_error *error)
 {
     const char *dot = strrchr(name, '.');
-    if (!dot || (strcmp(dot, ".bvh") && strcmp(dot, ".c3d") && strcmp(dot, ".trc")))
-        return himc_error_set(error, "%.40s: expected .bvh .c3d .trc", name);
+    if (!dot || !himc_take_can_save(name, error))
+        return dot || himc_error_set(error, "%.40s: expected a suffix", name);
     if (s->saver)
         return himc_error_set(error, "a take is being saved");
     int file = cli_temporary(s->saved, sizeof s->saved, dot);

@@ -1,7 +1,9 @@
 /// file.c: what a call reads and writes. An interrupted run removes its unfinished files.
 #define _XOPEN_SOURCE 700
 #include "base/file.h"
+#include "capture/take.h"
 #include "cli.h"
+#include "midi/smf.h"
 #include "system/files.h"
 
 #include <errno.h>
@@ -188,16 +190,8 @@ static void remove_input(void)
 // by its first bytes; anything else is a score
 static const char *suffix_of(const char *bytes, size_t size)
 {
-    static const struct {
-        const char *begin, *suffix;
-    } known[] = {{"HIERARCHY", ".bvh"},    {"PathFileType", ".trc"},   {"MThd", ".mid"},
-                 {"Trajectories", ".csv"}, {"Format Version", ".csv"}, {"time,", ".csv"},
-                 {"NO_OF_FRAMES", ".tsv"}};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (size >= strlen(known[i].begin) &&
-            !memcmp(bytes, known[i].begin, strlen(known[i].begin)))
-            return known[i].suffix;
-    return size > 1 && bytes[1] == 0x50 && (unsigned char)bytes[0] < 8 ? ".c3d" : ".txt";
+    const char *take = himc_take_suffix_of(bytes, size);
+    return take ? take : himc_midi_is_file(bytes, size) ? ".mid" : ".txt";
 }
 
 void cli_name_input(char *line)

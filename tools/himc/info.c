@@ -259,7 +259,7 @@ const cli_call cli_info = {
     "info",
     "FILE",
     "",
-    "describes a score, a MIDI file or a take (" HIMC_TAKE_SUFFIXES ")",
+    "describes a score, a MIDI file or a take," HIMC_TAKE_SUFFIXES,
     "Of a MIDI file: what of it can be played, and the score made of it. Of a take:\n"
     "rate, length, points, gaps, the strikes found in it, the player, where drumhead and\n"
     "seat are placed.",

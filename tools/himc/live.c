@@ -2,7 +2,6 @@
 #include "cli.h"
 
 #include <math.h>
-#include <string.h>
 
 #define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest; chosen
 #define SILENCE 1e-4     // of the peak: 80 dB

@@ -5,15 +5,20 @@ import * as THREE from "./three.js";
 
 const presets = {
     // target (m), azimuth (0 faces the performer) and elevation (rad), distance (m); chosen by eye
-    stage: [[0.34, 0, 0.68], -0.75, 0.2, 2.95],
-    front: [[0.3, 0, 0.68], 0, 0.16, 2.9],
-    side: [[0.32, 0, 0.68], -1.5708, 0.1, 2.75],
-    top: [[0.45, 0, 0.8], -0.001, 1.45, 2.6],
+    stage: [[0.32, 0, 0.76], -0.75, 0.2, 2.65],
+    front: [[0.3, 0, 0.78], 0, 0.24, 2.55],
+    side: [[0.32, 0, 0.77], -1.5708, 0.12, 2.6],
+    top: [[0.5, 0, 0.8], -0.001, 1.4, 2.45],
     hands: [[0.45, 0, 0.95], -0.55, 0.42, 0.95],
     head: [[0.7, 0, 0.85], -0.45, 0.3, 1.15],
 };
 
-const NEAREST = 0.2, // from the target (m)
+export const ALONE = 0.45; // what the cameras show on either side of a performer with one drum (m)
+const FEET = 1.4, // how much farther off the feet are seen too; chosen
+    FOV = 38, // of the height (degrees)
+    ASIDE = 0.25, // of the spread: how far before the performer the camera then looks
+    NEARER = 0.65, // the drums to the camera than the target (m)
+    NEAREST = 0.2, // from the target (m)
     CLOSE_UP = 0.9, // after a double click (m), or nearer
     PICK = 80; // a double click this near to a joint, a tip or a head looks at it (pixels)
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -23,13 +28,15 @@ export class View {
         this.points = () => []; // what a double click may look at (m)
         this.chosen = () => {}; // a click
         this.follow = () => null; // where the camera of that name looks now (m)
-        this.camera = new THREE.PerspectiveCamera(38, 1, 0.03, 80);
+        this.camera = new THREE.PerspectiveCamera(FOV, 1, 0.03, 80);
         this.camera.up.set(0, 0, 1);
         this.now = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.goal = { target: new THREE.Vector3(), azimuth: 0, elevation: 0, distance: 1 };
         this.lift = 0; // what is written below takes this share of the height, twice
         this.aside = 0; // what is written at the left takes this share of the width, twice
-        this.spread = 0; // half the width of the group of performers (m)
+        this.whole = false; // nothing of the performer behind the writing, not his feet either
+        this.deep = 0; // how much nearer to the camera the outer performers are (m)
+        this.spread = 0; // of all, on either side beyond ALONE (m)
         this.pointers = new Map();
         this.preset("stage");
         this.settle();
@@ -60,17 +67,19 @@ export class View {
         if (name === "eye") this.name = name;
         else if (Object.hasOwn(presets, name)) {
             const [target, azimuth, elevation, distance] = presets[name];
-            const wide = window.innerWidth * (1 - 2 * this.aside), // that is left beside the writing
-                narrow = Math.max(1, 0.95 / Math.max(0.3, wide / window.innerHeight));
-            const above = 1 + 2 * this.lift; // what is left over the writing
+            const wide = (innerWidth / innerHeight) * (1 - 2 * this.aside), // that is left beside the writing
+                narrow = Math.max(1, 0.95 / Math.max(0.3, wide)),
+                above = this.whole ? FEET / (1 - 2 * this.lift) : 1 + 2 * this.lift, // what is left over the writing
+                half = Math.tan((FOV * Math.PI) / 360),
+                near = name === "top" ? 0 : NEARER + Math.max(0, this.deep - ASIDE * this.spread);
             this.name = name;
             Object.assign(this.goal, {
                 azimuth,
                 elevation,
-                distance: distance * Math.max(narrow, above) + 1.25 * this.spread * above,
+                distance: Math.max(distance * Math.max(narrow, above), (ALONE + this.spread) / (half * wide) + near),
             });
             this.goal.target.set(...target);
-            if (this.spread) this.goal.target.x += 0.35 * this.spread;
+            if (this.spread && name !== "top") this.goal.target.x += ASIDE * this.spread;
             if (this.follow(name)) this.goal.distance = distance * narrow;
         }
         return this.name === name;
@@ -183,7 +192,7 @@ export class View {
         if (eye) return this.look(performer);
         const followed = this.follow(this.name);
         if (followed) this.goal.target.copy(followed);
-        if (this.camera.fov !== 38) ((this.camera.fov = 38), this.camera.updateProjectionMatrix());
+        if (this.camera.fov !== FOV) ((this.camera.fov = FOV), this.camera.updateProjectionMatrix());
         const k = calm.matches ? 1 : 1 - Math.exp(-dt / 120),
             n = this.now,
             g = this.goal;

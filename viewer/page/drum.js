@@ -2,13 +2,14 @@
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
-import { rod } from "./performer.js";
+import { joined, lathe, ring, rod } from "./solids.js";
 import { discard } from "./stage.js";
 
 const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     SECTORS = 72,
     MODES = 64,
     ABSENT_AFTER = 4000, // without amplitudes and strikes (ms); chosen: a drum at rest may send rarely
+    FOOT_REACH = 0.2, // from below the hoop to a foot that could use the pedal (m); chosen
     LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
     AT_REST = 1e-16; // sum of squared amplitudes (m^2): 10 nm, far below a pixel
 const net = new Net(RINGS, SECTORS);
@@ -92,8 +93,7 @@ function materials(envMap) {
             bumpScale: 0.006,
             side: THREE.DoubleSide,
         }),
-        steel: metal(rgb("#c9ccd0"), 0.22),
-        dark: metal(rgb("#3c3f44"), 0.4),
+        metal: metal(0xffffff, 0.26, { vertexColors: THREE.VertexColors }),
         head: new THREE.MeshStandardMaterial({
             color: rgb("#d8d4cc"),
             map: parchment(),
@@ -105,95 +105,118 @@ function materials(envMap) {
     });
 }
 
+// the kettle, and its edge rolled outwards below the collar of the head
 function bowl(a) {
     const points = [];
-    for (let i = 0; i <= 30; i++) {
-        const t = ((i / 30) * Math.PI) / 2; // from the bottom up
-        points.push(
-            new THREE.Vector2(
-                1.0 * a * Math.pow(Math.sin(t), 0.82),
-                -0.02 - 0.86 * a * Math.pow(Math.cos(t), 0.9),
-            ),
-        );
+    for (let i = 0; i <= 20; i++) {
+        const t = ((i / 20) * Math.PI) / 2; // from the bottom up
+        points.push([a * Math.pow(Math.sin(t), 0.82), -0.02 - 0.86 * a * Math.pow(Math.cos(t), 0.9)]);
     }
-    points.push(new THREE.Vector2(a * 1.0, 0));
-    return new THREE.LatheBufferGeometry(points, 72).rotateX(Math.PI / 2);
+    return lathe([...points, [1.03 * a, -0.022], [1.03 * a, -0.03]], 64);
 }
 
-function ring(radius, tube, material, z) {
-    const mesh = new THREE.Mesh(new THREE.TorusBufferGeometry(radius, tube, 14, 90), material);
-    mesh.position.z = z;
-    return mesh;
-}
+const STEEL = rgb("#c9ccd0"),
+    DARK = rgb("#3c3f44"),
+    PALE = rgb("#f6f2e6");
 
-// in the head's frame; `z` is the height of the head above the floor
-function stand(a, z, m) {
-    const group = new THREE.Group(),
-        v = (r, t, h) => new THREE.Vector3(r * Math.cos(t), r * Math.sin(t), h);
+// one geometry of bars of steel and dark ones
+const metals = (steel, dark, pale = []) =>
+    joined(
+        [...steel, ...dark, ...pale],
+        [...steel.map(() => STEEL), ...dark.map(() => DARK), ...pale.map(() => PALE)],
+    );
+
+const around = (r, t, h) => [r * Math.cos(t), r * Math.sin(t), h];
+
+// The stand in the drum's place, untilted, its pedal along x; `z` is the height of the head above the
+// floor. Three legs on wheels, joined below to the column in the middle, above to a ring.
+function stand(a, z) {
+    const floor = h => h - z,
+        hub = floor(0.085),
+        dark = [ring(a * 1.075, 0.009, -0.16), rod([0, 0, floor(0.04)], [0, 0, floor(0.13)], 0.038)],
+        steel = [rod([0, 0, floor(0.12)], [0, 0, -0.8 * a], 0.017)];
     for (let i = 0; i < 3; i++) {
-        const t = (2 * Math.PI * i) / 3 + Math.PI / 3;
-        group.add(
-            rod(v(a * 1.09, t, -0.05), v(a * 0.98, t, -z + 0.11), 0.011, m.dark),
-            rod(v(a * 0.98, t, -z + 0.11), v(a * 0.2, t, -z + 0.09), 0.013, m.dark),
+        const t = ((2 * i + 1) * Math.PI) / 3,
+            foot = around(a * 0.97, t, floor(0.075));
+        dark.push(
+            rod(around(a * 1.075, t, -0.15), foot, 0.011),
+            rod(foot, [0, 0, hub], 0.013),
+            wheel(a * 0.97, t, floor(0.034)),
         );
-        const wheel = new THREE.Mesh(
-            new THREE.CylinderBufferGeometry(0.035, 0.035, 0.022, 24),
-            m.dark,
-        );
-        wheel.position.copy(v(a * 1.0, t, -z + 0.036));
-        group.add(wheel, rod(v(a * 0.99, t, -z + 0.06), v(a * 0.98, t, -z + 0.12), 0.012, m.steel));
+        steel.push(rod(around(a * 0.97, t, floor(0.03)), foot, 0.014));
     }
-    group.add(ring(a * 0.98, 0.013, m.dark, -z + 0.11), ring(a * 1.09, 0.009, m.dark, -0.16));
-    const pedal = new THREE.Mesh(new THREE.BoxBufferGeometry(0.2, 0.09, 0.014), m.steel);
-    pedal.position.set(-a * 1.02, 0, -z + 0.07);
-    pedal.rotation.y = 0.22;
-    group.add(
-        pedal,
-        rod(v(a * 0.9, Math.PI, -z + 0.08), v(0.02, 0, -z + 0.1), 0.012, m.steel),
-        rod(v(0, 0, -z + 0.09), v(0, 0, -0.8 * a), 0.02, m.steel),
-    );
-    return group;
+    const reach = a + 0.07, // of the pedal, its heel's end on the floor
+        plate = new THREE.BoxBufferGeometry(0.21, 0.085, 0.012).rotateY(0.2);
+    steel.push(plate.translate(reach - 0.11, 0, floor(0.034)), rod([reach - 0.18, 0, floor(0.05)], [0, 0, hub], 0.012));
+    dark.push(new THREE.BoxBufferGeometry(0.03, 0.11, 0.012).translate(reach - 0.01, 0, floor(0.006)));
+    return metals(steel, dark);
 }
 
-function fittings(a, m) {
-    const group = new THREE.Group();
-    group.add(
-        ring(a * 1.035, 0.0095, m.steel, -0.006),
-        ring(a * 1.0, 0.006, m.steel, -0.002),
-        ring(a * 1.035, 0.008, m.steel, -0.026),
-    );
+// with its axle across the leg
+const wheel = (r, t, h) =>
+    new THREE.CylinderBufferGeometry(0.034, 0.034, 0.022, 20).rotateZ(t).translate(...around(r, t, h));
+
+// The counterhoop below the head, which is drawn over the kettle's edge, with eight screws and the tuning
+// gauge; in the head's frame, the player along x.
+function fittings(a) {
+    const band = [
+            [1.022 * a, -0.03],
+            [1.045 * a, -0.03],
+            [1.045 * a, -0.01],
+            [1.022 * a, -0.01],
+        ],
+        steel = band.slice(1).map((p, i) => lathe([band[i], p], 64)), // each with its own edges
+        dark = [];
     for (let i = 0; i < 8; i++) {
-        const t = (2 * Math.PI * (i + 0.5)) / 8,
-            p = h => new THREE.Vector3(a * 1.06 * Math.cos(t), a * 1.06 * Math.sin(t), h);
-        group.add(
-            rod(p(0.004), p(-0.19), 0.0055, m.steel),
-            rod(p(0.005), p(-0.022), 0.011, m.steel),
-            rod(p(-0.11), p(-0.17), 0.009, m.dark),
-        );
+        const p = h => around(a * 1.06, (2 * Math.PI * (i + 0.5)) / 8, h);
+        steel.push(rod(p(-0.007), p(-0.19), 0.0055), rod(p(-0.0085), p(-0.028), 0.011));
+        dark.push(rod(p(-0.11), p(-0.17), 0.009));
     }
-    return group;
+    const [x, y] = around(a * 1.09 + DIAL, GAUGE_AT, 0),
+        at = (dx, dy, z) => [x + dx, y + dy, z],
+        dial = new THREE.CylinderBufferGeometry(DIAL, DIAL, 0.004, 24, 1, false, -1.1, 2.2);
+    dark.push(
+        rod(at(0, 0, -0.165), at(0, 0, 0.015), 0.006),
+        rod(around(a * 1.07, GAUGE_AT, -0.158), at(0, 0, -0.158), 0.006),
+        rod(at(0.004, 0, 0.012), at(0.004, 0.02, DIAL - 0.006), 0.002), // its hand
+    );
+    return metals(steel, dark, [dial.rotateZ(Math.PI / 2).translate(...at(0, 0, 0.008))]);
 }
+
+const GAUGE_AT = 1.4, // from the player's direction: beside the hands (rad)
+    DIAL = 0.06; // its radius (m)
+
+// where the head bends down to its hoop: out (radii), down (m), how far the normal is turned outwards
+const COLLAR = [
+    [1.008, -0.0025, 0.4],
+    [1.018, -0.011, 0.8],
+    [1.026, -0.016, 0.6],
+];
 
 function headGeometry(a) {
     const g = new THREE.BufferGeometry(),
-        position = new Float32Array(3 * (RINGS + 1) * SECTORS),
+        rings = RINGS + COLLAR.length,
+        position = new Float32Array(3 * (rings + 1) * SECTORS),
+        normal = new Float32Array(position.length),
         uv = [],
         index = [];
-    for (let r = 0; r <= RINGS; r++)
+    for (let r = 0; r <= rings; r++)
         for (let s = 0; s < SECTORS; s++) {
             const t = (2 * Math.PI * s) / SECTORS,
-                x = (Math.cos(t) * r) / RINGS,
-                y = (Math.sin(t) * r) / RINGS,
+                [out, down, slope] = COLLAR[r - RINGS - 1] ?? [r / RINGS, 0, 0],
+                x = Math.cos(t) * out,
+                y = Math.sin(t) * out,
                 b = SECTORS;
-            position.set([a * x, a * y, 0], 3 * (r * SECTORS + s));
+            position.set([a * x, a * y, down], 3 * (r * SECTORS + s));
+            normal.set([slope * Math.cos(t), slope * Math.sin(t), 1 - slope], 3 * (r * SECTORS + s));
             uv.push(0.5 + x / 2, 0.5 + y / 2);
             const i = r * b + s,
                 j = r * b + ((s + 1) % b);
-            if (r < RINGS) index.push(i, i + b, j, j, i + b, j + b);
+            if (r < rings) index.push(i, i + b, j, j, i + b, j + b);
         }
     g.setIndex(index);
     g.setAttribute("position", new THREE.BufferAttribute(position, 3));
-    g.setAttribute("normal", new THREE.BufferAttribute(new Float32Array(position.length), 3));
+    g.setAttribute("normal", new THREE.BufferAttribute(normal, 3));
     g.setAttribute("uv", new THREE.Float32BufferAttribute(uv, 2));
     return g;
 }
@@ -225,14 +248,35 @@ export class Drum {
         this.tilted.position.set(x, y, z);
         this.tilted.rotation.y = -tilt;
         this.legs.position.set(x, y, z);
+        this.player = null; // it is turned to no one yet
+    }
+
+    // Turns the pedal beside the right foot if it is near, or else to the player, and the gauge to the
+    // player.
+    turn(player) {
+        if (this.player === player) return;
+        this.player = player;
+        const [x, y] = this.place,
+            [hips, foot] = player.stance(),
+            to = ([px, py]) => Math.atan2(py - y, px - x),
+            near = Math.hypot(foot[0] - x, foot[1] - y) < this.place[4] + FOOT_REACH;
+        this.legs.rotation.z = to(near ? foot : hips);
+        this.trim.rotation.z = to(hips);
+    }
+
+    // where it is struck, in its group's frame, which is its player's (m)
+    spot({ x, y }) {
+        this.tilted.updateMatrix();
+        return new THREE.Vector3(x, y, 0).applyMatrix4(this.tilted.matrix);
     }
 
     build(a, z) {
         const m = materials(this.stage.environment);
         for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
         this.head = new THREE.Mesh(headGeometry(a), m.head);
-        this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, fittings(a, m));
-        this.legs = stand(a, z, m);
+        this.trim = new THREE.Mesh(fittings(a), m.metal);
+        this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, this.trim);
+        this.legs = new THREE.Mesh(stand(a, z), m.metal);
         this.group.add(this.legs);
         this.group.traverse(o => (o.castShadow = o.receiveShadow = true));
         this.head.castShadow = false;

@@ -1,12 +1,13 @@
-// The figure: a mannequin, a matte shell for each segment and dark balls between them, modelled once
-// round the default skeleton in a seated rest pose, then moved by the segments of a pose. Lengths in
+// The figure: a seated player in shirt and trousers, modelled once round the default skeleton in a rest pose, then moved by the segments of a pose. Lengths in
 // metres, in each segment's frame (zero pose: x forward, y left, z up).
 import * as THREE from "./three.js";
 import { rgb } from "./color.js";
-import { cone, ellipsoid, sculpt } from "./sculpt.js";
+import { cone, ellipsoid, sculpt, smoothMin } from "./sculpt.js";
+import { joined as merge, lathe } from "./solids.js";
 import { HANDS, bone, jointKind, kinematics } from "./body.js";
 import { segments, tip, malletRadius } from "./skeleton.js";
 
+const EYES_TURN = 0.5; // (rad); chosen: beyond it the head turns
 const BUTT = 0.1; // length of the stick behind the grip: the library's default grip (m)
 
 // Rotation vectors of the rest pose (rad), for a pair of joints the left one. Chosen: seated, close
@@ -14,11 +15,11 @@ const BUTT = 0.1; // length of the stick behind the grip: the library's default 
 // zero.
 const rest = {
     waist: [0, 0.09, 0],
-    neck: [0, 0.11, 0],
-    head: [0, 0.11, 0],
-    shoulder: [0.32, -0.1, -0.3],
-    elbow: [0, -1.35, 0],
-    grip: [0, -0.4, 0],
+    neck: [0, 0.18, 0],
+    head: [0, 0.18, 0],
+    shoulder: [0.4, -0.1, -0.2],
+    elbow: [0, -1.5, 0],
+    grip: [-0.2, -0.36, 0], // between the german and the french grip
     hip: [0.228, -0.998, 0.41],
     knee: [0, 1.015, 0],
 };
@@ -35,245 +36,269 @@ function restRotation(joint) {
 // f(side, sign of y) for both sides of the body
 const both = f => HANDS.flatMap(side => f(side, side === "left" ? 1 : -1));
 
-// The parts below: solids of one segment each, so that nothing stretches; between them balls, where
-// the body bends. All sizes: chosen by eye.
-const part = (cell, soft, solids, extra = {}) => ({ cell, soft, blend: 0.01, solids, ...extra });
+// The parts below: a surface each, over as many segments as bend it. All sizes: chosen by eye.
+const part = (color, cell, soft, solids, extra = {}) => ({ color, cell, soft, blend: 0.03, solids, ...extra });
 
 // flattens what `solid` covers: its own width of the joint with what came before (m)
 const joined = (solid, soft) => ({ ...solid, soft });
 
-function chest() {
-    const t = bone("trunk");
-    return part(0.014, 0.07, [
-        ellipsoid(t, [0.012, 0, 0.26], [0.1, 0.142, 0.13]),
-        ellipsoid(t, [0.004, 0, 0.17], [0.088, 0.118, 0.11]),
-        ...both((s, y) => [
-            joined(ellipsoid(t, [0.052, 0.062 * y, 0.272], [0.056, 0.07, 0.062]), 0.05),
-            joined(
-                cone(t, [-0.012, 0.03 * y, 0.338], 0.046, [-0.004, 0.13 * y, 0.335], 0.05),
-                0.06,
-            ),
-            joined(ellipsoid(t, [-0.055, 0.075 * y, 0.27], [0.045, 0.062, 0.085]), 0.05),
-        ]),
-        joined(cone(t, [-0.01, 0, 0.335], 0.062, [-0.008, 0, 0.362], 0.05), 0.04),
-    ]);
-}
-
-function belly() {
+// trunk and sleeves, rolled up below the elbow
+function shirt() {
     const t = bone("trunk"),
         p = bone("pelvis");
-    return part(
-        0.014,
-        0.05,
-        [
-            ellipsoid(t, [0.002, 0, 0.1], [0.08, 0.107, 0.1]),
-            ellipsoid(t, [0, 0, 0.02], [0.084, 0.112, 0.1]),
-            ellipsoid(p, [0, 0, 0.09], [0.086, 0.115, 0.09]),
-        ],
-        { blend: 0.06 },
-    );
-}
-
-function hips() {
-    const p = bone("pelvis");
-    return part(0.013, 0.06, [
-        ellipsoid(p, [-0.004, 0, 0.045], [0.1, 0.138, 0.08]),
-        ...both((s, y) => [ellipsoid(p, [-0.035, 0.072 * y, -0.012], [0.088, 0.082, 0.082])]),
+    return part("shirt", 0.0145, 0.06, [
+        ellipsoid(t, [0.012, 0, 0.26], [0.1, 0.142, 0.13]),
+        ellipsoid(t, [0.004, 0, 0.17], [0.09, 0.12, 0.11]),
+        ellipsoid(t, [0, 0, 0.06], [0.087, 0.115, 0.12]),
+        ellipsoid(p, [-0.004, 0, 0.085], [0.095, 0.126, 0.075]),
+        joined(cone(t, [-0.01, 0, 0.34], 0.062, [-0.003, 0, 0.374], 0.0535), 0.03),
+        ...both((s, y) => {
+            const u = bone(s + "-upper-arm"),
+                f = bone(s + "-forearm");
+            return [
+                joined(ellipsoid(t, [0.052, 0.062 * y, 0.272], [0.056, 0.07, 0.062]), 0.05),
+                joined(ellipsoid(t, [-0.055, 0.075 * y, 0.27], [0.045, 0.062, 0.085]), 0.05),
+                // from the neck over the shoulder blade, and along the collar bone
+                joined(cone(t, [-0.022, 0.03 * y, 0.362], 0.036, [-0.014, 0.15 * y, 0.337], 0.045), 0.05),
+                joined(cone(t, [0.03, 0.02 * y, 0.335], 0.03, [0.012, 0.15 * y, 0.338], 0.042), 0.04),
+                joined(ellipsoid(u, [0.002, 0.004 * y, -0.024], [0.056, 0.051, 0.075]), 0.045),
+                joined(cone(u, [0, 0, -0.05], 0.049, [0, 0, -0.27], 0.0405), 0.02),
+                joined(ellipsoid(u, [0.008, 0, -0.14], [0.048, 0.044, 0.09]), 0.03),
+                joined(cone(f, [0.001, 0, -0.012], 0.0415, [0, 0, -0.045], 0.0415), 0.02),
+            ];
+        }),
     ]);
 }
 
-function upperArm(side) {
-    const u = bone(side + "-upper-arm");
-    return part(0.0105, 0.05, [
-        cone(u, [0, 0, -0.05], 0.049, [0, 0, -0.235], 0.0385),
-        ellipsoid(u, [0.008, 0, -0.14], [0.046, 0.042, 0.09]),
-    ]);
+// the edge of a sleeve, rolled up
+function cuff(side) {
+    const f = bone(side + "-forearm"),
+        edges = (d, local, x, y, z) => -smoothMin(-d, 0.016 - Math.abs(local(f, x, y, z)[2] + 0.066), 0.008);
+    return part("shirt", 0.007, 0.01, [cone(f, [0, 0, -0.03], 0.0465, [0, 0, -0.1], 0.0455)], { shape: edges });
 }
 
 function forearm(side) {
-    const f = bone(side + "-forearm");
-    return part(0.0095, 0.04, [
-        cone(f, [0, 0, -0.045], 0.0375, [0, 0, -0.237], 0.024),
-        ellipsoid(f, [0.004, 0, -0.095], [0.041, 0.043, 0.075]),
+    const f = bone(side + "-forearm"),
+        h = bone(side + "-hand"),
+        y = side === "left" ? 1 : -1;
+    return part("skin", 0.011, 0.04, [
+        cone(f, [0, 0, -0.08], 0.034, [0, 0, -0.225], 0.0255),
+        joined(ellipsoid(f, [0.003, 0, -0.115], [0.038, 0.039, 0.07]), 0.02),
+        joined(ellipsoid(f, [0.002, 0.002 * y, -0.25], [0.02, 0.027, 0.04]), 0.03),
+        joined(ellipsoid(h, [0.003, 0.003 * y, -0.008], [0.0195, 0.0275, 0.03]), 0.02),
     ]);
 }
 
-// The hand holds the stick between thumb and index finger; the other three are closed round it.
-// Each finger: knuckle, two joints and tip, y outwards from the stick.
+// The hand holds the stick between thumb and index finger, the other three are closed round it. Each
+// finger: knuckle, two joints and tip, in the left hand's frame, in the rest pose; y outwards from the
+// stick.
 const FINGERS = [
     [
-        [0.018, -0.002, -0.079],
-        [0.007, 0.0165, -0.113],
-        [-0.011, 0.0135, -0.112],
-        [-0.0165, -0.002, -0.1],
+        [0.018, -0.004, -0.076],
+        [0.018, 0.0125, -0.112],
+        [-0.003, 0.016, -0.114],
+        [-0.0145, 0.004, -0.1],
     ],
     [
-        [0.021, 0.018, -0.081],
-        [0.004, 0.027, -0.115],
-        [-0.019, 0.024, -0.105],
-        [-0.027, 0.011, -0.087],
+        [0.021, 0.018, -0.079],
+        [0.003, 0.0275, -0.116],
+        [-0.02, 0.0255, -0.103],
+        [-0.0185, 0.014, -0.08],
     ],
     [
-        [0.018, 0.037, -0.075],
-        [-0.002, 0.044, -0.105],
+        [0.018, 0.037, -0.074],
+        [-0.002, 0.044, -0.108],
         [-0.024, 0.037, -0.092],
-        [-0.03, 0.02, -0.074],
+        [-0.0245, 0.019, -0.066],
     ],
     [
-        [0.011, 0.053, -0.066],
-        [-0.006, 0.057, -0.09],
-        [-0.024, 0.048, -0.078],
-        [-0.03, 0.031, -0.063],
+        [0.011, 0.053, -0.065],
+        [-0.006, 0.058, -0.092],
+        [-0.025, 0.051, -0.08],
+        [-0.031, 0.03, -0.058],
     ],
 ];
 const THUMB = [
-    [-0.006, -0.014, -0.022],
-    [-0.008, -0.03, -0.05],
-    [-0.002, -0.0225, -0.082],
-    [0.004, -0.0145, -0.107],
+    [-0.004, -0.012, -0.02],
+    [-0.009, -0.031, -0.048],
+    [-0.008, -0.0235, -0.075],
+    [0.002, -0.0155, -0.102],
 ];
 const FINGER_RADII = [0.0115, 0.0098, 0.0088, 0.0078],
-    THUMB_RADII = [0.0165, 0.0135, 0.0112, 0.0094];
+    THUMB_RADII = [0.0165, 0.0132, 0.011, 0.0088];
 
-// three bones in a row through four points
-const digit = (h, y, points, radii, size, soft) =>
-    [0, 1, 2].map(i => {
-        const at = ([px, py, pz]) => [px, py * y, pz];
-        return joined(
-            cone(h, at(points[i]), size * radii[i], at(points[i + 1]), size * radii[i + 1]),
-            i ? 0.004 : soft,
-        );
-    });
+// a point of the left hand's frame in its stick's, in the rest pose
+const turnedBack = new THREE.Quaternion().setFromAxisAngle(
+    new THREE.Vector3(...rest.grip).normalize(),
+    -Math.hypot(...rest.grip),
+);
+const held = point =>
+    new THREE.Vector3(...point).sub(new THREE.Vector3(...segments[bone("left-stick")].origin)).applyQuaternion(turnedBack).toArray();
+
+// Three bones in a row through four points. The last is on the stick, which it holds, the one before on
+// both: a stick that turns in the hand opens the fingers.
+function digit(side, y, points, radii, size, soft) {
+    const moved = [[`${side}-hand`], [`${side}-hand`, `${side}-stick`], [`${side}-stick`]];
+    return moved.flatMap((bones, i) =>
+        bones.map(name => {
+            const [from, to] = [points[i], points[i + 1]]
+                .map(name.endsWith("stick") ? held : q => q)
+                .map(([px, py, pz]) => [px, py * y, pz]);
+            return joined(cone(bone(name), from, size * radii[i], to, size * radii[i + 1]), i ? 0.004 : soft);
+        }),
+    );
+}
 
 function hand(side) {
     const h = bone(side + "-hand"),
         y = side === "left" ? 1 : -1;
     const size = [1, 1.04, 1, 0.86];
-    return part(0.0042, 0.014, [
-        cone(h, [0.001, 0.002 * y, -0.012], 0.0255, [0.004, 0.012 * y, -0.035], 0.024),
-        ...FINGERS.map(([k], i) =>
-            joined(
-                cone(
-                    h,
-                    [0.004, (-0.006 + 0.011 * i) * y, -0.028],
-                    0.0165,
-                    [k[0] - 0.003, k[1] * y, k[2] + 0.004],
-                    0.0125 * size[i],
-                ),
-                0.018,
-            ),
-        ),
-        joined(ellipsoid(h, [-0.012, 0.036 * y, -0.03], [0.015, 0.017, 0.028]), 0.016),
-        ...FINGERS.flatMap((f, i) => digit(h, y, f, FINGER_RADII, size[i], 0.006)),
-        ...digit(h, y, THUMB, THUMB_RADII, 1, 0.016),
-    ]);
-}
-
-// A head without a face: brow, nose and chin say which way it looks.
-function head() {
-    const h = bone("head");
-    return part(0.0066, 0.03, [
-        ellipsoid(h, [-0.01, 0, 0.122], [0.094, 0.0735, 0.084]),
-        ellipsoid(h, [0.018, 0, 0.07], [0.066, 0.056, 0.088]),
-        joined(ellipsoid(h, [0.048, 0, 0.006], [0.032, 0.03, 0.026]), 0.045),
-        ...both((s, y) => [
-            joined(
-                cone(h, [-0.012, 0.05 * y, 0.045], 0.014, [0.045, 0.02 * y, 0.005], 0.014),
-                0.04,
-            ),
-            joined(ellipsoid(h, [0.05, 0.034 * y, 0.06], [0.024, 0.022, 0.026]), 0.04),
-            joined(ellipsoid(h, [-0.008, 0.0715 * y, 0.08], [0.018, 0.008, 0.026]), 0.008),
-        ]),
-        joined(ellipsoid(h, [0.056, 0, 0.036], [0.032, 0.034, 0.04]), 0.03),
-        joined(cone(h, [0.07, 0, 0.112], 0.01, [0.079, 0, 0.07], 0.011), 0.03),
-    ]);
-}
-
-function neck() {
-    const n = bone("neck"),
-        t = bone("trunk"),
-        h = bone("head");
     return part(
-        0.009,
-        0.03,
+        "skin",
+        0.0052,
+        0.014,
         [
-            cone(t, [-0.01, 0, 0.35], 0.05, [-0.008, 0, 0.385], 0.046),
-            cone(n, [-0.006, 0, 0], 0.046, [-0.004, 0, 0.06], 0.044),
-            cone(h, [-0.008, 0, -0.015], 0.044, [-0.004, 0, 0.012], 0.042),
+            cone(h, [0.001, 0.002 * y, -0.012], 0.0235, [0.004, 0.012 * y, -0.035], 0.022),
+            ...FINGERS.map(([k], i) =>
+                joined(
+                    cone(
+                        h,
+                        [0.005, (-0.006 + 0.011 * i) * y, -0.028],
+                        0.016,
+                        [k[0] - 0.003, k[1] * y, k[2] + 0.004],
+                        0.0125 * size[i],
+                    ),
+                    0.018,
+                ),
+            ),
+            joined(ellipsoid(h, [-0.01, 0.038 * y, -0.03], [0.015, 0.016, 0.028]), 0.016),
+            ...FINGERS.flatMap((f, i) => digit(side, y, f, FINGER_RADII, size[i], 0.006)),
+            ...digit(side, y, THUMB, THUMB_RADII, 1, 0.016),
         ],
-        { blend: 0.03 },
+        { blend: 0.01 },
     );
 }
 
-function thigh(side) {
-    const l = bone(side + "-upper-leg");
-    return part(0.013, 0.06, [
-        cone(l, [0, 0, -0.005], 0.081, [0, 0, -0.365], 0.0545),
-        ellipsoid(l, [0.014, 0, -0.19], [0.074, 0.071, 0.13]),
-    ]);
+// Head and neck: a mask with brow, nose, lips and ears; lids leave a slit for the eyes.
+const EYE = [0.066, 0.031, 0.093], // the left one, in the head's frame
+    EYEBALL = 0.0118; // its radius (m)
+
+function head() {
+    const h = bone("head"),
+        n = bone("neck"),
+        t = bone("trunk");
+    return part(
+        "skin",
+        0.0068,
+        0.03,
+        [
+            ellipsoid(h, [-0.01, 0, 0.122], [0.094, 0.0735, 0.084]),
+            ellipsoid(h, [0.02, 0, 0.07], [0.062, 0.056, 0.088]),
+            joined(ellipsoid(h, [0.05, 0, 0.001], [0.027, 0.026, 0.021]), 0.04),
+            ...both((s, y) => [
+                joined(cone(h, [-0.008, 0.05 * y, 0.04], 0.014, [0.05, 0.02 * y, -0.002], 0.014), 0.04),
+                joined(ellipsoid(h, [0.053, 0.036 * y, 0.066], [0.02, 0.02, 0.018]), 0.03),
+                joined(cone(h, [0.072, 0.012 * y, 0.111], 0.009, [0.058, 0.044 * y, 0.11], 0.009), 0.02),
+                joined(cone(h, [-0.006, 0.073 * y, 0.068], 0.007, [-0.014, 0.076 * y, 0.1], 0.012), 0.008),
+                joined(ellipsoid(h, [0.085, 0.01 * y, 0.0575], [0.009, 0.0075, 0.0065]), 0.006),
+                // from behind the ear to the collar bone
+                joined(cone(h, [-0.022, 0.05 * y, 0.045], 0.016, [-0.01, 0.032 * y, -0.01], 0.022), 0.03),
+                joined(cone(n, [0, 0.03 * y, 0.03], 0.022, [0.012, 0.016 * y, -0.02], 0.02), 0.03),
+            ]),
+            joined(ellipsoid(h, [0.054, 0, 0.033], [0.022, 0.027, 0.024]), 0.03),
+            joined(cone(h, [0.07, 0, 0.106], 0.007, [0.0925, 0, 0.063], 0.0098), 0.01),
+            joined(cone(n, [-0.012, 0, -0.03], 0.05, [-0.008, 0, 0.055], 0.046), 0.03),
+            joined(cone(t, [-0.012, 0, 0.345], 0.05, [-0.01, 0, 0.39], 0.048), 0.03),
+        ],
+        {
+            cut: [-1, 1].map(y => ellipsoid(h, [0.088, EYE[1] * y, EYE[2] + 0.001], [0.017, 0.019, 0.0115])),
+            cutSoft: 0.014,
+        },
+    );
 }
 
-function shin(side) {
-    const l = bone(side + "-lower-leg");
-    return part(0.012, 0.05, [
-        cone(l, [0.004, 0, -0.07], 0.05, [0, 0, -0.38], 0.035),
-        ellipsoid(l, [-0.014, 0, -0.14], [0.054, 0.053, 0.1]),
-    ]);
+// what is finer in a face, and hair
+function features() {
+    const h = bone("head"),
+        hairline = (d, local, x, y, z) => {
+            const [px, py, pz] = local(h, x, y, z),
+                temple = Math.max(0, Math.abs(py) - 0.05);
+            return -smoothMin(-d, 0.9 * pz - 0.75 * px + 0.9 * temple - 0.104, 0.008);
+        };
+    const [ex, ey, ez] = EYE;
+    return [
+        part("hair", 0.0078, 0.03, [ellipsoid(h, [-0.011, 0, 0.124], [0.1, 0.0785, 0.09])], { shape: hairline }),
+        part("lips", 0.0035, 0.004, [
+            ellipsoid(h, [0.0803, 0, 0.0366], [0.0085, 0.022, 0.0042]),
+            ellipsoid(h, [0.0798, 0, 0.0288], [0.0085, 0.0185, 0.005]),
+        ]),
+        ...both((s, y) => [
+            part("skin", 0.0031, 0.004, [ellipsoid(h, [ex - 0.001, ey * y, ez], [0.0136, 0.0152, 0.0132])], {
+                cut: [ellipsoid(h, [ex + 0.015, (ey + 0.001) * y, ez - 0.003], [0.02, 0.0125, 0.0034])],
+                cutSoft: 0.001,
+            }),
+            part("hair", 0.0032, 0.004, [
+                cone(h, [0.081, 0.013 * y, 0.113], 0.0034, [0.074, 0.034 * y, 0.1165], 0.003),
+                cone(h, [0.074, 0.034 * y, 0.1165], 0.003, [0.065, 0.047 * y, 0.113], 0.0018),
+            ]),
+        ]),
+    ];
+}
+
+// Flat below, where he sits, in the pelvis: as the seat's edge falls away, so does the thigh.
+const SEATED = -0.09; // its height (m), see stool()
+const seated = (d, local, x, y, z) => {
+    const [px, , pz] = local(bone("pelvis"), x, y, z);
+    return pz < -0.25 ? d : Math.max(d, SEATED - Math.max(0, 0.9 * px) - pz);
+};
+
+function trousers() {
+    const p = bone("pelvis");
+    return part(
+        "trousers",
+        0.0155,
+        0.06,
+        [
+            ellipsoid(p, [-0.004, 0, 0.045], [0.103, 0.142, 0.07]),
+            ...both((s, y) => {
+                const u = bone(s + "-upper-leg"),
+                    l = bone(s + "-lower-leg");
+                return [
+                    ellipsoid(p, [-0.034, 0.07 * y, -0.012], [0.087, 0.082, 0.082]),
+                    cone(u, [0, 0, -0.005], 0.084, [0, 0, -0.4], 0.058),
+                    ellipsoid(u, [0.014, 0, -0.19], [0.076, 0.073, 0.13]),
+                    joined(ellipsoid(l, [0.008, 0, -0.01], [0.056, 0.055, 0.06]), 0.03),
+                    joined(cone(l, [0, 0, -0.06], 0.053, [-0.004, 0, -0.375], 0.0435), 0.04),
+                    joined(ellipsoid(l, [-0.012, 0, -0.14], [0.055, 0.055, 0.1]), 0.05),
+                ];
+            }),
+        ],
+        { shape: seated },
+    );
 }
 
 function shoe(side) {
     const f = bone(side + "-foot"),
+        toes = bone(side + "-toes"),
         sole = (d, local, x, y, z) => Math.max(d, -(local(f, x, y, z)[2] + 0.075));
     return part(
-        0.0095,
+        "shoes",
+        0.012,
         0.03,
         [
-            cone(f, [-0.012, 0, -0.02], 0.037, [-0.02, 0, -0.047], 0.036),
+            cone(f, [-0.012, 0, -0.01], 0.036, [-0.02, 0, -0.047], 0.037),
             cone(f, [0, 0, -0.03], 0.036, [0.125, 0, -0.052], 0.033),
-            joined(ellipsoid(f, [0.125, 0, -0.055], [0.055, 0.042, 0.028]), 0.03),
+            joined(ellipsoid(f, [0.125, 0, -0.055], [0.055, 0.043, 0.028]), 0.03),
+            joined(ellipsoid(toes, [0.025, 0, -0.008], [0.056, 0.039, 0.026]), 0.03),
         ],
         { shape: sole },
     );
 }
 
-function toes(side) {
-    const t = bone(side + "-toes"),
-        sole = (d, local, x, y, z) => Math.max(d, -(local(t, x, y, z)[2] + 0.025));
-    return part(0.0085, 0.02, [ellipsoid(t, [0.02, 0, -0.006], [0.056, 0.04, 0.026])], {
-        shape: sole,
-    });
-}
-
-// the balls at the joints of a side: segment, radius
-const BALLS = [
-    ["upper-arm", 0.047],
-    ["forearm", 0.034],
-    ["hand", 0.0235],
-    ["lower-leg", 0.049],
-    ["foot", 0.0335],
-];
-
-const look = (color, roughness, extra = {}) => ({ color, roughness, metalness: 0, ...extra });
-
-// what is drawn with one material; `ofHead` is hidden from the performer's own eye
+// what is drawn at once, the head apart: the performer's own eye does not see it
 const surfaces = () => [
-    { material: "shirt", parts: [chest(), ...HANDS.map(upperArm)] },
-    { material: "skin", parts: [...HANDS.map(forearm), ...HANDS.map(hand)] },
-    { material: "skin", parts: [head()], ofHead: true },
-    { material: "dark", parts: [neck()], ofHead: true },
-    { material: "trousers", parts: [hips(), ...HANDS.map(thigh), ...HANDS.map(shin)] },
-    { material: "shoes", parts: [...HANDS.map(shoe), ...HANDS.map(toes)] },
-    {
-        material: "dark",
-        parts: [
-            belly(),
-            ...HANDS.flatMap(side =>
-                BALLS.map(([name, r]) =>
-                    part(r / 5, 0.01, [ellipsoid(bone(`${side}-${name}`), [0, 0, 0], [r, r, r])]),
-                ),
-            ),
-        ],
-    },
+    [shirt(), trousers(), ...HANDS.flatMap(side => [cuff(side), forearm(side), hand(side), shoe(side)])],
+    [head(), ...features()],
 ];
 export const shirts = [
     "#35557d",
@@ -285,6 +310,7 @@ export const shirts = [
     "#8f543c",
     "#525b66",
 ];
+const COLORS = { skin: "#a98e7c", hair: "#2a211c", lips: "#9c7768", trousers: "#2b2f38", shoes: "#17181c" };
 
 let model; // geometry, the same for all performers
 function sharedModel() {
@@ -297,62 +323,66 @@ function sharedModel() {
             new THREE.Vector3(1, 1, 1),
         ),
     );
-    const geometries = surfaces().map(({ parts, material, ofHead }) => ({
-        geometry: sculpt(parts, matrices),
-        material,
-        ofHead,
-    }));
     return (model = {
-        geometries,
+        geometries: surfaces().map(parts => sculpt(parts, matrices)),
         inverses: matrices.map(m => new THREE.Matrix4().getInverse(m)),
-        stick: stickParts(),
+        stick: stick(),
+        eye: eye(),
     });
 }
 
-function lathe(points, detail = 20) {
-    const g = new THREE.LatheBufferGeometry(
-        points.map(p => new THREE.Vector2(p[0], p[1])),
-        detail,
+function stick() {
+    const shaft = lathe(
+        [
+            [0, -tip],
+            [0.0052, -tip],
+            [0.0058, -0.1],
+            [0.0072, 0.02],
+            [0.0078, 0.07],
+            [0.0062, BUTT - 0.004],
+            [0.003, BUTT],
+            [0, BUTT],
+        ],
+        14,
     );
-    return g.rotateX(Math.PI / 2); // its axis becomes z
+    const felt = new THREE.SphereBufferGeometry(malletRadius, 20, 14).scale(1, 1, 0.94).translate(0, 0, -tip),
+        core = new THREE.CylinderBufferGeometry(0.0085, 0.0085, 2 * malletRadius + 0.005, 16)
+            .rotateX(Math.PI / 2)
+            .translate(0, 0, -tip);
+    return merge([shaft, felt, core], ["#d9b27a", "#f4efe2", "#a8452f"].map(rgb));
 }
 
-function stickParts() {
-    const shaft = lathe([
-        [0, -tip],
-        [0.0052, -tip],
-        [0.0058, -0.1],
-        [0.0072, 0.02],
-        [0.0078, 0.07],
-        [0.0062, BUTT - 0.004],
-        [0.003, BUTT],
-        [0, BUTT],
-    ]);
-    const felt = new THREE.SphereBufferGeometry(malletRadius, 28, 20);
-    felt.scale(1, 1, 0.94);
-    const core = new THREE.CylinderBufferGeometry(0.0085, 0.0085, 2 * malletRadius + 0.005, 20);
-    core.rotateX(Math.PI / 2);
-    return { shaft, felt, core };
+// an eyeball that looks along x: white, iris, pupil
+function eye() {
+    const ball = (from, to) => new THREE.SphereBufferGeometry(EYEBALL, 20, 6, 0, 2 * Math.PI, from, to - from),
+        rings = [0, 0.26, 0.66, 1.7];
+    return merge(
+        rings.slice(1).map((to, i) => ball(rings[i], to)),
+        ["#0b0a0a", "#4a3a2c", "#b9b1a6"].map(rgb),
+    ).rotateZ(-Math.PI / 2);
 }
 
-function materials(index, environment) {
-    const make = (o, skinning = true) =>
-        new THREE.MeshStandardMaterial({
-            ...o,
-            skinning,
-            envMap: environment,
-            envMapIntensity: 0.55,
-        });
-    return {
-        shirt: make(look(rgb(shirts[index % shirts.length]), 0.78)),
-        skin: make(look(rgb("#a09488"), 0.72)),
-        trousers: make(look(rgb("#2f343e"), 0.8)),
-        shoes: make(look(rgb("#191b20"), 0.5)),
-        dark: make(look(rgb("#1d2027"), 0.6)),
-        wood: make(look(rgb("#d9b27a"), 0.42), false),
-        felt: make(look(rgb("#f4efe2"), 0.95), false),
-        core: make(look(rgb("#a8452f"), 0.6), false),
-    };
+// a model in the colours of one performer
+function painted(geometry, colors) {
+    const own = new THREE.BufferGeometry(),
+        { paint } = geometry.userData,
+        color = new Float32Array(3 * paint.length);
+    paint.forEach((name, i) => colors[name].toArray(color, 3 * i));
+    Object.assign(own.attributes, geometry.attributes);
+    own.setIndex(geometry.index);
+    own.setAttribute("color", new THREE.BufferAttribute(color, 3));
+    return own;
+}
+
+function material(roughness, envMap, skinning = false) {
+    return new THREE.MeshStandardMaterial({
+        vertexColors: THREE.VertexColors,
+        roughness,
+        metalness: 0,
+        skinning,
+        envMap,
+        envMapIntensity: 0.55,
+    });
 }
 
 function shadowed(mesh) {
@@ -396,32 +426,33 @@ function mainBone({ attributes: { skinIndex, skinWeight } }, vertex) {
 // frame.
 export class Figure {
     constructor(index, environment) {
-        const { geometries, inverses, stick } = sharedModel();
+        const { geometries, inverses, stick, eye } = sharedModel(),
+            names = Object.entries({ ...COLORS, shirt: shirts[index % shirts.length] }),
+            colors = Object.fromEntries(names.map(([name, color]) => [name, rgb(color)])),
+            skin = material(0.74, environment, true),
+            hard = material(0.5, environment);
         this.group = new THREE.Group();
         this.bones = segments.map(() => new THREE.Bone());
         this.skeleton = new THREE.Skeleton(this.bones, inverses);
-        this.materials = materials(index, environment);
-        this.headMeshes = [];
-        for (const { geometry, material, ofHead } of geometries) {
-            const mesh = shadowed(new THREE.SkinnedMesh(geometry, this.materials[material]));
+        const [, head] = geometries.map(geometry => {
+            const mesh = shadowed(new THREE.SkinnedMesh(painted(geometry, colors), skin));
             mesh.bindMode = "detached"; // bones live in the group's frame
             mesh.bind(this.skeleton, new THREE.Matrix4());
             this.group.add(mesh);
-            if (ofHead) this.headMeshes.push(mesh);
-        }
-        this.sticks = HANDS.map(() => this.makeStick(stick));
+            return mesh;
+        });
+        this.eyes = HANDS.map(() => new THREE.Mesh(eye, hard));
+        this.eyesAt = [1, -1].map(y => [EYE[0], y * EYE[1], EYE[2]]); // in the head's frame
+        this.sticks = HANDS.map(() => {
+            const mesh = shadowed(new THREE.Mesh(stick, hard));
+            mesh.tip = new THREE.Object3D();
+            mesh.tip.position.z = -tip;
+            return mesh.add(mesh.tip);
+        });
+        this.group.add(...this.eyes, ...this.sticks);
+        this.headMeshes = [head, ...this.eyes];
         this.scale = new THREE.Vector3(1, 1, 1);
-    }
-
-    makeStick(stick) {
-        const group = new THREE.Group(),
-            felt = shadowed(new THREE.Mesh(stick.felt, this.materials.felt));
-        const core = shadowed(new THREE.Mesh(stick.core, this.materials.core));
-        felt.position.z = core.position.z = -tip;
-        group.add(shadowed(new THREE.Mesh(stick.shaft, this.materials.wood)), felt, core);
-        group.tip = felt;
-        this.group.add(group);
-        return group;
+        this.look = null; // the point he looks at, in the group's frame (m); null: straight ahead
     }
 
     // pose: [x y z qw qx qy qz] by segment
@@ -448,6 +479,22 @@ export class Figure {
             const o = 7 * bone(HANDS[hand] + "-stick");
             stick.position.set(pose[o], pose[o + 1], pose[o + 2]);
             stick.quaternion.set(pose[o + 4], pose[o + 5], pose[o + 6], pose[o + 3]);
+        });
+        this.turnEyes();
+    }
+
+    // to what he looks at, as far as eyes turn
+    turnEyes() {
+        const head = this.bones[bone("head")].matrixWorld,
+            local = this.look && this.look.clone().applyMatrix4(new THREE.Matrix4().getInverse(head)),
+            limit = angle => Math.min(EYES_TURN, Math.max(-EYES_TURN, angle));
+        this.eyes.forEach((eye, i) => {
+            eye.position.set(...this.eyesAt[i]);
+            const to = local ? local.clone().sub(eye.position) : new THREE.Vector3(1, 0, -0.2);
+            eye.rotation.set(0, -limit(Math.atan2(to.z, Math.hypot(to.x, to.y))), limit(Math.atan2(to.y, to.x)), "ZYX");
+            eye.quaternion.premultiply(new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().extractRotation(head)));
+            eye.position.applyMatrix4(head);
+            eye.scale.copy(this.scale);
         });
     }
 

@@ -69,13 +69,14 @@ class Writer {
     // a mesh of glTF; figures share theirs. `shapes`: { position, normal } by which it can differ
     mesh(object, shapes = []) {
         const { geometry, material } = object,
-            { position, normal, skinIndex, skinWeight } = geometry.attributes,
+            { position, normal, color, skinIndex, skinWeight } = geometry.attributes,
             key = `${geometry.uuid} ${material.uuid}`;
         if (this.primitives.has(key)) return this.primitives.get(key);
         const attributes = {
             POSITION: this.accessor(Float32Array.from(position.array), "VEC3", FLOAT, true),
             NORMAL: this.accessor(Float32Array.from(normal.array), "VEC3", FLOAT),
         };
+        if (color) attributes.COLOR_0 = this.accessor(Float32Array.from(color.array), "VEC3", FLOAT);
         if (skinIndex) {
             attributes.JOINTS_0 = this.accessor(Uint16Array.from(skinIndex.array), "VEC4", SHORT);
             attributes.WEIGHTS_0 = this.accessor(Float32Array.from(skinWeight.array), "VEC4", FLOAT);
@@ -166,7 +167,7 @@ const still = (writer, object, matrix, shapes) =>
     writer.add("nodes", { mesh: writer.mesh(object, shapes), matrix: [...matrix.elements] });
 
 function figure(writer, performer, nodes) {
-    const { group, sticks, skeleton: bones, scale } = performer.figure,
+    const { group, eyes, eyesAt, sticks, skeleton: bones, scale } = performer.figure,
         inverse = new Float32Array(16 * segments.length),
         larger = new THREE.Matrix4().makeScale(scale.x, scale.y, scale.z);
     bones.boneInverses.forEach((m, i) =>
@@ -176,13 +177,9 @@ function figure(writer, performer, nodes) {
         joints: nodes,
         inverseBindMatrices: writer.accessor(inverse, "MAT4", FLOAT),
     });
-    sticks.forEach((stick, hand) => {
-        const above = writer.json.nodes[nodes[bone(`${HANDS[hand]}-stick`)]];
-        for (const part of stick.children) {
-            part.updateMatrix();
-            above.children.push(still(writer, part, part.matrix));
-        }
-    });
+    const below = (name, object, matrix) => writer.json.nodes[nodes[bone(name)]].children.push(still(writer, object, matrix));
+    sticks.forEach((stick, hand) => below(`${HANDS[hand]}-stick`, stick, new THREE.Matrix4()));
+    eyes.forEach((eye, i) => below("head", eye, new THREE.Matrix4().makeTranslation(...eyesAt[i])));
     return group.children
         .filter(part => part.isSkinnedMesh)
         .map(part => writer.add("nodes", { mesh: writer.mesh(part), skin }));

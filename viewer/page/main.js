@@ -2,13 +2,13 @@
 // the browser asks for one.
 import * as THREE from "./three.js";
 import { Stage, discard } from "./stage.js";
-import { View } from "./camera.js";
+import { ALONE, View } from "./camera.js";
 import { Stream } from "./stream.js";
 import { Performer } from "./performer.js";
 import { Drum } from "./drum.js";
 import { MARK_TIME, Marks } from "./strike.js";
 import { Playback, SPEEDS } from "./playback.js";
-import { DRUMS, readScene } from "./scene.js";
+import { DRUMS, before, readScene } from "./scene.js";
 import { LiveSound, Sound } from "./sound.js";
 import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
@@ -27,7 +27,6 @@ const performers = new Map(),
     liveSound = new LiveSound(sound),
     recorder = new Recorder(canvas, sound);
 const PERFORMERS = 16, // as many as himc-viewer keeps
-    ALONE = 0.45, // what the cameras show of the drums on either side of the performer (m)
     LIFT = 0.08, // of the picture over the timeline, of the window's height
     TALL = 0.17, // with all lanes
     HEADER = 60, // over the picture on a phone (pixels)
@@ -110,6 +109,9 @@ const actions = {
         if (!playback || !playback.scene.ghosts.length) return;
         const next = { overlay: "side", side: "", "": "overlay" }[playback.compare];
         playback.compare = how ?? next;
+        document.body.classList.toggle("beside", playback.compare === "side");
+        setLift(lifted());
+        if (playback.compare === "side") actions.camera("front");
         playback.jumped = true;
         forget();
         panel.compared(playback.compare);
@@ -172,6 +174,7 @@ function strike(event, time) {
     const d = drum(event.from, event.drum);
     if (!d) return;
     d.striker = event.from;
+    if (!playback) performers.get(event.from)?.lookAt(d.spot(event));
     d.mark = time;
     marks.add(d.tilted, event, time);
 }
@@ -218,11 +221,14 @@ const live = {
 // what a playback shows: `now` keeps its performer and its drums present
 const played = {
     now: 0,
-    pose(scene, pose, target) {
+    pose(scene, time, pose, target) {
         const one = performer(scene.name),
             name = scene.head.name,
+            next = scene.strikes[before(scene.strikes, time, s => s.time) + 1],
             ghost = scene !== playback.scene;
         one?.show(this.now, pose, target);
+        const struck = next && [scene, playback.scene].map(s => drums.get(`${s.name} ${next.drum}`)).find(d => d);
+        one?.lookAt(struck?.spot(next));
         one?.ghost(ghost && playback.compare === "overlay" ? (GHOSTS[name] ?? "#e7b6ff") : null);
         if (one) one.title = playback.compare ? (name ?? scene.name) : scene.name;
     },
@@ -262,11 +268,12 @@ function arrange(now) {
     for (const p of performers.values())
         if (p.ghostly && here.length)
             (p.group.position.copy(here[0].group.position), (p.group.rotation.z = here[0].group.rotation.z));
-    const wide = n > 1 ? radius * Math.sin(Math.min(Math.PI / 2, ((n - 1) / 2) * step)) : 0,
-        spread = Math.max(wide, Math.round(20 * Math.max(0, drumsReach - ALONE)) / 20);
+    const last = Math.min(Math.PI / 2, ((n - 1) / 2) * step),
+        wide = n > 1 ? radius * Math.sin(last) : 0,
+        spread = wide + Math.round(20 * Math.max(0, drumsReach - ALONE)) / 20;
     stage.cover(0.35 * spread, spread + 1);
     if (spread !== view.spread) {
-        view.spread = spread;
+        ((view.spread = spread), (view.deep = n > 1 ? radius * (1 - Math.cos(last)) : 0));
         if (view.name) view.preset(view.name);
     }
     return here[0];
@@ -284,6 +291,7 @@ function updateDrums(now) {
         if (owner)
             (d.group.position.copy(owner.group.position),
                 (d.group.rotation.z = owner.group.rotation.z));
+        if (owner) d.turn(owner);
         d.update(now, exaggeration);
         excursion = Math.max(excursion, d.excursion);
     }
@@ -371,6 +379,7 @@ const phone = matchMedia("(max-width: 760px), (max-height: 480px)"),
 // on a phone the picture is in the middle of what the writing leaves
 function lifted() {
     if (!playback) return 0;
+    if (playback.compare === "side" && !phone.matches) return 0; // the buttons are above them
     if (phone.matches) return Math.max(0, (footer.offsetHeight - HEADER) / 2 / innerHeight);
     return panel.timeline.all ? TALL : LIFT;
 }
@@ -387,7 +396,7 @@ for (const part of [footer, inspector]) resized.observe(part);
 for (const kind of [phone, lying]) kind.onchange = () => setLift(lifted());
 
 function setLift(lift) {
-    view.lift = lift;
+    ((view.lift = lift), (view.whole = phone.matches && !lying.matches));
     view.aside = aside();
     dispatchEvent(new Event("resize"));
 }

@@ -7,9 +7,11 @@ import { Clock } from "./clock.js";
 import { HANDS, bone } from "./body.js";
 import { Figure, shirts } from "./figure.js";
 import { segments } from "./skeleton.js";
+import { joined, lathe, rod } from "./solids.js";
 import { Trail } from "./strike.js";
 
 const KEPT = 256, // poses: chosen, 1 s at 250 Hz
+    PEDAL = [0.07, 0.1, -0.07], // left of the right foot (m)
     ABSENT_AFTER = 2000; // without a pose (ms); chosen: longer than a pause of the network
 const qa = new THREE.Quaternion(),
     qb = new THREE.Quaternion();
@@ -73,6 +75,11 @@ export class Performer {
         this.shown = true;
     }
 
+    // at a point in the group's frame (m), or straight ahead
+    lookAt(point) {
+        this.figure.look = point ?? null;
+    }
+
     present(now) {
         return this.heard !== undefined && now - this.heard < ABSENT_AFTER;
     }
@@ -109,9 +116,7 @@ export class Performer {
                 this.target[3 * hand + 2],
             );
         });
-        const seat = this.stool;
-        seat.position.set(this.pose[0], this.pose[1], 0);
-        seat.children[0].position.z = this.pose[2] - 0.115 * this.figure.scale.x;
+        this.sit();
         this.group.updateMatrixWorld();
         this.trails.forEach((trail, hand) => {
             trail.mesh.visible = shown.trails;
@@ -121,6 +126,24 @@ export class Performer {
             const wanted = shown.errors && (this.haveTargets >> hand) & 1 ? this.targets[hand].position : null;
             if (shown.trails) trail.add(p, time, camera, this.group, wanted);
         });
+    }
+
+    // the stool below him
+    sit() {
+        const [x, y, z] = this.pose,
+            { stool } = this,
+            size = this.figure.scale.x,
+            high = z - BELOW * size;
+        if (Math.hypot(stool.position.x + BEHIND * size - x, stool.position.y - y) > SLID)
+            stool.position.set(x - BEHIND * size, y, 0);
+        stool.cushion.position.z = high;
+        stool.post.scale.z = high - 0.03;
+    }
+
+    // in the group's frame (m): the hips, and beside the right foot, where a pedal may be
+    stance() {
+        const foot = this.figure.bones[bone("right-foot")].matrixWorld;
+        return [this.pose, new THREE.Vector3(...PEDAL).applyMatrix4(foot).toArray()];
     }
 
     // drawn in one transparent colour, without a stool; `color` null: as a performer
@@ -159,62 +182,35 @@ export class Performer {
     }
 }
 
-function stool(envMap) {
-    const group = new THREE.Group(),
-        top = new THREE.Group();
-    const leather = new THREE.MeshStandardMaterial({
-        color: rgb("#3a1f1a"),
-        roughness: 0.5,
-        envMap,
-        envMapIntensity: 0.5,
-    });
-    const steel = new THREE.MeshStandardMaterial({
-        color: rgb("#9aa0a6"),
-        roughness: 0.3,
-        metalness: 1,
-        envMap,
-    });
-    const profile = [
-        [0, 0.005],
-        [0.12, 0.004],
-        [0.155, -0.006],
-        [0.17, -0.03],
-        [0.165, -0.06],
-        [0.14, -0.068],
-        [0, -0.068],
-    ];
-    const cushion = new THREE.Mesh(
-        new THREE.LatheBufferGeometry(
-            new THREE.SplineCurve(profile.map(p => new THREE.Vector2(...p)).reverse()).getPoints(
-                28,
-            ),
-            64,
-        ).rotateX(Math.PI / 2),
-        leather,
-    );
-    const post = new THREE.Mesh(
-        new THREE.CylinderBufferGeometry(0.02, 0.02, 0.5, 16).rotateX(Math.PI / 2),
-        steel,
-    );
-    post.position.z = -0.31;
-    top.add(cushion, post);
-    group.add(top);
-    for (let i = 0; i < 3; i++) {
-        const a = (2 * Math.PI * i) / 3 + Math.PI,
-            from = new THREE.Vector3(0, 0, 0.3),
-            to = new THREE.Vector3(0.24 * Math.cos(a), 0.24 * Math.sin(a), 0.012);
-        group.add(rod(from, to, 0.012, steel));
-    }
-    group.traverse(o => (o.castShadow = o.receiveShadow = true));
-    return group;
-}
+const BEHIND = 0.11, // the seat's middle behind the hips, so that its edge is below the thighs (m)
+    BELOW = 0.086, // the seat below the hips: the figure is 4 mm in the cushion (m)
+    SLID = 0.05; // how far he may move on it before it is moved too (m)
 
-export function rod(a, b, radius, material) {
-    const mesh = new THREE.Mesh(
-        new THREE.CylinderBufferGeometry(radius, radius, a.distanceTo(b), 14),
-        material,
-    );
-    mesh.position.copy(a).add(b).multiplyScalar(0.5);
-    mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), b.clone().sub(a).normalize());
-    return mesh;
+// a seat 1 m high, which set() moves; its column is `post`
+function stool(envMap) {
+    const leather = new THREE.MeshStandardMaterial({ color: rgb("#3a1f1a"), roughness: 0.5, envMap, envMapIntensity: 0.5 }),
+        metal = new THREE.MeshStandardMaterial({ color: rgb("#9aa0a6"), roughness: 0.3, metalness: 1, envMap }),
+        profile = [
+            [0, -0.068],
+            [0.12, -0.068],
+            [0.148, -0.058],
+            [0.158, -0.035],
+            [0.145, -0.01],
+            [0.105, 0.001],
+            [0.05, 0],
+            [0, -0.001],
+        ],
+        curve = new THREE.SplineCurve(profile.map(p => new THREE.Vector2(...p))),
+        cushion = new THREE.Mesh(lathe(curve.getPoints(20).map(p => [p.x, p.y]), 40), leather),
+        post = new THREE.Mesh(rod([0, 0, 0.03], [0, 0, 1], 0.02), metal),
+        legs = [1, 3, 5].flatMap(k => {
+            const a = (k * Math.PI) / 3,
+                at = (r, z) => [r * Math.cos(a), r * Math.sin(a), z];
+            return [rod(at(0, 0.26), at(0.25, 0.014), 0.011), rod(at(0.25, 0.014), at(0.265, 0.006), 0.014)];
+        }),
+        base = new THREE.Mesh(joined([...legs, rod([0, 0, 0.02], [0, 0, 0.29], 0.027)]), metal),
+        group = new THREE.Group();
+    group.add(cushion, post, base);
+    group.traverse(o => (o.castShadow = o.receiveShadow = true));
+    return Object.assign(group, { cushion, post });
 }

@@ -102,17 +102,13 @@ class PieceSound {
     // for the timeline's outline and its spectrum
     whole() {
         const size = this.parts.length ? this.parts[0].length / EARS : 0,
-            data = new Float32Array(size * this.parts.length);
+            length = Math.max(1, size * this.parts.length),
+            out = new AudioBuffer({ length, sampleRate: this.rate }),
+            data = out.getChannelData(0);
         this.parts.forEach((part, p) => {
             for (let i = 0; i < size; i++) data[p * size + i] = part[EARS * i] / 32767;
         });
-        return {
-            sampleRate: this.rate,
-            numberOfChannels: 1,
-            length: data.length,
-            duration: this.arrived,
-            getChannelData: () => data,
-        };
+        return out;
     }
 }
 

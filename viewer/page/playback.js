@@ -114,11 +114,12 @@ export class Playback {
         const since = this.jumped || this.at < this.shownTo ? this.at - memory : this.shownTo,
             of = s => 1000 * s.time;
         for (const scene of this.scenes) {
-            on.pose(scene, scene.pose(time, this.pose), scene.targets(time, this.target));
+            on.pose(scene, time, scene.pose(time, this.pose), scene.targets(time, this.target));
             if (scene !== this.scene && this.compare !== "side") continue;
-            for (const drum of scene.drums.values()) {
+            const own = scene.drums.size > 0; // a take has none: it is beside the performer's, which rest
+            for (const drum of (own ? scene : this.scene).drums.values()) {
                 const change = drum.changes[Math.max(0, before(drum.changes, time, c => c.time))];
-                if (change) on.drum(scene, drum.name, change.place, this.head(drum, time));
+                if (change) on.drum(scene, drum.name, change.place, own ? this.head(drum, time) : this.amplitude.fill(0));
             }
             const last = before(scene.strikes, this.at, of);
             for (let i = before(scene.strikes, since, of) + 1; i <= last; i++)
@@ -135,9 +136,10 @@ export class Playback {
     // Amplitudes of a head's shapes. Between two frames the modes ring freely, on from the one before
     // and back from the one after, which are weighed by how near they are; a blow parts the two.
     head(drum, time) {
-        const i = before(drum.frames, time, f => f.time),
-            a = drum.frames[i],
-            b = drum.frames[i + 1],
+        const { frames } = drum,
+            i = before(frames.times, time),
+            a = i >= 0 && frames.get(i),
+            b = i + 1 < frames.times.length && frames.get(i + 1),
             out = this.amplitude.fill(0),
             known = drum.modes[Math.max(0, before(drum.modes, time, m => m.time))];
         if (!a || !known) return out;

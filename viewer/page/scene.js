@@ -1,6 +1,7 @@
 // A scene (docs/scene.md): the recording of a performance. Reads it, and says where everything was
 // at any time. Times are in seconds, as in the file.
 import { HANDS, bone, forward, place, quaternion } from "./body.js";
+import { Frames, Rows } from "./rows.js";
 import { segments } from "./skeleton.js";
 
 const MAGIC = "himcscn",
@@ -97,7 +98,7 @@ export class Scene {
     drum(number, event) {
         if (!this.drums.has(number)) {
             if (this.drums.size === DRUMS) throw new Error(`${this.name}: more than ${DRUMS} drums`);
-            this.drums.set(number, { changes: [], modes: [], frames: [] });
+            this.drums.set(number, { changes: [], modes: [], frames: new Frames() });
         }
         return Object.assign(this.drums.get(number), event && { name: event.name });
     }
@@ -110,40 +111,15 @@ export class Scene {
             columns = this.head.columns.length;
         if (!finite(start, period) || bytes.length !== 20 + 4 * columns * count)
             throw new Error(`${this.name}: faulty rows`);
-        const block = { first: this.times.length, columns: [] };
+        this.blocks.push(new Rows(this.times.length, count, columns, bytes, 20));
         for (let i = 0; i < count; i++) this.times.push(start + i * period);
-        for (let c = 0, at = 20; c < columns; c++, at += 4 * count) {
-            const column = new Int32Array(count);
-            let value = 0,
-                slope = 0;
-            for (let i = 0; i < count; i++) {
-                const folded =
-                    bytes[at + i] |
-                    (bytes[at + count + i] << 8) |
-                    (bytes[at + 2 * count + i] << 16) |
-                    (bytes[at + 3 * count + i] << 24);
-                slope = (slope + ((folded >>> 1) ^ -(folded & 1))) | 0;
-                value = column[i] = (value + slope) | 0;
-            }
-            block.columns.push(column);
-        }
-        this.blocks.push(block);
     }
 
-    // motion of heads: displacements of the modes, velocities over angular frequencies
+    // motion of heads
     heads(bytes) {
         const view = new DataView(bytes.buffer);
-        for (let i = view.getUint32(0, true), at = 4; i > 0; i--) {
-            const scale = view.getFloat32(at + 8, true),
-                modes = view.getUint16(at + 14, true);
-            this.drum(view.getUint16(at + 12, true)).frames.push({
-                time: view.getFloat64(at, true),
-                scale,
-                q: new Int8Array(bytes.buffer, at + 16, modes),
-                s: new Int8Array(bytes.buffer, at + 16 + modes, modes),
-            });
-            at += 16 + 2 * modes;
-        }
+        for (let i = view.getUint32(0, true), at = 4; i > 0; i--)
+            at = this.drum(view.getUint16(at + 12, true)).frames.add(bytes, view, at);
     }
 
     // forgets all from `time` on
@@ -151,10 +127,14 @@ export class Scene {
         const past = e => e.time < time - 1e-9;
         this.times.length = before(this.times, time - 1e-6) + 1;
         ((this.blocks = this.blocks.filter(b => b.first < this.times.length)), (this.near = null));
+        const last = this.blocks[this.blocks.length - 1];
+        if (last) last.count = Math.min(last.count, this.times.length - last.first);
         for (const name of ["bodies", "strikes", "beats", "notes"]) this[name] = this[name].filter(past);
         this.missed = this.missed.filter(e => past({ time: e.told }));
-        for (const drum of this.drums.values())
-            for (const part of ["changes", "modes", "frames"]) drum[part] = drum[part].filter(past);
+        for (const drum of this.drums.values()) {
+            for (const part of ["changes", "modes"]) drum[part] = drum[part].filter(past);
+            drum.frames.keep(drum.frames.times.filter(t => past({ time: t })).length);
+        }
         ((this.end = this.times.length ? this.times[this.times.length - 1] : 0), (this.tipHeights = null));
     }
 
@@ -193,14 +173,14 @@ export class Scene {
     // that of the row before, nearly always
     block(row) {
         const near = this.near;
-        if (near && row >= near.first && row < near.first + near.columns[0].length) return near;
+        if (near && row >= near.first && row < near.first + near.count) return near;
         return (this.near = this.blocks[before(this.blocks, row, b => b.first)]);
     }
 
     value(row, name) {
         const c = this.column.get(name),
             block = this.block(row);
-        return c === undefined ? 0 : block.columns[c][row - block.first] * this.head.columns[c][1];
+        return c === undefined ? 0 : block.column(c)[row - block.first] * this.head.columns[c][1];
     }
 
     body(time) {
@@ -211,7 +191,7 @@ export class Scene {
         const c = this.joints[segment],
             block = this.block(row),
             r = row - block.first,
-            get = k => block.columns[c + k][r] * this.head.columns[c + k][1];
+            get = k => block.column(c + k)[r] * this.head.columns[c + k][1];
         if (c === undefined) quaternion(0, 0, 0, out, o);
         else quaternion(get(0), get(1), get(2), out, o);
     }
@@ -360,7 +340,7 @@ export async function readScene(bytes, name, tell, reading) {
             if (kind === "json") JSON.parse(text.decode(await unpack(body, values))).forEach(e => scene.add(e));
             else if (kind === "rows") scene.rows(await unpack(body, out => u32(out, 16)));
             else if (kind === "ring") scene.heads(await unpack(body, out => u32(out, 0)));
-            else if (kind === "snd ") scene.sounds.push(body);
+            else if (kind === "snd ") scene.sounds.push(body.slice()); // the file itself is not kept
             else if (kind === "more" && outer)
                 scene.ghosts.push(await readScene(body, `${name}, ${scene.ghosts.length + 2}`, null, reading));
             if (outer) await reading.pause("reading", at / bytes.length);

@@ -52,7 +52,7 @@ export function ellipsoid(bone, c, r) {
 }
 
 // smooth minimum, quadratic over a width k (Quilez, "Smooth minimum", 2013)
-function smoothMin(a, b, k) {
+export function smoothMin(a, b, k) {
     const h = Math.max(k - Math.abs(a - b), 0) / k;
     return Math.min(a, b) - h * h * k * 0.25;
 }
@@ -226,12 +226,13 @@ function skinWeights(part, near, x, y, z) {
 }
 
 // One skinned geometry from parts and the rest matrices of the bones. Part: solids; soft, the width
-// of their joints (m); blend, of the change from bone to bone (m); cell, of the mesh (m); cut,
+// of their joints (m); color, a name kept by vertex in userData.paint; blend, of the change from bone to bone (m); cell, of the mesh (m); cut,
 // solids taken away; shape, a function that changes the distance.
 export function sculpt(parts, rest) {
-    const all = { position: [], index: [], normal: [], bones: [], weights: [] };
+    const all = { position: [], index: [], normal: [], bones: [], weights: [], paint: [] };
     for (const part of parts) carve(part, rest, all);
     const geometry = new THREE.BufferGeometry();
+    geometry.userData.paint = all.paint;
     geometry.setIndex(all.index);
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(all.position, 3));
     geometry.setAttribute("normal", new THREE.Float32BufferAttribute(all.normal, 3));
@@ -256,6 +257,7 @@ function carve(part, rest, all) {
             ],
             l = Math.hypot(...g) || 1;
         all.position.push(x, y, z);
+        all.paint.push(part.color);
         all.normal.push(g[0] / l, g[1] / l, g[2] / l);
         const w = skinWeights(part, near, x, y, z);
         all.bones.push(...w.bones);

@@ -4,6 +4,15 @@ const PERFORMERS = 16, // as many as himc-viewer keeps
     SHORTEST = 0.02, // (s) of sound that waits; chosen: four packets
     OLD = 500; // (ms) a report of the audio thread; chosen: ten reports
 
+// the first channel of a buffer from a sample on, into `out`; zeros before and after. A copy: samples that are
+// taken out whole stay in memory twice.
+export function listen(buffer, from, out) {
+    out.fill(0);
+    const at = Math.max(0, from);
+    if (at < buffer.length && at - from < out.length) buffer.copyFromChannel(out.subarray(at - from), 0, at);
+    return out;
+}
+
 export class Sound {
     constructor() {
         ((this.context = null), (this.buffer = null), (this.source = null));

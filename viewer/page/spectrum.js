@@ -1,5 +1,7 @@
 // The spectrogram of a sound: levels in decibels over time and frequency, the frequencies in equal
 // steps of a tone. By short Fourier transforms under Hann's window.
+import { listen } from "./sound.js";
+
 const SIZE = 4096, // of a transform: 12 Hz at 48 kHz, so that the modes of a timpano are apart
     COLUMNS = 2400, // most; chosen: as many as a screen shows
     ROWS = 96,
@@ -37,9 +39,10 @@ export function fourier(re, im) {
 }
 
 // powers of one column, from low to high
-function column(samples, rate, centre, re, im, out) {
-    for (let i = 0, at = centre - SIZE / 2; i < SIZE; i++, at++)
-        ((re[i] = (samples[at] ?? 0) * window[i]), (im[i] = 0));
+function column(buffer, centre, re, im, out) {
+    const rate = buffer.sampleRate;
+    listen(buffer, centre - SIZE / 2, re);
+    for (let i = 0; i < SIZE; i++) ((re[i] *= window[i]), (im[i] = 0));
     fourier(re, im);
     for (let r = 0; r < ROWS; r++) {
         const edge = k => (LOW * (HIGH / LOW) ** (k / ROWS) * SIZE) / rate,
@@ -62,15 +65,14 @@ function paint(level, data, at) {
 // A picture of the whole sound, `ROWS` high. Works a little at a time; `alive` says whether to go on.
 // Null if it was stopped.
 export async function spectrogram(buffer, alive) {
-    const samples = buffer.getChannelData(0),
-        columns = Math.min(COLUMNS, Math.ceil(samples.length / 480)),
+    const columns = Math.min(COLUMNS, Math.ceil(buffer.length / 480)),
         power = new Float32Array(columns * ROWS),
         [re, im] = [new Float32Array(SIZE), new Float32Array(SIZE)];
     let rest = performance.now(),
         loudest = 1e-12;
     for (let c = 0; c < columns; c++) {
         const out = power.subarray(c * ROWS, (c + 1) * ROWS);
-        column(samples, buffer.sampleRate, Math.round(((c + 0.5) / columns) * samples.length), re, im, out);
+        column(buffer, Math.round(((c + 0.5) / columns) * buffer.length), re, im, out);
         for (const v of out) if (v > loudest) loudest = v;
         if (performance.now() - rest < 4) continue; // of a frame's 16 ms
         await new Promise(done => setTimeout(done));

@@ -110,7 +110,7 @@ function spot(color, intensity, from, to, angle, shadow) {
 // A curtain in folds round the stage, with painted light; visible from inside only, so that the
 // camera may be outside.
 function curtain() {
-    const g = new THREE.CylinderBufferGeometry(1, 1, 7, 900, 12, true).rotateX(Math.PI / 2),
+    const g = new THREE.CylinderBufferGeometry(1, 1, 7, 640, 7, true).rotateX(Math.PI / 2),
         p = g.attributes.position;
     const color = new Float32Array(3 * p.count),
         fold = t => Math.sin(70 * t + 1.5 * Math.sin(9 * t)) + 0.4 * Math.sin(151 * t);
@@ -170,10 +170,10 @@ export class Stage {
         renderer.physicallyCorrectLights = true;
         this.scene = new THREE.Scene();
         this.environment = environment(renderer);
-        this.scene.background = rgb("#0a0707");
-        this.scene.fog = new THREE.Fog(rgb("#0a0707"), 4.5, 10.5);
         this.lights();
         this.floor();
+        this.scene.background = rgb("#0a0707");
+        this.scene.fog = new THREE.Fog(rgb("#0a0707"), 4.5, 10.5);
         this.scene.add((this.curtain = curtain()));
         this.quality = Math.min(window.devicePixelRatio || 1, 2);
     }
@@ -181,9 +181,9 @@ export class Stage {
     lights() {
         this.key = spot("#ffe4c4", 50, [3.2, -3.0, 4.6], [0.3, 0, 0.7], 0.5, 2048);
         const rim = spot("#c3d2ff", 14, [-3.2, 2.8, 3.4], [0.3, 0, 0.9], 0.55);
-        const side = spot("#ffb27a", 9, [2.2, 4.0, 2.4], [0.2, 0, 0.8], 0.6);
+        const side = spot("#ffc79c", 13, [3.6, 2.6, 1.9], [0.1, 0, 1], 0.5);
         this.set = [this.key, rim, side];
-        const sky = new THREE.HemisphereLight(rgb("#aab8d8"), rgb("#3a2a20"), 0.32);
+        const sky = new THREE.HemisphereLight(rgb("#b4bcd0"), rgb("#8a6a52"), 0.5);
         sky.position.set(0, 0, 1);
         this.scene.add(sky);
         for (const l of this.set) this.scene.add(l, l.target);

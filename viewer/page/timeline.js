@@ -1,6 +1,7 @@
 // The timeline of a playback: strokes, heights of the sticks, forces, sound, all over one axis of
 // time. The lanes are drawn once for a view; a frame adds the cursor. Sizes and colours: chosen by
 // eye. Times in milliseconds.
+import { listen } from "./sound.js";
 import { before } from "./scene.js";
 import { spectrogram } from "./spectrum.js";
 
@@ -39,16 +40,16 @@ const AXES = ["#ff8f8f", "#8fe08f", "#8fb8ff"], // x, y, z
 
 // least and largest sample of each bucket
 function outline(buffer) {
-    const samples = buffer.getChannelData(0),
-        size = buffer.sampleRate / BUCKETS,
-        count = Math.floor(samples.length / size),
+    const size = buffer.sampleRate / BUCKETS,
+        samples = new Float32Array(Math.ceil(size)),
+        count = Math.floor(buffer.length / size),
         out = new Float32Array(2 * count);
     for (let i = 0; i < count; i++) {
         let low = 0,
             high = 0;
-        for (let k = Math.floor(i * size); k < (i + 1) * size; k++) {
-            if (samples[k] < low) low = samples[k];
-            if (samples[k] > high) high = samples[k];
+        for (const v of listen(buffer, Math.floor(i * size), samples)) {
+            if (v < low) low = v;
+            if (v > high) high = v;
         }
         ((out[2 * i] = low), (out[2 * i + 1] = high));
     }

@@ -152,6 +152,13 @@ void himc_bank_kick(himc_bank *bank, int index, double change)
     stir(bank, index);
 }
 
+void himc_bank_slow(himc_bank *bank, double part)
+{
+    bank_arrive(bank);
+    for (int i = 0; i < bank->live; i++)
+        bank->s[i] *= 1 - part;
+}
+
 void himc_bank_excite(himc_bank *bank, int index, double q, double v)
 {
     if (index >= bank->count)

@@ -126,6 +126,8 @@ HIMC_RT void himc_bank_set_pass(himc_bank *bank, int samples);
 /// Between two samples: adds `change` (m/s) to the velocity of one oscillator; no effect on a
 /// silent one.
 HIMC_RT void himc_bank_kick(himc_bank *bank, int index, double change);
+/// Between two samples: takes that part, 0 .. 1, of each oscillator's velocity.
+HIMC_RT void himc_bank_slow(himc_bank *bank, double part);
 /// Value of `readout` at the end of a step per newton through `shape` (padded) during it. For a
 /// readout of the displacement at a and the shape at b this is the compliance sum phi_a phi_b b1
 /// (m/N).

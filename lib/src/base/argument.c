@@ -28,52 +28,39 @@ static const himc_argument arguments[] = {
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
-    {"DRUM", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
-    {"NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
+    {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
+    {"DRUM|NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"COMMAND", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_NAME_SIZE - 1, "", NULL},
     {"MS", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_LATENCY_MAX, "ms", NULL},
     {"BPM", NULL, HIMC_ARGUMENT_NUMBER, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute", NULL},
     {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
     {"FILE", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PATH_SIZE - 1, "", NULL},
-    {"JOINT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
+    {"JOINT|SEGMENT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
     {"FACTOR", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 20, "", NULL},
     {"KS", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "N m/rad", NULL},
     {"KD", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e5, "N m s/rad", NULL},
     {"TORQUE", NULL, HIMC_ARGUMENT_NUMBER, 0.01, 10000, "N m", NULL},
-    {"SEGMENT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
-    {"FX", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
-    {"FY", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
-    {"FZ", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
+    {"FX|FY|FZ", NULL, HIMC_ARGUMENT_NUMBER, -1000, 1000, "N", NULL},
     {"SECONDS", NULL, HIMC_ARGUMENT_NUMBER, 0, 10, "s", NULL},
     {"ALONG", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "m", NULL},
-    {"X", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
-    {"Y", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
-    {"X", "nudge", HIMC_ARGUMENT_NUMBER, -0.5, 0.5, "m", NULL},
-    {"Y", "nudge", HIMC_ARGUMENT_NUMBER, -0.5, 0.5, "m", NULL},
-    {"Z", "nudge", HIMC_ARGUMENT_NUMBER, -0.5, 0.5, "m", NULL},
+    {"X|Y", "target", HIMC_ARGUMENT_NUMBER, -3, 3, "m", NULL},
+    {"X|Y|Z", "nudge", HIMC_ARGUMENT_NUMBER, -0.5, 0.5, "m", NULL},
     {"TIME", "nudge", HIMC_ARGUMENT_NUMBER, 0, 1e5, "s", NULL},
     {"SPAN", "nudge", HIMC_ARGUMENT_NUMBER, 0.05, 10, "s", NULL},
-    {"X", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},
-    {"Y", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},
+    {"X|Y", "place", HIMC_ARGUMENT_NUMBER, -5, 5, "m", NULL},
     // chosen: the far end of a recital's room
-    {"X", "listener", HIMC_ARGUMENT_NUMBER, -15, 15, "m", NULL},
-    {"Y", "listener", HIMC_ARGUMENT_NUMBER, -15, 15, "m", NULL},
-    {"X", NULL, HIMC_ARGUMENT_NUMBER, -1, 1, "m", NULL},
-    {"Y", NULL, HIMC_ARGUMENT_NUMBER, -1, 1, "m", NULL},
+    {"X|Y", "listener", HIMC_ARGUMENT_NUMBER, -15, 15, "m", NULL},
+    {"X|Y", NULL, HIMC_ARGUMENT_NUMBER, -1, 1, "m", NULL},
     {"Z", NULL, HIMC_ARGUMENT_NUMBER, 0, 3, "m", NULL},
-    {"YAW", NULL, HIMC_ARGUMENT_NUMBER, -6.2832, 6.2832, "rad", NULL},
+    {"YAW|AZIMUTH", NULL, HIMC_ARGUMENT_NUMBER, -6.2832, 6.2832, "rad", NULL},
     {"TILT", NULL, HIMC_ARGUMENT_NUMBER, -0.8, 0.8, "rad", NULL},
     {"LAMBDA", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 1, "m", NULL},
-    {"SHOULDER", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
-    {"ELBOW", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
-    {"WRIST", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
-    {"GRIP", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
+    {"SHOULDER|ELBOW|WRIST|GRIP", NULL, HIMC_ARGUMENT_NUMBER, 1e-3, 1e3, "", NULL},
     {"HZ", "physics", HIMC_ARGUMENT_NUMBER, HIMC_PHYSICS_RATE_MIN, HIMC_PHYSICS_RATE_MAX, "Hz",
      NULL},
     {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
     // principal mode; chosen: wider than any head's range, which do_tune tells
-    {"HZ", "tune", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
-    {"HZ", "gliss", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
+    {"HZ", "tune|gliss", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
     {"PORT", "listen", HIMC_ARGUMENT_COUNT, 0, 65535, "", NULL},
@@ -100,11 +87,8 @@ static const himc_argument arguments[] = {
     {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},
     {"SEED", NULL, HIMC_ARGUMENT_COUNT, 0, HIMC_SEED_MAX, "", NULL},
     {"LENGTH", "roll", HIMC_ARGUMENT_NUMBER, 0.05, 1000, "beats", NULL},
-    {"LENGTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
-    {"WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
-    {"CHANNELS", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},
-    {"CHANNEL", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},
-    {"AZIMUTH", NULL, HIMC_ARGUMENT_NUMBER, -6.2832, 6.2832, "rad", NULL},
+    {"LENGTH|WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
+    {"CHANNELS|CHANNEL", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},
     {"ELEVATION", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_ELEVATION_MAX, "rad", NULL},
     {"DISTANCE", NULL, HIMC_ARGUMENT_NUMBER, HIMC_PICKUP_DISTANCE_MIN, HIMC_PICKUP_DISTANCE_MAX,
      "m", NULL},
@@ -112,11 +96,21 @@ static const himc_argument arguments[] = {
      "m/s", NULL},
 };
 
+// whether the word is in "A|B"
+static bool is_among(const char *word, const char *list)
+{
+    size_t n = strlen(word);
+    const char *at = strstr(list, word);
+    while (at && ((at > list && at[-1] != '|') || (at[n] && at[n] != '|')))
+        at = strstr(at + 1, word);
+    return at;
+}
+
 const himc_argument *himc_argument_find(const char *name, const char *context)
 {
     for (size_t i = 0; i < sizeof arguments / sizeof *arguments; i++) {
         const himc_argument *a = &arguments[i];
-        if (strcmp(a->name, name) == 0 && (!a->context || strcmp(a->context, context) == 0))
+        if (is_among(name, a->names) && (!a->contexts || is_among(context, a->contexts)))
             return a;
     }
     return NULL;
@@ -168,6 +162,18 @@ bool himc_note_frequency(const char *note, double *hz)
     return true;
 }
 
+bool himc_note_name(double hz, char name[HIMC_NOTE_SIZE])
+{
+    static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
+                                        "F#", "G",  "G#", "A",  "A#", "B"};
+    double its = 0;
+    for (int key = 0; key < 12 * 10 && its != hz; key++) {
+        snprintf(name, HIMC_NOTE_SIZE, "%s%d", names[key % 12], key / 12);
+        himc_note_frequency(name, &its);
+    }
+    return its == hz;
+}
+
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
 {
     const char *word = atom->kind == HIMC_ATOM_SYMBOL ? atom->symbol : NULL;
@@ -177,8 +183,8 @@ bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
         // it must stay itself in a score line, an OSC address and as a stroke's last atom
         return word && word[0] && strlen(word) < HIMC_NAME_SIZE &&
                !strpbrk(word, " \t/#*?,;:[]{}\\\"$") && himc_line_is_clean(word) &&
-               strcmp(word, "comment") != 0 && find_word(spots, word) < 0 &&
-               !himc_command_find(HIMC_PERFORMER, word);
+               strcmp(word, "comment") != 0 && strcmp(word, "dead") != 0 &&
+               find_word(spots, word) < 0 && !himc_command_find(HIMC_PERFORMER, word);
     case HIMC_ARGUMENT_TEXT:
         return word && strlen(word) >= argument->low && strlen(word) <= argument->high;
     case HIMC_ARGUMENT_NOTE:
@@ -213,10 +219,10 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     switch (argument->kind) {
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", words); break;
     case HIMC_ARGUMENT_NAME:
-        snprintf(
-            text, size,
-            "a drum's name: up to %d letters and digits, no number, no spot, no command of the performer",
-            HIMC_NAME_SIZE - 1);
+        snprintf(text, size,
+                 "%s: up to %d letters and digits, no number, no spot, no command of the performer",
+                 argument->contexts ? "a name, without a folder" : "a drum's name",
+                 HIMC_NAME_SIZE - 1);
         break;
     case HIMC_ARGUMENT_TEXT:
         snprintf(text, size, "a word of up to %g characters", argument->high);

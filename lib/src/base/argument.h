@@ -14,8 +14,8 @@ typedef enum himc_argument_kind {
 } himc_argument_kind;
 
 typedef struct himc_argument {
-    const char *name;    ///< as written in the grammar: "BEAT"
-    const char *context; ///< the command or the literal word before it, NULL for any
+    const char *names;    ///< as written in the grammar: "BEAT", "X|Y"
+    const char *contexts; ///< the commands or literal words before it, NULL for any
     himc_argument_kind kind;
     double low, high;
     const char *unit;
@@ -59,5 +59,8 @@ bool himc_command_doubt_drum(const char *name, himc_error *error);
 
 /// Frequency of a note name: letter, any # or b, octave; A4 is 440 Hz (so A2 is 110).
 bool himc_note_frequency(const char *note, double *hz);
+#define HIMC_NOTE_SIZE 8 ///< chosen: room for G#9 and its 0, and more
+/// The note of exactly that frequency, with # and not b; false if there is none.
+bool himc_note_name(double hz, char name[HIMC_NOTE_SIZE]);
 
 #endif

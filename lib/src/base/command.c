@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#define DEAD_TIME 0.2 // of a mallet on the head (s); chosen: the tone is over by then
 #define WORD_SIZE 64
 #define EXPECTED_SIZE 256
 
@@ -297,6 +298,12 @@ static int ornament_of(himc_command_id id)
     }
 }
 
+static bool is_dead(const himc_command *c, int i)
+{
+    return i < c->count && c->atom[i].kind == HIMC_ATOM_SYMBOL &&
+           strcmp(c->atom[i].symbol, "dead") == 0;
+}
+
 /// The stroke in the checked atoms of a command that holds one.
 static himc_stroke read_stroke(const himc_command *c)
 {
@@ -324,8 +331,13 @@ static himc_stroke read_stroke(const himc_command *c)
         stroke.spot = HIMC_SPOT_XY;
         stroke.x = c->atom[i++].number;
         stroke.y = c->atom[i++].number;
-    } else if (i < c->count && c->choice[i] >= 0) {
+    } else if (i < c->count && c->choice[i] >= 0 && !is_dead(c, i)) {
         stroke.spot = (himc_spot)c->choice[i++];
+    }
+    if (is_dead(c, i)) {
+        stroke.bounces = HIMC_DEAD;
+        stroke.bounce_time = DEAD_TIME;
+        i++;
     }
     if (i < c->count)
         snprintf(stroke.drum, sizeof stroke.drum, "%s", c->atom[i].symbol);
@@ -358,7 +370,7 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
     const himc_atom drum = {HIMC_ATOM_SYMBOL, 0, name};
     // DRUM COMMAND ...: no drum has the name of a performer's command
     if (!row && receiver == HIMC_PERFORMER && drum_command(atoms, count, 0) &&
-        himc_argument_accepts(himc_argument_find("NAME", NULL), &drum)) {
+        himc_argument_accepts(himc_argument_find("NAME", "drum"), &drum)) {
         if (!himc_command_parse(out, HIMC_DRUM, atoms[0].symbol, atoms + 1, count - 1, error))
             return himc_command_doubt_drum(name, error);
         snprintf(out->drum, sizeof out->drum, "%s", name);

@@ -1,6 +1,6 @@
 /// head_frame.h: the struck surface of an instrument: its axes, points in the world's frame and in
-/// its own, its outline and spots; private. What strikes, plans or avoids asks these functions and
-/// knows no outline. (x, y) is on the surface, from its centre (m).
+/// its own, its outline and spots. What strikes (drum, performance), plans (plan, track) or avoids
+/// (body) asks these functions and knows no outline. (x, y) is on the surface, from its centre (m).
 #ifndef HIMC_HEAD_FRAME_H
 #define HIMC_HEAD_FRAME_H
 

@@ -1,5 +1,5 @@
 /// interpolate.h: motion of joints between two instants with known rotation, angular velocity and
-/// angular acceleration; private.
+/// angular acceleration: setpoints (control) and takes (track).
 #ifndef HIMC_INTERPOLATE_H
 #define HIMC_INTERPOLATE_H
 

@@ -1,4 +1,5 @@
-/// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix; private.
+/// jacobi.h: eigenvalues and eigenvectors of a small symmetric matrix: means of rotations,
+/// solvers of the hands, modes of an uneven head.
 ///
 /// Cyclic Jacobi method: rotates in one plane p, q after the other by the smaller angle that makes
 /// a_pq zero. The tangent t of that angle solves t^2 + 2 theta t = 1, theta = (a_qq - a_pp) / 2
@@ -9,8 +10,7 @@
 
 #include <math.h>
 
-#define HIMC_JACOBI_SWEEPS 8       // chosen: matrices of 3 x 3 and 4 x 4 need 4 to 6
-#define HIMC_JACOBI_DIAGONAL 1e-17 // chosen: below the rounding of doubles, 1.1e-16, of the trace
+#define HIMC_JACOBI_SWEEPS 8 // chosen: matrices of 3 x 3 and 4 x 4 need 4 to 6
 
 // x' = c x - s y, y' = s x + c y for n pairs, neighbours `stride` apart in memory
 static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, double c, double s)
@@ -22,14 +22,22 @@ static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, doub
     }
 }
 
+// cosine and sine of the rotation that makes a_pq zero
+static inline void himc_jacobi_angle(double pp, double pq, double qq, double *c, double *s)
+{
+    double theta = (qq - pp) / (2 * pq);
+    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+    *c = 1 / sqrt(t * t + 1);
+    *s = t * *c;
+}
+
 // the rotation that makes a[p][q] zero
 static inline void himc_jacobi_rotate(int n, double *a, double *v, int p, int q)
 {
+    double c, s;
     if (a[p * n + q] == 0)
         return;
-    double theta = (a[q * n + q] - a[p * n + p]) / (2 * a[p * n + q]);
-    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
-    double c = 1 / sqrt(t * t + 1), s = t * c;
+    himc_jacobi_angle(a[p * n + p], a[p * n + q], a[q * n + q], &c, &s);
     himc_jacobi_mix(n, a + p, a + q, n, c, s);
     himc_jacobi_mix(n, a + p * n, a + q * n, 1, c, s);
     himc_jacobi_mix(n, v + p, v + q, n, c, s);
@@ -50,7 +58,7 @@ static inline void himc_jacobi(int n, double *a, double *v)
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)
                 off += fabs(a[p * n + q]);
-        if (!(off > HIMC_JACOBI_DIAGONAL * trace))
+        if (!(off > 1e-17 * trace)) // chosen: below the rounding of doubles, 1.1e-16
             return;
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)

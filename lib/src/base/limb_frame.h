@@ -1,4 +1,5 @@
-/// limb_frame.h: directions in space, and the frame of a limb along one; private.
+/// limb_frame.h: directions in space, and the frame of a limb along one: for
+/// postures (body) and captured poses.
 #ifndef HIMC_LIMB_FRAME_H
 #define HIMC_LIMB_FRAME_H
 

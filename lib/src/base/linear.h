@@ -1,5 +1,6 @@
-/// linear.h: linear algebra of any size, by Eigen; private. It allocates, and says so when it finds
-/// no memory. Matrices are by rows; a symmetric one is the same by columns.
+/// linear.h: linear algebra of any size, by Eigen: arms fitted to captures, grids, regressions. It
+/// allocates, and says so when it finds no memory. Matrices are by rows; a symmetric one is the
+/// same by columns.
 #ifndef HIMC_LINEAR_H
 #define HIMC_LINEAR_H
 

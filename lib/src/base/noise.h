@@ -1,4 +1,4 @@
-/// noise.h: measurement noise of a captured point; private.
+/// noise.h: measurement noise of a captured point, for strikes (capture) and fits (track).
 #ifndef HIMC_NOISE_H
 #define HIMC_NOISE_H
 

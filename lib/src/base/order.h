@@ -1,4 +1,4 @@
-/// order.h: the order of numbers, for qsort; private.
+/// order.h: the order of numbers, for qsort: medians of captures.
 #ifndef HIMC_ORDER_H
 #define HIMC_ORDER_H
 

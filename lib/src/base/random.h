@@ -1,5 +1,6 @@
 /// random.h: reproducible random numbers: SplitMix64 (Steele, Lea & Flood 2014), a counter that is
-/// scrambled. The same state gives the same numbers on every machine; private.
+/// scrambled. The same state gives the same numbers on every machine: for players
+/// that vary, noise of strokes, lugs, planes of strikes.
 #ifndef HIMC_RANDOM_H
 #define HIMC_RANDOM_H
 

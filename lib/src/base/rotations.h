@@ -1,4 +1,5 @@
-/// rotations.h: the mean of rotations, and a tensor that is diagonal in a rotated frame; private.
+/// rotations.h: the mean of rotations, and a tensor that is diagonal in a rotated frame: for
+/// limits, energy (body) and regressions, servos (control).
 ///
 /// The mean of unit quaternions q_i is the unit quaternion q that maximises q' S q, S = sum q_i
 /// q_i': the eigenvector of the largest eigenvalue of S. It minimises the sum of squared

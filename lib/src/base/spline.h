@@ -1,4 +1,5 @@
-/// spline.h: a queue of quintics in the order of time; motion is C2 where segments join.
+/// spline.h: a queue of quintics in the order of time; motion is C2 where segments join. The
+/// plan of a hand is one (plan/hand.h).
 #ifndef HIMC_SPLINE_H
 #define HIMC_SPLINE_H
 

@@ -1,5 +1,5 @@
 /// c3d_parameters.h: the parameter section of a C3D file, and numbers of its three processors;
-/// private.
+/// for c3d.c.
 #ifndef HIMC_C3D_PARAMETERS_H
 #define HIMC_C3D_PARAMETERS_H
 

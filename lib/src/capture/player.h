@@ -1,4 +1,5 @@
-/// player.h: the parts of reading a player from a take: joint centres, poses, seat; private.
+/// player.h: the parts of reading a player from a take: joint centres, poses, seat. track.c
+/// and performance_take.c play it.
 #ifndef HIMC_PLAYER_H
 #define HIMC_PLAYER_H
 

@@ -23,7 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MARKERS 4           // most in a row
+#define MARKERS 4           // most of a centre
 #define ABOVE_HIPS 0.08     // chosen: of the pelvis' front and back markers, roughly (m)
 #define ABOVE_SHOULDER 0.03 // 10.4 % of the upper arm, de Leva 1996 (m)
 
@@ -34,88 +34,42 @@
 typedef struct row {
     int point; // a player_point
     bool sided;
-    const char *name[MARKERS];
+    const char *names;  // each a point, or several joined by '+' whose mean is the centre
     const char *beside; // name that must also be in the take for the others to mean this centre
     double below;       // of the centre, below the markers (m)
 } row;
 
 static const row rows[] = {
-    {POINT_HIPS, false, {"Hips"}, NULL, 0},
-    {POINT_HIPS, false, {"Pelvis"}, NULL, 0},
-    {POINT_HIPS, false, {"MidHip"}, NULL, 0},
-    {POINT_HIPS, false, {"LeftHip", "RightHip"}, NULL, 0},
-    {POINT_HIPS, false, {"LHip", "RHip"}, NULL, 0},
-    {POINT_HIPS, false, {"ASISl", "ASISr", "PSISl", "PSISr"}, NULL, ABOVE_HIPS},
-    {POINT_HIPS, false, {"LASI", "RASI", "LPSI", "RPSI"}, NULL, ABOVE_HIPS},
-    {POINT_WAIST, false, {"Waist"}, NULL, 0},
-    {POINT_WAIST, false, {"Spine"}, NULL, 0},
-    {POINT_WAIST, false, {"LowerBack"}, NULL, 0},
-    {POINT_WAIST, false, {"Abdomen"}, NULL, 0},
-    {POINT_NECK, false, {"Neck"}, NULL, 0},
-    {POINT_NECK, false, {"STER", "C7"}, NULL, 0},
-    {POINT_NECK, false, {"STER", "T1"}, NULL, 0},
-    {POINT_NECK, false, {"CLAV", "C7"}, NULL, 0},
-    {POINT_HEAD, false, {"Head"}, NULL, 0},
-    {POINT_HEAD, false, {"Neck_end"}, NULL, 0},
-    {POINT_SHOULDER, true, {"UpperArm"}, NULL, 0},
-    {POINT_SHOULDER, true, {"Arm"}, "ForeArm", 0},
-    {POINT_SHOULDER, true, {"ShoulderJoint"}, NULL, 0},
-    {POINT_SHOULDER, true, {"Shoulder"}, NULL, 0},
-    {POINT_SHOULDER, true, {"SJC"}, NULL, 0},
-    {POINT_SHOULDER, true, {"SHO"}, NULL, ABOVE_SHOULDER},
-    {POINT_SHOULDER, true, {"Acromion"}, NULL, ABOVE_SHOULDER},
-    {POINT_SHOULDER, true, {"ACRO_tip"}, NULL, ABOVE_SHOULDER},
-    {POINT_ELBOW, true, {"Elbow"}, NULL, 0},
-    {POINT_ELBOW, true, {"ForeArm"}, NULL, 0},
-    {POINT_ELBOW, true, {"LowerArm"}, NULL, 0},
-    {POINT_ELBOW, true, {"EJC"}, NULL, 0},
-    {POINT_ELBOW, true, {"ELBL", "ELBM"}, NULL, 0},
-    {POINT_ELBOW, true, {"EPICl", "EPICm"}, NULL, 0},
-    {POINT_ELBOW, true, {"ELB"}, NULL, 0},
-    {POINT_WRIST, true, {"Wrist"}, NULL, 0},
-    {POINT_WRIST, true, {"Hand"}, NULL, 0},
-    {POINT_WRIST, true, {"WJC"}, NULL, 0},
-    {POINT_WRIST, true, {"WRA", "WRB"}, NULL, 0},
-    {POINT_WRIST, true, {"STYLr", "STYLu"}, NULL, 0},
-    {POINT_GRIP, true, {"Grip"}, NULL, 0},
-    {POINT_GRIP, true, {"Stick"}, NULL, 0},
-    {POINT_GRIP, true, {"Mallet"}, NULL, 0},
-    {POINT_GRIP, true, {"Finger"}, NULL, 0},
-    {POINT_GRIP, true, {"FIN"}, NULL, 0},
-    {POINT_GRIP, true, {"Knuckle"}, NULL, 0},
-    {POINT_GRIP, true, {"MEDH", "LATH"}, NULL, 0},
-    {POINT_HIP, true, {"UpLeg"}, NULL, 0},
-    {POINT_HIP, true, {"UpperLeg"}, NULL, 0},
-    {POINT_HIP, true, {"Thigh"}, NULL, 0},
-    {POINT_HIP, true, {"Hip"}, NULL, 0},
-    {POINT_HIP, true, {"HJC"}, NULL, 0},
-    {POINT_KNEE, true, {"Knee"}, NULL, 0},
-    {POINT_KNEE, true, {"Leg"}, "UpLeg", 0},
-    {POINT_KNEE, true, {"LowerLeg"}, NULL, 0},
-    {POINT_KNEE, true, {"Shin"}, NULL, 0},
-    {POINT_KNEE, true, {"KJC"}, NULL, 0},
-    {POINT_KNEE, true, {"KNE"}, NULL, 0},
-    {POINT_ANKLE, true, {"Ankle"}, NULL, 0},
-    {POINT_ANKLE, true, {"Foot"}, NULL, 0},
-    {POINT_ANKLE, true, {"AJC"}, NULL, 0},
-    {POINT_ANKLE, true, {"ANK"}, NULL, 0},
-    {POINT_TOE, true, {"ToeBase"}, NULL, 0},
-    {POINT_TOE, true, {"Toe"}, NULL, 0},
-    {POINT_TOE, true, {"Toes"}, NULL, 0},
-    {POINT_TOE, true, {"Foot_end"}, NULL, 0},
-    {POINT_TOE_END, true, {"ToeBase_end"}, NULL, 0},
-    {POINT_HEAD_END, false, {"Head_end"}, NULL, 0},
-    {POINT_HEAD_END, false, {"HeadTop"}, NULL, 0},
-    {POINT_BESIDE + HIMC_NECK, false, {"Neck_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_HEAD, false, {"Head_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_UPPER_ARM, true, {"Arm_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_FOREARM, true, {"ForeArm_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_HAND, true, {"Hand_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_STICK, true, {"Stick_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_UPPER_LEG, true, {"UpLeg_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_LOWER_LEG, true, {"Leg_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_FOOT, true, {"Foot_side"}, NULL, 0},
-    {POINT_BESIDE + HIMC_LEFT_TOES, true, {"ToeBase_side"}, NULL, 0},
+    {POINT_HIPS, false, "Hips Pelvis MidHip LeftHip+RightHip LHip+RHip", NULL, 0},
+    {POINT_HIPS, false, "ASISl+ASISr+PSISl+PSISr LASI+RASI+LPSI+RPSI", NULL, ABOVE_HIPS},
+    {POINT_WAIST, false, "Waist Spine LowerBack Abdomen", NULL, 0},
+    {POINT_NECK, false, "Neck STER+C7 STER+T1 CLAV+C7", NULL, 0},
+    {POINT_HEAD, false, "Head Neck_end", NULL, 0},
+    {POINT_SHOULDER, true, "UpperArm", NULL, 0},
+    {POINT_SHOULDER, true, "Arm", "ForeArm", 0},
+    {POINT_SHOULDER, true, "ShoulderJoint Shoulder SJC", NULL, 0},
+    {POINT_SHOULDER, true, "SHO Acromion ACRO_tip", NULL, ABOVE_SHOULDER},
+    {POINT_ELBOW, true, "Elbow ForeArm LowerArm EJC ELBL+ELBM EPICl+EPICm ELB", NULL, 0},
+    {POINT_WRIST, true, "Wrist Hand WJC WRA+WRB STYLr+STYLu", NULL, 0},
+    {POINT_GRIP, true, "Grip Stick Mallet Finger FIN Knuckle MEDH+LATH", NULL, 0},
+    {POINT_HIP, true, "UpLeg UpperLeg Thigh Hip HJC", NULL, 0},
+    {POINT_KNEE, true, "Knee", NULL, 0},
+    {POINT_KNEE, true, "Leg", "UpLeg", 0},
+    {POINT_KNEE, true, "LowerLeg Shin KJC KNE", NULL, 0},
+    {POINT_ANKLE, true, "Ankle Foot AJC ANK", NULL, 0},
+    {POINT_TOE, true, "ToeBase Toe Toes Foot_end", NULL, 0},
+    {POINT_TOE_END, true, "ToeBase_end", NULL, 0},
+    {POINT_HEAD_END, false, "Head_end HeadTop", NULL, 0},
+    {POINT_BESIDE + HIMC_NECK, false, "Neck_side", NULL, 0},
+    {POINT_BESIDE + HIMC_HEAD, false, "Head_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_UPPER_ARM, true, "Arm_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_FOREARM, true, "ForeArm_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_HAND, true, "Hand_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_STICK, true, "Stick_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_UPPER_LEG, true, "UpLeg_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_LOWER_LEG, true, "Leg_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_FOOT, true, "Foot_side", NULL, 0},
+    {POINT_BESIDE + HIMC_LEFT_TOES, true, "ToeBase_side", NULL, 0},
 };
 #define ROWS (sizeof rows / sizeof rows[0])
 
@@ -145,8 +99,8 @@ void himc_player_note(himc_player *player, const char *format, ...)
     va_end(args);
 }
 
-// the point of that name on the side of the hand; HIMC_HANDS: without a side
-static int find_named(const himc_take *take, const char *name, int hand)
+// the point of that name of `length` on the side of the hand; HIMC_HANDS: without a side
+static int find_named(const himc_take *take, const char *name, size_t length, int hand)
 {
     static const char *const forms[HIMC_HANDS + 1][4] = {
         {"Left%s", "L%s", "%sLeft", "%sL"}, {"Right%s", "R%s", "%sRight", "%sR"}, {"%s"}};
@@ -154,14 +108,15 @@ static int find_named(const himc_take *take, const char *name, int hand)
     int found = -1;
     for (int i = 0; i < 4 && forms[hand][i] && found < 0; i++) {
         const char *form = forms[hand][i], *at = strchr(form, '%');
-        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - form), form, name, at + 2);
+        snprintf(text, sizeof text, "%.*s%.*s%s", (int)(at - form), form, (int)length, name,
+                 at + 2);
         found = himc_take_find(take, text);
     }
     return found;
 }
 
-// a centre by the first row with all points in the take: the mean of the markers, gaps filled; hand
-// HIMC_HANDS: names without side. False without memory
+// a centre by the first name with all points in the take: the mean of the markers, gaps filled;
+// hand HIMC_HANDS: names without side. False without memory
 static bool find_centre(player_points *p, int which, int hand, const himc_take_options *options,
                         himc_player *player)
 {
@@ -170,12 +125,17 @@ static bool find_centre(player_points *p, int which, int hand, const himc_take_o
     for (const row *k = rows; k < rows + ROWS && !r; k++) {
         if (which != k->point && !(k->sided && which == k->point + 1))
             continue;
-        bool all = !k->beside || find_named(p->take, k->beside, hand) >= 0;
-        for (count = 0; all && count < MARKERS && k->name[count]; count++) {
-            point[count] = find_named(p->take, k->name[count], hand);
-            all = point[count] >= 0;
+        bool all = !k->beside || find_named(p->take, k->beside, strlen(k->beside), hand) >= 0;
+        for (const char *name = k->names; all && !r && *name; name += strspn(name, " ")) {
+            bool found = true;
+            for (count = 0; *name && *name != ' '; name += *name == '+') {
+                size_t length = strcspn(name, "+ ");
+                point[count] = found ? find_named(p->take, name, length, hand) : -1;
+                found = point[count++] >= 0;
+                name += length;
+            }
+            r = found ? k : NULL;
         }
-        r = all ? k : NULL;
     }
     if (!r)
         return true;

@@ -1,5 +1,5 @@
 /// strike_heads.h: the drumheads under the abrupt ends of falls, and which of these lie on one;
-/// private.
+/// for take_strikes.c.
 #ifndef HIMC_STRIKE_HEADS_H
 #define HIMC_STRIKE_HEADS_H
 

@@ -1,4 +1,5 @@
-/// take.h: the data of a take, shared by readers, writers and analysis; private.
+/// take.h: the data of a take, shared by readers, writers and analysis. The other
+/// rooms load one (take_file.c) and ask for tips and strikes.
 ///
 /// A reader fills format, rate, frames, points, and the unit and axes that the file states, all in
 /// the unit and axes of the file; himc_take_settle then converts everything into the library's
@@ -171,17 +172,24 @@ static inline himc_vec3 himc_take_y_up(himc_vec3 x)
     return himc_vec3_make(x.x, x.z, -x.y);
 }
 
-// Formats: bvh.c, c3d.c, marker_table.c, trc.c. A reader gets the bytes of the whole file. All
-// return false with a complete error line.
+// Formats: bvh.c, c3d.c, marker_table.c, trc.c.
 
-bool himc_bvh_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
-bool himc_c3d_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
-bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
-bool himc_csv_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
-bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
-bool himc_bvh_write(FILE *file, const himc_take *take, himc_error *error);
-bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error);
-bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error);
+/// A row a format, READ of one that is only read: its suffix, and how its files begin, several ways
+/// joined by '|', where \a stands for any byte below 8. himc_SUFFIX_read gets the bytes of the
+/// whole file; it and himc_SUFFIX_write return false with a complete error line.
+#define HIMC_TAKE_FORMATS(READ, BOTH)              \
+    BOTH(bvh, "HIERARCHY")                         \
+    BOTH(c3d, "\aP")                               \
+    BOTH(trc, "PathFileType")                      \
+    READ(csv, "Trajectories|Format Version|time,") \
+    READ(tsv, "NO_OF_FRAMES")
+
+#define HIMC_TAKE_READER(suffix, begins) \
+    bool himc_##suffix##_read(himc_take *take, const void *bytes, size_t size, himc_error *error);
+#define HIMC_TAKE_WRITER(suffix, begins) \
+    HIMC_TAKE_READER(suffix, begins)     \
+    bool himc_##suffix##_write(FILE *file, const himc_take *take, himc_error *error);
+HIMC_TAKE_FORMATS(HIMC_TAKE_READER, HIMC_TAKE_WRITER)
 
 // Files: take_file.c.
 
@@ -195,10 +203,13 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
 /// As himc_take_load; with a `folder` (not NULL) only a file inside it (himc_file_load_in).
 himc_take *himc_take_load_in(const char *folder, const char *path, const himc_take_options *options,
                              himc_error *error);
-/// Suffixes of the formats that are read.
-#define HIMC_TAKE_SUFFIXES ".bvh .c3d .trc .csv .tsv"
 /// True if the suffix is that of a motion capture, also of one that is refused.
 bool himc_take_is_capture(const char *path);
+/// The suffix of the format that begins so, with its dot; NULL if none does.
+const char *himc_take_suffix_of(const void *bytes, size_t size);
+/// Suffixes of the formats that are read: " .bvh .c3d ...".
+#define HIMC_TAKE_SUFFIX(suffix, begins) " ." #suffix
+#define HIMC_TAKE_SUFFIXES HIMC_TAKE_FORMATS(HIMC_TAKE_SUFFIX, HIMC_TAKE_SUFFIX)
 /// True if the suffix is that of a format that is written; else the error line lists them.
 bool himc_take_can_save(const char *path, himc_error *error);
 

@@ -14,17 +14,16 @@
 #define MOST_BYTES ((size_t)1 << 30) // chosen: thirty million positions as text
 
 typedef struct format {
-    const char *suffix;
+    const char *suffix, *begins;
     bool (*read)(himc_take *take, const void *bytes, size_t size, himc_error *error);
     bool (*write)(FILE *file, const himc_take *take, himc_error *error);
 } format;
 
-static const format formats[] = {{".bvh", himc_bvh_read, himc_bvh_write},
-                                 {".c3d", himc_c3d_read, himc_c3d_write},
-                                 {".trc", himc_trc_read, himc_trc_write},
-                                 {".csv", himc_csv_read, NULL},
-                                 {".tsv", himc_tsv_read, NULL}};
-#define WRITTEN ".bvh .c3d .trc"
+#define NOTHING(suffix, begins)
+#define READ(suffix, begins) {"." #suffix, begins, himc_##suffix##_read, NULL},
+#define BOTH(suffix, begins) {"." #suffix, begins, himc_##suffix##_read, himc_##suffix##_write},
+static const format formats[] = {HIMC_TAKE_FORMATS(READ, BOTH)};
+#define FORMATS (sizeof formats / sizeof *formats)
 
 // captures that are not read, and the way out
 static const struct {
@@ -60,7 +59,7 @@ static bool ends_with(const char *path, const char *suffix)
 
 static const format *find_format(const char *path)
 {
-    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
+    for (size_t i = 0; i < FORMATS; i++)
         if (ends_with(path, formats[i].suffix))
             return &formats[i];
     return NULL;
@@ -77,7 +76,30 @@ static const format *format_of(const char *path, himc_error *error)
                            refused[i].do_this);
             return NULL;
         }
-    himc_error_set(error, "%s: not a take by its suffix, expected " HIMC_TAKE_SUFFIXES, path);
+    himc_error_set(error, "%s: not a take by its suffix, expected" HIMC_TAKE_SUFFIXES, path);
+    return NULL;
+}
+
+// `ways` as in HIMC_TAKE_FORMATS
+static bool begins_with(const unsigned char *bytes, size_t size, const char *ways)
+{
+    for (size_t n; *ways; ways += n + (ways[n] == '|')) {
+        size_t same = 0;
+        n = strcspn(ways, "|");
+        while (same < n && same < size &&
+               (ways[same] == '\a' ? bytes[same] < 8 : bytes[same] == (unsigned char)ways[same]))
+            same++;
+        if (same == n)
+            return true;
+    }
+    return false;
+}
+
+const char *himc_take_suffix_of(const void *bytes, size_t size)
+{
+    for (size_t i = 0; i < FORMATS; i++)
+        if (begins_with(bytes, size, formats[i].begins))
+            return formats[i].suffix;
     return NULL;
 }
 
@@ -93,7 +115,10 @@ bool himc_take_can_save(const char *path, himc_error *error)
 {
     const format *f = find_format(path);
     return (f && f->write) ||
-           himc_error_set(error, "%s: a format that is not written, expected " WRITTEN, path);
+           himc_error_set(error,
+                          "%s: a format that is not written, expected" HIMC_TAKE_FORMATS(
+                              NOTHING, HIMC_TAKE_SUFFIX),
+                          path);
 }
 
 #define FILE_ROOM (sizeof((himc_take *)0)->file)

@@ -14,8 +14,6 @@
 /// stick moves on a guess.
 #include "capture/take.h"
 
-#include <stdlib.h>
-
 #define FASTEST 30.0   // chosen: four times the mallet of a hard blow (m/s)
 #define LEAST_JUMP 0.1 // chosen: noise of a tracker is far smaller (m)
 

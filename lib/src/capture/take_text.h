@@ -1,4 +1,5 @@
-/// take_text.h: lines, words and numbers of text takes, independent of the locale; private.
+/// take_text.h: lines, words and numbers of text takes, independent of the locale: for
+/// the readers and writers.
 #ifndef HIMC_TAKE_TEXT_H
 #define HIMC_TAKE_TEXT_H
 

@@ -1,4 +1,5 @@
-/// units.h: motion units: strokes cut out of a take, played instead of the built-in ones; private.
+/// units.h: motion units: strokes cut out of a take, played instead of the built-in ones;
+/// the gestures (plan) play them.
 ///
 /// A unit is the fall of a tip from its apex to the touch, with a few numbers for the motion before
 /// and after it. To play it, it is stretched in time and size, so one unit serves all dynamics and

@@ -338,11 +338,11 @@ static int listen_in(himc_drum *drum, int n, double *const *sound, bool silent)
     int count = silent ? 0 : head->pickup_count, some = count > HIMC_EARS ? count : HIMC_EARS;
     if (!himc_ears_heard(ears) || (silent && himc_ears_at_rest(ears)))
         return count;
-    for (int k = himc_ears_alone(ears) ? 0 : count; k < some; k++)
+    for (int k = himc_ears_alone(ears) ? 0 : count; k < HIMC_EARS; k++)
         memset(sound[k], 0, (size_t)n * sizeof(double));
     if (count == 1 && !himc_ears_alone(ears))
         memcpy(sound[1], sound[0], (size_t)n * sizeof(double));
-    himc_ears_hear(ears, n, !silent && head->rays ? sound + HIMC_PICKUPS : NULL, some, sound,
+    himc_ears_hear(ears, n, !silent && head->rays ? sound + HIMC_PICKUPS : NULL, sound,
                    drum->set.gain * drum->fader);
     if (himc_ears_alone(ears))
         himc_membrane_mute_pickups(drum->membrane, true);
@@ -385,11 +385,11 @@ static void add_noise(himc_drum *drum, int n, double force, double *const *sound
         settle_noise(drum);
         return;
     }
-    double held = fmin(head->head.damp + MUFFLED_DAMP * head->head.muffle, 1);
+    double held = fmin(head->head.damp + MUFFLED_DAMP * head->head.muffle + drum->hold, 1);
     if (drum->noise.damp != held)
         himc_stroke_noise_damp(&drum->noise, held);
     himc_stroke_noise_run(&drum->noise, n, force, rays ? 2 : 1, (double *[]){noise[0], noise[1]});
-    for (int k = 0; k < head->pickup_count && !himc_ears_alone(drum->ears); k++) {
+    for (int k = himc_ears_alone(drum->ears) ? HIMC_EARS : 0; k < head->pickup_count; k++) {
         double *at = &drum->nearness[k], to = nearness(&pickups[k]);
         int i = 0;
         for (; i < n && *at != to; i++) { // the pickup has moved
@@ -413,6 +413,7 @@ static void run_clear(himc_drum *drum, int n, himc_stick *const *sticks, int cou
     for (int k = 0; k < HIMC_OUTPUTS; k++)
         into[k] = sound[k];
     bool silent = himc_membrane_at_rest(drum->membrane) && !drum->noise.sounds;
+    drum->hold = 0;
     if (!silent)
         himc_membrane_run_all(drum->membrane, n, into, seen);
     add_noise(drum, n, 0, into);
@@ -450,6 +451,7 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     int count = given + himc_drum_add_mallets(drum, all + given);
     unsigned known[2 * HIMC_STICKS];
     double pressing = 0;
+    drum->hold = 0;
     for (int k = 0; k < count; k++)
         known[k] = all[k]->contacts;
     himc_contact_step(drum->membrane, all, count);
@@ -462,7 +464,10 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
             himc_drum_keep_onset(drum, all[k]);
         }
         pressing += all[k]->force;
+        drum->hold = fmax(drum->hold, all[k]->force > 0 ? all[k]->hold : 0);
     }
+    if (drum->hold > 0) // 2 d of the velocity is d of an oscillation
+        himc_bank_slow(drum->membrane->model->bank, 2 * drum->hold * HIMC_DAMP / drum->rate);
     for (int k = 0; forces && k < given; k++)
         if (forces[k])
             forces[k][at] = all[k]->force;

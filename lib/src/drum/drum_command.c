@@ -122,21 +122,25 @@ static bool find_tune(const himc_shape *shape, const himc_command *c, himc_head 
 {
     himc_head lowest = *head, highest = *head;
     double hz = number(c, 0);
+    const char *name = himc_command_table((int)c->id)->name;
+    char note[HIMC_NOTE_SIZE], what[40];
+    himc_format(what, sizeof what, himc_note_name(hz, note) ? "%s: %s" : "%s", name, note);
     lowest.tension = HIMC_TENSION_MIN;
     highest.tension = HIMC_TENSION_MAX;
-    if (!himc_check_range(himc_command_table((int)c->id)->name, hz,
-                          himc_head_principal(&lowest, shape), himc_head_principal(&highest, shape),
-                          "Hz", error))
+    if (!himc_check_range(what, hz, himc_head_principal(&lowest, shape),
+                          himc_head_principal(&highest, shape), "Hz", error))
         return false;
     head->tension = as_said("TENSION", himc_head_tension(head, shape, hz));
     return true;
 }
 
-// In the order of the words of `skin`. Calf is heavier than Mylar and loses more in itself; its
-// figures are chosen, as none with their method are known: 0.38 kg/m2, a film's loss four times.
+// In the order of the words of `skin`. Calf is heavier than Mylar, radiates less for it, and loses
+// more in itself: its beat is more staccato, with less ringing (Hardy & Ancell 1961). The figures
+// are chosen, as none with their method are known, so that it rings shorter at every pitch: skin
+// of 0.27 mm, a film's loss eight and four times.
 typedef enum drum_skin { PLASTIC, CALF } drum_skin;
-#define CALF_DENSITY 0.38
-#define CALF_CONSTANT 0.5 // (1/s)
+#define CALF_DENSITY 0.355
+#define CALF_CONSTANT 2.5 // (1/s)
 #define CALF_SQUARE 2e-7  // (s)
 
 // the head in another skin, tuned as it was
@@ -269,7 +273,7 @@ static bool change_pickup(himc_drum_settings *s, const himc_command *c, int firs
     if (!himc_pickup_check(&pickup, &s->head.head, error))
         return false;
     s->head.pickups[index] = pickup;
-    s->picked = true;
+    s->picked = s->picked || index < HIMC_EARS; // the ears leave the others
     return true;
 }
 
@@ -291,7 +295,6 @@ static bool do_pickups(himc_drum_settings *s, const himc_command *c, himc_error 
         all[i].azimuth = himc_argument_single(remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI));
     }
     s->head.pickup_count = wanted;
-    s->picked = s->picked || wanted > HIMC_EARS;
     return true;
 }
 

@@ -61,9 +61,11 @@ void himc_drum_enclose(himc_drum *drum, const himc_walls *walls)
 // a drum that no performer has is heard by those who hear the other
 static bool hears_with(const himc_drum *drum, const himc_drum *other)
 {
-    return drum->driver.performer || (himc_listener_equal(&drum->listener, &other->listener) &&
-                                      drum->set.picked == other->set.picked &&
-                                      himc_head_frame_equal(&drum->set.place, &other->set.place));
+    return drum->driver.performer ||
+           (himc_listener_equal(&drum->listener, &other->listener) &&
+            drum->set.picked == other->set.picked && drum->walls.seconds == other->walls.seconds &&
+            drum->walls.volume == other->walls.volume &&
+            himc_head_frame_equal(&drum->set.place, &other->set.place));
 }
 
 bool himc_drum_follows(const himc_drum *drum, const himc_drum *other)
@@ -101,6 +103,7 @@ bool himc_drum_follow(himc_drum *drum, const himc_drum *other, himc_error *error
     if (hears)
         return true;
     drum->listener = other->listener;
+    drum->walls = other->walls;
     drum->set.picked = other->set.picked;
     drum->set.place = other->set.place;
     himc_drum_find_ways(drum);

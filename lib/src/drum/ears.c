@@ -305,8 +305,7 @@ static double bend(double x, double gain)
     return loud <= 0 ? x : copysign((0.5 + 0.5 * tanh(2 * loud)) / gain, x);
 }
 
-void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double *const *rows,
-                    double gain)
+void himc_ears_hear(himc_ears *e, int n, double *const *rays, double *const *rows, double gain)
 {
     static double silence[HIMC_ROOM_RUN];
     for (int from = 0, run; from < n; from += run) {
@@ -331,10 +330,9 @@ void himc_ears_hear(himc_ears *e, int n, double *const *rays, int count, double 
         else
             memset(walls, 0, sizeof walls);
         double level = smooth(e->level);
-        for (int k = 0; k < count; k++)
+        for (int k = 0; k < HIMC_EARS; k++)
             for (int i = 0; i < run; i++) {
-                double ear = k < HIMC_EARS ? heard[k][i] + HIMC_EARS_LEVEL * walls[k][i] : 0;
-                ear = bend(ear, gain);
+                double ear = bend(heard[k][i] + HIMC_EARS_LEVEL * walls[k][i], gain);
                 rows[k][from + i] = rows[k][from + i] * (1 - level) + level * ear;
             }
         e->at = (e->at + run) & (HIMC_EARS_LINE - 1);

@@ -30,8 +30,6 @@ bool himc_listener_equal(const himc_listener *a, const himc_listener *b);
 #define HIMC_EARS_LEVEL (HIMC_PICKUP_PRESSURE / 27)
 #define HIMC_EARS_LINEAR 0.5 ///< what a drum's sound at an ear may be without being bent
 
-enum { HIMC_EAR_LEFT, HIMC_EAR_RIGHT, HIMC_EARS };
-
 /// One way of the sound from a drum to an ear.
 typedef struct himc_ear_path {
     double delay; ///< (s)
@@ -100,10 +98,10 @@ static inline bool himc_ears_alone(const himc_ears *ears)
 /// True if nothing is left to be heard, and nothing about to change.
 HIMC_RT bool himc_ears_at_rest(const himc_ears *ears);
 
-/// `n` samples: takes the rays (NULL: silence), and turns the `count` rows of pickups, two at
-/// least, into what is heard: the ears in the first two, and of the pickups what the ears leave.
-/// `gain` is what the sound is multiplied with afterwards.
-HIMC_RT void himc_ears_hear(himc_ears *ears, int n, double *const *rays, int count,
-                            double *const *rows, double gain);
+/// `n` samples: takes the rays (NULL: silence), and turns the first HIMC_EARS rows of pickups into
+/// what is heard: the ears, and of the pickups what the ears leave. `gain` is what the sound is
+/// multiplied with afterwards.
+HIMC_RT void himc_ears_hear(himc_ears *ears, int n, double *const *rays, double *const *rows,
+                            double gain);
 
 #endif

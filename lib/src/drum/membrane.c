@@ -228,7 +228,7 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
         for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
             made->points[i].used = false; // what they know may be of pickups as they were then
         if (lacks)
-            himc_model_find_outputs(made, 0, HIMC_PICKUPS);
+            himc_model_find_outputs(made, 0, HIMC_EARS);
     }
     if (made && share < 1) {
         himc_model_approach(was, made, share);
@@ -349,10 +349,10 @@ void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
     if (membrane->model->config.muted == mute)
         return;
     membrane->model->config.muted = mute;
-    memset(membrane->declicks, 0, sizeof *membrane->declicks * HIMC_PICKUPS);
-    memset(membrane->sound, 0, sizeof *membrane->sound * HIMC_PICKUPS);
+    memset(membrane->declicks, 0, sizeof *membrane->declicks * HIMC_EARS);
+    memset(membrane->sound, 0, sizeof *membrane->sound * HIMC_EARS);
     if (!mute)
-        himc_model_find_outputs(membrane->model, 0, HIMC_PICKUPS);
+        himc_model_find_outputs(membrane->model, 0, HIMC_EARS);
 }
 
 void himc_membrane_watch(himc_membrane *membrane, double x, double y)

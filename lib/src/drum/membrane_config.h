@@ -8,6 +8,7 @@
 /// Rays: what ears (ears.h) need of a head beside its pickups, the sound it sends out in the
 /// direction of the left ear, of the right ear, and of the floor's mirror image, as loud as at 1 m;
 /// their distance tells their near field.
+enum { HIMC_EAR_LEFT, HIMC_EAR_RIGHT, HIMC_EARS };
 enum { HIMC_RAY_LEFT, HIMC_RAY_RIGHT, HIMC_RAY_FLOOR, HIMC_RAYS };
 #define HIMC_OUTPUTS (HIMC_PICKUPS + HIMC_RAYS) ///< pickups, then rays
 
@@ -17,9 +18,9 @@ typedef struct himc_membrane_config {
     himc_head head;
     himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
-    bool rays;  ///< it has them
-    bool muted; ///< the pickups' sound is not wanted, and their outputs are of no use; a membrane's
-                ///< own, and no difference between two configs
+    bool rays;   ///< it has them
+    bool muted;  ///< the sound of the first HIMC_EARS pickups is not wanted, and their outputs are
+                 ///< of no use; a membrane's own, and no difference between two configs
     bool shares; ///< the air between this head and others takes what its shared modes radiate; they
                  ///< decay by so much less
     double rate; ///< (Hz)
@@ -28,7 +29,7 @@ typedef struct himc_membrane_config {
 /// Whether output k, a pickup or a ray, sounds.
 static inline bool himc_membrane_config_has(const himc_membrane_config *c, int k)
 {
-    return k < HIMC_PICKUPS ? k < c->pickup_count && !c->muted : c->rays;
+    return k < HIMC_PICKUPS ? k < c->pickup_count && !(c->muted && k < HIMC_EARS) : c->rays;
 }
 
 /// True if all of both heads is the same.

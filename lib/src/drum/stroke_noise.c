@@ -12,11 +12,13 @@
 /// head's sound is.
 ///
 /// Unit noise is white, from a counter that is scrambled (random.h), through Butterworth filters of
-/// second order at the lower edge of the band and of fourth order at the upper one. Its sequence
-/// begins anew with each contact, from a seed that is the place in steps of 2 cm: equal blows
-/// are equal to the last bit, and as soon as the place varies no two are. All is counted in
-/// samples, so how many are asked for at a time does not matter. It takes no energy from the head
-/// and gives it none.
+/// second order at the lower edge of the band and of fourth order at the upper one, all in three
+/// sections: two with zeros 1 - 1/z^2, and 1 + 2/z + 1/z^2. Its sequence begins anew with each
+/// contact, from a seed that is the place in steps of 2 cm: equal blows are equal to the last bit,
+/// and as soon as the place varies no two are. All is counted in samples, so how many are asked for
+/// at a time does not matter. It takes no energy from the head and gives it none.
+///
+/// A band that nobody would hear ends within some RISEs; the upper two, or all four, then rest.
 #include "drum/stroke_noise.h"
 
 #include "base/random.h"
@@ -33,7 +35,8 @@
 #define EDGE 500.0        // (Hz) of G; chosen: what is above differs from mallet to mallet
 #define RISE 0.002        // (s) chosen: as the recordings rise
 #define TOP 0.45          // of the sample rate; a band above it is silent
-#define SILENT 1e-14      // sum of energies; chosen: -140 dB
+#define UNHEARD 2e-6      // of a level; chosen: 20 dB of sound pressure at 1 m, a quiet hall has 25
+#define SILENT 1e-8       // of a level that ends; chosen: -160 dB, no click
 #define PLACE 50       // seeds a metre; chosen: a mallet covers as much, blows within it are alike
 #define COHERENCE 0.65 // of the two rows; chosen: shell and stand are larger than a head
 #define CHUNK 32       // samples at a time, so that vectors do not wait for single numbers
@@ -48,49 +51,73 @@ static const struct {
                              {2000, 4000, 0.36, 1.2e-9},
                              {4000, 8000, 0.18, 9.0e-11}};
 
-// a low or high pass with damping d = 1/Q, by the bilinear transform, for a band of both rows
-static void set_edge(himc_noise_edge *e, int band, double k, bool high, double d)
+// the poles of a low or high pass with damping d = 1/Q, by the bilinear transform
+static void set_poles(himc_noise_section *e, int band, double k, double d)
 {
-    double n = 1 / (1 + k * d + k * k), b = (high ? 1 : k * k) * n;
-    for (int i = band; i < HIMC_NOISE_LANES; i += HIMC_NOISE_BANDS) {
-        e->b[0][i] = e->b[2][i] = b;
-        e->b[1][i] = high ? -2 * b : 2 * b;
-        e->a[0][i] = 2 * (k * k - 1) * n;
-        e->a[1][i] = (1 - k * d + k * k) * n;
+    double n = 1 / (1 + k * d + k * k);
+    for (int row = 0; row < HIMC_NOISE_ROWS; row++) {
+        e->a[0][HIMC_NOISE_ROWS * band + row] = 2 * (k * k - 1) * n;
+        e->a[1][HIMC_NOISE_ROWS * band + row] = (1 - k * d + k * k) * n;
     }
 }
 
-// x through all filters; `lanes` is constant where this is inlined, so that vectors do it
-static inline void filter(himc_noise_edge edge[3], int lanes, double x[HIMC_NOISE_LANES])
+// a number of each row
+typedef double both __attribute__((vector_size(HIMC_NOISE_ROWS * sizeof(double)), may_alias));
+_Static_assert(HIMC_NOISE_ROWS == 2, "as any x86-64 has it");
+
+// n samples through the sections of bands `first` and `first` + 1, of which neither waits for the
+// other
+static void filter(himc_noise_section section[3], int first, int n, both (*x)[HIMC_NOISE_BANDS])
 {
-    for (int k = 0; k < 3; k++) {
-        himc_noise_edge *e = &edge[k];
-        for (int i = 0; i < lanes; i++) {
-            double y = e->b[0][i] * x[i] + e->past[0][i];
-            e->past[0][i] = e->b[1][i] * x[i] - e->a[0][i] * y + e->past[1][i];
-            e->past[1][i] = e->b[2][i] * x[i] - e->a[1][i] * y;
-            x[i] = y;
+    both a[3][2][2], past[3][2][2];
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++) {
+            memcpy(a[k][i], &section[k].a[i][HIMC_NOISE_ROWS * first], sizeof a[k][i]);
+            memcpy(past[k][i], &section[k].past[i][HIMC_NOISE_ROWS * first], sizeof past[k][i]);
         }
-    }
+    for (int at = 0; at < n; at++)
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < 2; i++) {
+                both in = x[at][first + i], out = in + past[k][0][i];
+                both later = past[k][1][i] - a[k][0][i] * out, last = a[k][1][i] * out;
+                past[k][0][i] = later;
+                past[k][1][i] = -in - last;
+                if (k == 2) {
+                    past[k][0][i] = later + (in + in);
+                    past[k][1][i] = in - last;
+                }
+                x[at][first + i] = out;
+            }
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++)
+            memcpy(&section[k].past[i][HIMC_NOISE_ROWS * first], past[k][i], sizeof past[k][i]);
+}
+
+// lets the filters of lanes from `first` on, `step` apart, begin again
+static void clear(himc_stroke_noise *noise, int first, int step)
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = first; i < HIMC_NOISE_LANES; i += step)
+            noise->section[k].past[0][i] = noise->section[k].past[1][i] = 0;
 }
 
 static void set_units(himc_stroke_noise *noise)
 {
-    himc_noise_edge edge[3];
+    himc_stroke_noise tried = *noise;
     double power[HIMC_NOISE_BANDS] = {0};
-    memcpy(edge, noise->edge, sizeof edge);
-    for (int k = 0; k < 3; k++)
-        memset(edge[k].past, 0, sizeof edge[k].past);
+    clear(&tried, 0, 1);
     for (int k = 0; k < MEASURED * noise->rate; k++) {
-        double x[HIMC_NOISE_LANES];
-        for (int i = 0; i < HIMC_NOISE_LANES; i++)
-            x[i] = k == 0;
-        filter(edge, HIMC_NOISE_BANDS, x);
+        both x[1][HIMC_NOISE_BANDS];
         for (int i = 0; i < HIMC_NOISE_BANDS; i++)
-            power[i] += x[i] * x[i];
+            x[0][i] = (both){k == 0};
+        for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
+            if (i % 2 == 0)
+                filter(tried.section, i, 1, x);
+            power[i] += x[0][i][0] * x[0][i][0];
+        }
     }
     for (int i = 0; i < HIMC_NOISE_BANDS; i++)
-        noise->band[i].unit = power[i] > 0 ? 1 / sqrt(power[i]) : 0;
+        noise->band[i].unit = bands[i].low < TOP * noise->rate ? 1 / sqrt(power[i]) : 0;
 }
 
 void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate)
@@ -99,17 +126,13 @@ void himc_stroke_noise_set_rate(himc_stroke_noise *noise, double rate)
     himc_stroke_noise_damp(noise, noise->damp);
     noise->follow = 1 - exp(-1 / (RISE * rate));
     noise->pole = exp(-2 * HIMC_PI * EDGE / rate);
-    for (int k = 0; k < 3; k++)
-        memset(noise->edge[k].b, 0, sizeof noise->edge[k].b);
     for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
-        double top = fmin(bands[i].high, TOP * rate);
-        double low_k = tan(HIMC_PI * bands[i].low / rate), top_k = tan(HIMC_PI * top / rate);
+        double low_k = tan(HIMC_PI * fmin(bands[i].low, TOP * rate) / rate);
+        double top_k = tan(HIMC_PI * fmin(bands[i].high, TOP * rate) / rate);
         noise->band[i].keep = exp(-6.9 / (bands[i].t60 * rate));
-        if (bands[i].low >= top)
-            continue;
-        set_edge(&noise->edge[0], i, low_k, true, sqrt(2));
-        set_edge(&noise->edge[1], i, top_k, false, 2 * cos(HIMC_PI / 8));
-        set_edge(&noise->edge[2], i, top_k, false, 2 * sin(HIMC_PI / 8));
+        set_poles(&noise->section[0], i, low_k, sqrt(2));
+        set_poles(&noise->section[1], i, top_k, 2 * cos(HIMC_PI / 8));
+        set_poles(&noise->section[2], i, top_k, 2 * sin(HIMC_PI / 8));
     }
     set_units(noise);
 }
@@ -159,87 +182,82 @@ static void drive(himc_stroke_noise *noise, double force)
 
 void himc_stroke_noise_rest(himc_stroke_noise *noise)
 {
-    noise->sounds = false;
+    noise->sounds = 0;
     noise->state = 0;
     noise->force = noise->slope[0] = noise->slope[1] = noise->slope[2] = 0;
     for (int i = 0; i < HIMC_NOISE_BANDS; i++)
         noise->band[i].root = noise->band[i].level = 0;
-    for (int k = 0; k < 3; k++)
-        memset(noise->edge[k].past, 0, sizeof noise->edge[k].past);
+    clear(noise, 0, 1);
 }
 
 // white noise of power 1 for a band, from 16 of 64 bits
 static double white(uint64_t bits, int band)
 {
-    double part = (double)((bits >> (16 * band)) & 0xffffu);
-    return sqrt(12) * ((part + 0.5) / 65536 - 0.5);
+    return sqrt(12) / 65536 * ((int16_t)(bits >> (16 * band) ^ 0x8000) + 0.5);
 }
 
-// white noise for all bands of one row or two
-static inline void draw(himc_stroke_noise *noise, int lanes, double x[HIMC_NOISE_LANES])
+// white noise for so many bands
+static inline void draw(himc_stroke_noise *noise, int count, both x[HIMC_NOISE_BANDS])
 {
     uint64_t bits = himc_random_bits(&noise->state), other = himc_random_bits(&noise->state);
-    for (int i = 0; i < HIMC_NOISE_BANDS; i++)
-        x[i] = white(bits, i);
-    for (int i = HIMC_NOISE_BANDS; i < lanes; i++)
-        x[i] = COHERENCE * x[i - HIMC_NOISE_BANDS] +
-               sqrt(1 - COHERENCE * COHERENCE) * white(other, i - HIMC_NOISE_BANDS);
+    for (int i = 0; i < count; i++) {
+        double left = white(bits, i);
+        x[i] = (both){left, COHERENCE * left + sqrt(1 - COHERENCE * COHERENCE) * white(other, i)};
+    }
 }
 
-// the levels of the next samples, at most n, until the noise is no longer heard; then it rests
-static int find_levels(himc_stroke_noise *noise, int n, double force, bool *rests,
+// the levels of the next samples, at most n, until bands end: then fewer are `left`
+static int find_levels(himc_stroke_noise *noise, int n, double force, int *left,
                        double level[CHUNK][HIMC_NOISE_BANDS])
 {
+    bool pressed = force > 0 && noise->amount > 0;
+    *left = noise->sounds;
     for (int k = 0; k < n; k++) {
-        double heard = 0;
+        int heard = 0;
         drive(noise, force);
         for (int i = 0; i < HIMC_NOISE_BANDS; i++) {
             himc_noise_band *b = &noise->band[i];
             double goal = noise->amount * b->root;
             b->level += noise->follow * (goal - b->level);
-            b->root *= b->keep * noise->held;
-            heard += goal * goal + b->level * b->level;
+            b->root *= pressed || goal > UNHEARD ? b->keep * noise->held : 0;
             level[k][i] = b->level * b->unit;
+            if (b->level > SILENT || b->root > 0)
+                heard = i < HIMC_NOISE_BANDS / 2 ? HIMC_NOISE_BANDS / 2 : HIMC_NOISE_BANDS;
         }
-        *rests = !(heard > SILENT) && (force == 0 || noise->amount == 0);
-        if (*rests)
+        if (!pressed && heard < noise->sounds) {
+            *left = heard;
             return k + 1;
+        }
     }
     return n;
-}
-
-// one row of samples or two
-static inline void sound(himc_stroke_noise *noise, int lanes, int n, double *const *row,
-                         double level[CHUNK][HIMC_NOISE_BANDS])
-{
-    double x[CHUNK][HIMC_NOISE_LANES];
-    for (int k = 0; k < n; k++)
-        draw(noise, lanes, x[k]);
-    for (int k = 0; k < n; k++)
-        filter(noise->edge, lanes, x[k]);
-    for (int j = 0; j * HIMC_NOISE_BANDS < lanes; j++)
-        for (int k = 0; k < n; k++) {
-            const double *y = x[k] + j * HIMC_NOISE_BANDS, *l = level[k];
-            row[j][k] = (l[0] * y[0] + l[1] * y[1]) + (l[2] * y[2] + l[3] * y[3]);
-        }
 }
 
 // up to CHUNK samples; returns how many
 static int run_chunk(himc_stroke_noise *noise, int n, double force, int rows, double *const *row)
 {
     double level[CHUNK][HIMC_NOISE_BANDS];
-    bool rests;
-    n = find_levels(noise, n < CHUNK ? n : CHUNK, force, &rests, level);
-    // the filters of the other row begin at rest again: where it ended depends on the host's blocks
-    for (int k = 0; k < 3 && rows == 1; k++)
-        for (int i = HIMC_NOISE_BANDS; i < HIMC_NOISE_LANES; i++)
-            noise->edge[k].past[0][i] = noise->edge[k].past[1][i] = 0;
-    if (rows > 1)
-        sound(noise, HIMC_NOISE_LANES, n, row, level);
-    else
-        sound(noise, HIMC_NOISE_BANDS, n, row, level);
-    if (rests)
+    both x[CHUNK][HIMC_NOISE_BANDS];
+    int left, count = noise->sounds;
+    n = find_levels(noise, n < CHUNK ? n : CHUNK, force, &left, level);
+    for (int k = 0; k < n; k++)
+        draw(noise, count, x[k]);
+    for (int i = 0; i < count; i += 2)
+        filter(noise->section, i, n, x);
+    // the other row begins at rest again: where it ended depends on the host's blocks
+    if (rows == 1)
+        clear(noise, 1, HIMC_NOISE_ROWS);
+    for (int k = 0; k < n; k++) {
+        both sum = {0};
+        for (int i = 0; i < count; i++)
+            sum += level[k][i] * x[k][i];
+        for (int j = 0; j < rows; j++)
+            row[j][k] = sum[j];
+    }
+    if (left == 0)
         himc_stroke_noise_rest(noise);
+    else if (left < count)
+        clear(noise, HIMC_NOISE_ROWS * left, 1);
+    noise->sounds = left;
     return n;
 }
 
@@ -248,8 +266,9 @@ void himc_stroke_noise_run(himc_stroke_noise *noise, int n, double force, int ro
 {
     double *at[HIMC_NOISE_ROWS] = {row[0], row[1]};
     for (int more; n > 0; n -= more) {
-        noise->sounds = noise->sounds || (force > 0 && noise->amount > 0);
-        bool silent = !noise->sounds;
+        if (force > 0 && noise->amount > 0)
+            noise->sounds = HIMC_NOISE_BANDS;
+        bool silent = noise->sounds == 0;
         more = silent ? n : run_chunk(noise, n, force, rows, at);
         for (int k = 0; k < rows; k++) {
             if (silent)

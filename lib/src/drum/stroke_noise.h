@@ -9,11 +9,11 @@
 enum { HIMC_NOISE_BANDS = 4, HIMC_NOISE_ROWS = 2 };
 enum { HIMC_NOISE_LANES = HIMC_NOISE_BANDS * HIMC_NOISE_ROWS };
 
-/// A filter of second order for each band of each row, with the bands of a row side by side.
-typedef struct himc_noise_edge {
-    double b[3][HIMC_NOISE_LANES], a[2][HIMC_NOISE_LANES]; ///< zeros, poles
+/// A filter of second order for each row of each band, with the rows of a band side by side.
+typedef struct himc_noise_section {
+    double a[2][HIMC_NOISE_LANES]; ///< poles
     double past[2][HIMC_NOISE_LANES];
-} himc_noise_edge;
+} himc_noise_section;
 
 /// One band of the noise.
 typedef struct himc_noise_band {
@@ -25,7 +25,7 @@ typedef struct himc_noise_band {
 
 /// The noise of a drum. It takes a copy of the contact's force and gives nothing back.
 typedef struct himc_stroke_noise {
-    himc_noise_edge edge[3]; ///< the bands' lower edge, their upper one twice
+    himc_noise_section section[3]; ///< the bands' lower edge, their upper one twice
     himc_noise_band band[HIMC_NOISE_BANDS];
     double amount; ///< 0 none .. 1; may change at any time
     double rate;   ///< (Hz)
@@ -36,7 +36,7 @@ typedef struct himc_stroke_noise {
     double force;    ///< of the last sample (N)
     double slope[3]; ///< F' then, and what two filters leave of it (N/s)
     double pole;     ///< of these filters
-    bool sounds;     ///< false: nothing is heard, and nothing need be run without a force
+    int sounds; ///< bands that are heard, the lowest first; 0: nothing need be run without a force
 } himc_stroke_noise;
 
 /// At rest, at that sample rate (Hz), with amount 1.

@@ -51,15 +51,17 @@ bool himc_pickup_check(const himc_pickup *pickup, const himc_head *head, himc_er
     return himc_check_range("pickup: X Y, from the centre", r, 0, head->radius, "m", error);
 }
 
-// The integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2. J_{m+1}(j) is in the mode's
-// norm; its sign changes from zero to zero.
-static double overlap(const himc_mode *mode, double x, double bessel)
+// J_{m+1} at the mode's zero, which is in its norm; the sign changes from zero to zero
+static double bessel_next(const himc_mode *mode)
 {
-    double j = mode->zero, size = sqrt(mode->m > 0 ? 2 * mode->norm : mode->norm);
-    double next = mode->n % 2 ? size : -size;
-    if (fabs(x - j) < 1e-6 * j)
-        return 0.5 * next * next;
-    return j * next * bessel / ((j - x) * (j + x));
+    double size = sqrt(mode->m > 0 ? 2 * mode->norm : mode->norm);
+    return mode->n % 2 ? size : -size;
+}
+
+// the integral of J_m(j r/a) J_m(x r/a) r dr over the head, by a^2, with J_{m+1}(j) and J_m(x)
+static double overlap(double j, double next, double x, double bessel)
+{
+    return fabs(x - j) < 1e-6 * j ? 0.5 * next * next : j * next * bessel / ((j - x) * (j + x));
 }
 
 // that of a mode, or of the mixture that a kettle makes of modes of order 0
@@ -68,27 +70,51 @@ static double whole_overlap(const himc_head *head, const himc_modes *modes, cons
 {
     const himc_mixture *mix = himc_modes_mixture(modes);
     if (mode->m != 0 || mode->n > mix->count)
-        return overlap(mode, x, bessel);
+        return overlap(mode->zero, bessel_next(mode), x, bessel);
     double sum = 0;
     for (int k = 0; k < mix->count; k++) {
         himc_mode bare = himc_modes_get(modes, head, mix->index[k]);
-        sum += mix->part[mode->n - 1][k] * overlap(&bare, x, bessel);
+        sum += mix->part[mode->n - 1][k] * overlap(bare.zero, bessel_next(&bare), x, bessel);
     }
     return sum;
 }
 
-// pressure at R per that of the far field, of a mode of order m; x = k R
-static double near_field(int m, double x)
+// those of all modes of a block
+static void find_overlaps(const himc_modes *modes, const himc_uneven_block *block, double x,
+                          double overlaps[HIMC_UNEVEN_MODES])
+{
+    const himc_mixture *mix = himc_modes_mixture(modes);
+    double j[HIMC_UNEVEN_ORDERS], bare[HIMC_UNEVEN_RANKS];
+    int of_order_0 = 0, at[HIMC_UNEVEN_RANKS];
+    himc_bessel_orders(x, HIMC_UNEVEN_ORDERS - 1, j);
+    for (int l = 0; l < block->count; l++) {
+        int m = block->even[l].m;
+        overlaps[l] = overlap(block->even[l].zero, block->even[l].slope, x, j[m]);
+        if (m == 0) {
+            bare[of_order_0] = overlaps[l];
+            at[of_order_0++] = l;
+        }
+    }
+    for (int n = 0; n < mix->count && n < of_order_0; n++) {
+        overlaps[at[n]] = 0;
+        for (int k = 0; k < mix->count; k++)
+            overlaps[at[n]] += mix->part[n][k] * bare[k];
+    }
+}
+
+// pressure at R per that of the far field, of modes of orders 0 .. top; x = k R
+static void near_fields(int top, double x, double *out)
 {
     double j = sin(x), y = -cos(x), j_before = cos(x), y_before = sin(x);
-    for (int l = 0; l < m; l++) {
-        double j_next = (2 * l + 1) / x * j - j_before, y_next = (2 * l + 1) / x * y - y_before;
+    out[0] = 1;
+    for (int m = 1; m <= top; m++) {
+        double j_next = (2 * m - 1) / x * j - j_before, y_next = (2 * m - 1) / x * y - y_before;
         j_before = j;
         y_before = y;
         j = j_next;
         y = y_next;
+        out[m] = sqrt(j * j + y * y);
     }
-    return m > 0 ? hypot(j, y) : 1;
 }
 
 // sound per pascal of Rayleigh's integral
@@ -119,19 +145,16 @@ bool himc_pickup_find_orders(const himc_pickup *pickup, const himc_head *head,
     const himc_uneven_block *block = himc_uneven_of(modes, index, &row);
     if (!block)
         return false;
-    double k = 2 * HIMC_PI * mode->frequency / HIMC_AIR_SPEED, j[HIMC_UNEVEN_ORDERS];
-    double x = k * head->radius * cos(pickup->elevation),
-           scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
+    double k = 2 * HIMC_PI * mode->frequency / HIMC_AIR_SPEED, overlaps[HIMC_UNEVEN_MODES];
+    double scale = HIMC_AIR_DENSITY / pickup->distance * head->radius * head->radius;
     *orders = (himc_pickup_orders){0};
-    himc_bessel_orders(x, HIMC_UNEVEN_ORDERS - 1, j);
+    find_overlaps(modes, block, k * head->radius * cos(pickup->elevation), overlaps);
     for (int l = 0; l < block->count; l++) {
-        himc_mode even = himc_modes_get(modes, head, block->index[l]);
-        double turn = (even.m - mode->m) % 4 == 0 ? 1 : -1; // (-i)^(m - own order) of equal parity
-        double angle = even.m * even.axis + (even.sine ? HIMC_PI / 2 : 0);
-        double part =
-            turn * scale * block->part[row][l] * whole_overlap(head, modes, &even, x, j[even.m]);
-        orders->cosine[even.m] += part * cos(angle);
-        orders->sine[even.m] += part * sin(angle);
+        int m = block->even[l].m;
+        double turn = (m - mode->m) % 4 == 0 ? 1 : -1; // (-i)^(m - own order) of equal parity
+        double part = turn * scale * block->part[row][l] * overlaps[l];
+        orders->cosine[m] += part * block->even[l].cosine;
+        orders->sine[m] += part * block->even[l].sine;
     }
     return true;
 }
@@ -173,15 +196,16 @@ pickup_weights himc_pickup_of_round(const himc_pickup *pickup, const himc_head *
                                     const himc_modes *modes, int index, const himc_mode *mode)
 {
     himc_pickup_orders orders;
-    double omega = 2 * HIMC_PI * mode->frequency, pressure = 0;
-    double near = omega / HIMC_AIR_SPEED * fmax(pickup->distance, NEAREST * head->radius);
-    if (himc_pickup_find_orders(pickup, head, modes, index, mode, &orders))
-        for (int m = 0; m < HIMC_UNEVEN_ORDERS; m++)
-            pressure += near_field(m, near) * (orders.cosine[m] * cos(m * pickup->azimuth) +
-                                               orders.sine[m] * sin(m * pickup->azimuth));
-    else
-        pressure =
-            near_field(mode->m, near) * himc_pickup_pressure(pickup, head, modes, index, mode);
+    double omega = 2 * HIMC_PI * mode->frequency, nearer[HIMC_LUGS_ORDERS], pressure = 0;
+    double x = omega / HIMC_AIR_SPEED * fmax(pickup->distance, NEAREST * head->radius);
+    bool mixed = himc_pickup_find_orders(pickup, head, modes, index, mode, &orders);
+    near_fields(mixed ? HIMC_UNEVEN_ORDERS - 1 : mode->m, x, nearer);
+    for (int m = mode->m % 2; mixed && m < HIMC_UNEVEN_ORDERS; m += 2)
+        pressure += nearer[m] * (orders.cosine[m] * cos(m * pickup->azimuth) +
+                                 orders.sine[m] * sin(m * pickup->azimuth));
+    if (!mixed)
+        pressure = (mode->m > 0 ? nearer[mode->m] : 1) *
+                   himc_pickup_pressure(pickup, head, modes, index, mode);
     return of_gain(mode, pressure * per_pascal(head));
 }
 

@@ -181,7 +181,22 @@ static void mix_order_0(const himc_modes *modes, const himc_uneven_block *block,
         }
 }
 
-// eigenvectors of a symmetric matrix, which becomes diagonal, in the columns of v
+// the rotation that makes a[p][q] zero; rows are changed, and the columns are the same numbers
+static void rotate(int n, double *a, double *v, int p, int q)
+{
+    double *x = a + p * n, *y = a + q * n, c, s;
+    himc_jacobi_angle(x[p], x[q], y[q], &c, &s);
+    himc_jacobi_mix(n, x, y, 1, c, s);
+    himc_jacobi_mix(n, v + p * n, v + q * n, 1, c, s);
+    himc_jacobi_mix(1, x + p, x + q, 1, c, s);
+    himc_jacobi_mix(1, y + p, y + q, 1, c, s);
+    for (int i = 0; i < n; i++) {
+        a[i * n + p] = x[i];
+        a[i * n + q] = y[i];
+    }
+}
+
+// eigenvectors of a symmetric matrix, which becomes diagonal, in the rows of v
 static void diagonalise(int n, double *a, double *v)
 {
     for (int i = 0; i < n * n; i++)
@@ -191,7 +206,7 @@ static void diagonalise(int n, double *a, double *v)
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)
                 if (fabs(a[p * n + q]) > LEAST * fabs(a[p * n + p] - a[q * n + q])) {
-                    himc_jacobi_rotate(n, a, v, p, q);
+                    rotate(n, a, v, p, q);
                     turned++;
                 }
     }
@@ -206,7 +221,13 @@ static void find_block(himc_modes *modes, int parity, double tension, const doub
     for (int i = 0; i < modes->exact; i++) {
         const himc_mode_entry *e = &modes->entries[modes->of[i]];
         if (mixes(e) && e->m % 2 == parity) {
+            double angle = member_of(modes, i).angle, norm = e->m > 0 ? 2 * e->norm : e->norm;
             block->index[n] = i;
+            block->even[n].m = e->m;
+            block->even[n].zero = e->z;
+            block->even[n].slope = (e->n % 2 ? 1 : -1) * sqrt(norm);
+            block->even[n].cosine = cos(angle);
+            block->even[n].sine = sin(angle);
             row[i] = n++;
         }
     }
@@ -232,7 +253,7 @@ static void find_block(himc_modes *modes, int parity, double tension, const doub
         double sign = v[i * n + i] < 0 ? -1 : 1;
         stiffness[block->index[i]] = matrix[i * n + i] * root[i] * root[i];
         for (int l = 0; l < n; l++)
-            block->part[i][l] = sign * v[l * n + i] * root[i] / root[l];
+            block->part[i][l] = sign * v[i * n + l] * root[i] / root[l];
     }
 }
 
@@ -254,7 +275,7 @@ const himc_uneven_block *himc_uneven_block_of(const himc_modes *modes, int parit
 
 const himc_uneven_block *himc_uneven_of(const himc_modes *modes, int index, int *row)
 {
-    for (int parity = 0; parity < 2; parity++)
+    for (int parity = 0; parity < 2 && index < modes->exact; parity++)
         for (int i = 0; i < modes->block[parity].count; i++)
             if (modes->block[parity].index[i] == index) {
                 *row = i;

@@ -16,6 +16,11 @@ typedef struct himc_modes himc_modes;
 typedef struct himc_uneven_block {
     int count;
     int index[HIMC_UNEVEN_MODES]; ///< in the list of modes
+    struct {
+        int m;
+        double zero, slope;  ///< j_mn and J_m+1 there
+        double cosine, sine; ///< of the angle a: cos(m th - a)
+    } even[HIMC_UNEVEN_MODES];
     double part[HIMC_UNEVEN_MODES][HIMC_UNEVEN_MODES];
 } himc_uneven_block;
 

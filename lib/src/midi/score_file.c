@@ -13,11 +13,7 @@ bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_e
 {
     static const struct {
         const char *begin, *is;
-    } known[] = {{"HIERARCHY", "a BVH: its name must end with .bvh"},
-                 {"PathFileType", "a TRC: its name must end with .trc"},
-                 {"Trajectories,", "a Nexus CSV: its name must end with .csv"},
-                 {"NO_OF_FRAMES", "a Qualisys TSV: its name must end with .tsv"},
-                 {"Kaydara FBX", "an FBX: import it into Blender and export .bvh"},
+    } known[] = {{"Kaydara FBX", "an FBX: import it into Blender and export .bvh"},
                  {":ASF", "an Acclaim skeleton: convert it with its .amc to .bvh"},
                  {"RIFF", "a sound or a film"},
                  {"fLaC", "a sound"},
@@ -28,7 +24,12 @@ bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_e
                  {"<", "XML or a web page: export MusicXML as MIDI"},
                  {"{", "JSON"},
                  {"version https://git-lfs", "a pointer to Git's large files: run git lfs pull"}};
-    const char *kind = NULL;
+    const char *kind = NULL, *suffix = himc_take_suffix_of(bytes, size);
+    if (suffix)
+        return himc_error_set(error,
+                              "%s: a take: its name must end with %s; expected a score, a MIDI "
+                              "file or a take",
+                              name, suffix);
     for (size_t i = 0; i < sizeof known / sizeof known[0] && !kind; i++)
         if (size >= strlen(known[i].begin) &&
             !memcmp(bytes, known[i].begin, strlen(known[i].begin)))

@@ -1,4 +1,5 @@
-/// score_file.h: a score from a file of commands or of MIDI; private.
+/// score_file.h: a score from a file of commands or of MIDI, for performance_score.c
+/// and the program.
 #ifndef HIMC_MIDI_SCORE_FILE_H
 #define HIMC_MIDI_SCORE_FILE_H
 

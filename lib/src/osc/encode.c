@@ -14,6 +14,7 @@
 #include "osc/encode.h"
 #include "himc/body.h"
 #include "osc/message.h"
+#include "osc/ring.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -175,17 +176,8 @@ void himc_osc_encode_status(osc_packets *p, const osc_status *status, const himc
                 {"strikes", (double)status->strikes},
                 {"recoveries", (double)s->recoveries},
                 {"limit_hits", (double)s->limit_hits},
-                {"packets", (double)c->packets},
-                {"commands", (double)c->commands},
-                {"malformed", (double)c->malformed},
-                {"foreign", (double)c->foreign},
-                {"refused", (double)c->refused},
-                {"frequent", (double)c->frequent},
-                {"overrun", (double)c->overrun},
-                {"sent", (double)c->sent},
-                {"unsent", (double)c->unsent},
-                {"capped", (double)c->capped},
-                {"lost", (double)c->lost}};
+#define COUNTED(ID, field) {#field, (double)c->field},
+                OSC_COUNTERS(COUNTED){"lost", (double)c->lost}};
     osc_message message;
     himc_osc_message_begin(&message, "/himc/status");
     for (size_t i = 0; i < sizeof pair / sizeof *pair; i++) {
@@ -210,55 +202,34 @@ typedef struct bone {
     int towards;
 } bone;
 
-enum {
-    HIPS,
-    SPINE,
-    CHEST,
-    NECK,
-    HEAD,
-    SHOULDER_L,
-    SHOULDER_R,
-    UPPER_ARM_L,
-    UPPER_ARM_R,
-    LOWER_ARM_L,
-    LOWER_ARM_R,
-    HAND_L,
-    HAND_R,
-    UPPER_LEG_L,
-    UPPER_LEG_R,
-    LOWER_LEG_L,
-    LOWER_LEG_R,
-    FOOT_L,
-    FOOT_R,
-    TOES_L,
-    TOES_R,
-    BONES
-};
-
-// a parent stands before its children; shares chosen: chest and shoulders where a rig has them
-static const bone bones[BONES] = {
-    {"Hips", HIMC_PELVIS, -1, 0, 0, 0},
-    {"Spine", HIMC_TRUNK, HIPS, 0, 0, 0},
-    {"Chest", HIMC_TRUNK, SPINE, 0, 0.4, HIMC_NECK},
-    {"Neck", HIMC_NECK, CHEST, 0, 0, 0},
-    {"Head", HIMC_HEAD, NECK, 0, 0, 0},
-    {"LeftShoulder", HIMC_TRUNK, CHEST, 0, 0.85, HIMC_LEFT_UPPER_ARM},
-    {"RightShoulder", HIMC_TRUNK, CHEST, 0, 0.85, HIMC_RIGHT_UPPER_ARM},
-    {"LeftUpperArm", HIMC_LEFT_UPPER_ARM, SHOULDER_L, 1, 0, 0},
-    {"RightUpperArm", HIMC_RIGHT_UPPER_ARM, SHOULDER_R, -1, 0, 0},
-    {"LeftLowerArm", HIMC_LEFT_FOREARM, UPPER_ARM_L, 1, 0, 0},
-    {"RightLowerArm", HIMC_RIGHT_FOREARM, UPPER_ARM_R, -1, 0, 0},
-    {"LeftHand", HIMC_LEFT_HAND, LOWER_ARM_L, 1, 0, 0},
-    {"RightHand", HIMC_RIGHT_HAND, LOWER_ARM_R, -1, 0, 0},
-    {"LeftUpperLeg", HIMC_LEFT_UPPER_LEG, HIPS, 0, 0, 0},
-    {"RightUpperLeg", HIMC_RIGHT_UPPER_LEG, HIPS, 0, 0, 0},
-    {"LeftLowerLeg", HIMC_LEFT_LOWER_LEG, UPPER_LEG_L, 0, 0, 0},
-    {"RightLowerLeg", HIMC_RIGHT_LOWER_LEG, UPPER_LEG_R, 0, 0, 0},
-    {"LeftFoot", HIMC_LEFT_FOOT, LOWER_LEG_L, 0, 0, 0},
-    {"RightFoot", HIMC_RIGHT_FOOT, LOWER_LEG_R, 0, 0, 0},
-    {"LeftToes", HIMC_LEFT_TOES, FOOT_L, 0, 0, 0},
-    {"RightToes", HIMC_RIGHT_TOES, FOOT_R, 0, 0, 0},
-};
+// X(ID, bone); a parent stands before its children; shares chosen: chest and shoulders where a rig
+// has them
+#define BONE_ROWS(X)                                                               \
+    X(HIPS, Hips, HIMC_PELVIS, -1, 0, 0, 0)                                        \
+    X(SPINE, Spine, HIMC_TRUNK, HIPS, 0, 0, 0)                                     \
+    X(CHEST, Chest, HIMC_TRUNK, SPINE, 0, 0.4, HIMC_NECK)                          \
+    X(NECK, Neck, HIMC_NECK, CHEST, 0, 0, 0)                                       \
+    X(HEAD, Head, HIMC_HEAD, NECK, 0, 0, 0)                                        \
+    X(SHOULDER_L, LeftShoulder, HIMC_TRUNK, CHEST, 0, 0.85, HIMC_LEFT_UPPER_ARM)   \
+    X(SHOULDER_R, RightShoulder, HIMC_TRUNK, CHEST, 0, 0.85, HIMC_RIGHT_UPPER_ARM) \
+    X(UPPER_ARM_L, LeftUpperArm, HIMC_LEFT_UPPER_ARM, SHOULDER_L, 1, 0, 0)         \
+    X(UPPER_ARM_R, RightUpperArm, HIMC_RIGHT_UPPER_ARM, SHOULDER_R, -1, 0, 0)      \
+    X(LOWER_ARM_L, LeftLowerArm, HIMC_LEFT_FOREARM, UPPER_ARM_L, 1, 0, 0)          \
+    X(LOWER_ARM_R, RightLowerArm, HIMC_RIGHT_FOREARM, UPPER_ARM_R, -1, 0, 0)       \
+    X(HAND_L, LeftHand, HIMC_LEFT_HAND, LOWER_ARM_L, 1, 0, 0)                      \
+    X(HAND_R, RightHand, HIMC_RIGHT_HAND, LOWER_ARM_R, -1, 0, 0)                   \
+    X(UPPER_LEG_L, LeftUpperLeg, HIMC_LEFT_UPPER_LEG, HIPS, 0, 0, 0)               \
+    X(UPPER_LEG_R, RightUpperLeg, HIMC_RIGHT_UPPER_LEG, HIPS, 0, 0, 0)             \
+    X(LOWER_LEG_L, LeftLowerLeg, HIMC_LEFT_LOWER_LEG, UPPER_LEG_L, 0, 0, 0)        \
+    X(LOWER_LEG_R, RightLowerLeg, HIMC_RIGHT_LOWER_LEG, UPPER_LEG_R, 0, 0, 0)      \
+    X(FOOT_L, LeftFoot, HIMC_LEFT_FOOT, LOWER_LEG_L, 0, 0, 0)                      \
+    X(FOOT_R, RightFoot, HIMC_RIGHT_FOOT, LOWER_LEG_R, 0, 0, 0)                    \
+    X(TOES_L, LeftToes, HIMC_LEFT_TOES, FOOT_L, 0, 0, 0)                           \
+    X(TOES_R, RightToes, HIMC_RIGHT_TOES, FOOT_R, 0, 0, 0)
+#define BONE_ID(id, ...) id,
+#define BONE(id, name, ...) {#name, __VA_ARGS__},
+enum { BONE_ROWS(BONE_ID) BONES };
+static const bone bones[BONES] = {BONE_ROWS(BONE)};
 
 static himc_vec3 vector(const float x[3])
 {

@@ -22,18 +22,10 @@
 himc_osc_counts himc_osc_count(const himc_osc *osc)
 {
     const osc_counters *c = &osc->counts;
-    return (himc_osc_counts){.packets = himc_osc_read(c, COUNT_PACKETS),
-                             .commands = himc_osc_read(c, COUNT_COMMANDS),
-                             .malformed = himc_osc_read(c, COUNT_MALFORMED),
-                             .foreign = himc_osc_read(c, COUNT_FOREIGN),
-                             .refused = himc_osc_read(c, COUNT_REFUSED),
-                             .frequent = himc_osc_read(c, COUNT_FREQUENT),
-                             .overrun = himc_osc_read(c, COUNT_OVERRUN),
-                             .sent = himc_osc_read(c, COUNT_SENT),
-                             .unsent = himc_osc_read(c, COUNT_UNSENT),
-                             .capped = himc_osc_read(c, COUNT_CAPPED),
-                             .lost = osc->records.lost + osc->orders.lost + osc->lines.lost,
-                             .subscriptions = osc->subscriptions.count};
+#define COUNTED(ID, field) .field = himc_osc_read(c, COUNT_##ID),
+    return (himc_osc_counts){.lost = osc->records.lost + osc->orders.lost + osc->lines.lost,
+                             .subscriptions = osc->subscriptions.count,
+                             OSC_COUNTERS(COUNTED)};
 }
 
 // --- the network thread

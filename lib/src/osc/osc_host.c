@@ -269,42 +269,19 @@ static void loaded(void *object, const char *error)
     refuse_to(osc, &h->loading_for, line.text);
 }
 
-static himc_drum *find_drum(himc_performance *performance, const char *name, himc_error *error)
-{
-    himc_drum *drum;
-    char names[120] = "";
-    for (int i = 0; (drum = himc_performance_drum(performance, i)); i++) {
-        if (strcmp(himc_drum_name(drum), name) == 0)
-            return drum;
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, " %s", himc_drum_name(drum));
-    }
-    himc_error_set(error, "%s: no drum of that name, expected%s", name,
-                   names[0] ? names : " none, make one with drum");
-    return NULL;
-}
-
 static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_order *order,
                       himc_error *error)
 {
     osc_host *h = &osc->host;
     const himc_command *command = &order->command;
-    const char *name = command->drum;
-    himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
-    bool good;
-    if (name[0] && !(to.drum = find_drum(performance, name, error)))
-        return false;
-    if (h->loader) {
-        good = himc_loader_command(h->loader, &to, command, error);
-        h->loading = good && himc_loader_busy(h->loader);
-        h->loading_for = order->from;
-        memcpy(h->loading_drum, name, sizeof h->loading_drum);
-    } else if (to.drum) {
-        good = himc_drum_command(to.drum, command, error);
-    } else {
-        good = himc_performance_command(performance, command, 0, error);
-    }
-    return good || (to.drum && himc_error_prefix(error, "%s", name));
+    const himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
+    if (!h->loader)
+        return himc_performance_command(performance, command, 0, error);
+    bool good = himc_loader_command(h->loader, &to, command, error);
+    h->loading = good && himc_loader_busy(h->loader);
+    h->loading_for = order->from;
+    memcpy(h->loading_drum, command->drum, sizeof h->loading_drum);
+    return good;
 }
 
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
@@ -313,9 +290,10 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
     osc_sender from = {.osc = osc, .address = &order->from};
     osc_dump *dump = &osc->host.dump;
     himc_command_id id = order->command.id;
+    const himc_runner *runner = (const himc_runner *)(const void *)performance; // its first member
     const himc_drum *drum = NULL;
     if (id == HIMC_COMMAND_DRUM_DUMP || id == HIMC_COMMAND_DRUM_INFO)
-        drum = find_drum(performance, order->command.drum, &error);
+        drum = runner->drum(performance, &order->command, &error);
     if (id == HIMC_COMMAND_INFO)
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
     else if (id == HIMC_COMMAND_DUMP)

@@ -26,20 +26,20 @@ void himc_osc_ring_push(osc_ring *ring);
 const void *himc_osc_ring_peek(osc_ring *ring);
 void himc_osc_ring_pop(osc_ring *ring);
 
-/// The counters of himc_osc_counts, in its order.
-typedef enum osc_counter {
-    COUNT_PACKETS,
-    COUNT_COMMANDS,
-    COUNT_MALFORMED,
-    COUNT_FOREIGN,
-    COUNT_REFUSED,
-    COUNT_FREQUENT,
-    COUNT_OVERRUN,
-    COUNT_SENT,
-    COUNT_UNSENT,
-    COUNT_CAPPED,
-    COUNTERS
-} osc_counter;
+/// The counters: X(ID, field of himc_osc_counts).
+#define OSC_COUNTERS(X)     \
+    X(PACKETS, packets)     \
+    X(COMMANDS, commands)   \
+    X(MALFORMED, malformed) \
+    X(FOREIGN, foreign)     \
+    X(REFUSED, refused)     \
+    X(FREQUENT, frequent)   \
+    X(OVERRUN, overrun)     \
+    X(SENT, sent)           \
+    X(UNSENT, unsent)       \
+    X(CAPPED, capped)
+#define OSC_COUNTER(ID, field) COUNT_##ID,
+typedef enum osc_counter { OSC_COUNTERS(OSC_COUNTER) COUNTERS } osc_counter;
 
 typedef struct osc_counters {
     _Atomic long count[COUNTERS];

@@ -4,7 +4,6 @@
 /// A step is simulated when the host takes its first sample; its forces wait here. So the result
 /// does not depend on the block size.
 #include "performance/performance_state.h"
-#include "base/head_frame.h"
 
 #include <string.h>
 

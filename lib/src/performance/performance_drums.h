@@ -39,8 +39,9 @@ typedef struct performance_drums {
     int count;
     himc_listener listener; ///< of all of them, as what follows
     himc_walls walls;
-    bool heard;  ///< by the usual listener, at first
-    double gain; ///< of their sound (factor)
+    long hearings; ///< changes of the two, so far
+    bool heard;    ///< by the usual listener, at first
+    double gain;   ///< of their sound (factor)
     bool mute;
     long round;            ///< of a loop, at the last himc_drums_turn_heads
     himc_air_between *air; ///< owned; between those that are near, NULL before the second drum

@@ -62,6 +62,8 @@ void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
         himc_state_numbers(&line, 2, (double[]){stroke->x, stroke->y});
     else
         himc_state_word(&line, himc_spot_name(stroke->spot));
+    if (stroke->bounces == HIMC_DEAD)
+        himc_state_word(&line, "dead");
     if (stroke->drum[0])
         himc_state_word(&line, stroke->drum);
     himc_text_add(lines, line.text);
@@ -69,19 +71,13 @@ void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
 
 static void add_command(himc_state_line *line, const himc_command *c)
 {
-    static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
-                                        "F#", "G",  "G#", "A",  "A#", "B"};
-    char note[8];
-    double hz;
+    char note[HIMC_NOTE_SIZE];
     himc_state_word(line, himc_command_table((int)c->id)->name);
     // a note is told by its name: its frequency is no number in single precision
-    bool pitch = c->id == HIMC_COMMAND_TUNE || c->id == HIMC_COMMAND_GLISS, told = false;
-    for (int key = 0; pitch && !told && key < 12 * 10; key++) {
-        himc_format(note, sizeof note, "%s%d", names[key % 12], key / 12);
-        told = himc_note_frequency(note, &hz) && hz == c->atom[0].number;
-        if (told)
-            himc_state_word(line, note);
-    }
+    bool pitch = c->id == HIMC_COMMAND_TUNE || c->id == HIMC_COMMAND_GLISS;
+    bool told = pitch && himc_note_name(c->atom[0].number, note);
+    if (told)
+        himc_state_word(line, note);
     for (int i = told; i < c->count; i++)
         if (c->atom[i].kind == HIMC_ATOM_SYMBOL)
             himc_state_word(line, c->atom[i].symbol);

@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LONGEST_RECORDING 1200.0 // chosen: 20 minutes, 0.5 GB of poses at 250 Hz (s)
-
 bool himc_performance_event(himc_performance *p, himc_event *event)
 {
     return himc_events_take(&p->events, event);
@@ -43,6 +41,7 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
     s.seconds = fmax((double)c->played, 0) / c->sample_rate;
     s.limit_hits = himc_body_limit_hits(p->body);
     s.events_lost = p->events.lost;
+    s.hearings = p->drums.hearings;
     s.sample_rate = c->sample_rate;
     s.physics_rate = c->physics_rate;
     s.task_rate = c->task_rate;
@@ -248,8 +247,8 @@ static bool prepare_recording(himc_job *job, himc_error *error)
     if (j->command.form == STOP)
         return write_frames(j->file, error);
     himc_recording_free(j->file);
-    j->file = himc_recording_new(j->command.atom[0].symbol, &j->skeleton, j->rate,
-                                 LONGEST_RECORDING, error);
+    const double longest = 1200; // (s) chosen: 20 minutes, 0.5 GB of poses at 250 Hz
+    j->file = himc_recording_new(j->command.atom[0].symbol, &j->skeleton, j->rate, longest, error);
     return j->file || himc_error_prefix(error, "record");
 }
 

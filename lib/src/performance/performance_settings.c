@@ -16,9 +16,6 @@
 #include <stddef.h>
 #include <string.h>
 
-/// That a hit needs from rest (s): measured, an accent at ff; vertical accents need more from f on.
-#define LONGEST_PREPARATION 0.33
-
 /// A command to be stored.
 typedef struct reading {
     const himc_command *command;
@@ -235,8 +232,8 @@ static void tell_human(const telling *t)
 static bool read_latency(const reading *r)
 {
     enum { TIME, AUTO };
-    r->settings->latency =
-        r->command->form == AUTO ? LONGEST_PREPARATION : 1e-3 * r->command->atom[0].number;
+    // auto: what a hit needs from rest, measured: an accent at ff; vertical accents need more
+    r->settings->latency = r->command->form == AUTO ? 0.33 : 1e-3 * r->command->atom[0].number;
     return true;
 }
 

@@ -21,13 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// chosen: a player goes a little further than one take shows
-#define LIMIT_MARGIN 0.05     // beyond the captured range, as a share of it ...
-#define LEAST_LIMIT 0.05      // ... and this far whatever the range (rad)
-#define POSTURES_SEEN 1000    // frames of a take, for the limits of bent arms
-#define REACH_CHECK_STEP 0.01 // from one check of a take's reach to the next (s)
-#define OUT_OF_REACH 1e-3     // a tip further from its target is out of reach (m)
-#define SAME_PLACE 1e-6       // a drum as near as this is not moved (m)
+#define POSTURES_SEEN 1000 // frames of a take, for the limits of bent arms; chosen
 
 typedef struct take_job {
     himc_job job;
@@ -65,7 +59,7 @@ typedef struct take_job {
 
 static bool same_place(himc_vec3 a, himc_vec3 b)
 {
-    return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
+    return himc_vec3_length(himc_vec3_sub(a, b)) < 1e-6; // (m)
 }
 
 static himc_trunk_posture mean_trunk(const himc_player *player)
@@ -83,9 +77,10 @@ static himc_trunk_posture mean_trunk(const himc_player *player)
 bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limits *learned,
                                    himc_error *error)
 {
-    if (!himc_limits_learn(learned, pose, frames, LIMIT_MARGIN, error))
+    // chosen: a player goes further than one take shows, by 5 % of the range and 0.05 rad
+    if (!himc_limits_learn(learned, pose, frames, 0.05, error))
         return false;
-    himc_limits_loosen(learned, LEAST_LIMIT);
+    himc_limits_loosen(learned, 0.05);
     return true;
 }
 
@@ -177,7 +172,7 @@ static bool survey(take_job *j, const himc_posture *posture, himc_error *error)
     }
     free(s.strikes);
     double length = himc_track_length(j->track);
-    for (double t = 0; t < length; t += REACH_CHECK_STEP)
+    for (double t = 0; t < length; t += 0.01) // (s) chosen
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             if (!himc_track_present(j->track, (himc_hand)hand))
                 continue;
@@ -185,7 +180,7 @@ static bool survey(take_job *j, const himc_posture *posture, himc_error *error)
             himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
             double missing = himc_vec3_length(himc_vec3_sub(x, near));
             j->placed++;
-            j->far += missing > OUT_OF_REACH;
+            j->far += missing > 1e-3; // (m)
             j->farthest = fmax(j->farthest, missing);
         }
     return true;
@@ -267,7 +262,7 @@ static bool prepare(himc_job *job, himc_error *error)
         j->player = NULL;
         if (!j->take && !himc_take_is_capture(j->name))
             return himc_error_set(error,
-                                  "take: %s: not a take by its suffix, expected " HIMC_TAKE_SUFFIXES
+                                  "take: %s: not a take by its suffix, expected" HIMC_TAKE_SUFFIXES
                                   "; a score or a MIDI file is loaded by score",
                                   j->name);
         if (!j->take)

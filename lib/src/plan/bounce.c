@@ -22,7 +22,11 @@
 
 #define GRAVITY 10.9  // of a stick of 45 g about its fulcrum, at the tip (m/s^2)
 #define FINGERS 169.0 // 1 N m at the fulcrum: 4 N at the tip's 23.7 g (m/s^2)
-#define RESERVE 0.85  // share of that for a planned flight; chosen: a head that swings varies it
+// a mallet that stays on the head; chosen: it falls back with a third of a m/s, no second blow
+#define DEAD_PRESS 200.0   // 5 N at that tip (m/s^2)
+#define DEAD_DAMPING 600.0 // (1/s)
+#define ARM 500.0          // 12 N, of the arm behind the fingers (m/s^2)
+#define RESERVE 0.85 // share of that for a planned flight; chosen: a head that swings varies it
 #define GRIP_DAMPING 0.06      // zeta; chosen: a loose grip, a double keeps .7 to .8 of its speed
 #define RESTITUTION 0.9        // expected of a contact; measured: .85 to .95 of soft blows
 #define LEAST_RESTITUTION 0.77 // of the softest blows, on the largest drum
@@ -48,7 +52,8 @@ double himc_bounce_fastest(int bounces, double time)
 {
     int flights = bounces == HIMC_BUZZ ? LEAST_BUZZ - 1 : bounces;
     double first = fmax(time - flights * CONTACT, 0) / flights_time(flights);
-    return bounces == 0 ? HUGE_VAL : 0.5 * first * RESERVE * FINGERS / RESTITUTION;
+    return bounces == 0 || bounces == HIMC_DEAD ? HUGE_VAL
+                                                : 0.5 * first * RESERVE * FINGERS / RESTITUTION;
 }
 
 double himc_bounce_longest(double speed)
@@ -73,6 +78,12 @@ double himc_bounce_acceleration(const himc_bounce *b, double height, double velo
 {
     double a = -b->press - b->stiffness * (height - b->rest) - b->damping * velocity;
     return fmin(fmax(a, -FINGERS), FINGERS);
+}
+
+double himc_bounce_dead(const himc_bounce *b, double t, double velocity)
+{
+    double left = fmin(fmax(2 * (1 - (t - b->begin) / b->time), 0), 1);
+    return fmin(fmax(-left * DEAD_PRESS - DEAD_DAMPING * velocity, -ARM), 0);
 }
 
 static void set_omega(himc_bounce *b, double omega)
@@ -116,6 +127,8 @@ static void tune_grip(himc_bounce *b, double v, double below, double wanted)
 void himc_bounce_separated(himc_bounce *b, double t, double since, double height, double velocity)
 {
     double left = b->begin + b->time - t;
+    if (b->bounces == HIMC_DEAD)
+        return;
     b->contacts++;
     b->rest = height;
     if (b->bounces != HIMC_BUZZ) {
@@ -134,6 +147,8 @@ void himc_bounce_separated(himc_bounce *b, double t, double since, double height
 bool himc_bounce_is_over(const himc_bounce *b, double t, double velocity)
 {
     double end = b->begin + b->time;
+    if (b->bounces == HIMC_DEAD)
+        return t > end;
     if (t > b->begin + LATE_SHARE * b->time)
         return true;
     if (b->bounces == HIMC_BUZZ)

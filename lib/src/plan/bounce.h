@@ -8,7 +8,7 @@
 /// The state of one stroke's bounces. Heights are the tip's over the head (m), up positive.
 typedef struct himc_bounce {
     bool on;          ///< from the first contact until the hand takes the stick up again
-    int bounces;      ///< wanted: 1 or HIMC_BUZZ
+    int bounces;      ///< wanted: 1, HIMC_BUZZ or HIMC_DEAD
     double time;      ///< from the first contact to the second, or to the last (s)
     double begin;     ///< of the first contact (s)
     int contacts;     ///< ended so far
@@ -34,6 +34,9 @@ HIMC_RT himc_bounce himc_bounce_begin(int bounces, double time, double t);
 
 /// The fingers' acceleration of the tip along the normal (m/s^2).
 HIMC_RT double himc_bounce_acceleration(const himc_bounce *bounce, double height, double velocity);
+
+/// Their acceleration at `t` in a dead stroke (m/s^2): a press that ends with its time.
+HIMC_RT double himc_bounce_dead(const himc_bounce *bounce, double t, double velocity);
 
 /// A contact has ended at `t`, `since` after the last force, the tip in this state: the fingers are
 /// set for the flight.

@@ -167,7 +167,7 @@ static bool may_stand(const himc_command *c, himc_error *error)
 /// A line for a drum: "kettle tune 110".
 static bool read_drum_line(reader *r, const himc_atom *atom, int count)
 {
-    const himc_argument *name = himc_argument_find("NAME", NULL);
+    const himc_argument *name = himc_argument_find("NAME", "drum");
     if (!himc_argument_accepts(name, &atom[0]))
         return himc_error_set(r->error, "%.40s: not a drum's name", atom[0].symbol);
     if (!himc_command_parse(&r->now.command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,

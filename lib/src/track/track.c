@@ -19,26 +19,12 @@
 // the cut around a strike; chosen: a contact of 7 ms and a frame at 250 Hz on both sides
 #define CUT_TIME 0.0125       // after a strike's lowest point, and at most before it (s)
 #define LONGEST_APPROACH 0.03 // the approach is carried on at most so long (s)
-#define AIRBORNE_HEIGHT 0.05  // no strike is so high above the head (m)
-#define LEAST_BRIDGE 0.02     // from contact to the end of its bridge (s)
 
 // the way back after a separation; chosen: as short as a stick can be led back without a jerk
-#define REJOIN_TIME 0.020    // from separation to the capture (s) ...
-#define REJOIN_DISTANCE 0.02 // ... but from this much further off than a stick goes in it (m) ...
-#define REJOIN_PEAK 250.0    // ... as long as this peak acceleration takes (m/s^2)
-#define FASTEST_STICK 12.0   // a stick that leaves the head faster has been thrown (m/s)
-#define LATEST_REJOIN 0.1    // a capture under the head is rejoined within this time (s) ...
-#define REJOIN_HEIGHT 0.02   // ... once it is so far above (m): the way there does not dip
-#define NEXT_STRIKE_GAP 1e-3 // the way ends so much before the next bridge begins (s)
-#define LEAST_REJOIN 0.015   // with less time left the path is not changed (s)
-#define SLOWEST_REJOIN 0.2   // rate of the take's time below which nothing is replanned
+#define REJOIN_TIME 0.020  // from separation to the capture (s)
+#define FASTEST_STICK 12.0 // a stick that leaves the head faster has been thrown (m/s)
 
-// a stop; chosen: no tip falls on the head after it
-#define HOVER_HEIGHT 0.08 // of a tip at rest above the head (m) ...
-#define HOVER_FALL 0.25   // ... and this share of the fall's speed times the halt's duration
-
-#define LOOKED_AHEAD 0.1 // what the motion at a time may rest on; chosen: some task periods (s)
-#define LEAST_FRAMES 8   // of a take; chosen: enough for one local fit
+#define LEAST_FRAMES 8 // of a take; chosen: enough for one local fit
 
 // fits frames lo .. hi, one stretch between strikes
 static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const himc_track *track)
@@ -80,7 +66,7 @@ static void make_bridge(himc_track *track, hand_track *h, bridge *b, double mall
     himc_target touch = himc_quintic_at(&b->approach, fall);
     b->from = b->restart = b->last / track->rate;
     b->contact = b->from + fall;
-    b->to = fmax(b->next / track->rate, b->contact + LEAST_BRIDGE);
+    b->to = fmax(b->next / track->rate, b->contact + 0.02); // (s) chosen
     b->to = fmin(b->to, himc_track_take_length(track));
     himc_target after = captured_at(track, h, b->to);
     b->spot = himc_head_frame_from_world(&track->head, touch.x);
@@ -106,9 +92,9 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     for (int i = 0; i < count; i++) {
         int frame = strikes[i].frame, clear = strikes[i].clear;
         himc_vec3 low = himc_vec3_add(strikes[i].x, track->offset);
-        // a stick pulled up sharply in the air may look like a strike
+        // a stick pulled up sharply in the air may look like a strike; none is 0.05 m high
         if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
-            himc_head_frame_from_world(&track->head, low).z > AIRBORNE_HEIGHT)
+            himc_head_frame_from_world(&track->head, low).z > 0.05)
             continue;
         bridge *b = &h->built[h->bridge_count++];
         b->last = clear < frame && clear > frame - cut ? clear : frame - cut;
@@ -239,6 +225,32 @@ static int bridge_at(const bridge *list, int count, double t)
     return lo;
 }
 
+// Value and derivatives of a nudge whose sides last `before` and `after`, 0 where a side has no
+// length: two quintics from rest to rest, 10 s^3 - 15 s^4 + 6 s^5 up, the same down. Velocity and
+// acceleration are zero at both ends and at the top, so the sides may have different lengths.
+static void bump(double t, double before, double after, double out[3])
+{
+    double side = t < 0 ? before : after, s = side > 0 ? 1 - fabs(t) / side : 0,
+           sign = t < 0 ? 1 : -1;
+    bool in = s > 0 && before > 0 && after > 0;
+    out[0] = in ? s * s * s * (10 + s * (-15 + 6 * s)) : 0;
+    out[1] = in ? sign * 30 * s * s * (1 - s) * (1 - s) / side : 0;
+    out[2] = in ? 60 * s * (1 - s) * (1 - 2 * s) / (side * side) : 0;
+}
+
+static himc_target nudge_at(const himc_nudge *n, double t)
+{
+    double across[3], up[3];
+    bump(t - n->time, n->span, n->span, across);
+    bump(t - n->time, n->rise, n->fall, up);
+    himc_vec3 *part[3], w = n->way;
+    himc_target s;
+    part[0] = &s.x, part[1] = &s.v, part[2] = &s.a;
+    for (int i = 0; i < 3; i++)
+        *part[i] = himc_vec3_make(across[i] * w.x, across[i] * w.y, up[i] * w.z);
+    return s;
+}
+
 // all nudges of a hand at take time `t`
 static himc_target aside_at(const himc_track *track, himc_hand hand, double t)
 {
@@ -246,7 +258,7 @@ static himc_target aside_at(const himc_track *track, himc_hand hand, double t)
     for (int i = 0; i < track->nudges; i++) {
         const himc_nudge *n = &track->nudge[i];
         if (n->hand == hand && fabs(t - n->time) < n->span)
-            sum = himc_target_add(sum, himc_nudge_at(n, t));
+            sum = himc_target_add(sum, nudge_at(n, t));
     }
     return sum;
 }
@@ -363,9 +375,10 @@ bool himc_track_exchange(himc_track *track, const himc_track *other, double t)
             himc_vec3_length(himc_vec3_sub(a->way, b->way)) != 0)
             break;
     }
+    // the motion at a time may rest on what comes 0.1 s later; chosen: some task periods
     for (int k = 0; k < 2; k++)
         for (int i = same; i < both[k]->nudges; i++)
-            if (both[k]->nudge[i].time - both[k]->nudge[i].span < at[0] + LOOKED_AHEAD)
+            if (both[k]->nudge[i].time - both[k]->nudge[i].span < at[0] + 0.1)
                 return false;
     memcpy(track->nudge, other->nudge, sizeof track->nudge);
     track->nudges = other->nudges;
@@ -407,7 +420,8 @@ static void separated(void *source, himc_hand hand, double now, const himc_targe
     double at[3];
     himc_track_warp(himc_track_take_length(track), now - track->start, at);
     double t = at[0];
-    if (at[1] < SLOWEST_REJOIN)
+    // chosen: below this rate the take's time stands nearly still
+    if (at[1] < 0.2)
         return;
     himc_target from = *measured;
     from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
@@ -423,22 +437,24 @@ static void separated(void *source, himc_hand hand, double now, const himc_targe
     // between last and next nothing is known
     double first = fmax(t + REJOIN_TIME, b->next / track->rate), to = first, least = b->spot.z;
     // where the capture is then below the level of a contact, the time at which it is well above: a
-    // way back to a place under the head would strike it again. One that stays there is pressed
+    // way back to a place under the head would strike it again. One that is not 0.02 m above within
+    // 0.1 s is pressed
     while (himc_head_frame_from_world(&track->head, captured_at(track, h, to).x).z < least) {
-        least = b->spot.z + REJOIN_HEIGHT;
+        least = b->spot.z + 0.02;
         to += 1 / track->rate;
-        if (to >= first + LATEST_REJOIN) {
+        if (to >= first + 0.1) {
             to = first;
             break;
         }
     }
     himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, from.x);
-    if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
-        to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
+    // from 0.02 m further off than a stick goes in it, as long as 250 m/s^2 at the peak take
+    if (himc_vec3_length(way) > 0.02 + FASTEST_STICK * (to - t))
+        to = t + himc_move_time(himc_vec3_length(way), 250);
     if (i + 1 < h->bridge_count)
-        to = fmin(to, h->bridges[i + 1].from - NEXT_STRIKE_GAP);
+        to = fmin(to, h->bridges[i + 1].from - 1e-3); // (s) before the next bridge
     to = fmin(to, himc_track_take_length(track));
-    if (to < t + LEAST_REJOIN)
+    if (to < t + 0.015) // (s) too little time left
         return;
     b->to = to;
     himc_target back = captured_at(track, h, b->to);
@@ -463,14 +479,15 @@ static void stop(void *source, double t, const himc_target *now)
     if (t >= track->stop || t > himc_track_length(track))
         return;
     track->stop = t;
-    // the motion goes on a little and comes to rest; a tip that falls is caught above the head
+    // the motion goes on a little and comes to rest; a tip that falls is caught 0.08 m above the
+    // head, and a quarter of its way in the halt more; chosen: none falls on it
     himc_vec3 n = himc_head_frame_normal(&track->head);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const himc_target *s = &now[hand];
         himc_target rest = {.x = himc_vec3_madd(s->x, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT, s->v)};
         double fall = fmax(-himc_vec3_dot(n, s->v), 0);
         double height = himc_head_frame_from_world(&track->head, rest.x).z,
-               least = HOVER_HEIGHT + HOVER_FALL * HIMC_TRACK_HALT * fall;
+               least = 0.08 + 0.25 * HIMC_TRACK_HALT * fall;
         if (height < least)
             rest.x = himc_vec3_madd(rest.x, least - height, n);
         track->hand[hand].settle = himc_quintic_make(s, &rest, HIMC_TRACK_HALT);

@@ -11,7 +11,18 @@
 #include "body/posture.h"
 #include "body/source.h"
 
-#include "track/nudge.h"
+/// The command `nudge`: a tip is `way` off its captured path at `time`, and on it again `span`
+/// before and after. With it path, velocity and acceleration stay continuous. The height is left
+/// alone at strikes: they stay strikes of the same speed.
+typedef struct himc_nudge {
+    himc_hand hand;
+    double time;       ///< in the take (s)
+    double span;       ///< (s)
+    himc_vec3 way;     ///< (m)
+    double rise, fall; ///< span of the height before and after, between the strikes around (s)
+} himc_nudge;
+
+#define HIMC_NUDGES 256 ///< of a take; chosen: more than anyone drags
 
 typedef struct himc_track himc_track;
 /// Of a himc_track. After a separation a quintic of 20 ms, or a longer one from far off, leads back

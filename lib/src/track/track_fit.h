@@ -1,4 +1,5 @@
-/// track_fit.h: smooth derivatives of samples, one-sided beside a strike; private.
+/// track_fit.h: smooth derivatives of samples, one-sided beside a strike: of
+/// tips (track.c) and joints (track_posture.c).
 #ifndef HIMC_TRACK_FIT_H
 #define HIMC_TRACK_FIT_H
 

@@ -1,11 +1,10 @@
-/// track_state.h: the parts of a track: tips (track.c) and joints (track_posture.c); private.
+/// track_state.h: the parts of a track: tips (track.c) and joints (track_posture.c).
 #ifndef HIMC_TRACK_STATE_H
 #define HIMC_TRACK_STATE_H
 
 #include "track/track.h"
 
 #include "base/interpolate.h"
-#include "track/nudge.h"
 #include "track/track_fit.h"
 
 /// From a stop to rest (s). Chosen: a stick at 5 m/s halts with less than 5 g.

@@ -1,5 +1,5 @@
 /// track_time.h: the time of a take while it is played: it starts from a stand and comes to one,
-/// since a take begins and ends in motion; private.
+/// since a take begins and ends in motion; for tips and joints.
 #ifndef HIMC_TRACK_TIME_H
 #define HIMC_TRACK_TIME_H
 
