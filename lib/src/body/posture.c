@@ -18,6 +18,8 @@
 #include "base/limb_frame.h"
 #include "body/stretch.h"
 
+#include <string.h>
+
 // The hand's share of the stick's elevation at rest. Chosen: in French grip the fingers raise the
 // stick more; 72 degrees of roll bring the thumbs up.
 #define WRIST 0.5        // in German grip
@@ -82,6 +84,7 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     posture->rest.joint[HIMC_NECK - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->rest.joint[HIMC_HEAD - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->level = level;
+    memset(posture->hand, 0, sizeof posture->hand);
     // thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if
     // the seat is high
     double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length;

@@ -31,7 +31,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_limits_bound_errors(c, &e);
     law_input in = {c, skeleton, s, reference, jacobian, &e};
     himc_laws[c->config.law].torques(&in, torque);
-    himc_strength_apply(c, skeleton, s, torque);
+    himc_strength_apply(c, skeleton, s, reference, torque);
 }
 
 himc_controller_config himc_controller_config_default(void)
