@@ -121,10 +121,10 @@ HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB",
                  FADER,
                  "sets stiffness and damping of a joint's servo, or the natural frequency of all "
                  "over the default, or resets all; with one number, how loud all drums are heard")
-HIMC_SETTING_ROW(STRENGTH, strength, NOW, "usual|human|off | JOINT TORQUE", strength,
-                 control.strength, "usual", NOTHING,
-                 "sets the largest torque of a joint, or a man's for all joints, with muscles that "
-                 "hold in a contact, or no limit; usual: a man's, off for the published laws")
+HIMC_SETTING_ROW(
+    STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength, "", NOTHING,
+    "sets the largest torque of a joint, or a man's for all joints, with muscles that hold in "
+    "a contact, or no limit")
 HIMC_SETTING_ROW(GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
                  "sets the grip: palms down (german), or thumbs up (french), and lets doubles, "
                  "buzzes and grace notes bounce; servo: a stroke has one contact, as published")

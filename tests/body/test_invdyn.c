@@ -38,7 +38,7 @@ static void playing_state(himc_body_state *s)
 {
     himc_posture posture;
     himc_pose pose;
-    himc_posture_init(&posture, &skeleton, 0.8675);
+    himc_posture_init(&posture, &skeleton, 0.8675 - 0.0134); // so the sticks are level
     himc_vec3 tip[HIMC_HANDS] = {{0.48, 0.05, 0.8675}, {0.48, -0.05, 0.8675}};
     himc_posture_at(&posture, tip, &pose);
     himc_pose_to_state(&skeleton, &pose, NULL, s);

@@ -108,7 +108,8 @@ static void test_arms_have_their_lengths_and_elbows_hang_below_and_outside(void)
     }
 }
 
-static void test_stick_lies_level_at_impact_and_rises_with_the_tip(void)
+// the grip is 12 mm higher, so that the shaft passes the hoop
+static void test_stick_lies_nearly_level_at_impact_and_rises_with_the_tip(void)
 {
     himc_body_state s;
     double last = -1;
@@ -116,7 +117,7 @@ static void test_stick_lies_level_at_impact_and_rises_with_the_tip(void)
         himc_vec3 tip[HIMC_HANDS] = {{0.5, 0.1, LEVEL + 0.01 * i}, {0.5, -0.1, LEVEL}};
         place_tips(tip, &s);
         double up = s.tip[HIMC_LEFT].z - s.origin[HIMC_LEFT_STICK].z;
-        TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0, s.tip[HIMC_RIGHT].z - s.origin[HIMC_RIGHT_STICK].z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, -0.012, s.tip[HIMC_RIGHT].z - s.origin[HIMC_RIGHT_STICK].z);
         TEST_ASSERT_TRUE(up > last);
         last = up;
     }
@@ -354,8 +355,8 @@ static void test_thumbs_point_inwards_in_german_and_up_in_french_grip(void)
         place_tips(level, &s);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             double up = (hand == HIMC_LEFT ? -1 : 1) * s.rotation[HIMC_LEFT_HAND + hand].m[2][1];
-            // rolled by 1.25, the fingers 0.25 down
-            TEST_ASSERT_DOUBLE_WITHIN(1e-9, french ? sin(1.25) * cos(0.25) : 0, up);
+            // rolled by 1.25, the fingers 0.12 down
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, french ? sin(1.25) * cos(0.12) : 0, up);
         }
     }
 }
@@ -397,7 +398,7 @@ int main(void)
     RUN_TEST(test_tips_are_on_their_targets_over_the_whole_playing_space);
     RUN_TEST(test_bodies_of_every_height_reach_the_tips);
     RUN_TEST(test_arms_have_their_lengths_and_elbows_hang_below_and_outside);
-    RUN_TEST(test_stick_lies_level_at_impact_and_rises_with_the_tip);
+    RUN_TEST(test_stick_lies_nearly_level_at_impact_and_rises_with_the_tip);
     RUN_TEST(test_joints_follow_the_tip_without_jumps);
     RUN_TEST(test_an_elbow_stays_behind_while_its_wrist_goes_under_the_shoulder);
     RUN_TEST(test_no_joint_whips_where_a_hand_passes_the_shoulder_or_turns_aside);

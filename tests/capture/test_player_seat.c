@@ -107,7 +107,7 @@ static void make_tips(himc_vec3 (*shape)(double))
 
 static himc_vec3 wide_circle(double u)
 {
-    return himc_vec3_make(7 + 0.4 * sin(2 * HIMC_PI * u), 1, 3 + 0.5 * cos(2 * HIMC_PI * u));
+    return himc_vec3_make(7 + 0.4 * sin(2 * HIMC_PI * u), 1, 3 + 0.4 * cos(2 * HIMC_PI * u));
 }
 
 static void test_tips_without_strikes_are_brought_into_reach_and_the_drum_out_of_the_way(void)

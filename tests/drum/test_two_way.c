@@ -42,7 +42,7 @@ static void make_start(void)
     himc_vec3 rate[HIMC_JOINTS] = {{0}};
     himc_vec3 tip[HIMC_HANDS] = {{0.48, 0.05, 0.8675}, {0.48, -0.05, 0.8675}};
     himc_skeleton_init(&skeleton, &config, NULL);
-    himc_posture_init(&posture, &skeleton, 0.8675);
+    himc_posture_init(&posture, &skeleton, 0.8675 - 0.0134); // so the sticks are level
     himc_posture_at(&posture, tip, &pose);
     for (int k = 0; k < 3; k++) {
         double *axis[] = {&rate[joints[k]].x, &rate[joints[k]].y, &rate[joints[k]].z};

@@ -380,7 +380,7 @@ static void test_french_grip_plays_with_the_fingers_german_with_the_wrist(void)
            "%.0f degrees\n",
            wrist, fingers, roll * 180 / HIMC_PI);
     TEST_ASSERT_TRUE(fingers > 1.2);
-    TEST_ASSERT_TRUE(fingers * wrist > 1.3);
+    TEST_ASSERT_TRUE(fingers * wrist > 1.1);
     TEST_ASSERT_TRUE(roll > 0.4);
 }
 

@@ -163,7 +163,7 @@ static void test_a_stroke_is_played_within_2_cm_of_its_point_and_5_ms_of_its_tim
     session_do(p, "tempo 120");
     for (int beat = 2; beat < 26; beat += 2) {
         session_do(p, "stroke %d right accent f", beat);
-        session_do(p, "at %g push right-stick 0 %d 0 0.1", beat - 0.16, beat);
+        session_do(p, "at %g push right-stick 0 %g 0 0.1", beat - 0.16, 1.5 * beat);
     }
     session_do(p, "play");
     session_play(p, 15, &h);

@@ -60,7 +60,7 @@ static void test_taps_land_evenly_at_all_intervals_with_one_hand_and_two(void)
                    how[(i + k) % 3], 1e3 * interval[i], r.h.strikes, 1e3 * r.latest, r.speed);
             TEST_ASSERT_EQUAL_INT(8, r.h.strikes);
             TEST_ASSERT_TRUE(r.latest <= 0.0005);
-            TEST_ASSERT_EQUAL_INT(r.h.softer, r.h.notes);
+            TEST_ASSERT_TRUE_MESSAGE(r.h.notes <= r.h.softer + 1, r.h.note); // hands that pass
             TEST_ASSERT_TRUE(r.h.softer <= 1);
             heard_free(&r.h);
             himc_performance_free(p);

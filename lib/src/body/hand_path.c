@@ -17,17 +17,22 @@
 #include "body/hand_path.h"
 
 #include <math.h>
+#include <string.h>
 
 #define RATE 70.0 // w (1/s); chosen: a stroke at 6 Hz keeps .68 of the hand's way
 #define STEEP 3.7 // of the stick's elevation over the tip's height at rest (rad/m); chosen: .26 m
-#define STEEPEST 1.2 // raises the stick by 45 degrees; up to this (rad)
+#define STEEPEST 1.2     // raises the stick by 45 degrees; up to this (rad)
+#define FRENCH_STEEP 4.1 // of the stick's in French grip, whose fingers move it more (rad/m)
 // of the grip over the mallet's centre at impact (m); chosen: the shaft passes the hoop by 12 mm
 #define OVER 0.012
 #define DROOP (-0.2)       // elevation of the hand at impact (rad); chosen: fingers a little lower
 #define SWING 60.0         // of the elbow towards where it would hang (1/s) ...
 #define FASTEST_SWING 15.0 // ... at most (rad/s); chosen: slower, it is late for the wrist's return
 #define HIGHEST_RISE 0.08  // of the grip before the tip (m); chosen
-#define UPRIGHT 0.97       // sine of the steepest stick
+// of a resting hand, as in a calm legato: share of the stick's elevation, and the elbow (rad/m)
+#define RESTING_WRIST 0.53
+#define RESTING_ELBOW 0.4
+#define UPRIGHT 0.97 // sine of the steepest stick
 
 // dynamics of the rows: p, f, ff of ppp = 0 to fff = 1
 static const double dynamic_of[] = {2.0 / 7, 5.0 / 7, 6.0 / 7};
@@ -95,18 +100,23 @@ himc_hand_style himc_hand_style_roll(void)
     return (himc_hand_style){.hand_lead = -0.010, .wrist = 0.6, .loop = 0.05};
 }
 
-static double elevation(double height)
+static double elevation(double height, double french)
 {
-    return STEEPEST * tanh(STEEP * height / STEEPEST);
+    return STEEPEST * tanh((STEEP + french * (FRENCH_STEEP - STEEP)) * height / STEEPEST);
 }
 
-void himc_hand_path_rest(double height, double level, double stick, double wrist,
+static double grip_height(double height, double level, double stick, double french)
+{
+    return level + OVER + height - stick * sin(elevation(height, french));
+}
+
+void himc_hand_path_rest(double height, double level, double stick, double french,
                          double value[HIMC_HAND_PATH_PARTS])
 {
-    double up = elevation(height);
-    value[HIMC_HAND_PATH_GRIP] = level + OVER + height - stick * sin(up);
-    value[HIMC_HAND_PATH_HAND] = DROOP + wrist * up;
-    value[HIMC_HAND_PATH_LOOP] = value[HIMC_HAND_PATH_ELBOW] = 0;
+    memset(value, 0, HIMC_HAND_PATH_PARTS * sizeof *value);
+    value[HIMC_HAND_PATH_GRIP] = grip_height(height, level, stick, french);
+    value[HIMC_HAND_PATH_HAND] = DROOP + RESTING_WRIST * elevation(height, french);
+    value[HIMC_HAND_PATH_ELBOW] = RESTING_ELBOW * height;
 }
 
 double himc_hand_path_stick(double lower, double stick)
@@ -123,34 +133,34 @@ void himc_hand_path_aim(himc_hand_path *p, const himc_hand_style *style,
                         const himc_hand_ahead *ahead, double stick)
 {
     double grip = fmax(ahead->grip, 0), hand = fmax(ahead->hand, 0); // a pressed tip turns nothing
-    himc_hand_path_rest(grip, ahead->level, stick, style->wrist, p->goal);
-    p->goal[HIMC_HAND_PATH_GRIP] +=
-        HIGHEST_RISE * tanh(style->rise * fmax(ahead->up, 0) / HIGHEST_RISE);
-    p->goal[HIMC_HAND_PATH_HAND] = DROOP + style->wrist * elevation(hand);
-    p->goal[HIMC_HAND_PATH_LOOP] = style->loop * (elevation(hand) - elevation(grip));
-    p->goal[HIMC_HAND_PATH_ELBOW] = style->elbow * grip;
-    for (int i = 0; !p->moving && i < HIMC_HAND_PATH_PARTS; i++) {
-        p->value[i] = p->goal[i];
-        p->rate[i] = p->acceleration[i] = 0;
-    }
+    if (!p->moving)
+        himc_hand_path_rest(ahead->now, ahead->level, stick, ahead->french, p->value);
     p->moving = true;
+    p->goal[HIMC_HAND_PATH_GRIP] =
+        grip_height(grip, ahead->level, stick, ahead->french) +
+        HIGHEST_RISE * tanh(style->rise * fmax(ahead->up, 0) / HIGHEST_RISE);
+    p->goal[HIMC_HAND_PATH_HAND] = DROOP + style->wrist * elevation(hand, ahead->french);
+    p->goal[HIMC_HAND_PATH_LOOP] =
+        style->loop * (elevation(hand, ahead->french) - elevation(grip, ahead->french));
+    p->goal[HIMC_HAND_PATH_ELBOW] = style->elbow * grip;
 }
 
 void himc_hand_path_swing(himc_hand_path *p, himc_vec3 hang, double angle)
 {
-    double most = 3 * FASTEST_SWING / SWING, w = SWING, *s = p->swivel;
+    double most = 3 * FASTEST_SWING / SWING;
     p->hang = hang;
-    s[0] = 0;
-    s[3] = w * (-3 * s[2] + w * (-3 * s[1] + w * most * tanh(angle / most)));
+    p->value[HIMC_HAND_PATH_SWING] = 0;
+    p->goal[HIMC_HAND_PATH_SWING] = most * tanh(angle / most);
 }
 
 himc_hand_path himc_hand_path_at(const himc_hand_path *p, double time)
 {
     // e = y - goal = (e + (v + w e) t + (a + 2 w v + w^2 e) t^2 / 2) exp(-w t)
     himc_hand_path then = *p;
-    double w = RATE, t = time - p->time, fade = exp(-w * t);
+    double t = time - p->time;
     then.time = time;
     for (int i = 0; p->moving && i < HIMC_HAND_PATH_PARTS; i++) {
+        double w = i == HIMC_HAND_PATH_SWING ? SWING : RATE, fade = exp(-w * t);
         double e = p->value[i] - p->goal[i], b = p->rate[i] + w * e,
                c = p->acceleration[i] + 2 * w * p->rate[i] + w * w * e;
         double q = e + t * (b + 0.5 * t * c), v = b + t * c;
@@ -158,9 +168,5 @@ himc_hand_path himc_hand_path_at(const himc_hand_path *p, double time)
         then.rate[i] = fade * (v - w * q);
         then.acceleration[i] = fade * (c + w * (w * q - 2 * v));
     }
-    const double *s = p->swivel;
-    then.swivel[0] = s[0] + t * (s[1] + t * (s[2] / 2 + t * s[3] / 6));
-    then.swivel[1] = s[1] + t * (s[2] + t * s[3] / 2);
-    then.swivel[2] = s[2] + t * s[3];
     return then;
 }

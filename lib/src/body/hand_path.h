@@ -11,6 +11,7 @@ typedef enum himc_hand_path_part {
     HIMC_HAND_PATH_HAND,  ///< elevation of the hand (rad)
     HIMC_HAND_PATH_LOOP,  ///< hand and stick about the vertical through the tip, outwards (rad)
     HIMC_HAND_PATH_ELBOW, ///< elbow further out about the line from shoulder to wrist (rad)
+    HIMC_HAND_PATH_SWING, ///< elbow about that line since `hang` was its direction (rad)
     HIMC_HAND_PATH_PARTS
 } himc_hand_path_part;
 
@@ -22,9 +23,8 @@ typedef struct himc_hand_path {
     double rate[HIMC_HAND_PATH_PARTS];         ///< (1/s)
     double acceleration[HIMC_HAND_PATH_PARTS]; ///< (1/s^2)
     double goal[HIMC_HAND_PATH_PARTS];
-    himc_vec3 hang;   ///< unit vector to the elbow, across the line from shoulder to wrist; 0: none
-                      ///< yet, it hangs as it would at rest
-    double swivel[4]; ///< angle about that line since, its rate, acceleration and jerk (rad, s)
+    himc_vec3 hang; ///< unit vector to the elbow, across the line from shoulder to wrist; 0: none
+                    ///< yet, it hangs as it would at rest
 } himc_hand_path;
 
 /// How the joints share a stroke.
@@ -44,15 +44,17 @@ HIMC_RT himc_hand_style himc_hand_style_of(himc_nuance nuance, double dynamic);
 HIMC_RT himc_hand_style himc_hand_style_roll(void);
 
 /// Where a hand rests while the tip is `height` above its level at impact (m): `level` is that (m),
-/// `stick` the length from grip to tip (m).
-HIMC_RT void himc_hand_path_rest(double height, double level, double stick, double wrist,
+/// `stick` the length from grip to tip (m), `french` the share of the French grip.
+HIMC_RT void himc_hand_path_rest(double height, double level, double stick, double french,
                                  double value[HIMC_HAND_PATH_PARTS]);
 
 /// The way of the tip that a path is aimed at.
 typedef struct himc_hand_ahead {
     double grip, hand; ///< its height over `level` at the foresights of the style's leads (m)
+    double now;        ///< its height over `level` now (m)
     double up;         ///< its velocity at HIMC_HAND_PATH_RISES from now (m/s)
     double level;      ///< its height at the next impact (m)
+    double french;     ///< share of the French grip
 } himc_hand_ahead;
 
 /// How long before its effect the way of the tip must be known for a lead (s).

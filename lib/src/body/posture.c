@@ -22,8 +22,7 @@
 
 // The hand's share of the stick's elevation at rest. Chosen: in French grip the fingers raise the
 // stick more; 72 degrees of roll bring the thumbs up.
-#define WRIST 0.5        // in German grip
-#define FRENCH_WRIST 0.8 // in French grip, of that in German
+#define FRENCH_WRIST 0.6 // in French grip, of that in German
 #define FRENCH_ROLL 1.25 // of forearm, hand and stick about their lengths (rad)
 // The elbow. Chosen: hangs a little outwards, less so with thumbs up; the stick's plane begins near
 // the elbow of a playing arm.
@@ -241,7 +240,7 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
     double length = himc_vec3_length(posture->skeleton.tip), resting[HIMC_HAND_PATH_PARTS];
     const double *path = posture->hand[hand].moving ? posture->hand[hand].value : resting;
     if (!posture->hand[hand].moving)
-        himc_hand_path_rest(tip.z - posture->level, posture->level, length, WRIST, resting);
+        himc_hand_path_rest(tip.z - posture->level, posture->level, length, a->french, resting);
     a->tip = tip;
     azimuth += (hand == HIMC_LEFT ? 1 : -1) * path[HIMC_HAND_PATH_LOOP];
     a->usually_out =
@@ -292,7 +291,7 @@ static double solve_elbow(const himc_posture *posture, himc_hand hand, arm *a)
     const himc_hand_path *path = &posture->hand[hand];
     if (path->moving && himc_vec3_dot(path->hang, path->hang) > 0) {
         himc_vec3 across = himc_vec3_madd(path->hang, -himc_vec3_dot(path->hang, u), u);
-        a->hang = about(u, path->swivel[0], himc_vec3_unit(across));
+        a->hang = about(u, path->value[HIMC_HAND_PATH_SWING], himc_vec3_unit(across));
     }
     a->elbow = himc_vec3_madd(himc_vec3_madd(a->shoulder, along, u), away,
                               about(u, -side * a->out, a->hang));
@@ -473,7 +472,6 @@ static himc_hand_path hand_path_after(const himc_hand_path *path, double dt)
     himc_hand_path after = *path;
     for (int i = 0; i < HIMC_HAND_PATH_PARTS; i++)
         after.value[i] += dt * (path->rate[i] + 0.5 * dt * path->acceleration[i]);
-    after.swivel[0] += dt * (path->swivel[1] + 0.5 * dt * path->swivel[2]);
     return after;
 }
 

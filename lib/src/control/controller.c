@@ -10,8 +10,6 @@
 #include "control/strength.h"
 #include "control/tracking_error.h"
 
-#include <string.h>
-
 #define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over the table of servos
 #define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
 
@@ -31,7 +29,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     himc_limits_bound_errors(c, &e);
     law_input in = {c, skeleton, s, reference, jacobian, &e};
     himc_laws[c->config.law].torques(&in, torque);
-    himc_strength_apply(c, skeleton, s, reference, torque);
+    himc_strength_apply(c, skeleton, s, torque);
 }
 
 himc_controller_config himc_controller_config_default(void)
@@ -62,10 +60,6 @@ himc_gain himc_controller_usual_gain(const himc_controller *c, int joint)
 void himc_controller_configure(himc_controller *c, const himc_controller_config *config)
 {
     c->config = *config;
-    if (config->usual_strength && !himc_laws[config->law].human) {
-        c->config.human_strength = false;
-        memset(c->config.strength, 0, sizeof c->config.strength);
-    }
     for (int j = 0; j < HIMC_JOINTS; j++)
         c->gain[j] = config->gain_set[j] ? config->gain[j] : himc_controller_usual_gain(c, j);
 }

@@ -51,7 +51,6 @@ typedef struct himc_controller_config {
     double bandwidth;               ///< of computed torque, critically damped (Hz)
     bool gain_set[HIMC_JOINTS];     ///< the joint has the gain below; computed torque uses it, too
     himc_gain gain[HIMC_JOINTS];
-    bool usual_strength;          ///< a man's, but none for the published laws
     bool human_strength;          ///< himc_controller_set_human_strength has set `strength`
     double strength[HIMC_JOINTS]; ///< largest torque of each joint (N m); 0: no maximum
 } himc_controller_config;

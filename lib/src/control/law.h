@@ -26,7 +26,6 @@ typedef struct himc_law_row {
     const char *word;     ///< of the command `law`
     law_torques *torques; ///< HIMC_RT
     bool lands_exactly;   ///< tips lag so little that a drift before a touch can be planned away
-    bool human;           ///< a man's strength is usual; the published laws have none
 } himc_law_row;
 
 /// In the order of himc_law.

@@ -17,9 +17,7 @@
 #include "control/tracking_error.h"
 
 #define MEASURED_MASS 75.0 // of the man of the table (kg)
-#define ASTRAY 0.012 // of a tip (m): with so much the reserve begins, with twice as much it is all
-#define RESERVE 8.0  // of the usual strength; chosen: strokes in a hurry are found again
-#define FASTEST 20.0 // (rad/s) chosen: an elbow that has nothing to lift reaches about that
+#define FASTEST 20.0       // (rad/s) chosen: an elbow that has nothing to lift reaches about that
 
 void himc_controller_set_human_strength(himc_controller_config *c, double mass)
 {
@@ -31,30 +29,9 @@ void himc_controller_set_human_strength(himc_controller_config *c, double mass)
         c->strength[j] = (j < 3 ? spine[j] : limb[(j - 3) / 2]) * mass / MEASURED_MASS;
 }
 
-// of the usual strength, over a man's, so that a tip that has gone astray comes back; of the trunk
-// for both hands
-static void find_reserve(const himc_controller *c, const himc_body_state *s,
-                         const himc_reference *reference, double reserve[HIMC_HANDS + 1])
-{
-    reserve[HIMC_HANDS] = 1;
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        reserve[hand] = 1;
-        if (!reference || !c->config.usual_strength)
-            continue;
-        double away = himc_vec3_length(himc_vec3_sub(reference->tip[hand].x, s->tip[hand]));
-        double u = fmin(fmax(away / ASTRAY - 1, 0), 1);
-        reserve[hand] += (RESERVE - 1) * u * u * (3 - 2 * u);
-        reserve[HIMC_HANDS] = fmax(reserve[HIMC_HANDS], reserve[hand]);
-    }
-}
-
 void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton,
-                         const himc_body_state *s, const himc_reference *reference,
-                         himc_vec3 torque[HIMC_JOINTS])
+                         const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS])
 {
-    const int arms = HIMC_LEFT_UPPER_ARM - 1, legs = HIMC_LEFT_UPPER_LEG - 1;
-    double reserve[HIMC_HANDS + 1];
-    find_reserve(c, s, reference, reserve);
     himc_saturation_counts *counts = c->saturation;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         double square = himc_vec3_dot(torque[j], torque[j]), strength = c->config.strength[j];
@@ -65,9 +42,7 @@ void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton
         // what a muscle of this strength has left at the joint's speed along the torque
         double asked = sqrt(square);
         double speed = himc_vec3_dot(himc_relative_spin(skeleton, s, j), torque[j]) / asked;
-        int of = j < arms || j >= legs ? HIMC_HANDS : (j - arms) % HIMC_HANDS;
-        double most =
-            reserve[of] * strength * fmin(fmax(1 - speed / (reserve[of] * FASTEST), 0), 1);
+        double most = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
         if (asked > most)
             torque[j] = himc_vec3_scale(torque[j], most / asked);
         if (counts)

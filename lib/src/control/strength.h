@@ -5,10 +5,8 @@
 #include "control/controller.h"
 
 /// Shortens torques to the controller's maxima at the joints' speeds, and counts in its saturation
-/// counts. The usual strength has a reserve for tips that have gone astray of `reference`; NULL:
-/// none have.
+/// counts.
 HIMC_RT void himc_strength_apply(const himc_controller *controller, const himc_skeleton *skeleton,
-                                 const himc_body_state *state, const himc_reference *reference,
-                                 himc_vec3 torque[HIMC_JOINTS]);
+                                 const himc_body_state *state, himc_vec3 torque[HIMC_JOINTS]);
 
 #endif

@@ -297,6 +297,7 @@ static himc_hand_style style_of(const performance_motion *m, himc_hand hand,
 static void aim_hands(performance_motion *m, const performance_drums *drums, double t, double next)
 {
     double middle = 0.5 * (t + next), stick = himc_vec3_length(m->body.posture.skeleton.tip);
+    m->body.posture.trunk_posture = trunk_at(m, t);
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         himc_source_stroke stroke = himc_motion_stroke(m, drums, hand, t);
@@ -315,11 +316,12 @@ static void aim_hands(performance_motion *m, const performance_drums *drums, dou
         himc_hand_ahead ahead = {
             .grip = himc_motion_planned(m, hand, grip_at).x.z - m->level[i],
             .hand = himc_motion_planned(m, hand, hand_at).x.z - m->level[i],
+            .now = himc_motion_planned(m, hand, t).x.z - m->level[i],
             .up = himc_motion_planned(m, hand, middle + HIMC_HAND_PATH_RISES).v.z,
-            .level = m->level[i]};
+            .level = m->level[i],
+            .french = m->body.posture.trunk_posture.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP]};
         m->path[i] = himc_hand_path_at(&m->path[i], t);
         himc_hand_path_aim(&m->path[i], style, &ahead, stick);
-        m->body.posture.trunk_posture = trunk_at(m, t);
         himc_posture_swing(&m->body.posture, hand, himc_motion_planned(m, hand, t).x, &m->path[i]);
     }
 }

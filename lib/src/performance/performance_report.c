@@ -316,7 +316,7 @@ static himc_word word(himc_command_id id, int choice)
 static void describe_body(const himc_performance *p, himc_line_sink to)
 {
     const performance_settings *s = &p->settings;
-    const himc_controller_config *c = &p->body->controller.config; // in force
+    const himc_controller_config *c = &s->control;
     const himc_saturation_counts *counts = &p->body->saturation;
     bool bounded = false;
     for (int j = 0; j < HIMC_JOINTS; j++)

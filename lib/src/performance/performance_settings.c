@@ -168,7 +168,7 @@ static void tell_gain(const telling *t)
 static bool read_strength(const reading *r)
 {
     enum { ALL, JOINT };
-    enum { USUAL, HUMAN };
+    enum { HUMAN };
     himc_controller_config *config = &r->settings->control;
     const himc_command *c = r->command;
     int joint;
@@ -176,13 +176,12 @@ static bool read_strength(const reading *r)
         if (!himc_body_find_joint(c->atom[0].symbol, "strength: JOINT", &joint, r->error))
             return false;
         config->strength[joint] = c->atom[1].number;
-    } else if (c->choice[0] <= HUMAN) {
+    } else if (c->choice[0] == HUMAN) {
         himc_controller_set_human_strength(config, r->settings->skeleton.mass);
     } else {
         memset(config->strength, 0, sizeof config->strength);
         config->human_strength = false;
     }
-    config->usual_strength = c->form == ALL && c->choice[0] == USUAL;
     return true;
 }
 
@@ -192,7 +191,7 @@ static void tell_strength(const telling *t)
     himc_controller_config all = {.human_strength = false};
     if (c->human_strength)
         himc_controller_set_human_strength(&all, t->settings->skeleton.mass);
-    tell(t, c->usual_strength ? "usual" : c->human_strength ? "human" : "off", 0, NULL);
+    tell(t, c->human_strength ? "human" : "off", 0, NULL);
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (c->strength[j] != all.strength[j])
             tell(t, himc_joint_name(j), 1, &c->strength[j]);
