@@ -94,6 +94,23 @@ static himc_vec3 push_point(const performance_body *b, const himc_body_state *st
                          himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
 }
 
+// how the world holds the pelvis, and what a stool would have to do instead
+static void fill_root(const performance_body *b, himc_motion_row *row)
+{
+    himc_vec3 f = row->root_force = b->work.root_force, m = row->root_moment = b->work.root_moment;
+    himc_vec3 hips = b->plant.segment[HIMC_PELVIS].origin;
+    double seat = himc_posture_stool(&b->plant), down = hips.z - seat;
+    for (int j = 0; j < HIMC_JOINTS && b->controller.config.human_strength; j++)
+        row->co_contraction[j] = b->muscles.co_contraction[j];
+    row->root_center = himc_vec3_make(NAN, NAN, NAN);
+    row->root_friction = NAN;
+    if (f.z <= 0)
+        return;
+    row->root_center =
+        himc_vec3_make(hips.x - (m.y + down * f.x) / f.z, hips.y + (m.x - down * f.y) / f.z, seat);
+    row->root_friction = hypot(f.x, f.y) / f.z;
+}
+
 // torques, and the accelerations that they, the tips' forces and the pushes make; a body that is
 // moved by inverse kinematics has none
 static void fill_dynamics(const performance_body *b, bool kinematic, himc_motion_row *row)
@@ -106,14 +123,17 @@ static void fill_dynamics(const performance_body *b, bool kinematic, himc_motion
     himc_vec3 rate[HIMC_JOINTS], none = {NAN, NAN, NAN};
     for (int j = 0; kinematic && j < HIMC_JOINTS; j++) {
         row->acceleration[j] = row->torque[j] = none;
-        row->power[j] = e->joint[j] = NAN;
+        row->power[j] = e->joint[j] = row->co_contraction[j] = NAN;
     }
     if (kinematic) {
+        row->root_force = row->root_moment = row->root_center = none;
+        row->root_friction = NAN;
         e->push = e->placed = e->numerical = e->kinetic = e->potential = NAN;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             e->contact[hand] = e->mallet[hand] = NAN;
         return;
     }
+    fill_root(b, row);
     // the state of the row's pose and rates: without the joints' gaps, which are the engine's
     memcpy(pose.joint, row->rotation, sizeof pose.joint);
     for (int j = 0; j < HIMC_JOINTS; j++) {
