@@ -158,6 +158,41 @@ static void test_in_playing_the_wrench_explains_all_momentum(void)
     }
 }
 
+typedef struct sum {
+    double weight, size; // (N), (N s)
+    himc_vec3 impulse;   // of wrench and weight (N s)
+} sum;
+
+static void add_row(void *user, const himc_motion_row *row)
+{
+    sum *s = user;
+    himc_vec3 f = row->root_force;
+    f.z -= s->weight;
+    s->size += 0.004 * himc_vec3_length(f);
+    s->impulse = himc_vec3_madd(s->impulse, 0.004, f);
+}
+
+// at the usual rates, with steps of 4 and 5 samples and 40 in a row: from rest to rest
+static void test_rows_miss_no_step_between_them(void)
+{
+    sum s = {.weight = 75.09 * HIMC_GRAVITY};
+    char line[100];
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_play(p, 1, NULL);
+    himc_performance_on_motion(p, add_row, &s);
+    session_play(p, 0.1, NULL);
+    session_do(p, "push left-hand 10 0 20 0.2");
+    session_play(p, 4, NULL);
+    himc_performance_free(p);
+    himc_vec3 push = himc_vec3_scale(himc_vec3_make(10, 0, 20), 0.2); // to a step
+    double off = himc_vec3_length(himc_vec3_add(s.impulse, push));
+    snprintf(line, sizeof line, "%.2g of %.3g N s", off, s.size);
+    if (getenv("HIMC_LONG"))
+        puts(line);
+    TEST_ASSERT_TRUE_MESSAGE(s.size > 4 && off < 1e-3 * s.size, line);
+}
+
 static void test_co_contraction_is_that_of_human_strength(void)
 {
     static const char *const setting[] = {"strength human", "strength off"};
@@ -190,6 +225,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_at_rest_the_pelvis_carries_the_weights);
     RUN_TEST(test_in_playing_the_wrench_explains_all_momentum);
+    RUN_TEST(test_rows_miss_no_step_between_them);
     RUN_TEST(test_co_contraction_is_that_of_human_strength);
     RUN_TEST(test_inverse_kinematics_has_no_wrench);
     return UNITY_END();

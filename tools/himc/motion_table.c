@@ -88,7 +88,7 @@ static const array arrays[] = {
     {"co-contraction", "co_contraction", PER_JOINT, "_co_contraction", 1, "", AT(co_contraction), 0,
      false, "torque of muscles that pull on both sides, over the strength; 0 with `strength off`"},
     {"root", "root_force", PER_ROW, "root_force", 3, "n", AT(root_force), 0, false,
-     "force of the world on the pelvis, in this row's physics step (docs/data.md)"},
+     "force of the world on the pelvis, mean since the last row (docs/data.md)"},
     {"root", "root_moment", PER_ROW, "root_moment", 3, "n_m", AT(root_moment), 0, false,
      "and its moment about the midpoint of the hip joints"},
     {"root", "root_center", PER_ROW, "root_center", 3, "m", AT(root_center), 0, false,

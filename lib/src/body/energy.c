@@ -17,9 +17,10 @@
 /// The moments' equation is not used, so the balance tests it.
 ///
 /// The world holds the pelvis with the change of momentum less the weights and the contacts,
-///     F = sum of m ((v+ - v) / h - g) - sum of f,
-/// and, about the midpoint of the hip joints, M = the same with their moments, and each segment's
-/// I (w+ - w) / h less its gyroscopic moment. x+ = x + h v+, so the sums of h F are exact.
+///     h F = sum of m (v+ - v - h g) - h sum of f,
+/// and, about the midpoint of the hip joints, with the moments of these and each segment's
+/// I (w+ - w) less h times its gyroscopic moment. x+ = x + h v+, so the sums of h F are exact. A
+/// single F is not: steps of 4 and 5 samples in turn close gaps by turns faster and slower.
 #include "body/energy.h"
 
 #include "base/rotations.h"
@@ -67,19 +68,19 @@ static double numerical_power(const step *s, int i, himc_vec3 joint[HIMC_SEGMENT
            0.5 * segment->mass * HIMC_GRAVITY * gained.z;
 }
 
-// adds a force at a place from the pelvis' joint to the wrench of the root
-static void add_to_root(himc_body_work *work, himc_vec3 at, himc_vec3 force)
+// adds an impulse at a place from the pelvis' joint to those on the pelvis
+static void add_to_root(himc_body_work *work, himc_vec3 at, himc_vec3 impulse)
 {
-    work->root_force = himc_vec3_add(work->root_force, force);
-    work->root_moment = himc_vec3_add(work->root_moment, himc_vec3_cross(at, force));
+    work->root_impulse = himc_vec3_add(work->root_impulse, impulse);
+    work->root_angular = himc_vec3_add(work->root_angular, himc_vec3_cross(at, impulse));
 }
 
-// what holds and moves each segment; those that do not take part are at rest
+// what holds and moves each segment in the step; those that do not take part are at rest
 static void find_root(himc_body_work *work, step *s)
 {
     const himc_segment *segment = s->skeleton->segment;
-    himc_vec3 weight = {0, 0, segment[0].mass * HIMC_GRAVITY};
-    work->root_force = work->root_moment = himc_vec3_make(0, 0, 0);
+    himc_vec3 weight = {0, 0, s->h * segment[0].mass * HIMC_GRAVITY};
+    work->root_seconds += s->h;
     add_to_root(work, segment[0].center, weight);
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         himc_vec3 gained = {0, 0, 0};
@@ -90,13 +91,13 @@ static void find_root(himc_body_work *work, step *s)
             himc_vec3 moment =
                 himc_gyroscopic_moment(&s->art->inertia[i], segment[i].inertia, spin, s->h);
             turned = himc_symmetric_apply(&s->art->inertia[i], turned);
-            moment = himc_vec3_sub(himc_vec3_scale(turned, 1 / s->h), moment);
-            work->root_moment = himc_vec3_add(work->root_moment, moment);
+            turned = himc_vec3_madd(turned, -s->h, moment);
+            work->root_angular = himc_vec3_add(work->root_angular, turned);
             gained = himc_vec3_sub(s->after->velocity[i], s->before->velocity[i]);
         }
         gained.z += s->h * HIMC_GRAVITY;
         add_to_root(work, himc_vec3_add(s->origin[i], s->art->center[i]),
-                    himc_vec3_scale(gained, segment[i].mass / s->h));
+                    himc_vec3_scale(gained, segment[i].mass));
     }
 }
 
@@ -123,7 +124,7 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
     for (int k = 0; k < forces->contacts; k++) {
         const world_contact *c = &forces->contact[k];
         himc_vec3 at = himc_mat3_apply(&before->joints.rotation[c->segment], c->at);
-        add_to_root(work, himc_vec3_add(s.origin[c->segment], at), himc_vec3_scale(c->force, -1));
+        add_to_root(work, himc_vec3_add(s.origin[c->segment], at), himc_vec3_scale(c->force, -h));
         if (c->work)
             *c->work += h * himc_vec3_dot(c->force, point_velocity(&s, c->segment, at));
     }

@@ -1,5 +1,5 @@
-/// energy.h: the energy of the simulated body, the work on it added up step by step, and the wrench
-/// that holds it; private.
+/// energy.h: the energy of the simulated body, the work on it added up step by step, and what
+/// holds it; private.
 #ifndef HIMC_BODY_ENERGY_H
 #define HIMC_BODY_ENERGY_H
 
@@ -12,8 +12,9 @@ typedef struct himc_body_work {
     double push;                ///< of the other contacts with the world, from theirs
     double placed;              ///< energy given by putting the body elsewhere
     double numerical;           ///< given by the integrator
-    himc_vec3 root_force;       ///< of the world on the pelvis, in the last step (N) ...
-    himc_vec3 root_moment;      ///< ... about the midpoint of the hip joints (N m)
+    himc_vec3 root_impulse;     ///< of the world on the pelvis (N s) ...
+    himc_vec3 root_angular;     ///< ... about the midpoint of the hip joints (N m s)
+    double root_seconds;        ///< in so long; whoever reads these three sets them to 0
 } himc_body_work;
 
 /// The forces of one step, by their sources.
@@ -24,8 +25,7 @@ typedef struct himc_step_forces {
 } himc_step_forces;
 
 /// Adds the work of a step of `h` seconds that led from `before`, of which spins, rotations and
-/// velocities are read, to `after`; `art` is the articulation of `before`. Finds the wrench of that
-/// step.
+/// velocities are read, to `after`; `art` is the articulation of `before`.
 HIMC_RT void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
                                 const himc_articulation *art, const himc_step_forces *forces,
                                 const segment_states *before, const segment_states *after,
