@@ -357,7 +357,7 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 check-bench: all
 	@$(PROGRAM) bench
 
-bench-peers: deps $(BUILD)/tools/research/skeleton/table ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
+bench-peers: deps ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
 	@tools/build/deps.sh tools/build/deps-peers.txt
 	@test -d build/peers || { python3 -m venv build/peers && build/peers/bin/pip -q install mujoco==4.0.0 dm_control==1.0.50; }
 	@$(MAKE) all

@@ -196,7 +196,12 @@ typedef struct himc_motion_row {
     himc_vec3 push[HIMC_SEGMENTS];         ///< force of the command `push` (N) ...
     himc_vec3 push_at[HIMC_SEGMENTS];      ///< ... and where it acts (m)
     double null_space[HIMC_HANDS]; ///< share of the arm's squared joint rates that moves no tip
-    himc_energy energy;            ///< (J)
+    double co_contraction[HIMC_JOINTS]; ///< torque over the joint's strength; NaN in `ik`
+    himc_vec3 root_force;  ///< of the world on the pelvis, mean since the last row (N); NaN in `ik`
+    himc_vec3 root_moment; ///< the same about the midpoint of the hip joints (N m); NaN in `ik`
+    himc_vec3 root_center; ///< of pressure on the plane of the seat (m); NaN if nothing presses
+    double root_friction;  ///< horizontal over vertical force; NaN if nothing presses
+    himc_energy energy;    ///< (J)
 } himc_motion_row;
 
 /// Calls `row` in himc_performance_process at each task tick; NULL stops it. Works and energies

@@ -46,6 +46,9 @@ typedef struct {
     himc_vec3 push[20];
     himc_vec3 push_at[20];
     double null_space[2];
+    double co_contraction[19];
+    himc_vec3 root_force, root_moment, root_center;
+    double root_friction;
     himc_energy energy;
 } himc_motion_row;
 

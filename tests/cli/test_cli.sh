@@ -76,14 +76,14 @@ for owner in "himc contributors" "three.js authors" "Russell L. Smith" "Benoit J
 done
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \
-    "render evaluate edit info modes import share film play serve bench " ]
+    "render evaluate edit info modes import export share film play serve bench " ]
 for call in $calls; do
     "$himc" $call --help >out 2>err
     check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
 done
 
 # how it refuses what it is given
-refuses test_no_call_is_refused "expected render, evaluate, edit, info, modes, import, share, film, play, serve, bench"
+refuses test_no_call_is_refused "expected render, evaluate, edit, info, modes, import, export, share, film, play, serve, bench"
 refuses test_unknown_call_is_refused '"drum"' drum
 refuses test_misspelt_call_is_found 'unknown call "rnder", did you mean render?' rnder piece.txt
 refuses test_misspelt_option_is_found 'unknown option --strkes, did you mean --strokes?' render piece.txt --strkes x.csv
@@ -536,6 +536,10 @@ check test_a_midi_file_is_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(
 "$himc" info roll.mid >out
 check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n 's/^strokes *//p; s/^rolls *//p' out | tr '\n' ' ')" = \
     "40 notes are played as 3 rolls 0 3 single " ]
+refuses test_export_needs_an_output "no -o F.xml given" export
+refuses test_export_of_another_format_is_refused "-o: piece.mid, expected a name that ends with .xml" export piece.txt -o piece.mid
+refuses test_export_of_no_stance_is_refused '--stance: "standing", expected fixed or seated' export --stance standing -o x.xml
+refuses test_export_does_not_write_over_its_setup "named twice" export still.xml -o ./still.xml
 refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
 refuses test_import_does_not_write_over_its_source "named twice" import roll.mid -o ./roll.mid
 refuses test_import_of_text_is_refused "not a MIDI file" import piece.txt -o x.txt

@@ -15,6 +15,12 @@
 ///     spin     the gyroscopic moment (tree.h) is implicit and takes energy.
 /// The force in a joint is what accelerates all segments beyond it, less the other forces on them.
 /// The moments' equation is not used, so the balance tests it.
+///
+/// The world holds the pelvis with the change of momentum less the weights and the contacts,
+///     h F = sum of m (v+ - v - h g) - h sum of f,
+/// and, about the midpoint of the hip joints, with the moments of these and each segment's
+/// I (w+ - w) less h times its gyroscopic moment. x+ = x + h v+, so the sums of h F are exact. A
+/// single F is not: steps of 4 and 5 samples in turn close gaps by turns faster and slower.
 #include "body/energy.h"
 
 #include "base/rotations.h"
@@ -26,6 +32,7 @@ typedef struct step {
     himc_vec3 spin[HIMC_SEGMENTS];     // mean over the step (rad/s)
     himc_vec3 velocity[HIMC_SEGMENTS]; // mean, of the centre of mass (m/s)
     himc_vec3 force[HIMC_SEGMENTS];    // on the centre of mass, without weight and joints (N)
+    himc_vec3 origin[HIMC_SEGMENTS];   // joint, from that of the pelvis (m)
     double h;
 } step;
 
@@ -61,6 +68,39 @@ static double numerical_power(const step *s, int i, himc_vec3 joint[HIMC_SEGMENT
            0.5 * segment->mass * HIMC_GRAVITY * gained.z;
 }
 
+// adds an impulse at a place from the pelvis' joint to those on the pelvis
+static void add_to_root(himc_body_work *work, himc_vec3 at, himc_vec3 impulse)
+{
+    work->root_impulse = himc_vec3_add(work->root_impulse, impulse);
+    work->root_angular = himc_vec3_add(work->root_angular, himc_vec3_cross(at, impulse));
+}
+
+// what holds and moves each segment in the step; those that do not take part are at rest
+static void find_root(himc_body_work *work, step *s)
+{
+    const himc_segment *segment = s->skeleton->segment;
+    himc_vec3 weight = {0, 0, s->h * segment[0].mass * HIMC_GRAVITY};
+    work->root_seconds += s->h;
+    add_to_root(work, segment[0].center, weight);
+    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 gained = {0, 0, 0};
+        s->origin[i] = himc_vec3_add(s->origin[segment[i].parent], s->art->lever[i]);
+        if (i < s->art->end) {
+            himc_vec3 spin = s->before->joints.spin[i];
+            himc_vec3 turned = himc_vec3_sub(s->after->joints.spin[i], spin);
+            himc_vec3 moment =
+                himc_gyroscopic_moment(&s->art->inertia[i], segment[i].inertia, spin, s->h);
+            turned = himc_symmetric_apply(&s->art->inertia[i], turned);
+            turned = himc_vec3_madd(turned, -s->h, moment);
+            work->root_angular = himc_vec3_add(work->root_angular, turned);
+            gained = himc_vec3_sub(s->after->velocity[i], s->before->velocity[i]);
+        }
+        gained.z += s->h * HIMC_GRAVITY;
+        add_to_root(work, himc_vec3_add(s->origin[i], s->art->center[i]),
+                    himc_vec3_scale(gained, segment[i].mass));
+    }
+}
+
 void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
                         const himc_articulation *art, const himc_step_forces *forces,
                         const segment_states *before, const segment_states *after, double h)
@@ -75,6 +115,7 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
         himc_vec3 *f = &s.force[forces->contact[k].segment];
         *f = himc_vec3_add(*f, forces->contact[k].force);
     }
+    find_root(work, &s);
     for (int i = art->end - 1; i > 0; i--) {
         himc_vec3 relative = himc_vec3_sub(s.spin[i], s.spin[skeleton->segment[i].parent]);
         work->joint[i - 1] += h * himc_vec3_dot(forces->torque[i - 1], relative);
@@ -83,6 +124,7 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
     for (int k = 0; k < forces->contacts; k++) {
         const world_contact *c = &forces->contact[k];
         himc_vec3 at = himc_mat3_apply(&before->joints.rotation[c->segment], c->at);
+        add_to_root(work, himc_vec3_add(s.origin[c->segment], at), himc_vec3_scale(c->force, -h));
         if (c->work)
             *c->work += h * himc_vec3_dot(c->force, point_velocity(&s, c->segment, at));
     }

@@ -1,4 +1,5 @@
-/// energy.h: the energy of the simulated body, and the work on it added up step by step; private.
+/// energy.h: the energy of the simulated body, the work on it added up step by step, and what
+/// holds it; private.
 #ifndef HIMC_BODY_ENERGY_H
 #define HIMC_BODY_ENERGY_H
 
@@ -11,6 +12,9 @@ typedef struct himc_body_work {
     double push;                ///< of the other contacts with the world, from theirs
     double placed;              ///< energy given by putting the body elsewhere
     double numerical;           ///< given by the integrator
+    himc_vec3 root_impulse;     ///< of the world on the pelvis (N s) ...
+    himc_vec3 root_angular;     ///< ... about the midpoint of the hip joints (N m s)
+    double root_seconds;        ///< in so long; whoever reads these three sets them to 0
 } himc_body_work;
 
 /// The forces of one step, by their sources.

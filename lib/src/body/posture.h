@@ -89,6 +89,12 @@ HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skele
 /// or as much higher or lower as its arms need; also the usual one if `lowest` is above `highest`.
 HIMC_RT double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest);
 
+/// Height of the stool's seat (m), below the hip joints. Chosen: 86 mm at 1.75 m, as it is drawn.
+static inline double himc_posture_stool(const himc_skeleton *skeleton)
+{
+    return skeleton->segment[HIMC_PELVIS].origin.z - 0.086 / 1.75 * skeleton->height;
+}
+
 /// The trunk posture for strokes at these points (m), one for each hand: turned towards their
 /// middle, leaning forward as far as the farther one requires. At rest.
 HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip);

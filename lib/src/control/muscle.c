@@ -12,8 +12,8 @@
 #define ACTIVATION 0.040 // to full strength (s); voluntary contractions take 40 to 100 ms
 #define RECOVERY 0.020   // after a contact (s); chosen: less is a jerk, more lets the tip go astray
 #define RECOVERED 4.0    // of the strength, which co-contraction then may have; chosen: all
-// co-contraction over strength at waist, neck and head and from shoulder to grip; chosen: slow heavy
-// joints are soft
+// co-contraction over strength at waist, neck and head and from shoulder to grip; chosen: slow
+// heavy joints are soft
 static const double trunk_share = 0.10, arm_share[HIMC_ARM_JOINTS] = {0.20, 0.25, 0.25, 0.25};
 
 void himc_muscles_rest(himc_muscles *m)

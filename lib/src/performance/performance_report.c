@@ -94,9 +94,33 @@ static himc_vec3 push_point(const performance_body *b, const himc_body_state *st
                          himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
 }
 
+// how the world has held the pelvis since the last row, and what a stool would have to do instead
+static void take_root(performance_body *b, himc_motion_row *row)
+{
+    himc_body_work *w = &b->work;
+    double rate = 1 / w->root_seconds;
+    himc_vec3 f = himc_vec3_scale(w->root_impulse, rate);
+    himc_vec3 m = himc_vec3_scale(w->root_angular, rate);
+    himc_vec3 hips = b->plant.segment[HIMC_PELVIS].origin;
+    double seat = himc_posture_stool(&b->plant), down = hips.z - seat;
+    for (int j = 0; j < HIMC_JOINTS && b->controller.config.human_strength; j++)
+        row->co_contraction[j] = b->muscles.co_contraction[j];
+    w->root_impulse = w->root_angular = himc_vec3_make(0, 0, 0);
+    w->root_seconds = 0;
+    row->root_force = f;
+    row->root_moment = m;
+    row->root_center = himc_vec3_make(NAN, NAN, NAN);
+    row->root_friction = NAN;
+    if (f.z <= 0)
+        return;
+    row->root_center =
+        himc_vec3_make(hips.x - (m.y + down * f.x) / f.z, hips.y + (m.x - down * f.y) / f.z, seat);
+    row->root_friction = hypot(f.x, f.y) / f.z;
+}
+
 // torques, and the accelerations that they, the tips' forces and the pushes make; a body that is
 // moved by inverse kinematics has none
-static void fill_dynamics(const performance_body *b, bool kinematic, himc_motion_row *row)
+static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *row)
 {
     himc_energy *e = &row->energy;
     himc_articulation art;
@@ -106,14 +130,17 @@ static void fill_dynamics(const performance_body *b, bool kinematic, himc_motion
     himc_vec3 rate[HIMC_JOINTS], none = {NAN, NAN, NAN};
     for (int j = 0; kinematic && j < HIMC_JOINTS; j++) {
         row->acceleration[j] = row->torque[j] = none;
-        row->power[j] = e->joint[j] = NAN;
+        row->power[j] = e->joint[j] = row->co_contraction[j] = NAN;
     }
     if (kinematic) {
+        row->root_force = row->root_moment = row->root_center = none;
+        row->root_friction = NAN;
         e->push = e->placed = e->numerical = e->kinetic = e->potential = NAN;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             e->contact[hand] = e->mallet[hand] = NAN;
         return;
     }
+    take_root(b, row);
     // the state of the row's pose and rates: without the joints' gaps, which are the engine's
     memcpy(pose.joint, row->rotation, sizeof pose.joint);
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -135,7 +162,7 @@ static void fill_dynamics(const performance_body *b, bool kinematic, himc_motion
 
 static void fill_row(himc_performance *p, double t, himc_motion_row *row)
 {
-    const performance_body *b = p->body;
+    performance_body *b = p->body;
     himc_pose pose = himc_pose_from_state(&b->skeleton, &b->state);
     *row = (himc_motion_row){.time = t, .energy = p->energy};
     for (int j = 0; j < HIMC_JOINTS; j++) {

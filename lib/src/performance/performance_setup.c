@@ -212,6 +212,11 @@ bool himc_performance_set_weights(himc_performance *p, const double *factor, him
     return himc_performance_rebuild(p, &s, error);
 }
 
+const himc_skeleton *himc_performance_plant(const himc_performance *p)
+{
+    return &p->body->plant;
+}
+
 bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_error *error)
 {
     if (!check_sample_rate(sample_rate, error))

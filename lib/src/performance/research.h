@@ -18,6 +18,9 @@ HIMC_RT void himc_performance_set_posture_regression(himc_performance *performan
 bool himc_performance_set_weights(himc_performance *performance, const double *factor,
                                   himc_error *error);
 
+/// The body that is simulated, on its stool; borrowed, until the next command.
+const himc_skeleton *himc_performance_plant(const himc_performance *performance);
+
 /// Loads a score from its text, like the command `score`; `name` begins errors.
 bool himc_performance_load_text(himc_performance *performance, const char *text, const char *name,
                                 himc_error *error);

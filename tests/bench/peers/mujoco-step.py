@@ -31,7 +31,7 @@ def measure(what, label, model):
     print(f"{what} {us:.3f} {label}, {model.nv} degrees of freedom", flush=True)
 
 
-xml = subprocess.run(["build/tools/research/skeleton/table", "mjcf"], check=True, capture_output=True, text=True).stdout
+xml = subprocess.run(["build/bin/himc", "export", "-o", "-"], check=True, capture_output=True, text=True).stdout
 measure("step_us", "MuJoCo mj_step, the same tree", mujoco.MjModel.from_xml_string(xml))
 try:
     from dm_control.suite import humanoid_CMU

@@ -1,6 +1,5 @@
 /// table.c: the default performer's segments and joints, from lib/src/body/skeleton.c, for programs
-/// that do not link the library: `table c` prints a C header, `table js` a JavaScript module,
-/// `table mjcf` a model for MuJoCo (tests/bench/peers).
+/// that do not link the library: `table c` prints a C header, `table js` a JavaScript module.
 ///
 /// make runs it when the viewer is built (build/viewer/skeleton.h and skeleton.js), so the names,
 /// their order and the parents stand in skeleton.c alone. `origin` is the joint in the parent's
@@ -42,50 +41,19 @@ static void print_js(const himc_skeleton *k)
     printf("export const malletRadius = %.6f;\n", k->mallet_radius);
 }
 
-static int children(const himc_skeleton *k, int parent, int from)
-{
-    while (from < HIMC_SEGMENTS && k->segment[from].parent != parent)
-        from++;
-    return from;
-}
-
-/// A body element with its joint, inertia and children.
-static void print_body(const himc_skeleton *k, int i)
-{
-    const himc_segment *s = &k->segment[i];
-    printf("<body name=\"%s\" pos=\"%.6f %.6f %.6f\">%s<inertial pos=\"%.9f %.9f %.9f\" "
-           "mass=\"%.9f\" diaginertia=\"%.9e %.9e %.9e\"/>\n",
-           himc_segment_name(i), s->origin.x, s->origin.y, s->origin.z,
-           s->joint == HIMC_JOINT_BALL ? "<joint type=\"ball\"/>" : "", s->center.x, s->center.y,
-           s->center.z, s->mass, s->inertia.x, s->inertia.y, s->inertia.z);
-    for (int c = children(k, i, 0); c < HIMC_SEGMENTS; c = children(k, i, c + 1))
-        print_body(k, c);
-    puts("</body>");
-}
-
-/// The pelvis is fixed, as in the simulation.
-static void print_mjcf(const himc_skeleton *k)
-{
-    puts("<mujoco><compiler balanceinertia=\"true\"/><option timestep=\"0.0001\"/><worldbody>");
-    print_body(k, HIMC_PELVIS);
-    puts("</worldbody></mujoco>");
-}
-
 int main(int count, char **word)
 {
     himc_skeleton k;
     himc_skeleton_config config = himc_skeleton_default();
     const char *format = count == 2 ? word[1] : "";
-    bool c = !strcmp(format, "c"), js = !strcmp(format, "js"), mjcf = !strcmp(format, "mjcf");
-    if (!(c || js || mjcf) || !himc_skeleton_init(&k, &config, NULL)) {
-        fprintf(stderr, "usage: table c|js|mjcf\n");
+    bool c = !strcmp(format, "c"), js = !strcmp(format, "js");
+    if (!(c || js) || !himc_skeleton_init(&k, &config, NULL)) {
+        fprintf(stderr, "usage: table c|js\n");
         return 1;
     }
     if (c)
         print_c();
-    else if (js)
-        print_js(&k);
     else
-        print_mjcf(&k);
+        print_js(&k);
     return 0;
 }
