@@ -49,6 +49,12 @@ static inline void watch_row(void *user, const himc_motion_row *row)
         memset(all.torque, 0, sizeof all.torque);
         memset(all.power, 0, sizeof all.power);
         memset(&all.energy, 0, sizeof all.energy);
+        memset(&all.root_force, 0, sizeof all.root_force);
+        memset(&all.root_moment, 0, sizeof all.root_moment);
+    }
+    if (!(all.root_force.z > 0)) { // nothing presses on the seat
+        memset(&all.root_center, 0, sizeof all.root_center);
+        all.root_friction = 0;
     }
     if (!w->bad && !all_finite(row->target, sizeof row->target))
         w->bad = "a target";

@@ -1,0 +1,92 @@
+/// test_muscle.c: in a stroke's contact torques hold, and come back after it; else they are the
+/// law's.
+#include "control/muscle.h"
+
+#include "unity.h"
+
+#include <math.h>
+
+#define STEP 1e-4
+
+static const bool none[HIMC_HANDS], left[HIMC_HANDS] = {[HIMC_LEFT] = true};
+static double strength[HIMC_JOINTS];
+static himc_muscles muscles;
+
+void setUp(void)
+{
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        strength[j] = 40;
+    himc_muscles_rest(&muscles);
+}
+void tearDown(void)
+{
+}
+
+static void act(const bool struck[HIMC_HANDS], double asked, himc_vec3 torque[HIMC_JOINTS])
+{
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        torque[j] = himc_vec3_make(asked, -0.5 * asked, 0);
+    himc_muscles_act(&muscles, struck, strength, STEP, torque);
+}
+
+static void test_without_a_contact_torques_are_those_of_the_law(void)
+{
+    himc_vec3 torque[HIMC_JOINTS];
+    for (int i = 0; i < 100; i++) {
+        act(none, 30 * sin(i), torque);
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            TEST_ASSERT_EQUAL_DOUBLE(30 * sin(i), torque[j].x);
+    }
+}
+
+static void test_in_a_contact_torques_hold_but_for_a_share_of_the_strength(void)
+{
+    himc_vec3 torque[HIMC_JOINTS];
+    int arm = himc_arm_joint(HIMC_LEFT, 0), other = himc_arm_joint(HIMC_RIGHT, 0);
+    act(none, 2, torque);
+    for (int i = 0; i < 70; i++)
+        act(left, 300, torque);
+    // 7 ms of activation, 40 / 0.04 s, and 0.2 of co-contraction at the shoulder
+    double change = himc_vec3_length(himc_vec3_sub(torque[arm], himc_vec3_make(2, -1, 0)));
+    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.007 / 0.04 * 40 + 0.2 * 40, change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.2, muscles.co_contraction[arm]);
+    TEST_ASSERT_EQUAL_DOUBLE(300, torque[other].x);
+    TEST_ASSERT_EQUAL_DOUBLE(300, torque[HIMC_LEFT_UPPER_LEG - 1].x);
+    TEST_ASSERT_TRUE(torque[HIMC_TRUNK - 1].x < 20);
+}
+
+static void test_after_a_contact_the_law_has_its_torques_back_without_a_jump(void)
+{
+    himc_vec3 torque[HIMC_JOINTS];
+    int arm = himc_arm_joint(HIMC_LEFT, 1);
+    act(none, 0, torque);
+    for (int i = 0; i < 50; i++)
+        act(left, 35, torque);
+    double last = torque[arm].x, jump = 0;
+    for (int i = 0; i < 250; i++) {
+        act(none, 35, torque);
+        jump = fmax(jump, fabs(torque[arm].x - last));
+        last = torque[arm].x;
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(35, last);
+    TEST_ASSERT_TRUE(jump < 0.05 * 40);
+}
+
+static void test_a_joint_without_a_strength_has_no_muscle(void)
+{
+    himc_vec3 torque[HIMC_JOINTS];
+    strength[himc_arm_joint(HIMC_LEFT, 2)] = 0;
+    act(none, 0, torque);
+    act(left, 100, torque);
+    TEST_ASSERT_EQUAL_DOUBLE(100, torque[himc_arm_joint(HIMC_LEFT, 2)].x);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_without_a_contact_torques_are_those_of_the_law);
+    RUN_TEST(test_in_a_contact_torques_hold_but_for_a_share_of_the_strength);
+    RUN_TEST(test_after_a_contact_the_law_has_its_torques_back_without_a_jump);
+    RUN_TEST(test_a_joint_without_a_strength_has_no_muscle);
+    return UNITY_END();
+}
