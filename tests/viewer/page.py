@@ -885,8 +885,9 @@ def loudest(gltf, binary, channel):
     weights = floats(gltf["animations"][0]["samplers"][channel["sampler"]]["output"])
     rows = [weights[i : i + len(shapes)] for i in range(0, len(weights), len(shapes))]
     frame = max(range(len(rows)), key=lambda i: max(map(abs, rows[i])))
-    edge = max(at)
-    chosen = range(72, len(at) // 3 - 72, 131)
+    rim = 22 * 72  # the first point of the head's edge; beyond it lies its collar
+    edge = math.hypot(at[3 * rim], at[3 * rim + 1])
+    chosen = range(72, rim, 131)
     points = [[math.hypot(at[3 * i], at[3 * i + 1]) / edge, math.atan2(at[3 * i + 1], at[3 * i])] for i in chosen]
     heights = [sum(w * s[3 * i + 2] for w, s in zip(rows[frame], shapes)) for i in chosen]
     return node["name"].split()[0], frame / 60, points, len(shapes), heights
