@@ -459,8 +459,9 @@ static void test_errors_name_field_value_and_allowed_values(void)
             "stroke: DYNAMIC: 1.7, expected ppp pp p mp mf f ff fff or 0 .. 1");
     refused(perform("stroke 1 left legatto f"),
             "stroke: NUANCE: legatto, expected legato tenuto accent vertical-accent staccato");
-    refused(perform("stroke 1 left"),
-            "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]");
+    refused(
+        perform("stroke 1 left"),
+        "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]");
     refused(perform("stroke 1 left legato f 0.1"),
             "stroke: SPOT: 0.1, expected center normal rim or X Y, both -1 .. 1 m");
     refused(perform("stroke x left legato f"), "stroke: BEAT: x, expected 0 .. 1e+06");
@@ -483,7 +484,8 @@ static void test_errors_name_field_value_and_allowed_values(void)
 
 static void test_a_word_that_fits_no_form_is_answered_with_all_forms(void)
 {
-    refused(perform("listener here"), "listener: here, expected listener off | usual | X Y Z [YAW]");
+    refused(perform("listener here"),
+            "listener: here, expected listener off | usual | X Y Z [YAW]");
     refused(perform("gain loud"),
             "gain: loud, expected gain reset | frequency FACTOR | JOINT KS KD | DB");
     refused(perform("gain 100"), "gain: 100, expected reset or -60 .. 24 dB");

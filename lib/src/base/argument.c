@@ -166,7 +166,7 @@ bool himc_note_name(double hz, char name[HIMC_NOTE_SIZE])
 {
     static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
                                         "F#", "G",  "G#", "A",  "A#", "B"};
-    double its = 0;
+    double its = -1;
     for (int key = 0; key < 12 * 10 && its != hz; key++) {
         snprintf(name, HIMC_NOTE_SIZE, "%s%d", names[key % 12], key / 12);
         himc_note_frequency(name, &its);
@@ -183,8 +183,8 @@ bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom)
         // it must stay itself in a score line, an OSC address and as a stroke's last atom
         return word && word[0] && strlen(word) < HIMC_NAME_SIZE &&
                !strpbrk(word, " \t/#*?,;:[]{}\\\"$") && himc_line_is_clean(word) &&
-               strcmp(word, "comment") != 0 && strcmp(word, "dead") != 0 && find_word(spots, word) < 0 &&
-               !himc_command_find(HIMC_PERFORMER, word);
+               strcmp(word, "comment") != 0 && strcmp(word, "dead") != 0 &&
+               find_word(spots, word) < 0 && !himc_command_find(HIMC_PERFORMER, word);
     case HIMC_ARGUMENT_TEXT:
         return word && strlen(word) >= argument->low && strlen(word) <= argument->high;
     case HIMC_ARGUMENT_NOTE:

@@ -74,10 +74,10 @@ struct himc_drum {
     double hold; ///< damp by sticks that are kept on the head
     double
         nearness[HIMC_PICKUPS]; ///< 1/distance of a pickup in the air, as its noise is heard (1/m)
-    himc_listener listener; ///< of its performer, or `alone`
-    himc_listener alone;    ///< without a performer
-    himc_walls walls; ///< around the listener
-    himc_ears *ears;  ///< owned; of the listener; NULL before the first one
+    himc_listener listener;     ///< of its performer, or `alone`
+    himc_listener alone;        ///< without a performer
+    himc_walls walls;           ///< around the listener
+    himc_ears *ears;            ///< owned; of the listener; NULL before the first one
 };
 
 /// The head after a checked command that changes it, but for `shape`. False with the reason if the

@@ -18,9 +18,9 @@ typedef struct himc_membrane_config {
     himc_head head;
     himc_pickup pickups[HIMC_OUTPUTS]; ///< rays from HIMC_PICKUPS on
     int pickup_count;
-    bool rays;  ///< it has them
-    bool muted; ///< the sound of the first HIMC_EARS pickups is not wanted, and their outputs are
-                ///< of no use; a membrane's own, and no difference between two configs
+    bool rays;   ///< it has them
+    bool muted;  ///< the sound of the first HIMC_EARS pickups is not wanted, and their outputs are
+                 ///< of no use; a membrane's own, and no difference between two configs
     bool shares; ///< the air between this head and others takes what its shared modes radiate; they
                  ///< decay by so much less
     double rate; ///< (Hz)
