@@ -75,7 +75,7 @@ HIMC_RT void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double
                             double *displacement);
 /// The sound of pickup `channel` (0 .. HIMC_PICKUPS - 1; the command `pickups CHANNELS` sets how
 /// many there are, the others are silent, but a single one is also channel 1). While a `listener`
-/// hears the drum, channel 0 is the left ear, 1 the right one.
+/// hears the drum, channel 0 is the left ear, 1 the right one; the others stay pickups.
 HIMC_RT void himc_drum_read_channel(const himc_drum *drum, int channel, uint64_t start, int n,
                                     double *sound);
 /// Whether the displacement of the watched point is computed, as it is at first; without, it reads

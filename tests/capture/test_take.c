@@ -221,6 +221,9 @@ static void test_the_row_of_a_format_tells_its_files(void)
             TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, rows[i].suffix), error.text);
         }
     }
+    TEST_ASSERT_EQUAL_STRING(".c3d",
+                             himc_take_suffix_of("\7P", 2)); // its first block of two to seven
+    TEST_ASSERT_NULL(himc_take_suffix_of("\10P", 2));
     TEST_ASSERT_NULL(himc_take_suffix_of("tempo 100;", 10));
 }
 

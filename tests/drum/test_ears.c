@@ -453,19 +453,19 @@ static void test_a_drum_alone_is_heard_by_two_ears_until_a_pickup_is_asked_for(v
 }
 
 // three strokes in the pickups behind the first two, with ears that come, leave and come back
-static void hear_behind(bool ears, double out[2][3 * LENGTH])
+static void hear_behind(bool heard, double out[2][3 * LENGTH])
 {
     static const char *const listener[] = {"usual", "off", "usual"};
     tearDown();
     setUp();
-    TEST_ASSERT_TRUE(!ears || himc_drum_set_usual_listener(drum, &error));
+    TEST_ASSERT_TRUE(!heard || himc_drum_set_usual_listener(drum, &error));
     says("pickups 4");
     says("channel 3 0.1 0.05");
     for (int i = 0; i < 3; i++) {
         char text[40];
-        snprintf(text, sizeof text, "listener %s", ears ? listener[i] : "off");
+        snprintf(text, sizeof text, "listener %s", heard ? listener[i] : "off");
         says(text);
-        TEST_ASSERT_EQUAL(ears && i != 1, himc_drum_is_heard(drum));
+        TEST_ASSERT_EQUAL(heard && i != 1, himc_drum_is_heard(drum));
         himc_drum_strike_at(drum, 0, -0.2, 0.05, 1, &error);
         advance(LENGTH);
         for (int k = 0; k < 2; k++)

@@ -272,14 +272,14 @@ static void find_listener(void *user, const char *line)
 
 static void test_reset_is_heard_by_those_who_heard_it_at_first(void)
 {
-    for (int heard = 0; heard < 2; heard++) {
+    for (int usual = 0; usual < 2; usual++) {
         himc_performance_config config = config_of(false);
         char first[40] = "", later[40] = "";
-        config.heard = heard;
+        config.heard = usual;
         himc_performance *p = performer(&config);
         himc_performance_describe(p, HIMC_DESCRIBE_STATE, find_listener, first);
-        TEST_ASSERT_EQUAL_STRING(heard ? "listener usual" : "listener off", first);
-        session_do(p, heard ? "listener off" : "listener 2 0 1");
+        TEST_ASSERT_EQUAL_STRING(usual ? "listener usual" : "listener off", first);
+        session_do(p, usual ? "listener off" : "listener 2 0 1");
         session_do(p, "reset");
         himc_performance_describe(p, HIMC_DESCRIBE_STATE, find_listener, later);
         TEST_ASSERT_EQUAL_STRING(first, later);

@@ -395,8 +395,10 @@ static void stop_saving(session *s)
 static bool save_take(session *s, const char *name, himc_error *error)
 {
     const char *dot = strrchr(name, '.');
-    if (!dot || !himc_take_can_save(name, error))
-        return dot || himc_error_set(error, "%.40s: expected a suffix", name);
+    if (!dot)
+        return himc_error_set(error, "%.40s: expected a suffix", name);
+    if (!himc_take_can_save(name, error))
+        return false;
     if (s->saver)
         return himc_error_set(error, "a take is being saved");
     int file = cli_temporary(s->saved, sizeof s->saved, dot);

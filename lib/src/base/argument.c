@@ -166,7 +166,7 @@ bool himc_note_name(double hz, char name[HIMC_NOTE_SIZE])
 {
     static const char *const names[] = {"C",  "C#", "D",  "D#", "E",  "F",
                                         "F#", "G",  "G#", "A",  "A#", "B"};
-    double its = 0;
+    double its = -1;
     for (int key = 0; key < 12 * 10 && its != hz; key++) {
         snprintf(name, HIMC_NOTE_SIZE, "%s%d", names[key % 12], key / 12);
         himc_note_frequency(name, &its);

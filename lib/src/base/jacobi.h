@@ -10,7 +10,8 @@
 
 #include <math.h>
 
-#define HIMC_JACOBI_SWEEPS 8 // chosen: matrices of 3 x 3 and 4 x 4 need 4 to 6
+#define HIMC_JACOBI_SWEEPS 8       // chosen: matrices of 3 x 3 and 4 x 4 need 4 to 6
+#define HIMC_JACOBI_DIAGONAL 1e-17 // chosen: below the rounding of doubles, 1.1e-16, of the trace
 
 // x' = c x - s y, y' = s x + c y for n pairs, neighbours `stride` apart in memory
 static inline void himc_jacobi_mix(int n, double *x, double *y, int stride, double c, double s)
@@ -58,7 +59,7 @@ static inline void himc_jacobi(int n, double *a, double *v)
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)
                 off += fabs(a[p * n + q]);
-        if (!(off > 1e-17 * trace)) // chosen: below the rounding of doubles, 1.1e-16
+        if (!(off > HIMC_JACOBI_DIAGONAL * trace))
             return;
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++)

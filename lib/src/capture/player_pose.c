@@ -243,6 +243,7 @@ static void read_frame(reader *r, int frame)
 }
 
 #define ANGLES (3 * HIMC_ARM_JOINTS)
+#define LARGEST_MISS 0.1 // chosen: keeps the linearisation of a step valid (m)
 
 // adds w J'J and w J'e of one point, moved by the first `joints` joints and captured at `center`
 static void add_point(const himc_arm_levers *a, int joints, himc_vec3 center, double weight,
@@ -250,8 +251,7 @@ static void add_point(const himc_arm_levers *a, int joints, himc_vec3 center, do
 {
     himc_vec3 e = himc_vec3_sub(center, a->at[joints]);
     double far = himc_vec3_length(e);
-    // (m) chosen: keeps the linearisation of a step valid
-    e = himc_vec3_scale(e, far > 0.1 ? 0.1 / far : 1);
+    e = himc_vec3_scale(e, far > LARGEST_MISS ? LARGEST_MISS / far : 1);
     for (int k = 0; k < joints; k++) {
         himc_vec3 r = himc_vec3_sub(a->at[joints], a->at[k]), moment = himc_vec3_cross(r, e);
         double f[3] = {moment.x, moment.y, moment.z};

@@ -21,6 +21,7 @@
 #define ENDS 3
 #define POINTS (HIMC_SEGMENTS + HIMC_HANDS + ENDS)
 #define MARKERS (POINTS + HIMC_SEGMENTS)
+#define BESIDE 0.05 // chosen: of a marker beside its joint, along the segment's y (m)
 
 typedef struct frame {
     float q[HIMC_JOINTS][4];
@@ -172,8 +173,8 @@ himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
         memcpy(x + HIMC_SEGMENTS, state.tip, sizeof state.tip);
         for (int i = 0; i < ENDS; i++)
             x[POINTS - ENDS + i] = on_segment(&state, ends[i], far_end(&r->skeleton, ends[i]));
-        for (int i = 0; i < HIMC_SEGMENTS && !has_skeleton; i++) // chosen: 50 mm beside the joint
-            x[POINTS + i] = on_segment(&state, i, himc_vec3_make(0, 0.05, 0));
+        for (int i = 0; i < HIMC_SEGMENTS && !has_skeleton; i++)
+            x[POINTS + i] = on_segment(&state, i, himc_vec3_make(0, BESIDE, 0));
         himc_quat *rotation = has_skeleton ? take->rotations + (size_t)index * POINTS : NULL;
         for (int i = 0; i < POINTS && has_skeleton; i++)
             rotation[i] = i > 0 && i < HIMC_SEGMENTS ? pose.joint[i - 1] : himc_quat_identity();

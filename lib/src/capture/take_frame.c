@@ -55,7 +55,9 @@ static const struct {
              {"ft", 0.3048},
              {"um", 1e-6}};
 #define UNITS ((int)(sizeof units / sizeof units[0]))
-#define METRIC 3 // the first three: m, cm, mm
+#define METRIC 3       // the first three: m, cm, mm
+#define GUESSED 6      // the first six are tried for skeletons with legs ...
+#define GUESSED_ARMS 4 // ... and the first four for those without
 
 // sizes of a player; chosen: 1.2 m is a child's height, 3.2 m a tall player's span with sticks (m)
 #define LEAST_SKELETON 1.2
@@ -143,8 +145,7 @@ static bool settle_skeleton(himc_take *take, double *unit, himc_error *error)
         int side = named(take, i, words, rest);
         legs = side >= 0 && strcmp(rest, "end") != 0 && strcmp(rest, "base") != 0;
     }
-    // the first six units, without legs the first four
-    *unit = guess_unit(size, LEAST_SKELETON, MOST_SKELETON, legs ? 6 : 4);
+    *unit = guess_unit(size, LEAST_SKELETON, MOST_SKELETON, legs ? GUESSED : GUESSED_ARMS);
     if (*unit == 0 && !legs)
         *unit = guess_unit(size, LEAST_ARMS, MOST_SKELETON, METRIC);
     char text[32];

@@ -63,7 +63,7 @@ static void set_poles(himc_noise_section *e, int band, double k, double d)
 
 // a number of each row
 typedef double both __attribute__((vector_size(HIMC_NOISE_ROWS * sizeof(double)), may_alias));
-_Static_assert(HIMC_NOISE_ROWS == 2, "as any x86-64 has it");
+_Static_assert(HIMC_NOISE_ROWS == 2, "a vector of two doubles, as x86-64 and arm64 have it");
 
 // n samples through the sections of bands `first` and `first` + 1, of which neither waits for the
 // other

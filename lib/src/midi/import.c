@@ -21,6 +21,7 @@
 
 #define MOST_STROKES 100000 // chosen: more than two hours of rolls
 #define MOST_CHANGES 9900   // lines of a score besides strokes are 10000
+#define GAIN (-2.5)         // (dB) chosen: zarathustra.mid has -23 LUFS, as broadcast
 #define PEDAL_STEPS 4       // of a pedal that moves, at most; chosen: heard as a slide
 
 static void put(himc_text_lines *text, const char *format, ...)
@@ -257,7 +258,7 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
                 head->inches, head->name, head->x, head->y, head->z, head->name,
                 frequency(head->key));
     }
-    put(&score, "gain -2.5;\n"); // (dB) chosen: zarathustra.mid has -23 LUFS, as broadcast
+    put(&score, "gain %g;\n", GAIN);
     for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
         double beat = file->tempi[i].beat;
         put(&score, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);

@@ -10,6 +10,13 @@
 
 #include <math.h>
 
+#define SLOWEST 9.0     // strokes of a roll (1/s)
+#define LEAST_NOTES 4   // of a roll
+#define MOST_NOTES 1000 // of a roll; chosen: a minute of a fast one
+#define LONGEST 60.0    // (s) chosen: the score's limit less a last stroke at the slowest tempo
+#define MOVE_TIME 0.5 // from its last stroke to one on another drum (s); chosen: sticking.c's need
+#define MOST_OFF_LINE 0.06 // of the dynamics from a straight line; chosen: less than half a step
+
 /// The next stroke that is played, -1 after the last.
 static int next_played(const midi_part *part, int index)
 {
@@ -19,7 +26,7 @@ static int next_played(const midi_part *part, int index)
     return -1;
 }
 
-// true if the dynamics from the first to the last lie on a line; chosen: less than half a step off
+// true if the dynamics from the first to the last lie on a line
 static bool is_straight(const midi_part *part, int first, int last)
 {
     const midi_stroke *a = &part->stroke[first], *b = &part->stroke[last];
@@ -27,7 +34,7 @@ static bool is_straight(const midi_part *part, int first, int last)
     for (int i = first; i != last; i = next_played(part, i)) {
         const midi_stroke *s = &part->stroke[i];
         double share = time > 0 ? (s->note->seconds - a->note->seconds) / time : 0;
-        if (fabs(s->dynamic - a->dynamic - share * (b->dynamic - a->dynamic)) > 0.06)
+        if (fabs(s->dynamic - a->dynamic - share * (b->dynamic - a->dynamic)) > MOST_OFF_LINE)
             return false;
     }
     return true;
@@ -41,12 +48,10 @@ void himc_midi_find_rolls(midi_part *part)
     midi_stroke *s = part->stroke;
     for (int first = next_played(part, -1), last; first >= 0; first = next_played(part, last)) {
         int end = first, row = 1, next, notes = 1;
-        // chosen: a minute of fast strokes at most, the score's limit less a last stroke at the
-        // slowest tempo
-        while (row < 1000 && (next = next_played(part, end)) >= 0 &&
+        while (row < MOST_NOTES && (next = next_played(part, end)) >= 0 &&
                s[next].head == s[first].head &&
-               s[next].note->seconds - s[end].note->seconds <= 1 / 9.0 &&
-               s[next].note->seconds - s[first].note->seconds <= 60 &&
+               s[next].note->seconds - s[end].note->seconds <= 1 / SLOWEST &&
+               s[next].note->seconds - s[first].note->seconds <= LONGEST &&
                is_straight(part, first, next)) {
             end = next;
             row++;
@@ -54,7 +59,7 @@ void himc_midi_find_rolls(midi_part *part)
         next = end;
         while (next >= 0 && s[next].head == s[first].head)
             next = next_played(part, next);
-        double until = next >= 0 ? s[next].note->seconds - 0.5 : HUGE_VAL; // (s)
+        double until = next >= 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
         last = first;
         while (last != end && s[next_played(part, last)].note->seconds <= until) {
             last = next_played(part, last);
@@ -62,7 +67,7 @@ void himc_midi_find_rolls(midi_part *part)
         }
         // the last stroke lasts as long as the others
         double beats = s[last].note->beat - s[first].note->beat;
-        double length = notes >= 4 ? beats * notes / (notes - 1) : 0;
+        double length = notes >= LEAST_NOTES ? beats * notes / (notes - 1) : 0;
         if (length < range->low || length > range->high) {
             last = first;
             continue;

@@ -27,6 +27,7 @@
 #define RENEWED_WITHIN 60.0 // (s) chosen: a receiver that subscribes twice a minute keeps it
 #define HOST_BYTES 500e3    // a second; chosen: the largest stream, vmc at 250 Hz, has 468,000
 #define HOST_BURST 0.25     // of a second's bytes at once; chosen: poses come in bursts of blocks
+#define UNKNOWN_DRUM 110.0  // (Hz) chosen: A2, for vmc
 #define OF_A_HOST 32        // subscriptions of a stranger; chosen: four receivers of all streams
 
 void himc_osc_tell(osc_ring *lines, const char *format, ...)
@@ -450,7 +451,7 @@ void himc_osc_deliver(osc_subscriptions *s, const osc_state *state, const himc_o
         drum = find_drum(s, state->strike.strike.drum);
         himc_osc_encode_begin(&vmc, SMALL_PACKET, true, state->wall);
         himc_osc_encode_vmc_strike(&vmc, &state->strike.strike,
-                                   drum < s->drums ? s->drum[drum].hz : 110); // (Hz) chosen: A2
+                                   drum < s->drums ? s->drum[drum].hz : UNKNOWN_DRUM);
         send_stream(s, STREAM_VMC, &vmc, now);
         break;
     case STATE_SOUND:

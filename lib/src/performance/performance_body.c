@@ -11,6 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+// chosen: the engine keeps joints together to a micrometre
+#define JOINT_GAP 0.01 // a joint further apart has come apart (m)
+// the beat has jumped if it is farther from that foreseen at the last tick (beats); chosen: more
+// than a change of tempo between two ticks makes
+#define SAME_COURSE 0.25
+
 void himc_body_free(performance_body *b)
 {
     if (!b)
@@ -191,9 +197,8 @@ bool himc_body_may_exchange_pushes(const performance_body *b, const planned_push
 
 void himc_body_begin_pushes(performance_body *b, double now, double next, double t)
 {
-    // after a jump from the tick before on, in which it was; chosen: a jump of a quarter beat is
-    // more than a change of tempo between two ticks makes
-    double from = fabs(b->pushed_to - now) < 0.25 ? b->pushed_to : now - fmax(next - now, 0);
+    // after a jump from the tick before on, in which it was
+    double from = fabs(b->pushed_to - now) < SAME_COURSE ? b->pushed_to : now - fmax(next - now, 0);
     bool round = next < now; // a loop ends on a whole beat
     double end = floor(now) + 1, to = round ? end : next;
     for (int i = 0; i < b->planned_count; i++) {
@@ -208,14 +213,13 @@ void himc_body_begin_pushes(performance_body *b, double now, double next, double
 bool himc_body_observe(performance_body *b, bool check)
 {
     himc_character_observe(b->character, &b->state);
-    // the numbers may be finite although the body has come apart; chosen: by 10 mm, as the engine
-    // keeps joints together to a micrometre
+    // the numbers may be finite although the body has come apart
     for (int i = 1; check && i < HIMC_SEGMENTS; i++) {
         const himc_segment *segment = &b->skeleton.segment[i];
         himc_vec3 r = himc_mat3_apply(&b->state.rotation[segment->parent], segment->origin);
         himc_vec3 gap =
             himc_vec3_sub(himc_vec3_add(b->state.origin[segment->parent], r), b->state.origin[i]);
-        if (!(himc_vec3_dot(gap, gap) < 0.01 * 0.01))
+        if (!(himc_vec3_dot(gap, gap) < JOINT_GAP * JOINT_GAP))
             return false;
     }
     return true;

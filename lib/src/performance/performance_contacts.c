@@ -27,18 +27,38 @@
 #include <string.h>
 
 // chosen: about the smallest error of a stroke that can be heard and seen
-#define PLAYED_TIME 0.005    // a stroke has landed if it touches within this of its time (s) ...
-#define PLAYED_PLACE 0.02    // ... and within this of its place (m)
-#define DEEPEST_CONTACT 0.10 // a stick deeper than this is under the head (m)
+#define PLAYED_TIME 0.005 // a stroke has landed if it touches within this of its time (s) ...
+#define PLAYED_PLACE 0.02 // ... and within this of its place (m)
+// chosen: a step at 30 m/s is 3 mm, and resting sticks hang over the rim
+#define NEAR_HEAD 0.02       // above the head at rest: sticks below this are simulated (m)
+#define HIGHEST_BOUNCE 0.35  // ... and below this when they bounce (m)
+#define DEEPEST_CONTACT 0.10 // a stick deeper than this is under the head (m) ...
+#define DEEPEST_ARRIVAL 0.03 // ... and a stick not from above is if deeper than this (m)
 // No arm moves a stick faster. A body that is thrown about by gains or a rate that cannot hold it
 // does, up to 100 m/s; the head then feels a blow as of the fastest free mallet, in each step.
 #define FASTEST_TIP HIMC_STRIKE_VELOCITY_MAX // (m/s) along the normal, and its change in a step
+// chosen: longer than the gaps inside one contact of a mallet and a swinging head
+#define RISING_GAP 0.0015 // time without force that ends the contact of a rising stick (s) ...
+#define ANY_GAP 0.005     // ... and of any stick (s)
 // chosen: a mallet that is kept on the head takes a quarter of what a hand does
 #define DEAD_DAMP 0.25
 // chosen: a few times the 5 .. 15 ms of a contact
-#define SAME_STROKE 0.100 // largest time between planned and real contact of one stroke (s)
-#define RESTING_TIME 0.1  // so soon after the last one a slow contact is no strike (s)
-#define TAKEN_UP 0.6      // of a speed aside; chosen: tips then go astray least
+#define LONGEST_RELEASE 0.060  // control releases the normal for at most this time (s)
+#define LEAST_PREPARATION 0.03 // of the next stroke: bounces end then, chosen (s)
+#define LATEST_CONTACT 0.015   // of a contact after its planned time (s)
+#define EARLY_STROKE 0.030     // of a contact before its planned time, soon after another (s)
+#define RESTING_CONTACT 0.020  // a stick that bounces and has touched for so long rests (s)
+#define SLOWEST_STRIKE 0.01    // (m/s); chosen: a stick at rest moves by 1e-5
+#define SAME_STROKE 0.100      // largest time between planned and real contact of one stroke (s)
+// chosen: more than a pressed stick moves on a head that swings, less than one that is lifted
+#define LIFTED_HEIGHT 0.003 // a pressed stick so high has left the head (m) ...
+#define LIFTED_SPEED 0.2    // ... or one that rises so fast (m/s)
+#define RESTING_SPEED 0.25  // a contact slower than this ...
+#define RESTING_TIME 0.1    // ... so soon after the last one is no strike (m/s, s)
+#define LEAST_STICK 0.25    // of the body's stick; chosen: about its shaft without its ball
+// chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
+#define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
+#define TAKEN_UP 0.6        // of a speed aside; chosen: tips then go astray least
 
 void himc_contacts_clear(performance_contacts *c)
 {
@@ -145,8 +165,7 @@ static bool is_over(const stick_contact *c, const contact_scene *s, himc_hand ha
     double reach = fmax(highest, DEEPEST_CONTACT) + s->body->skeleton.mallet_radius;
     if (himc_vec3_dot(away, away) > frame->radius * frame->radius + reach * reach)
         return false;
-    // one not from above is under the head if deeper than 0.03 m
-    double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -0.03;
+    double lowest = c->touching && c->drum == drum ? -DEEPEST_CONTACT : -DEEPEST_ARRIVAL;
     *local = over_head(s, drum, s->body->state.tip[hand]);
     return himc_head_frame_contains(frame, local->x, local->y) && local->z < highest &&
            local->z > lowest;
@@ -226,8 +245,7 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
     // nothing would stop a stick that is let go beside all heads; the take goes on by itself
     bool beside = due && himc_motion_tracks(s->motion, hand) && head_under(c, s, hand) < 0;
     bool pressed = next.any && c->touching && c->pressed; // it lies there, and does not fall
-    // a contact is 15 ms late at most; chosen: one lasts 5 .. 15 ms
-    if ((due || pressed) && (beside || t >= next.time + 0.015)) {
+    if ((due || pressed) && (beside || t >= next.time + LATEST_CONTACT)) {
         give_up(c, s, hand, t, &next, beside || pressed);
         due = false;
     }
@@ -273,9 +291,7 @@ static int drum_below(const stick_contact *c, const contact_scene *s, himc_hand 
     int below = -1;
     for (int i = 0; i < s->drums->count; i++) {
         himc_vec3 at;
-        // sticks below this are simulated (m); chosen: a bounce is lower, a step at 30 m/s is 3 mm,
-        // and resting sticks hang over the rim
-        double highest = c->bounce.on && c->drum == i ? 0.35 : 0.02;
+        double highest = c->bounce.on && c->drum == i ? HIGHEST_BOUNCE : NEAR_HEAD;
         if (!is_over(c, s, hand, i, highest, &at))
             continue;
         if (below >= 0) { // which one is meant matters here alone
@@ -308,7 +324,7 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     const himc_segment *own = &b->skeleton.segment[HIMC_LEFT_STICK + hand];
     double turned = own->inertia.x + own->mass * own->center.z * own->center.z;
     double added = c->stick.head.mass - turned / (b->skeleton.tip.z * b->skeleton.tip.z);
-    c->stick.mass = fmax(body + added, 0.25 * body); // chosen: about its shaft without its ball
+    c->stick.mass = fmax(body + added, LEAST_STICK * body);
     c->share = body / c->stick.mass;
     c->stick.hold = is_dead(c) ? DEAD_DAMP : 0;
     c->stick.one_way = s->settings->coupling == HIMC_COUPLING_ONE_WAY;
@@ -331,8 +347,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
                          double velocity)
 {
     himc_source_stroke next = himc_motion_stroke(s->motion, s->drums, hand, time);
-    // so soon after a contact one that is early by 30 ms is a rebound
-    double earliest = time < c->left + RESTING_TIME ? 0.03 : SAME_STROKE;
+    // so soon after a contact an early one is a rebound
+    double earliest = time < c->left + RESTING_TIME ? EARLY_STROKE : SAME_STROKE;
     bool bounced = c->bounce.on, planned = !bounced && next.any && time - next.time < SAME_STROKE &&
                                            time - next.time > -earliest;
     himc_word nuance = {""};
@@ -498,15 +514,11 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     // both are whole samples; half of one, so that the rounding of times does not decide
     double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
     double height = over_head(s, c->drum, s->body->state.tip[hand]).z, rise = c->stick.velocity;
-    // (m, m/s) chosen: more than a pressed stick on a head that swings, less than a lifted one
-    bool lifted = height > 0.003 || rise > 0.2;
-    // control releases the normal for 60 ms at most; chosen: a few times a contact
-    bool late = !c->bounce.on && t >= c->strike.time + 0.06;
-    // without force for 5 ms, a rising stick 1.5 ms; chosen: longer than the gaps inside one
-    // contact of a mallet and a swinging head
-    bool separated = is_dead(c)     ? false
-                     : quiet > 5e-3 ? !c->pressed || lifted
-                                    : !c->pressed && quiet > 1.5e-3 && rise > 0;
+    bool lifted = height > LIFTED_HEIGHT || rise > LIFTED_SPEED;
+    bool late = !c->bounce.on && t >= c->strike.time + LONGEST_RELEASE;
+    bool separated = is_dead(c)        ? false
+                     : quiet > ANY_GAP ? !c->pressed || lifted
+                                       : !c->pressed && quiet > RISING_GAP && rise > 0;
     if (!is_kinematic(s))
         c->offset = c->stick.height - height;
     if (!separated && !late)
@@ -515,8 +527,8 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     // down again
     himc_event event = {.kind = HIMC_EVENT_STRIKE, .strike = c->strike};
     bool resting =
-        c->pressed && c->strike.velocity < 0.25 && c->strike.time < c->left + RESTING_TIME;
-    if (c->strike.velocity > 0.01 && !resting && !c->told) // chosen: a stick at rest moves by 1e-5
+        c->pressed && c->strike.velocity < RESTING_SPEED && c->strike.time < c->left + RESTING_TIME;
+    if (c->strike.velocity > SLOWEST_STRIKE && !resting && !c->told)
         himc_events_add(s->events, &event);
     c->told = true;
     if (separated && c->bounce.on)
@@ -531,8 +543,7 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
 
 void himc_contacts_finish(performance_contacts *c, const contact_scene *s, double t)
 {
-    // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
-    double h = c->force_count / s->clock->sample_rate, kept = exp(-h / 0.95e-3);
+    double h = c->force_count / s->clock->sample_rate, kept = exp(-h / OFFSET_TIME);
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         stick_contact *own = &c->hand[i];
@@ -541,9 +552,8 @@ void himc_contacts_finish(performance_contacts *c, const contact_scene *s, doubl
             continue;
         // the hand takes up a stick that has bounced, also when the next stroke is near
         himc_source_contact next = himc_motion_next(s->motion, s->drums, hand, t);
-        // (s) chosen: the next stroke's preparation; a stick that has touched for longer rests
-        bool near = next.any && t > next.time - 0.03;
-        bool presses = own->touching && t < own->strike.time + 0.02;
+        bool near = next.any && t > next.time - LEAST_PREPARATION;
+        bool presses = own->touching && t < own->strike.time + RESTING_CONTACT;
         if (!near && (presses || !himc_bounce_is_over(&own->bounce, t, velocity_of(own, s, hand))))
             continue;
         own->bounce.on = false;

@@ -12,6 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+// chosen: as timpani are set up, rims a finger apart and all within a turn of the trunk
+#define LONGEST_WAIT 12 // of a change of the head for a stick to leave it (ticks); chosen: 50 ms
+#define RIM_GAP 0.02    // least, between two rims (m)
+#define ARC_ANGLE_STEP 0.02 // between two angles that are tried (rad)
+#define ARC_END 1.9         // largest turn of a player (rad)
+#define ARC_STEP 0.1        // from one arc to the next (m)
+#define LARGEST_ARC 2.0     // (m)
+
 int himc_drums_find(const performance_drums *d, const char *name)
 {
     for (int i = 0; i < d->count; i++)
@@ -50,7 +58,7 @@ static bool is_clear(const performance_drums *d, int index, himc_vec3 center)
     for (int i = 0; i < d->count; i++) {
         const himc_head_frame *other = himc_drums_frame(d, i);
         double apart = hypot(center.x - other->center.x, center.y - other->center.y);
-        if (i != index && apart < radius + other->radius + 0.02) // (m) chosen: rims a finger apart
+        if (i != index && apart < radius + other->radius + RIM_GAP)
             return false;
     }
     return true;
@@ -82,9 +90,8 @@ static void find_room(performance_drums *d, int index)
     himc_vec3 first = himc_drums_frame(d, index)->center;
     if (himc_drum_is_placed(slot->drum))
         return;
-    // (m, rad) chosen: as timpani are set up, all within a turn of the trunk
-    for (double arc = first.x; arc < 2; arc += 0.1)
-        for (double angle = 0; angle < 1.9; angle += 0.02)
+    for (double arc = first.x; arc < LARGEST_ARC; arc += ARC_STEP)
+        for (double angle = 0; angle < ARC_END; angle += ARC_ANGLE_STEP)
             for (int side = -1; side <= 1; side += 2) {
                 himc_vec3 center = {arc * cos(angle), side * arc * sin(angle), first.z};
                 if (!is_clear(d, index, center))
@@ -294,9 +301,8 @@ void himc_drums_turn_heads(performance_drums *d, double beat, long round, double
         bool due = himc_drum_heads_due(slot->heads, beat);
         if (due)
             himc_drums_catch_up_one(d, i);
-        // a change of a head under a stick would pluck it: it waits until the stick has left;
-        // chosen: 12 ticks, 50 ms, at most
-        bool waits = due && slot->waited < 12 && himc_drum_is_touched(slot->drum);
+        // a change of a head under a stick would pluck it: it waits until the stick has left
+        bool waits = due && slot->waited < LONGEST_WAIT && himc_drum_is_touched(slot->drum);
         slot->waited = waits ? slot->waited + 1 : 0;
         if (due && !waits)
             himc_drum_heads_turn(slot->heads, slot->drum, beat, &why);

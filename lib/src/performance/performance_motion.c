@@ -19,10 +19,35 @@
 #include <string.h>
 
 #define REST_HEIGHT 0.12 // chosen: resting tips over the sticks' level, until there is a drum (m)
-#define LIMIT_HEIGHTS 8  // postures whose mean is the limits' zero; chosen
-#define CALM 0.5         // dynamic of hands without a stroke to play; chosen
-#define ROLLED 0.2       // strokes of one hand nearer to each other are a roll's (s); chosen
-#define TOUCHING 1e-3    // before a contact, the plan has the stick's speed in it (s)
+#define TRUNK_FORESIGHT 1.2 // chosen: strokes further ahead do not turn the trunk (s)
+#define USUAL_TICK 0.004    // (s)
+#define CLEARING_STEPS 40   // of the avoidance, before the body is first placed
+#define TRUNK_STEP 0.02     // longest step of himc_trunk_posture_approach (s)
+// postures a second of the planner's rehearsal; chosen: 10 % of a core, and a tenth of that near
+// contacts, whose steps cost most
+#define WORK 50000.0
+#define BUSY_WORK 5000.0
+#define REPLANNED 0.02    // chosen: least delay of a stroke that is given up and planned again (s)
+#define LIMIT_HEIGHT 0.35 // chosen: a large stroke; the mean posture's tips go up to here (m)
+#define LIMIT_HEIGHTS 8   // postures in that mean
+#define PRESS_RIM 0.9     // share of a head's radius; further out targets go past its rim, too
+
+// a live target that falls faster than sticks do has jumped; so that it presses without a blow, it
+// comes down to the head as if braked; chosen: a press arrives with less than 20 N
+#define JUMP_SPEED 8.0    // (m/s)
+#define JUMP_GAP 0.3      // between targets of a stream, at most (s)
+#define PRESS_ARRIVAL 0.6 // at the head (m/s)
+#define PRESS_BRAKE 20.0  // above it (m/s^2)
+
+#define BEAT_BEGINNING 0.1 // of a beat; chosen: a tick at 1000 beats a minute
+
+// a stroke that does not rebound: at both times after it the tip is wanted so low; chosen: the
+// softest roll of one hand, ppp at 12 Hz, is higher at the first, the fastest at one of them
+static const double rests_at[] = {0.06, 0.09}; // (s)
+#define RESTS_BELOW 0.002                      // (m)
+#define CALM 0.5                               // dynamic of hands without a stroke to play; chosen
+#define ROLLED 0.2    // strokes of one hand nearer to each other are a roll's (s); chosen
+#define TOUCHING 1e-3 // before a contact, the plan has the stick's speed in it (s)
 
 // the piece is the take if there is one; it moves the hands that it has, from `play` on
 static void choose_sources(performance_motion *m, bool played)
@@ -178,8 +203,7 @@ himc_target himc_motion_planned(const performance_motion *m, himc_hand hand, dou
 
 static bool is_coming(const performance_motion *m, himc_hand hand, double time)
 {
-    // (s) chosen: the least delay of a stroke that is given up and planned again
-    return time > m->answered[hand] + 0.02 && isfinite(time);
+    return time > m->answered[hand] + REPLANNED && isfinite(time);
 }
 
 himc_source_contact himc_motion_next(const performance_motion *m, const performance_drums *drums,
@@ -225,7 +249,7 @@ void himc_motion_go_on_from(performance_motion *m, himc_hand hand, double t,
 static himc_trunk_posture trunk_at(const performance_motion *m, double t)
 {
     return himc_trunk_posture_approach(&m->body.from, &m->body.goal,
-                                       fmin(fmax(t - m->body.time, 0), 0.02)); // its longest step
+                                       fmin(fmax(t - m->body.time, 0), TRUNK_STEP));
 }
 
 // sets a new course, from trunk and grip at `t` to those for the next strokes
@@ -241,7 +265,7 @@ static void set_course(performance_motion *m, const performance_settings *s,
         himc_vec3 at = {0, 0, 0};
         if (next.any)
             at = himc_head_frame_to_world(himc_drums_frame(drums, next.drum), next.x, next.y);
-        place[hand] = next.any && next.time <= t + 1.2 // (s) chosen: later ones turn no trunk
+        place[hand] = next.any && next.time <= t + TRUNK_FORESIGHT
                           ? at
                           : himc_motion_planned(m, (himc_hand)hand, t).x;
         first.since = fmin(first.since, t - m->answered[hand]);
@@ -384,10 +408,10 @@ static void fill_tick(performance_motion *m, const performance_settings *s, himc
         *tip = himc_motion_planned(m, (himc_hand)hand, t);
         if (head->radius == 0)
             continue;
-        // a target below the head becomes a press; towards the rim, from 0.9 of the radius on
-        // (chosen), it may go deeper, so that one that goes past the rim does not jump
+        // a target below the head becomes a press; towards the rim it may go deeper, so that one
+        // that goes past the rim does not jump
         himc_vec3 at = himc_head_frame_from_world(head, tip->x), n = himc_head_frame_normal(head);
-        double out = fmax(himc_head_frame_out(head, at.x, at.y) - 0.9, 0) / (1 - 0.9);
+        double out = fmax(himc_head_frame_out(head, at.x, at.y) - PRESS_RIM, 0) / (1 - PRESS_RIM);
         double h = at.z - m->body.posture.skeleton.mallet_radius, v = himc_vec3_dot(n, tip->v),
                a = himc_vec3_dot(n, tip->a), free = h, free_v = v, free_a = a;
         if (out >= 1)
@@ -454,8 +478,7 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
 
 void himc_motion_think(performance_motion *m, double h, bool busy)
 {
-    // postures a second; chosen: 10 % of a core, a tenth of that near contacts, which cost most
-    himc_planner_think(m->planner, h * (busy ? 5e3 : 5e4));
+    himc_planner_think(m->planner, h * (busy ? BUSY_WORK : WORK));
 }
 
 void himc_motion_interpolate(performance_motion *m, double t)
@@ -488,7 +511,7 @@ static void begin_at(performance_motion *m, const performance_settings *s, doubl
         for (int k = 1; k < HIMC_FORESEEN; k++)
             f[k] = f[0];
         m->body.avoidance = (himc_avoidance){{0}, 0};
-        for (int i = 0; i < 40; i++) // chosen
+        for (int i = 0; i < CLEARING_STEPS; i++)
             himc_avoidance_update(&m->body.avoidance, &m->body.posture, &m->body.shells, f,
                                   HIMC_AVOIDANCE_PERIOD);
         m->body.goal = f[0].trunk;
@@ -522,7 +545,7 @@ void himc_motion_recover(performance_motion *m, const performance_settings *s, d
         choose_sources(m, false);
     begin_at(m, s, t, true);
     m->to = m->from;
-    m->to.time += 0.004; // (s) until the setpoints are read again
+    m->to.time += USUAL_TICK; // until the setpoints are read again
     himc_setpoint_course_make(&m->between, &m->from, &m->to);
 }
 
@@ -551,8 +574,7 @@ himc_pose himc_motion_mean_pose(const performance_motion *m, double t)
         himc_vec3 tip[HIMC_HANDS];
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
-            // (m) chosen: up to a large stroke
-            tip[hand].z = m->body.posture.level + 0.35 * i / (LIMIT_HEIGHTS - 1);
+            tip[hand].z = m->body.posture.level + LIMIT_HEIGHT * i / (LIMIT_HEIGHTS - 1);
         }
         himc_posture_at(&m->body.posture, tip, &pose[i]);
     }
@@ -575,11 +597,9 @@ void himc_motion_set_under(performance_motion *m, himc_hand hand, const himc_hea
 bool himc_motion_rests_after(const performance_motion *m, himc_hand hand, double time,
                              const himc_head_frame *head)
 {
-    // the tip is wanted lower than 2 mm 0.06 and 0.09 s after it; chosen: the softest roll of one
-    // hand, ppp at 12 Hz, is higher at the first, the fastest at one of them
-    for (double after = 0.06; after < 0.1; after += 0.03)
+    for (int i = 0; i < 2; i++)
         if (!himc_motion_tracks(m, hand) ||
-            height_over(m, head, himc_motion_planned(m, hand, time + after).x) > 0.002)
+            height_over(m, head, himc_motion_planned(m, hand, time + rests_at[i]).x) > RESTS_BELOW)
             return false;
     return true;
 }
@@ -639,11 +659,8 @@ himc_vec3 himc_motion_ease_down(performance_motion *m, himc_hand hand, double t,
     live_target *live = &m->live[hand];
     double gap = t - live->time, from = head ? height_over(m, head, live->x) : 0,
            to = head ? height_over(m, head, target) : 0;
-    // targets of a stream are less than 0.3 s apart; one that falls faster than sticks do, 8 m/s,
-    // has jumped. So that it presses without a blow it comes down as if braked by 20 m/s^2, to
-    // 0.6 m/s at the head; chosen: a press arrives with less than 20 N
-    bool falls = head && gap > 0 && gap < 0.3 && (live->eased || from - to > 8 * gap);
-    double most = sqrt(0.6 * 0.6 + 2 * 20.0 * fmax(from, 0)) * gap;
+    bool falls = head && gap > 0 && gap < JUMP_GAP && (live->eased || from - to > JUMP_SPEED * gap);
+    double most = sqrt(PRESS_ARRIVAL * PRESS_ARRIVAL + 2 * PRESS_BRAKE * fmax(from, 0)) * gap;
     live->eased = falls && from - to > most;
     if (live->eased)
         target = himc_vec3_madd(target, from - most - to, himc_head_frame_normal(head));
@@ -696,8 +713,7 @@ static bool begins_beat(const performance_motion *m, double t)
 {
     long whole = whole_beat(m, t);
     double beat = counted_beat(m, t);
-    // chosen: a tick at 1000 beats a minute
-    bool within = beat - floor(beat + BEAT_ROUNDING) >= 0.1;
+    bool within = beat - floor(beat + BEAT_ROUNDING) >= BEAT_BEGINNING;
     bool other = whole != m->last_beat && (m->last_beat >= 0 || whole < 0 || !within);
     return other || himc_planner_round(m->planner, t) > m->last_round ||
            (m->counted && !himc_planner_is_preparing(m->planner, t));

@@ -11,7 +11,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MISSED_TARGET 1e-3  // chosen: the user is told of a target missed by more (m)
+#define DEEPEST_TARGET 0.01 // chosen: a firm press of a mallet; largest depth of a target (m)
+#define UNDER_THE_HEAD 0.3  // a target deeper than this is under the drum, not in its head (m)
+
+// chosen: a stroke so little out of reach is played
+#define OUT_OF_REACH 0.01 // (m)
+#define BEHIND (-0.2)     // forward over sideways: further back is behind the performer
+
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
+
+// chosen: shorter than a contact, longer than a slow bounce
+#define LEAST_BOUNCE 0.01 // (s)
+#define MOST_BOUNCE 0.5   // (s)
+#define LEAST_ROLL 0.01   // (beats)
 
 static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
 {
@@ -29,11 +42,10 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
            (bounces ||
             himc_error_set(error, "stroke: no such ornament, or %d bounces", s->bounces)) &&
            himc_check_range("stroke: early", s->early, 0, 1, "s", error) &&
-           // chosen: shorter than a contact, longer than a slow bounce
-           himc_check_range("stroke: bounce_time", s->bounces ? s->bounce_time : 0.01, 0.01, 0.5,
-                            "s", error) &&
-           himc_check_range("roll: LENGTH", rolls ? s->length : 1, 0.01, LATEST_BEAT, "beats",
-                            error) &&
+           himc_check_range("stroke: bounce_time", s->bounces ? s->bounce_time : LEAST_BOUNCE,
+                            LEAST_BOUNCE, MOST_BOUNCE, "s", error) &&
+           himc_check_range("roll: LENGTH", rolls ? s->length : LEAST_ROLL, LEAST_ROLL, LATEST_BEAT,
+                            "beats", error) &&
            himc_check_range("roll: DYNAMIC", rolls ? s->last_dynamic : 0, 0, 1, "", error);
 }
 
@@ -114,7 +126,7 @@ static const char *direction_of(himc_vec3 beyond, himc_vec3 center)
 {
     if (fabs(beyond.z) > hypot(beyond.x, beyond.y))
         return beyond.z < 0 ? "too low" : "too high";
-    if (center.x < -0.2 * fabs(center.y)) // chosen
+    if (center.x < BEHIND * fabs(center.y))
         return "too far behind";
     return beyond.x * center.x + beyond.y * center.y < 0 ? "too near" : "too far";
 }
@@ -129,7 +141,7 @@ static void tell_places(himc_performance *p)
         const himc_head_frame *head = himc_drums_frame(&p->drums, i);
         himc_vec3 beyond = himc_motion_beyond(p->motion, head);
         double distance = himc_vec3_length(beyond);
-        if (distance < 0.01 || slot->reach_told) // (m) chosen: so little is played
+        if (distance < OUT_OF_REACH || slot->reach_told)
             continue;
         slot->reach_told = true;
         himc_events_note(&p->events, "drum %s is %s by %.2f m: strokes on it are given up",
@@ -221,10 +233,10 @@ static const himc_head_frame *head_of(const himc_performance *p, himc_vec3 *x)
         const himc_head_frame *frame = himc_drums_frame(&p->drums, i);
         himc_vec3 local = himc_head_frame_from_world(frame, *x);
         double under = p->body->skeleton.mallet_radius - local.z;
-        // (m) chosen: deeper than 0.3 is under the drum, 0.01 is a firm press of a mallet
-        if (!himc_head_frame_contains(frame, local.x, local.y) || under < 0 || under > 0.3)
+        if (!himc_head_frame_contains(frame, local.x, local.y) || under < 0 ||
+            under > UNDER_THE_HEAD)
             continue;
-        *x = himc_vec3_madd(*x, fmax(under - 0.01, 0), himc_head_frame_normal(frame));
+        *x = himc_vec3_madd(*x, fmax(under - DEEPEST_TARGET, 0), himc_head_frame_normal(frame));
         return frame;
     }
     return NULL;
@@ -237,7 +249,7 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
         return;
     himc_vec3 x = himc_posture_reachable(&p->motion->body.posture, hand, asked);
     bool free = himc_motion_free_hand(p->motion, hand, step_time(p));
-    bool reached = himc_vec3_length(himc_vec3_sub(x, asked)) <= 1e-3; // (m) chosen
+    bool reached = himc_vec3_length(himc_vec3_sub(x, asked)) <= MISSED_TARGET;
     bool first = himc_motion_note_target(p->motion, hand, free && reached);
     if (first && free)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",

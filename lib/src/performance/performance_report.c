@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LONGEST_RECORDING 1200.0 // chosen: 20 minutes, 0.5 GB of poses at 250 Hz (s)
+
 bool himc_performance_event(himc_performance *p, himc_event *event)
 {
     return himc_events_take(&p->events, event);
@@ -274,8 +276,8 @@ static bool prepare_recording(himc_job *job, himc_error *error)
     if (j->command.form == STOP)
         return write_frames(j->file, error);
     himc_recording_free(j->file);
-    const double longest = 1200; // (s) chosen: 20 minutes, 0.5 GB of poses at 250 Hz
-    j->file = himc_recording_new(j->command.atom[0].symbol, &j->skeleton, j->rate, longest, error);
+    j->file = himc_recording_new(j->command.atom[0].symbol, &j->skeleton, j->rate,
+                                 LONGEST_RECORDING, error);
     return j->file || himc_error_prefix(error, "record");
 }
 

@@ -14,12 +14,14 @@
 #include "midi/score_file.h"
 #include "performance/confine.h"
 #include "performance/research.h"
+#include "plan/ornament.h"
 #include "plan/score.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#define TRIAL_RECORDING 0.1 // of the trial of a file that can be opened (s)
 // chosen: a portion takes a tenth of a millisecond
 #define LINES_AT_ONCE 16
 #define STROKES_AT_ONCE 64
@@ -207,7 +209,8 @@ static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error 
         j->recording = !j->recording;
         if (!j->recording)
             return true;
-        trial = himc_recording_new(c->atom[0].symbol, &j->skeleton, j->clock.task_rate, 0.1, error);
+        trial = himc_recording_new(c->atom[0].symbol, &j->skeleton, j->clock.task_rate,
+                                   TRIAL_RECORDING, error);
         himc_recording_free(trial);
         return (trial && himc_recording_may_replace(c->atom[0].symbol, error)) ||
                himc_error_prefix(error, "record");

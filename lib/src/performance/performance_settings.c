@@ -16,6 +16,9 @@
 #include <stddef.h>
 #include <string.h>
 
+/// That a hit needs from rest (s): measured, an accent at ff; vertical accents need more from f on.
+#define LONGEST_PREPARATION 0.33
+
 /// A command to be stored.
 typedef struct reading {
     const himc_command *command;
@@ -231,8 +234,8 @@ static void tell_human(const telling *t)
 static bool read_latency(const reading *r)
 {
     enum { TIME, AUTO };
-    // auto: what a hit needs from rest, measured: an accent at ff; vertical accents need more
-    r->settings->latency = r->command->form == AUTO ? 0.33 : 1e-3 * r->command->atom[0].number;
+    r->settings->latency =
+        r->command->form == AUTO ? LONGEST_PREPARATION : 1e-3 * r->command->atom[0].number;
     return true;
 }
 

@@ -9,6 +9,9 @@
 
 #include <stdlib.h>
 
+#define LIGHTEST 0.2 // chosen: an uncertain body, not another one; true over assumed mass
+#define HEAVIEST 5.0
+
 himc_performance_config himc_performance_default(void)
 {
     return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
@@ -204,8 +207,8 @@ bool himc_performance_rebuild(himc_performance *p, const performance_settings *w
 bool himc_performance_set_weights(himc_performance *p, const double *factor, himc_error *error)
 {
     performance_settings s = p->settings;
-    for (int i = 0; factor && i < HIMC_SEGMENTS; i++) // chosen: an uncertain body, not another one
-        if (!himc_check_range("weight", factor[i], 0.2, 5, "", error))
+    for (int i = 0; factor && i < HIMC_SEGMENTS; i++)
+        if (!himc_check_range("weight", factor[i], LIGHTEST, HEAVIEST, "", error))
             return himc_error_prefix(error, "%s", himc_segment_name(i));
     for (int i = 0; i < HIMC_SEGMENTS; i++)
         s.weight[i] = factor ? factor[i] : 1;

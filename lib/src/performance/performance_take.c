@@ -21,7 +21,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POSTURES_SEEN 1000 // frames of a take, for the limits of bent arms; chosen
+// chosen: a player goes a little further than one take shows
+#define LIMIT_MARGIN 0.05     // beyond the captured range, as a share of it ...
+#define LEAST_LIMIT 0.05      // ... and this far whatever the range (rad)
+#define POSTURES_SEEN 1000    // frames of a take, for the limits of bent arms
+#define REACH_CHECK_STEP 0.01 // from one check of a take's reach to the next (s)
+#define OUT_OF_REACH 1e-3     // a tip further from its target is out of reach (m)
+#define SAME_PLACE 1e-6       // a drum as near as this is not moved (m)
 
 typedef struct take_job {
     himc_job job;
@@ -59,7 +65,7 @@ typedef struct take_job {
 
 static bool same_place(himc_vec3 a, himc_vec3 b)
 {
-    return himc_vec3_length(himc_vec3_sub(a, b)) < 1e-6; // (m)
+    return himc_vec3_length(himc_vec3_sub(a, b)) < SAME_PLACE;
 }
 
 static himc_trunk_posture mean_trunk(const himc_player *player)
@@ -77,10 +83,9 @@ static himc_trunk_posture mean_trunk(const himc_player *player)
 bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limits *learned,
                                    himc_error *error)
 {
-    // chosen: a player goes further than one take shows, by 5 % of the range and 0.05 rad
-    if (!himc_limits_learn(learned, pose, frames, 0.05, error))
+    if (!himc_limits_learn(learned, pose, frames, LIMIT_MARGIN, error))
         return false;
-    himc_limits_loosen(learned, 0.05);
+    himc_limits_loosen(learned, LEAST_LIMIT);
     return true;
 }
 
@@ -172,7 +177,7 @@ static bool survey(take_job *j, const himc_posture *posture, himc_error *error)
     }
     free(s.strikes);
     double length = himc_track_length(j->track);
-    for (double t = 0; t < length; t += 0.01) // (s) chosen
+    for (double t = 0; t < length; t += REACH_CHECK_STEP)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             if (!himc_track_present(j->track, (himc_hand)hand))
                 continue;
@@ -180,7 +185,7 @@ static bool survey(take_job *j, const himc_posture *posture, himc_error *error)
             himc_vec3 near = himc_posture_reachable(posture, (himc_hand)hand, x);
             double missing = himc_vec3_length(himc_vec3_sub(x, near));
             j->placed++;
-            j->far += missing > 1e-3; // (m)
+            j->far += missing > OUT_OF_REACH;
             j->farthest = fmax(j->farthest, missing);
         }
     return true;

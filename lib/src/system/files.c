@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LINKS_MAX 40 // followed, as Linux does
+
 // the part of a real path below the folder, with its first separator; NULL if it is not inside
 static const char *below(const char *real, const char *folder, char separator)
 {
@@ -152,7 +154,7 @@ char *himc_system_target(const char *path)
     char at[PATH_MAX], link[PATH_MAX], next[2 * PATH_MAX];
     ssize_t length = 0;
     snprintf(at, sizeof at, "%s", path);
-    for (int links = 0; links < 40; links++) { // as Linux does
+    for (int links = 0; links < LINKS_MAX; links++) {
         length = readlink(at, link, sizeof link - 1);
         if (length < 0)
             break;

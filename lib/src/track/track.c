@@ -19,12 +19,26 @@
 // the cut around a strike; chosen: a contact of 7 ms and a frame at 250 Hz on both sides
 #define CUT_TIME 0.0125       // after a strike's lowest point, and at most before it (s)
 #define LONGEST_APPROACH 0.03 // the approach is carried on at most so long (s)
+#define AIRBORNE_HEIGHT 0.05  // no strike is so high above the head (m)
+#define LEAST_BRIDGE 0.02     // from contact to the end of its bridge (s)
 
 // the way back after a separation; chosen: as short as a stick can be led back without a jerk
-#define REJOIN_TIME 0.020  // from separation to the capture (s)
-#define FASTEST_STICK 12.0 // a stick that leaves the head faster has been thrown (m/s)
+#define REJOIN_TIME 0.020    // from separation to the capture (s) ...
+#define REJOIN_DISTANCE 0.02 // ... but from this much further off than a stick goes in it (m) ...
+#define REJOIN_PEAK 250.0    // ... as long as this peak acceleration takes (m/s^2)
+#define FASTEST_STICK 12.0   // a stick that leaves the head faster has been thrown (m/s)
+#define LATEST_REJOIN 0.1    // a capture under the head is rejoined within this time (s) ...
+#define REJOIN_HEIGHT 0.02   // ... once it is so far above (m): the way there does not dip
+#define NEXT_STRIKE_GAP 1e-3 // the way ends so much before the next bridge begins (s)
+#define LEAST_REJOIN 0.015   // with less time left the path is not changed (s)
+#define SLOWEST_REJOIN 0.2   // rate of the take's time below which nothing is replanned
 
-#define LEAST_FRAMES 8 // of a take; chosen: enough for one local fit
+// a stop; chosen: no tip falls on the head after it
+#define HOVER_HEIGHT 0.08 // of a tip at rest above the head (m) ...
+#define HOVER_FALL 0.25   // ... and this share of the fall's speed times the halt's duration
+
+#define LOOKED_AHEAD 0.1 // what the motion at a time may rest on; chosen: some task periods (s)
+#define LEAST_FRAMES 8   // of a take; chosen: enough for one local fit
 
 // fits frames lo .. hi, one stretch between strikes
 static void fit_stretch(hand_track *h, const himc_vec3 *x, int lo, int hi, const himc_track *track)
@@ -66,7 +80,7 @@ static void make_bridge(himc_track *track, hand_track *h, bridge *b, double mall
     himc_target touch = himc_quintic_at(&b->approach, fall);
     b->from = b->restart = b->last / track->rate;
     b->contact = b->from + fall;
-    b->to = fmax(b->next / track->rate, b->contact + 0.02); // (s) chosen
+    b->to = fmax(b->next / track->rate, b->contact + LEAST_BRIDGE);
     b->to = fmin(b->to, himc_track_take_length(track));
     himc_target after = captured_at(track, h, b->to);
     b->spot = himc_head_frame_from_world(&track->head, touch.x);
@@ -92,9 +106,9 @@ static bool build_hand(himc_track *track, himc_hand hand, const himc_vec3 *captu
     for (int i = 0; i < count; i++) {
         int frame = strikes[i].frame, clear = strikes[i].clear;
         himc_vec3 low = himc_vec3_add(strikes[i].x, track->offset);
-        // a stick pulled up sharply in the air may look like a strike; none is 0.05 m high
+        // a stick pulled up sharply in the air may look like a strike
         if (strikes[i].hand != hand || frame - cut < start + 2 || frame + cut > track->frames - 3 ||
-            himc_head_frame_from_world(&track->head, low).z > 0.05)
+            himc_head_frame_from_world(&track->head, low).z > AIRBORNE_HEIGHT)
             continue;
         bridge *b = &h->built[h->bridge_count++];
         b->last = clear < frame && clear > frame - cut ? clear : frame - cut;
@@ -375,10 +389,9 @@ bool himc_track_exchange(himc_track *track, const himc_track *other, double t)
             himc_vec3_length(himc_vec3_sub(a->way, b->way)) != 0)
             break;
     }
-    // the motion at a time may rest on what comes 0.1 s later; chosen: some task periods
     for (int k = 0; k < 2; k++)
         for (int i = same; i < both[k]->nudges; i++)
-            if (both[k]->nudge[i].time - both[k]->nudge[i].span < at[0] + 0.1)
+            if (both[k]->nudge[i].time - both[k]->nudge[i].span < at[0] + LOOKED_AHEAD)
                 return false;
     memcpy(track->nudge, other->nudge, sizeof track->nudge);
     track->nudges = other->nudges;
@@ -420,8 +433,7 @@ static void separated(void *source, himc_hand hand, double now, const himc_targe
     double at[3];
     himc_track_warp(himc_track_take_length(track), now - track->start, at);
     double t = at[0];
-    // chosen: below this rate the take's time stands nearly still
-    if (at[1] < 0.2)
+    if (at[1] < SLOWEST_REJOIN)
         return;
     himc_target from = *measured;
     from.v = himc_vec3_scale(from.v, fmin(1, FASTEST_STICK / himc_vec3_length(from.v)) / at[1]);
@@ -437,24 +449,22 @@ static void separated(void *source, himc_hand hand, double now, const himc_targe
     // between last and next nothing is known
     double first = fmax(t + REJOIN_TIME, b->next / track->rate), to = first, least = b->spot.z;
     // where the capture is then below the level of a contact, the time at which it is well above: a
-    // way back to a place under the head would strike it again. One that is not 0.02 m above within
-    // 0.1 s is pressed
+    // way back to a place under the head would strike it again. One that stays there is pressed
     while (himc_head_frame_from_world(&track->head, captured_at(track, h, to).x).z < least) {
-        least = b->spot.z + 0.02;
+        least = b->spot.z + REJOIN_HEIGHT;
         to += 1 / track->rate;
-        if (to >= first + 0.1) {
+        if (to >= first + LATEST_REJOIN) {
             to = first;
             break;
         }
     }
     himc_vec3 way = himc_vec3_sub(captured_at(track, h, to).x, from.x);
-    // from 0.02 m further off than a stick goes in it, as long as 250 m/s^2 at the peak take
-    if (himc_vec3_length(way) > 0.02 + FASTEST_STICK * (to - t))
-        to = t + himc_move_time(himc_vec3_length(way), 250);
+    if (himc_vec3_length(way) > REJOIN_DISTANCE + FASTEST_STICK * (to - t))
+        to = t + himc_move_time(himc_vec3_length(way), REJOIN_PEAK);
     if (i + 1 < h->bridge_count)
-        to = fmin(to, h->bridges[i + 1].from - 1e-3); // (s) before the next bridge
+        to = fmin(to, h->bridges[i + 1].from - NEXT_STRIKE_GAP);
     to = fmin(to, himc_track_take_length(track));
-    if (to < t + 0.015) // (s) too little time left
+    if (to < t + LEAST_REJOIN)
         return;
     b->to = to;
     himc_target back = captured_at(track, h, b->to);
@@ -479,15 +489,14 @@ static void stop(void *source, double t, const himc_target *now)
     if (t >= track->stop || t > himc_track_length(track))
         return;
     track->stop = t;
-    // the motion goes on a little and comes to rest; a tip that falls is caught 0.08 m above the
-    // head, and a quarter of its way in the halt more; chosen: none falls on it
+    // the motion goes on a little and comes to rest; a tip that falls is caught above the head
     himc_vec3 n = himc_head_frame_normal(&track->head);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         const himc_target *s = &now[hand];
         himc_target rest = {.x = himc_vec3_madd(s->x, HIMC_TRACK_HALT_WAY * HIMC_TRACK_HALT, s->v)};
         double fall = fmax(-himc_vec3_dot(n, s->v), 0);
         double height = himc_head_frame_from_world(&track->head, rest.x).z,
-               least = 0.08 + 0.25 * HIMC_TRACK_HALT * fall;
+               least = HOVER_HEIGHT + HOVER_FALL * HIMC_TRACK_HALT * fall;
         if (height < least)
             rest.x = himc_vec3_madd(rest.x, least - height, n);
         track->hand[hand].settle = himc_quintic_make(s, &rest, HIMC_TRACK_HALT);

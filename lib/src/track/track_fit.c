@@ -5,23 +5,27 @@
 
 // chosen: a blow at 5 m/s loses less than 2 % of its speed, at 0.2 mm of noise less than 5 %
 // (tests/track/test_track.c)
-#define FIT_HALF_WIDTH 0.025 // of the local fits (s)
-#define EDGE_FRAMES 6        // of the one-sided fit beside a strike, at least
+#define FIT_HALF_WIDTH 0.025    // of the local fits (s)
+#define EDGE_FRAMES 6           // of the one-sided fit beside a strike, at least ...
+#define LONGEST_EDGE_TIME 0.048 // ... and for a noisy capture up to so many seconds ...
+#define EDGE_RATE_ERROR 0.03    // ... until the error of its rate is that small (m/s)
+#define LEAST_FIT_FRAMES 3      // on each side
+#define FAR_SIDE_SHARE 1.5 // edges that a noisy cubic beside a strike has on both sides together
 
-// the rate at the end of a parabola through n points has the error sqrt(192 / n^3) noise / dt; for
-// a noisy capture they are so many that it is 0.03 m/s, but 48 ms at most
+// the rate at the end of a parabola through n points has the error sqrt(192 / n^3) noise / dt
 int himc_fit_edge(double noise, double rate)
 {
-    double n = cbrt(192 * pow(noise * rate / 0.03, 2)), most = fmax(EDGE_FRAMES, 0.048 * rate);
+    double n = cbrt(192 * pow(noise * rate / EDGE_RATE_ERROR, 2)),
+           most = fmax(EDGE_FRAMES, LONGEST_EDGE_TIME * rate);
     return (int)fmin(fmax(n, EDGE_FRAMES), most);
 }
 
 fit_window himc_fit_window(int k, int lo, int hi, const fit_series *series)
 {
-    int reach = (int)fmax(3, FIT_HALF_WIDTH * series->rate), edge = series->edge - 1;
-    // beside a strike a noisy cubic has more frames on its far side, 1.5 edges on both together
+    int reach = (int)fmax(LEAST_FIT_FRAMES, FIT_HALF_WIDTH * series->rate), edge = series->edge - 1;
+    // beside a strike a noisy cubic has more frames on its far side
     if (edge >= EDGE_FRAMES && fmin(k - lo, hi - k) < reach)
-        reach = (int)fmax(reach, 1.5 * edge - fmin(k - lo, hi - k));
+        reach = (int)fmax(reach, FAR_SIDE_SHARE * edge - fmin(k - lo, hi - k));
     fit_window w = {k - reach < lo ? lo : k - reach, k, k + reach > hi ? hi : k + reach, 4, reach};
     if (k == lo || k == hi) { // at its end a parabola errs less than a cubic
         w.order = 3;

@@ -20,8 +20,20 @@
 
 #include <stdlib.h>
 
+// bending an arm to its tip, by Gauss-Newton steps; chosen: convergence is quadratic, five steps go
+// from 5 cm to rounding
+#define BENDS 5              // steps ...
+#define MOST_BENDS 40        // ... and more, if the tip is still ...
+#define BENT_WITHIN 1e-8     // ... farther from its place (m)
+#define LARGEST_BEND 0.1     // of the tip, in one step (m): the linear part of the way
+#define BEND_DAMPING 1e-8    // of a straight arm (m^2): below a tenth of a millimetre
 #define BEND_DIFFERENCE 5e-4 // step of the differences (s): an error of 1 mm/s at a blow
-#define SAMPLED_FRAMES 201   // of the take, for the median of an arm's distance from its tip
+
+// an arm without a stick; chosen: half a stick's length
+#define NO_STICK 0.15      // median distance of an arm's end from its tip (m)
+#define SAMPLED_FRAMES 201 // of the take, for that median
+
+#define LARGEST_WINDOW 512 // frames of one fit: 50 ms at 10 kHz
 
 static int hand_of(int joint)
 {
@@ -38,7 +50,7 @@ static void fit_stretch(const himc_track *track, const himc_pose *pose, int j, i
                         joint_state *joint)
 {
     fit_series series = {track->frames, track->edge, track->rate};
-    himc_vec3 turned[512]; // 50 ms at 10 kHz
+    himc_vec3 turned[LARGEST_WINDOW];
     for (int k = lo; k <= hi; k++) {
         fit_window w = himc_fit_window(k, lo, hi, &series);
         himc_quat middle = pose[k].joint[j], back = himc_quat_conj(middle);
@@ -95,8 +107,7 @@ bool himc_track_fit_postures(himc_track *track, const himc_player *player)
             himc_vec3 tip = track->hand[hand].frame[f].x;
             off[k] = himc_vec3_length(himc_vec3_sub(arm.at[HIMC_ARM_JOINTS], tip));
         }
-        // (m) chosen: half a stick's length
-        track->joints.empty[hand] = himc_median(off, SAMPLED_FRAMES) > 0.15;
+        track->joints.empty[hand] = himc_median(off, SAMPLED_FRAMES) > NO_STICK;
     }
     return true;
 }
@@ -171,8 +182,7 @@ void himc_track_approach_posture(himc_track *track, const himc_posture_motion *n
         track->joints.before[j] = (joint_state){now->joint[j], now->rate[j], now->acceleration[j]};
 }
 
-// one step, by 0.1 m at most, the linear part of the way; returns the tip's distance from its place
-// before it (m)
+// one step; returns the tip's distance from its place before it (m)
 static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3 tip,
                         himc_pose *pose)
 {
@@ -181,10 +191,9 @@ static double bend_once(const himc_skeleton *skeleton, himc_hand hand, himc_vec3
     himc_arm_levers a = himc_arm_levers_of(skeleton, himc_skeleton_waist(skeleton), pose, hand);
     himc_vec3 e = himc_vec3_sub(tip, a.at[HIMC_ARM_JOINTS]);
     double far = himc_vec3_length(e);
-    if (far > 0.1)
-        e = himc_vec3_scale(e, 0.1 / far);
-    // damps a straight arm (m^2): below a tenth of a millimetre
-    himc_mat3 gram = {{{1e-8, 0, 0}, {0, 1e-8, 0}, {0, 0, 1e-8}}};
+    if (far > LARGEST_BEND)
+        e = himc_vec3_scale(e, LARGEST_BEND / far);
+    himc_mat3 gram = {{{BEND_DAMPING, 0, 0}, {0, BEND_DAMPING, 0}, {0, 0, BEND_DAMPING}}};
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         double r[3] = {a.lever[k].x, a.lever[k].y, a.lever[k].z};
         double square = himc_vec3_dot(a.lever[k], a.lever[k]);
@@ -229,8 +238,8 @@ void himc_track_posture(const himc_track *track, const himc_skeleton *skeleton, 
             himc_vec3 shoulder = himc_shoulder(skeleton, pose->joint[HIMC_TRUNK - 1], of);
             himc_target asked = {.x = himc_target_after(&tip[hand], dt).x};
             himc_vec3 to = himc_stretch_towards(&asked, shoulder, himc_stretch(skeleton, of)).x;
-            double far = INFINITY; // chosen: convergence is quadratic, 5 steps go from 5 cm to 1e-8
-            for (int k = 0; k < 5 || (k < 40 && far > 1e-8); k++)
+            double far = INFINITY;
+            for (int k = 0; k < BENDS || (k < MOST_BENDS && far > BENT_WITHIN); k++)
                 far = bend_once(skeleton, of, to, pose);
         }
     }

@@ -4,6 +4,8 @@
 /// that between the two ramps the take's time is the time itself.
 #include "track/track_time.h"
 
+#define WARP_BISECTIONS 50 // from 0.2 s to rounding
+
 void himc_track_warp(double length, double t, double at[3])
 {
     double half = 0.5 * HIMC_TRACK_RAMP;
@@ -32,7 +34,7 @@ double himc_track_unwarp(double length, double taken)
     himc_track_warp(length, taken, at);
     if (at[0] == taken && at[1] == 1)
         return taken;
-    for (int i = 0; i < 50; i++) { // from 0.2 s to rounding
+    for (int i = 0; i < WARP_BISECTIONS; i++) {
         double middle = 0.5 * (lo + hi);
         himc_track_warp(length, middle, at);
         if (at[0] < taken)
