@@ -48,6 +48,7 @@ static inline void watch_row(void *user, const himc_motion_row *row)
         memset(all.acceleration, 0, sizeof all.acceleration);
         memset(all.torque, 0, sizeof all.torque);
         memset(all.power, 0, sizeof all.power);
+        memset(all.co_contraction, 0, sizeof all.co_contraction);
         memset(&all.energy, 0, sizeof all.energy);
         memset(&all.root_force, 0, sizeof all.root_force);
         memset(&all.root_moment, 0, sizeof all.root_moment);

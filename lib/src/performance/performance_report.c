@@ -100,7 +100,7 @@ static himc_vec3 push_point(const performance_body *b, const himc_body_state *st
 static void take_root(performance_body *b, himc_motion_row *row)
 {
     himc_body_work *w = &b->work;
-    double rate = 1 / w->root_seconds;
+    double rate = w->root_seconds > 0 ? 1 / w->root_seconds : 0; // none after a step of `ik`
     himc_vec3 f = himc_vec3_scale(w->root_impulse, rate);
     himc_vec3 m = himc_vec3_scale(w->root_angular, rate);
     himc_vec3 hips = b->plant.segment[HIMC_PELVIS].origin;
