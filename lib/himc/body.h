@@ -89,7 +89,8 @@ double himc_skeleton_seat(const himc_skeleton_config *config);
 /// The freedoms of a segment on its parent.
 typedef enum himc_joint_kind {
     HIMC_JOINT_FIXED, ///< none; the root, from the world to the pelvis
-    HIMC_JOINT_BALL   ///< three rotational freedoms; all other joints
+    HIMC_JOINT_BALL,  ///< three rotational freedoms; all other joints
+    HIMC_JOINT_FREE   ///< six; the root of a body that sits
 } himc_joint_kind;
 
 /// A rigid segment. Vectors are in its own frame unless stated.
@@ -155,12 +156,14 @@ typedef struct himc_pose {
     himc_quat joint[HIMC_JOINTS]; ///< unit quaternions
 } himc_pose;
 
-/// The moving body in the world frame. Entry 0 is the pelvis, fixed at the skeleton's root.
+/// The moving body in the world frame. Entry 0 is the pelvis, at the skeleton's root unless that is
+/// free.
 typedef struct himc_body_state {
     himc_quat orientation[HIMC_SEGMENTS]; ///< of the segment's frame, unit quaternions
     himc_mat3 rotation[HIMC_SEGMENTS];    ///< the orientations as matrices
     himc_vec3 origin[HIMC_SEGMENTS];      ///< joint to the parent (m)
     himc_vec3 spin[HIMC_SEGMENTS];        ///< angular velocity (rad/s)
+    himc_vec3 velocity;                   ///< of origin[0] (m/s)
     himc_vec3 tip[HIMC_HANDS];            ///< drumstick tips (m)
     himc_vec3 tip_velocity[HIMC_HANDS];   ///< of the drumstick tips (m/s)
 } himc_body_state;
@@ -177,7 +180,7 @@ HIMC_RT void himc_pose_to_state(const himc_skeleton *skeleton, const himc_pose *
 HIMC_RT himc_pose himc_pose_from_state(const himc_skeleton *skeleton, const himc_body_state *state);
 
 /// Computes rotation matrices, origins, tips and tip velocities from the orientations and spins in
-/// `state`.
+/// `state`, the pelvis being at its place.
 HIMC_RT void himc_body_state_complete(const himc_skeleton *skeleton, himc_body_state *state);
 
 /// True if every number of the state is finite.
@@ -306,14 +309,15 @@ typedef struct himc_articulation {
     himc_vec3 center[HIMC_SEGMENTS];       ///< from the joint to the centre of mass (m)
     himc_symmetric inertia[HIMC_SEGMENTS]; ///< about the centre of mass, world frame (kg m^2)
     himc_symmetric
-        inverse[HIMC_SEGMENTS];          ///< of the articulated rotational inertia about the joint
-    himc_mat3 response[HIMC_SEGMENTS];   ///< minus the angular acceleration per acceleration of the
-                                         ///< joint (1/m)
-    himc_symmetric mass[HIMC_SEGMENTS];  ///< apparent mass for the parent at the joint (kg)
-    int end;                             ///< segments 1 .. end - 1 take part
-    bool resists;                        ///< joints resist their own acceleration; if so:
-    himc_mat3 resistance[HIMC_SEGMENTS]; ///< D (kg m^2)
-    himc_mat3 transfer[HIMC_SEGMENTS];   ///< D times `inverse`
+        inverse[HIMC_SEGMENTS];         ///< of the articulated rotational inertia about the joint
+    himc_mat3 response[HIMC_SEGMENTS];  ///< minus the angular acceleration per acceleration of the
+                                        ///< joint (1/m)
+    himc_symmetric mass[HIMC_SEGMENTS]; ///< apparent mass for the parent at the joint (kg)
+    himc_symmetric root;                ///< inverse of `mass` of the pelvis, if it is free (1/kg)
+    int first, end; ///< segments first .. end - 1 take part: from 0 if the pelvis is free, else 1
+    bool resists;   ///< joints resist their own acceleration; if so:
+    himc_mat3 resistance[HIMC_SEGMENTS];      ///< D (kg m^2)
+    himc_mat3 transfer[HIMC_SEGMENTS];        ///< D times `inverse`
     himc_mat3 parent_coupling[HIMC_SEGMENTS]; ///< moment on the parent per acceleration of joint
 } himc_articulation;
 

@@ -158,6 +158,7 @@ typedef struct himc_energy {
     double contact[HIMC_HANDS]; ///< work of the heads on the body's sticks
     double mallet[HIMC_HANDS];  ///< and on the mass that a drum's mallet has beyond them
     double push;                ///< work of the command `push`
+    double support;             ///< work of seat and floor
     double placed;              ///< given to the body when it was put elsewhere: a new player ...
     double numerical;           ///< given by the integrator (docs/data.md)
     double kinetic;             ///< of all segments
@@ -201,7 +202,9 @@ typedef struct himc_motion_row {
     himc_vec3 root_moment; ///< the same about the midpoint of the hip joints (N m); NaN in `ik`
     himc_vec3 root_center; ///< of pressure on the plane of the seat (m); NaN if nothing presses
     double root_friction;  ///< horizontal over vertical force; NaN if nothing presses
-    himc_energy energy;    ///< (J)
+    himc_vec3 seat_force;  ///< of the stool on a body that sits (N); 0 of one whose pelvis is fixed
+    himc_vec3 foot_force[HIMC_HANDS]; ///< of the floor on each foot (N); likewise
+    himc_energy energy;               ///< (J)
 } himc_motion_row;
 
 /// Calls `row` in himc_performance_process at each task tick; NULL stops it. Works and energies

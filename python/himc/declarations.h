@@ -15,7 +15,7 @@ typedef struct {
     double joint[19];
     double contact[2];
     double mallet[2];
-    double push, placed, numerical, kinetic, potential;
+    double push, support, placed, numerical, kinetic, potential;
     double felt[2];
     double heads, lost;
 } himc_energy;
@@ -49,6 +49,7 @@ typedef struct {
     double co_contraction[19];
     himc_vec3 root_force, root_moment, root_center;
     double root_friction;
+    himc_vec3 seat_force, foot_force[2];
     himc_energy energy;
 } himc_motion_row;
 

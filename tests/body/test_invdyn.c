@@ -232,7 +232,7 @@ static void test_tip_acceleration_is_the_difference_of_its_velocity(void)
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
             himc_vec3 a = himc_vec3_sub(after.tip_velocity[hand], before.tip_velocity[hand]);
             a = himc_vec3_scale(a, 0.5 / h);
-            himc_vec3 got = himc_tip_acceleration(&skeleton, &s, (himc_hand)hand, relative);
+            himc_vec3 got = himc_tip_acceleration(&skeleton, &s, (himc_hand)hand, relative, NULL);
             TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0, distance(a, got));
         }
     }
@@ -249,8 +249,8 @@ static void test_a_carried_tip_accelerates_as_with_arms_that_do_not(void)
         for (int i = HIMC_LEFT_UPPER_ARM; i <= HIMC_RIGHT_STICK; i++)
             held[i - 1] = himc_vec3_make(0, 0, 0);
         for (int hand = 0; hand < HIMC_HANDS; hand++) {
-            himc_vec3 a = himc_tip_carried(&skeleton, &s, (himc_hand)hand, relative);
-            himc_vec3 b = himc_tip_acceleration(&skeleton, &s, (himc_hand)hand, held);
+            himc_vec3 a = himc_tip_carried(&skeleton, &s, (himc_hand)hand, relative, NULL);
+            himc_vec3 b = himc_tip_acceleration(&skeleton, &s, (himc_hand)hand, held, NULL);
             TEST_ASSERT_EQUAL_DOUBLE(0, distance(a, b));
         }
     }
@@ -265,8 +265,8 @@ static void test_an_articulation_spares_work_and_changes_no_torque(void)
         random_state(&s, 5);
         random_accelerations(relative, 50);
         himc_articulate(&skeleton, &s, &art);
-        himc_inverse_dynamics_of(&skeleton, &s, NULL, relative, alone);
-        himc_inverse_dynamics_of(&skeleton, &s, &art, relative, shared);
+        himc_inverse_dynamics_of(&skeleton, &s, NULL, relative, NULL, alone, NULL);
+        himc_inverse_dynamics_of(&skeleton, &s, &art, relative, NULL, shared, NULL);
         TEST_ASSERT_EQUAL_MEMORY(alone, shared, sizeof alone);
     }
 }
@@ -288,8 +288,8 @@ static void test_effective_mass_is_force_over_tip_acceleration(void)
         himc_articulate(&skeleton, &s, &art);
         himc_forward_dynamics(&skeleton, &s, &art, torque, NULL, free);
         himc_forward_dynamics(&skeleton, &s, &art, torque, force, pushed);
-        himc_vec3 more = himc_vec3_sub(himc_tip_acceleration(&skeleton, &s, hand, pushed),
-                                       himc_tip_acceleration(&skeleton, &s, hand, free));
+        himc_vec3 more = himc_vec3_sub(himc_tip_acceleration(&skeleton, &s, hand, pushed, NULL),
+                                       himc_tip_acceleration(&skeleton, &s, hand, free, NULL));
         double mass = himc_effective_mass(&skeleton, &s, &art, hand, normal);
         TEST_ASSERT_DOUBLE_WITHIN(1e-7 * mass, 10 / himc_vec3_dot(normal, more), mass);
     }

@@ -108,7 +108,7 @@ static void move(himc_character *c, const moves *m, int n, double h)
         force[hand] = himc_vec3_scale(m->blow[hand].force, on ? sin(HIMC_PI * part) : 0);
     }
     world_contact contact[] = {
-        {m->pushed, himc_vec3_make(0, 0.01, -0.1), m->push, NULL},
+        {.segment = m->pushed, .at = himc_vec3_make(0, 0.01, -0.1), .force = m->push},
         himc_tip_contact(&skeleton, HIMC_LEFT, force[HIMC_LEFT], NULL),
         himc_tip_contact(&skeleton, HIMC_RIGHT, force[HIMC_RIGHT], NULL),
     };

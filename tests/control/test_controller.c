@@ -198,7 +198,7 @@ static himc_vec3 commanded(himc_hand hand)
     himc_controller_torques(&controller, &skeleton, &state, &reference, torque);
     himc_articulate(&skeleton, &state, &art);
     himc_forward_dynamics(&skeleton, &state, &art, torque, NULL, relative);
-    return himc_tip_acceleration(&skeleton, &state, hand, relative);
+    return himc_tip_acceleration(&skeleton, &state, hand, relative, NULL);
 }
 
 static void released_lets_go(const char *what)

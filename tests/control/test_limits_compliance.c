@@ -173,14 +173,14 @@ static void stop_elbow(himc_vec3 radius, himc_vec3 off, double *lost, double *le
         wanted[himc_arm_joint(HIMC_LEFT, k)] = random_vector(20);
     himc_vec3 outward = himc_mat3_apply(&state.rotation[elbow + 1], himc_vec3_unit(off));
     wanted[elbow] = himc_vec3_madd(wanted[elbow], 200, outward);
-    himc_vec3 before = himc_tip_acceleration(&skeleton, &state, HIMC_LEFT, wanted);
+    himc_vec3 before = himc_tip_acceleration(&skeleton, &state, HIMC_LEFT, wanted, NULL);
     himc_vec3 asked = wanted[elbow];
     yield();
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1, himc_limit_measure(&limits, elbow, soon(elbow)));
     himc_vec3 lever = jacobian[HIMC_LEFT].lever[1];
     himc_vec3 taken = himc_vec3_sub(asked, wanted[elbow]);
     *lost = himc_vec3_length(himc_vec3_cross(taken, lever));
-    himc_vec3 now = himc_tip_acceleration(&skeleton, &state, HIMC_LEFT, wanted);
+    himc_vec3 now = himc_tip_acceleration(&skeleton, &state, HIMC_LEFT, wanted, NULL);
     *left = himc_vec3_length(himc_vec3_sub(before, now));
 }
 

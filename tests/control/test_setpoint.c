@@ -238,7 +238,7 @@ static void run_all_rt(himc_character *character, himc_setpoint tick[2])
     himc_pose_to_state(&skeleton, &pose, NULL, &copy);
     himc_articulate(&skeleton, &copy, &art);
     himc_forward_dynamics(&skeleton, &copy, &art, torque, NULL, relative);
-    himc_tip_acceleration(&skeleton, &copy, HIMC_LEFT, relative);
+    himc_tip_acceleration(&skeleton, &copy, HIMC_LEFT, relative, NULL);
     himc_effective_mass(&skeleton, &copy, &art, HIMC_LEFT, himc_vec3_make(0, 0, 1));
     himc_controller_gain(&controller, 0, 1000, 10);
     himc_controller_configure(&controller, &control);

@@ -68,7 +68,7 @@ static void load_stick(himc_stick *stick, const himc_body_state *state, double o
     himc_articulate(&skeleton, state, &art);
     himc_forward_dynamics(&skeleton, state, &art, none, NULL, relative);
     stick->mass = himc_effective_mass(&skeleton, state, &art, HIMC_RIGHT, n);
-    stick->acceleration = himc_tip_acceleration(&skeleton, state, HIMC_RIGHT, relative).z;
+    stick->acceleration = himc_tip_acceleration(&skeleton, state, HIMC_RIGHT, relative, NULL).z;
     stick->height = state->tip[HIMC_RIGHT].z - start.tip[HIMC_RIGHT].z + offset;
     stick->velocity = state->tip_velocity[HIMC_RIGHT].z;
 }

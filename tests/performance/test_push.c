@@ -66,7 +66,9 @@ static void test_a_push_acts_as_a_force_for_its_time(void)
     c = himc_character_new(&body, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(c, error.text);
     himc_character_observe(c, &before);
-    world_contact push = {HIMC_LEFT_STICK, body.segment[HIMC_LEFT_STICK].center, {10, 0, 0}, NULL};
+    world_contact push = {.segment = HIMC_LEFT_STICK,
+                          .at = body.segment[HIMC_LEFT_STICK].center,
+                          .force = {10, 0, 0}};
     TEST_ASSERT_TRUE(himc_character_step(c, none, &push, 1, 1e-4));
     himc_character_observe(c, &after);
     // the hanging stick alone at first: F h / m at most, since the hand holds its other end
@@ -88,8 +90,8 @@ static void refused(const char *text, const char *why)
 
 static void test_pushes_of_unknown_segments_or_too_hard_are_refused_in_one_line(void)
 {
-    refused("push pelvis 1 0 0 1",
-            "push: SEGMENT: pelvis, expected trunk neck head left-upper-arm");
+    refused("push seat 1 0 0 1",
+            "push: SEGMENT: seat, expected trunk neck head left-upper-arm");
     refused("push tail 1 0 0 1", "push: SEGMENT: tail, expected trunk neck");
     refused("push trunk 1 0 2000 1", "push: FZ: 2000, expected -1000 .. 1000 N");
     refused("push trunk 1 0 0 -1", "push: SECONDS: -1, expected 0 .. 10 s");

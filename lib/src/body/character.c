@@ -5,8 +5,8 @@
 /// made it themselves. ODE aborts the process for a quaternion without direction and accepts NaN
 /// silently, so the state is checked where it is set and after each step; it aborts for an invalid
 /// mass, so the skeleton is checked before. The frame of an ODE body is its segment's, moved to the
-/// centre of mass, as ODE requires. The pelvis is ODE's world (body 0), so the trunk and each leg
-/// are separate islands and ODE solves three small systems. dWorldStep is deterministic to the bit
+/// centre of mass, as ODE requires. A fixed pelvis is ODE's world (body 0), so the trunk and each
+/// leg are separate islands and ODE solves three small systems; one that is free is one body more. dWorldStep is deterministic to the bit
 /// (QuickStep draws random numbers). Legs at rest keep their state to the bit until a force on them
 /// changes: the pelvis is fixed, so nothing else moves them.
 #include "body/character.h"
@@ -43,14 +43,15 @@ struct himc_character {
     int still;              // steps in which no leg moved; above STILL_STEPS legs sleep
     segment_forces resting; // on the legs, in the last of these steps
     dWorldID world;
-    dBodyID body[HIMC_SEGMENTS]; // [0], the pelvis, is NULL: the world
+    int first;                   // segments that move: from the pelvis, 0, if it is free, else 1
+    dBodyID body[HIMC_SEGMENTS]; // of a fixed pelvis NULL: the world
 };
 
-// false if ODE's own checks would abort the process on one of segments 1 .. end - 1
-static bool is_sound(const segment_states *s, int end)
+// false if ODE's own checks would abort the process on one of segments first .. end - 1
+static bool is_sound(const segment_states *s, int first, int end)
 {
     double sum = 0;
-    for (int i = 1; i < end; i++) {
+    for (int i = first; i < end; i++) {
         himc_vec3 w = s->joints.spin[i], x = s->position[i], v = s->velocity[i];
         himc_quat q = s->joints.orientation[i];
         sum += himc_vec3_dot(x, x) + himc_vec3_dot(v, v);
@@ -64,7 +65,7 @@ static bool is_sound(const segment_states *s, int end)
 static void give_to_ode(himc_character *c)
 {
     const himc_body_state *s = &c->state.joints;
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
         himc_vec3 x = c->state.position[i], v = c->state.velocity[i], w = s->spin[i];
         himc_quat q = s->orientation[i];
         dBodySetPosition(c->body[i], x.x, x.y, x.z);
@@ -88,11 +89,12 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
         return NULL;
     }
     c->skeleton = *skeleton;
+    c->first = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1;
     c->world = dWorldCreate();
     dWorldSetGravity(c->world, 0, 0, -HIMC_GRAVITY);
     dWorldSetERP(c->world, JOINT_ERP);
     dWorldSetCFM(c->world, 0);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 inertia = segment->inertia;
         dMass mass;
@@ -169,15 +171,17 @@ bool himc_character_place(himc_character *c, const himc_body_state *state)
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         s->orientation[i] = himc_quat_unit(s->orientation[i]);
     himc_body_state_complete(&c->skeleton, s);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
         int p = c->skeleton.segment[i].parent;
-        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
-        v[i] = himc_vec3_add(v[p], himc_vec3_cross(s->spin[p], r));
+        if (p >= 0) {
+            himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
+            v[i] = himc_vec3_add(v[p], himc_vec3_cross(s->spin[p], r));
+        }
         himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
         c->state.position[i] = himc_vec3_add(s->origin[i], center);
         c->state.velocity[i] = himc_vec3_add(v[i], himc_vec3_cross(s->spin[i], center));
     }
-    c->sound = is_sound(&c->state, HIMC_SEGMENTS);
+    c->sound = is_sound(&c->state, c->first, HIMC_SEGMENTS);
     if (c->work && isfinite(before))
         c->work->placed += energy(c) - before;
     c->still = 0;
@@ -209,6 +213,10 @@ bool himc_character_seat(himc_character *c, double height)
 void himc_character_observe(const himc_character *c, himc_body_state *s)
 {
     *s = c->state.joints;
+    if (c->first == 0) {
+        himc_vec3 r = himc_mat3_apply(&s->rotation[0], c->skeleton.segment[0].center);
+        s->velocity = himc_vec3_sub(c->state.velocity[0], himc_vec3_cross(s->spin[0], r));
+    }
     // the tips from the stick's centre; along the joints their drift would add up
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int i = himc_stick_segment((himc_hand)hand);
@@ -252,13 +260,13 @@ static void step_ode(himc_character *c, const segment_forces *f, double h)
 {
     if (!c->given)
         give_to_ode(c);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
         dBodySetForce(c->body[i], f->force[i].x, f->force[i].y, f->force[i].z);
         dBodySetTorque(c->body[i], f->torque[i].x, f->torque[i].y, f->torque[i].z);
     }
     dWorldStep(c->world, h);
     himc_body_state *s = &c->state.joints;
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
         const dReal *q = dBodyGetQuaternion(c->body[i]), *r = dBodyGetRotation(c->body[i]);
         s->orientation[i] = (himc_quat){q[0], q[1], q[2], q[3]};
         s->rotation[i] = (himc_mat3){{{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, {r[8], r[9], r[10]}}};
@@ -274,7 +282,7 @@ static void step_ode(himc_character *c, const segment_forces *f, double h)
 // true if the legs are at rest and no force on them has changed: then nothing moves them
 static bool legs_rest(const himc_character *c, const segment_forces *f)
 {
-    bool same = c->still >= STILL_STEPS &&
+    bool same = c->first > 0 && c->still >= STILL_STEPS &&
                 memcmp(&f->force[HIMC_LEGS], &c->resting.force[HIMC_LEGS], LEGS_SIZE) == 0;
     for (int i = HIMC_LEGS; same && i < HIMC_SEGMENTS; i++) {
         himc_vec3 more = himc_vec3_sub(f->torque[i], c->resting.torque[i]);
@@ -311,7 +319,7 @@ bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
     himc_body_work work;
     double sum = 0;
     fill_forces(c, &sources, &f);
-    for (int i = 1; i < HIMC_SEGMENTS; i++)
+    for (int i = c->first; i < HIMC_SEGMENTS; i++)
         sum += himc_vec3_dot(f.force[i], f.force[i]) + himc_vec3_dot(f.torque[i], f.torque[i]);
     if (!c->sound || !(sum < LARGEST_SUM))
         return false;
@@ -331,7 +339,7 @@ bool himc_character_step(himc_character *c, const himc_vec3 torque[HIMC_JOINTS],
                            h);
     c->articulated = false;
     c->given = c->engine == HIMC_ENGINE_ODE;
-    c->sound = is_sound(&c->state, c->still > STILL_STEPS ? HIMC_LEGS : HIMC_SEGMENTS);
+    c->sound = is_sound(&c->state, c->first, c->still > STILL_STEPS ? HIMC_LEGS : HIMC_SEGMENTS);
     if (c->work && !c->sound)
         *c->work = work;
     return c->sound;

@@ -1,6 +1,6 @@
 /// character.h: the dynamic layer: the body as rigid segments on ball joints (2012 paper, equation
 /// 1: D), moved by the Open Dynamics Engine or by the same equations solved along the tree;
-/// private. Joint torques move it, no motors; the pelvis is fixed to the world.
+/// private. Joint torques move it, no motors; the pelvis is fixed to the world, or free.
 #ifndef HIMC_CHARACTER_H
 #define HIMC_CHARACTER_H
 
@@ -48,7 +48,8 @@ HIMC_RT const himc_articulation *himc_character_articulation(himc_character *cha
 static inline world_contact himc_tip_contact(const himc_skeleton *skeleton, himc_hand hand,
                                              himc_vec3 force, double *work)
 {
-    return (world_contact){himc_stick_segment(hand), skeleton->tip, force, work};
+    return (world_contact){
+        .segment = himc_stick_segment(hand), .at = skeleton->tip, .force = force, .work = work};
 }
 
 /// One step of `h` seconds (1e-5 .. 0.01) under gravity, the `torque` of each joint on its child

@@ -18,6 +18,12 @@ HIMC_RT void himc_articulate_resisting(const himc_skeleton *skeleton, const himc
 HIMC_RT void himc_articulate_upper(const himc_skeleton *skeleton, const himc_body_state *state,
                                    himc_articulation *articulation);
 
+/// An acceleration of a body about its origin, or a wrench on it (world frame).
+typedef struct himc_spatial {
+    himc_vec3 angular; ///< acceleration (rad/s^2), or moment about the origin (N m)
+    himc_vec3 linear;  ///< of the origin (m/s^2), or force (N)
+} himc_spatial;
+
 /// What moves a segment on its joint (world frame).
 typedef struct tree_load {
     himc_vec3 moment; ///< needed about the joint while nothing accelerates (N m)
@@ -25,9 +31,9 @@ typedef struct tree_load {
     himc_vec3 gap;    ///< acceleration of the joint relative to that point of the parent (m/s^2)
 } tree_load;
 
-/// Solves the tree under loads (HIMC_SEGMENTS; the pelvis' is not read), which are overwritten: the
-/// angular accelerations of the segments (rad/s^2) and the accelerations of their joints (m/s^2).
-/// Only the segments of the articulation are written.
+/// Solves the tree under loads (HIMC_SEGMENTS; the pelvis' counts if it is free), which are
+/// overwritten: the angular accelerations of the segments (rad/s^2) and the accelerations of their
+/// joints (m/s^2). Only the segments of the articulation are written, and the pelvis.
 HIMC_RT void himc_articulation_solve(const himc_skeleton *skeleton,
                                      const himc_articulation *articulation,
                                      tree_load load[HIMC_SEGMENTS], himc_vec3 alpha[HIMC_SEGMENTS],
@@ -39,6 +45,20 @@ static inline himc_vec3 himc_symmetric_apply(const himc_symmetric *a, himc_vec3 
     return himc_vec3_make(a->xx * v.x + a->xy * v.y + a->xz * v.z,
                           a->xy * v.x + a->yy * v.y + a->yz * v.z,
                           a->xz * v.x + a->yz * v.y + a->zz * v.z);
+}
+
+/// The inverse of a positive definite matrix, by cofactors.
+static inline himc_symmetric himc_symmetric_inverse(const himc_symmetric *a)
+{
+    double xx = a->yy * a->zz - a->yz * a->yz, xy = a->xz * a->yz - a->xy * a->zz,
+           xz = a->xy * a->yz - a->xz * a->yy;
+    double s = 1 / (a->xx * xx + a->xy * xy + a->xz * xz);
+    return (himc_symmetric){xx * s,
+                            xy * s,
+                            xz * s,
+                            (a->xx * a->zz - a->xz * a->xz) * s,
+                            (a->xy * a->xz - a->xx * a->yz) * s,
+                            (a->xx * a->yy - a->xy * a->xy) * s};
 }
 
 /// a += scale v v'.
@@ -79,17 +99,29 @@ HIMC_RT void himc_add_force(const himc_skeleton *skeleton, const himc_body_state
                             himc_vec3 torque[HIMC_JOINTS]);
 
 /// himc_inverse_dynamics of a moving body, with the centres and inertias of this articulation;
-/// NULL: they are found.
+/// NULL: they are found. `root` is the pelvis' acceleration, NULL for none; `needed` takes the
+/// wrench on it that goes with all this, unless NULL.
 HIMC_RT void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
                                       const himc_articulation *articulation,
-                                      const himc_vec3 *relative, himc_vec3 torque[HIMC_JOINTS]);
+                                      const himc_vec3 *relative, const himc_spatial *root,
+                                      himc_vec3 torque[HIMC_JOINTS], himc_spatial *needed);
+
+/// himc_forward_dynamics, and under a wrench on a pelvis that is free (NULL: none); `root` takes
+/// the acceleration of the pelvis, unless NULL.
+HIMC_RT void himc_forward_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *state,
+                                      const himc_articulation *articulation,
+                                      const himc_vec3 *torque, const himc_vec3 *tip_force,
+                                      const himc_spatial *wrench, himc_vec3 relative[HIMC_JOINTS],
+                                      himc_spatial *root);
 
 /// Acceleration of a drumstick tip (m/s^2) under the joints' relative accelerations (rad/s^2)
-/// (HIMC_JOINTS; NULL for zero).
+/// (HIMC_JOINTS; NULL for zero) and that of the pelvis (NULL for zero).
 HIMC_RT himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *state,
-                                        himc_hand hand, const himc_vec3 *relative);
+                                        himc_hand hand, const himc_vec3 *relative,
+                                        const himc_spatial *root);
 /// The same while the joints of the arms have none.
 HIMC_RT himc_vec3 himc_tip_carried(const himc_skeleton *skeleton, const himc_body_state *state,
-                                   himc_hand hand, const himc_vec3 *relative);
+                                   himc_hand hand, const himc_vec3 *relative,
+                                   const himc_spatial *root);
 
 #endif

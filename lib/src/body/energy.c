@@ -17,7 +17,8 @@
 /// The moments' equation is not used, so the balance tests it.
 ///
 /// The world holds the pelvis with the change of momentum less the weights and the contacts,
-///     h F = sum of m (v+ - v - h g) - h sum of f,
+///     h F = sum of m (v+ - v - h g) - h sum of f
+/// (a pelvis that is free is held by seat and floor: contacts that are supports are not subtracted),
 /// and, about the midpoint of the hip joints, with the moments of these and each segment's
 /// I (w+ - w) less h times its gyroscopic moment. x+ = x + h v+, so the sums of h F are exact. A
 /// single F is not: steps of 4 and 5 samples in turn close gaps by turns faster and slower.
@@ -44,7 +45,7 @@ static himc_vec3 mean(himc_vec3 a, himc_vec3 b)
 // mean velocity of the point of segment i that is `r` from its joint
 static himc_vec3 point_velocity(const step *s, int i, himc_vec3 r)
 {
-    if (i == 0)
+    if (i < s->art->first)
         return himc_vec3_make(0, 0, 0);
     himc_vec3 from_center = himc_vec3_sub(r, s->art->center[i]);
     return himc_vec3_add(s->velocity[i], himc_vec3_cross(s->spin[i], from_center));
@@ -58,10 +59,13 @@ static double numerical_power(const step *s, int i, himc_vec3 joint[HIMC_SEGMENT
     himc_vec3 gained = himc_vec3_sub(s->after->velocity[i], s->before->velocity[i]);
     himc_vec3 needed = himc_vec3_scale(gained, segment->mass / s->h);
     needed.z += segment->mass * HIMC_GRAVITY;
+    himc_vec3 parting = {0, 0, 0};
     joint[i] = himc_vec3_add(joint[i], himc_vec3_sub(needed, s->force[i]));
-    joint[p] = himc_vec3_add(joint[p], joint[i]);
-    himc_vec3 here = point_velocity(s, i, himc_vec3_make(0, 0, 0));
-    himc_vec3 parting = himc_vec3_sub(here, point_velocity(s, p, s->art->lever[i]));
+    if (p >= 0) {
+        joint[p] = himc_vec3_add(joint[p], joint[i]);
+        himc_vec3 here = point_velocity(s, i, himc_vec3_make(0, 0, 0));
+        parting = himc_vec3_sub(here, point_velocity(s, p, s->art->lever[i]));
+    }
     himc_vec3 moment = himc_gyroscopic_moment(&s->art->inertia[i], segment->inertia,
                                               s->before->joints.spin[i], s->h);
     return himc_vec3_dot(joint[i], parting) + himc_vec3_dot(s->spin[i], moment) +
@@ -79,13 +83,13 @@ static void add_to_root(himc_body_work *work, himc_vec3 at, himc_vec3 impulse)
 static void find_root(himc_body_work *work, step *s)
 {
     const himc_segment *segment = s->skeleton->segment;
-    himc_vec3 weight = {0, 0, s->h * segment[0].mass * HIMC_GRAVITY};
     work->root_seconds += s->h;
-    add_to_root(work, segment[0].center, weight);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        himc_vec3 gained = {0, 0, 0};
-        s->origin[i] = himc_vec3_add(s->origin[segment[i].parent], s->art->lever[i]);
-        if (i < s->art->end) {
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 gained = {0, 0, 0},
+                  center = i < s->art->first ? segment[i].center : s->art->center[i];
+        if (i > 0)
+            s->origin[i] = himc_vec3_add(s->origin[segment[i].parent], s->art->lever[i]);
+        if (i >= s->art->first && i < s->art->end) {
             himc_vec3 spin = s->before->joints.spin[i];
             himc_vec3 turned = himc_vec3_sub(s->after->joints.spin[i], spin);
             himc_vec3 moment =
@@ -96,7 +100,7 @@ static void find_root(himc_body_work *work, step *s)
             gained = himc_vec3_sub(s->after->velocity[i], s->before->velocity[i]);
         }
         gained.z += s->h * HIMC_GRAVITY;
-        add_to_root(work, himc_vec3_add(s->origin[i], s->art->center[i]),
+        add_to_root(work, himc_vec3_add(s->origin[i], center),
                     himc_vec3_scale(gained, segment[i].mass));
     }
 }
@@ -107,7 +111,7 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
 {
     step s = {.skeleton = skeleton, .art = art, .before = before, .after = after, .h = h};
     himc_vec3 joint[HIMC_SEGMENTS] = {{0, 0, 0}};
-    for (int i = 1; i < art->end; i++) {
+    for (int i = art->first; i < art->end; i++) {
         s.spin[i] = mean(before->joints.spin[i], after->joints.spin[i]);
         s.velocity[i] = mean(before->velocity[i], after->velocity[i]);
     }
@@ -116,15 +120,19 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
         *f = himc_vec3_add(*f, forces->contact[k].force);
     }
     find_root(work, &s);
-    for (int i = art->end - 1; i > 0; i--) {
-        himc_vec3 relative = himc_vec3_sub(s.spin[i], s.spin[skeleton->segment[i].parent]);
-        work->joint[i - 1] += h * himc_vec3_dot(forces->torque[i - 1], relative);
+    for (int i = art->end - 1; i >= art->first; i--) {
+        if (i > 0) {
+            himc_vec3 relative = himc_vec3_sub(s.spin[i], s.spin[skeleton->segment[i].parent]);
+            work->joint[i - 1] += h * himc_vec3_dot(forces->torque[i - 1], relative);
+        }
         work->numerical += h * numerical_power(&s, i, joint);
     }
     for (int k = 0; k < forces->contacts; k++) {
         const world_contact *c = &forces->contact[k];
         himc_vec3 at = himc_mat3_apply(&before->joints.rotation[c->segment], c->at);
-        add_to_root(work, himc_vec3_add(s.origin[c->segment], at), himc_vec3_scale(c->force, -h));
+        if (!c->supports)
+            add_to_root(work, himc_vec3_add(s.origin[c->segment], at),
+                        himc_vec3_scale(c->force, -h));
         if (c->work)
             *c->work += h * himc_vec3_dot(c->force, point_velocity(&s, c->segment, at));
     }
@@ -133,7 +141,7 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
 double himc_segments_kinetic(const himc_skeleton *skeleton, const segment_states *s)
 {
     double twice = 0;
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1; i < HIMC_SEGMENTS; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 w = s->joints.spin[i];
         himc_vec3 l = himc_mat3_scale_along(&s->joints.rotation[i], segment->inertia, w);
@@ -146,7 +154,7 @@ double himc_segments_kinetic(const himc_skeleton *skeleton, const segment_states
 double himc_segments_potential(const himc_skeleton *skeleton, const segment_states *s)
 {
     double sum = 0;
-    for (int i = 1; i < HIMC_SEGMENTS; i++)
+    for (int i = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1; i < HIMC_SEGMENTS; i++)
         sum += skeleton->segment[i].mass * HIMC_GRAVITY * s->position[i].z;
     return sum;
 }

@@ -10,6 +10,7 @@ typedef struct himc_body_work {
     double joint[HIMC_JOINTS];  ///< of each joint's torque
     double contact[HIMC_HANDS]; ///< of the forces on the tips, from their world_contact
     double push;                ///< of the other contacts with the world, from theirs
+    double support;             ///< of seat and floor
     double placed;              ///< energy given by putting the body elsewhere
     double numerical;           ///< given by the integrator
     himc_vec3 root_impulse;     ///< of the world on the pelvis (N s) ...

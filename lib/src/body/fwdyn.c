@@ -13,6 +13,9 @@
 ///     alpha = K (-n - H a + D alpha_p),
 /// so the parent is subject, beside A and b, to the inertia E = D - D K D, the coupling G = D K H
 /// and the moment D K n.
+///
+/// A pelvis that is free has the same J, H, M, n and p, and no parent that needs a force: f = 0, so
+///     a = -A^-1 b,   alpha = -J^-1 (n + H a).
 #include "body/dynamics.h"
 
 static himc_vec3 column(const himc_mat3 *a, int i)
@@ -48,20 +51,6 @@ static himc_symmetric sum(const himc_symmetric *a, const himc_symmetric *b)
                             a->yy + b->yy, a->yz + b->yz, a->zz + b->zz};
 }
 
-// the inverse of a positive definite matrix, by cofactors
-static himc_symmetric inverse(const himc_symmetric *a)
-{
-    double xx = a->yy * a->zz - a->yz * a->yz, xy = a->xz * a->yz - a->xy * a->zz,
-           xz = a->xy * a->yz - a->xz * a->yy;
-    double s = 1 / (a->xx * xx + a->xy * xy + a->xz * xz);
-    return (himc_symmetric){xx * s,
-                            xy * s,
-                            xz * s,
-                            (a->xx * a->zz - a->xz * a->xz) * s,
-                            (a->xy * a->xz - a->xx * a->yz) * s,
-                            (a->xx * a->yy - a->xy * a->xy) * s};
-}
-
 // J, H and M of a segment and, later, of its children
 typedef struct block {
     himc_symmetric j, m;
@@ -77,7 +66,8 @@ static void place_segment(const himc_skeleton *skeleton, const himc_body_state *
     himc_vec3 c = himc_mat3_apply(&s->rotation[i], segment->center), mc = himc_vec3_scale(c, m);
     double steiner = himc_vec3_dot(c, mc);
     art->center[i] = c;
-    art->lever[i] = himc_mat3_apply(&s->rotation[segment->parent], segment->origin);
+    if (segment->parent >= 0)
+        art->lever[i] = himc_mat3_apply(&s->rotation[segment->parent], segment->origin);
     art->inertia[i] = own->j = himc_world_tensor(&s->rotation[i], segment->inertia);
     own->j.xx += steiner;
     own->j.yy += steiner;
@@ -140,9 +130,10 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
                        const himc_vec3 *resistance, himc_articulation *art)
 {
     block own[HIMC_SEGMENTS];
+    art->first = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1;
     art->end = end;
     art->resists = resistance;
-    for (int i = 1; i < end; i++)
+    for (int i = art->first; i < end; i++)
         place_segment(skeleton, s, i, art, &own[i]);
     for (int i = end - 1; i > 0; i--) {
         int p = skeleton->segment[i].parent;
@@ -151,7 +142,7 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
             own[i].j = sum(&own[i].j, &d);
             art->resistance[i] = full(&d);
         }
-        art->inverse[i] = inverse(&own[i].j);
+        art->inverse[i] = himc_symmetric_inverse(&own[i].j);
         if (resistance) { // D K and G
             himc_mat3 k = full(&art->inverse[i]);
             art->transfer[i] = himc_mat3_mul(&art->resistance[i], &k);
@@ -164,6 +155,11 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
         if (resistance)
             add_parent_moments(art, i, &own[p]);
     }
+    if (art->first > 0)
+        return;
+    art->inverse[0] = himc_symmetric_inverse(&own[0].j);
+    eliminate(art, 0, &own[0]);
+    art->root = himc_symmetric_inverse(&art->mass[0]);
 }
 
 void himc_articulate(const himc_skeleton *skeleton, const himc_body_state *s,
@@ -206,6 +202,13 @@ void himc_articulation_solve(const himc_skeleton *skeleton, const himc_articulat
             load[p].moment = himc_vec3_add(load[p].moment, rotational);
         }
     }
+    if (art->first == 0) {
+        himc_vec3 b = himc_vec3_sub(load[0].force,
+                                    himc_mat3_apply_transposed(&art->response[0], load[0].moment));
+        a[0] = himc_vec3_scale(himc_symmetric_apply(&art->root, b), -1);
+        alpha[0] = himc_vec3_scale(himc_symmetric_apply(&art->inverse[0], load[0].moment), -1);
+        alpha[0] = himc_vec3_sub(alpha[0], himc_mat3_apply(&art->response[0], a[0]));
+    }
     // outwards
     for (int i = 1; i < art->end; i++) {
         int p = skeleton->segment[i].parent;
@@ -227,22 +230,36 @@ void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state 
                            const himc_articulation *art, const himc_vec3 *torque,
                            const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS])
 {
+    himc_forward_dynamics_of(skeleton, s, art, torque, tip_force, NULL, relative, NULL);
+}
+
+void himc_forward_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *s,
+                              const himc_articulation *art, const himc_vec3 *torque,
+                              const himc_vec3 *tip_force, const himc_spatial *wrench,
+                              himc_vec3 relative[HIMC_JOINTS], himc_spatial *root)
+{
     tree_load load[HIMC_SEGMENTS];
     himc_vec3 alpha[HIMC_SEGMENTS], a[HIMC_SEGMENTS];
     load[0] = (tree_load){.gap = {0, 0, 0}};
-    for (int i = 1; i < art->end; i++) {
+    for (int i = art->first; i < art->end; i++) {
         const himc_segment *segment = &skeleton->segment[i];
-        tree_load *parent = &load[segment->parent];
         himc_vec3 spin = s->spin[i];
-        load[i].gap = centripetal(s->spin[segment->parent], art->lever[i]);
         load[i].force = centripetal(spin, art->center[i]);
         load[i].force.z += HIMC_GRAVITY;
         load[i].force = himc_vec3_scale(load[i].force, segment->mass);
         load[i].moment = himc_vec3_cross(spin, himc_symmetric_apply(&art->inertia[i], spin));
         load[i].moment =
             himc_vec3_add(load[i].moment, himc_vec3_cross(art->center[i], load[i].force));
+        if (i == 0)
+            continue;
+        tree_load *parent = &load[segment->parent];
+        load[i].gap = centripetal(s->spin[segment->parent], art->lever[i]);
         load[i].moment = himc_vec3_sub(load[i].moment, torque[i - 1]);
         parent->moment = himc_vec3_add(parent->moment, torque[i - 1]);
+    }
+    if (wrench) {
+        load[0].force = himc_vec3_sub(load[0].force, wrench->linear);
+        load[0].moment = himc_vec3_sub(load[0].moment, wrench->angular);
     }
     for (int hand = 0; tip_force && hand < HIMC_HANDS; hand++) {
         int stick = himc_stick_segment((himc_hand)hand);
@@ -253,6 +270,8 @@ void himc_forward_dynamics(const himc_skeleton *skeleton, const himc_body_state 
     himc_articulation_solve(skeleton, art, load, alpha, a);
     for (int i = 1; i < art->end; i++)
         relative[i - 1] = himc_vec3_sub(alpha[i], alpha[skeleton->segment[i].parent]);
+    if (root)
+        *root = (himc_spatial){alpha[0], a[0]};
 }
 
 // the acceleration of the arm's chain under a unit force alone: the same sweep without other forces
@@ -271,6 +290,14 @@ double himc_effective_mass(const himc_skeleton *skeleton, const himc_body_state 
         chain[count++] = i;
     }
     himc_vec3 a = {0, 0, 0};
+    if (art->first == 0) { // `force` acts at `end` on the pelvis
+        himc_vec3 arm = himc_vec3_sub(end, s->origin[0]), about = himc_vec3_cross(arm, force);
+        a = himc_symmetric_apply(
+            &art->root, himc_vec3_sub(force, himc_mat3_apply_transposed(&art->response[0], about)));
+        himc_vec3 turned = himc_vec3_sub(himc_symmetric_apply(&art->inverse[0], about),
+                                         himc_mat3_apply(&art->response[0], a));
+        a = himc_vec3_add(a, himc_vec3_cross(turned, arm));
+    }
     while (count-- > 0) {
         int i = chain[count];
         himc_vec3 to = count > 0 ? s->origin[chain[count - 1]] : s->tip[hand];

@@ -19,13 +19,36 @@ static inline himc_vec3 add_centripetal(himc_vec3 base, himc_vec3 alpha, himc_ve
     return himc_vec3_add(base, himc_vec3_cross(spin, himc_vec3_cross(spin, r)));
 }
 
+// what a segment itself needs: a force, and a moment about its joint
+static void find_own(const himc_skeleton *skeleton, const himc_body_state *s,
+                     const himc_articulation *art, int i, const motion *m, himc_vec3 spin,
+                     himc_vec3 *force, himc_vec3 *moment)
+{
+    const himc_segment *segment = &skeleton->segment[i];
+    himc_vec3 c = art ? art->center[i] : himc_mat3_apply(&s->rotation[i], segment->center);
+    himc_symmetric inertia =
+        art ? art->inertia[i] : himc_world_tensor(&s->rotation[i], segment->inertia);
+    himc_vec3 a = add_centripetal(m->linear, m->angular, spin, c);
+    himc_vec3 l = himc_symmetric_apply(&inertia, spin);
+    himc_vec3 rotational = himc_symmetric_apply(&inertia, m->angular);
+    rotational = himc_vec3_add(rotational, himc_vec3_cross(spin, l));
+    *force = himc_vec3_scale(a, segment->mass);
+    *moment = himc_vec3_add(rotational, himc_vec3_cross(c, *force));
+}
+
 static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s,
                          const himc_articulation *art, const himc_vec3 *relative,
-                         const himc_vec3 *spin, himc_vec3 torque[HIMC_JOINTS])
+                         const himc_vec3 *spin, const himc_spatial *root,
+                         himc_vec3 torque[HIMC_JOINTS], himc_spatial *needed)
 {
     motion m[HIMC_SEGMENTS];
+    himc_vec3 own, n;
     // outwards; gravity acts like an upward acceleration of the pelvis
     m[0] = (motion){.linear = {0, 0, HIMC_GRAVITY}};
+    if (root) {
+        m[0].angular = root->angular;
+        m[0].linear = himc_vec3_add(m[0].linear, root->linear);
+    }
     for (int i = 1; i < HIMC_SEGMENTS; i++) {
         int p = skeleton->segment[i].parent;
         himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
@@ -35,23 +58,19 @@ static void find_torques(const himc_skeleton *skeleton, const himc_body_state *s
     }
     // inwards
     for (int i = HIMC_SEGMENTS - 1; i > 0; i--) {
-        const himc_segment *segment = &skeleton->segment[i];
-        himc_vec3 c = art ? art->center[i] : himc_mat3_apply(&s->rotation[i], segment->center);
-        himc_symmetric inertia =
-            art ? art->inertia[i] : himc_world_tensor(&s->rotation[i], segment->inertia);
-        himc_vec3 a = add_centripetal(m[i].linear, m[i].angular, spin[i], c);
-        himc_vec3 own = himc_vec3_scale(a, segment->mass);
-        himc_vec3 l = himc_symmetric_apply(&inertia, spin[i]);
-        himc_vec3 rotational = himc_symmetric_apply(&inertia, m[i].angular);
-        rotational = himc_vec3_add(rotational, himc_vec3_cross(spin[i], l));
-        himc_vec3 n = himc_vec3_add(rotational, himc_vec3_cross(c, own));
+        find_own(skeleton, s, art, i, &m[i], spin[i], &own, &n);
         himc_vec3 f = himc_vec3_add(m[i].force, own);
-        motion *parent = &m[segment->parent];
-        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[segment->parent]);
+        int p = skeleton->segment[i].parent;
+        motion *parent = &m[p];
+        himc_vec3 r = himc_vec3_sub(s->origin[i], s->origin[p]);
         n = torque[i - 1] = himc_vec3_add(m[i].moment, n);
         parent->force = himc_vec3_add(parent->force, f);
         parent->moment = himc_vec3_add(parent->moment, himc_vec3_add(n, himc_vec3_cross(r, f)));
     }
+    if (!needed)
+        return;
+    find_own(skeleton, s, art && art->first == 0 ? art : NULL, 0, &m[0], spin[0], &own, &n);
+    *needed = (himc_spatial){himc_vec3_add(m[0].moment, n), himc_vec3_add(m[0].force, own)};
 }
 
 void himc_add_force(const himc_skeleton *skeleton, const himc_body_state *s, int segment,
@@ -66,24 +85,32 @@ void himc_inverse_dynamics(const himc_skeleton *skeleton, const himc_body_state 
                            const himc_vec3 *relative, bool still, himc_vec3 torque[HIMC_JOINTS])
 {
     static const himc_vec3 none[HIMC_SEGMENTS];
-    find_torques(skeleton, s, NULL, relative ? relative : none, still ? none : s->spin, torque);
+    find_torques(skeleton, s, NULL, relative ? relative : none, still ? none : s->spin, NULL,
+                 torque, NULL);
 }
 
 void himc_inverse_dynamics_of(const himc_skeleton *skeleton, const himc_body_state *s,
                               const himc_articulation *art, const himc_vec3 *relative,
-                              himc_vec3 torque[HIMC_JOINTS])
+                              const himc_spatial *root, himc_vec3 torque[HIMC_JOINTS],
+                              himc_spatial *needed)
 {
-    find_torques(skeleton, s, art, relative, s->spin, torque);
+    find_torques(skeleton, s, art, relative, s->spin, root, torque, needed);
 }
 
 // with the relative accelerations of the joints before segment `end`
 static himc_vec3 tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
-                                  himc_hand hand, const himc_vec3 *relative, int end)
+                                  himc_hand hand, const himc_vec3 *relative, int end,
+                                  const himc_spatial *root)
 {
     int chain[HIMC_SEGMENTS], count = 0;
     for (int i = himc_stick_segment(hand); i > 0; i = skeleton->segment[i].parent)
         chain[count++] = i;
     himc_vec3 alpha = {0, 0, 0}, a = {0, 0, 0};
+    if (root) {
+        alpha = root->angular;
+        a = add_centripetal(root->linear, alpha, s->spin[0],
+                            himc_vec3_sub(s->origin[chain[count - 1]], s->origin[0]));
+    }
     while (count-- > 0) {
         int i = chain[count];
         himc_vec3 to = count > 0 ? s->origin[chain[count - 1]] : s->tip[hand];
@@ -94,13 +121,13 @@ static himc_vec3 tip_acceleration(const himc_skeleton *skeleton, const himc_body
 }
 
 himc_vec3 himc_tip_acceleration(const himc_skeleton *skeleton, const himc_body_state *s,
-                                himc_hand hand, const himc_vec3 *relative)
+                                himc_hand hand, const himc_vec3 *relative, const himc_spatial *root)
 {
-    return tip_acceleration(skeleton, s, hand, relative, relative ? HIMC_SEGMENTS : 0);
+    return tip_acceleration(skeleton, s, hand, relative, relative ? HIMC_SEGMENTS : 0, root);
 }
 
 himc_vec3 himc_tip_carried(const himc_skeleton *skeleton, const himc_body_state *s, himc_hand hand,
-                           const himc_vec3 *relative)
+                           const himc_vec3 *relative, const himc_spatial *root)
 {
-    return tip_acceleration(skeleton, s, hand, relative, HIMC_LEFT_UPPER_ARM);
+    return tip_acceleration(skeleton, s, hand, relative, HIMC_LEFT_UPPER_ARM, root);
 }

@@ -24,6 +24,7 @@ void himc_body_state_complete(const himc_skeleton *skeleton, himc_body_state *s)
                 himc_vec3_add(s->origin[segment->parent],
                               himc_mat3_apply(&s->rotation[segment->parent], segment->origin));
     }
+    s->velocity = himc_vec3_make(0, 0, 0);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         int stick = himc_stick_segment((himc_hand)hand);
         himc_vec3 velocity = {0, 0, 0};

@@ -90,9 +90,9 @@ HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skele
 HIMC_RT double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest);
 
 /// Height of the stool's seat (m), below the hip joints. Chosen: 86 mm at 1.75 m, as it is drawn.
-static inline double himc_posture_stool(const himc_skeleton *skeleton)
+static inline double himc_posture_stool(const himc_skeleton *body)
 {
-    return skeleton->segment[HIMC_PELVIS].origin.z - 0.086 / 1.75 * skeleton->height;
+    return body->segment[HIMC_PELVIS].origin.z - 0.086 / 1.75 * body->height;
 }
 
 /// The trunk posture for strokes at these points (m), one for each hand: turned towards their

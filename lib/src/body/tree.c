@@ -34,19 +34,21 @@ static void fill_loads(const himc_skeleton *skeleton, const himc_articulation *a
     const himc_body_state *b = &s->joints;
     himc_vec3 velocity[HIMC_SEGMENTS]; // of the joints
     velocity[0] = himc_vec3_make(0, 0, 0);
-    for (int i = 1; i < art->end; i++) {
+    for (int i = art->first; i < art->end; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 torque =
             himc_gyroscopic_moment(&art->inertia[i], segment->inertia, b->spin[i], h);
         torque = himc_vec3_add(torque, f->torque[i]);
-        int p = segment->parent;
         velocity[i] = himc_vec3_sub(s->velocity[i], himc_vec3_cross(b->spin[i], art->center[i]));
-        himc_vec3 gap = himc_vec3_sub(himc_vec3_add(b->origin[p], art->lever[i]), b->origin[i]);
-        himc_vec3 there = himc_vec3_add(velocity[p], himc_vec3_cross(b->spin[p], art->lever[i]));
-        himc_vec3 rate = himc_vec3_sub(there, velocity[i]);
         load[i].force = himc_vec3_scale(f->force[i], -1);
         load[i].force.z += segment->mass * HIMC_GRAVITY;
         load[i].moment = himc_vec3_sub(himc_vec3_cross(art->center[i], load[i].force), torque);
+        if (i == 0)
+            continue;
+        int p = segment->parent;
+        himc_vec3 gap = himc_vec3_sub(himc_vec3_add(b->origin[p], art->lever[i]), b->origin[i]);
+        himc_vec3 there = himc_vec3_add(velocity[p], himc_vec3_cross(b->spin[p], art->lever[i]));
+        himc_vec3 rate = himc_vec3_sub(there, velocity[i]);
         load[i].gap = himc_vec3_scale(himc_vec3_madd(rate, erp / h, gap), 1 / h);
     }
 }
@@ -59,7 +61,7 @@ void himc_tree_step(const himc_skeleton *skeleton, const himc_articulation *art,
     fill_loads(skeleton, art, forces, states, erp, h, load);
     himc_articulation_solve(skeleton, art, load, alpha, a);
     himc_body_state *b = &states->joints;
-    for (int i = 1; i < art->end; i++) {
+    for (int i = art->first; i < art->end; i++) {
         a[i] = himc_vec3_add(a[i], himc_vec3_cross(alpha[i], art->center[i])); // of the centre
         states->velocity[i] = himc_vec3_madd(states->velocity[i], h, a[i]);
         states->position[i] = himc_vec3_madd(states->position[i], h, states->velocity[i]);

@@ -20,10 +20,11 @@ typedef struct segment_forces {
 
 /// A contact with the world in one step: a force on a segment.
 typedef struct world_contact {
-    int segment;     ///< 1 .. HIMC_SEGMENTS - 1
+    int segment;     ///< 0 .. HIMC_SEGMENTS - 1; 0 of a pelvis that is free
     himc_vec3 at;    ///< where it acts, in the segment's frame (m)
     himc_vec3 force; ///< in the world frame (N)
     double *work;    ///< takes its work if the body's is added up (J); NULL: none does
+    bool supports;   ///< the body: seat or floor
 } world_contact;
 
 /// Moment of the implicit gyroscopic term of a segment (world frame, N m): of its inertia in the

@@ -66,6 +66,7 @@ typedef struct himc_controller {
     himc_saturation_counts *saturation; ///< borrowed, counted up at each step; may be NULL
     const himc_articulation *articulation; ///< borrowed, of this body in the state of the next
                                            ///< call; may be NULL
+    struct himc_balance *balance; ///< borrowed, of a pelvis that is free, else NULL (default)
 } himc_controller;
 
 /// The present targets of the body.

@@ -6,6 +6,7 @@
 /// h a / w, 0.01 mm in a roll.
 #include "base/rotations.h"
 #include "body/dynamics.h"
+#include "control/balance.h"
 #include "control/ik.h"
 #include "control/law.h"
 #include "control/limit_torque.h"
@@ -43,6 +44,8 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS]
         }
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback);
     }
+    if (c->balance)
+        himc_balance_legs(e, wanted);
     // in contact the tip has the hand's acceleration along the normal, for any gains of the joints
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
@@ -50,11 +53,16 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS]
             continue;
         himc_vec3 n = in->reference->normal[hand];
         himc_vec3 a = himc_vec3_scale(n, in->reference->yield[hand]);
-        himc_vec3 left = himc_vec3_sub(a, himc_tip_carried(in->skeleton, in->state, hand, wanted));
+        himc_vec3 left = himc_vec3_sub(a, himc_tip_carried(in->skeleton, in->state, hand, wanted,
+                                                           himc_pelvis_acceleration(c)));
         himc_arm_gather(wanted, hand, arm);
         himc_ik_release(&in->jacobian[hand], n, himc_vec3_dot(n, left), arm);
         himc_arm_scatter(arm, hand, wanted);
     }
     himc_limits_compliance(c, in->skeleton, in->state, in->jacobian, wanted);
-    himc_inverse_dynamics_of(in->skeleton, in->state, c->articulation, wanted, torque);
+    if (c->balance)
+        himc_balance_torques(c, in->skeleton, in->state, wanted, torque);
+    else
+        himc_inverse_dynamics_of(in->skeleton, in->state, c->articulation, wanted, NULL, torque,
+                                 NULL);
 }

@@ -8,6 +8,7 @@
 /// which holds at any gain and, as h goes to 0, is equation 2.
 #include "base/rotations.h"
 #include "body/dynamics.h"
+#include "control/balance.h"
 #include "control/law.h"
 #include "control/limit_torque.h"
 
@@ -24,9 +25,10 @@ static void release_forces(const law_input *in, const himc_articulation *art,
         double a[2];
         for (int unit = 0; reference->released[i] && unit < 2; unit++) {
             force[i] = himc_vec3_madd(without, unit, n);
-            himc_forward_dynamics(in->skeleton, in->state, art, known, force, relative);
-            a[unit] =
-                himc_vec3_dot(n, himc_tip_acceleration(in->skeleton, in->state, hand, relative));
+            himc_spatial root = himc_balance_accelerate(in->controller->balance, in->skeleton,
+                                                        in->state, art, known, force, relative);
+            a[unit] = himc_vec3_dot(
+                n, himc_tip_acceleration(in->skeleton, in->state, hand, relative, &root));
         }
         if (reference->released[i])
             force[i] = himc_vec3_madd(without, (reference->yield[i] - a[0]) / (a[1] - a[0]), n);
@@ -66,7 +68,7 @@ static void servo(const law_input *in, bool follows, himc_vec3 torque[HIMC_JOINT
     himc_limits_resist(c, skeleton, s, torque, resistance);
     himc_articulate_resisting(skeleton, s, resistance, &art);
     release_forces(in, &art, torque, force);
-    himc_forward_dynamics(skeleton, s, &art, torque, force, relative);
+    himc_balance_accelerate(c->balance, skeleton, s, &art, torque, force, relative);
     for (int j = 0; j < HIMC_JOINTS; j++)
         torque[j] = himc_vec3_sub(
             torque[j], himc_mat3_scale_along(&s->rotation[j + 1], resistance[j], relative[j]));

@@ -53,7 +53,7 @@ void himc_muscles_act(himc_muscles *m, const bool struck[HIMC_HANDS],
         slow[hand] = u < 1;
         more[hand] = RECOVERED * u * u;
     }
-    for (int j = 0; j < HIMC_LEFT_UPPER_LEG - 1; j++) {
+    for (int j = m->first; j < HIMC_LEFT_UPPER_LEG - 1; j++) {
         int hand = j < trunk ? more[HIMC_RIGHT] < more[HIMC_LEFT] : (j - trunk) % HIMC_HANDS;
         double share = j < trunk ? trunk_share : arm_share[(j - trunk) / HIMC_HANDS];
         if (slow[hand])

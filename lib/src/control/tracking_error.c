@@ -6,6 +6,7 @@
 
 #include "body/dynamics.h"
 #include "body/stretch.h"
+#include "control/balance.h"
 #include "control/solvers.h"
 
 // chosen: the Jacobian is true within a fraction of the arm's length
@@ -85,7 +86,8 @@ void himc_tracking_error_tip(const himc_controller *c, const himc_skeleton *skel
     if (away > LARGEST_TIP_STEP)
         missing = himc_vec3_scale(way, LARGEST_TIP_STEP / away);
     himc_vec3 slower = himc_vec3_sub(target.v, s->tip_velocity[hand]);
-    himc_vec3 a = himc_vec3_sub(target.a, himc_tip_carried(skeleton, s, hand, e->acceleration));
+    himc_vec3 a = himc_vec3_sub(target.a, himc_tip_carried(skeleton, s, hand, e->acceleration,
+                                                           himc_pelvis_acceleration(c)));
     arm_tasks tasks = {.controller = c, .jacobian = jacobian, .hand = hand};
     tasks.inverse = himc_solvers[config->solver].inverse(jacobian, config->damping, missing);
     if (config->elbow)

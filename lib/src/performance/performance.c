@@ -22,9 +22,11 @@ static contact_scene scene_of(himc_performance *p)
 // not finite are replaced as well.
 static void recover(himc_performance *p, double t)
 {
+    bool fallen = himc_body_has_fallen(p->body);
     if (himc_statistics_recovery(&p->statistics) == 0)
         himc_events_note(&p->events,
-                         "the body flew apart at a physics rate of %g Hz and was put back",
+                         fallen ? "the player fell off the stool and was put back"
+                                : "the body flew apart at a physics rate of %g Hz and was put back",
                          p->clock.physics_rate);
     himc_motion_recover(p->motion, &p->settings, t);
     himc_body_place(p->body, &p->motion->from);
@@ -62,6 +64,8 @@ static void step_body(himc_performance *p, int n, double t, double h, bool tick)
     performance_body *b = p->body;
     bool kinematic = p->settings.control.mode == HIMC_PIPELINE_IK;
     if (!(kinematic ? himc_body_follow(b, &p->motion->reference, h) : himc_body_observe(b, tick)))
+        recover(p, t);
+    if (tick && !kinematic && himc_body_has_fallen(b))
         recover(p, t);
     if (tick)
         himc_performance_take_energy(p);

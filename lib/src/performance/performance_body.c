@@ -2,7 +2,7 @@
 ///
 /// The controller assumes the skeleton; the engine simulates the plant, which may be heavier. A
 /// push is a constant force on a point of a segment. It is not given to the controller, so it
-/// disturbs the motion. The pelvis is held, and `ik` has no forces, so pushes have no effect there.
+/// disturbs the motion. A pelvis that is held, and the body in `ik`, feel no push.
 #include "performance/performance_body.h"
 #include "base/format.h"
 
@@ -13,6 +13,9 @@
 
 // chosen: the engine keeps joints together to a micrometre
 #define JOINT_GAP 0.01 // a joint further apart has come apart (m)
+// a player has fallen: his pelvis is so far from its seat (m), or leans by 60 degrees; chosen
+#define FALLEN 0.3
+#define LEANING 0.5 // cosine
 // the beat has jumped if it is farther from that foreseen at the last tick (beats); chosen: more
 // than a change of tempo between two ticks makes
 #define SAME_COURSE 0.25
@@ -29,6 +32,8 @@ bool himc_body_make_parts(body_parts *parts, const performance_settings *s, himc
 {
     if (!himc_skeleton_init(&parts->skeleton, &s->skeleton, error))
         return false;
+    parts->skeleton.segment[HIMC_PELVIS].joint =
+        s->stance == HIMC_STANCE_FIXED ? HIMC_JOINT_FIXED : HIMC_JOINT_FREE;
     parts->plant = parts->skeleton;
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
         himc_segment *heavy = &parts->plant.segment[i];
@@ -76,11 +81,19 @@ performance_body *himc_body_new(const performance_settings *s, himc_error *error
     return NULL;
 }
 
+// seat and floor hold nothing of where the body was
+static void settle(performance_body *b)
+{
+    himc_support_lift(&b->support);
+    b->balance = (himc_balance){.carried = {{0, 0, 0}, {0, 0, 0}}};
+}
+
 void himc_body_place(performance_body *b, const himc_setpoint *at)
 {
     himc_pose pose;
     memcpy(pose.joint, at->posture.joint, sizeof pose.joint);
     himc_pose_to_state(&b->skeleton, &pose, at->posture.rate, &b->state);
+    settle(b);
     if (himc_character_place(b->character, &b->state))
         return;
     pose = himc_pose_zero();
@@ -97,6 +110,7 @@ void himc_body_seat(performance_body *b, double height)
 
 void himc_body_take_up(performance_body *b)
 {
+    settle(b);
     himc_character_place(b->character, &b->state);
 }
 
@@ -107,6 +121,12 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
     himc_pose_to_state(&b->skeleton, rest, NULL, &state);
     himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
     himc_muscles_rest(&b->muscles);
+    if (b->skeleton.segment[HIMC_PELVIS].joint == HIMC_JOINT_FREE) {
+        himc_support_init(&b->support, &b->plant, &state);
+        b->balance = (himc_balance){.carried = {{0, 0, 0}, {0, 0, 0}}};
+        b->controller.balance = &b->balance;
+        b->muscles.first = HIMC_LEFT_UPPER_ARM - 1;
+    }
     b->controller.saturation = &b->saturation;
     himc_character_use(b->character, s->engine);
 }
@@ -225,10 +245,22 @@ bool himc_body_observe(performance_body *b, bool check)
     return true;
 }
 
+bool himc_body_has_fallen(const performance_body *b)
+{
+    return b->controller.balance &&
+           (himc_vec3_length(himc_vec3_sub(b->state.origin[0],
+                                           b->skeleton.segment[HIMC_PELVIS].origin)) > FALLEN ||
+            b->state.rotation[0].m[2][2] < LEANING);
+}
+
 void himc_body_control(performance_body *b, const himc_reference *reference, double h)
 {
     b->controller.step = h;
     b->controller.articulation = b->shares ? himc_character_articulation(b->character) : NULL;
+    if (b->controller.balance) {
+        himc_support_press(&b->support, &b->plant, &b->state);
+        himc_balance_feel(&b->balance, &b->support, &b->plant, &b->state);
+    }
     himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
     if (b->controller.config.human_strength)
         himc_muscles_act(&b->muscles, reference->struck, b->controller.config.strength, h,
@@ -247,11 +279,23 @@ himc_vec3 himc_body_pushed_at(const performance_body *b, int segment, double t)
 
 bool himc_body_simulate(performance_body *b, double t, double h)
 {
-    world_contact contact[HIMC_SEGMENTS + HIMC_HANDS];
-    int n = 0;
-    for (int i = HIMC_SEGMENTS - 1; t < b->push_end && i > 0; i--)
+    world_contact contact[HIMC_SEGMENTS + HIMC_HANDS + HIMC_SUPPORTS];
+    int n = 0, first = b->controller.balance ? 0 : 1;
+    for (int i = HIMC_SEGMENTS - 1; t < b->push_end && i >= first; i--)
         if (t < b->push[i].until)
-            contact[n++] = (world_contact){i, b->push[i].at, b->push[i].force, &b->work.push};
+            contact[n++] = (world_contact){.segment = i,
+                                           .at = b->push[i].at,
+                                           .force = b->push[i].force,
+                                           .work = &b->work.push};
+    for (int i = 0; b->controller.balance && i < HIMC_SUPPORTS; i++) {
+        const himc_support_point *p = &b->support.point[i];
+        if (p->touching)
+            contact[n++] = (world_contact){.segment = p->segment,
+                                           .at = p->at,
+                                           .force = p->force,
+                                           .work = &b->work.support,
+                                           .supports = true};
+    }
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         contact[n++] = himc_tip_contact(&b->plant, (himc_hand)hand, b->tip_force[hand],
                                         &b->work.contact[hand]);
@@ -327,9 +371,9 @@ bool himc_body_read_push(const himc_command *c, planned_push *out, himc_error *e
     *out = (planned_push){.force = {atom[1].number, atom[2].number, atom[3].number},
                           .seconds = atom[4].number,
                           .along = c->count > 5 ? atom[5].number : -1};
-    for (out->segment = HIMC_PELVIS + 1; out->segment < HIMC_SEGMENTS; out->segment++)
+    for (out->segment = HIMC_PELVIS; out->segment < HIMC_SEGMENTS; out->segment++)
         if (strcmp(atom[0].symbol, himc_segment_name(out->segment)) == 0)
             return true;
-    return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_PELVIS + 1,
+    return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_PELVIS,
                        HIMC_SEGMENTS, error);
 }

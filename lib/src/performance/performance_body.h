@@ -4,6 +4,7 @@
 #define HIMC_PERFORMANCE_BODY_H
 
 #include "body/character.h"
+#include "control/balance.h"
 #include "control/muscle.h"
 #include "control/setpoint.h"
 #include "performance/performance_settings.h"
@@ -40,6 +41,8 @@ typedef struct performance_body {
     himc_limits limits;         ///< in force
     himc_saturation_counts saturation;
     himc_muscles muscles;
+    himc_support support; ///< of a pelvis that is free
+    himc_balance balance;
     body_push push[HIMC_SEGMENTS];
     double push_end;                   ///< of all pushes (s)
     planned_push planned[HIMC_PUSHES]; ///< by beat
@@ -101,6 +104,9 @@ HIMC_RT bool himc_body_may_exchange_pushes(const performance_body *body, const p
                                            int count);
 /// Begins the planned pushes of this tick at `t` (s): from beat `now` to that of the next tick.
 HIMC_RT void himc_body_begin_pushes(performance_body *body, double now, double next, double t);
+
+/// True if a body that sits is off its stool, or lies.
+HIMC_RT bool himc_body_has_fallen(const performance_body *body);
 
 /// Reads the simulated body's state. With `check`, false if joints have come apart.
 HIMC_RT bool himc_body_observe(performance_body *body, bool check);

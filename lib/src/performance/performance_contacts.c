@@ -313,7 +313,8 @@ static double bounded(double x, double most)
 
 // the stick as a point on the head's normal, at the beginning of the step
 static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
-                       const himc_articulation *art, const himc_vec3 *relative)
+                       const himc_articulation *art, const himc_vec3 *relative,
+                       const himc_spatial *root)
 {
     const performance_body *b = s->body;
     himc_vec3 n = normal_of(s, c->drum);
@@ -332,8 +333,9 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.y = local.y;
     double a = s->motion->reference.yield[hand];
     if (!is_kinematic(s))
-        a = bounded(himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative)),
-                    FASTEST_TIP * s->clock->physics_rate);
+        a = bounded(
+            himc_vec3_dot(n, himc_tip_acceleration(&b->plant, &b->state, hand, relative, root)),
+            FASTEST_TIP * s->clock->physics_rate);
     c->stick.acceleration = a;
     if (is_kinematic(s) && is_free(c))
         return;
@@ -461,6 +463,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
     himc_vec3 local[HIMC_HANDS], relative[HIMC_JOINTS];
     himc_articulation kinematic; // in `ik`, where the body is not simulated
     const himc_articulation *art = &kinematic;
+    himc_spatial root;
     bool any = false;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         below[hand] = drum_below(&c->hand[hand], s, (himc_hand)hand, &local[hand]);
@@ -472,7 +475,8 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         himc_articulate(&body->plant, &body->state, &kinematic);
     } else if (any) {
         art = himc_character_articulation(body->character);
-        himc_forward_dynamics(&body->plant, &body->state, art, body->torque, NULL, relative);
+        root = himc_balance_accelerate(body->controller.balance, &body->plant, &body->state, art,
+                                       body->torque, NULL, relative);
     }
     c->force_count = n;
     c->quiet += n / s->clock->sample_rate;
@@ -481,7 +485,7 @@ void himc_contacts_advance(performance_contacts *c, const contact_scene *s, int 
         if (below[hand] < 0)
             continue;
         c->hand[hand].drum = below[hand];
-        load_stick(&c->hand[hand], s, (himc_hand)hand, local[hand], art, relative);
+        load_stick(&c->hand[hand], s, (himc_hand)hand, local[hand], art, relative, &root);
     }
     himc_stick before[HIMC_HANDS] = {c->hand[HIMC_LEFT].stick, c->hand[HIMC_RIGHT].stick};
     advance_drums(c, s, n, below);

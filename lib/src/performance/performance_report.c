@@ -57,7 +57,8 @@ void himc_performance_take_energy(himc_performance *p)
     himc_energy *e = &p->energy;
     if (!b->accounting)
         return;
-    *e = (himc_energy){.push = w->push, .placed = w->placed, .numerical = w->numerical};
+    *e = (himc_energy){
+        .push = w->push, .support = w->support, .placed = w->placed, .numerical = w->numerical};
     memcpy(e->joint, w->joint, sizeof e->joint);
     memcpy(e->contact, w->contact, sizeof e->contact);
     memcpy(e->mallet, p->statistics.mallet, sizeof e->mallet);
@@ -103,7 +104,7 @@ static void take_root(performance_body *b, himc_motion_row *row)
     double rate = w->root_seconds > 0 ? 1 / w->root_seconds : 0; // none after a step of `ik`
     himc_vec3 f = himc_vec3_scale(w->root_impulse, rate);
     himc_vec3 m = himc_vec3_scale(w->root_angular, rate);
-    himc_vec3 hips = b->plant.segment[HIMC_PELVIS].origin;
+    himc_vec3 hips = b->state.origin[HIMC_PELVIS];
     double seat = himc_posture_stool(&b->plant), down = hips.z - seat;
     for (int j = 0; j < HIMC_JOINTS && b->controller.config.human_strength; j++)
         row->co_contraction[j] = b->muscles.co_contraction[j];
@@ -120,6 +121,16 @@ static void take_root(performance_body *b, himc_motion_row *row)
     row->root_friction = hypot(f.x, f.y) / f.z;
 }
 
+// what seat and floor do for a body that sits
+static void take_support(const performance_body *b, himc_motion_row *row)
+{
+    for (int i = 0; i < HIMC_SUPPORTS; i++) {
+        int foot = (i - HIMC_SEAT_POINTS) / HIMC_SOLE_POINTS;
+        himc_vec3 *sum = i < HIMC_SEAT_POINTS ? &row->seat_force : &row->foot_force[foot];
+        *sum = himc_vec3_add(*sum, b->support.point[i].force);
+    }
+}
+
 // torques, and the accelerations that they, the tips' forces and the pushes make; a body that is
 // moved by inverse kinematics has none
 static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *row)
@@ -129,6 +140,7 @@ static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *
     himc_body_state state;
     himc_vec3 load[HIMC_JOINTS];
     himc_pose pose;
+    himc_balance balance = b->balance;
     himc_vec3 rate[HIMC_JOINTS], none = {NAN, NAN, NAN};
     for (int j = 0; kinematic && j < HIMC_JOINTS; j++) {
         row->acceleration[j] = row->torque[j] = none;
@@ -137,12 +149,14 @@ static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *
     if (kinematic) {
         row->root_force = row->root_moment = row->root_center = none;
         row->root_friction = NAN;
-        e->push = e->placed = e->numerical = e->kinetic = e->potential = NAN;
+        e->push = e->support = e->placed = e->numerical = e->kinetic = e->potential = NAN;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             e->contact[hand] = e->mallet[hand] = NAN;
         return;
     }
     take_root(b, row);
+    if (b->controller.balance)
+        take_support(b, row);
     // the state of the row's pose and rates: without the joints' gaps, which are the engine's
     memcpy(pose.joint, row->rotation, sizeof pose.joint);
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -150,12 +164,19 @@ static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *
         rate[j] = himc_mat3_apply_transposed(&b->state.rotation[parent], row->rate[j]);
     }
     himc_pose_to_state(&b->plant, &pose, rate, &state);
+    if (b->controller.balance)
+        state = b->state;
     memcpy(load, b->torque, sizeof load);
-    for (int i = 1; i < HIMC_SEGMENTS; i++)
-        himc_add_force(&b->plant, &state, i, push_point(b, &state, i, row->time), row->push[i],
-                       load);
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        himc_vec3 at = push_point(b, &state, i, row->time), r = himc_vec3_sub(at, state.origin[0]);
+        himc_add_force(&b->plant, &state, i, at, row->push[i], load);
+        balance.carried.linear = himc_vec3_add(balance.carried.linear, row->push[i]);
+        balance.carried.angular =
+            himc_vec3_add(balance.carried.angular, himc_vec3_cross(r, row->push[i]));
+    }
     himc_articulate(&b->plant, &state, &art);
-    himc_forward_dynamics(&b->plant, &state, &art, load, row->tip_force, row->acceleration);
+    himc_balance_accelerate(b->controller.balance ? &balance : NULL, &b->plant, &state, &art, load,
+                            row->tip_force, row->acceleration);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         row->torque[j] = b->torque[j];
         row->power[j] = himc_vec3_dot(row->torque[j], row->rate[j]);

@@ -22,6 +22,12 @@ typedef struct asked_gain {
     double frequency;          ///< instead, over the usual natural frequency; 0: not so
 } asked_gain;
 
+/// In the order of the words of `stance`.
+typedef enum himc_stance {
+    HIMC_STANCE_FIXED, ///< the pelvis is bolted to the world
+    HIMC_STANCE_SEATED ///< it rests on a stool, the feet on the floor
+} himc_stance;
+
 /// In the order of the words of `coupling`.
 typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 
@@ -33,6 +39,7 @@ typedef struct performance_settings {
     himc_controller_config control;
     asked_gain gain[HIMC_JOINTS]; ///< where control.gain_set
     himc_engine engine;
+    himc_stance stance;
     himc_limits_kind limits;
     himc_grip grip;
     bool servo; ///< strokes have one contact each, though they shall bounce

@@ -1,0 +1,201 @@
+/// support.c: seat and floor as points that press a plane, F = k d^1.5 (1 + c d') with the depth d
+/// (Hunt & Crossley 1975), never less than 0. Seat and soles are three patches that hold or slip
+/// each as a whole, as flesh and leather do: friction is a spring to where each point has touched,
+/// in proportion to its pressure, with damping, up to the coefficient of friction times the
+/// pressure of all; then the anchors come along. A spring, not a friction of speed, and not point by
+/// point: so that nobody creeps off his stool within half an hour.
+#include "body/support.h"
+
+#include "body/dynamics.h"
+#include "body/posture.h"
+
+#define FEET_SHARE 0.25 // of the weight; chosen: .2 to .3 of seated people
+// chosen: a cushion that gives 5 mm, and soles that give a millimetre; both damp their own bounce
+#define SEAT_STIFFNESS 2.8e5 // k (N/m^1.5)
+#define SOLE_STIFFNESS 1.5e6
+#define DAMPING 4.0 // c (s/m)
+// along the plane, of seat and of a sole; chosen: 5 Hz with the mass that rests there, half damped
+#define SEAT_HOLD 7.2e4     // (N/m)
+#define SEAT_DRAG 2400.0    // (N s/m)
+#define SOLE_HOLD 5e4       // (N/m)
+#define SOLE_DRAG 240.0     // (N s/m)
+#define LEAST_SHARE 0.1     // of sit bones and of thighs, whatever the balance
+#define LEAST_PRESSURE 1e-6 // (N)
+#define SOLE_BEHIND 0.055   // the ankle, of a sole (m)
+#define SOLE_AHEAD 0.15     // (m)
+#define SOLE_ASIDE 0.04     // (m)
+#define ANKLE_HEIGHT 0.075
+#define THIGH_DEPTH 0.075 // (m)
+// of the sit bones, from the midpoint of the hip joints (m)
+static const himc_vec3 sit_bone = {-0.02, 0.06, -0.086};
+static const double along_thigh[] = {0.3, 0.5}; // shares of its length
+
+static bool is_foot(int point)
+{
+    return point >= HIMC_SEAT_POINTS;
+}
+
+static void place_points(himc_support *s, const himc_skeleton *skeleton)
+{
+    int n = 0;
+    for (int side = 0; side < HIMC_HANDS; side++) {
+        int thigh = HIMC_LEFT_UPPER_LEG + side, foot = HIMC_LEFT_FOOT + side;
+        double left = side == HIMC_LEFT ? 1 : -1, scale = skeleton->height / 1.75;
+        himc_vec3 bone = himc_vec3_scale(sit_bone, scale);
+        s->point[n++] = (himc_support_point){.segment = HIMC_PELVIS,
+                                             .at = himc_vec3_make(bone.x, left * bone.y, bone.z)};
+        for (int k = 0; k < 2; k++)
+            s->point[n++] = (himc_support_point){
+                .segment = thigh,
+                .at = himc_vec3_make(-THIGH_DEPTH * scale, 0,
+                                     -along_thigh[k] * skeleton->segment[thigh].length)};
+        for (int k = 0; k < HIMC_SOLE_POINTS; k++)
+            s->point[HIMC_SEAT_POINTS + HIMC_SOLE_POINTS * side + k] = (himc_support_point){
+                .segment = foot,
+                .at = himc_vec3_make(k < 2 ? -SOLE_BEHIND : SOLE_AHEAD,
+                                     k % 2 ? SOLE_ASIDE : -SOLE_ASIDE, -ANKLE_HEIGHT)};
+    }
+}
+
+static double depth_under(double force, bool foot)
+{
+    return pow(force / (foot ? SOLE_STIFFNESS : SEAT_STIFFNESS), 2.0 / 3);
+}
+
+// mean lever ahead of the points first, first + step, ... end
+static double ahead(const himc_support *s, const int *point, int count)
+{
+    double sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += s->point[point[k]].lever.x;
+    return sum / count;
+}
+
+void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const himc_body_state *rest)
+{
+    static const int bones[] = {0, 3}, thighs[] = {1, 2, 4, 5};
+    static const int soles[] = {6, 7, 8, 9, 10, 11, 12, 13};
+    double mass = 0, center = 0, lowest = HUGE_VAL;
+    place_points(s, skeleton);
+    himc_support_press(s, skeleton, rest); // for the levers
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
+        double x = himc_segment_center(skeleton, rest, i).x - rest->origin[0].x;
+        mass += skeleton->segment[i].mass;
+        center += skeleton->segment[i].mass * x;
+    }
+    center /= mass;
+    for (int i = HIMC_SEAT_POINTS; i < HIMC_SUPPORTS; i++)
+        lowest = fmin(lowest, rest->origin[0].z + s->point[i].lever.z);
+    // shares of soles, thighs and sit bones that balance about the axis from left to right
+    bool stand = lowest < 0.5 * ANKLE_HEIGHT; // else the feet hang
+    double bone = ahead(s, bones, 2), thigh = ahead(s, thighs, 4), sole = ahead(s, soles, 8);
+    double feet = stand ? FEET_SHARE : 0;
+    double under = (center - feet * sole - (1 - feet) * bone) / (thigh - bone);
+    under = fmin(fmax(under, LEAST_SHARE), 1 - feet - LEAST_SHARE);
+    for (int i = 0; i < HIMC_SUPPORTS; i++) {
+        himc_support_point *p = &s->point[i];
+        double share = is_foot(i) ? feet / 8 : i % 3 ? under / 4 : (1 - feet - under) / 2;
+        double height = is_foot(i) ? lowest : rest->origin[0].z + p->lever.z;
+        p->plane = is_foot(i) && !stand
+                       ? 0
+                       : height + depth_under(share * mass * HIMC_GRAVITY, is_foot(i));
+    }
+    himc_support_lift(s);
+}
+
+void himc_support_lift(himc_support *s)
+{
+    for (int i = 0; i < HIMC_SUPPORTS; i++) {
+        s->point[i].touching = false;
+        s->point[i].force = himc_vec3_make(0, 0, 0);
+    }
+}
+
+// seat and soles, each of which slips as a whole; coefficients of friction chosen: trousers on
+// leather, shoes on wood
+static const struct {
+    int first, count;
+    double stiffness, hold, drag, friction;
+} patch[] = {{0, HIMC_SEAT_POINTS, SEAT_STIFFNESS, SEAT_HOLD, SEAT_DRAG, 0.6},
+             {HIMC_SEAT_POINTS, HIMC_SOLE_POINTS, SOLE_STIFFNESS, SOLE_HOLD, SOLE_DRAG, 0.8},
+             {HIMC_SEAT_POINTS + HIMC_SOLE_POINTS, HIMC_SOLE_POINTS, SOLE_STIFFNESS, SOLE_HOLD,
+              SOLE_DRAG, 0.8}};
+#define PATCHES ((int)(sizeof patch / sizeof *patch))
+
+static double press_down(himc_support_point *p, int k, double place, double velocity)
+{
+    double depth = fmax(p->plane - place, 0);
+    p->force = himc_vec3_make(
+        0, 0, patch[k].stiffness * depth * sqrt(depth) * fmax(1 - DAMPING * velocity, 0));
+    return p->force.z;
+}
+
+// by which share of a horizontal force a patch holds less
+static double too_much(himc_vec3 force, double most)
+{
+    double along = hypot(force.x, force.y);
+    return along > most ? 1 - most / along : 0;
+}
+
+// the forces of a patch whose points are at `place` and move at `velocity`; the anchors come along
+// as soon as the springs alone would hold too much
+static void press(himc_support_point *point, int k, const himc_vec3 *place,
+                  const himc_vec3 *velocity)
+{
+    double all = 0;
+    bool touched = point->touching;
+    himc_vec3 held = {0, 0, 0}, sum = {0, 0, 0};
+    for (int i = 0; i < patch[k].count; i++)
+        all += press_down(&point[i], k, place[i].z, velocity[i].z);
+    for (int i = 0; i < patch[k].count; i++) {
+        himc_support_point *p = &point[i];
+        double share = p->force.z / fmax(all, LEAST_PRESSURE);
+        if (!touched)
+            p->anchor = place[i];
+        p->touching = all > 0;
+        held = himc_vec3_madd(held, share * patch[k].hold, himc_vec3_sub(p->anchor, place[i]));
+    }
+    double most = patch[k].friction * all;
+    himc_vec3 slip = himc_vec3_scale(held, too_much(held, most) / patch[k].hold);
+    for (int i = 0; i < patch[k].count; i++) {
+        himc_support_point *p = &point[i];
+        double share = p->force.z / fmax(all, LEAST_PRESSURE);
+        p->anchor.x -= slip.x;
+        p->anchor.y -= slip.y;
+        himc_vec3 way = himc_vec3_sub(p->anchor, place[i]);
+        p->force.x = share * (patch[k].hold * way.x - patch[k].drag * velocity[i].x);
+        p->force.y = share * (patch[k].hold * way.y - patch[k].drag * velocity[i].y);
+        sum = himc_vec3_add(sum, p->force);
+    }
+    double less = too_much(sum, most);
+    for (int i = 0; i < patch[k].count; i++) {
+        double share = point[i].force.z / fmax(all, LEAST_PRESSURE);
+        point[i].force.x -= share * less * sum.x;
+        point[i].force.y -= share * less * sum.y;
+    }
+}
+
+void himc_support_press(himc_support *s, const himc_skeleton *skeleton,
+                        const himc_body_state *state)
+{
+    himc_vec3 velocity[HIMC_SEGMENTS]; // of the joints of pelvis and legs
+    velocity[0] = state->velocity;
+    for (int i = HIMC_LEFT_UPPER_LEG; i < HIMC_SEGMENTS; i++) {
+        int p = skeleton->segment[i].parent;
+        himc_vec3 r = himc_vec3_sub(state->origin[i], state->origin[p]);
+        velocity[i] = himc_vec3_add(velocity[p], himc_vec3_cross(state->spin[p], r));
+    }
+    himc_vec3 place[HIMC_SUPPORTS], moving[HIMC_SUPPORTS];
+    for (int i = 0; i < HIMC_SUPPORTS; i++) {
+        himc_support_point *p = &s->point[i];
+        himc_vec3 r = himc_mat3_apply(&state->rotation[p->segment], p->at);
+        place[i] = himc_vec3_add(state->origin[p->segment], r);
+        moving[i] =
+            himc_vec3_add(velocity[p->segment], himc_vec3_cross(state->spin[p->segment], r));
+        p->lever = himc_vec3_sub(place[i], state->origin[0]);
+    }
+    for (int k = 0; k < PATCHES; k++) {
+        int i = patch[k].first;
+        press(&s->point[i], k, &place[i], &moving[i]);
+    }
+}

@@ -1,0 +1,42 @@
+/// balance.h: control of a body whose pelvis is free: torques that move the joints as wanted while
+/// the pelvis gives way.
+#ifndef HIMC_BALANCE_H
+#define HIMC_BALANCE_H
+
+#include "body/dynamics.h"
+#include "body/support.h"
+#include "control/controller.h"
+#include "control/tracking_error.h"
+
+typedef struct himc_balance {
+    himc_spatial acceleration;   ///< of the pelvis, in the last step; zero at first
+    himc_spatial carried;        ///< wrench of all supports on the body, about the pelvis' origin
+    himc_vec3 felt[HIMC_JOINTS]; ///< torques of the joints that act as the supports do (N m)
+} himc_balance;
+
+/// The acceleration of a pelvis that is free in the last step; NULL: it is fixed.
+static inline const himc_spatial *himc_pelvis_acceleration(const himc_controller *controller)
+{
+    return controller->balance ? &controller->balance->acceleration : NULL;
+}
+
+/// Takes up where and how the supports press in this state.
+HIMC_RT void himc_balance_feel(himc_balance *balance, const himc_support *support,
+                               const himc_skeleton *skeleton, const himc_body_state *state);
+
+/// himc_forward_dynamics with the supports of this body too (NULL: the pelvis is fixed); returns
+/// the pelvis' acceleration.
+HIMC_RT himc_spatial himc_balance_accelerate(
+    const himc_balance *balance, const himc_skeleton *skeleton, const himc_body_state *state,
+    const himc_articulation *articulation, const himc_vec3 torque[HIMC_JOINTS],
+    const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS]);
+
+/// Relative accelerations of the legs' joints (rad/s^2) in place of `wanted`: a soft posture.
+HIMC_RT void himc_balance_legs(const tracking_error *error, himc_vec3 wanted[HIMC_JOINTS]);
+
+/// The torques that make the relative accelerations `wanted` while the supports press as they do.
+HIMC_RT void himc_balance_torques(const himc_controller *controller, const himc_skeleton *skeleton,
+                                  const himc_body_state *state, const himc_vec3 wanted[HIMC_JOINTS],
+                                  himc_vec3 torque[HIMC_JOINTS]);
+
+#endif

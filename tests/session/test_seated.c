@@ -1,0 +1,240 @@
+/// test_seated.c: a player whose pelvis is free sits: he plays as one who is bolted, gives way to
+/// pushes and comes back, stays where he sits, and if he falls is put back.
+#include "session.h"
+
+#include "performance/performance_state.h"
+
+#include <math.h>
+
+/// Of the rows after the first half second.
+typedef struct seen {
+    long rows;
+    himc_vec3 begun, last;        // place of the pelvis (m)
+    double moved, tilt;           // largest (m, rad)
+    double feet, weight;          // sums of forces up (N)
+    double friction;              // largest in a row
+    double gap;                   // of the energy's balance, largest (J)
+    double energy, work, largest; // at the first row; most work since (J)
+    himc_vec3 root, parts;        // sums of force on the pelvis, and of seat and feet (N)
+} seen;
+
+static double work_of(const himc_energy *e)
+{
+    double sum = e->push + e->support + e->placed + e->numerical;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        sum += e->joint[j];
+    for (int hand = 0; hand < HIMC_HANDS; hand++)
+        sum += e->contact[hand];
+    return sum;
+}
+
+static void see(void *user, const himc_motion_row *row)
+{
+    seen *s = user;
+    double energy = row->energy.kinetic + row->energy.potential, work = work_of(&row->energy);
+    himc_vec3 parts = row->seat_force;
+    if (s->rows++ == 0) {
+        s->begun = row->segment[HIMC_PELVIS];
+        s->energy = energy;
+        s->work = work;
+    }
+    s->largest = fmax(s->largest, fabs(work - s->work));
+    s->gap = fmax(s->gap, fabs(energy - s->energy - (work - s->work)));
+    s->last = row->segment[HIMC_PELVIS];
+    s->moved = fmax(s->moved, himc_vec3_length(himc_vec3_sub(s->last, s->begun)));
+    s->tilt = fmax(s->tilt, himc_vec3_length(himc_quat_log(row->orientation[HIMC_PELVIS])));
+    s->friction = fmax(s->friction, row->root_friction);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        s->feet += row->foot_force[i].z;
+        parts = himc_vec3_add(parts, row->foot_force[i]);
+    }
+    s->weight += parts.z;
+    s->parts = himc_vec3_add(s->parts, parts);
+    s->root = himc_vec3_add(s->root, row->root_force);
+}
+
+static himc_performance *seated(const char *more)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "stance seated");
+    if (more)
+        session_do(p, "%s", more);
+    return p;
+}
+
+static void add_strokes(himc_performance *p, int count, const char *dynamic)
+{
+    static const char *const nuances[] = {"legato", "accent", "staccato", "tenuto"};
+    for (int i = 0; i < count; i++)
+        session_do(p, "stroke %g %s %s %s", 1 + 0.5 * i, i % 2 ? "left" : "right", nuances[i % 4],
+                   dynamic);
+}
+
+static seen play(himc_performance *p, double seconds, heard *h)
+{
+    seen s = {.rows = 0};
+    session_do(p, "play");
+    session_play(p, 0.5, h);
+    himc_performance_on_motion(p, see, &s);
+    session_play(p, seconds - 0.5, h);
+    himc_performance_on_motion(p, NULL, NULL);
+    return s;
+}
+
+static void test_he_plays_as_one_who_is_bolted_and_stays(void)
+{
+    himc_performance *p = seated(NULL);
+    add_strokes(p, 24, "ff");
+    seen s = play(p, 9, NULL);
+    himc_performance_stats stats = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(24, stats.strokes);
+    TEST_ASSERT_EQUAL_INT(24, stats.played);
+    TEST_ASSERT_EQUAL_INT(0, stats.recoveries);
+    TEST_ASSERT_TRUE(stats.tip_rms < 5e-5);
+    TEST_ASSERT_TRUE(s.moved > 1e-4 && s.moved < 0.010); // he gives way, a little
+    TEST_ASSERT_TRUE(s.tilt > 1e-3 && s.tilt < 0.05);
+    double feet = s.feet / s.weight;
+    TEST_ASSERT_TRUE(feet > 0.15 && feet < 0.35);
+    TEST_ASSERT_TRUE(s.friction < 0.5);
+    himc_performance_free(p);
+}
+
+static void test_seat_and_floor_carry_him(void)
+{
+    himc_performance *p = seated("rate physics 2000");
+    session_do(p, "rate task 2000"); // a row for each step
+    add_strokes(p, 4, "f");
+    seen s = play(p, 2, NULL);
+    double weight = 0;
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        weight += p->body->plant.segment[i].mass * HIMC_GRAVITY;
+    // a row's forces are those of the step that begins, the root's those that ended with it
+    himc_vec3 apart = himc_vec3_scale(himc_vec3_sub(s.root, s.parts), 1 / (double)s.rows);
+    TEST_ASSERT_TRUE(himc_vec3_length(apart) < 1e-3 * weight);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02 * weight, weight, s.parts.z / (double)s.rows);
+    TEST_ASSERT_TRUE(s.largest > 1 && s.gap < 1e-11 * s.largest);
+    himc_performance_free(p);
+}
+
+static double pushed(const char *push, int *played, long *fallen)
+{
+    himc_performance *p = seated(NULL);
+    add_strokes(p, 8, "f");
+    if (*push)
+        session_do(p, "at 2.2 %s", push);
+    seen s = play(p, 4, NULL);
+    himc_performance_stats stats = himc_performance_measure(p);
+    *played = (int)stats.played;
+    *fallen = stats.recoveries;
+    himc_performance_free(p);
+    return s.moved;
+}
+
+static void test_a_push_at_the_chest_from_any_side_is_answered(void)
+{
+    int played;
+    long fallen;
+    double still = pushed("", &played, &fallen);
+    for (int k = 0; k < 8; k++) {
+        char push[80];
+        double x = cos(0.25 * HIMC_PI * k), y = sin(0.25 * HIMC_PI * k);
+        snprintf(push, sizeof push, "push trunk %.3f %.3f 0 0.2", 20 * x, 20 * y);
+        TEST_ASSERT_TRUE(pushed(push, &played, &fallen) < still + 0.010);
+        TEST_ASSERT_EQUAL_INT(8, played);
+        snprintf(push, sizeof push, "push trunk %.3f %.3f 0 0.2", 60 * x, 60 * y);
+        pushed(push, &played, &fallen);
+        TEST_ASSERT_EQUAL_INT(0, fallen);
+        TEST_ASSERT_EQUAL_INT(8, played);
+    }
+}
+
+static void test_a_harder_push_moves_him_further(void)
+{
+    int played;
+    long fallen;
+    double little = pushed("push pelvis 100 0 0 0.1", &played, &fallen);
+    double much = pushed("push pelvis 200 0 0 0.1", &played, &fallen);
+    TEST_ASSERT_TRUE(much > 1.3 * little);
+}
+
+static void test_a_fall_is_told_once_and_the_piece_goes_on(void)
+{
+    himc_performance *p = seated(NULL);
+    heard h = {.strike = NULL};
+    add_strokes(p, 16, "mf");
+    session_do(p, "at 2 push trunk 1000 0 0 1");
+    play(p, 6, &h);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.all, "the player fell off the stool and was put back"),
+                                 h.all);
+    TEST_ASSERT_TRUE(himc_performance_measure(p).recoveries > 0);
+    TEST_ASSERT_TRUE(h.strikes > 10);
+    TEST_ASSERT_TRUE(h.strike[h.strikes - 1].time > 4.5);
+    free(h.strike);
+    himc_performance_free(p);
+}
+
+static void test_both_engines_move_him_alike(void)
+{
+    himc_vec3 end[2];
+    for (int ode = 0; ode < 2; ode++) {
+        himc_performance *p = seated(ode ? "engine ode" : NULL);
+        add_strokes(p, 4, "f");
+        end[ode] = play(p, 2.2, NULL).last;
+        himc_performance_free(p);
+    }
+    TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(end[0], end[1])) < 1e-9);
+}
+
+static void test_other_laws_and_modes_sit_too(void)
+{
+    static const char *const settings[] = {"law printed", "law feedforward", "mode id",
+                                           "rate physics 2000"};
+    for (int k = 0; k < 4; k++) {
+        himc_performance *p = seated(settings[k]);
+        add_strokes(p, 6, "mf");
+        seen s = play(p, 4, NULL);
+        TEST_ASSERT_TRUE_MESSAGE(s.moved < 0.02 && s.tilt < 0.1, settings[k]);
+        TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+        himc_performance_free(p);
+    }
+}
+
+static void test_he_sits_on_a_high_stool_too(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "stance seated");
+    double usual = p->body->plant.segment[HIMC_PELVIS].origin.z;
+    session_do(p, "kettle place 0.4 0 1.3");
+    add_strokes(p, 4, "mf");
+    seen s = play(p, 3, NULL);
+    TEST_ASSERT_TRUE(p->body->plant.segment[HIMC_PELVIS].origin.z > usual + 0.1);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+    TEST_ASSERT_TRUE(s.moved < 0.02);
+    himc_performance_free(p);
+}
+
+static void test_fixed_is_bolted_again(void)
+{
+    himc_performance *p = seated("stance fixed");
+    add_strokes(p, 4, "f");
+    seen s = play(p, 2, NULL);
+    TEST_ASSERT_TRUE(s.moved == 0 && s.tilt == 0 && s.feet == 0 && s.weight == 0);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_he_plays_as_one_who_is_bolted_and_stays);
+    RUN_TEST(test_seat_and_floor_carry_him);
+    RUN_TEST(test_a_push_at_the_chest_from_any_side_is_answered);
+    RUN_TEST(test_a_harder_push_moves_him_further);
+    RUN_TEST(test_a_fall_is_told_once_and_the_piece_goes_on);
+    RUN_TEST(test_both_engines_move_him_alike);
+    RUN_TEST(test_other_laws_and_modes_sit_too);
+    RUN_TEST(test_he_sits_on_a_high_stool_too);
+    RUN_TEST(test_fixed_is_bolted_again);
+    return UNITY_END();
+}
