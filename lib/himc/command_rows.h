@@ -170,7 +170,8 @@ HIMC_COMMAND_ROW(DUMP, dump, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FIL
                  "which is a score")
 HIMC_COMMAND_ROW(PRESET, preset, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDER, "NAME",
                  "loads NAME.txt, a score or what `dump NAME.txt` has written")
-HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "", "sets everything as when just made")
+HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "",
+                 "sets everything as when just made; a [membrane~] keeps its settings")
 HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,

@@ -269,7 +269,7 @@ membrane~: kettle: 4 arguments, expected [-save] NAME [INCHES [CHANNELS]]
 membrane~: kettle: argument 3: loud, expected a number of channels
 membrane~: kettle: channels: 9, expected 1 .. 8
 membrane~: kettle: channels: 1.5, expected a whole number
-membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, expected a drum's name: up to 31 letters and digits, no number, no spot, no command of the performer
+membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, expected a drum's name: up to 31 letters and digits, no number, no spot, not \`dead\` of strokes, no command of the performer
 himc~: drum: NAME: rim, expected a drum's name
 membrane~: drum: NAME: centre, expected a drum's name
 himc~: drum tempo: the name of a command, expected another name
