@@ -91,6 +91,11 @@ static bool membrane_fits(const t_membrane *x)
     return fits;
 }
 
+static void membrane_refuses(t_membrane *x, const char *why)
+{
+    pd_error(x, "membrane~: %s: %s", himc_drum_name(x->x_link.l_drum), why);
+}
+
 static void membrane_fit(t_membrane *x, himc_drum *beside)
 {
     himc_error error;
@@ -243,11 +248,11 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
     membrane_notice_connections(x);
     bool driven = himc_drum_get_driver(x->x_link.l_drum).performer != NULL;
     if (sp[0]->s_n > HIMC_DRUM_RING) {
-        pd_error(x, "membrane~: block size: %d samples, expected 1 .. %d", sp[0]->s_n,
-                 HIMC_DRUM_RING);
+        pd_error(x, "membrane~: %s: block size: %d samples, expected 1 .. %d",
+                 himc_drum_name(x->x_link.l_drum), sp[0]->s_n, HIMC_DRUM_RING);
     } else if (!himc_drum_set_rate(x->x_layer.l_drum, sp[0]->s_sr, &error) ||
                (!driven && !himc_drum_set_rate(x->x_link.l_drum, sp[0]->s_sr, &error))) {
-        pd_error(x, "membrane~: %s", error.text);
+        membrane_refuses(x, error.text);
     } else {
         for (int k = 0; k < 3; k++)
             x->x_in[k] = sp[k]->s_vec;
@@ -366,7 +371,7 @@ static void membrane_changed(void *object, const char *refusal)
 {
     t_membrane *x = object;
     if (refusal)
-        pd_error(x, "membrane~: %s", refusal);
+        membrane_refuses(x, refusal);
     membrane_refit(x, true);
     membrane_tell_technique(x);
 }
@@ -400,7 +405,7 @@ static void membrane_command_guests(t_membrane *x, const himc_command *command)
         bool good = pd_in_real_time() ? himc_loader_command(x->x_loader, &target, command, &error)
                                       : himc_drum_command(target.drum, command, &error);
         if (!good)
-            pd_error(x, "membrane~: %s", error.text);
+            membrane_refuses(x, error.text);
     }
 }
 
@@ -567,7 +572,7 @@ static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv
     }
     if (!(s == gensym("save") ? saved_switch(&x->x_saves, argc, argv, &error)
                               : membrane_command(x, s, argc, argv, &error)))
-        pd_error(x, "membrane~: %s", error.text);
+        membrane_refuses(x, error.text);
 }
 
 /* The object's arguments; all are optional, and without a name no performer finds it. */
@@ -598,10 +603,10 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
     if (argc > 0 && argv[0].a_type != A_SYMBOL)
         return himc_error_set(error, "argument 1: %s, expected a name, as in [membrane~ kettle 26]",
                               text);
+    if (argc > 0 && !drum_name_check(argv[0].a_w.w_symbol->s_name, error))
+        return false;
     if (argc > 0)
         wish->w_name = argv[0].a_w.w_symbol->s_name;
-    if (argc > 0 && !drum_name_check(wish->w_name, error))
-        return false;
     if (!membrane_number_argument(argc, argv, 2, "a diameter in inches", &wish->w_inches, error) ||
         !membrane_number_argument(argc, argv, 3, "a number of channels", &wish->w_channels,
                                   error) ||
@@ -695,7 +700,8 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
         drum = membrane_make(&wish, rate, &layer, &error);
     if (!drum) {
         himc_loader_free(loader);
-        pd_error(NULL, "membrane~: %s", error.text);
+        pd_error(NULL, "membrane~: %s%s%s", wish.w_name ? wish.w_name : "", wish.w_name ? ": " : "",
+                 error.text);
         return NULL;
     }
     t_membrane *x = (t_membrane *)pd_new(membrane_class);

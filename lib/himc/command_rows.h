@@ -44,6 +44,18 @@
 #define HIMC_ROW_ROLL "single|double|press"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc|sound|errors"
 
+// the laws of control (lib/src/control/law.h) with their words
+#define HIMC_LAWS(LAW)                                  \
+    LAW(PRINTED, printed, "printed", false)             \
+    LAW(FEEDFORWARD, feedforward, "feedforward", false) \
+    LAW(COMPUTED_TORQUE, computed_torque, "computed-torque", true)
+// the kinds of a head (lib/src/head/kind.h) with their forms of `shape`, before that of a file
+#define HIMC_KINDS(KIND)  \
+    KIND(round, "circle") \
+    KIND(rectangle, "rectangle LENGTH WIDTH")
+#define HIMC_ROW_KIND(name, form) form " | "
+#define HIMC_ROW_LAW(ID, name, word, lands) "|" word
+
 // to the performer
 HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds one stroke to the score; dead: the mallet stays on the head")
@@ -116,8 +128,8 @@ HIMC_SETTING_ROW(ELBOW, elbow, AT_SAMPLE, "SWITCH", switch, control.elbow, "", N
                  "1: the elbow's place has priority over the rest of the posture")
 HIMC_SETTING_ROW(WEIGHTS, weights, AT_SAMPLE, "SHOULDER ELBOW WRIST GRIP", numbers, control.weight,
                  "", NOTHING, "sets how readily each joint turns to bring the tip nearer")
-HIMC_SETTING_ROW(LAW, law, AT_SAMPLE, "printed|feedforward|computed-torque", word, control.law, "",
-                 NOTHING, "chooses the inverse dynamics")
+HIMC_SETTING_ROW(LAW, law, AT_SAMPLE, &HIMC_LAWS(HIMC_ROW_LAW)[1], word, control.law, "", NOTHING,
+                 "chooses the inverse dynamics")
 HIMC_SETTING_ROW(LIMITS, limits, NOW, "off|ellipsoid|euler", word, limits, "off", LIMITS,
                  "limits the joints to the range of the take's player, else of table 1")
 HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB", gain, gain, "",
@@ -161,7 +173,8 @@ HIMC_COMMAND_ROW(DUMP, dump, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FIL
                  "which is a score")
 HIMC_COMMAND_ROW(PRESET, preset, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDER, "NAME",
                  "loads NAME.txt, a score or what `dump NAME.txt` has written")
-HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "", "sets everything as when just made")
+HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "",
+                 "sets everything as when just made; a [membrane~] keeps its settings")
 HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
@@ -206,7 +219,7 @@ HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [
                  "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes "
                  "split and beat, each seed in its own way")
 HIMC_COMMAND_ROW(
-    SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, "circle | rectangle LENGTH WIDTH | FILE",
+    SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, HIMC_KINDS(HIMC_ROW_KIND) "FILE",
     "makes a head of another outline, or one of up to 800 masses on springs from a file")
 HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0,
                  "soft|medium|hard|wood | K ALPHA MASS | HAND soft|medium|hard|wood | "

@@ -464,6 +464,9 @@ static void test_errors_name_field_value_and_allowed_values(void)
         "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]");
     refused(perform("stroke 1 left legato f 0.1"),
             "stroke: SPOT: 0.1, expected center normal rim or X Y, both -1 .. 1 m");
+    refused(perform("drum dead"),
+            "drum: NAME: dead, expected a drum's name: up to 31 letters and digits, no number, no "
+            "spot, not `dead` of strokes, no command of the performer");
     refused(perform("stroke x left legato f"), "stroke: BEAT: x, expected 0 .. 1e+06");
     refused(perform("mode idd"), "mode: idd, expected himc id ik");
     refused(perform("tempo 90 1 2"), "tempo: 2 is one atom too many, expected tempo BPM [BEAT]");

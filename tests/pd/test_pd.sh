@@ -262,14 +262,14 @@ report the_last_room_and_listener_of_any_performer_at_a_drum_is_for_all \
 
 play_pd objects.pd
 report objects_with_nonsense_arguments_are_refused_with_a_line \
-    "$(lines "membrane~: inches: 5000 in, expected 12 .. 60 in
+    "$(lines "membrane~: kettle: inches: 5000 in, expected 12 .. 60 in
 membrane~: argument 1: 3, expected a name, as in [membrane~ kettle 26]
-membrane~: argument 2: large, expected a diameter in inches
-membrane~: 4 arguments, expected [-save] NAME [INCHES [CHANNELS]]
-membrane~: argument 3: loud, expected a number of channels
-membrane~: channels: 9, expected 1 .. 8
-membrane~: channels: 1.5, expected a whole number
-membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, expected a drum's name: up to 31 letters and digits, no number, no spot, no command of the performer
+membrane~: kettle: argument 2: large, expected a diameter in inches
+membrane~: kettle: 4 arguments, expected [-save] NAME [INCHES [CHANNELS]]
+membrane~: kettle: argument 3: loud, expected a number of channels
+membrane~: kettle: channels: 9, expected 1 .. 8
+membrane~: kettle: channels: 1.5, expected a whole number
+membrane~: drum: NAME: a-name-that-is-much-longer-than-any-drum-has, expected a drum's name: up to 31 letters and digits, no number, no spot, not \`dead\` of strokes, no command of the performer
 himc~: drum: NAME: rim, expected a drum's name
 membrane~: drum: NAME: centre, expected a drum's name
 himc~: drum tempo: the name of a command, expected another name
@@ -299,20 +299,20 @@ himc~: tempo: BPM: 0, expected
 himc~: score: missing.txt: no such file
 bad.txt:3: stroke: NUANCE: acent, expected
 himc~: gain: JOINT: nose, expected
-membrane~: nonsense: unknown command
-membrane~: radius: RADIUS: 0, expected
-membrane~: mallet: silk, expected
-membrane~: save: SWITCH: 3, expected 0 .. 1, whole
-membrane~: save: 2 is one atom too many, expected save SWITCH
-membrane~: save: SWITCH missing, expected save SWITCH
-membrane~: info: x is one atom too many, expected info
-membrane~: strike: X Y, from the centre: 0.424264 m, expected
-membrane~: kettle: tuen, expected usual or 0.0001
+membrane~: kettle: nonsense: unknown command
+membrane~: kettle: radius: RADIUS: 0, expected
+membrane~: kettle: mallet: silk, expected
+membrane~: kettle: save: SWITCH: 3, expected 0 .. 1, whole
+membrane~: kettle: save: 2 is one atom too many, expected save SWITCH
+membrane~: kettle: save: SWITCH missing, expected save SWITCH
+membrane~: kettle: info: x is one atom too many, expected info
+membrane~: kettle: strike: X Y, from the centre: 0.424264 m, expected
+membrane~: kettle: kettle: tuen, expected usual or 0.0001
 himc~: kettle: info: x is one atom too many, expected info
 himc~: score: /tmp: a folder, expected a regular file")"
 not_numbers=$(grep -c 'nan is not a finite number, expected' "$work/log")
 report numbers_that_are_none_are_refused \
-    "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: tune: inf is not a finite number")"
+    "$([ "$not_numbers" = 3 ] || echo "$not_numbers of 3. ")$(lines "membrane~: kettle: tune: inf is not a finite number")"
 report refused_messages_change_nothing "$(lines "principal mode 150 Hz")"
 
 play_pd said.pd

@@ -26,7 +26,7 @@ report a_drum_takes_its_preset_back \
 report a_performer_takes_its_preset_back \
     "$(missing 'himc: dump human 0.37 3' 'himc: dump stroke 0.3 left accent f rim')"
 report a_preset_is_a_name_without_a_folder \
-    "$(missing 'error: membrane~: preset: a/b, expected a name, without a folder')"
+    "$(missing 'error: membrane~: kettle: preset: a/b, expected a name, without a folder')"
 report a_dumped_piece_is_a_score_that_plays \
     "$("$build/bin/himc" render "$work/state-piece.txt" -o "$work/piece.wav" 2>&1 |
         grep -q '"strokes": *1' || echo 'it has not one stroke')"

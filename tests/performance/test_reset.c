@@ -214,8 +214,15 @@ static void test_reset_in_the_middle_of_a_stroke_leaves_no_strike(void)
     himc_performance_free(p);
 }
 
+static void find_listener(void *user, const char *line)
+{
+    if (strncmp(line, "listener", 8) == 0)
+        snprintf(user, 40, "%s", line);
+}
+
 static void test_reset_keeps_the_hosts_drums_where_their_owner_put_them(void)
 {
+    char listener[40] = "";
     static const char *const names[] = {"first", "second", "third"};
     himc_performance_config config = himc_performance_default();
     himc_performance *p = himc_performance_new(&config, &error);
@@ -230,6 +237,7 @@ static void test_reset_keeps_the_hosts_drums_where_their_owner_put_them(void)
     }
     session_drum(p, 3, "place 0.3 0.9 0.8");
     session_drum(p, 2, "mallet wood");
+    session_drum(p, 2, "listener off");
     session_do(p, "drum made 26");
     session_do(p, "reset");
     for (int i = 0; i < 3; i++) {
@@ -242,6 +250,8 @@ static void test_reset_keeps_the_hosts_drums_where_their_owner_put_them(void)
     TEST_ASSERT_TRUE(at[1].y < -0.3); // placed again, to its right
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.9, at[2].y);
     TEST_ASSERT_EQUAL_DOUBLE(3e8, himc_drum_mallet(drum[1], HIMC_RIGHT)->stiffness);
+    himc_drum_describe(drum[1], HIMC_DESCRIBE_STATE, find_listener, listener);
+    TEST_ASSERT_EQUAL_STRING("listener off", listener);
     himc_performance_free(p);
 }
 
@@ -262,12 +272,6 @@ static void test_reset_undoes_the_place_that_a_take_gave_a_drum(void)
     session_do(p, "reset");
     TEST_ASSERT_EQUAL_MEMORY(&owner, &frame->center, sizeof owner);
     himc_performance_free(p);
-}
-
-static void find_listener(void *user, const char *line)
-{
-    if (strncmp(line, "listener", 8) == 0)
-        snprintf(user, 40, "%s", line);
 }
 
 static void test_reset_is_heard_by_those_who_heard_it_at_first(void)

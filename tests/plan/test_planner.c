@@ -295,7 +295,8 @@ static void leap(double time, double share)
 {
     himc_hand_plan plan;
     himc_gesture gesture = himc_gesture_of(HIMC_LEGATO, 0.5);
-    himc_goal first = {1, {0.4, 0.2, PLANE}, {0, 0, 1}, {-1, 0, 0}, gesture, 0}, second = first;
+    himc_goal first = {1, {0.4, 0.2, PLANE}, {0, 0, 1}, {-1, 0, 0}, gesture, 0, false},
+              second = first;
     second.time += time;
     second.spot = himc_vec3_make(0.5, -0.45, PLANE);
     himc_hand_place(&plan, 0, himc_vec3_make(0.4, 0.2, 1));
@@ -316,12 +317,47 @@ static void test_a_leap_in_a_hurry_takes_all_its_time_and_is_not_halted_on_the_w
             leap(time, share);
 }
 
+/// Least distance of a leap's way from the body's axis, and its greatest from a straight one (m).
+static double nearest(himc_vec3 from, himc_vec3 to, double time, bool straight, double *off)
+{
+    himc_hand_plan plan;
+    himc_gesture gesture = himc_gesture_of(HIMC_LEGATO, 0.5);
+    himc_goal goal = {1, from, {0, 0, 1}, {-1, 0, 0}, gesture, 0, straight};
+    double least = INFINITY;
+    himc_hand_place(&plan, 0, himc_vec3_make(from.x, from.y, 1));
+    TEST_ASSERT_TRUE(himc_hand_strike(&plan, &goal));
+    goal.time += time;
+    goal.spot = to;
+    TEST_ASSERT_TRUE(himc_hand_strike(&plan, &goal));
+    himc_vec3 way = himc_vec3_unit(himc_vec3_sub(to, from));
+    *off = 0;
+    for (double t = 1; t < goal.time; t += 1e-3) {
+        himc_vec3 x = himc_hand_at(&plan, t).x;
+        least = fmin(least, hypot(x.x, x.y));
+        *off = fmax(*off, fabs((x.x - from.x) * way.y - (x.y - from.y) * way.x));
+    }
+    return least;
+}
+
+static void test_a_long_way_goes_round_the_body_and_a_short_one_straight(void)
+{
+    himc_vec3 low = {0.25, 0.84, PLANE}, high = {0.25, -0.84, PLANE}, near = {0.5, 0.1, PLANE};
+    double off, short_off;
+    for (double time = 0.6; time < 1.5; time += 0.1) {
+        TEST_ASSERT_TRUE(nearest(low, high, time, false, &off) > 0.55);
+        TEST_ASSERT_TRUE(nearest(low, high, time, true, &off) > 0.4);
+        nearest(near, himc_vec3_make(0.5, -0.1, PLANE), time, false, &off);
+        nearest(near, himc_vec3_make(0.5, -0.1, PLANE), time, true, &short_off);
+        TEST_ASSERT_EQUAL_DOUBLE(short_off, off);
+    }
+}
+
 static void test_a_tip_that_has_time_does_not_dart_on_its_way_behind_the_spot(void)
 {
     himc_gesture gesture = himc_gesture_of(HIMC_VERTICAL_ACCENT, 0.8);
     for (double time = 0.8; time < 3; time += 0.01) {
         himc_hand_plan plan;
-        himc_goal goal = {1, {0.5, 0, PLANE}, {0, 0, 1}, {-1, 0, 0}, gesture, 0};
+        himc_goal goal = {1, {0.5, 0, PLANE}, {0, 0, 1}, {-1, 0, 0}, gesture, 0, false};
         himc_hand_place(&plan, 0, himc_vec3_make(0.5, 0, 1));
         TEST_ASSERT_TRUE(himc_hand_strike(&plan, &goal));
         goal.time += time;
@@ -355,6 +391,7 @@ int main(void)
     RUN_TEST(test_plan_continues_from_the_measured_state_at_separation);
     RUN_TEST(test_a_rebound_as_predicted_changes_the_plan_by_less_than_a_millimetre);
     RUN_TEST(test_tip_lands_on_the_other_drum_along_its_normal);
+    RUN_TEST(test_a_long_way_goes_round_the_body_and_a_short_one_straight);
     RUN_TEST(test_a_tip_that_has_time_does_not_dart_on_its_way_behind_the_spot);
     RUN_TEST(test_a_leap_in_a_hurry_takes_all_its_time_and_is_not_halted_on_the_way);
     RUN_TEST(test_lift_without_a_dwell_is_finite_and_ends_where_it_began);

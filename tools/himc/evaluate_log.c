@@ -76,8 +76,8 @@ trial_kind trial_kind_of(const trial_table *table, int index)
     trial_kind out = {(himc_nuance)(kind / TRIAL_CONTROLS), HIMC_PIPELINE_IK,
                       HIMC_LAW_COMPUTED_TORQUE};
     if (control > 0) {
-        out.controller = control <= TRIAL_LAWS ? HIMC_PIPELINE_ID : HIMC_PIPELINE_HIMC;
-        out.law = (himc_law)((control - 1) % TRIAL_LAWS);
+        out.controller = control <= HIMC_LAW_COUNT ? HIMC_PIPELINE_ID : HIMC_PIPELINE_HIMC;
+        out.law = (himc_law)((control - 1) % HIMC_LAW_COUNT);
     }
     return out;
 }

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #define TRIALS_MAX 10000
-#define TRIAL_CONTROLS (1 + 2 * TRIAL_LAWS) ///< `ik`, then `id` and `himc` under each law
+#define TRIAL_CONTROLS (1 + 2 * HIMC_LAW_COUNT) ///< `ik`, then `id` and `himc` under each law
 #define TRIAL_KINDS (HIMC_NUANCES * TRIAL_CONTROLS)
 
 /// Trials 1 .. `trials` of every kind.

@@ -20,7 +20,7 @@
 
 #define RATE 48000                 // sample rate (Hz)
 #define BLOCK 64                   // (samples)
-#define KINDS (1 + 2 * TRIAL_LAWS) // ik; id and himc under each law
+#define KINDS (1 + 2 * HIMC_LAW_COUNT) // ik; id and himc under each law
 #define LEARNED 16                 // other takes that a regression is learned from, at most; chosen
 
 typedef struct own_result {
@@ -44,8 +44,8 @@ static trial_kind kind_of(int k)
     static const himc_pipeline controller[] = {HIMC_PIPELINE_ID, HIMC_PIPELINE_HIMC};
     if (k == 0)
         return (trial_kind){.controller = HIMC_PIPELINE_IK};
-    return (trial_kind){.controller = controller[(k - 1) / TRIAL_LAWS],
-                        .law = (himc_law)((k - 1) % TRIAL_LAWS)};
+    return (trial_kind){.controller = controller[(k - 1) / HIMC_LAW_COUNT],
+                        .law = (himc_law)((k - 1) % HIMC_LAW_COUNT)};
 }
 
 /// The first of the names, separated by commas, that the take has, in `name`; NULL if it has none.

@@ -25,7 +25,6 @@ typedef struct trial_result {
     double played;                                   ///< number of these struck within 5 ms, 2 cm
 } trial_result;
 
-#define TRIAL_LAWS HIMC_LAWS
 #define TRIAL_SPOTS 3
 /// Trials with numbers that differ by this play the same sequence with different disturbances.
 #define TRIAL_SEQUENCES (HIMC_MOCAP_PLAYERS * TRIAL_SPOTS)

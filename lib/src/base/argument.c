@@ -220,7 +220,8 @@ void himc_argument_describe(const himc_argument *argument, char *text, size_t si
     case HIMC_ARGUMENT_WORD: snprintf(text, size, "%s", words); break;
     case HIMC_ARGUMENT_NAME:
         snprintf(text, size,
-                 "%s: up to %d letters and digits, no number, no spot, no command of the performer",
+                 "%s: up to %d letters and digits, no number, no spot, not `dead` of strokes, "
+                 "no command of the performer",
                  argument->contexts ? "a name, without a folder" : "a drum's name",
                  HIMC_NAME_SIZE - 1);
         break;

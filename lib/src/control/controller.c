@@ -13,6 +13,9 @@
 #define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over the table of servos
 #define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
 
+#define LAW(ID, name, word, lands) {himc_law_##name, lands},
+const himc_law_row himc_laws[HIMC_LAW_COUNT] = {HIMC_LAWS(LAW)};
+
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_reference *reference,
                              himc_vec3 torque[HIMC_JOINTS])

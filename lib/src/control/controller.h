@@ -5,6 +5,7 @@
 #define HIMC_CONTROLLER_H
 
 #include "himc/body.h"
+#include "himc/command_rows.h"
 #include "body/posture.h"
 
 /// In the order of the words of `mode`.
@@ -14,13 +15,8 @@ typedef enum himc_pipeline {
     HIMC_PIPELINE_IK    ///< inverse kinematics alone, no dynamics (pipeline 1)
 } himc_pipeline;
 
-/// In the order of the words of `law`.
-typedef enum himc_law {
-    HIMC_LAW_PRINTED,         ///< tau = ks (qt - q) - kd q' (2012 paper, equation 2)
-    HIMC_LAW_FEEDFORWARD,     ///< gravity added, and kd (qt' - q') in place of -kd q'
-    HIMC_LAW_COMPUTED_TORQUE, ///< desired accelerations, torques by inverse dynamics; the default
-    HIMC_LAWS                 ///< number of laws
-} himc_law;
+#define HIMC_LAW_ID(ID, name, word, lands) HIMC_LAW_##ID,
+typedef enum himc_law { HIMC_LAWS(HIMC_LAW_ID) HIMC_LAW_COUNT } himc_law;
 
 /// Stiffness and damping of a joint's servo about the child's axes x, y, z.
 typedef struct himc_gain {

@@ -1,8 +1,8 @@
 /// law.h: the laws of control, inverse dynamics: the torques for the tracking errors of the joints.
 ///
-/// A law is a file with its function and a row in law.c; its word stands in the row of `law` in
-/// himc/command_rows.h. While a stick touches the head each law gives it the hand's acceleration
-/// along the normal (grip.h), none in a stroke: the physics makes the rebound.
+/// A law is a file with its function himc_law_NAME and a row of HIMC_LAWS in himc/command_rows.h.
+/// While a stick touches the head each law gives it the hand's acceleration along the normal
+/// (grip.h), none in a stroke: the physics makes the rebound.
 #ifndef HIMC_LAW_H
 #define HIMC_LAW_H
 
@@ -23,14 +23,12 @@ typedef struct law_input {
 typedef void law_torques(const law_input *in, himc_vec3 torque[HIMC_JOINTS]);
 
 typedef struct himc_law_row {
-    const char *word;     ///< of the command `law`
     law_torques *torques; ///< HIMC_RT
     bool lands_exactly;   ///< tips lag so little that a drift before a touch can be planned away
 } himc_law_row;
 
-/// In the order of himc_law.
-extern const himc_law_row himc_laws[HIMC_LAWS];
-
-law_torques himc_law_printed, himc_law_feedforward, himc_law_computed_torque;
+extern const himc_law_row himc_laws[HIMC_LAW_COUNT];
+#define HIMC_LAW_TORQUES(ID, name, word, lands) law_torques himc_law_##name;
+HIMC_LAWS(HIMC_LAW_TORQUES)
 
 #endif

@@ -334,15 +334,13 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
 
 static bool do_shape(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    enum { ROUND, RECTANGLE, FROM_FILE };
-    static const himc_kind *const kinds[] = {&himc_kind_round, &himc_kind_rectangle,
-                                             &himc_kind_grid};
+#define KIND(name, form) &himc_kind_##name,
+#define LISTED(name, form) form ", "
+    static const himc_kind *const kinds[] = {HIMC_KINDS(KIND) KIND(grid, "FILE")};
     himc_shape shape = {.kind = kinds[c->form]};
-    if (c->form == RECTANGLE) {
-        shape.length = number(c, 1);
-        shape.width = number(c, 2);
-    }
-    if (c->form != FROM_FILE)
+    if (shape.kind->read)
+        shape.kind->read(c, &shape);
+    if (shape.kind->name)
         return replace_shape(s, shape, error);
     const char *file = c->atom[0].symbol;
     shape.grid = himc_grid_load(file, error);
@@ -351,8 +349,7 @@ static bool do_shape(himc_drum_settings *s, const himc_command *c, himc_error *e
     if (strpbrk(file, "./\\"))
         return himc_error_prefix(error, "shape");
     // the word of a misspelt outline looks like no file's name
-    return himc_error_set(error, "shape: %.80s, expected circle, rectangle LENGTH WIDTH, or a file",
-                          file);
+    return himc_error_set(error, "shape: %.80s, expected " HIMC_KINDS(LISTED) "or a file", file);
 }
 
 static bool do_gain(himc_drum_settings *s, const himc_command *c, himc_error *error)

@@ -1,6 +1,5 @@
-/// kind.h: a kind of instrument is one file with a table of functions: round.c, rectangle.c,
-/// grid_kind.c. Modes, pickups and models ask the kind of their shape; drum_command.c alone lists
-/// the kinds, as words, and a new drum is round.
+/// kind.h: a kind of instrument is one file with a table of functions, himc_kind_NAME, and a row of
+/// HIMC_KINDS in himc/command_rows.h. Modes, pickups and models ask the kind of their shape.
 ///
 /// Whatever bends is tuned like a membrane: a mode has z, a pure number, and sounds at z/(2 pi
 /// radius) sqrt(T/sigma). Force and displacement use the same shapes, so energy never grows.
@@ -8,6 +7,7 @@
 #define HIMC_KIND_H
 
 #include "head/grid.h"
+#include "himc/command.h"
 #include "himc/membrane.h"
 
 typedef struct himc_kind himc_kind;
@@ -37,6 +37,8 @@ struct himc_kind {
     bool air;         ///< it has pairs of modes, which air, kettle and uneven lugs act on
     int usual;        ///< listed modes of HIMC_MODES_AUTO, or as many as there are
 
+    /// Sets the sides from the atoms of `shape`. NULL: it has none.
+    void (*read)(const himc_command *command, himc_shape *shape);
     /// Sets what the shape itself says of a head: size, material. NULL: nothing.
     void (*fit)(const himc_shape *shape, himc_head *head);
     /// Sets sides and spots of the surface that is struck, of the radius that it has. NULL: a disc
@@ -72,8 +74,8 @@ struct himc_kind {
                       double *odd);
 };
 
-extern const himc_kind himc_kind_round;     ///< by Bessel functions; the only one with air
-extern const himc_kind himc_kind_rectangle; ///< by sines
-extern const himc_kind himc_kind_grid;      ///< any outline: masses and springs from a file
+#define HIMC_KIND_TABLE(name, form) extern const himc_kind himc_kind_##name;
+HIMC_KINDS(HIMC_KIND_TABLE)
+extern const himc_kind himc_kind_grid; ///< any outline: masses and springs from a file
 
 #endif

@@ -81,6 +81,12 @@ static void shapes(const himc_modes *modes, double radius, double x, double y, d
     }
 }
 
+static void read(const himc_command *command, himc_shape *shape)
+{
+    shape->length = command->atom[1].number;
+    shape->width = command->atom[2].number;
+}
+
 static void fit(const himc_shape *shape, himc_head *head)
 {
     head->radius = 0.5 * hypot(shape->length, shape->width);
@@ -122,6 +128,7 @@ static double patch(const himc_head *head, double x, double y, double b)
 
 const himc_kind himc_kind_rectangle = {.name = "rectangle",
                                        .usual = HIMC_USUAL_MODES,
+                                       .read = read,
                                        .fit = fit,
                                        .surface = surface,
                                        .principal = principal,

@@ -83,12 +83,18 @@
 #define BREAK_OFF 5.0           // a stroke broken off with more acceleration is halted (m/s^2)
 #define HOME_WAIT 0.5           // a wait at home lasts this long at least (s)
 
-/// A tip's way leads through the body if it comes so near to its axis, from far and to far (m); it
-/// then goes by a point in front, with so much of its mean speed. Chosen: no arm folds up so much;
-/// the mallet in front of the chest.
-#define THROUGH_BODY 0.19
-#define BESIDE_BODY 0.45
-#define PASSING_SPEED 1.6
+/// A long way bows out round the body, so that it comes no nearer to its axis, the world's z, than
+/// this or the nearer end (m): an arm that is folded up whips its elbow. Chosen: farther out the
+/// elbows are hardly slower, and the hands meet more often.
+#define ROUND_BODY 0.62
+#define ROUND_BODY_STRAIGHT 0.45 // of a way that does not bow out as far as it could
+#define BOWS_FROM 0.3            // shorter ways are straight (m) ...
+#define BOWS_MORE 0.4            // ... and ways so much longer bow out in full
+#define BOW_PULL 24.0            // of 64 u^3 (1 - u)^3 in its middle (bows / time^2)
+
+/// A far way takes all the time before the touch if it would be fast. Chosen: at most 3 m/s.
+#define FAR_WAY 0.35 // (m)
+#define FAST_WAY 1.6 // mean speed (m/s); a quintic's largest is 1.875 times that
 
 /// A unit's fall is so many quintics. Chosen: more than its shape has numbers (himc_unit.bend).
 #define UNIT_KNOTS 5
@@ -129,30 +135,35 @@ static void path_segment(stroke_plan *s, double t, himc_vec3 x)
     s->path = to;
 }
 
-/// If the straight way to x leads through the body, whose axis is the world's z: the first part of
-/// one round it, to the point beside the body that is nearest to the straight way.
-static void go_beside_body(stroke_plan *s, double t, himc_vec3 x)
+/// If the straight way to x leads near the body: the first half of one that bows out round it.
+static void go_round_body(stroke_plan *s, double t, himc_vec3 x)
 {
-    himc_vec3 from = s->path.x, way = himc_vec3_sub(x, from);
-    double square = way.x * way.x + way.y * way.y;
-    double share = square > 0 ? -(from.x * way.x + from.y * way.y) / square : 0;
+    himc_vec3 from = s->path.x, way = himc_vec3_sub(x, from), out = {1, 0, 0};
+    double length = hypot(way.x, way.y), T = t - s->path_end;
+    double share = length > 0 ? -(from.x * way.x + from.y * way.y) / (length * length) : 0;
     himc_vec3 beside = himc_vec3_madd(from, share, way);
-    double away = hypot(beside.x, beside.y);
-    bool far = fmin(hypot(from.x, from.y), hypot(x.x, x.y)) > BESIDE_BODY;
-    if (!(share > 0 && share < 1 && away < THROUGH_BODY && far))
+    double away = hypot(beside.x, beside.y), far = (length - BOWS_FROM) / BOWS_MORE;
+    double round = fmin(s->straight ? ROUND_BODY_STRAIGHT : ROUND_BODY,
+                        fmin(hypot(from.x, from.y), hypot(x.x, x.y)));
+    if (!(share > 0 && share < 1 && away < round && far > 0))
         return;
-    beside.x = away > 0 ? beside.x * BESIDE_BODY / away : BESIDE_BODY;
-    beside.y = away > 0 ? beside.y * BESIDE_BODY / away : 0;
-    double T = t - s->path_end, first = himc_vec3_length(himc_vec3_sub(beside, from));
-    double at = s->path_end + T * first / (first + himc_vec3_length(himc_vec3_sub(x, beside)));
-    himc_target passing = {.x = beside, .v = himc_vec3_scale(way, PASSING_SPEED / T)};
-    himc_spline_add(&s->plan->tangential_path, s->path_end, &s->path, at, &passing);
-    s->path_end = at;
-    s->path = passing;
+    far = fmin(far, 1);
+    double bow = far * far * (3 - 2 * far) * (round - away) * 4 * share * (1 - share);
+    if (away > 0)
+        out = himc_vec3_make(beside.x / away, beside.y / away, 0);
+    himc_target to = himc_target_at_rest(x);
+    himc_spline_segment straight = himc_spline_segment_make(s->path_end, &s->path, t, &to);
+    himc_target middle = himc_spline_segment_at(&straight, s->path_end + 0.5 * T);
+    middle.x = himc_vec3_madd(middle.x, bow, out);
+    middle.a = himc_vec3_madd(middle.a, -BOW_PULL * bow / (T * T), out);
+    himc_spline_add(&s->plan->tangential_path, s->path_end, &s->path, s->path_end + 0.5 * T,
+                    &middle);
+    s->path_end += 0.5 * T;
+    s->path = middle;
 }
 
 /// The tangential path to rest at x. A tip that is fast elsewhere and has time halts first: one
-/// long quintic would carry it far off. No way leads through the body.
+/// long quintic would carry it far off. Long ways lead round the body.
 static void path_to(stroke_plan *s, double t, himc_vec3 x)
 {
     double T = t - s->path_end;
@@ -167,7 +178,7 @@ static void path_to(stroke_plan *s, double t, himc_vec3 x)
         double halt = fmin(fmin(HALT_TIME, HALT_SHARE * T), 2 * HALT_WAY / speed);
         path_segment(s, s->path_end + halt, himc_vec3_madd(s->path.x, 0.5 * halt, s->path.v));
     }
-    go_beside_body(s, t, x);
+    go_round_body(s, t, x);
     path_segment(s, t, x);
 }
 
@@ -181,6 +192,7 @@ static void plan_finish(stroke_plan *s)
 /// still before the touch.
 static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, double begin)
 {
+    s->straight = goal->straight;
     if (s->plan->at_home)
         path_to(s, begin, s->path.x);
     double span = goal->time - s->path_end;
@@ -192,7 +204,8 @@ static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, 
     himc_vec3 behind = himc_vec3_madd(spot, depth, goal->back);
     double off = himc_vec3_length(himc_vec3_sub(s->path.x, spot));
     bool hurries = himc_move_time(off, HIMC_QUICK_MOVE) > back_at - s->path_end;
-    if ((span < STRAIGHT_TIME || hurries) && off > depth)
+    bool far = off > FAR_WAY && off > FAST_WAY * (back_at - s->path_end);
+    if ((span < STRAIGHT_TIME || hurries || far) && off > depth)
         back_at = s->path_end;
     if (back_at - s->path_end > IDLE_TIME) {
         path_to(s, s->path_end + IDLE_ARRIVAL,

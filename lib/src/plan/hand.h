@@ -12,7 +12,8 @@ typedef struct himc_goal {
     himc_vec3 normal; ///< of the head, up
     himc_vec3 back;   ///< unit vector in the head's plane towards the player
     himc_gesture gesture;
-    double hold; ///< after the touch the tip bounces for so long, the hand at its height (s)
+    double hold;   ///< after the touch the tip bounces for so long, the hand at its height (s)
+    bool straight; ///< the way there bows out round the body no farther than it must
 } himc_goal;
 
 /// The tip's motion is the sum of three splines: along the head's plane, above it, and a lift over

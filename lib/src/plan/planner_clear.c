@@ -9,10 +9,10 @@
 ///
 /// Where the hands come near, changes are tried in a fixed order: the upper hand is lifted over the
 /// other one, or over and outwards, then the other hand is; if the body still meets itself, the
-/// spot of the next stroke is moved aside, or its hand waits, or the other hand plays it; where the
-/// body still meets itself it is left out, and a line says so. For these a trial is planned. Each
-/// change is walked through in the same way, from a moment before it begins. The best one is made,
-/// and the walk goes on through it.
+/// spot of the next stroke is moved aside, or its hand waits or goes a straighter way, or the other
+/// hand plays it; where the body still meets itself it is left out, and a line says so. For these a
+/// trial is planned. Each change is walked through in the same way, from a moment before it begins.
+/// The best one is made, and the walk goes on through it.
 ///
 /// All of this is work that is counted in postures of the body and paid for by the time that passes
 /// (himc_planner_think), so no step carries more than a few of them, and the result does not depend
@@ -67,10 +67,10 @@
 #define LIFT_TRIES (LIFTS * WAYS)
 
 /// What is tried with a stroke, in this order.
-static const planner_way stroke_way[] = {
-    {.aside = 0.03}, {.aside = 0.06}, {.waits = true}, {.other = true}, {.leaves = true}};
+static const planner_way stroke_way[] = {{.aside = 0.03},    {.aside = 0.06}, {.waits = true},
+                                         {.straight = true}, {.other = true}, {.leaves = true}};
 #define STROKE_WAYS (int)(sizeof stroke_way / sizeof stroke_way[0])
-#define KEPT_WAYS 3 ///< the first ones: its hand plays it
+#define KEPT_WAYS 4 ///< the first ones: its hand plays it
 
 /// A walk that begins at t (s).
 static planner_rehearsal begin_walk(double t)
@@ -347,10 +347,10 @@ static bool make_way(himc_planner *planner, himc_hand hand, int k)
                  himc_planner_reaches(planner, himc_other_hand(hand), s->written.spot);
     // left out is a leap to another drum, not a stroke of a roll, where a gap would be worse than
     // sticks that touch
-    bool leaves =
-        way.leaves && meets && (s == planner->hand[hand].planned || s[-1].drum != s->drum);
+    bool begins = s == planner->hand[hand].planned, leaps = !begins && s[-1].drum != s->drum;
+    bool leaves = way.leaves && meets && (begins || leaps);
     if ((tried->touch == way.touch && k < tried->tried) ||
-        !(way.aside != 0 || way.waits || other || leaves))
+        !(way.aside != 0 || way.waits || other || leaves || (way.straight && leaps)))
         return false;
     c->way = way;
     return true;

@@ -324,6 +324,7 @@ static plan_result plan_stroke(himc_planner *planner, timed_stroke *s)
     if (way->other && s->place.number >= 0)
         return MEETS;
     s->yields = 0;
+    s->goal.straight = way->straight;
     if (way->aside != 0) {
         himc_vec3 to = himc_planner_aside(planner, s, way->aside);
         s->yields = himc_vec3_length(himc_vec3_sub(to, s->goal.spot));

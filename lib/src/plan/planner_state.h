@@ -57,12 +57,13 @@ typedef struct timed_stroke {
 /// What is tried with a stroke when its hand cannot be lifted past the other one.
 typedef struct planner_way {
     himc_hand hand;
-    double touch; ///< written time of that stroke (s); of another stroke this does not hold
-    double aside; ///< its spot is moved to the left by so much, in the head's frame (m)
-    bool waits;   ///< the hand first waits over its last spot
-    bool other;   ///< the other hand plays it
-    bool leaves;  ///< it is left out
-    int tried;    ///< so many ways
+    double touch;  ///< written time of that stroke (s); of another stroke this does not hold
+    double aside;  ///< its spot is moved to the left by so much, in the head's frame (m)
+    bool straight; ///< its way does not bow out round the body
+    bool waits;    ///< the hand first waits over its last spot
+    bool other;    ///< the other hand plays it
+    bool leaves;   ///< it is left out
+    int tried;     ///< so many ways
 } planner_way;
 
 /// A hand is moved by `way` (m) from `from` to `to` (s), not at all before `begin` and after `end`;

@@ -34,6 +34,7 @@ typedef struct stroke_plan {
     double path_end;     ///< the tangential path is planned to here (s) ...
     himc_target path;    ///< ... and has this state there
     double approach;     ///< time to come from far away (s)
+    bool straight;       ///< the path does not bow out round the body
     double lift;         ///< the tip is so much higher, over the other hand (m)
 } stroke_plan;
 

@@ -176,7 +176,7 @@ static bool phases(himc_law law, double gain, excerpt *e, himc_error *error)
 static int find_law(const char *name)
 {
     trial_kind kind = {HIMC_LEGATO, HIMC_PIPELINE_ID, HIMC_LAW_PRINTED};
-    for (int law = 0; law < TRIAL_LAWS; law++) {
+    for (int law = 0; law < HIMC_LAW_COUNT; law++) {
         kind.law = (himc_law)law;
         if (!strcmp(name, trial_law_name(&kind).text))
             return law;
