@@ -6,9 +6,10 @@
 /// silently, so the state is checked where it is set and after each step; it aborts for an invalid
 /// mass, so the skeleton is checked before. The frame of an ODE body is its segment's, moved to the
 /// centre of mass, as ODE requires. A fixed pelvis is ODE's world (body 0), so the trunk and each
-/// leg are separate islands and ODE solves three small systems; one that is free is one body more. dWorldStep is deterministic to the bit
-/// (QuickStep draws random numbers). Legs at rest keep their state to the bit until a force on them
-/// changes: the pelvis is fixed, so nothing else moves them.
+/// leg are separate islands and ODE solves three small systems; one that is free is one body more.
+/// dWorldStep is deterministic to the bit (QuickStep draws random numbers). Legs at rest,
+/// under a fixed pelvis, keep their state to the bit until a force on them changes: nothing else
+/// moves them.
 #include "body/character.h"
 
 #include <ode/ode.h>

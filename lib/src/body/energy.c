@@ -18,7 +18,7 @@
 ///
 /// The world holds the pelvis with the change of momentum less the weights and the contacts,
 ///     h F = sum of m (v+ - v - h g) - h sum of f
-/// (a pelvis that is free is held by seat and floor: contacts that are supports are not subtracted),
+/// (seat and floor hold one that is free: contacts that support it are not subtracted),
 /// and, about the midpoint of the hip joints, with the moments of these and each segment's
 /// I (w+ - w) less h times its gyroscopic moment. x+ = x + h v+, so the sums of h F are exact. A
 /// single F is not: steps of 4 and 5 samples in turn close gaps by turns faster and slower.

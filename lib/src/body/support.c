@@ -2,8 +2,8 @@
 /// (Hunt & Crossley 1975), never less than 0. Seat and soles are three patches that hold or slip
 /// each as a whole, as flesh and leather do: friction is a spring to where each point has touched,
 /// in proportion to its pressure, with damping, up to the coefficient of friction times the
-/// pressure of all; then the anchors come along. A spring, not a friction of speed, and not point by
-/// point: so that nobody creeps off his stool within half an hour.
+/// pressure of all; then the anchors come along. A spring, not a friction of speed, and not
+/// point by point: so that nobody creeps off his stool within half an hour.
 #include "body/support.h"
 
 #include "body/dynamics.h"

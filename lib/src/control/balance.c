@@ -4,8 +4,9 @@
 /// W0 the wrench that they need while the pelvis does not accelerate and F the wrench of seat and
 /// floor now, the six equations of the whole body,
 ///     F = W0 + I a,   I: inertia of the body as if rigid,
-/// give the pelvis' acceleration a, and inverse dynamics with a gives torques: so arms and tips move
-/// as wanted however the pelvis sways. The supports' own torques at the joints, J' f, are taken off.
+/// give the pelvis' acceleration a, and inverse dynamics with a gives torques: so arms and tips
+/// move as wanted however the pelvis sways. The supports' torques at the joints, J' f, are taken
+/// off.
 ///
 /// So seat and floor carry what they can, within their friction, and no solver asks them for more:
 /// what they do not carry, the pelvis sways by. The legs' joints have soft servos.
