@@ -21,7 +21,7 @@ printf 'stroke 1 right accent f;\nstroke 2 left tenuto mf;\n' >piece.txt
 
 "$himc" render piece.txt -o a.wav --motion a.csv --columns work,energy,torques,rates,powers --quiet >out 2>err
 check test_quiet_leaves_one_object [ "$?$(cat err)$(wc -l <out)" = 01 ]
-check test_columns_are_those_asked_for [ "$(head -n 1 a.csv | tr ',' '\n' | grep -c -e _work_j -e _torque_ -e _rate_ -e _power_w)" = $((19 + 2 + 1 + 57 + 57 + 19)) ]
+check test_columns_are_those_asked_for [ "$(head -n 1 a.csv | tr ',' '\n' | grep -c -e _work_j -e _torque_ -e _rate_ -e _power_w)" = $((19 + 2 + 1 + 1 + 57 + 57 + 19)) ]
 # kinetic + potential = what they were + works, in every row
 check test_energy_balance_closes_in_the_table [ "$(awk -F, '
     NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ /_work_j$|^placed_j|^numerical_j|_contact_work_j|^push_work_j/) work[i]
