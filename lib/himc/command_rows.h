@@ -44,7 +44,9 @@
 #define HIMC_ROW_ROLL "single|double|press"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc|sound|errors"
 
-// the laws of control (lib/src/control/law.h) with their words
+// The laws of control (lib/src/control/law.h) with their words: printed, tau = ks (qt - q) - kd q'
+// (2012 paper, equation 2); feedforward, gravity added, and kd (qt' - q') in place of -kd q';
+// computed-torque, desired accelerations, torques by inverse dynamics; the default
 #define HIMC_LAWS(LAW)                                  \
     LAW(PRINTED, printed, "printed", false)             \
     LAW(FEEDFORWARD, feedforward, "feedforward", false) \

@@ -198,7 +198,8 @@ typedef struct himc_motion_row {
     himc_vec3 push_at[HIMC_SEGMENTS];      ///< ... and where it acts (m)
     double null_space[HIMC_HANDS]; ///< share of the arm's squared joint rates that moves no tip
     double co_contraction[HIMC_JOINTS]; ///< torque over the joint's strength; NaN in `ik`
-    himc_vec3 root_force;  ///< of the world on the pelvis, mean since the last row (N); NaN in `ik`
+    himc_vec3 root_force;  ///< of the world on a fixed pelvis, or of seat and floor on the body,
+                           ///< mean since the last row (N); NaN in `ik`
     himc_vec3 root_moment; ///< the same about the midpoint of the hip joints (N m); NaN in `ik`
     himc_vec3 root_center; ///< of pressure on the plane of the seat (m); NaN if nothing presses
     double root_friction;  ///< horizontal over vertical force; NaN if nothing presses

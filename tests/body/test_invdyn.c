@@ -295,6 +295,37 @@ static void test_effective_mass_is_force_over_tip_acceleration(void)
     }
 }
 
+// the pelvis with six freedoms under a wrench: both ways, and what a tip weighs then
+static void test_a_free_pelvis_accelerates_as_inverse_dynamics_was_asked_for(void)
+{
+    skeleton.segment[HIMC_PELVIS].joint = HIMC_JOINT_FREE;
+    for (int n = 0; n < 1000; n++) {
+        himc_body_state s;
+        himc_articulation art;
+        himc_spatial root = {random_vector(50), random_vector(50)}, needed, back, pushed;
+        himc_vec3 relative[HIMC_JOINTS], torque[HIMC_JOINTS], joint[HIMC_JOINTS];
+        random_state(&s, 10);
+        s.spin[0] = random_vector(5);
+        random_accelerations(relative, 100);
+        himc_articulate(&skeleton, &s, &art);
+        himc_inverse_dynamics_of(&skeleton, &s, &art, relative, &root, torque, &needed);
+        himc_forward_dynamics_of(&skeleton, &s, &art, torque, NULL, &needed, joint, &back);
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0, distance(relative[j], joint[j]));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0, distance(root.angular, back.angular));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0, distance(root.linear, back.linear));
+        himc_hand hand = (himc_hand)(n % 2);
+        himc_vec3 normal = himc_vec3_unit(random_vector(1)), force[HIMC_HANDS] = {{0, 0, 0}};
+        force[hand] = himc_vec3_scale(normal, 10);
+        himc_vec3 before = himc_tip_acceleration(&skeleton, &s, hand, joint, &back);
+        himc_forward_dynamics_of(&skeleton, &s, &art, torque, force, &needed, joint, &pushed);
+        himc_vec3 after = himc_tip_acceleration(&skeleton, &s, hand, joint, &pushed);
+        double mass = himc_effective_mass(&skeleton, &s, &art, hand, normal);
+        double more = himc_vec3_dot(normal, himc_vec3_sub(after, before));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7 * mass, 10 / more, mass);
+    }
+}
+
 // 0.0271 kg for a planar arm; between the stick floating freely and the stick pinned at the grip
 static void test_pivoting_stick_of_45_g_weighs_27_g_at_its_tip(void)
 {
@@ -444,6 +475,7 @@ int main(void)
     RUN_TEST(test_a_carried_tip_accelerates_as_with_arms_that_do_not);
     RUN_TEST(test_an_articulation_spares_work_and_changes_no_torque);
     RUN_TEST(test_effective_mass_is_force_over_tip_acceleration);
+    RUN_TEST(test_a_free_pelvis_accelerates_as_inverse_dynamics_was_asked_for);
     RUN_TEST(test_pivoting_stick_of_45_g_weighs_27_g_at_its_tip);
     RUN_TEST(test_effective_mass_along_the_stick_is_much_larger);
     RUN_TEST(test_legs_at_rest_take_no_part_and_their_entries_hold);

@@ -90,7 +90,7 @@ himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *er
         return NULL;
     }
     c->skeleton = *skeleton;
-    c->first = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1;
+    c->first = himc_first_moving(skeleton);
     c->world = dWorldCreate();
     dWorldSetGravity(c->world, 0, 0, -HIMC_GRAVITY);
     dWorldSetERP(c->world, JOINT_ERP);

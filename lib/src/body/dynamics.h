@@ -14,6 +14,12 @@ HIMC_RT void himc_articulate_resisting(const himc_skeleton *skeleton, const himc
 
 #define HIMC_LEGS HIMC_LEFT_UPPER_LEG ///< segments 1 .. HIMC_LEGS - 1 are trunk, neck, head, arms
 
+/// The first segment that moves: the pelvis, 0, if it is free, else 1.
+static inline int himc_first_moving(const himc_skeleton *skeleton)
+{
+    return skeleton->segment[HIMC_PELVIS].joint == HIMC_JOINT_FREE ? 0 : 1;
+}
+
 /// himc_articulate without the legs: their entries stay, and they take no part.
 HIMC_RT void himc_articulate_upper(const himc_skeleton *skeleton, const himc_body_state *state,
                                    himc_articulation *articulation);

@@ -141,7 +141,7 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
 double himc_segments_kinetic(const himc_skeleton *skeleton, const segment_states *s)
 {
     double twice = 0;
-    for (int i = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = himc_first_moving(skeleton); i < HIMC_SEGMENTS; i++) {
         const himc_segment *segment = &skeleton->segment[i];
         himc_vec3 w = s->joints.spin[i];
         himc_vec3 l = himc_mat3_scale_along(&s->joints.rotation[i], segment->inertia, w);
@@ -154,7 +154,7 @@ double himc_segments_kinetic(const himc_skeleton *skeleton, const segment_states
 double himc_segments_potential(const himc_skeleton *skeleton, const segment_states *s)
 {
     double sum = 0;
-    for (int i = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1; i < HIMC_SEGMENTS; i++)
+    for (int i = himc_first_moving(skeleton); i < HIMC_SEGMENTS; i++)
         sum += skeleton->segment[i].mass * HIMC_GRAVITY * s->position[i].z;
     return sum;
 }

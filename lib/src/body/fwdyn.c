@@ -130,7 +130,7 @@ static void articulate(const himc_skeleton *skeleton, const himc_body_state *s, 
                        const himc_vec3 *resistance, himc_articulation *art)
 {
     block own[HIMC_SEGMENTS];
-    art->first = skeleton->segment[0].joint == HIMC_JOINT_FREE ? 0 : 1;
+    art->first = himc_first_moving(skeleton);
     art->end = end;
     art->resists = resistance;
     for (int i = art->first; i < end; i++)

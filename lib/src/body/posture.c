@@ -58,7 +58,6 @@
 #define FORESEEN_LONGEST 6.0 // after so long the trunk is at its goal (s)
 // Rest of the body. Chosen: looks at a head half a metre ahead, sits with the feet flat.
 #define LOOK_DOWN 0.22     // of neck and head together (rad)
-#define ANKLE_HEIGHT 0.075 // (m)
 #define KNEES_APART 0.45   // each, from straight ahead (rad)
 #define THIGH_LIMIT (-0.2) // cosine of the steepest thigh on a low seat: knees above the hips
 // The stool. Chosen: at 1.75 m a head at 0.85 m, and 0.1 m lower or higher, is played from the
@@ -88,7 +87,7 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     // the seat is high
     double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length;
     double drop = skeleton->segment[HIMC_PELVIS].origin.z -
-                  skeleton->segment[HIMC_LEFT_LOWER_LEG].length - ANKLE_HEIGHT;
+                  skeleton->segment[HIMC_LEFT_LOWER_LEG].length - HIMC_ANKLE_HEIGHT;
     double raise = acos(fmin(fmax(drop / thigh, THIGH_LIMIT), 1));
     for (int i = 0; i < HIMC_HANDS; i++) {
         double apart = i == HIMC_LEFT ? KNEES_APART : -KNEES_APART;

@@ -89,10 +89,14 @@ HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skele
 /// or as much higher or lower as its arms need; also the usual one if `lowest` is above `highest`.
 HIMC_RT double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest);
 
-/// Height of the stool's seat (m), below the hip joints. Chosen: 86 mm at 1.75 m, as it is drawn.
+/// Depth of the seat below the hip joints, of the body's height; chosen, as it is drawn.
+#define HIMC_SEAT_DEPTH (0.086 / 1.75)
+#define HIMC_ANKLE_HEIGHT 0.075 ///< of the ankle over the floor (m)
+
+/// Height of the stool's seat (m).
 static inline double himc_posture_stool(const himc_skeleton *body)
 {
-    return body->segment[HIMC_PELVIS].origin.z - 0.086 / 1.75 * body->height;
+    return body->segment[HIMC_PELVIS].origin.z - HIMC_SEAT_DEPTH * body->height;
 }
 
 /// The trunk posture for strokes at these points (m), one for each hand: turned towards their

@@ -19,20 +19,23 @@
 #define SEAT_DRAG 2400.0    // (N s/m)
 #define SOLE_HOLD 5e4       // (N/m)
 #define SOLE_DRAG 240.0     // (N s/m)
-#define LEAST_SHARE 0.1     // of sit bones and of thighs, whatever the balance
-#define LEAST_PRESSURE 1e-6 // (N)
+#define LEAST_SHARE 0.1     // of sit bones and of thighs, whatever the balance; chosen
+#define LEAST_PRESSURE 1e-6 // (N); chosen: nothing
 #define SOLE_BEHIND 0.055   // the ankle, of a sole (m)
 #define SOLE_AHEAD 0.15     // (m)
 #define SOLE_ASIDE 0.04     // (m)
-#define ANKLE_HEIGHT 0.075
-#define THIGH_DEPTH 0.075 // (m)
-// of the sit bones, from the midpoint of the hip joints (m)
-static const himc_vec3 sit_bone = {-0.02, 0.06, -0.086};
+#define THIGH_DEPTH 0.075   // its axis over the seat, at 1.75 m (m)
+// of the left sit bone, from the midpoint of the hip joints, at 1.75 m (m)
+#define BONE_BEHIND 0.02
+#define BONE_ASIDE 0.06
 static const double along_thigh[] = {0.3, 0.5}; // shares of its length
 
-static bool is_foot(int point)
+/// What carries: a share of the weight is theirs together.
+typedef enum carrier { BONES, THIGHS, SOLES, CARRIERS } carrier;
+
+static carrier carrier_of(int point)
 {
-    return point >= HIMC_SEAT_POINTS;
+    return point >= HIMC_SEAT_POINTS ? SOLES : point % (HIMC_SEAT_POINTS / 2) ? THIGHS : BONES;
 }
 
 static void place_points(himc_support *s, const himc_skeleton *skeleton)
@@ -41,9 +44,10 @@ static void place_points(himc_support *s, const himc_skeleton *skeleton)
     for (int side = 0; side < HIMC_HANDS; side++) {
         int thigh = HIMC_LEFT_UPPER_LEG + side, foot = HIMC_LEFT_FOOT + side;
         double left = side == HIMC_LEFT ? 1 : -1, scale = skeleton->height / 1.75;
-        himc_vec3 bone = himc_vec3_scale(sit_bone, scale);
-        s->point[n++] = (himc_support_point){.segment = HIMC_PELVIS,
-                                             .at = himc_vec3_make(bone.x, left * bone.y, bone.z)};
+        s->point[n++] = (himc_support_point){
+            .segment = HIMC_PELVIS,
+            .at = himc_vec3_make(-BONE_BEHIND * scale, left * BONE_ASIDE * scale,
+                                 -HIMC_SEAT_DEPTH * skeleton->height)};
         for (int k = 0; k < 2; k++)
             s->point[n++] = (himc_support_point){
                 .segment = thigh,
@@ -53,29 +57,20 @@ static void place_points(himc_support *s, const himc_skeleton *skeleton)
             s->point[HIMC_SEAT_POINTS + HIMC_SOLE_POINTS * side + k] = (himc_support_point){
                 .segment = foot,
                 .at = himc_vec3_make(k < 2 ? -SOLE_BEHIND : SOLE_AHEAD,
-                                     k % 2 ? SOLE_ASIDE : -SOLE_ASIDE, -ANKLE_HEIGHT)};
+                                     k % 2 ? SOLE_ASIDE : -SOLE_ASIDE, -HIMC_ANKLE_HEIGHT)};
     }
 }
 
-static double depth_under(double force, bool foot)
+// into seat or floor
+static double depth_under(double force, carrier by)
 {
-    return pow(force / (foot ? SOLE_STIFFNESS : SEAT_STIFFNESS), 2.0 / 3);
-}
-
-// mean lever ahead of the points first, first + step, ... end
-static double ahead(const himc_support *s, const int *point, int count)
-{
-    double sum = 0;
-    for (int k = 0; k < count; k++)
-        sum += s->point[point[k]].lever.x;
-    return sum / count;
+    return pow(force / (by == SOLES ? SOLE_STIFFNESS : SEAT_STIFFNESS), 2.0 / 3);
 }
 
 void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const himc_body_state *rest)
 {
-    static const int bones[] = {0, 3}, thighs[] = {1, 2, 4, 5};
-    static const int soles[] = {6, 7, 8, 9, 10, 11, 12, 13};
-    double mass = 0, center = 0, lowest = HUGE_VAL;
+    double mass = 0, center = 0, lowest = HUGE_VAL, ahead[CARRIERS] = {0}, share[CARRIERS];
+    int points[CARRIERS] = {0};
     place_points(s, skeleton);
     himc_support_press(s, skeleton, rest); // for the levers
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
@@ -84,21 +79,27 @@ void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const him
         center += skeleton->segment[i].mass * x;
     }
     center /= mass;
-    for (int i = HIMC_SEAT_POINTS; i < HIMC_SUPPORTS; i++)
-        lowest = fmin(lowest, rest->origin[0].z + s->point[i].lever.z);
-    // shares of soles, thighs and sit bones that balance about the axis from left to right
-    bool stand = lowest < 0.5 * ANKLE_HEIGHT; // else the feet hang
-    double bone = ahead(s, bones, 2), thigh = ahead(s, thighs, 4), sole = ahead(s, soles, 8);
-    double feet = stand ? FEET_SHARE : 0;
-    double under = (center - feet * sole - (1 - feet) * bone) / (thigh - bone);
-    under = fmin(fmax(under, LEAST_SHARE), 1 - feet - LEAST_SHARE);
     for (int i = 0; i < HIMC_SUPPORTS; i++) {
-        himc_support_point *p = &s->point[i];
-        double share = is_foot(i) ? feet / 8 : i % 3 ? under / 4 : (1 - feet - under) / 2;
-        double height = is_foot(i) ? lowest : rest->origin[0].z + p->lever.z;
-        p->plane = is_foot(i) && !stand
-                       ? 0
-                       : height + depth_under(share * mass * HIMC_GRAVITY, is_foot(i));
+        carrier by = carrier_of(i);
+        ahead[by] += s->point[i].lever.x;
+        points[by]++;
+        if (by == SOLES)
+            lowest = fmin(lowest, rest->origin[0].z + s->point[i].lever.z);
+    }
+    for (int by = 0; by < CARRIERS; by++)
+        ahead[by] /= points[by];
+    // shares that balance about the axis from left to right
+    bool hang = lowest >= 0.5 * HIMC_ANKLE_HEIGHT; // the feet
+    share[SOLES] = hang ? 0 : FEET_SHARE;
+    share[THIGHS] = (center - share[SOLES] * ahead[SOLES] - (1 - share[SOLES]) * ahead[BONES]) /
+                    (ahead[THIGHS] - ahead[BONES]);
+    share[THIGHS] = fmin(fmax(share[THIGHS], LEAST_SHARE), 1 - share[SOLES] - LEAST_SHARE);
+    share[BONES] = 1 - share[SOLES] - share[THIGHS];
+    for (int i = 0; i < HIMC_SUPPORTS; i++) {
+        carrier by = carrier_of(i);
+        double height = by == SOLES ? lowest : rest->origin[0].z + s->point[i].lever.z;
+        double force = share[by] / points[by] * mass * HIMC_GRAVITY;
+        s->point[i].plane = by == SOLES && hang ? 0 : height + depth_under(force, by);
     }
     himc_support_lift(s);
 }

@@ -32,7 +32,7 @@ HIMC_RT void himc_support_init(himc_support *support, const himc_skeleton *skele
 /// Forgets where the points touch: for a body that has been put elsewhere.
 HIMC_RT void himc_support_lift(himc_support *support);
 
-/// Finds places and forces of the points in this state.
+/// Finds places and forces of the points in this state, and where they slip to.
 HIMC_RT void himc_support_press(himc_support *support, const himc_skeleton *skeleton,
                                 const himc_body_state *state);
 

@@ -8,9 +8,10 @@
 #include "control/controller.h"
 #include "control/tracking_error.h"
 
+/// What holds the body; made anew in each step by himc_balance_feel, but for the acceleration.
 typedef struct himc_balance {
-    himc_spatial acceleration;   ///< of the pelvis, in the last step; zero at first
-    himc_spatial carried;        ///< wrench of all supports on the body, about the pelvis' origin
+    himc_spatial acceleration;   ///< of the pelvis in the last step (rad/s^2, m/s^2); 0 at first
+    himc_spatial carried;        ///< wrench of all supports, about the pelvis' origin (N m, N)
     himc_vec3 felt[HIMC_JOINTS]; ///< torques of the joints that act as the supports do (N m)
 } himc_balance;
 
@@ -31,10 +32,12 @@ HIMC_RT himc_spatial himc_balance_accelerate(
     const himc_articulation *articulation, const himc_vec3 torque[HIMC_JOINTS],
     const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS]);
 
-/// Relative accelerations of the legs' joints (rad/s^2) in place of `wanted`: a soft posture.
+/// Relative accelerations (rad/s^2) of hips, knees and ankles in place of `wanted`: a soft posture,
+/// whatever bandwidth and gains are.
 HIMC_RT void himc_balance_legs(const tracking_error *error, himc_vec3 wanted[HIMC_JOINTS]);
 
-/// The torques that make the relative accelerations `wanted` while the supports press as they do.
+/// The torques (world frame, N m) that make the relative accelerations `wanted` (rad/s^2) while the
+/// supports press as they do; keeps the pelvis' acceleration.
 HIMC_RT void himc_balance_torques(const himc_controller *controller, const himc_skeleton *skeleton,
                                   const himc_body_state *state, const himc_vec3 wanted[HIMC_JOINTS],
                                   himc_vec3 torque[HIMC_JOINTS]);

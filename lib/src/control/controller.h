@@ -15,6 +15,7 @@ typedef enum himc_pipeline {
     HIMC_PIPELINE_IK    ///< inverse kinematics alone, no dynamics (pipeline 1)
 } himc_pipeline;
 
+/// In the order of HIMC_LAWS, which says what each does.
 #define HIMC_LAW_ID(ID, name, word, lands) HIMC_LAW_##ID,
 typedef enum himc_law { HIMC_LAWS(HIMC_LAW_ID) HIMC_LAW_COUNT } himc_law;
 
