@@ -11,6 +11,7 @@ typedef struct seen {
     long rows;
     himc_vec3 begun, last;        // place of the pelvis (m)
     double moved, tilt;           // largest (m, rad)
+    double lowest, highest;       // of the pelvis (m)
     double feet, weight;          // sums of forces up (N)
     double friction;              // largest in a row
     double gap;                   // of the energy's balance, largest (J)
@@ -37,10 +38,13 @@ static void see(void *user, const himc_motion_row *row)
         s->begun = row->segment[HIMC_PELVIS];
         s->energy = energy;
         s->work = work;
+        s->lowest = s->highest = s->begun.z;
     }
     s->largest = fmax(s->largest, fabs(work - s->work));
     s->gap = fmax(s->gap, fabs(energy - s->energy - (work - s->work)));
     s->last = row->segment[HIMC_PELVIS];
+    s->lowest = fmin(s->lowest, s->last.z);
+    s->highest = fmax(s->highest, s->last.z);
     s->moved = fmax(s->moved, himc_vec3_length(himc_vec3_sub(s->last, s->begun)));
     s->tilt = fmax(s->tilt, himc_vec3_length(himc_quat_log(row->orientation[HIMC_PELVIS])));
     s->friction = fmax(s->friction, row->root_friction);
@@ -158,13 +162,37 @@ static void test_a_harder_push_moves_him_further(void)
     TEST_ASSERT_TRUE(much > 1.3 * little);
 }
 
+// a cushion, not a spring: a second after he was pulled up he rests
+static void test_he_does_not_bounce_on_his_seat(void)
+{
+    himc_performance *p = seated(NULL);
+    session_do(p, "push pelvis 0 0 500 0.1");
+    seen pushed = play(p, 1.2, NULL), after = play(p, 1.2, NULL);
+    TEST_ASSERT_TRUE(pushed.highest - pushed.lowest < 0.01);
+    TEST_ASSERT_TRUE(after.highest - after.lowest < 2e-5);
+    himc_performance_free(p);
+}
+
+static void test_muscles_hold_his_arms_and_he_keeps_his_seat(void)
+{
+    himc_performance *p = seated("strength human");
+    add_strokes(p, 24, "ff");
+    seen s = play(p, 14, NULL);
+    himc_performance_stats stats = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(0, stats.recoveries);
+    TEST_ASSERT_EQUAL_INT(24, stats.played);
+    TEST_ASSERT_TRUE(s.tilt < 0.1);
+    himc_performance_free(p);
+}
+
 static void test_a_fall_is_told_once_and_the_piece_goes_on(void)
 {
     himc_performance *p = seated(NULL);
     heard h = {.strike = NULL};
     add_strokes(p, 16, "mf");
     session_do(p, "at 2 push trunk 1000 0 0 1");
-    play(p, 6, &h);
+    seen s = play(p, 6, &h);
+    TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(s.last, s.begun)) < 0.1); // on his seat
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.all, "the player fell off the stool and was put back"),
                                  h.all);
     TEST_ASSERT_TRUE(himc_performance_measure(p).recoveries > 0);
@@ -231,6 +259,8 @@ int main(void)
     RUN_TEST(test_seat_and_floor_carry_him);
     RUN_TEST(test_a_push_at_the_chest_from_any_side_is_answered);
     RUN_TEST(test_a_harder_push_moves_him_further);
+    RUN_TEST(test_he_does_not_bounce_on_his_seat);
+    RUN_TEST(test_muscles_hold_his_arms_and_he_keeps_his_seat);
     RUN_TEST(test_a_fall_is_told_once_and_the_piece_goes_on);
     RUN_TEST(test_both_engines_move_him_alike);
     RUN_TEST(test_other_laws_and_modes_sit_too);
