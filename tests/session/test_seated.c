@@ -157,8 +157,8 @@ static void test_a_harder_push_moves_him_further(void)
 {
     int played;
     long fallen;
-    double little = pushed("push pelvis 100 0 0 0.1", &played, &fallen);
-    double much = pushed("push pelvis 200 0 0 0.1", &played, &fallen);
+    double little = pushed("push left-upper-leg 100 0 0 0.1", &played, &fallen);
+    double much = pushed("push left-upper-leg 200 0 0 0.1", &played, &fallen);
     TEST_ASSERT_TRUE(much > 1.3 * little);
 }
 
@@ -166,7 +166,7 @@ static void test_a_harder_push_moves_him_further(void)
 static void test_he_does_not_bounce_on_his_seat(void)
 {
     himc_performance *p = seated(NULL);
-    session_do(p, "push pelvis 0 0 500 0.1");
+    session_do(p, "push trunk 0 0 500 0.1");
     seen pushed = play(p, 1.2, NULL), after = play(p, 1.2, NULL);
     TEST_ASSERT_TRUE(pushed.highest - pushed.lowest < 0.01);
     TEST_ASSERT_TRUE(after.highest - after.lowest < 2e-5);

@@ -2,7 +2,7 @@
 ///
 /// The controller assumes the skeleton; the engine simulates the plant, which may be heavier. A
 /// push is a constant force on a point of a segment. It is not given to the controller, so it
-/// disturbs the motion. A pelvis that is held, and the body in `ik`, feel no push.
+/// disturbs the motion. `ik` has no forces, so pushes have no effect there.
 #include "performance/performance_body.h"
 #include "base/format.h"
 
@@ -280,8 +280,8 @@ himc_vec3 himc_body_pushed_at(const performance_body *b, int segment, double t)
 bool himc_body_simulate(performance_body *b, double t, double h)
 {
     world_contact contact[HIMC_SEGMENTS + HIMC_HANDS + HIMC_SUPPORTS];
-    int n = 0, first = b->controller.balance ? 0 : 1;
-    for (int i = HIMC_SEGMENTS - 1; t < b->push_end && i >= first; i--)
+    int n = 0;
+    for (int i = HIMC_SEGMENTS - 1; t < b->push_end && i > 0; i--)
         if (t < b->push[i].until)
             contact[n++] = (world_contact){.segment = i,
                                            .at = b->push[i].at,
@@ -371,9 +371,9 @@ bool himc_body_read_push(const himc_command *c, planned_push *out, himc_error *e
     *out = (planned_push){.force = {atom[1].number, atom[2].number, atom[3].number},
                           .seconds = atom[4].number,
                           .along = c->count > 5 ? atom[5].number : -1};
-    for (out->segment = HIMC_PELVIS; out->segment < HIMC_SEGMENTS; out->segment++)
+    for (out->segment = HIMC_PELVIS + 1; out->segment < HIMC_SEGMENTS; out->segment++)
         if (strcmp(atom[0].symbol, himc_segment_name(out->segment)) == 0)
             return true;
-    return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_PELVIS,
+    return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_PELVIS + 1,
                        HIMC_SEGMENTS, error);
 }
