@@ -56,7 +56,7 @@
     KIND(round, "circle") \
     KIND(rectangle, "rectangle LENGTH WIDTH")
 #define HIMC_ROW_KIND(name, form) form " | "
-#define HIMC_ROW_LAW(ID, name, word, lands) "|" word
+#define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
 // to the performer
 HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,

@@ -46,13 +46,32 @@ static void test_in_a_contact_torques_hold_but_for_a_share_of_the_strength(void)
     act(none, 2, torque);
     for (int i = 0; i < 70; i++)
         act(left, 300, torque);
-    // 7 ms of activation, 40 / 0.04 s, and 0.2 of co-contraction at the shoulder
+    // 7 ms of activation, 40 / 0.04 s, and 0.2 of co-contraction: the shoulder has the least
     double change = himc_vec3_length(himc_vec3_sub(torque[arm], himc_vec3_make(2, -1, 0)));
     TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.007 / 0.04 * 40 + 0.2 * 40, change);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.2, muscles.co_contraction[arm]);
     TEST_ASSERT_EQUAL_DOUBLE(300, torque[other].x);
     TEST_ASSERT_EQUAL_DOUBLE(300, torque[HIMC_LEFT_UPPER_LEG - 1].x);
-    TEST_ASSERT_TRUE(torque[HIMC_TRUNK - 1].x < 20);
+    TEST_ASSERT_EQUAL_DOUBLE(300, torque[HIMC_TRUNK - 1].x);
+}
+
+// what an elbow no longer gives against a shoulder would whirl the upper arm
+static void test_the_torques_of_an_arm_stay_together(void)
+{
+    himc_vec3 torque[HIMC_JOINTS];
+    int shoulder = himc_arm_joint(HIMC_LEFT, 0), elbow = himc_arm_joint(HIMC_LEFT, 1);
+    strength[elbow] = 10; // behind long before the shoulder
+    act(none, 20, torque);
+    for (int i = 0; i < 100; i++) {
+        for (int j = 0; j < HIMC_JOINTS; j++)
+            torque[j] = himc_vec3_make(0, j == elbow ? 40 : 20, 0);
+        himc_muscles_act(&muscles, left, strength, STEP, torque);
+        double done = (20 - torque[shoulder].x) / 20;
+        TEST_ASSERT_TRUE(done > 0 && done < 0.5);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20 - 20 * done, torque[elbow].x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, -10 + 30 * done, torque[shoulder].y);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, -10 + 50 * done, torque[elbow].y);
+    }
 }
 
 static void test_after_a_contact_the_law_has_its_torques_back_without_a_jump(void)
@@ -86,6 +105,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_without_a_contact_torques_are_those_of_the_law);
     RUN_TEST(test_in_a_contact_torques_hold_but_for_a_share_of_the_strength);
+    RUN_TEST(test_the_torques_of_an_arm_stay_together);
     RUN_TEST(test_after_a_contact_the_law_has_its_torques_back_without_a_jump);
     RUN_TEST(test_a_joint_without_a_strength_has_no_muscle);
     return UNITY_END();

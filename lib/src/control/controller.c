@@ -1,19 +1,24 @@
-/// controller.c: two stages. Tracking errors (tracking_error.c): for each joint the missing angle
+/// controller.c: three stages. Tracking errors (tracking_error.c): for each joint the missing angle
 /// and rate, and the acceleration fed forward. Law (law.h): the torque for them. Joint limits have
-/// priority over both (limit_torque.c).
+/// priority over both (limit_torque.c). Body: what strength and muscles give of it, and what trunk
+/// and legs then do (settle.c).
 #include "control/controller.h"
 
 #include "base/rotations.h"
 #include "body/dynamics.h"
 #include "control/law.h"
 #include "control/limit_torque.h"
+#include "control/muscle.h"
+#include "control/settle.h"
 #include "control/strength.h"
 #include "control/tracking_error.h"
+
+#include <string.h>
 
 #define PD_STIFFNESS 3.0           // chosen: the PD laws' frequencies over the table of servos
 #define USUAL_PHYSICS_RATE 10000.0 // of himc_performance_default (Hz)
 
-#define LAW(ID, name, word, lands) {himc_law_##name, lands},
+#define LAW(ID, name, word, accelerates) {himc_law_##name, accelerates},
 const himc_law_row himc_laws[HIMC_LAW_COUNT] = {HIMC_LAWS(LAW)};
 
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
@@ -31,8 +36,17 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     }
     himc_limits_bound_errors(c, &e);
     law_input in = {c, skeleton, s, reference, jacobian, &e};
-    himc_laws[c->config.law].torques(&in, torque);
+    const himc_law_row *law = &himc_laws[c->config.law];
+    himc_vec3 wanted[HIMC_JOINTS], asked[HIMC_JOINTS];
+    law->find(&in, law->accelerates ? wanted : asked);
+    if (law->accelerates)
+        himc_invert(c, skeleton, s, wanted, asked);
+    memcpy(torque, asked, sizeof asked);
     himc_strength_apply(c, skeleton, s, torque);
+    if (c->muscles && c->config.human_strength)
+        himc_muscles_act(c->muscles, reference->struck, c->config.strength, c->step, torque);
+    if (law->accelerates)
+        himc_settle(c, skeleton, s, wanted, asked, torque);
 }
 
 himc_controller_config himc_controller_config_default(void)

@@ -16,7 +16,7 @@ typedef enum himc_pipeline {
 } himc_pipeline;
 
 /// In the order of HIMC_LAWS, which says what each does.
-#define HIMC_LAW_ID(ID, name, word, lands) HIMC_LAW_##ID,
+#define HIMC_LAW_ID(ID, name, word, accelerates) HIMC_LAW_##ID,
 typedef enum himc_law { HIMC_LAWS(HIMC_LAW_ID) HIMC_LAW_COUNT } himc_law;
 
 /// Stiffness and damping of a joint's servo about the child's axes x, y, z.
@@ -63,6 +63,7 @@ typedef struct himc_controller {
     himc_saturation_counts *saturation; ///< borrowed, counted up at each step; may be NULL
     const himc_articulation *articulation; ///< borrowed, of this body in the state of the next
                                            ///< call; may be NULL
+    struct himc_muscles *muscles; ///< borrowed, act with human strength; may be NULL (default)
     struct himc_balance *balance; ///< borrowed, of a pelvis that is free, else NULL (default)
 } himc_controller;
 

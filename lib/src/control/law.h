@@ -1,4 +1,5 @@
-/// law.h: the laws of control, inverse dynamics: the torques for the tracking errors of the joints.
+/// law.h: the laws of control: torques, or accelerations for inverse dynamics, for the tracking
+/// errors of the joints.
 ///
 /// A law is a file with its function himc_law_NAME and a row of HIMC_LAWS in himc/command_rows.h.
 /// While a stick touches the head each law gives it the hand's acceleration along the normal
@@ -19,16 +20,19 @@ typedef struct law_input {
     tracking_error *error;             ///< may be changed
 } law_input;
 
-/// The torques of all joints (world frame, N m).
-typedef void law_torques(const law_input *in, himc_vec3 torque[HIMC_JOINTS]);
+/// For all joints (world frame), torques (N m) or the relative accelerations (rad/s^2) that torques
+/// are to make.
+typedef void law_function(const law_input *in, himc_vec3 out[HIMC_JOINTS]);
 
 typedef struct himc_law_row {
-    law_torques *torques; ///< HIMC_RT
-    bool lands_exactly;   ///< tips lag so little that a drift before a touch can be planned away
+    law_function *find; ///< HIMC_RT
+    /// it gives accelerations; then tips lag so little that a drift before a touch can be planned
+    /// away
+    bool accelerates;
 } himc_law_row;
 
 extern const himc_law_row himc_laws[HIMC_LAW_COUNT];
-#define HIMC_LAW_TORQUES(ID, name, word, lands) law_torques himc_law_##name;
-HIMC_LAWS(HIMC_LAW_TORQUES)
+#define HIMC_LAW_FUNCTION(ID, name, word, accelerates) law_function himc_law_##name;
+HIMC_LAWS(HIMC_LAW_FUNCTION)
 
 #endif

@@ -19,11 +19,11 @@ static void implicit_rates(double ks, double kd, double step, double rate[2])
     rate[1] = (kd + step * ks) / all;
 }
 
-void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS])
+void himc_law_computed_torque(const law_input *in, himc_vec3 wanted[HIMC_JOINTS])
 {
     const himc_controller *c = in->controller;
     tracking_error *e = in->error;
-    himc_vec3 wanted[HIMC_JOINTS], arm[HIMC_ARM_JOINTS];
+    himc_vec3 arm[HIMC_ARM_JOINTS];
     // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq; w^2 and 2 w are those of the bandwidth or,
     // where the user has set gains, those over the inertia
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -60,9 +60,4 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 torque[HIMC_JOINTS]
         himc_arm_scatter(arm, hand, wanted);
     }
     himc_limits_compliance(c, in->skeleton, in->state, in->jacobian, wanted);
-    if (c->balance)
-        himc_balance_torques(c, in->skeleton, in->state, wanted, torque);
-    else
-        himc_inverse_dynamics_of(in->skeleton, in->state, c->articulation, wanted, NULL, torque,
-                                 NULL);
 }

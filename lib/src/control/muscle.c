@@ -7,58 +7,66 @@
 /// the stiffness of muscles that pull on both sides of a joint, at once, but with a small share of
 /// the strength. After the separation that share grows until the law has its torques back. At all
 /// other times a muscle follows: a lag of the whole torque would make a servo of 20 Hz unstable.
+///
+/// The torques of an arm go together: where one joint is behind, all are by the same share. Else
+/// what the elbow no longer gives against the shoulder whirls the upper arm about its length, by
+/// 2500 degrees a second.
 #include "control/muscle.h"
 
 #define ACTIVATION 0.040 // to full strength (s); voluntary contractions take 40 to 100 ms
 #define RECOVERY 0.020   // after a contact (s); chosen: less is a jerk, more lets the tip go astray
-#define RECOVERED 4.0    // of the strength, which co-contraction then may have; chosen: all
-// co-contraction over strength at waist, neck and head and from shoulder to grip; chosen: slow
-// heavy joints are soft
-static const double trunk_share = 0.10, arm_share[HIMC_ARM_JOINTS] = {0.20, 0.25, 0.25, 0.25};
+#define RECOVERED 8.0    // of the strength, which co-contraction then may have; chosen: all
+// co-contraction over strength from shoulder to grip; chosen: slow heavy joints are soft
+static const double shares[HIMC_ARM_JOINTS] = {0.20, 0.25, 0.25, 0.25};
 
 void himc_muscles_rest(himc_muscles *m)
 {
     *m = (himc_muscles){.since = {HUGE_VAL, HUGE_VAL}};
 }
 
-static himc_vec3 bounded(himc_vec3 v, double most)
+// what a change of torque may be, over what it is; no strength: no bound
+static double over(double strength, double share, himc_vec3 missing)
 {
-    double length = himc_vec3_length(v);
-    return length > most ? himc_vec3_scale(v, most / length) : v;
+    return strength > 0 ? share * strength / himc_vec3_length(missing) : HUGE_VAL;
 }
 
-static void act(himc_muscles *m, int joint, double share, double strength, double h,
-                himc_vec3 *torque)
+static void hold(himc_muscles *m, himc_hand hand, double more, const double strength[HIMC_JOINTS],
+                 double h, himc_vec3 torque[HIMC_JOINTS])
 {
-    himc_vec3 *active = &m->active[joint], asked = *torque;
-    m->co_contraction[joint] = 0;
-    if (strength <= 0)
-        return;
-    himc_vec3 missing = himc_vec3_sub(asked, *active);
-    *active = himc_vec3_add(*active, bounded(missing, strength * h / ACTIVATION));
-    missing = bounded(himc_vec3_sub(asked, *active), share * strength);
-    *torque = himc_vec3_add(*active, missing);
-    m->co_contraction[joint] = himc_vec3_length(missing) / strength;
+    double rise = 1, share = 1;
+    himc_vec3 missing[HIMC_ARM_JOINTS];
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        missing[k] = himc_vec3_sub(torque[j], m->active[j]);
+        rise = fmin(rise, over(strength[j], h / ACTIVATION, missing[k]));
+    }
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        m->active[j] = himc_vec3_madd(m->active[j], strength[j] > 0 ? rise : 1, missing[k]);
+        missing[k] = himc_vec3_sub(torque[j], m->active[j]);
+        share = fmin(share, over(strength[j], shares[k] + more, missing[k]));
+    }
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        torque[j] = himc_vec3_madd(m->active[j], share, missing[k]);
+        m->co_contraction[j] =
+            strength[j] > 0 ? share * himc_vec3_length(missing[k]) / strength[j] : 0;
+    }
 }
 
 void himc_muscles_act(himc_muscles *m, const bool struck[HIMC_HANDS],
                       const double strength[HIMC_JOINTS], double h, himc_vec3 torque[HIMC_JOINTS])
 {
-    const int trunk = HIMC_LEFT_UPPER_ARM - 1; // joints before the arms'
-    double more[HIMC_HANDS];                   // of co-contraction than in a contact
-    bool slow[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_hand hand = (himc_hand)i;
         m->since[hand] = struck[hand] ? 0 : m->since[hand] + h;
         double u = m->since[hand] / RECOVERY;
-        slow[hand] = u < 1;
-        more[hand] = RECOVERED * u * u;
-    }
-    for (int j = m->first; j < HIMC_LEFT_UPPER_LEG - 1; j++) {
-        int hand = j < trunk ? more[HIMC_RIGHT] < more[HIMC_LEFT] : (j - trunk) % HIMC_HANDS;
-        double share = j < trunk ? trunk_share : arm_share[(j - trunk) / HIMC_HANDS];
-        if (slow[hand])
-            act(m, j, share + more[hand], strength[j], h, &torque[j]);
-        else
-            m->active[j] = torque[j], m->co_contraction[j] = 0;
+        if (u < 1)
+            hold(m, hand, RECOVERED * u * u, strength, h, torque);
+        for (int k = 0; u >= 1 && k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint(hand, k);
+            m->active[j] = torque[j];
+            m->co_contraction[j] = 0;
+        }
     }
 }

@@ -5,10 +5,8 @@
 
 #include "control/controller.h"
 
-/// Of the trunk and the arms; plain. After a stroke's contact it lasts until the muscles are back
-/// with the law.
+/// Of the arms; plain. After a stroke's contact it lasts until the muscles are back with the law.
 typedef struct himc_muscles {
-    int first; ///< joint that holds: the waist (0), or, over a pelvis that is free, the arms only
     double since[HIMC_HANDS];           ///< the end of a stroke's contact (s)
     himc_vec3 active[HIMC_JOINTS];      ///< world frame (N m)
     double co_contraction[HIMC_JOINTS]; ///< of the last step, over the strength

@@ -29,24 +29,31 @@ void himc_controller_set_human_strength(himc_controller_config *c, double mass)
         c->strength[j] = (j < 3 ? spine[j] : limb[(j - 3) / 2]) * mass / MEASURED_MASS;
 }
 
+bool himc_strength_bound(const himc_controller *c, const himc_skeleton *skeleton,
+                         const himc_body_state *s, int joint, himc_vec3 *torque)
+{
+    double asked = himc_vec3_length(*torque), strength = c->config.strength[joint];
+    if (strength <= 0 || asked <= 0)
+        return false;
+    // what a muscle of this strength has left at the joint's speed along the torque
+    double speed = himc_vec3_dot(himc_relative_spin(skeleton, s, joint), *torque) / asked;
+    double most = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
+    if (asked > most)
+        *torque = himc_vec3_scale(*torque, most / asked);
+    return asked > most;
+}
+
 void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton,
                          const himc_body_state *s, himc_vec3 torque[HIMC_JOINTS])
 {
     himc_saturation_counts *counts = c->saturation;
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        double square = himc_vec3_dot(torque[j], torque[j]), strength = c->config.strength[j];
-        if (counts && square > counts->torque[j] * counts->torque[j])
-            counts->torque[j] = sqrt(square);
-        if (strength <= 0 || square <= 0)
+        double asked = himc_vec3_length(torque[j]);
+        bool weak = himc_strength_bound(c, skeleton, s, j, &torque[j]);
+        if (!counts)
             continue;
-        // what a muscle of this strength has left at the joint's speed along the torque
-        double asked = sqrt(square);
-        double speed = himc_vec3_dot(himc_relative_spin(skeleton, s, j), torque[j]) / asked;
-        double most = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
-        if (asked > most)
-            torque[j] = himc_vec3_scale(torque[j], most / asked);
-        if (counts)
-            counts->weak[j] += asked > most;
+        counts->torque[j] = fmax(counts->torque[j], asked);
+        counts->weak[j] += weak;
     }
     if (counts)
         counts->steps++;

@@ -125,8 +125,8 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
         himc_support_init(&b->support, &b->plant, &state);
         b->balance = (himc_balance){.carried = {{0, 0, 0}, {0, 0, 0}}};
         b->controller.balance = &b->balance;
-        b->muscles.first = HIMC_LEFT_UPPER_ARM - 1;
     }
+    b->controller.muscles = &b->muscles;
     b->controller.saturation = &b->saturation;
     himc_character_use(b->character, s->engine);
 }
@@ -262,9 +262,6 @@ void himc_body_control(performance_body *b, const himc_reference *reference, dou
         himc_balance_feel(&b->balance, &b->support, &b->plant, &b->state);
     }
     himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
-    if (b->controller.config.human_strength)
-        himc_muscles_act(&b->muscles, reference->struck, b->controller.config.strength, h,
-                         b->torque);
 }
 
 himc_vec3 himc_body_pushed(const performance_body *b, int segment, double t)

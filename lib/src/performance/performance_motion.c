@@ -231,7 +231,7 @@ void himc_motion_correct(performance_motion *m, const performance_settings *s, h
                          double t, const himc_target *measured)
 {
     const hand_source *source = &m->source[hand];
-    if (himc_laws[s->control.law].lands_exactly && source->kind->correct &&
+    if (himc_laws[s->control.law].accelerates && source->kind->correct &&
         source->kind->correct(source->of, hand, t, measured))
         m->replan = true;
 }

@@ -1,0 +1,77 @@
+/// settle.c: the body knows what its arms give.
+///
+/// Inverse dynamics has trunk and legs carry what the arms are asked for. Arms that are too weak,
+/// or hold in a contact (muscle.c), give less: then a trunk that braces against what does not come
+/// is thrown about, a shoulder's 450 N m for a blow, and takes the tips and a seated pelvis along.
+/// So the arms' accelerations under their true torques are found, by the sweeps of fwdyn.c over an
+/// arm whose shoulder moves as wanted, and inverse dynamics is asked again with them. What the
+/// pelvis then does changes the arms' torques a little: two rounds leave a fiftieth of that.
+#include "control/settle.h"
+
+#include "body/dynamics.h"
+#include "control/balance.h"
+#include "control/strength.h"
+
+#include <string.h>
+
+#define ROUNDS 2
+
+void himc_invert(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
+                 const himc_vec3 wanted[HIMC_JOINTS], himc_vec3 torque[HIMC_JOINTS])
+{
+    if (c->balance)
+        himc_balance_torques(c, skeleton, s, wanted, torque);
+    else
+        himc_inverse_dynamics_of(skeleton, s, c->articulation, wanted, NULL, torque, NULL);
+}
+
+// adds what these torques at an arm's joints, and none elsewhere, make of its relative
+// accelerations while the shoulder has none
+static void accelerate_arm(const himc_articulation *art, himc_hand hand,
+                           const himc_vec3 more[HIMC_JOINTS], himc_vec3 relative[HIMC_JOINTS])
+{
+    himc_vec3 needed[HIMC_ARM_JOINTS], force = {0, 0, 0}, moment = {0, 0, 0};
+    for (int k = HIMC_ARM_JOINTS - 1; k >= 0; k--) {
+        int j = himc_arm_joint(hand, k), i = j + 1;
+        needed[k] = himc_vec3_sub(moment, more[j]);
+        force = himc_vec3_sub(force, himc_mat3_apply_transposed(&art->response[i], needed[k]));
+        moment = himc_vec3_add(more[j], himc_vec3_cross(art->lever[i], force));
+    }
+    himc_vec3 alpha = {0, 0, 0}, a = {0, 0, 0};
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k), i = j + 1;
+        himc_vec3 parent = alpha;
+        a = himc_vec3_add(a, himc_vec3_cross(parent, art->lever[i]));
+        alpha = himc_vec3_add(himc_symmetric_apply(&art->inverse[i], needed[k]),
+                              himc_mat3_apply(&art->response[i], a));
+        alpha = himc_vec3_scale(alpha, -1);
+        relative[j] = himc_vec3_add(relative[j], himc_vec3_sub(alpha, parent));
+    }
+}
+
+void himc_settle(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
+                 himc_vec3 wanted[HIMC_JOINTS], const himc_vec3 asked[HIMC_JOINTS],
+                 himc_vec3 given[HIMC_JOINTS])
+{
+    const int arms = HIMC_LEFT_UPPER_ARM - 1, end = HIMC_LEFT_UPPER_LEG - 1;
+    const himc_articulation *art = c->articulation;
+    himc_articulation own;
+    himc_vec3 more[HIMC_JOINTS], now[HIMC_JOINTS];
+    if (memcmp(&asked[arms], &given[arms], sizeof *given * (size_t)(end - arms)) == 0)
+        return;
+    if (!art)
+        himc_articulate_upper(skeleton, s, &own), art = &own;
+    memcpy(now, asked, sizeof now);
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int j = arms; j < end; j++)
+            more[j] = himc_vec3_sub(given[j], now[j]);
+        accelerate_arm(art, HIMC_LEFT, more, wanted);
+        accelerate_arm(art, HIMC_RIGHT, more, wanted);
+        himc_invert(c, skeleton, s, wanted, now);
+    }
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (j < arms || j >= end) {
+            given[j] = now[j];
+            himc_strength_bound(c, skeleton, s, j, &given[j]);
+        }
+}

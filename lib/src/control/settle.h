@@ -1,0 +1,20 @@
+/// settle.h: what trunk and legs do while the arms give other torques than were asked of them.
+#ifndef HIMC_SETTLE_H
+#define HIMC_SETTLE_H
+
+#include "control/controller.h"
+
+/// Inverse dynamics: the torques (world frame, N m) that make the relative accelerations `wanted`
+/// (rad/s^2), on a pelvis that is fixed or gives way.
+HIMC_RT void himc_invert(const himc_controller *controller, const himc_skeleton *skeleton,
+                         const himc_body_state *state, const himc_vec3 wanted[HIMC_JOINTS],
+                         himc_vec3 torque[HIMC_JOINTS]);
+
+/// himc_invert asked for `asked`, and the arms have the torques of `given`: those of trunk and legs
+/// that make the accelerations wanted of them all the same are put into `given`, within their
+/// strength. `wanted` becomes what the arms do.
+HIMC_RT void himc_settle(const himc_controller *controller, const himc_skeleton *skeleton,
+                         const himc_body_state *state, himc_vec3 wanted[HIMC_JOINTS],
+                         const himc_vec3 asked[HIMC_JOINTS], himc_vec3 given[HIMC_JOINTS]);
+
+#endif

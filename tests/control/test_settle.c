@@ -1,0 +1,132 @@
+/// test_settle.c: while arms give other torques than were asked of them, trunk and legs still move
+/// as wanted, on a fixed pelvis and on a free one; and arms that give what was asked change nothing.
+#include "body/dynamics.h"
+#include "body/posture.h"
+#include "control/balance.h"
+#include "control/settle.h"
+
+#include "unity.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static himc_skeleton skeleton;
+static himc_body_state state;
+static himc_articulation articulation;
+static himc_controller controller;
+static himc_balance balance;
+static himc_vec3 wanted[HIMC_JOINTS], asked[HIMC_JOINTS], given[HIMC_JOINTS];
+
+static himc_vec3 any(double size)
+{
+    double x[3];
+    for (int k = 0; k < 3; k++)
+        x[k] = size * (2.0 * rand() / RAND_MAX - 1);
+    return himc_vec3_make(x[0], x[1], x[2]);
+}
+
+static bool of_an_arm(int j)
+{
+    return j >= HIMC_LEFT_UPPER_ARM - 1 && j < HIMC_LEFT_UPPER_LEG - 1;
+}
+
+// a playing posture with any rates, and accelerations wanted of it
+static void prepare(bool free)
+{
+    himc_skeleton_config config = himc_skeleton_default();
+    himc_controller_config law = himc_controller_config_default();
+    himc_posture posture;
+    himc_pose pose;
+    himc_vec3 tip[HIMC_HANDS] = {{0.48, 0.05, 0.8675}, {0.48, -0.05, 0.8675}}, rate[HIMC_JOINTS];
+    himc_skeleton_init(&skeleton, &config, NULL);
+    skeleton.segment[HIMC_PELVIS].joint = free ? HIMC_JOINT_FREE : HIMC_JOINT_FIXED;
+    himc_posture_init(&posture, &skeleton, 0.85);
+    himc_posture_at(&posture, tip, &pose);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        rate[j] = any(3);
+        wanted[j] = any(30);
+    }
+    himc_pose_to_state(&skeleton, &pose, rate, &state);
+    himc_articulate(&skeleton, &state, &articulation);
+    himc_controller_init(&controller, &law, &skeleton, &state);
+    controller.articulation = &articulation;
+    balance = (himc_balance){.carried = {any(20), himc_vec3_make(10, -20, 700)}};
+    controller.balance = free ? &balance : NULL;
+    himc_invert(&controller, &skeleton, &state, wanted, asked);
+    memcpy(given, asked, sizeof given);
+}
+
+void setUp(void)
+{
+    srand(1);
+}
+void tearDown(void)
+{
+}
+
+// the largest miss of the accelerations wanted of trunk and legs (rad/s^2)
+static double trunk_and_legs_miss(void)
+{
+    himc_vec3 relative[HIMC_JOINTS];
+    double miss = 0;
+    himc_balance_accelerate(controller.balance, &skeleton, &state, &articulation, given, NULL,
+                            relative);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (!of_an_arm(j))
+            miss = fmax(miss, himc_vec3_length(himc_vec3_sub(relative[j], wanted[j])));
+    return miss;
+}
+
+static void test_trunk_and_legs_move_as_wanted_whatever_the_arms_give(void)
+{
+    for (int n = 0; n < 200; n++) {
+        prepare(n % 2);
+        for (int j = HIMC_LEFT_UPPER_ARM - 1; j < HIMC_LEFT_UPPER_LEG - 1; j++)
+            given[j] = himc_vec3_scale(asked[j], 0.3);
+        double unaware = trunk_and_legs_miss();
+        controller.articulation = n % 4 < 2 ? &articulation : NULL; // found where there is none
+        himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+        TEST_ASSERT_TRUE(unaware > 0.1);
+        TEST_ASSERT_TRUE(trunk_and_legs_miss() < (n % 2 ? 0.03 * unaware : 1e-9));
+        for (int j = HIMC_LEFT_UPPER_ARM - 1; j < HIMC_LEFT_UPPER_LEG - 1; j++)
+            TEST_ASSERT_EQUAL_DOUBLE(0.3 * asked[j].y, given[j].y);
+    }
+}
+
+static void test_the_arms_accelerations_become_those_of_their_torques(void)
+{
+    himc_vec3 relative[HIMC_JOINTS];
+    prepare(false);
+    given[himc_arm_joint(HIMC_RIGHT, 0)] = himc_vec3_make(0, 0, 0);
+    himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+    himc_forward_dynamics(&skeleton, &state, &articulation, given, NULL, relative);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9 * 1000, 0,
+                                  himc_vec3_length(himc_vec3_sub(relative[j], wanted[j])));
+}
+
+static void test_arms_that_give_what_was_asked_change_nothing(void)
+{
+    prepare(true);
+    himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+    TEST_ASSERT_EQUAL_MEMORY(asked, given, sizeof given);
+}
+
+static void test_a_waist_gives_no_more_than_its_strength(void)
+{
+    prepare(false);
+    controller.config.strength[HIMC_TRUNK - 1] = 5;
+    given[himc_arm_joint(HIMC_LEFT, 0)] = himc_vec3_make(0, 300, 0);
+    himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+    TEST_ASSERT_TRUE(himc_vec3_length(given[HIMC_TRUNK - 1]) < 5 + 1e-9);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_trunk_and_legs_move_as_wanted_whatever_the_arms_give);
+    RUN_TEST(test_the_arms_accelerations_become_those_of_their_torques);
+    RUN_TEST(test_arms_that_give_what_was_asked_change_nothing);
+    RUN_TEST(test_a_waist_gives_no_more_than_its_strength);
+    return UNITY_END();
+}
