@@ -3,7 +3,8 @@
 /// each as a whole, as flesh and leather do: friction is a spring to where each point has touched,
 /// in proportion to its pressure, with damping, up to the coefficient of friction times the
 /// pressure of all; then the anchors come along. A spring, not a friction of speed, and not
-/// point by point: so that nobody creeps off his stool within half an hour.
+/// point by point; and the cushion is hollow under each point: so that nobody creeps off his stool
+/// within half an hour.
 #include "body/support.h"
 
 #include "body/dynamics.h"
@@ -19,6 +20,7 @@
 #define SEAT_DRAG 2400.0    // (N s/m)
 #define SOLE_HOLD 5e4       // (N/m)
 #define SOLE_DRAG 240.0     // (N s/m)
+#define SEAT_HOLLOW 0.12    // radius of the cushion under each point (m); brings him back
 #define LEAST_SHARE 0.1     // of sit bones and of thighs, whatever the balance; chosen
 #define LEAST_PRESSURE 1e-6 // (N); chosen: nothing
 #define SOLE_BEHIND 0.055   // the ankle, of a sole (m)
@@ -100,6 +102,7 @@ void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const him
         double height = by == SOLES ? lowest : rest->origin[0].z + s->point[i].lever.z;
         double force = share[by] / points[by] * mass * HIMC_GRAVITY;
         s->point[i].plane = by == SOLES && hang ? 0 : height + depth_under(force, by);
+        s->point[i].home = himc_vec3_add(rest->origin[0], s->point[i].lever);
     }
     himc_support_lift(s);
 }
@@ -116,19 +119,21 @@ void himc_support_lift(himc_support *s)
 // leather, shoes on wood
 static const struct {
     int first, count;
-    double stiffness, hold, drag, friction;
-} patch[] = {{0, HIMC_SEAT_POINTS, SEAT_STIFFNESS, SEAT_HOLD, SEAT_DRAG, 0.6},
-             {HIMC_SEAT_POINTS, HIMC_SOLE_POINTS, SOLE_STIFFNESS, SOLE_HOLD, SOLE_DRAG, 0.8},
-             {HIMC_SEAT_POINTS + HIMC_SOLE_POINTS, HIMC_SOLE_POINTS, SOLE_STIFFNESS, SOLE_HOLD,
+    double stiffness, curvature, hold, drag, friction;
+} patch[] = {{0, HIMC_SEAT_POINTS, SEAT_STIFFNESS, 1 / SEAT_HOLLOW, SEAT_HOLD, SEAT_DRAG, 0.6},
+             {HIMC_SEAT_POINTS, HIMC_SOLE_POINTS, SOLE_STIFFNESS, 0, SOLE_HOLD, SOLE_DRAG, 0.8},
+             {HIMC_SEAT_POINTS + HIMC_SOLE_POINTS, HIMC_SOLE_POINTS, SOLE_STIFFNESS, 0, SOLE_HOLD,
               SOLE_DRAG, 0.8}};
 #define PATCHES ((int)(sizeof patch / sizeof *patch))
 
-static double press_down(himc_support_point *p, int k, double place, double velocity)
+// the pressure on a point, and on a hollow the force towards its bottom
+static double press_down(himc_support_point *p, int k, himc_vec3 place, double velocity)
 {
-    double depth = fmax(p->plane - place, 0);
-    p->force = himc_vec3_make(
-        0, 0, patch[k].stiffness * depth * sqrt(depth) * fmax(1 - DAMPING * velocity, 0));
-    return p->force.z;
+    double x = place.x - p->home.x, y = place.y - p->home.y, curvature = patch[k].curvature;
+    double depth = fmax(p->plane + 0.5 * curvature * (x * x + y * y) - place.z, 0);
+    double force = patch[k].stiffness * depth * sqrt(depth) * fmax(1 - DAMPING * velocity, 0);
+    p->force = himc_vec3_make(-force * curvature * x, -force * curvature * y, force);
+    return force;
 }
 
 // by which share of a horizontal force a patch holds less
@@ -145,9 +150,9 @@ static void press(himc_support_point *point, int k, const himc_vec3 *place,
 {
     double all = 0;
     bool touched = point->touching;
-    himc_vec3 held = {0, 0, 0}, sum = {0, 0, 0};
+    himc_vec3 held = {0, 0, 0}, sum = {0, 0, 0}, grip[HIMC_SUPPORTS];
     for (int i = 0; i < patch[k].count; i++)
-        all += press_down(&point[i], k, place[i].z, velocity[i].z);
+        all += press_down(&point[i], k, place[i], velocity[i].z);
     for (int i = 0; i < patch[k].count; i++) {
         himc_support_point *p = &point[i];
         double share = p->force.z / fmax(all, LEAST_PRESSURE);
@@ -164,15 +169,16 @@ static void press(himc_support_point *point, int k, const himc_vec3 *place,
         p->anchor.x -= slip.x;
         p->anchor.y -= slip.y;
         himc_vec3 way = himc_vec3_sub(p->anchor, place[i]);
-        p->force.x = share * (patch[k].hold * way.x - patch[k].drag * velocity[i].x);
-        p->force.y = share * (patch[k].hold * way.y - patch[k].drag * velocity[i].y);
-        sum = himc_vec3_add(sum, p->force);
+        grip[i] = himc_vec3_scale(
+            himc_vec3_madd(himc_vec3_scale(way, patch[k].hold), -patch[k].drag, velocity[i]),
+            share);
+        sum = himc_vec3_add(sum, grip[i]);
     }
     double less = too_much(sum, most);
     for (int i = 0; i < patch[k].count; i++) {
         double share = point[i].force.z / fmax(all, LEAST_PRESSURE);
-        point[i].force.x -= share * less * sum.x;
-        point[i].force.y -= share * less * sum.y;
+        point[i].force.x += grip[i].x - share * less * sum.x;
+        point[i].force.y += grip[i].y - share * less * sum.y;
     }
 }
 
