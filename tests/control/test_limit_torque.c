@@ -4,6 +4,7 @@
 #include "control/controller.h"
 
 #include "control/limit_torque.h"
+#include "control/strength.h"
 
 #include "unity.h"
 
@@ -375,6 +376,40 @@ static void test_human_strength_grows_with_the_body_and_from_fingers_to_waist(vo
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.8 * waist, controller.config.strength[HIMC_TRUNK - 1]);
 }
 
+// only a man's strength has it, smoothly with the tip's distance, not along a contact's normal, and
+// in the hand's own arm and the trunk
+static void test_a_tip_astray_draws_on_a_reserve_that_is_counted(void)
+{
+    himc_vec3 torque[HIMC_JOINTS];
+    int left = himc_arm_joint(HIMC_LEFT, 0), right = himc_arm_joint(HIMC_RIGHT, 0);
+    double before = 1;
+    himc_controller_set_human_strength(&controller.config, 75);
+    aim(0.2);
+    for (double off = 0; off < 0.03; off += 1e-3) {
+        reference.tip[HIMC_LEFT].x = state.tip[HIMC_LEFT];
+        reference.tip[HIMC_LEFT].x.y += off;
+        double now = himc_strength_reserve(&reference, &state, HIMC_LEFT);
+        TEST_ASSERT_TRUE(off < 0.006 ? now == 1 : off > 0.0185 ? now == 8 : now - before < 1);
+        before = now;
+    }
+    reference.released[HIMC_LEFT] = true;
+    reference.normal[HIMC_LEFT] = himc_vec3_make(0, 1, 0);
+    TEST_ASSERT_EQUAL_DOUBLE(1, himc_strength_reserve(&reference, &state, HIMC_LEFT));
+    reference.released[HIMC_LEFT] = false;
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        state.spin[j + 1] = state.spin[0];
+        torque[j] = himc_vec3_make(0, 400, 0);
+    }
+    memset(&saturation, 0, sizeof saturation);
+    himc_strength_apply(&controller, &skeleton, &state, (double[]){8, 1}, torque);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 400, torque[left].y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 80, torque[right].y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 400, torque[HIMC_TRUNK - 1].y);
+    TEST_ASSERT_EQUAL_INT(1, saturation.weak[right]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 80, saturation.given[right]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 400, saturation.given[left]);
+}
+
 static void test_strokes_of_375_mm_are_within_human_strength(void)
 {
     himc_controller_set_human_strength(&controller.config, 75);
@@ -396,6 +431,7 @@ int main(void)
     RUN_TEST(test_limits_pump_no_energy_into_a_body_that_falls_into_them);
     RUN_TEST(test_strength_shortens_a_torque_keeps_its_direction_and_counts);
     RUN_TEST(test_human_strength_grows_with_the_body_and_from_fingers_to_waist);
+    RUN_TEST(test_a_tip_astray_draws_on_a_reserve_that_is_counted);
     RUN_TEST(test_strokes_of_375_mm_are_within_human_strength);
     return UNITY_END();
 }

@@ -324,7 +324,7 @@ static void test_strength_falls_with_the_speed_along_the_torque(void)
         state.spin[elbow + 1] = himc_vec3_madd(state.spin[skeleton.segment[elbow + 1].parent],
                                                speed[i], himc_vec3_make(0.6, 0, 0.8));
         torque[elbow] = himc_vec3_make(0.6 * 30, 0, 0.8 * 30);
-        himc_strength_apply(&controller, &skeleton, &state, torque);
+        himc_strength_apply(&controller, &skeleton, &state, (double[]){1, 1}, torque);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.6 * left[i], torque[elbow].x);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.8 * left[i], torque[elbow].z);
     }

@@ -15,6 +15,7 @@ static himc_body_state state;
 static himc_articulation articulation;
 static himc_controller controller;
 static himc_balance balance;
+static const double reserve[HIMC_HANDS] = {1, 1};
 static himc_vec3 wanted[HIMC_JOINTS], asked[HIMC_JOINTS], given[HIMC_JOINTS];
 
 static himc_vec3 any(double size)
@@ -85,7 +86,7 @@ static void test_trunk_and_legs_move_as_wanted_whatever_the_arms_give(void)
             given[j] = himc_vec3_scale(asked[j], 0.3);
         double unaware = trunk_and_legs_miss();
         controller.articulation = n % 4 < 2 ? &articulation : NULL; // found where there is none
-        himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+        himc_settle(&controller, &skeleton, &state, reserve, wanted, asked, given);
         TEST_ASSERT_TRUE(unaware > 0.1);
         TEST_ASSERT_TRUE(trunk_and_legs_miss() < (n % 2 ? 0.03 * unaware : 1e-9));
         for (int j = HIMC_LEFT_UPPER_ARM - 1; j < HIMC_LEFT_UPPER_LEG - 1; j++)
@@ -98,7 +99,7 @@ static void test_the_arms_accelerations_become_those_of_their_torques(void)
     himc_vec3 relative[HIMC_JOINTS];
     prepare(false);
     given[himc_arm_joint(HIMC_RIGHT, 0)] = himc_vec3_make(0, 0, 0);
-    himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+    himc_settle(&controller, &skeleton, &state, reserve, wanted, asked, given);
     himc_forward_dynamics(&skeleton, &state, &articulation, given, NULL, relative);
     for (int j = 0; j < HIMC_JOINTS; j++)
         TEST_ASSERT_DOUBLE_WITHIN(1e-9 * 1000, 0,
@@ -108,7 +109,7 @@ static void test_the_arms_accelerations_become_those_of_their_torques(void)
 static void test_arms_that_give_what_was_asked_change_nothing(void)
 {
     prepare(true);
-    himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+    himc_settle(&controller, &skeleton, &state, reserve, wanted, asked, given);
     TEST_ASSERT_EQUAL_MEMORY(asked, given, sizeof given);
 }
 
@@ -117,7 +118,7 @@ static void test_a_waist_gives_no_more_than_its_strength(void)
     prepare(false);
     controller.config.strength[HIMC_TRUNK - 1] = 5;
     given[himc_arm_joint(HIMC_LEFT, 0)] = himc_vec3_make(0, 300, 0);
-    himc_settle(&controller, &skeleton, &state, wanted, asked, given);
+    himc_settle(&controller, &skeleton, &state, reserve, wanted, asked, given);
     TEST_ASSERT_TRUE(himc_vec3_length(given[HIMC_TRUNK - 1]) < 5 + 1e-9);
 }
 

@@ -181,7 +181,9 @@ static void test_muscles_hold_his_arms_and_he_keeps_his_seat(void)
     himc_performance_stats stats = himc_performance_measure(p);
     TEST_ASSERT_EQUAL_INT(0, stats.recoveries);
     TEST_ASSERT_EQUAL_INT(24, stats.played);
-    TEST_ASSERT_TRUE(s.tilt < 0.1);
+    TEST_ASSERT_TRUE(s.moved < 0.010 && s.tilt < 0.05); // no more than without muscles
+    TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(s.last, s.begun)) < 0.003);
+    TEST_ASSERT_TRUE(stats.tip_rms < 1.5e-3);
     himc_performance_free(p);
 }
 

@@ -27,6 +27,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
 {
     tracking_error e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
+    double reserve[HIMC_HANDS] = {1, 1};
     himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian[hand]);
@@ -42,11 +43,13 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     if (law->accelerates)
         himc_invert(c, skeleton, s, wanted, asked);
     memcpy(torque, asked, sizeof asked);
-    himc_strength_apply(c, skeleton, s, torque);
+    for (int hand = 0; c->config.human_strength && hand < HIMC_HANDS; hand++)
+        reserve[hand] = himc_strength_reserve(reference, s, (himc_hand)hand);
+    himc_strength_apply(c, skeleton, s, reserve, torque);
     if (c->muscles && c->config.human_strength)
         himc_muscles_act(c->muscles, reference->struck, c->config.strength, c->step, torque);
     if (law->accelerates)
-        himc_settle(c, skeleton, s, wanted, asked, torque);
+        himc_settle(c, skeleton, s, reserve, wanted, asked, torque);
 }
 
 himc_controller_config himc_controller_config_default(void)

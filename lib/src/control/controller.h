@@ -32,6 +32,7 @@ typedef struct himc_saturation_counts {
     long hits[HIMC_JOINTS];       ///< number of times a joint reached its bounds
     double farthest[HIMC_JOINTS]; ///< largest angle beyond (rad)
     double torque[HIMC_JOINTS];   ///< largest asked for (N m)
+    double given[HIMC_JOINTS];    ///< largest given, with the reserve (N m)
     long weak[HIMC_JOINTS];       ///< steps with a torque above the strength
     long steps;
 } himc_saturation_counts;

@@ -15,7 +15,7 @@
 
 #define ACTIVATION 0.040 // to full strength (s); voluntary contractions take 40 to 100 ms
 #define RECOVERY 0.020   // after a contact (s); chosen: less is a jerk, more lets the tip go astray
-#define RECOVERED 8.0    // of the strength, which co-contraction then may have; chosen: all
+#define RECOVERED 8.0    // of the strength, which co-contraction then may have: all, and a reserve
 // co-contraction over strength from shoulder to grip; chosen: slow heavy joints are soft
 static const double shares[HIMC_ARM_JOINTS] = {0.20, 0.25, 0.25, 0.25};
 

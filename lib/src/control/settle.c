@@ -50,8 +50,8 @@ static void accelerate_arm(const himc_articulation *art, himc_hand hand,
 }
 
 void himc_settle(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
-                 himc_vec3 wanted[HIMC_JOINTS], const himc_vec3 asked[HIMC_JOINTS],
-                 himc_vec3 given[HIMC_JOINTS])
+                 const double reserve[HIMC_HANDS], himc_vec3 wanted[HIMC_JOINTS],
+                 const himc_vec3 asked[HIMC_JOINTS], himc_vec3 given[HIMC_JOINTS])
 {
     const int arms = HIMC_LEFT_UPPER_ARM - 1, end = HIMC_LEFT_UPPER_LEG - 1;
     const himc_articulation *art = c->articulation;
@@ -72,6 +72,6 @@ void himc_settle(const himc_controller *c, const himc_skeleton *skeleton, const 
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (j < arms || j >= end) {
             given[j] = now[j];
-            himc_strength_bound(c, skeleton, s, j, &given[j]);
+            himc_strength_bound(c, skeleton, s, j, reserve, &given[j]);
         }
 }

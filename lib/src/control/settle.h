@@ -14,7 +14,8 @@ HIMC_RT void himc_invert(const himc_controller *controller, const himc_skeleton 
 /// that make the accelerations wanted of them all the same are put into `given`, within their
 /// strength. `wanted` becomes what the arms do.
 HIMC_RT void himc_settle(const himc_controller *controller, const himc_skeleton *skeleton,
-                         const himc_body_state *state, himc_vec3 wanted[HIMC_JOINTS],
-                         const himc_vec3 asked[HIMC_JOINTS], himc_vec3 given[HIMC_JOINTS]);
+                         const himc_body_state *state, const double reserve[HIMC_HANDS],
+                         himc_vec3 wanted[HIMC_JOINTS], const himc_vec3 asked[HIMC_JOINTS],
+                         himc_vec3 given[HIMC_JOINTS]);
 
 #endif

@@ -4,12 +4,20 @@
 
 #include "control/controller.h"
 
-/// Shortens a joint's torque to its maximum at the joint's speed; false: it has not.
+/// Factor of a man's strength in a hand's arm, for the distance of its tip from its target; 1 where
+/// that is small.
+HIMC_RT double himc_strength_reserve(const himc_reference *reference, const himc_body_state *state,
+                                     himc_hand hand);
+
+/// Shortens a joint's torque to its maximum at the joint's speed, times the reserve of its arm;
+/// false: it was within that maximum.
 HIMC_RT bool himc_strength_bound(const himc_controller *controller, const himc_skeleton *skeleton,
-                                 const himc_body_state *state, int joint, himc_vec3 *torque);
+                                 const himc_body_state *state, int joint,
+                                 const double reserve[HIMC_HANDS], himc_vec3 *torque);
 
 /// Shortens all torques so, and counts in the controller's saturation counts.
 HIMC_RT void himc_strength_apply(const himc_controller *controller, const himc_skeleton *skeleton,
-                                 const himc_body_state *state, himc_vec3 torque[HIMC_JOINTS]);
+                                 const himc_body_state *state, const double reserve[HIMC_HANDS],
+                                 himc_vec3 torque[HIMC_JOINTS]);
 
 #endif

@@ -58,7 +58,7 @@
 #define LEAST_STICK 0.25    // of the body's stick; chosen: about its shaft without its ball
 // chosen: 1e-4 s / ln(1 / 0.9), a factor of 0.9 a step at 10 kHz: short and without a jump
 #define OFFSET_TIME 0.95e-3 // time constant of the offset after a contact (s)
-#define TAKEN_UP 0.6        // of a speed aside; chosen: tips then go astray least
+#define TAKEN_UP 0.75       // of a speed aside; chosen: tips then go astray least
 
 void himc_contacts_clear(performance_contacts *c)
 {

@@ -397,9 +397,12 @@ static void describe_body(const himc_performance *p, himc_line_sink to)
                       counts->hits[j], counts->farthest[j] * 180 / HIMC_PI);
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (counts->weak[j] > 0)
-            himc_tell(&to, "strength %s %g N m: too weak in %.3g %% of steps, %.1f N m asked",
+            himc_tell(&to,
+                      "strength %s %g N m: too weak in %.3g %% of steps, up to %.1f N m asked, "
+                      "%.1f given",
                       himc_joint_name(j), c->strength[j],
-                      100.0 * (double)counts->weak[j] / (double)counts->steps, counts->torque[j]);
+                      100.0 * (double)counts->weak[j] / (double)counts->steps, counts->torque[j],
+                      counts->given[j]);
 }
 
 typedef struct drum_sink {

@@ -167,7 +167,7 @@ static void measure_strength(void)
         himc_controller_init(&c, &control, &s, &state);
         for (int j = 0; j < HIMC_JOINTS; j++)
             torque[j] = himc_vec3_make(STRONG, STRONG, STRONG);
-        himc_strength_apply(&c, &s, &state, torque);
+        himc_strength_apply(&c, &s, &state, (double[]){1, 1}, torque);
         for (int j = 0; j < HIMC_JOINTS; j++) {
             double size = himc_vec3_length(torque[j]);
             free_torque += strong ? 0 : size / (STRONG * sqrt(3)) / HIMC_JOINTS;
