@@ -1,5 +1,6 @@
-/// test_settle.c: while arms give other torques than were asked of them, trunk and legs still move
-/// as wanted, on a fixed pelvis and on a free one; and arms that give what was asked change nothing.
+/// test_settle.c: while arms give other torques than were asked of them, trunk and legs move as
+/// wanted all the same, on a fixed pelvis and on a free one; and arms that give what was asked
+/// change nothing.
 #include "body/dynamics.h"
 #include "body/posture.h"
 #include "control/balance.h"
