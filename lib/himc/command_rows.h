@@ -140,8 +140,8 @@ HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB",
                  "over the default, or resets all; with one number, how loud all drums are heard")
 HIMC_SETTING_ROW(
     STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength, "", NOTHING,
-    "human: no joint has more than a man's torque, but for a reserve while its tip is astray, and "
-    "muscles hold in a contact; off: no limit, as published; or sets the largest torque of a joint")
+    "human: no joint has more than a man's torque (80 N m at the shoulder, of 75 kg), but for a "
+    "reserve, up to 8 times, while its tip is astray, and muscles hold in a contact; off: no limit, as published; or sets the largest torque of a joint")
 HIMC_SETTING_ROW(GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
                  "sets the grip: palms down (german), or thumbs up (french), and lets doubles, "
                  "buzzes and grace notes bounce; servo: a stroke has one contact, as published")

@@ -203,8 +203,9 @@ typedef struct himc_motion_row {
     himc_vec3 root_moment; ///< the same about the midpoint of the hip joints (N m); NaN in `ik`
     himc_vec3 root_center; ///< of pressure on the plane of the seat (m); NaN if nothing presses
     double root_friction;  ///< horizontal over vertical force; NaN if nothing presses
-    himc_vec3 seat_force;  ///< of the stool on a body that sits (N); 0 of one whose pelvis is fixed
-    himc_vec3 foot_force[HIMC_HANDS]; ///< of the floor on each foot (N); likewise
+    himc_vec3 seat_force;  ///< of the stool on a body that sits, mean since the last row (N); 0 of
+                           ///< one whose pelvis is fixed; NaN in `ik`
+    himc_vec3 foot_force[HIMC_HANDS]; ///< of the floor on the left and right foot, likewise
     himc_energy energy;               ///< (J)
 } himc_motion_row;
 
@@ -261,7 +262,7 @@ typedef struct himc_performance_stats {
     int hits;                     ///< accepted hits
     double hit_latency;           ///< of the last hit, from its command to its planned contact (s)
     double longest_latency;       ///< of all hits (s)
-    long recoveries;     ///< times a non-finite state was met and the last good one restored
+    long recoveries;     ///< times the body was put back: it fell, or its state was not finite
     long limit_hits;     ///< times a joint came to its bounds
     long events_lost;    ///< events dropped since the reset because the host did not take them
     long hearings;       ///< changes of the listener or the room

@@ -116,8 +116,14 @@ void himc_body_work_add(himc_body_work *work, const himc_skeleton *skeleton,
         s.velocity[i] = mean(before->velocity[i], after->velocity[i]);
     }
     for (int k = 0; k < forces->contacts; k++) {
-        himc_vec3 *f = &s.force[forces->contact[k].segment];
-        *f = himc_vec3_add(*f, forces->contact[k].force);
+        const world_contact *c = &forces->contact[k];
+        s.force[c->segment] = himc_vec3_add(s.force[c->segment], c->force);
+        if (c->supports) {
+            himc_vec3 *sum = c->segment >= HIMC_LEFT_FOOT
+                                 ? &work->foot_impulse[c->segment - HIMC_LEFT_FOOT]
+                                 : &work->seat_impulse;
+            *sum = himc_vec3_madd(*sum, h, c->force);
+        }
     }
     find_root(work, &s);
     for (int i = art->end - 1; i >= art->first; i--) {

@@ -7,15 +7,17 @@
 
 /// Since the sums began (J).
 typedef struct himc_body_work {
-    double joint[HIMC_JOINTS];  ///< of each joint's torque
-    double contact[HIMC_HANDS]; ///< of the forces on the tips, from their world_contact
-    double push;                ///< of the other contacts with the world, from theirs
-    double support;             ///< of seat and floor
-    double placed;              ///< energy given by putting the body elsewhere
-    double numerical;           ///< given by the integrator
-    himc_vec3 root_impulse;     ///< of the world on the pelvis (N s) ...
-    himc_vec3 root_angular;     ///< ... about the midpoint of the hip joints (N m s)
-    double root_seconds;        ///< in so long; whoever reads these three sets them to 0
+    double joint[HIMC_JOINTS];          ///< of each joint's torque
+    double contact[HIMC_HANDS];         ///< of the forces on the tips, from their world_contact
+    double push;                        ///< of the other contacts with the world, from theirs
+    double support;                     ///< of seat and floor
+    double placed;                      ///< energy given by putting the body elsewhere
+    double numerical;                   ///< given by the integrator
+    himc_vec3 root_impulse;             ///< of the world on the pelvis (N s) ...
+    himc_vec3 root_angular;             ///< ... about the midpoint of the hip joints (N m s)
+    himc_vec3 seat_impulse;             ///< of the stool on a body that sits (N s) ...
+    himc_vec3 foot_impulse[HIMC_HANDS]; ///< ... and of the floor on its left and right foot
+    double root_seconds;                ///< in so long; whoever reads these five sets them to 0
 } himc_body_work;
 
 /// The forces of one step, by their sources.

@@ -108,7 +108,12 @@ static void take_root(performance_body *b, himc_motion_row *row)
     double seat = himc_posture_stool(&b->plant), down = hips.z - seat;
     for (int j = 0; j < HIMC_JOINTS && b->controller.config.human_strength; j++)
         row->co_contraction[j] = b->muscles.co_contraction[j];
-    w->root_impulse = w->root_angular = himc_vec3_make(0, 0, 0);
+    row->seat_force = himc_vec3_scale(w->seat_impulse, rate);
+    w->root_impulse = w->root_angular = w->seat_impulse = himc_vec3_make(0, 0, 0);
+    for (int foot = 0; foot < HIMC_HANDS; foot++) {
+        row->foot_force[foot] = himc_vec3_scale(w->foot_impulse[foot], rate);
+        w->foot_impulse[foot] = himc_vec3_make(0, 0, 0);
+    }
     w->root_seconds = 0;
     row->root_force = f;
     row->root_moment = m;
@@ -119,16 +124,6 @@ static void take_root(performance_body *b, himc_motion_row *row)
     row->root_center =
         himc_vec3_make(hips.x - (m.y + down * f.x) / f.z, hips.y + (m.x - down * f.y) / f.z, seat);
     row->root_friction = hypot(f.x, f.y) / f.z;
-}
-
-// what seat and floor do for a body that sits
-static void take_support(const performance_body *b, himc_motion_row *row)
-{
-    for (int i = 0; i < HIMC_SUPPORTS; i++) {
-        int foot = (i - HIMC_SEAT_POINTS) / HIMC_SOLE_POINTS;
-        himc_vec3 *sum = i < HIMC_SEAT_POINTS ? &row->seat_force : &row->foot_force[foot];
-        *sum = himc_vec3_add(*sum, b->support.point[i].force);
-    }
 }
 
 // torques, and the accelerations that they, the tips' forces and the pushes make; a body that is
@@ -147,16 +142,14 @@ static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *
         row->power[j] = e->joint[j] = row->co_contraction[j] = NAN;
     }
     if (kinematic) {
-        row->root_force = row->root_moment = row->root_center = none;
+        row->root_force = row->root_moment = row->root_center = row->seat_force = none;
         row->root_friction = NAN;
         e->push = e->support = e->placed = e->numerical = e->kinetic = e->potential = NAN;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            e->contact[hand] = e->mallet[hand] = NAN;
+            e->contact[hand] = e->mallet[hand] = NAN, row->foot_force[hand] = none;
         return;
     }
     take_root(b, row);
-    if (b->controller.balance)
-        take_support(b, row);
     // the state of the row's pose and rates: without the joints' gaps, which are the engine's
     memcpy(pose.joint, row->rotation, sizeof pose.joint);
     for (int j = 0; j < HIMC_JOINTS; j++) {
