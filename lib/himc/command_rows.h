@@ -142,9 +142,10 @@ HIMC_SETTING_ROW(
     STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength, "", NOTHING,
     "human: no joint has more than a man's torque (80 N m at the shoulder, of 75 kg), but for a "
     "reserve, up to 8 times, while its tip is astray, and muscles hold in a contact; off: no limit, as published; or sets the largest torque of a joint")
-HIMC_SETTING_ROW(GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
-                 "sets the grip: palms down (german), or thumbs up (french), and lets doubles, "
-                 "buzzes and grace notes bounce; servo: a stroke has one contact, as published")
+HIMC_SETTING_ROW(
+    GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
+    "sets the grip: palms down (german), or thumbs up (french), and lets doubles, "
+    "buzzes and grace notes bounce; servo: a stroke has one short contact, as published")
 HIMC_SETTING_ROW(HUMAN, human, AT_SAMPLE, "AMOUNT [SEED]", human, human, "0", HUMAN,
                  "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
                  "all; each seed is another player")
@@ -249,7 +250,7 @@ HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",
                  "1: silences the drum, which plays on unheard")
 HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
                  "chooses how blows become sound: by the head, or by the patch around it in Pure "
-                 "Data")
+                 "Data, which hears of no damping")
 HIMC_COMMAND_ROW(DRUM_INFO, info, DRUM, HOST, 0, "", "describes the drum in a few lines")
 HIMC_COMMAND_ROW(DRUM_DUMP, dump, DRUM, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
                  "answers with the state as commands that make it again, or writes it to a file")
