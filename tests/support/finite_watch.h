@@ -52,6 +52,8 @@ static inline void watch_row(void *user, const himc_motion_row *row)
         memset(&all.energy, 0, sizeof all.energy);
         memset(&all.root_force, 0, sizeof all.root_force);
         memset(&all.root_moment, 0, sizeof all.root_moment);
+        memset(&all.seat_force, 0, sizeof all.seat_force);
+        memset(all.foot_force, 0, sizeof all.foot_force);
     }
     if (!(all.root_force.z > 0)) { // nothing presses on the seat
         memset(&all.root_center, 0, sizeof all.root_center);
