@@ -46,7 +46,8 @@
 
 // The laws of control (lib/src/control/law.h) with their words: printed, tau = ks (qt - q) - kd q'
 // (2012 paper, equation 2); feedforward, gravity added, and kd (qt' - q') in place of -kd q';
-// computed-torque, desired accelerations, torques by inverse dynamics; the default
+// computed-torque, desired accelerations, torques by inverse dynamics; the default. Last: the law
+// gives accelerations
 #define HIMC_LAWS(LAW)                                  \
     LAW(PRINTED, printed, "printed", false)             \
     LAW(FEEDFORWARD, feedforward, "feedforward", false) \
@@ -140,8 +141,9 @@ HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB",
                  "over the default, or resets all; with one number, how loud all drums are heard")
 HIMC_SETTING_ROW(
     STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength, "", NOTHING,
-    "human: no joint has more than a man's torque (80 N m at the shoulder, of 75 kg), but for a "
-    "reserve, up to 8 times, while its tip is astray, and muscles hold in a contact; off: no limit, as published; or sets the largest torque of a joint")
+    "human: joints have a man's largest torques, 80 N m at the shoulder of 75 kg, up to 8 times "
+    "that while a tip is astray, and muscles hold in a contact; off: no limit, as published; or "
+    "sets the largest torque of a joint")
 HIMC_SETTING_ROW(
     GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
     "sets the grip: palms down (german), or thumbs up (french), and lets doubles, "

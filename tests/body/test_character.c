@@ -13,6 +13,7 @@
 #include "body/posture.h"
 
 #include "step_with_tips.h"
+#include "bodies.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -22,7 +23,6 @@
 
 #define LEGS HIMC_LEFT_UPPER_LEG
 
-static himc_skeleton skeleton;
 static himc_character *character;
 static const himc_vec3 no_torque[HIMC_JOINTS];
 
@@ -40,14 +40,6 @@ void tearDown(void)
 {
     himc_character_free(character);
     himc_character_free(NULL); // allowed, as free(NULL) is
-}
-
-static himc_vec3 random_vector(double scale)
-{
-    double v[3];
-    for (int i = 0; i < 3; i++)
-        v[i] = scale * (2.0 * rand() / RAND_MAX - 1);
-    return himc_vec3_make(v[0], v[1], v[2]);
 }
 
 static double distance(himc_vec3 a, himc_vec3 b)

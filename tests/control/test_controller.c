@@ -10,6 +10,7 @@
 #include "body/dynamics.h"
 #include "control/controller.h"
 
+#include "bodies.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -19,7 +20,6 @@
 #define LEVEL 0.8675
 #define STEP 1e-4
 
-static himc_skeleton skeleton;
 static himc_posture posture;
 static himc_controller controller;
 
@@ -180,14 +180,6 @@ static void test_tips_alone_steer_himc_and_not_id(void)
         double change = distance(a[himc_arm_joint(HIMC_LEFT, 1)], b[himc_arm_joint(HIMC_LEFT, 1)]);
         TEST_ASSERT_EQUAL_INT(mode == HIMC_PIPELINE_HIMC, change > 0.01);
     }
-}
-
-static himc_vec3 random_vector(double scale)
-{
-    double v[3];
-    for (int i = 0; i < 3; i++)
-        v[i] = scale * (2.0 * rand() / RAND_MAX - 1);
-    return himc_vec3_make(v[0], v[1], v[2]);
 }
 
 // acceleration of a tip under the controller's torques and no contact

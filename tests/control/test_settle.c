@@ -6,26 +6,17 @@
 #include "control/balance.h"
 #include "control/settle.h"
 
+#include "bodies.h"
 #include "unity.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-static himc_skeleton skeleton;
 static himc_body_state state;
 static himc_articulation articulation;
 static himc_controller controller;
 static himc_balance balance;
 static const double reserve[HIMC_HANDS] = {1, 1};
 static himc_vec3 wanted[HIMC_JOINTS], asked[HIMC_JOINTS], given[HIMC_JOINTS];
-
-static himc_vec3 any(double size)
-{
-    double x[3];
-    for (int k = 0; k < 3; k++)
-        x[k] = size * (2.0 * rand() / RAND_MAX - 1);
-    return himc_vec3_make(x[0], x[1], x[2]);
-}
 
 static bool of_an_arm(int j)
 {
@@ -35,24 +26,22 @@ static bool of_an_arm(int j)
 // a playing posture with any rates, and accelerations wanted of it
 static void prepare(bool free)
 {
-    himc_skeleton_config config = himc_skeleton_default();
     himc_controller_config law = himc_controller_config_default();
     himc_posture posture;
     himc_pose pose;
     himc_vec3 tip[HIMC_HANDS] = {{0.48, 0.05, 0.8675}, {0.48, -0.05, 0.8675}}, rate[HIMC_JOINTS];
-    himc_skeleton_init(&skeleton, &config, NULL);
     skeleton.segment[HIMC_PELVIS].joint = free ? HIMC_JOINT_FREE : HIMC_JOINT_FIXED;
     himc_posture_init(&posture, &skeleton, 0.85);
     himc_posture_at(&posture, tip, &pose);
     for (int j = 0; j < HIMC_JOINTS; j++) {
-        rate[j] = any(3);
-        wanted[j] = any(30);
+        rate[j] = random_vector(3);
+        wanted[j] = random_vector(30);
     }
     himc_pose_to_state(&skeleton, &pose, rate, &state);
     himc_articulate(&skeleton, &state, &articulation);
     himc_controller_init(&controller, &law, &skeleton, &state);
     controller.articulation = &articulation;
-    balance = (himc_balance){.carried = {any(20), himc_vec3_make(10, -20, 700)}};
+    balance = (himc_balance){.carried = {random_vector(20), himc_vec3_make(10, -20, 700)}};
     controller.balance = free ? &balance : NULL;
     himc_invert(&controller, &skeleton, &state, wanted, asked);
     memcpy(given, asked, sizeof given);
@@ -60,7 +49,7 @@ static void prepare(bool free)
 
 void setUp(void)
 {
-    srand(1);
+    default_skeleton(1);
 }
 void tearDown(void)
 {

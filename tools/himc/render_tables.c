@@ -107,7 +107,7 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
     cli_say("force     up to %.1f N\n", stats->peak_force);
     cli_say("speed     %.1f s played, %.1f x real time\n", seconds, realtime_factor);
     if (stats->recoveries)
-        cli_say("trouble   %ld times he was put back, after a fall or out of a state that is not finite\n",
+        cli_say("trouble   %ld times the player was put back: fallen, or in a state not finite\n",
                 stats->recoveries);
     if (!out)
         return;

@@ -14,7 +14,7 @@ typedef struct himc_support_point {
     int segment;
     himc_vec3 at;    ///< in the segment's frame (m)
     double plane;    ///< height of the plane (m)
-    himc_vec3 home;  ///< where the plane is lowest, and it rests (m)
+    himc_vec3 home;  ///< where it rests, and the plane is lowest (m)
     himc_vec3 lever; ///< from the pelvis' origin, world frame (m)
     himc_vec3 force; ///< on the body (N)
     bool touching;

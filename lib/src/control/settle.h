@@ -12,7 +12,7 @@ HIMC_RT void himc_invert(const himc_controller *controller, const himc_skeleton 
 
 /// himc_invert asked for `asked`, and the arms have the torques of `given`: those of trunk and legs
 /// that make the accelerations wanted of them all the same are put into `given`, within their
-/// strength. `wanted` becomes what the arms do.
+/// strength times `reserve` (strength.h). `wanted` becomes what the arms do.
 HIMC_RT void himc_settle(const himc_controller *controller, const himc_skeleton *skeleton,
                          const himc_body_state *state, const double reserve[HIMC_HANDS],
                          himc_vec3 wanted[HIMC_JOINTS], const himc_vec3 asked[HIMC_JOINTS],
