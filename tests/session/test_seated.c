@@ -12,7 +12,8 @@ typedef struct seen {
     himc_vec3 begun, last;        // place of the pelvis (m)
     double moved, tilt;           // largest (m, rad)
     double lowest, highest;       // of the pelvis (m)
-    double feet, weight;          // sums of forces up (N)
+    double foot[HIMC_HANDS];      // sums of the floor's forces up (N)
+    double weight;                // ... and of all
     double friction;              // largest in a row
     double gap;                   // of the energy's balance, largest (J)
     double energy, work, largest; // at the first row; most work since (J)
@@ -49,7 +50,7 @@ static void see(void *user, const himc_motion_row *row)
     s->tilt = fmax(s->tilt, himc_vec3_length(himc_quat_log(row->orientation[HIMC_PELVIS])));
     s->friction = fmax(s->friction, row->root_friction);
     for (int i = 0; i < HIMC_HANDS; i++) {
-        s->feet += row->foot_force[i].z;
+        s->foot[i] += row->foot_force[i].z;
         parts = himc_vec3_add(parts, row->foot_force[i]);
     }
     s->weight += parts.z;
@@ -97,7 +98,7 @@ static void test_he_plays_as_one_who_is_bolted_and_stays(void)
     TEST_ASSERT_TRUE(stats.tip_rms < 5e-5);
     TEST_ASSERT_TRUE(s.moved > 1e-4 && s.moved < 0.010); // he gives way, a little
     TEST_ASSERT_TRUE(s.tilt > 1e-3 && s.tilt < 0.05);
-    double feet = s.feet / s.weight;
+    double feet = (s.foot[HIMC_LEFT] + s.foot[HIMC_RIGHT]) / s.weight;
     TEST_ASSERT_TRUE(feet > 0.15 && feet < 0.35);
     TEST_ASSERT_TRUE(s.friction < 0.5);
     himc_performance_free(p);
@@ -146,6 +147,19 @@ static void test_a_push_at_the_chest_from_any_side_is_answered(void)
         pushed(push, &played, &fallen);
         TEST_ASSERT_EQUAL_INT(0, fallen);
         TEST_ASSERT_EQUAL_INT(8, played);
+    }
+}
+
+static void test_a_foot_that_is_pushed_down_carries_more(void)
+{
+    static const char *const side[] = {"left", "right"};
+    for (int foot = 0; foot < HIMC_HANDS; foot++) {
+        himc_performance *p = seated(NULL);
+        session_do(p, "at 1 push %s-foot 0 0 -50 1", side[foot]);
+        seen s = play(p, 1.5, NULL);
+        double more = (s.foot[foot] - s.foot[!foot]) / (double)s.rows;
+        TEST_ASSERT_TRUE(more > 25);
+        himc_performance_free(p);
     }
 }
 
@@ -246,7 +260,8 @@ static void test_fixed_is_bolted_again(void)
     himc_performance *p = seated("stance fixed");
     add_strokes(p, 4, "f");
     seen s = play(p, 2, NULL);
-    TEST_ASSERT_TRUE(s.moved == 0 && s.tilt == 0 && s.feet == 0 && s.weight == 0);
+    TEST_ASSERT_TRUE(s.moved == 0 && s.tilt == 0 && (s.foot[HIMC_LEFT] + s.foot[HIMC_RIGHT]) == 0 &&
+                     s.weight == 0);
     himc_performance_free(p);
 }
 
@@ -256,6 +271,7 @@ int main(void)
     RUN_TEST(test_he_plays_as_one_who_is_bolted_and_stays);
     RUN_TEST(test_seat_and_floor_carry_him);
     RUN_TEST(test_a_push_at_the_chest_from_any_side_is_answered);
+    RUN_TEST(test_a_foot_that_is_pushed_down_carries_more);
     RUN_TEST(test_a_harder_push_moves_him_further);
     RUN_TEST(test_he_does_not_bounce_on_his_seat);
     RUN_TEST(test_muscles_hold_his_arms_and_he_keeps_his_seat);
