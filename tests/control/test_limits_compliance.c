@@ -325,8 +325,29 @@ static void test_strength_falls_with_the_speed_along_the_torque(void)
                                                speed[i], himc_vec3_make(0.6, 0, 0.8));
         torque[elbow] = himc_vec3_make(0.6 * 30, 0, 0.8 * 30);
         himc_strength_apply(&controller, &skeleton, &state, (double[]){1, 1}, torque);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.6 * left[i], torque[elbow].x);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.8 * left[i], torque[elbow].z);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, left[i], himc_vec3_length(torque[elbow]));
+    }
+}
+
+// of all torques as strong, what is given is nearest to the asked one in what it accelerates
+static void test_a_weak_joint_lacks_torque_where_its_limb_is_heavy(void)
+{
+    int shoulder = himc_arm_joint(HIMC_LEFT, 0);
+    himc_articulation art;
+    himc_articulate_upper(&skeleton, &state, &art);
+    controller.config.strength[shoulder] = 8;
+    for (int n = 0; n < 200; n++) {
+        himc_vec3 torque[HIMC_JOINTS] = {[0] = {0, 0, 0}}, other = himc_vec3_unit(random_vector(1));
+        himc_vec3 asked = himc_vec3_scale(himc_vec3_unit(random_vector(1)), n % 2 ? 9 : 40);
+        state.spin[shoulder + 1] = state.spin[skeleton.segment[shoulder + 1].parent];
+        torque[shoulder] = asked;
+        himc_strength_apply(&controller, &skeleton, &state, (double[]){1, 1}, torque);
+        himc_vec3 lacks = himc_vec3_sub(asked, torque[shoulder]);
+        himc_vec3 would = himc_vec3_madd(asked, -8, other);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 8, himc_vec3_length(torque[shoulder]));
+        TEST_ASSERT_TRUE(
+            himc_vec3_dot(lacks, himc_symmetric_apply(&art.inverse[shoulder + 1], lacks)) <=
+            himc_vec3_dot(would, himc_symmetric_apply(&art.inverse[shoulder + 1], would)) + 1e-4);
     }
 }
 
@@ -345,5 +366,6 @@ int main(void)
     RUN_TEST(test_the_farthest_angle_beyond_is_that_of_all_steps);
     RUN_TEST(test_strength_of_75_kg_is_that_of_the_table);
     RUN_TEST(test_strength_falls_with_the_speed_along_the_torque);
+    RUN_TEST(test_a_weak_joint_lacks_torque_where_its_limb_is_heavy);
     return UNITY_END();
 }

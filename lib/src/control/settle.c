@@ -54,13 +54,11 @@ void himc_settle(const himc_controller *c, const himc_skeleton *skeleton, const 
                  const himc_vec3 asked[HIMC_JOINTS], himc_vec3 given[HIMC_JOINTS])
 {
     const int arms = HIMC_LEFT_UPPER_ARM - 1, end = HIMC_LEFT_UPPER_LEG - 1;
-    const himc_articulation *art = c->articulation;
     himc_articulation own;
     himc_vec3 more[HIMC_JOINTS], now[HIMC_JOINTS];
     if (memcmp(&asked[arms], &given[arms], sizeof *given * (size_t)(end - arms)) == 0)
         return;
-    if (!art)
-        himc_articulate_upper(skeleton, s, &own), art = &own;
+    const himc_articulation *art = himc_controller_articulation(c, skeleton, s, &own);
     memcpy(now, asked, sizeof now);
     for (int round = 0; round < ROUNDS; round++) {
         for (int j = arms; j < end; j++)

@@ -1,7 +1,10 @@
 /// strength.c: torque maxima, in the 2012 paper a feature of its physics engine (section 3.3).
 ///
-/// There each axis of a motor has its own maximum; here a joint's torque keeps its direction and is
-/// shortened, so that a weak joint pulls weakly but in the right direction. Measured isometric
+/// There each axis of a motor has its own maximum; here a joint's torque is shortened as a whole,
+/// and so that the body's accelerations differ least from those asked for: with A what a torque t
+/// at the joint accelerates it by, t = (A + l)^-1 A t0, and l such that t has the length it may
+/// have. So what is missing is taken where the limb is heavy. A torque that keeps its direction
+/// instead has an upper arm, whose own axis is light, whirl about it. Measured isometric
 /// maxima: neck 51 N m backwards, 30 forwards (Fice, Siegmund & Blouin 2014, men); shoulder 68 +-
 /// 28, wrist 10 +- 5 (Holzbaur, Delp, Gold & Murray 2007, women and men); wrist 12 in flexion, 7 in
 /// extension, 11 sideways (Delp, Grierson & Buchanan 1996, men). Those for a man of 75 kg are taken
@@ -18,14 +21,16 @@
 /// it is counted, and `info` tells it.
 #include "control/strength.h"
 
+#include "body/dynamics.h"
 #include "control/tracking_error.h"
 
 #define MEASURED_MASS 75.0 // of the man of the table (kg)
+#define STEPS 4            // to the shortened torque; five digits
 #define FASTEST 20.0       // (rad/s) chosen: an elbow that has nothing to lift reaches about that
 // the reserve; chosen: calm strokes use none, and random ff strokes on four drums land
 #define ASTRAY 0.006 // a tip farther from its target draws on it (m) ...
 #define LOST 0.018   // ... and this far on all of it (m)
-#define RESERVE 8.0  // strength with all of it, over a man's
+#define RESERVE 6.0  // strength with all of it, over a man's; 8 pushes him off his stool's middle
 
 void himc_controller_set_human_strength(himc_controller_config *c, double mass)
 {
@@ -55,6 +60,28 @@ static double reserve_of(int j, const double reserve[HIMC_HANDS])
     return j < legs ? reserve[(j - trunk) % HIMC_HANDS] : 1;
 }
 
+static himc_symmetric plus(const himc_symmetric *a, double l)
+{
+    return (himc_symmetric){a->xx + l, a->xy, a->xz, a->yy + l, a->yz, a->zz + l};
+}
+
+// (a + l)^-1 a t of length `most`; l by Newton's steps for 1/length, which rise to it
+static himc_vec3 shorten(himc_vec3 asked, double most, const himc_symmetric *a)
+{
+    himc_vec3 accelerates = himc_symmetric_apply(a, asked), t = asked;
+    double l = 0;
+    for (int i = 0; most > 0 && i < STEPS; i++) {
+        double length = himc_vec3_length(t);
+        himc_symmetric sum = plus(a, l), inverse = himc_symmetric_inverse(&sum);
+        double slope = himc_vec3_dot(t, himc_symmetric_apply(&inverse, t));
+        l += length * length * (length - most) / (most * slope);
+        sum = plus(a, l);
+        inverse = himc_symmetric_inverse(&sum);
+        t = himc_symmetric_apply(&inverse, accelerates);
+    }
+    return himc_vec3_scale(t, most / himc_vec3_length(t));
+}
+
 bool himc_strength_bound(const himc_controller *c, const himc_skeleton *skeleton,
                          const himc_body_state *s, int joint, const double reserve[HIMC_HANDS],
                          himc_vec3 *torque)
@@ -66,8 +93,13 @@ bool himc_strength_bound(const himc_controller *c, const himc_skeleton *skeleton
     double speed = himc_vec3_dot(himc_relative_spin(skeleton, s, joint), *torque) / asked;
     double own = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
     double most = own * reserve_of(joint, reserve);
-    if (asked > most)
-        *torque = himc_vec3_scale(*torque, most / asked);
+    if (asked > most) {
+        himc_articulation here;
+        const himc_articulation *art = himc_controller_articulation(c, skeleton, s, &here);
+        bool moves = joint + 1 < art->end; // else it is a leg of a fixed pelvis
+        *torque = moves ? shorten(*torque, most, &art->inverse[joint + 1])
+                        : himc_vec3_scale(*torque, most / asked);
+    }
     return asked > own;
 }
 
