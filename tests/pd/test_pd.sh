@@ -331,7 +331,7 @@ report a_drum_that_comes_later_takes_the_place_of_a_silent_one \
     "$(lines "no drum later: playing on a silent one")$([ "$(strikes left later)" = 1 ] || echo "$(strikes left later) strikes")"
 report a_drum_that_is_nowhere_is_an_error \
     "$(lines "himc~: othr: no spot (center normal rim), not dead, no drum (kettle other), did you mean other?")"
-report a_push_refused_on_its_sample_is_an_error "$(lines "error: himc~: push: SEGMENT: nose, expected trunk neck")"
+report a_push_refused_on_its_sample_is_an_error "$(lines "error: himc~: push: SEGMENT: nose, expected pelvis trunk neck")"
 report info_of_a_drum_is_answered_by_the_performer "$(lines "himc: info kettle: radius
 himc: info other: radius")"
 report a_change_at_a_beat_without_a_drum_says_so "$(lines "himc~: at: DRUM missing before tune, expected at BEAT DRUM tune HZ")"

@@ -160,7 +160,7 @@ static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *
     if (b->controller.balance)
         state = b->state;
     memcpy(load, b->torque, sizeof load);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
         himc_vec3 at = push_point(b, &state, i, row->time), r = himc_vec3_sub(at, state.origin[0]);
         himc_add_force(&b->plant, &state, i, at, row->push[i], load);
         balance.carried.linear = himc_vec3_add(balance.carried.linear, row->push[i]);
