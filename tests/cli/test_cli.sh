@@ -349,6 +349,10 @@ check test_help_lists_each_argument_once [ "$(cat out)" = "" ]
 # what render makes
 "$himc" render piece.txt -o one.wav --strokes strokes.csv --motion motion.csv >out 2>err
 check test_render_says_its_figures_in_prose_on_stderr [ "$?$(grep -c '^strokes   4 of 4' err)$(wc -l <out)" = 011 ]
+echo 'strength human; stroke 1 left legato f; at 4 push left-stick 0 0 -200 0.3;' >pushed.txt
+"$himc" render pushed.txt -o pushed.wav 2>pushed.err >out2
+check test_render_tells_of_unplanned_contacts_and_of_the_reserve [ \
+    "$(grep -cx -e 'contacts  [0-9]* that no stroke asked for' -e 'reserve   left-grip up to [2-8]\.[0-9] times its strength' pushed.err)" = 2 ]
 keys=$(tail -n 1 out | grep -o '"[a-z0-9_]*":' | tr -d '":' | tr '\n' ' ')
 check test_last_line_has_the_keys_of_the_contract [ "$keys" = \
     "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor \

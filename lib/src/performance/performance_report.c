@@ -42,6 +42,12 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
     himc_performance_stats s = himc_statistics_told(&p->statistics);
     s.seconds = fmax((double)c->played, 0) / c->sample_rate;
     s.limit_hits = himc_body_limit_hits(p->body);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        double strength = p->settings.control.strength[j];
+        double reserve = strength > 0 ? p->body->saturation.given[j] / strength : 0;
+        s.reserve_joint = reserve > s.reserve ? j : s.reserve_joint;
+        s.reserve = fmax(s.reserve, reserve);
+    }
     s.events_lost = p->events.lost;
     s.hearings = p->drums.hearings;
     s.sample_rate = c->sample_rate;
