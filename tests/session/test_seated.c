@@ -209,7 +209,7 @@ static void test_a_pelvis_that_is_free_can_be_pushed(void)
                              error.text);
     TEST_ASSERT_FALSE(session_try(p, "at 1 push pelvis 60 0 0 0.2"));
     static const char *const text =
-        "stance seated; at 1 push pelvis 60 0 0 0.2; stroke 2 left legato f;";
+        "stance fixed; stance seated; at 1 push pelvis 60 0 0 0.2; stroke 2 left legato f;";
     TEST_ASSERT_TRUE_MESSAGE(himc_performance_load_text(p, text, "text", &error), error.text);
     TEST_ASSERT_TRUE(session_try(p, "push pelvis 60 0 0 0.2"));
     TEST_ASSERT_FALSE(himc_performance_load_text(p, "stance fixed; at 1 push pelvis 60 0 0 0.2;",
