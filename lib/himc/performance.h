@@ -259,6 +259,9 @@ typedef struct himc_performance_stats {
     int peak_rate_joint;          ///< ... and the joint
     double peak_torque;           ///< largest torque of a joint (N m), 0 in `ik` ...
     int peak_torque_joint;        ///< ... and the joint
+    double reserve;               ///< largest torque of a joint over its strength: the reserve is
+                                  ///< used above 1; 0 without strengths ...
+    int reserve_joint;            ///< ... and the joint
     int hits;                     ///< accepted hits
     double hit_latency;           ///< of the last hit, from its command to its planned contact (s)
     double longest_latency;       ///< of all hits (s)

@@ -72,6 +72,8 @@ typedef struct {
     int peak_rate_joint;
     double peak_torque;
     int peak_torque_joint;
+    double reserve;
+    int reserve_joint;
     int hits;
     double hit_latency, longest_latency;
     long recoveries, limit_hits, events_lost;

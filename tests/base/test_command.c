@@ -490,13 +490,23 @@ static void test_a_word_that_fits_no_form_is_answered_with_all_forms(void)
     refused(perform("listener here"),
             "listener: here, expected listener off | usual | X Y Z [YAW]");
     refused(perform("gain loud"),
-            "gain: loud, expected gain reset | frequency FACTOR | JOINT KS KD | DB");
+            "gain: loud without KS, expected gain reset | frequency FACTOR | JOINT KS KD | DB");
     refused(perform("gain 100"), "gain: 100, expected reset or -60 .. 24 dB");
     refused(perform("grip american"), "grip: american, expected german french or servo");
 }
 
 static void test_a_change_at_a_beat_without_its_drum_is_answered_with_that(void)
 {
+    refused(perform("gain left-wrist"), "gain: left-wrist without KS, expected gain reset | "
+                                        "frequency FACTOR | JOINT KS KD | DB");
+    refused(perform("gain frequency 2 3"), "gain: 3 is one atom too many, expected gain reset | "
+                                           "frequency FACTOR | JOINT KS KD | DB");
+    refused(perform("strength left-wrist"),
+            "strength: left-wrist without TORQUE, expected strength human|off | JOINT TORQUE");
+    refused(perform("strength human 1"),
+            "strength: 1 is one atom too many, expected strength human|off | JOINT TORQUE");
+    refused(perform("at 3 stance fixed"), "at: stance does not act at a beat, expected at BEAT "
+                                          "DRUM COMMAND [...] | BEAT push SEGMENT [...]");
     refused(perform("at 4 tune C3"),
             "at: DRUM missing before tune, expected at BEAT DRUM tune HZ | NOTE");
     refused(perform("at 4 damp"),

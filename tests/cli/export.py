@@ -37,7 +37,7 @@ class Skeleton(ctypes.Structure):
 
 
 class State(ctypes.Structure):
-    _fields_ = [("orientation", Quaternion * SEGMENTS), ("rotation", ctypes.c_double * 9 * SEGMENTS), ("rest", Vector * (2 * SEGMENTS + 4))]
+    _fields_ = [("orientation", Quaternion * SEGMENTS), ("rotation", ctypes.c_double * 9 * SEGMENTS), ("rest", Vector * (2 * SEGMENTS + 5))]
 
 
 lib = ctypes.CDLL(os.path.abspath(glob.glob(os.path.join(BUILD, "libhimc.so.*.*"))[0]))
@@ -99,8 +99,9 @@ def test_the_model_has_the_numbers_of_the_skeleton():
 
 
 def test_player_and_drums_are_those_of_the_setup():
-    setup = path("setup.txt", "player 1.625 60;\ndrum near 29;\nnear place 0.5 0.4 0.8 0.2;\ndrum far;\nfar shape rectangle 0.5 0.4;\n")
-    himc("export", setup, "--stance", "seated", "-o", path("setup.xml"))
+    setup = path("setup.txt", "stance seated;\nplayer 1.625 60;\ndrum near 29;\nnear place 0.5 0.4 0.8 0.2;\ndrum far;\nfar shape rectangle 0.5 0.4;\n")
+    assert "freejoint" not in himc("export", setup, "--stance", "fixed", "-o", "-")
+    himc("export", setup, "-o", path("setup.xml"))
     root = ElementTree.parse(path("setup.xml")).getroot()
     found, body = segments(root), skeleton(1.625, 60)
     assert found["pelvis"].find("freejoint").get("name") == "root" and len(numbers(root.find("keyframe/key"), "qpos")) == 7 + 4 * JOINTS

@@ -105,12 +105,12 @@ wrong() { # wrong NAME SCORE ERROR
     fi
 }
 wrong test_a_misspelt_spot_is_named 'tempo 90;\nstroke 1 right accent f rmi;' \
-    '2: rmi: no spot (center normal rim), no drum (kettle), did you mean rim?'
+    '2: rmi: no spot (center normal rim), not dead, no drum (kettle), did you mean rim?'
 wrong test_a_spot_in_capitals_is_named 'stroke 1 right accent f Rim;' \
-    '1: Rim: no spot (center normal rim), no drum (kettle), did you mean rim?'
-wrong test_a_spot_of_another_instrument_is_named 'roll 1 2 press f edge;' '1: edge: no spot (center normal rim), no drum (kettle)'
+    '1: Rim: no spot (center normal rim), not dead, no drum (kettle), did you mean rim?'
+wrong test_a_spot_of_another_instrument_is_named 'roll 1 2 press f edge;' '1: edge: no spot (center normal rim), not dead, no drum (kettle)'
 wrong test_a_misspelt_drum_is_named 'drum low;\ndrum high;\nstroke 1 right accent f rim hihg;' \
-    '3: hihg: no drum (low high), did you mean high?'
+    '3: hihg: not dead, no drum (low high), did you mean high?'
 wrong test_a_line_for_no_drum_is_named 'drum low;\nlwo tune A2;' '2: lwo: no drum (low), did you mean low?'
 wrong test_a_change_for_no_drum_is_named 'at 3 lwo tune A2;' '1: lwo: no drum (kettle)'
 wrong test_a_command_in_capitals_is_named 'PLAY;' '1: PLAY: unknown command, did you mean play?'
@@ -349,6 +349,10 @@ check test_help_lists_each_argument_once [ "$(cat out)" = "" ]
 # what render makes
 "$himc" render piece.txt -o one.wav --strokes strokes.csv --motion motion.csv >out 2>err
 check test_render_says_its_figures_in_prose_on_stderr [ "$?$(grep -c '^strokes   4 of 4' err)$(wc -l <out)" = 011 ]
+echo 'strength human; stroke 1 left legato f; at 4 push left-stick 0 0 -200 0.3;' >pushed.txt
+"$himc" render pushed.txt -o pushed.wav 2>pushed.err >out2
+check test_render_tells_of_unplanned_contacts_and_of_the_reserve [ \
+    "$(grep -cx -e 'contacts  [0-9]* that no stroke asked for' -e 'reserve   left-grip up to [2-8]\.[0-9] times its strength' pushed.err)" = 2 ]
 keys=$(tail -n 1 out | grep -o '"[a-z0-9_]*":' | tr -d '":' | tr '\n' ' ')
 check test_last_line_has_the_keys_of_the_contract [ "$keys" = \
     "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor \

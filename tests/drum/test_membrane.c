@@ -372,6 +372,22 @@ static void test_membrane_sounds_at_a_metre_as_rayleighs_integral_within_a_decib
     himc_membrane_free(m);
 }
 
+// x = k R is 1e-4 and smaller there, and h_m(x) leaves all numbers at m = 60
+static void test_membrane_hears_finite_sound_near_the_slackest_and_heaviest_head(void)
+{
+    head.tension = HIMC_TENSION_MIN;
+    head.density = HIMC_DENSITY_MAX;
+    head.modes = 2000;
+    remake(RATE);
+    himc_pickup near = himc_pickup_default();
+    near.distance = HIMC_PICKUP_DISTANCE_MIN;
+    TEST_ASSERT_TRUE(himc_membrane_set_pickups(membrane, &near, 1, &error));
+    himc_membrane_push(membrane, 0.1, 0.05, 100);
+    run(1000);
+    for (int i = 0; i < 1000; i++)
+        TEST_ASSERT_TRUE(fabs(sound[i]) < 1);
+}
+
 // displacement at one point after 5 ms, for an impulse at another; `lowest`: the velocity of (0,1)
 // beside that of (1,1)
 static double after_a_push(const himc_head *of, double pushed, double watch, double *lowest)
@@ -509,6 +525,7 @@ int main(void)
     RUN_TEST(test_membrane_silences_modes_above_half_the_rate);
     RUN_TEST(test_membrane_air_pickup_agrees_with_rayleighs_integral);
     RUN_TEST(test_membrane_sounds_at_a_metre_as_rayleighs_integral_within_a_decibel);
+    RUN_TEST(test_membrane_hears_finite_sound_near_the_slackest_and_heaviest_head);
     RUN_TEST(test_membrane_over_a_kettle_answers_alike_when_push_and_point_are_exchanged);
     RUN_TEST(test_membrane_point_pickup_beyond_a_smaller_rim_moves_to_it);
     RUN_TEST(test_membrane_point_pickup_reads_the_velocity_there);

@@ -91,6 +91,24 @@ static void test_the_stick_is_lifted_and_plays_on_in_time(void)
     himc_performance_free(p);
 }
 
+static void test_its_contact_is_told_to_its_end_and_once_as_a_touch(void)
+{
+    heard h = {0};
+    int touches = 0;
+    himc_contact_onset onset;
+    himc_performance *p = session_new();
+    play_from(p, "26", "tempo 120;stroke 0 right accent ff dead;stroke 4 right legato f");
+    session_play(p, 3.5, &h);
+    while (himc_drum_contact_next(himc_performance_drum(p, 0), &onset))
+        touches++;
+    himc_performance_stats stats = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(2, h.strikes);
+    TEST_ASSERT_EQUAL_INT(2, touches);
+    TEST_ASSERT_TRUE(h.strike[0].duration == stats.longest_contact);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 static void test_the_word_is_kept_and_no_drum_has_it_as_its_name(void)
 {
     himc_command c;
@@ -110,6 +128,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_dead_stroke_is_as_loud_and_half_a_second_later_15_db_softer);
     RUN_TEST(test_the_stick_is_lifted_and_plays_on_in_time);
+    RUN_TEST(test_its_contact_is_told_to_its_end_and_once_as_a_touch);
     RUN_TEST(test_the_word_is_kept_and_no_drum_has_it_as_its_name);
     return UNITY_END();
 }

@@ -369,11 +369,15 @@ static void test_a_word_that_is_neither_spot_nor_drum_is_refused_with_both_lists
     for (size_t i = 0; i < sizeof form / sizeof *form; i++) {
         snprintf(text, sizeof text, form[i], "rmi");
         TEST_ASSERT_FALSE_MESSAGE(try_command(p, text), text);
-        TEST_ASSERT_EQUAL_STRING(i < 6
-                                     ? "rmi: no spot (center normal rim), no drum (low high), did "
-                                       "you mean rim?"
-                                     : "rmi: no drum (low high)",
-                                 error.text);
+        TEST_ASSERT_EQUAL_STRING(
+            i < 6   ? "rmi: no spot (center normal rim), not dead, no drum (low high), did "
+                      "you mean rim?"
+            : i < 7 ? "rmi: not dead, no drum (low high)"
+                    : "rmi: no drum (low high)",
+            error.text);
+        snprintf(text, sizeof text, form[i], "ded");
+        TEST_ASSERT_FALSE_MESSAGE(try_command(p, text), text);
+        TEST_ASSERT_TRUE_MESSAGE(i == 7 || strstr(error.text, "did you mean dead?"), error.text);
         snprintf(text, sizeof text, form[i], "high");
         TEST_ASSERT_TRUE_MESSAGE(try_command(p, text), error.text);
         command(p, "clear");

@@ -3,6 +3,7 @@
 #include "session.h"
 
 #include "performance/performance_state.h"
+#include "performance/research.h"
 
 #include <math.h>
 
@@ -172,6 +173,50 @@ static void test_a_harder_push_moves_him_further(void)
     TEST_ASSERT_TRUE(much > 1.3 * little);
 }
 
+// way of the knee while the leg is pushed (m)
+static double yielded(const char *gain)
+{
+    himc_performance *p = seated(gain);
+    session_play(p, 0.5, NULL);
+    himc_vec3 begun = p->body->state.origin[HIMC_LEFT_LOWER_LEG];
+    session_do(p, "push left-lower-leg 0 100 0 0.2");
+    session_play(p, 0.2, NULL);
+    himc_vec3 end = p->body->state.origin[HIMC_LEFT_LOWER_LEG];
+    himc_performance_free(p);
+    return himc_vec3_length(himc_vec3_sub(end, begun));
+}
+
+static void test_gains_of_his_legs_act(void)
+{
+    double usual = yielded(NULL), stiff = yielded("gain left-hip 5000 500");
+    printf("%g m, %g m with a stiff hip\n", usual, stiff);
+    TEST_ASSERT_TRUE(stiff < 0.5 * usual);
+}
+
+static void test_a_pelvis_that_is_free_can_be_pushed(void)
+{
+    int played;
+    long fallen;
+    double still = pushed("", &played, &fallen);
+    double moved = pushed("push pelvis 200 0 0 0.1", &played, &fallen);
+    printf("%g m, %g m without the push\n", moved, still);
+    TEST_ASSERT_TRUE(moved > 2 * still);
+    TEST_ASSERT_EQUAL_INT(8, played);
+    TEST_ASSERT_EQUAL_INT(0, fallen);
+    himc_performance *p = seated("stance fixed");
+    TEST_ASSERT_FALSE(session_try(p, "push pelvis 60 0 0 0.2"));
+    TEST_ASSERT_EQUAL_STRING("push: pelvis: `stance fixed` holds it, expected `stance seated`",
+                             error.text);
+    TEST_ASSERT_FALSE(session_try(p, "at 1 push pelvis 60 0 0 0.2"));
+    static const char *const text =
+        "stance fixed; stance seated; at 1 push pelvis 60 0 0 0.2; stroke 2 left legato f;";
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_load_text(p, text, "text", &error), error.text);
+    TEST_ASSERT_TRUE(session_try(p, "push pelvis 60 0 0 0.2"));
+    TEST_ASSERT_FALSE(himc_performance_load_text(p, "stance fixed; at 1 push pelvis 60 0 0 0.2;",
+                                                 "text", &error));
+    himc_performance_free(p);
+}
+
 // a cushion, not a spring: a second after he was pulled up he rests
 static void test_he_does_not_bounce_on_his_seat(void)
 {
@@ -273,6 +318,8 @@ int main(void)
     RUN_TEST(test_a_push_at_the_chest_from_any_side_is_answered);
     RUN_TEST(test_a_foot_that_is_pushed_down_carries_more);
     RUN_TEST(test_a_harder_push_moves_him_further);
+    RUN_TEST(test_gains_of_his_legs_act);
+    RUN_TEST(test_a_pelvis_that_is_free_can_be_pushed);
     RUN_TEST(test_he_does_not_bounce_on_his_seat);
     RUN_TEST(test_muscles_hold_his_arms_and_he_keeps_his_seat);
     RUN_TEST(test_a_fall_is_told_once_and_the_piece_goes_on);

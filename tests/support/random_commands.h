@@ -86,7 +86,7 @@ static inline void random_text(const char *name, char text[64], random_seed *see
     else if (strcmp(name, "JOINT") == 0)
         snprintf(text, 64, "%s", himc_joint_name(any_of(seed, HIMC_JOINTS)));
     else if (strcmp(name, "SEGMENT") == 0)
-        snprintf(text, 64, "%s", himc_segment_name(1 + any_of(seed, HIMC_SEGMENTS - 1)));
+        snprintf(text, 64, "%s", himc_segment_name(any_of(seed, HIMC_SEGMENTS)));
     else if (strcmp(name, "NOTE") == 0)
         snprintf(text, 64, "%c%s%d", 'a' + any_of(seed, 7), any(seed) < 0.3 ? "#" : "",
                  1 + any_of(seed, 4));

@@ -202,9 +202,13 @@ static bool has_drums(const session *s, const himc_score *score, himc_error *err
 static bool has_segments(const session *s, const himc_score *score, himc_error *error)
 {
     planned_push unused;
+    himc_stance stance = HIMC_STANCE_FIXED;
+    for (int i = 0; i < score->line_count; i++)
+        if (score->lines[i].command.id == HIMC_COMMAND_STANCE)
+            stance = (himc_stance)score->lines[i].command.choice[0];
     for (int i = 0; i < score->change_count; i++) {
         const himc_score_line *l = &score->changes[i];
-        if (!l->drum[0] && !himc_body_read_push(&l->command, &unused, error))
+        if (!l->drum[0] && !himc_body_read_push(&l->command, stance, &unused, error))
             return himc_error_prefix(error, "%s:%d", s->name, l->line);
     }
     return true;

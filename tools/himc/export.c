@@ -151,7 +151,8 @@ enum { OUT, STANCE };
 
 static const cli_option options[] = {
     {"output", 'o', "F.xml", "the model; - is the standard output"},
-    {"stance", 0, "STANCE", "fixed: the pelvis is held (default); seated: it has a free joint"},
+    {"stance", 0, "STANCE",
+     "fixed: the pelvis is held; seated: it has a free joint; else as SETUP says"},
     {0},
 };
 
@@ -168,6 +169,8 @@ static bool export(const cli_arguments *arguments, himc_error *error)
         (path && (!(path = cli_input(path, error)) || !cli_apart(out, &path, 1, error))))
         return false;
     himc_performance *p = cli_load(path, RATE, NULL, error);
+    if (p && !stance)
+        m.free = himc_performance_plant(p)->segment[HIMC_PELVIS].joint == HIMC_JOINT_FREE;
     bool good = p && write_model(&m, p, out, error);
     himc_performance_free(p);
     return good;

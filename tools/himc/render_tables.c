@@ -105,6 +105,11 @@ void render_report(const himc_performance_stats *stats, double seconds, double r
         cli_say("capture   sticks %.3g mm RMS off the take, strikes at %.0f %% of its speeds\n",
                 1e3 * stats->captured_rms, 100 * stats->captured_speed_ratio);
     cli_say("force     up to %.1f N\n", stats->peak_force);
+    if (stats->unplanned_contacts)
+        cli_say("contacts  %d that no stroke asked for\n", stats->unplanned_contacts);
+    if (stats->reserve > 1.05) // 1.0 as printed is none
+        cli_say("reserve   %s up to %.1f times its strength\n",
+                himc_joint_name(stats->reserve_joint), stats->reserve);
     cli_say("speed     %.1f s played, %.1f x real time\n", seconds, realtime_factor);
     if (stats->recoveries)
         cli_say("trouble   %ld times the player was put back: fallen, or in a state not finite\n",

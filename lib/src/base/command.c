@@ -18,6 +18,7 @@
 #define DEAD_TIME 0.2 // of a mallet on the head (s); chosen: the tone is over by then
 #define WORD_SIZE 64
 #define EXPECTED_SIZE 256
+#define OWN_WORD 1000 // rank of a form with a word of its own; more than that of all atoms
 
 /// A command's atoms as the grammar understands them.
 typedef struct reading {
@@ -168,12 +169,13 @@ static const char *follow(const char *grammar, walk w, attempt *result)
         result->end = TOO_MANY;
     result->at = w.at;
     // the right number of atoms counts for more than one that fits, and for less than two
-    result->rank = 1000 * w.literal + 3 * (w.count >= least && w.count <= most) + 2 * w.at;
+    result->rank = OWN_WORD * w.literal + 3 * (w.count >= least && w.count <= most) + 2 * w.at;
     return *grammar ? grammar + 2 : NULL;
 }
 
+/// `without`: the next token of a form that all atoms fit, or "".
 static bool refuse(const himc_command_row *row, const himc_atom *atoms, const attempt *best,
-                   himc_error *error)
+                   const char *without, himc_error *error)
 {
     char value[WORD_SIZE];
     bool named = is_argument(best->name);
@@ -195,8 +197,8 @@ static bool refuse(const himc_command_row *row, const himc_atom *atoms, const at
     for (const char *s = row->atoms; (s = strstr(s, " | ")); s += 3)
         forms++;
     if (best->at == 0 && best->forms < forms && !named && atom->kind == HIMC_ATOM_SYMBOL)
-        return himc_error_set(error, "%s: %s, expected %s %s", row->name, value, row->name,
-                              row->atoms);
+        return himc_error_set(error, "%s: %s%s%s, expected %s %s", row->name, value,
+                              without[0] ? " without " : "", without, row->name, row->atoms);
     return himc_error_set(error, "%s: %s%s%s, expected %s", row->name, named ? best->name : "",
                           named ? ": " : "", value, best->expected);
 }
@@ -208,12 +210,16 @@ static bool check(const himc_command_row *row, const himc_atom *atoms, int count
     attempt best = {.rank = -1}, now;
     walk start = {row->name, atoms, count, 0, false, out};
     const char *grammar = row->atoms;
+    char without[WORD_SIZE] = "";
     for (out->form = 0; grammar; out->form++) {
         for (int i = 0; i < HIMC_COMMAND_ATOMS; i++)
             out->choice[i] = -1;
         grammar = follow(grammar, start, &now);
-        if (now.end == FITS)
+        // a form's own word, as `off`, is no name in another form
+        if (now.end == FITS && (best.rank < OWN_WORD || now.rank >= OWN_WORD))
             return true;
+        if (now.end == MISSING && !without[0])
+            memcpy(without, now.name, sizeof without);
         if (now.rank > best.rank || (now.rank == best.rank && best.end == TOO_MANY)) {
             best = now;
         } else if (now.rank == best.rank && now.end == WRONG && best.end == WRONG) {
@@ -228,7 +234,7 @@ static bool check(const himc_command_row *row, const himc_atom *atoms, int count
             best.name[0] = '\0';
         }
     }
-    return refuse(row, atoms, &best, error);
+    return refuse(row, atoms, &best, without, error);
 }
 
 static bool refuse_name(himc_receiver receiver, const char *name, himc_error *error)
@@ -356,11 +362,12 @@ bool himc_command_doubt_drum(const char *name, himc_error *error)
     return false;
 }
 
-/// The command of a drum that an atom names, or NULL.
-static const himc_command_row *drum_command(const himc_atom *atoms, int count, int index)
+/// The receiver's command that an atom names, or NULL.
+static const himc_command_row *command_named(himc_receiver receiver, const himc_atom *atoms,
+                                             int count, int index)
 {
     bool word = index < count && atoms[index].kind == HIMC_ATOM_SYMBOL;
-    return word ? himc_command_find(HIMC_DRUM, atoms[index].symbol) : NULL;
+    return word ? himc_command_find(receiver, atoms[index].symbol) : NULL;
 }
 
 bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *name,
@@ -369,7 +376,7 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
     const himc_command_row *row = himc_command_find(receiver, name);
     const himc_atom drum = {HIMC_ATOM_SYMBOL, 0, name};
     // DRUM COMMAND ...: no drum has the name of a performer's command
-    if (!row && receiver == HIMC_PERFORMER && drum_command(atoms, count, 0) &&
+    if (!row && receiver == HIMC_PERFORMER && command_named(HIMC_DRUM, atoms, count, 0) &&
         himc_argument_accepts(himc_argument_find("NAME", "drum"), &drum)) {
         if (!himc_command_parse(out, HIMC_DRUM, atoms[0].symbol, atoms + 1, count - 1, error))
             return himc_command_doubt_drum(name, error);
@@ -380,10 +387,14 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
         return refuse_name(receiver, name, error);
     // BEAT COMMAND ...: what acts at a beat, without the drum before it
     bool beat = row->id == HIMC_COMMAND_AT && count > 0 && atoms[0].kind == HIMC_ATOM_NUMBER;
-    const himc_command_row *act = beat ? drum_command(atoms, count, 1) : NULL;
-    if (act && (act->marks & HIMC_AT_BEAT) && !drum_command(atoms, count, 2))
+    const himc_command_row *act = beat ? command_named(HIMC_DRUM, atoms, count, 1) : NULL;
+    if (act && (act->marks & HIMC_AT_BEAT) && !command_named(HIMC_DRUM, atoms, count, 2))
         return himc_error_set(error, "at: DRUM missing before %s, expected at BEAT DRUM %s %s",
                               act->name, act->name, act->atoms);
+    const himc_command_row *own = beat ? command_named(HIMC_PERFORMER, atoms, count, 1) : NULL;
+    if (own && !(own->marks & HIMC_AT_BEAT))
+        return himc_error_set(error, "at: %s does not act at a beat, expected at %s", own->name,
+                              row->atoms);
     reading read = {.form = 0};
     if (!check(row, atoms, count, &read, error))
         return false;

@@ -7,6 +7,8 @@
 #include "base/rotations.h"
 #include "body/dynamics.h"
 #include "control/balance.h"
+
+#include <string.h>
 #include "control/ik.h"
 #include "control/law.h"
 #include "control/limit_torque.h"
@@ -23,7 +25,7 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 wanted[HIMC_JOINTS]
 {
     const himc_controller *c = in->controller;
     tracking_error *e = in->error;
-    himc_vec3 arm[HIMC_ARM_JOINTS];
+    himc_vec3 arm[HIMC_ARM_JOINTS], soft[HIMC_JOINTS];
     // q''_t + 2 w (q'_t - h/2 q''_t - q') + w^2 dq; w^2 and 2 w are those of the bandwidth or,
     // where the user has set gains, those over the inertia
     for (int j = 0; j < HIMC_JOINTS; j++) {
@@ -44,8 +46,12 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 wanted[HIMC_JOINTS]
         }
         wanted[j] = himc_vec3_add(e->acceleration[j], feedback);
     }
+    // a seated player's legs are relaxed where the user has set no gains
+    memcpy(soft, wanted, sizeof soft);
     if (c->balance)
-        himc_balance_legs(e, wanted);
+        himc_balance_legs(e, soft);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        wanted[j] = c->config.gain_set[j] ? wanted[j] : soft[j];
     // in contact the tip has the hand's acceleration along the normal, for any gains of the joints
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;

@@ -164,8 +164,8 @@ double himc_drum_pitch(const himc_drum *drum)
 
 void himc_drum_keep_onset(himc_drum *drum, const himc_stick *stick)
 {
-    if (!(stick->impact > 0))
-        return; // a head raised into a resting stick is no blow
+    if (!(stick->impact > 0) || stick->hold > 0)
+        return; // no blow: a head raised into a resting stick, or under one that is kept there
     drum->onsets[queue_push(&drum->onset_queue)] = (himc_contact_onset){
         .at = (int64_t)drum->time,
         .x = stick->x,

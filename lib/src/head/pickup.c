@@ -30,8 +30,9 @@
 
 #include <math.h>
 
-#define NEAREST 2 // (radii) chosen: nearer, higher multipoles count, and it grows no more
-#define BARE 0.2  // chosen: within 2 dB in loudness (ITU-R BS.1770) of the same stroke in air
+#define NEAREST 2         // (radii) chosen: nearer, higher multipoles count, and it grows no more
+#define MOST_NEARER 1e150 // of a far field below 1e-150, of modes far below what is heard
+#define BARE 0.2 // chosen: within 2 dB in loudness (ITU-R BS.1770) of the same stroke in air
 
 himc_pickup himc_pickup_default(void)
 {
@@ -113,7 +114,7 @@ static void near_fields(int top, double x, double *out)
         y_before = y;
         j = j_next;
         y = y_next;
-        out[m] = sqrt(j * j + y * y);
+        out[m] = fmin(sqrt(j * j + y * y), MOST_NEARER); // once both are infinite, NaN, too
     }
 }
 

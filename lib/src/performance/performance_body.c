@@ -278,7 +278,7 @@ bool himc_body_simulate(performance_body *b, double t, double h)
 {
     world_contact contact[HIMC_SEGMENTS + HIMC_HANDS + HIMC_SUPPORTS];
     int n = 0;
-    for (int i = HIMC_SEGMENTS - 1; t < b->push_end && i > 0; i--)
+    for (int i = HIMC_SEGMENTS - 1; t < b->push_end && i >= 0; i--)
         if (t < b->push[i].until)
             contact[n++] = (world_contact){.segment = i,
                                            .at = b->push[i].at,
@@ -345,13 +345,13 @@ long himc_body_limit_hits(const performance_body *b)
     return hits;
 }
 
-// false; the error lists the names expected, of the numbers first .. end - 1
-static bool refuse_name(const char *what, const char *name, const char *(*name_of)(int), int first,
-                        int end, himc_error *error)
+// false; the error lists the names expected
+static bool refuse_name(const char *what, const char *name, const char *(*name_of)(int), int count,
+                        himc_error *error)
 {
     himc_error_set(error, "%s: %s, expected", what, name);
     size_t used = error ? strlen(error->text) : 0;
-    for (int i = first; error && i < end; i++)
+    for (int i = 0; error && i < count; i++)
         used += himc_format(error->text + used, sizeof error->text - used, " %s", name_of(i));
     return false;
 }
@@ -359,18 +359,20 @@ static bool refuse_name(const char *what, const char *name, const char *(*name_o
 bool himc_body_find_joint(const char *name, const char *what, int *joint, himc_error *error)
 {
     *joint = himc_joint_find(name);
-    return *joint >= 0 || refuse_name(what, name, himc_joint_name, 0, HIMC_JOINTS, error);
+    return *joint >= 0 || refuse_name(what, name, himc_joint_name, HIMC_JOINTS, error);
 }
 
-bool himc_body_read_push(const himc_command *c, planned_push *out, himc_error *error)
+bool himc_body_read_push(const himc_command *c, himc_stance stance, planned_push *out,
+                         himc_error *error)
 {
     const himc_atom *atom = c->atom;
     *out = (planned_push){.force = {atom[1].number, atom[2].number, atom[3].number},
                           .seconds = atom[4].number,
                           .along = c->count > 5 ? atom[5].number : -1};
-    for (out->segment = HIMC_PELVIS + 1; out->segment < HIMC_SEGMENTS; out->segment++)
+    for (out->segment = 0; out->segment < HIMC_SEGMENTS; out->segment++)
         if (strcmp(atom[0].symbol, himc_segment_name(out->segment)) == 0)
-            return true;
-    return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_PELVIS + 1,
-                       HIMC_SEGMENTS, error);
+            return out->segment != HIMC_PELVIS || stance != HIMC_STANCE_FIXED ||
+                   himc_error_set(error, "push: pelvis: `stance fixed` holds it, expected `stance "
+                                         "seated`");
+    return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_SEGMENTS, error);
 }

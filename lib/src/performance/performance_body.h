@@ -131,7 +131,9 @@ HIMC_RT long himc_body_limit_hits(const performance_body *body);
 
 /// The joint of that name; false if there is none, `what` begins the error.
 bool himc_body_find_joint(const char *name, const char *what, int *joint, himc_error *error);
-/// Reads the command `push` but for its beat; false with the names of segments allowed.
-bool himc_body_read_push(const himc_command *command, planned_push *out, himc_error *error);
+/// Reads the command `push` but for its beat; false with the names of segments allowed, or if the
+/// stance holds the segment.
+bool himc_body_read_push(const himc_command *command, himc_stance stance, planned_push *out,
+                         himc_error *error);
 
 #endif

@@ -64,7 +64,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     bool good;
     error = error ? error : &why;
     if (!j->insertion) {
-        good = himc_body_read_push(&line->command, &push, error);
+        good = himc_body_read_push(&line->command, p->settings.stance, &push, error);
         push.beat = line->beat;
         good = good && himc_body_insert_push(p->body, &push, error);
     } else {

@@ -190,7 +190,7 @@ static bool act(himc_performance *p, const himc_command *c, himc_error *error)
         himc_drums_enclose(&p->drums, &walls);
         return true;
     case HIMC_COMMAND_PUSH:
-        if (!himc_body_read_push(c, &push, error))
+        if (!himc_body_read_push(c, p->settings.stance, &push, error))
             return false;
         himc_body_push(p->body, &push, step_time(p));
         return true;

@@ -519,7 +519,8 @@ static void finish_hand(stick_contact *c, const contact_scene *s, himc_hand hand
     double quiet = t - c->last_force - 0.5 / s->clock->sample_rate;
     double height = over_head(s, c->drum, s->body->state.tip[hand]).z, rise = c->stick.velocity;
     bool lifted = height > LIFTED_HEIGHT || rise > LIFTED_SPEED;
-    bool late = !c->bounce.on && t >= c->strike.time + LONGEST_RELEASE;
+    double since = fmax(c->strike.time, c->bounce.begin); // a dead stroke was lifted
+    bool late = !c->bounce.on && t >= since + LONGEST_RELEASE;
     bool separated = is_dead(c)        ? false
                      : quiet > ANY_GAP ? !c->pressed || lifted
                                        : !c->pressed && quiet > RISING_GAP && rise > 0;
@@ -560,7 +561,7 @@ void himc_contacts_finish(performance_contacts *c, const contact_scene *s, doubl
         bool presses = own->touching && t < own->strike.time + RESTING_CONTACT;
         if (!near && (presses || !himc_bounce_is_over(&own->bounce, t, velocity_of(own, s, hand))))
             continue;
-        own->bounce.on = false;
+        own->bounce = (himc_bounce){.begin = t};
         himc_motion_release(s->motion, hand, true, 0); // the plan begins without their acceleration
         go_on_from_here(own, s, hand, t);
         own->pressed = true; // a contact that goes on is no stroke

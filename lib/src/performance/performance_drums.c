@@ -174,7 +174,9 @@ bool himc_drums_refuse_of(const char *const *names, int count, const char *word,
 {
     char drums[160] = "", spots[64] = "";
     himc_nearest nearest = {.word = word};
-    bool may_be_spot = spot == HIMC_SPOT_NORMAL;
+    bool may_be_spot = spot == HIMC_SPOT_NORMAL, may_be_dead = spot != HIMC_SPOT_XY;
+    if (may_be_dead)
+        himc_nearest_try(&nearest, "dead");
     for (int i = 0; may_be_spot && i < HIMC_SPOT_XY; i++) {
         himc_nearest_try(&nearest, himc_spot_name((himc_spot)i));
         list_name(spots, sizeof spots, himc_spot_name((himc_spot)i));
@@ -183,8 +185,9 @@ bool himc_drums_refuse_of(const char *const *names, int count, const char *word,
         himc_nearest_try(&nearest, names[i]);
         list_name(drums, sizeof drums, names[i]);
     }
-    return himc_error_set(error, "%.40s: no %s%s%sdrum (%s)%s%s%s", word,
-                          may_be_spot ? "spot (" : "", spots, may_be_spot ? "), no " : "",
+    return himc_error_set(error, "%.40s: %s%s%s%sno drum (%s)%s%s%s", word,
+                          may_be_spot ? "no spot (" : "", spots, may_be_spot ? "), " : "",
+                          may_be_dead ? "not dead, " : "",
                           count > 0 ? drums : "there is none: `drum NAME` makes one",
                           nearest.name ? ", did you mean " : "", nearest.name ? nearest.name : "",
                           nearest.name ? "?" : "");

@@ -56,8 +56,8 @@ HIMC_RT const himc_head_frame *himc_drums_frame(const performance_drums *drums, 
 HIMC_RT const himc_head_axes *himc_drums_axes(performance_drums *drums, int index);
 /// Place of a world point on that head, z the height above it (m).
 HIMC_RT himc_vec3 himc_drums_local(performance_drums *drums, int index, himc_vec3 point);
-/// The reason why a word of a stroke on `spot` is wrong: no spot, if none was given, and none of
-/// the drums; returns false.
+/// The reason why a word of a stroke on `spot` is wrong: no spot, if none was given, not `dead`,
+/// none of the drums; returns false. HIMC_SPOT_XY: a drum is all that the word may be.
 HIMC_RT bool himc_drums_refuse(const performance_drums *drums, const char *word, himc_spot spot,
                                himc_error *error);
 /// The same with the names of all drums that there are, `count`.

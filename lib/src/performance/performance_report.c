@@ -42,6 +42,12 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
     himc_performance_stats s = himc_statistics_told(&p->statistics);
     s.seconds = fmax((double)c->played, 0) / c->sample_rate;
     s.limit_hits = himc_body_limit_hits(p->body);
+    for (int j = 0; j < HIMC_JOINTS; j++) {
+        double strength = p->settings.control.strength[j];
+        double reserve = strength > 0 ? p->body->saturation.given[j] / strength : 0;
+        s.reserve_joint = reserve > s.reserve ? j : s.reserve_joint;
+        s.reserve = fmax(s.reserve, reserve);
+    }
     s.events_lost = p->events.lost;
     s.hearings = p->drums.hearings;
     s.sample_rate = c->sample_rate;
@@ -160,7 +166,7 @@ static void fill_dynamics(performance_body *b, bool kinematic, himc_motion_row *
     if (b->controller.balance)
         state = b->state;
     memcpy(load, b->torque, sizeof load);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
+    for (int i = 0; i < HIMC_SEGMENTS; i++) {
         himc_vec3 at = push_point(b, &state, i, row->time), r = himc_vec3_sub(at, state.origin[0]);
         himc_add_force(&b->plant, &state, i, at, row->push[i], load);
         balance.carried.linear = himc_vec3_add(balance.carried.linear, row->push[i]);

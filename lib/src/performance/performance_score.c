@@ -57,6 +57,7 @@ typedef struct score_job {
     performance_clock clock;
     himc_skeleton skeleton;
     // of the performance, then what the lines tried so far leave
+    performance_settings settings;
     bool recording;
     int units;      ///< of motion, that the planner has
     himc_job *take; ///< owned; to try takes
@@ -110,6 +111,7 @@ static void copy_performance(score_job *j)
     j->host = p->host;
     j->clock = p->clock;
     j->skeleton = p->body->skeleton;
+    j->settings = p->settings;
     j->recording = p->recording.file != NULL;
     j->units = himc_planner_units(p->motion->planner);
 }
@@ -178,15 +180,19 @@ static bool refuse_drum(const score_job *j, const named_drum *drum, himc_error *
 static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error *error)
 {
     const himc_command *c = &line->command;
-    performance_settings aside = {.alive = false};
     int file, more;
     himc_recording *trial;
     if (line->drum[0])
         return himc_drum_settings_command(&find_drum(j, line->drum)->trial, c, error) ||
                himc_error_prefix(error, "%s", line->drum);
     switch (c->id) {
-    case HIMC_COMMAND_PUSH: return himc_body_read_push(c, &(planned_push){0}, error);
-    case HIMC_COMMAND_RESET: j->recording = false, j->units = 0; return true;
+    case HIMC_COMMAND_PUSH:
+        return himc_body_read_push(c, j->settings.stance, &(planned_push){0}, error);
+    case HIMC_COMMAND_RESET:
+        j->recording = false;
+        j->units = 0;
+        j->settings = j->host.usual;
+        return true;
     case HIMC_COMMAND_TAKE: // before the first drum as the lines before have placed it
         return himc_performance_try_take(j->take, c, j->drums > 0 ? &j->drum[0].trial.place : NULL,
                                          error) &&
@@ -216,7 +222,7 @@ static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error 
                himc_error_prefix(error, "record");
     default: // the network's are always refused
         return himc_performance_allows(j->recording, c, error) &&
-               himc_settings_read(&aside, &j->host.usual, c, error) &&
+               himc_settings_read(&j->settings, &j->host.usual, c, error) &&
                (himc_command_table((int)c->id)->when != HIMC_WHEN_NETWORK ||
                 j->performance->runner.run(j->performance, c, 0, error));
     }
@@ -247,7 +253,7 @@ static bool read_pushes(const score_job *j, planned_push *list, int *count, himc
             continue;
         bool good = *count < HIMC_PUSHES ||
                     himc_error_set(error, "push: one too many, expected %d", HIMC_PUSHES);
-        if (!good || !himc_body_read_push(&line->command, &list[*count], error))
+        if (!good || !himc_body_read_push(&line->command, j->settings.stance, &list[*count], error))
             return himc_error_prefix(error, "%s:%d", j->path, line->line);
         list[(*count)++].beat = j->from + line->beat;
     }
