@@ -2,6 +2,7 @@
 ///
 ///     /himc/body      segment x y z qw qx qy qz       joint (m), orientation
 ///     /himc/targets   hand x y z                      (m)
+///     /himc/support   x y z of seat, left foot, right foot (N), centre of pressure (m)
 ///     /himc/strike    time hand drum x y velocity force duration nuance ...
 ///     /himc/beat      beat
 ///     /himc/sound     first sample, rate, channels, blob (16 bits, highest byte first)
@@ -21,6 +22,7 @@
 #include <string.h>
 
 #define LARGEST_COORDINATE 1000.0 // (m); chosen: anything larger is an error of the sender
+#define LARGEST_FORCE 1e6         // (N); chosen: the same
 
 static const char *const segments[SCENE_SEGMENTS] = {SKELETON_SEGMENT_NAMES};
 
@@ -131,6 +133,20 @@ static bool on_targets(received *h)
         p->target[hand][i] = (float)number(h, 1 + i);
     if (p)
         p->targets |= UINT32_C(1) << hand;
+    return true;
+}
+
+static bool on_support(received *h)
+{
+    float support[SCENE_SUPPORT];
+    for (int i = 0; i < SCENE_SUPPORT; i++) {
+        if (fabs(number(h, i)) > (i < SCENE_SUPPORT - 3 ? LARGEST_FORCE : LARGEST_COORDINATE))
+            return false;
+        support[i] = (float)number(h, i);
+    }
+    scene_performer *p = scene_find_performer(h->s, h->key, h->time.now);
+    if (p)
+        scene_set_support(p, support);
     return true;
 }
 
@@ -260,7 +276,7 @@ static const address addresses[] = {
     {"himc", "targets", "snnn", on_targets},  {"himc", "strike", "nssnnnnns*", on_strike},
     {"himc", "beat", "n", on_beat},           {"himc", "status", "*", on_status},
     {"himc", "sound", "*", on_sound},         {"membrane", "head", "*", on_head},
-    {"membrane", "place", "nnnnn", on_place},
+    {"membrane", "place", "nnnnn", on_place}, {"himc", "support", "nnnnnnnnnnnn", on_support},
 };
 
 // copies the next "/part" of an address and returns the rest; NULL if there is none or it is too

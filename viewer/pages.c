@@ -32,6 +32,7 @@
     SCRIPT(FILE, drum)                                                     \
     SCRIPT(FILE, modes)                                                    \
     SCRIPT(FILE, strike)                                                   \
+    SCRIPT(FILE, support)                                                  \
     SCRIPT(FILE, stage)                                                    \
     SCRIPT(FILE, camera)                                                   \
     SCRIPT(FILE, rows)                                                     \

@@ -73,14 +73,25 @@ scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double 
     return NULL;
 }
 
+static void complete(scene_performer *p)
+{
+    memcpy(p->support, p->heard, sizeof p->support);
+    memset(p->heard, 0, sizeof p->heard);
+    p->pending = 0;
+    p->version++;
+}
+
+void scene_set_support(scene_performer *p, const float support[SCENE_SUPPORT])
+{
+    memcpy(p->heard, support, sizeof p->heard);
+}
+
 void scene_set_body(scene_performer *p, int segment, const float body[7], scene_time time)
 {
     uint32_t bit = UINT32_C(1) << segment;
     // a segment received twice begins the next pose: the last one will get no more parts
-    if (p->pending & bit) {
-        p->version++;
-        p->pending = 0;
-    }
+    if (p->pending & bit)
+        complete(p);
     if (!p->pending)
         p->begun = time.now;
     p->told = time.told;
@@ -97,8 +108,7 @@ bool scene_complete_poses(scene *s, double now)
         if (!p->pending ||
             (p->pending != (UINT32_C(1) << SCENE_SEGMENTS) - 1 && now - p->begun < POSE_TIMEOUT))
             continue;
-        p->pending = 0;
-        p->version++;
+        complete(p);
         any = true;
     }
     return any;

@@ -15,6 +15,7 @@
 enum {
     SCENE_SEGMENTS = SKELETON_SEGMENTS,
     SCENE_HANDS = 2,
+    SCENE_SUPPORT = 12, ///< forces of seat, left and right foot (N), centre of pressure (m)
     SCENE_PERFORMERS = 16,
     SCENE_DRUMS = 32,
     SCENE_MODES = 64,    ///< modal amplitudes kept of a drum; chosen: as many as the page draws
@@ -43,6 +44,8 @@ typedef struct scene_performer {
     uint32_t targets;              ///< hands with a known target (bits)
     float body[SCENE_SEGMENTS][7]; ///< x y z (m) qw qx qy qz
     float target[SCENE_HANDS][3];  ///< (m)
+    float support[SCENE_SUPPORT];  ///< of the last complete pose; 0 of one that is not free
+    float heard[SCENE_SUPPORT];    ///< that of the pending pose
 } scene_performer;
 
 typedef struct scene_drum {
@@ -98,6 +101,8 @@ scene_drum *scene_find_drum(scene *s, const char *key, const char *name, double 
 
 /// Stores one segment of a pose.
 void scene_set_body(scene_performer *p, int segment, const float body[7], scene_time time);
+/// Stores what carries the pending pose.
+void scene_set_support(scene_performer *p, const float support[SCENE_SUPPORT]);
 /// Marks poses as complete: those with all segments, and those begun more than 5 ms ago (a bundle
 /// may be split, and a packet lost). True if there is one.
 bool scene_complete_poses(scene *s, double now);

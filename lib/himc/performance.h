@@ -217,12 +217,19 @@ void himc_performance_on_motion(himc_performance *performance,
 /// The moving body (body.h).
 typedef struct himc_body_state himc_body_state;
 
+/// Forces of stool and floor on a body that sits (N), in one physics step.
+typedef struct himc_support_forces {
+    himc_vec3 seat, foot[HIMC_HANDS];
+    himc_vec3 center; ///< of pressure on the plane of the seat (m); NaN if nothing presses
+} himc_support_forces;
+
 /// The body and its targets at a task tick; borrowed for the call.
 typedef struct himc_tick {
     double time;                  ///< (s since the performance was made or reset)
     const himc_body_state *body;  ///< all segments in the world
     himc_vec3 target[HIMC_HANDS]; ///< targets of the tips (m)
     const himc_motion_row *row;   ///< all else; NULL unless himc_performance_on_motion is in use
+    const himc_support_forces *support; ///< NULL of a pelvis that is fixed, and in `ik`
     /// Rotations of the joints in the take itself, each in its parent's frame (HIMC_JOINTS);
     /// the joint's target where the take shows none. NULL unless a take with joints plays.
     const himc_quat *captured;

@@ -14,6 +14,29 @@ static void test_the_highest_rate_of_several_subscriptions_is_kept(void)
     TEST_ASSERT_INT_WITHIN(2, 2 * 10, count("/himc/targets"));
 }
 
+static void test_poses_of_one_who_sits_say_what_carries_him(void)
+{
+    subscribe("pose 50");
+    play(0.2);
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/support"));
+    say("/himc/stance", "seated");
+    play(1);
+    forget();
+    play(0.5);
+    int poses = count("/himc/body") / HIMC_SEGMENTS;
+    TEST_ASSERT_INT_WITHIN(1, poses, count("/himc/support"));
+    lo_arg **atom = lo_message_get_argv(last("/himc/support")->message);
+    double up = number(atom[2]) + number(atom[5]) + number(atom[8]);
+    TEST_ASSERT_DOUBLE_WITHIN(1, 736.4, up);
+    TEST_ASSERT_TRUE(number(atom[2]) > number(atom[5]) + number(atom[8]));
+    TEST_ASSERT_TRUE(number(atom[9]) > 0 && number(atom[9]) < 0.3); // between seat and feet
+    say("/himc/stance", "fixed");
+    play(0.1);
+    forget();
+    play(0.2);
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/support"));
+}
+
 static void test_poses_continue_after_a_reset(void)
 {
     subscribe("pose 50");
@@ -162,6 +185,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_more_drums_than_there_is_room_for_leave_the_others_as_they_are);
     RUN_TEST(test_the_highest_rate_of_several_subscriptions_is_kept);
+    RUN_TEST(test_poses_of_one_who_sits_say_what_carries_him);
     RUN_TEST(test_poses_continue_after_a_reset);
     RUN_TEST(test_after_a_reset_all_poses_have_the_time_of_the_wall_clock);
     RUN_TEST(test_a_drum_that_moves_is_sent_at_once_and_else_once_a_second);

@@ -105,6 +105,34 @@ static void test_he_plays_as_one_who_is_bolted_and_stays(void)
     himc_performance_free(p);
 }
 
+static void compare(void *user, const himc_tick *tick)
+{
+    const himc_motion_row *row = tick->row;
+    const himc_support_forces *s = tick->support;
+    double *apart = user;
+    *apart = fmax(*apart, himc_vec3_length(himc_vec3_sub(s->seat, row->seat_force)));
+    *apart = fmax(*apart, himc_vec3_length(himc_vec3_sub(s->center, row->root_center)));
+    for (int i = 0; i < HIMC_HANDS; i++)
+        *apart = fmax(*apart, himc_vec3_length(himc_vec3_sub(s->foot[i], row->foot_force[i])));
+}
+
+static void test_a_tick_has_the_forces_of_its_row(void)
+{
+    himc_performance *p = seated("rate physics 2000");
+    double apart = 0;
+    session_do(p, "rate task 2000");
+    add_strokes(p, 4, "f");
+    session_do(p, "play");
+    session_play(p, 0.5, NULL);
+    seen s = {.rows = 0};
+    himc_performance_on_motion(p, see, &s);
+    session_play(p, 0.01, NULL);
+    himc_performance_on_tick(p, compare, &apart);
+    session_play(p, 1.5, NULL);
+    TEST_ASSERT_TRUE(s.rows > 3000 && apart < 1e-9 * s.weight / (double)s.rows);
+    himc_performance_free(p);
+}
+
 static void test_seat_and_floor_carry_him(void)
 {
     himc_performance *p = seated("rate physics 2000");
@@ -315,6 +343,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_he_plays_as_one_who_is_bolted_and_stays);
     RUN_TEST(test_seat_and_floor_carry_him);
+    RUN_TEST(test_a_tick_has_the_forces_of_its_row);
     RUN_TEST(test_a_push_at_the_chest_from_any_side_is_answered);
     RUN_TEST(test_a_foot_that_is_pushed_down_carries_more);
     RUN_TEST(test_a_harder_push_moves_him_further);

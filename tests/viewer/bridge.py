@@ -885,6 +885,19 @@ def test_a_pose_reaches_the_stream_whole():
         assert all(abs(body[7 * i] - 0.25 - 0.01 * i) < 1e-6 for i in range(20))
 
 
+def test_what_carries_a_pose_reaches_the_stream_with_it():
+    """In one pose, and no more in the next without it; forces and places that cannot be are refused."""
+    forces = [0.0, 1.0, 550.0, 2.0, 3.0, 90.0, 4.0, 5.0, 95.0, 0.1, 0.0, 0.65]
+    with Viewer() as v:
+        stream = listen(v)
+        for sent, wanted in ((forces, forces), (None, 12 * [0.0]), (2 * forces, 12 * [0.0]), ([1e7, *forces[1:]], 12 * [0.0])):
+            v.send(bundle(*([osc("/himc/support", *sent)] if sent else []), *pose()))
+            (got,) = poses(stream.until_mark(v))
+            there = struct.unpack_from("<12f", got, 88 + 4 * (140 + 6))
+            assert all(abs(a - b) < 1e-4 for a, b in zip(there, wanted, strict=True)), (sent, there)
+        assert counts(v)["malformed"] == 2
+
+
 def test_a_pose_split_over_two_bundles_is_one_pose():
     with Viewer() as v:
         stream = listen(v)

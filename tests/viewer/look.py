@@ -1,5 +1,6 @@
 """What the viewer draws: measured in the scene, and where it is on the screen."""
 
+import math
 import os
 import subprocess
 import sys
@@ -7,9 +8,12 @@ import sys
 import report
 from bridge import Viewer
 from browser import Browser
+from scene import Scene
 
 BUILD, MADE = os.environ["HIMC_BUILD"], os.environ["HIMC_MADE"]  # by prepare.sh
-PLAY, FOUR, COMPARED = (os.path.join(MADE, f) for f in ("play.himc", "four.himc", "compared.himc"))
+PLAY, FOUR, COMPARED, SEATED = (os.path.join(MADE, f"{f}.himc") for f in ("play", "four", "compared", "seated"))
+RESTS, PUSHED, LANDED = 4.5, 2.73, 2.98  # times in tests/viewer/seated.txt (s): his seat is left at the second
+WEIGHT = 736.4  # (N)
 WIDTH, HEIGHT = 1280, 720
 STICKS = range(10, 12)  # of the segments
 browser = bridge = None
@@ -207,6 +211,101 @@ def test_help_is_whole_and_a_light_page_is_light():
     browser.media()
 
 
+# the arrows of seat and feet: [length, how far it goes up, number written, where it begins]; and the ring
+SUPPORTS = """
+const [first] = viewer.performers.values(), { group, arrows, center } = first.supports;
+if (arguments.length) viewer.playback.seek(1000 * arguments[0]);
+viewer.step(1, false);
+group.updateMatrixWorld(true);
+const make = () => first.figure.scale.clone(), seen = [];
+for (const { group: arrow, shaft, written } of arrows) {
+    const [from, to] = [make().set(0, 0, shaft.position.z + shaft.scale.z / 2), make().set(0, 0, 0)].map(p => p.applyMatrix4(arrow.matrixWorld)),
+        way = to.clone().sub(from), on = group.visible && arrow.visible;
+    seen.push(on ? [way.length(), way.z, parseFloat(written), from.toArray()] : null);
+}
+return { seen, ring: group.visible && center.getWorldPosition(make()).toArray(), pelvis: viewer.joints()[0],
+    stool: [...first.stool.position.toArray(), first.stool.cushion.position.z], feet: [16, 17].map(i => viewer.joints()[i]) };
+"""
+
+
+def test_forces_of_seat_and_feet_are_arrows_where_he_sits_freely():
+    show(PLAY, 5)
+    browser.run("viewer.actions.show('forces', true)")
+    fixed = browser.run(SUPPORTS)
+    assert not any(fixed["seen"]) and not fixed["ring"], fixed
+    show(SEATED, RESTS)
+    unasked = browser.run(SUPPORTS)
+    assert not any(unasked["seen"]) and not unasked["ring"], unasked
+    browser.run("viewer.actions.show('forces', true)")
+    rest = browser.run(SUPPORTS)
+    seat, left, right = rest["seen"]
+    # at rest they carry the weight together, the seat most of it
+    scale = seat[0] / seat[2]
+    up = sum(arrow[1] for arrow in rest["seen"]) / scale
+    assert abs(up - WEIGHT) < 0.01 * WEIGHT, up
+    assert seat[0] > 3 * max(left[0], right[0]) and min(seat[1], left[1], right[1]) > 0, rest
+    # each begins where he is pressed
+    assert abs(seat[3][2] - rest["stool"][3]) < 0.001 and max(left[3][2], right[3][2]) < 0.001, rest
+    for foot, arrow in zip(rest["feet"], (left, right)):
+        assert math.dist(foot[:2], arrow[3][:2]) < 0.08, (foot, arrow)
+    # the centre of pressure is on the floor, where the arrows balance
+    weights = [arrow[1] for arrow in rest["seen"]]
+    for k in (0, 1):
+        there = sum(w * arrow[3][k] for w, arrow in zip(weights, rest["seen"])) / sum(weights)
+        assert abs(rest["ring"][k] - there) < 0.08, (k, rest["ring"], there)
+    assert abs(rest["ring"][2]) < 0.01
+    # a larger force is a longer arrow, to the same scale
+    arrows = [(a[2], a[0]) for t in (1.2, PUSHED, LANDED, RESTS) for a in browser.run(SUPPORTS, t)["seen"] if a]
+    assert len(arrows) > 8 and all(abs(length - scale * newtons) < 1e-4 for newtons, length in arrows), arrows
+    return f"{up:.1f} N of {WEIGHT} N; {1000 * scale:.2f} mm/N"
+
+
+def test_a_push_moves_pelvis_and_legs_and_no_stool():
+    with open(SEATED, "rb") as file:
+        scene = Scene(file.read())
+    names = [name for name, _ in scene.of("scene")[0]["columns"]]
+    at = [1 + names.index(f"pelvis_position_{axis}_m") for axis in "xyz"]
+    rest, pushed = (browser.run(SUPPORTS, t) for t in (RESTS, PUSHED))
+    row = min(scene.rows, key=lambda r: abs(r[0] - PUSHED))
+    assert math.dist(pushed["pelvis"], [row[k] for k in at]) < 0.002, (pushed["pelvis"], row[:1])
+    moved = math.dist(rest["pelvis"], pushed["pelvis"])
+    assert moved > 0.01 and rest["stool"] == pushed["stool"], (moved, rest["stool"], pushed["stool"])
+    # his seat carries less than his feet while he is thrown forwards
+    forces = [arrow[2] if arrow else 0 for arrow in pushed["seen"]]
+    assert forces[0] < 200 < forces[1] + forces[2], forces
+    return f"{1000 * moved:.0f} mm"
+
+
+def test_lanes_of_seat_and_feet_are_those_of_one_who_sits_freely():
+    lanes = "if (!viewer.panel.timeline.all) viewer.actions.lanes(); return viewer.panel.timeline.shown.map(l => l.name)"
+    shown = browser.run(lanes)
+    assert shown[-2:] == ["support", "friction"], shown
+    forces = browser.run(
+        "const { scene } = viewer.playback, row = scene.at(arguments[0])[0]; return scene.carried().up.map(all => all[row])", RESTS
+    )
+    assert abs(sum(forces) - WEIGHT) < 0.01 * WEIGHT, forces
+    # each has its colour, in a window as on a phone that lies on its side there is no room
+    drawn = browser.run(
+        """
+        viewer.step(1, false);
+        const { lanes, shown } = viewer.panel.timeline, sum = shown.reduce((all, { share }) => all + share, 0),
+            top = shown.slice(0, -2).reduce((all, { share }) => all + share, 0) / sum, c = lanes.getContext("2d"),
+            part = c.getImageData(0, Math.ceil(top * lanes.height), lanes.width - 220, Math.floor((1 - top) * lanes.height) - 1).data, found = [0, 0, 0];
+        for (let i = 0; i < part.length; i += 4)
+            [[242, 227, 189], [127, 214, 255], [255, 176, 102]].forEach((rgb, k) => (found[k] += part[i + 3] > 200 && rgb.every((v, n) => Math.abs(v - part[i + n]) < 12)));
+        return found;
+        """
+    )
+    assert min(drawn) > 30, drawn
+    browser.resize(844, 390)
+    phone = browser.run(lanes)
+    browser.resize(WIDTH, HEIGHT)
+    assert "support" not in phone and "friction" not in phone, phone
+    show(PLAY, 5)
+    assert browser.run(lanes)[-1] == "spectrum"
+    return f"{drawn} pixels"
+
+
 def test_a_scene_is_kept_in_few_bytes():
     show(PLAY, 1)
     kept, plain, decoded = browser.run(
@@ -227,7 +326,17 @@ def test_a_scene_is_kept_in_few_bytes():
         """
     )
     assert cut == [3, 7, True], cut
-    return f"{100 * kept / plain:.0f} % of plain integers"
+    show(SEATED, 1)
+    whole, seconds = browser.run(
+        """
+        const { scene } = viewer.playback, chunks = new Set([...scene.drums.values()].flatMap(d => d.frames.chunks)),
+            size = list => list.reduce((sum, part) => sum + part.length, 0), times = scene.times.length;
+        return [scene.blocks.reduce((sum, b) => sum + b.packed.length + b.width.length, 0) + size([...chunks]) + size(scene.sounds) + 16 * times, scene.end];
+        """
+    )
+    half_an_hour = whole / seconds * 1800
+    assert half_an_hour < 200e6, half_an_hour
+    return f"{100 * kept / plain:.0f} % of plain integers; half an hour of one who sits freely {half_an_hour / 1e6:.0f} MB"
 
 
 if __name__ == "__main__":

@@ -28,9 +28,9 @@ from browser import Browser
 BUILD = os.environ["HIMC_BUILD"]
 MADE = os.environ["HIMC_MADE"]  # by prepare.sh
 HIMC, VIEWER = (os.path.join(BUILD, name) for name in ("bin/himc", "bin/himc-viewer"))
-MOTION, STROKES, SCENE, FOUR, EXPECTED = (
+MOTION, STROKES, SCENE, FOUR, SEATED, EXPECTED = (
     os.path.join(MADE, f)
-    for f in ("motion.csv", "strokes.csv", "play.himc", "four.himc", "expected.txt")
+    for f in ("motion.csv", "strokes.csv", "play.himc", "four.himc", "seated.himc", "expected.txt")
 )
 FOUR_SCORE = "tests/viewer/four.txt"
 # fixed, because the page must find a restarted viewer again; different for each run of this file
@@ -987,6 +987,29 @@ def test_a_body_that_changes_moves_the_joints_of_the_gltf():
         times, places = (gltf["accessors"][sampler[k]] for k in ("input", "output"))
         assert sampler["interpolation"] == "STEP" and times["max"] == [1.5], (sampler, times)
         assert times["count"] == places["count"] == 2, (times, places)
+
+
+def test_a_pelvis_that_is_free_moves_in_the_gltf():
+    browser.run("viewer.held = true")
+    joint, kinds, placed, there = browser.run(
+        """
+        const bytes = Uint8Array.from(atob(arguments[0]), c => c.charCodeAt(0));
+        return viewer.play(bytes, "seated.himc").then(async () => {
+            const blob = await viewer.exporter.make("glb", {}), data = await blob.arrayBuffer(), view = new DataView(data),
+                length = view.getUint32(12, true), gltf = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 20, length)));
+            const [{ channels, samplers }] = gltf.animations, [pelvis] = gltf.skins[0].joints,
+                own = channels.filter(c => c.target.node === pelvis), way = own.find(c => c.target.path === "translation"),
+                accessor = gltf.accessors[samplers[way.sampler].output],
+                at = 28 + length + gltf.bufferViews[accessor.bufferView].byteOffset, frame = 164; // 2.73 s
+            return [pelvis, own.map(c => c.target.path).sort(), [0, 1, 2].map(k => view.getFloat32(at + 12 * frame + 4 * k, true)),
+                [...viewer.playback.scene.pose(frame / 60, new Float64Array(140))].slice(0, 3)];
+        });
+        """,
+        base64.b64encode(open(SEATED, "rb").read()).decode(),
+    )
+    browser.run("viewer.resume(); viewer.actions.live()")
+    assert joint == 1 and kinds == ["rotation", "translation"], kinds
+    assert math.dist(placed, there) < 1e-6 and there[0] > 0.01, (placed, there)
 
 
 # Where the audio thread meets the first loud sample of a playback, against the picture's time (ms)

@@ -18,6 +18,7 @@ enum { BLOCK = 96, RATE = 48000 };
 typedef struct last_tick {
     himc_osc *osc;
     himc_body_state body;
+    himc_support_forces support;
     himc_tick tick;
 } last_tick;
 
@@ -33,6 +34,10 @@ static void on_tick(void *user, const himc_tick *tick)
     last->body = *tick->body;
     last->tick = *tick;
     last->tick.body = &last->body;
+    if (tick->support) {
+        last->support = *tick->support;
+        last->tick.support = &last->support;
+    }
     himc_osc_tick(last->osc, tick);
 }
 

@@ -16,6 +16,7 @@ from scene import Scene
 
 HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
 SCORE = "tests/viewer/four.txt"
+COLUMNS = "usual,torques,segments,root"
 folder = tempfile.TemporaryDirectory(prefix="himc-scene-")
 
 
@@ -23,8 +24,8 @@ def path(name):
     return os.path.join(folder.name, name)
 
 
-def render(*options):
-    command = [HIMC, "render", SCORE, "-o", path("sound.wav"), *options]
+def render(*options, score=SCORE, sound="sound.wav"):
+    command = [HIMC, "render", score, "-o", path(sound), *options]
     return subprocess.run(command, capture_output=True, text=True)
 
 
@@ -32,7 +33,7 @@ def scene(name="one.himc", *options):
     if not os.path.exists(path(name)):
         done = render(
             "--scene", path(name), "--motion", path("m.csv"), "--strokes", path("s.csv"),
-            "--columns", "usual,torques", *options
+            "--columns", COLUMNS, *options
         )
         assert done.returncode == 0, done.stderr
     with open(path(name), "rb") as file:
@@ -44,16 +45,45 @@ def table(name):
         return list(csv.DictReader(file))
 
 
-def test_rows_are_those_of_the_motion_table_within_half_a_step():
-    one = scene()
+def off_the_table(one, lines):
+    """The largest distance of a value from the motion table's, in steps."""
     columns = one.of("scene")[0]["columns"]
     worst = 0
-    for row, line in zip(one.rows, table("m.csv"), strict=True):
+    for row, line in zip(one.rows, lines, strict=True):
         assert abs(row[0] - float(line["time_s"])) < 1e-6
+        # the table has the pelvis' orientation as a quaternion, and nothing where nothing presses
+        turn = [float(line[f"pelvis_q{k}"]) for k in "wxyz"]
+        sine = math.hypot(*turn[1:])
+        for k, q in zip("xyz", turn[1:]):
+            line[f"pelvis_{k}_rad"] = 2 * math.atan2(sine, turn[0]) * q / sine if sine else 0.0
         for (name, step), value in zip(columns, row[1:], strict=True):
-            worst = max(worst, abs(value - float(line[name])) / step)
+            there = float(line[name] or "nan")
+            worst = max(worst, abs(value - (0 if math.isnan(there) else there)) / step)
+    return worst
+
+
+def test_rows_are_those_of_the_motion_table_within_half_a_step():
+    one = scene()
+    worst = off_the_table(one, table("m.csv"))
     assert worst < 0.51, worst
     return f"{len(one.rows)} rows within {worst:.3f} of a step"
+
+
+def test_a_pelvis_that_is_free_moves_in_the_rows_of_one_body():
+    files = ("--scene", path("seated.himc"), "--motion", path("seated.csv"))
+    done = render(*files, "--columns", COLUMNS, score="tests/viewer/seated.txt", sound="seated.wav")
+    assert done.returncode == 0, done.stderr
+    with open(path("seated.himc"), "rb") as file:
+        one = Scene(file.read())
+    worst = off_the_table(one, table("seated.csv"))
+    assert worst < 0.51, worst
+    names = [name for name, _ in one.of("scene")[0]["columns"]]
+    at = [1 + names.index(name) for name in ("pelvis_position_x_m", "pelvis_y_rad", "seat_force_z_n")]
+    moved, turned, eased = (max(r[k] for r in one.rows) - min(r[k] for r in one.rows) for k in at)
+    assert moved > 0.01 and turned > 0.05 and eased > 200, (moved, turned, eased)
+    # his measures do not change: a scene of half an hour stays small
+    assert len(one.of("body")) == 1, len(one.of("body"))
+    return f"{1000 * moved:.0f} mm, {turned:.2f} rad, within {worst:.3f} of a step"
 
 
 def test_strikes_are_those_of_the_table_with_their_beats():

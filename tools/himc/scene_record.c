@@ -21,13 +21,19 @@ enum {
     TARGET = 3 * HIMC_JOINTS, // columns
     FORCE = TARGET + 3 * HIMC_HANDS,
     TORQUE = FORCE + HIMC_HANDS,
-    COLUMNS = TORQUE + 3 * HIMC_JOINTS
+    PELVIS = TORQUE + 3 * HIMC_JOINTS,
+    SUPPORT = PELVIS + 6, // of seat, left foot and right foot
+    CENTER = SUPPORT + 3 * (1 + HIMC_HANDS),
+    COLUMNS = CENTER + 3
 };
 // chosen: at the mallets, 1 m from the joints, well below 0.01 mm; and as fine as anyone looks
 #define ROTATION_STEP 1e-6 // (rad)
 #define TARGET_STEP 1e-5   // (m)
 #define FORCE_STEP 0.01    // (N)
 #define TORQUE_STEP 0.02   // (N m)
+#define PLACE_STEP 1e-6    // of the pelvis (m)
+#define SUPPORT_STEP 0.1   // (N)
+#define CENTER_STEP 1e-4   // (m)
 #define HEAD_HZ 33.0       // as subscriptions have it
 #define LEAST_PART 1e-4    // of a mode in a shape; chosen: less than a byte of an amplitude
 #define STILL 1e-8         // (m) a head that moves less is at rest; chosen: far below a pixel
@@ -71,9 +77,19 @@ static void name_columns(scene_column *column)
                  himc_hand_name((himc_hand)i));
         column[FORCE + i].step = FORCE_STEP;
     }
-    for (int i = 0; i < COLUMNS - TORQUE; i++)
+    for (int i = 0; i < PELVIS - TORQUE; i++)
         name_column(&column[TORQUE + i], himc_joint_name(i / 3), "_torque", (char)('x' + i % 3),
                     "n_m", TORQUE_STEP);
+    static const struct {
+        const char *owner, *what, *unit;
+        double step;
+    } root[] = {
+        {"pelvis", "_position", "m", PLACE_STEP},    {"pelvis", "", "rad", ROTATION_STEP},
+        {"seat", "_force", "n", SUPPORT_STEP},       {"left", "_foot_force", "n", SUPPORT_STEP},
+        {"right", "_foot_force", "n", SUPPORT_STEP}, {"root", "_center", "m", CENTER_STEP}};
+    for (int i = 0; i < COLUMNS - PELVIS; i++)
+        name_column(&column[PELVIS + i], root[i / 3].owner, root[i / 3].what, (char)('x' + i % 3),
+                    root[i / 3].unit, root[i / 3].step);
 }
 
 // the recording's time of a time of the performance: `reset` leaves the count of samples as it is
@@ -146,6 +162,13 @@ static double component(himc_vec3 v, int i)
     return i % 3 == 0 ? v.x : i % 3 == 1 ? v.y : v.z;
 }
 
+static void put_pelvis(double *value, himc_vec3 place, himc_quat orientation)
+{
+    himc_vec3 rotation = himc_quat_log(orientation);
+    for (int i = 0; i < 6; i++)
+        value[PELVIS + i] = component(i < 3 ? place : rotation, i);
+}
+
 // a row of the take itself: its joints, and the targets it was tracked by
 static void captured_row(scene_record *r, const himc_tick *tick)
 {
@@ -153,6 +176,7 @@ static void captured_row(scene_record *r, const himc_tick *tick)
     for (int i = 0; i < FORCE; i++)
         value[i] = component(
             i < TARGET ? himc_quat_log(tick->captured[i / 3]) : tick->target[(i - TARGET) / 3], i);
+    put_pelvis(value, tick->body->origin[HIMC_PELVIS], tick->body->orientation[HIMC_PELVIS]);
     scene_row(r->captured, own(r, tick->time), value);
     r->captured_rows++;
 }
@@ -161,14 +185,17 @@ void scene_record_tick(void *record, const himc_tick *tick)
 {
     scene_record *r = record;
     const himc_body_state *b = tick->body;
-    bool changed = differs(&r->origin[0], b->origin[0]);
+    // where a free pelvis goes is in the rows
+    bool changed = !tick->support && differs(&r->origin[HIMC_PELVIS], b->origin[HIMC_PELVIS]);
     for (int i = 1; i < HIMC_SEGMENTS; i++)
         changed |= differs(&r->origin[i], in_frame(b, usual()->segment[i].parent, b->origin[i]));
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         changed |=
             differs(&r->tip[hand], in_frame(b, himc_stick_segment((himc_hand)hand), b->tip[hand]));
-    if (changed)
+    if (changed) {
+        r->origin[HIMC_PELVIS] = b->origin[HIMC_PELVIS];
         tell_body(r, own(r, tick->time));
+    }
     if (r->captured && tick->captured)
         captured_row(r, tick);
 }
@@ -181,8 +208,13 @@ void scene_record_row(void *record, const himc_motion_row *row)
         value[i] = component(i < TARGET ? row->joint[i / 3] : row->target[(i - TARGET) / 3], i);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         value[FORCE + hand] = row->force[hand];
-    for (int i = 0; i < COLUMNS - TORQUE; i++)
+    for (int i = 0; i < PELVIS - TORQUE; i++)
         value[TORQUE + i] = component(row->torque[i / 3], i);
+    put_pelvis(value, row->segment[HIMC_PELVIS], row->orientation[HIMC_PELVIS]);
+    const himc_vec3 support[] = {row->seat_force, row->foot_force[HIMC_LEFT],
+                                 row->foot_force[HIMC_RIGHT], row->root_center};
+    for (int i = 0; i < COLUMNS - SUPPORT; i++)
+        value[SUPPORT + i] = component(support[i / 3], i);
     scene_row(r->scene, own(r, row->time), value);
 }
 

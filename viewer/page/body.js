@@ -48,15 +48,15 @@ export function place(q, a, vx, vy, vz, p, b, out, o) {
     out[o + 2] = p[b + 2] + vz + w * tz + x * ty - y * tx;
 }
 
-// `local` has the rotation (w x y z) of each segment in its parent's frame; the result has
-// [x y z qw qx qy qz] of each segment, as the library's himc_pose_to_state.
-export function forward(local, out = new Float64Array(7 * segments.length), origin = usual) {
+// `local` has the rotation (w x y z) of each segment in its parent's frame, `root` the pelvis' place
+// (m); the result has [x y z qw qx qy qz] of each segment, as the library's himc_pose_to_state.
+export function forward(local, out = new Float64Array(7 * segments.length), origin = usual, root = origin) {
     segments.forEach((s, i) => {
         const o = 7 * i,
             l = 4 * i,
             p = 7 * s.parent;
         if (s.parent < 0) {
-            for (let k = 0; k < 3; k++) out[o + k] = origin[k];
+            for (let k = 0; k < 3; k++) out[o + k] = root[k];
             for (let k = 0; k < 4; k++) out[o + 3 + k] = local[k];
             return;
         }

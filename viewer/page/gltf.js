@@ -115,18 +115,19 @@ class Writer {
     }
 }
 
-// rows of [x y z w], one for each joint, at each time
-function rotations(scene, times) {
+// rows of [x y z w], one for each joint, at each time; and the places of the pelvis
+function motion(scene, times) {
     const pose = new Float64Array(7 * segments.length),
+        root = new Float32Array(3 * times.length),
         out = segments.map(() => new Float32Array(4 * times.length));
     times.forEach((time, k) => {
-        scene.pose(time, pose);
-        for (let i = 1; i < segments.length; i++) {
+        root.set(scene.pose(time, pose).subarray(0, 3), 3 * k);
+        for (let i = 0; i < segments.length; i++) {
             const [w, x, y, z] = scene.local.subarray(4 * i, 4 * i + 4);
             out[i].set([x, y, z, w], 4 * k);
         }
     });
-    return out;
+    return [out, root];
 }
 
 // the places of a joint in its parent's frame, one for each body
@@ -143,10 +144,14 @@ function animate(writer, scene, nodes, heads) {
         channels.push({ sampler: samplers.length, target: { node, path } });
         samplers.push({ input, output: writer.accessor(output, type, FLOAT), ...more });
     };
-    rotations(scene, times).forEach((list, i) => i && move(nodes[i], "rotation", list, "VEC4"));
+    // a pelvis that is fixed stays where the body has it
+    const first = scene.sits ? 0 : 1,
+        [turns, root] = motion(scene, times);
+    turns.forEach((list, i) => i >= first && move(nodes[i], "rotation", list, "VEC4"));
+    if (scene.sits) move(nodes[0], "translation", root, "VEC3");
     if (scene.bodies.length > 1) {
         const changes = clock(Float32Array.from(scene.bodies, b => b.time));
-        nodes.forEach((node, i) => move(node, "translation", places(scene, i), "VEC3", { input: changes, interpolation: "STEP" }));
+        nodes.forEach((node, i) => (i || !scene.sits) && move(node, "translation", places(scene, i), "VEC3", { input: changes, interpolation: "STEP" }));
     }
     for (const { node, weights } of heads)
         move(node, "weights", Float32Array.from([...times].flatMap(weights)), "SCALAR");

@@ -188,9 +188,8 @@ function inStep(key, time, act) {
 }
 
 const live = {
-    pose(key, time, known, targets, body, target) {
-        if (!playback)
-            performer(key)?.receive(time, virtual || clock(), known, targets, body, target);
+    pose(key, time, ...pose) {
+        if (!playback) performer(key)?.receive(time, virtual || clock(), ...pose);
     },
     drum(key, name, time, place, amplitude) {
         if (!playback) inStep(key, time, now => drum(key, name)?.receive(now, place, amplitude));
@@ -221,12 +220,12 @@ const live = {
 // what a playback shows: `now` keeps its performer and its drums present
 const played = {
     now: 0,
-    pose(scene, time, pose, target) {
+    pose(scene, time, pose, target, support) {
         const one = performer(scene.name),
             name = scene.head.name,
             next = scene.strikes[before(scene.strikes, time, s => s.time) + 1],
             ghost = scene !== playback.scene;
-        one?.show(this.now, pose, target);
+        one?.show(this.now, pose, target, support, scene.sits ? scene.body(time).origin : null);
         const struck = next && [scene, playback.scene].map(s => drums.get(`${s.name} ${next.drum}`)).find(d => d);
         one?.lookAt(struck?.spot(next));
         one?.ghost(ghost && playback.compare === "overlay" ? (GHOSTS[name] ?? "#e7b6ff") : null);
@@ -320,7 +319,7 @@ function frame(_, now = clock(), draw = true) {
     }
     const time = playback ? playback.at : now, // of marks and trails
         first = arrange(now);
-    for (const p of performers.values()) p.update(now, time, view.camera, shown, liveSound.moment(p.key));
+    for (const p of performers.values()) p.update(now, time, view.camera, shown, view.near(), liveSound.moment(p.key));
     const excursion = updateDrums(now);
     marks.update(time, shown, view.near());
     view.update(Math.min(200, dt), first);

@@ -32,7 +32,7 @@ const KEYS = [
     ["[ ]", "the loop begins, ends here", null],
     ["\\", "no loop", a => a.unloop()],
     ["home end", "the beginning, the end", null],
-    ["l", "more lanes: angles, torques, spectrum", a => a.lanes()],
+    ["l", "more lanes: angles, torques, spectrum, seat and feet", a => a.lanes()],
     ["alt and drag", "push the body, in an edit", null],
     ["enter", "choose the stroke at the cursor, to edit it", null],
     [", .", "the chosen stroke an eighth of a beat earlier, later (< > a third of that)", null],

@@ -9,6 +9,7 @@ import { Figure, shirts } from "./figure.js";
 import { segments } from "./skeleton.js";
 import { joined, lathe, rod } from "./solids.js";
 import { Trail } from "./strike.js";
+import { Supports } from "./support.js";
 
 const KEPT = 256, // poses: chosen, 1 s at 250 Hz
     PEDAL = [0.07, 0.1, -0.07], // left of the right foot (m)
@@ -55,23 +56,26 @@ export class Performer {
                 ),
         );
         this.stool = stool(stage.environment);
-        this.group.add(this.stool, ...this.targets, ...this.trails.map(t => t.mesh));
+        this.support = new Float32Array(12);
+        this.supports = new Supports();
+        this.group.add(this.stool, this.supports.group, ...this.targets, ...this.trails.map(t => t.mesh));
         stage.scene.add(this.group);
     }
 
-    receive(time, now, known, targets, body, target) {
+    receive(time, now, known, targets, body, target, support) {
         if (!this.clock.hear(time, now)) return;
         const last = this.poses[this.poses.length - 1];
         if (last && (time < last.time || time - last.time >= 500)) this.poses.length = 0;
-        this.poses.push({ time, known, targets, body, target });
+        this.poses.push({ time, known, targets, body, target, support });
         if (this.poses.length > KEPT) this.poses.shift();
         this.heard = now;
     }
 
-    // shows this pose, of a playback
-    show(now, pose, target) {
+    // shows this pose, of a playback; `home`: where a pelvis that is free rests
+    show(now, pose, target, support, home) {
         ((this.heard = now), (this.poses.length = 0), (this.haveTargets = 3));
-        (this.pose.set(pose), this.target.set(target));
+        (this.pose.set(pose), this.target.set(target), this.support.set(support));
+        this.home = home;
         this.shown = true;
     }
 
@@ -93,13 +97,14 @@ export class Performer {
         const t =
             b.time > a.time ? Math.min(1, Math.max(0, (moment - a.time) / (b.time - a.time))) : 0;
         interpolate(a.body, b.body, t, this.pose);
-        for (let k = 0; k < 6; k++) this.target[k] = a.target[k] + t * (b.target[k] - a.target[k]);
+        for (const what of ["target", "support"])
+            a[what].forEach((v, k) => (this[what][k] = v + t * (b[what][k] - v)));
         this.haveTargets = a.targets;
     }
 
     // `time` is that of the trails: of a playback, or now; `heard` is the moment of its clock that is at
     // the loudspeaker, null while nothing sounds (ms)
-    update(now, time, camera, shown, heard) {
+    update(now, time, camera, shown, near, heard) {
         this.group.visible = this.present(now) && (this.shown || this.poses.length > 0);
         if (!this.group.visible) return;
         if (this.poses.length) {
@@ -117,6 +122,7 @@ export class Performer {
             );
         });
         this.sit();
+        this.supports.update(this, shown.forces && !this.ghostly, near);
         this.group.updateMatrixWorld();
         this.trails.forEach((trail, hand) => {
             trail.mesh.visible = shown.trails;
@@ -128,9 +134,10 @@ export class Performer {
         });
     }
 
-    // the stool below him
+    // the stool below him; one who sits freely moves on it
     sit() {
-        const [x, y, z] = this.pose,
+        if (!this.rests || !this.support.some(v => v)) this.rests = this.pose.slice(0, 3);
+        const [x, y, z] = this.home ?? this.rests,
             { stool } = this,
             size = this.figure.scale.x,
             high = z - BELOW * size;

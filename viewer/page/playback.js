@@ -16,6 +16,7 @@ export class Playback {
         this.compare = scene.ghosts.length ? "overlay" : ""; // or "side": the ghosts beside the performer
         this.pose = new Float64Array(7 * segments.length);
         this.target = new Float64Array(6);
+        this.support = new Float64Array(12);
         this.amplitude = new Float32Array(64);
         this.modal = new Float64Array(64);
     }
@@ -114,7 +115,9 @@ export class Playback {
         const since = this.jumped || this.at < this.shownTo ? this.at - memory : this.shownTo,
             of = s => 1000 * s.time;
         for (const scene of this.scenes) {
-            on.pose(scene, time, scene.pose(time, this.pose), scene.targets(time, this.target));
+            on.pose(
+                scene, time, scene.pose(time, this.pose), scene.targets(time, this.target), scene.support(time, this.support),
+            );
             if (scene !== this.scene && this.compare !== "side") continue;
             const own = scene.drums.size > 0; // a take has none: it is beside the performer's, which rest
             for (const drum of (own ? scene : this.scene).drums.values()) {

@@ -30,6 +30,11 @@ export class Rows {
         this.packed = packed.slice(0, size);
     }
 
+    // whether all values of a column are 0
+    empty(c) {
+        return this.width.subarray(c * this.runs, (c + 1) * this.runs).every(w => !w);
+    }
+
     // the values of a column, in its steps
     column(c) {
         const known = this.values.get(c);

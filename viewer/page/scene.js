@@ -11,6 +11,13 @@ const MAGIC = "himcscn",
 const LARGEST = 64 << 20, // of an unpacked chunk (bytes); chosen: a second of a scene is 200 kB
     MOST = 2 ** 32, // of all of a scene (bytes); chosen: some hours
     ITEMS = 2 ** 23; // rows, frames of heads and values of events; chosen: 5 hours
+const axes = (name, unit) => [..."xyz"].map(axis => `${name}_${axis}_${unit}`),
+    PELVIS = axes("pelvis_position", "m"),
+    SUPPORT = ["seat_force", "left_foot_force", "right_foot_force"].flatMap(name => axes(name, "n")),
+    CENTER = axes("root_center", "m"),
+    SUPPORTS = [...SUPPORT, ...CENTER],
+    TARGETS = HANDS.flatMap(hand => axes(`${hand}_target`, "m")),
+    PRESSES = 20; // the least force that friction is told of (N); chosen: a foot that rests
 export const DRUMS = 32; // as many as himc-viewer keeps
 const SLICE = 30, // of work, then the page draws itself (ms); chosen: it answers at once
     PART = 1024; // rows between two looks at the clock; chosen: some ms
@@ -70,7 +77,8 @@ export class Scene {
         ((this.beats = []), (this.notes = []), (this.sounds = []), (this.ghosts = []));
         ((this.times = []), (this.blocks = []), (this.column = new Map()));
         this.local = new Float64Array(4 * segments.length);
-        ((this.ahead = new Float64Array(4)), (this.local[0] = 1));
+        this.sits = false; // seat or floor carry him somewhere
+        ((this.ahead = new Float64Array(4)), (this.root = new Float64Array(3)));
     }
 
     // An event in the order of time; one that is not as it should be is a fault of the file.
@@ -111,7 +119,9 @@ export class Scene {
             columns = this.head.columns.length;
         if (!finite(start, period) || bytes.length !== 20 + 4 * columns * count)
             throw new Error(`${this.name}: faulty rows`);
-        this.blocks.push(new Rows(this.times.length, count, columns, bytes, 20));
+        const block = new Rows(this.times.length, count, columns, bytes, 20);
+        this.blocks.push(block);
+        this.sits ||= SUPPORT.some(name => this.column.has(name) && !block.empty(this.column.get(name)));
         for (let i = 0; i < count; i++) this.times.push(start + i * period);
     }
 
@@ -135,7 +145,8 @@ export class Scene {
             for (const part of ["changes", "modes"]) drum[part] = drum[part].filter(past);
             drum.frames.keep(drum.frames.times.filter(t => past({ time: t })).length);
         }
-        ((this.end = this.times.length ? this.times[this.times.length - 1] : 0), (this.tipHeights = null));
+        this.end = this.times.length ? this.times[this.times.length - 1] : 0;
+        this.tipHeights = this.carriers = null;
     }
 
     // whether that contact, which a cut has halved, is there
@@ -158,7 +169,7 @@ export class Scene {
             blows.get(strike.drum).push(strike);
         }
         for (const drum of this.drums.values()) drum.blows = blows.get(drum.name) ?? [];
-        this.joints = segments.map(s => this.column.get(`${s.joint}_x_rad`));
+        this.joints = segments.map(s => this.column.get(`${s.joint || s.name}_x_rad`));
         if (this.joints.some(c => c + 2 >= this.head.columns.length)) throw new Error(`${this.name}: faulty columns`);
     }
 
@@ -201,7 +212,7 @@ export class Scene {
         const [row, t] = this.at(time),
             q = this.local,
             r = this.ahead;
-        for (let i = 1; i < segments.length; i++) {
+        for (let i = 0; i < segments.length; i++) {
             const o = 4 * i;
             this.rotation(row, i, q, o);
             if (!t) continue;
@@ -216,17 +227,42 @@ export class Scene {
             }
             for (let k = 0; k < 4; k++) q[o + k] /= Math.sqrt(norm);
         }
-        return forward(q, out, this.body(time).origin);
+        const { origin } = this.body(time);
+        return forward(q, out, origin, this.column.has(PELVIS[0]) ? this.values(time, PELVIS, this.root) : origin);
+    }
+
+    // of these columns at `time`
+    values(time, names, out) {
+        const [row, t] = this.at(time);
+        names.forEach((name, k) => {
+            const a = this.value(row, name);
+            out[k] = t ? a + t * (this.value(row + 1, name) - a) : a;
+        });
+        return out;
     }
 
     targets(time, out) {
-        const [row, t] = this.at(time),
-            name = k => `${HANDS[k < 3 ? 0 : 1]}_target_${"xyz"[k % 3]}_m`;
-        for (let k = 0; k < 6; k++) {
-            const a = this.value(row, name(k));
-            out[k] = t ? a + t * (this.value(row + 1, name(k)) - a) : a;
-        }
-        return out;
+        return this.values(time, TARGETS, out);
+    }
+
+    // forces of seat, left and right foot (N), and the centre of pressure on the plane of the seat (m), all
+    // x y z; 0 of a pelvis that is fixed
+    support(time, out) {
+        return this.sits ? this.values(time, SUPPORTS, out) : out.fill(0);
+    }
+
+    // in each row, of seat, left and right foot: the force upwards (N), and the friction it needs, horizontal
+    // over vertical force; once
+    carried() {
+        if (this.carriers) return this.carriers;
+        const list = () => [0, 1, 2].map(() => new Float32Array(this.times.length)),
+            [up, friction] = [list(), list()];
+        for (let row = 0; row < this.times.length; row++)
+            for (let part = 0; part < 3; part++) {
+                const [x, y, z] = [0, 1, 2].map(k => this.value(row, SUPPORT[3 * part + k]));
+                ((up[part][row] = z), (friction[part][row] = z > PRESSES ? Math.hypot(x, y) / z : 0));
+            }
+        return (this.carriers = { up, friction, most: Math.max(1, ...up.map(all => all.reduce((a, b) => Math.max(a, b), 0))) });
     }
 
     // the heights of both tips in each row (m), once

@@ -6,7 +6,8 @@ import { segments } from "./skeleton.js";
 const KEY = 80,
     NAME = 32,
     BODY = 4 * 7 * segments.length,
-    TARGET = 4 * 2 * 3;
+    TARGET = 4 * 2 * 3,
+    SUPPORT = 4 * 4 * 3;
 const FIRST_WAIT = 250, // before connecting again (ms); chosen
     LONGEST_WAIT = 30000; // or until the page is looked at again
 const QUIET = 10; // looks, one a second, that find no news, of which there are some each second; chosen: a loaded machine
@@ -18,14 +19,16 @@ const word = (bytes, at, size) => {
 
 function readPose(buffer, view, bytes, at, time, on) {
     const body = at + KEY + 8,
-        target = body + BODY;
+        target = body + BODY,
+        support = target + TARGET;
     on.pose(
         word(bytes, at, KEY),
         time,
         view.getUint32(at + KEY, true),
         view.getUint32(at + KEY + 4, true),
         new Float32Array(buffer.slice(body, target)),
-        new Float32Array(buffer.slice(target, target + TARGET)),
+        new Float32Array(buffer.slice(target, support)),
+        new Float32Array(buffer.slice(support, support + SUPPORT)),
     );
 }
 

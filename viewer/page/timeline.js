@@ -6,6 +6,7 @@ import { before } from "./scene.js";
 import { spectrogram } from "./spectrum.js";
 
 export const handColor = ["#7fd6ff", "#ffb066"];
+export const supportColor = ["#f2e3bd", ...handColor]; // seat, left foot, right foot
 export const nuanceColor = {
     legato: "#8fd0ff",
     tenuto: "#b7e08a",
@@ -18,9 +19,11 @@ const STRONGEST = 150, // tallest stroke (N); a forte stroke
     NEAR = [6, 14], // a click this near to a stroke jumps to it, by mouse, by finger (pixels)
     GRIP = [9, 20], // a press this near to a chosen stroke's mark takes hold of it (pixels)
     YELLOW = "#ffd21f",
+    SLIPS = 0.8, // friction at which a foot slips, the seat at less
     SHORTEST = 100, // of a view (ms)
     BUCKETS = 400; // of the sound's outline, each second
-// what is shown, and its share of the height; all of it if more lanes are wanted
+// what is shown, and its share of the height; all of it if more lanes are wanted, and there is the height
+// that a lane needs (pixels)
 const LANES = [
         { name: "beats", share: 12 },
         { name: "strokes", share: 30 },
@@ -33,6 +36,9 @@ const LANES = [
         { name: "angle", share: 34 },
         { name: "torque", share: 34 },
         { name: "spectrum", share: 40 },
+        // of one who sits freely
+        { name: "support", share: 34, sits: true, least: 150 },
+        { name: "friction", share: 22, sits: true, least: 260 },
     ];
 const AXES = ["#ff8f8f", "#8fe08f", "#8fb8ff"], // x, y, z
     CURVES = { angle: ["", "rad"], torque: ["_torque", "n_m"] }, // of a joint: its columns' names
@@ -105,7 +111,7 @@ export class Timeline {
     grown() {
         const { playback } = this,
             all = this.view[0] === 0 && this.view[1] >= (this.length ?? 0);
-        ((this.range = undefined), (this.extent = new Map()), (playback.scene.tipHeights = null));
+        ((this.range = undefined), (this.extent = new Map()), (playback.scene.tipHeights = playback.scene.carriers = null));
         this.length = playback.length;
         if (all) this.show(0, playback.length);
         this.stale = true;
@@ -236,7 +242,9 @@ export class Timeline {
     // --- the lanes
 
     get shown() {
-        return this.all ? MORE : LANES;
+        const sits = this.playback?.scene.sits,
+            fits = ({ sits: needed, least = 0 }) => (sits || !needed) && this.canvas.clientHeight >= least;
+        return this.all ? MORE.filter(fits) : LANES;
     }
 
     redraw(w, h, ratio) {
@@ -403,6 +411,29 @@ export class Timeline {
                 v => h - 2 - (h - 4) * Math.min(1, Math.sqrt(v / STRONGEST)),
             ),
         );
+    }
+
+    // one line for each of seat, left and right foot, as high as `share` (0 .. 1) of what is in its list
+    carriers(c, w, h, lists, share) {
+        supportColor.forEach((color, part) =>
+            this.line(c, w, color, r => lists[part][r], v => h - 2 - (h - 4) * Math.min(1, share(v))),
+        );
+        ["seat", "left foot", "right foot"].reduceRight((x, text, part) => {
+            c.fillStyle = supportColor[part];
+            c.fillText(text, x - c.measureText(text).width, 11);
+            return x - c.measureText(text).width - 8;
+        }, w - 4);
+    }
+
+    support(c, w, h) {
+        const { up, most } = this.playback.scene.carried();
+        this.carriers(c, w, h, up, newtons => Math.sqrt(Math.max(0, newtons) / most));
+        this.label(c, `support, up to ${most.toFixed(0)} N`, 11);
+    }
+
+    friction(c, w, h) {
+        this.carriers(c, w, h, this.playback.scene.carried().friction, needed => needed / SLIPS);
+        this.label(c, `friction, up to ${SLIPS}`, 11);
     }
 
     sound(c, w, h) {

@@ -39,7 +39,7 @@ static bool read_path(const char *path, char drum[HIMC_NAME_SIZE], const char **
 static bool sent_by_us(himc_receiver receiver, const char *name)
 {
     static const char *const sent[] = {"error", "pose",   "body", "targets", "strike",
-                                       "beat",  "status", "head", "info"};
+                                       "beat",  "status", "head", "info",    "support"};
     if (receiver == HIMC_DRUM)
         return strcmp(name, "head") == 0;
     for (size_t i = 0; i < sizeof sent / sizeof *sent; i++)

@@ -86,6 +86,11 @@ static void add(osc_packets *p, const char *path, const char *types, ...)
 
 void himc_osc_encode_pose(osc_packets *p, const osc_pose *pose)
 {
+    // before the bodies, which complete a pose
+    const float(*s)[3] = pose->support;
+    if (pose->sits)
+        add(p, "/himc/support", "ffffffffffff", s[0][0], s[0][1], s[0][2], s[1][0], s[1][1],
+            s[1][2], s[2][0], s[2][1], s[2][2], s[3][0], s[3][1], s[3][2]);
     for (int i = 0; i < HIMC_SEGMENTS; i++) {
         const float *x = pose->origin[i], *q = pose->orientation[i];
         add(p, "/himc/body", "sfffffff", himc_segment_name(i), x[0], x[1], x[2], q[3], q[0], q[1],

@@ -16,6 +16,8 @@ typedef struct osc_pose {
     float origin[HIMC_SEGMENTS][3];                  ///< (m)
     float orientation[HIMC_SEGMENTS][4];             ///< x y z w, world
     float target[HIMC_HANDS][3], tip[HIMC_HANDS][3]; ///< (m)
+    bool sits;                                       ///< on a pelvis that is free
+    float support[4][3]; ///< forces of seat, left and right foot (N), centre of pressure (m)
 } osc_pose;
 
 typedef struct osc_head {

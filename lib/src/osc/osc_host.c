@@ -84,6 +84,15 @@ void himc_osc_tick(void *object, const himc_tick *tick)
         put(pose->target[hand], tick->target[hand]);
         put(pose->tip[hand], tick->body->tip[hand]);
     }
+    pose->sits = tick->support != NULL;
+    if (pose->sits) {
+        const himc_support_forces *f = tick->support;
+        bool presses = isfinite(f->center.z); // one who flies does not: his pelvis
+        put(pose->support[0], f->seat);
+        put(pose->support[1], f->foot[HIMC_LEFT]);
+        put(pose->support[2], f->foot[HIMC_RIGHT]);
+        put(pose->support[3], presses ? f->center : tick->body->origin[HIMC_PELVIS]);
+    }
     end(osc);
 }
 

@@ -103,6 +103,17 @@ static himc_vec3 push_point(const performance_body *b, const himc_body_state *st
                          himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
 }
 
+// where a force and its moment about the hips press on the plane of the seat
+static himc_vec3 pressure_center(const performance_body *b, himc_vec3 f, himc_vec3 m)
+{
+    himc_vec3 hips = b->state.origin[HIMC_PELVIS];
+    double seat = himc_posture_stool(&b->plant), down = hips.z - seat;
+    if (f.z <= 0)
+        return himc_vec3_make(NAN, NAN, NAN);
+    return himc_vec3_make(hips.x - (m.y + down * f.x) / f.z, hips.y + (m.x - down * f.y) / f.z,
+                          seat);
+}
+
 // how the world has held the pelvis since the last row, and what a stool would have to do instead
 static void take_root(performance_body *b, himc_motion_row *row)
 {
@@ -110,8 +121,6 @@ static void take_root(performance_body *b, himc_motion_row *row)
     double rate = w->root_seconds > 0 ? 1 / w->root_seconds : 0; // none after a step of `ik`
     himc_vec3 f = himc_vec3_scale(w->root_impulse, rate);
     himc_vec3 m = himc_vec3_scale(w->root_angular, rate);
-    himc_vec3 hips = b->state.origin[HIMC_PELVIS];
-    double seat = himc_posture_stool(&b->plant), down = hips.z - seat;
     for (int j = 0; j < HIMC_JOINTS && b->controller.config.human_strength; j++)
         row->co_contraction[j] = b->muscles.co_contraction[j];
     row->seat_force = himc_vec3_scale(w->seat_impulse, rate);
@@ -123,13 +132,21 @@ static void take_root(performance_body *b, himc_motion_row *row)
     w->root_seconds = 0;
     row->root_force = f;
     row->root_moment = m;
-    row->root_center = himc_vec3_make(NAN, NAN, NAN);
-    row->root_friction = NAN;
-    if (f.z <= 0)
-        return;
-    row->root_center =
-        himc_vec3_make(hips.x - (m.y + down * f.x) / f.z, hips.y + (m.x - down * f.y) / f.z, seat);
-    row->root_friction = hypot(f.x, f.y) / f.z;
+    row->root_center = pressure_center(b, f, m);
+    row->root_friction = f.z > 0 ? hypot(f.x, f.y) / f.z : NAN;
+}
+
+// of a body that sits: how seat and floor hold it in the last step
+static himc_support_forces support_forces(const performance_body *b)
+{
+    himc_support_forces all = {{0, 0, 0}, {{0, 0, 0}}, {0, 0, 0}};
+    for (int i = 0; i < HIMC_SUPPORTS; i++) {
+        const himc_support_point *p = &b->support.point[i];
+        himc_vec3 *of = i < HIMC_SEAT_POINTS ? &all.seat : &all.foot[p->segment - HIMC_LEFT_FOOT];
+        *of = himc_vec3_add(*of, p->force);
+    }
+    all.center = pressure_center(b, b->balance.carried.linear, b->balance.carried.angular);
+    return all;
 }
 
 // torques, and the accelerations that they, the tips' forces and the pushes make; a body that is
@@ -233,12 +250,17 @@ void himc_performance_tell_tick(himc_performance *p, double t)
 {
     himc_motion_row row;
     himc_posture_motion captured;
+    himc_support_forces support;
     performance_recording *r = &p->recording;
     if (p->host.on_motion)
         fill_row(p, t, &row);
     if (p->host.on_tick) {
         himc_tick tick = {
             .time = t, .body = &p->body->state, .row = p->host.on_motion ? &row : NULL};
+        if (p->body->controller.balance && p->settings.control.mode != HIMC_PIPELINE_IK) {
+            support = support_forces(p->body);
+            tick.support = &support;
+        }
         if (himc_motion_captured_joints(p->motion, t, &captured))
             tick.captured = captured.joint;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
