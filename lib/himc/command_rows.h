@@ -113,9 +113,10 @@ HIMC_SETTING_ROW(COUPLING, coupling, AT_SAMPLE, "two-way|one-way", word, couplin
                  NOTHING, "two-way: the head's vibration pushes back on the stick")
 HIMC_SETTING_ROW(PLAYER, player, NOW, "HEIGHT MASS", player, skeleton, "", BODY,
                  "changes the performer's body")
-HIMC_SETTING_ROW(STANCE, stance, NOW, "fixed|seated", word, stance, "fixed", BODY,
+HIMC_SETTING_ROW(STANCE, stance, NOW, "fixed|seated|standing", word, stance, "fixed", BODY,
                  "fixed: the pelvis is held, as published; seated: it rests on the stool, the feet "
-                 "on the floor, and gives way")
+                 "on the floor, and gives way; standing: he balances on his feet, with `law "
+                 "computed-torque`")
 HIMC_SETTING_ROW(MODE, mode, AT_SAMPLE, "himc|id|ik", word, control.mode, "", MODE,
                  "chooses the control pipeline")
 HIMC_SETTING_ROW(SOLVER, solver, AT_SAMPLE, "dls|pinv|transpose|nakamura|sdls", word,

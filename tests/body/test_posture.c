@@ -272,7 +272,7 @@ static double turned_to(himc_vec3 tip, himc_hand hand)
     himc_posture before = posture;
     himc_vec3 both[HIMC_HANDS] = {tip, tip};
     himc_body_state s;
-    posture.trunk_posture = himc_posture_trunk(both, HIMC_GRIP_GERMAN);
+    posture.trunk_posture = himc_posture_trunk(&posture, both, HIMC_GRIP_GERMAN);
     place_tips(both, &s);
     posture = before;
     return distance(s.tip[hand], tip);

@@ -386,13 +386,13 @@ static void test_a_tip_astray_draws_on_a_reserve_that_is_counted(void)
     for (double off = 0; off < 0.03; off += 1e-3) {
         reference.tip[HIMC_LEFT].x = state.tip[HIMC_LEFT];
         reference.tip[HIMC_LEFT].x.y += off;
-        double now = himc_strength_reserve(&reference, &state, HIMC_LEFT);
+        double now = himc_strength_reserve(&controller, &reference, &state, HIMC_LEFT);
         TEST_ASSERT_TRUE(off < 0.006 ? now == 1 : off > 0.0185 ? now == 6 : now - before < 1);
         before = now;
     }
     reference.released[HIMC_LEFT] = true;
     reference.normal[HIMC_LEFT] = himc_vec3_make(0, 1, 0);
-    TEST_ASSERT_EQUAL_DOUBLE(1, himc_strength_reserve(&reference, &state, HIMC_LEFT));
+    TEST_ASSERT_EQUAL_DOUBLE(1, himc_strength_reserve(&controller, &reference, &state, HIMC_LEFT));
     reference.released[HIMC_LEFT] = false;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         state.spin[j + 1] = state.spin[0];

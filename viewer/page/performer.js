@@ -134,7 +134,7 @@ export class Performer {
         });
     }
 
-    // the stool below him; one who sits freely moves on it
+    // the stool below him; one who sits freely moves on it, one whose feet alone carry him has none
     sit() {
         if (!this.rests || !this.support.some(v => v)) this.rests = this.pose.slice(0, 3);
         const [x, y, z] = this.home ?? this.rests,
@@ -145,6 +145,8 @@ export class Performer {
             stool.position.set(x - BEHIND * size, y, 0);
         stool.cushion.position.z = high;
         stool.post.scale.z = high - 0.03;
+        const [, , seat, , , left, , , right] = this.support;
+        stool.visible = !this.ghostly && !(seat === 0 && left + right > STANDS);
     }
 
     // in the group's frame (m): the hips, and beside the right foot, where a pedal may be
@@ -191,7 +193,8 @@ export class Performer {
 
 const BEHIND = 0.11, // the seat's middle behind the hips, so that its edge is below the thighs (m)
     BELOW = 0.086, // the seat below the hips: the figure is 4 mm in the cushion (m)
-    SLID = 0.05; // how far he may move on it before it is moved too (m)
+    SLID = 0.05, // how far he may move on it before it is moved too (m)
+    STANDS = 300; // on the feet of one who stands, at least (N)
 
 // a seat 1 m high, which set() moves; its column is `post`
 function stool(envMap) {

@@ -64,8 +64,15 @@
 // usual seat; hands of a lower one would strike through the thighs, arms of a higher one be raised.
 #define HIGHEST_IMPACT 0.14 // over the seat, of the body's height
 #define LOWEST_IMPACT 0.03  // (m)
-#define STANDING_SHARE 0.53 // hips of a standing player, of the height
-#define LOWEST_STOOL 0.3    // (m)
+// Who stands. Chosen: knees bent by 20 degrees, and the middle of the soles under the centre of mass;
+// his shoulders are higher, so he leans to places that one who sits reaches upright. Shares of the
+// height.
+#define STANDING_SHARE 0.53
+#define CROUCHING_SHARE 0.45
+#define STANDING_OVER 0.06 // hips over the lowest impact, else the knees bend more (m)
+#define STANDING_ANKLES (-0.008) // before the hips
+#define STANDING_LEANS_BEYOND 0.22
+#define LOWEST_STOOL 0.3 // (m)
 // A point in reach of every body (himc_posture_reachable). Chosen: in front of the shoulder.
 #define REACHED_AHEAD 0.27 // of the body's height, from the world's origin
 #define REACHED_ABOVE 0.1  // above the level of impact (m)
@@ -82,6 +89,7 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     posture->rest.joint[HIMC_NECK - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->rest.joint[HIMC_HEAD - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->level = level;
+    posture->leans_beyond = LEAN_BEGINS;
     memset(posture->hand, 0, sizeof posture->hand);
     // thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if
     // the seat is high
@@ -97,6 +105,37 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
         posture->rest.joint[HIMC_LEFT_LOWER_LEG - 1 + i] =
             himc_quat_exp(himc_vec3_make(0, raise, 0));
     }
+}
+
+// angle between the sides `a` and `b` of a triangle, `c` the third
+static double corner(double a, double b, double c)
+{
+    return acos(fmin(fmax((a * a + b * b - c * c) / (2 * a * b), -1), 1));
+}
+
+void himc_posture_stand(himc_posture *posture)
+{
+    const himc_skeleton *skeleton = &posture->skeleton;
+    double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length,
+           shank = skeleton->segment[HIMC_LEFT_LOWER_LEG].length,
+           ahead = STANDING_ANKLES * skeleton->height,
+           down = skeleton->segment[HIMC_PELVIS].origin.z - HIMC_ANKLE_HEIGHT,
+           leg = fmin(hypot(ahead, down), thigh + shank);
+    double raise = corner(thigh, leg, shank) + atan2(ahead, down);
+    double knee = HIMC_PI - corner(thigh, shank, leg);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        himc_quat *joint = posture->rest.joint;
+        joint[HIMC_LEFT_UPPER_LEG - 1 + i] = himc_quat_exp(himc_vec3_make(0, -raise, 0));
+        joint[HIMC_LEFT_LOWER_LEG - 1 + i] = himc_quat_exp(himc_vec3_make(0, knee, 0));
+        joint[HIMC_LEFT_FOOT - 1 + i] = himc_quat_exp(himc_vec3_make(0, raise - knee, 0));
+    }
+    posture->leans_beyond = STANDING_LEANS_BEYOND * skeleton->height;
+}
+
+double himc_posture_standing(const himc_skeleton_config *body, double lowest)
+{
+    return fmax(fmin(STANDING_SHARE * body->height, lowest + STANDING_OVER),
+                CROUCHING_SHARE * body->height);
 }
 
 double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest)
@@ -115,7 +154,8 @@ static double azimuth(himc_vec3 a)
     return fmin(fmax(atan2(a.y, a.x), -most), most);
 }
 
-himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip)
+himc_trunk_posture himc_posture_trunk(const himc_posture *posture,
+                                      const himc_vec3 strike[HIMC_HANDS], himc_grip grip)
 {
     himc_vec3 l = strike[HIMC_LEFT], r = strike[HIMC_RIGHT], both = himc_vec3_add(l, r);
     // the azimuth of the middle of the two places; of places on both sides, whose middle may lie
@@ -124,7 +164,7 @@ himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_g
     if (l.x * r.x + l.y * r.y < BOTH_SIDES * hypot(l.x, l.y) * hypot(r.x, r.y))
         azimuths = 0.5 * (azimuth(l) + azimuth(r));
     double turn = TURN_SHARE * azimuths, far = fmax(hypot(l.x, l.y), hypot(r.x, r.y));
-    double more = fmin(LEAN_SLOPE * fmax(far - LEAN_BEGINS, 0), LEAN_LIMIT - TRUNK_LEAN);
+    double more = fmin(LEAN_SLOPE * fmax(far - posture->leans_beyond, 0), LEAN_LIMIT - TRUNK_LEAN);
     himc_trunk_posture b = {{0}, {0}, {0}};
     b.value[HIMC_TRUNK_POSTURE_TURN] = fmin(fmax(turn, -TURN_LIMIT), TURN_LIMIT);
     b.value[HIMC_TRUNK_POSTURE_LEAN] = TRUNK_LEAN + more;
@@ -498,7 +538,7 @@ static bool in_reach(const himc_posture *posture, himc_hand hand, himc_vec3 tip)
     himc_vec3 both[HIMC_HANDS] = {tip, tip};
     himc_posture towards = *posture;
     himc_pose pose = posture->rest;
-    towards.trunk_posture = himc_posture_trunk(both, HIMC_GRIP_GERMAN);
+    towards.trunk_posture = himc_posture_trunk(posture, both, HIMC_GRIP_GERMAN);
     return arm_joints(&towards, hand, tip, &pose) == 0;
 }
 

@@ -78,6 +78,7 @@ typedef struct himc_posture {
     himc_skeleton skeleton;
     himc_pose rest;                   ///< constant pose of neck, head and legs
     himc_trunk_posture trunk_posture; ///< updated by the caller whenever it moves
+    double leans_beyond;              ///< the trunk leans to strike points farther off (m)
     double level;                     ///< tip height at impact, where the sticks are horizontal (m)
     himc_hand_path hand[HIMC_HANDS];  ///< of hands that move; others rest as the tip has them
 } himc_posture;
@@ -88,6 +89,12 @@ HIMC_RT void himc_posture_init(himc_posture *posture, const himc_skeleton *skele
 /// The height of the stool (m) for a body with impacts between these two levels (m): the usual one,
 /// or as much higher or lower as its arms need; also the usual one if `lowest` is above `highest`.
 HIMC_RT double himc_posture_seat(const himc_skeleton_config *body, double lowest, double highest);
+
+/// The height of the hip joints of this body (m) when it stands and its lowest impact is there (m).
+HIMC_RT double himc_posture_standing(const himc_skeleton_config *body, double lowest);
+
+/// Legs and lean of one who stands, the hips where the skeleton has them.
+HIMC_RT void himc_posture_stand(himc_posture *posture);
 
 /// Depth of the seat below the hip joints, of the body's height; chosen, as it is drawn.
 #define HIMC_SEAT_DEPTH (0.086 / 1.75)
@@ -101,7 +108,8 @@ static inline double himc_posture_stool(const himc_skeleton *body)
 
 /// The trunk posture for strokes at these points (m), one for each hand: turned towards their
 /// middle, leaning forward as far as the farther one requires. At rest.
-HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_vec3 strike[HIMC_HANDS], himc_grip grip);
+HIMC_RT himc_trunk_posture himc_posture_trunk(const himc_posture *posture,
+                                              const himc_vec3 strike[HIMC_HANDS], himc_grip grip);
 
 /// The trunk posture `dt` seconds (up to 0.02) after `now` on its way to `goal`: critically damped
 /// motion of third order, so the acceleration has no jumps. It takes half a second from one drum

@@ -69,7 +69,8 @@ static double depth_under(double force, carrier by)
     return pow(force / (by == SOLES ? SOLE_STIFFNESS : SEAT_STIFFNESS), 2.0 / 3);
 }
 
-void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const himc_body_state *rest)
+void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const himc_body_state *rest,
+                       bool standing)
 {
     double mass = 0, center = 0, lowest = HUGE_VAL, ahead[CARRIERS] = {0}, share[CARRIERS];
     int points[CARRIERS] = {0};
@@ -90,8 +91,9 @@ void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const him
     }
     for (int by = 0; by < CARRIERS; by++)
         ahead[by] /= points[by];
+    s->standing = standing;
     // shares that balance about the axis from left to right
-    bool hang = lowest >= 0.5 * HIMC_ANKLE_HEIGHT; // the feet
+    bool hang = !standing && lowest >= 0.5 * HIMC_ANKLE_HEIGHT; // the feet
     share[SOLES] = hang ? 0 : FEET_SHARE;
     share[THIGHS] = (center - share[SOLES] * ahead[SOLES] - (1 - share[SOLES]) * ahead[BONES]) /
                     (ahead[THIGHS] - ahead[BONES]);
@@ -99,9 +101,10 @@ void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const him
     share[BONES] = 1 - share[SOLES] - share[THIGHS];
     for (int i = 0; i < HIMC_SUPPORTS; i++) {
         carrier by = carrier_of(i);
+        bool carries = by == SOLES ? !hang : !standing;
         double height = by == SOLES ? lowest : rest->origin[0].z + s->point[i].lever.z;
-        double force = share[by] / points[by] * mass * HIMC_GRAVITY;
-        s->point[i].plane = by == SOLES && hang ? 0 : height + depth_under(force, by);
+        double force = (standing ? 1 : share[by]) / points[by] * mass * HIMC_GRAVITY;
+        s->point[i].plane = carries ? height + depth_under(force, by) : 0;
         s->point[i].home = himc_vec3_add(rest->origin[0], s->point[i].lever);
     }
     himc_support_lift(s);

@@ -23,12 +23,13 @@ typedef struct himc_support_point {
 
 typedef struct himc_support {
     himc_support_point point[HIMC_SUPPORTS];
+    bool standing; ///< the soles carry all
 } himc_support;
 
 /// Seat and floor where this body rests in that state: a quarter of its weight on the feet, unless
-/// they hang.
+/// they hang; the floor alone where it is `standing`.
 HIMC_RT void himc_support_init(himc_support *support, const himc_skeleton *skeleton,
-                               const himc_body_state *rest);
+                               const himc_body_state *rest, bool standing);
 
 /// Forgets where the points touch: for a body that has been put elsewhere.
 HIMC_RT void himc_support_lift(himc_support *support);

@@ -1,4 +1,4 @@
-/// balance.c: a player on a stool.
+/// balance.c: a player whose pelvis is free, on a stool or on his feet (stand.c).
 ///
 /// The joints' relative accelerations are wanted; that of the pelvis is not in anyone's hand. With
 /// W0 the wrench that they need while the pelvis does not accelerate and F the wrench of seat and
@@ -31,6 +31,7 @@ void himc_balance_feel(himc_balance *b, const himc_support *support, const himc_
         all->linear = himc_vec3_add(all->linear, p->force);
         all->angular = himc_vec3_add(all->angular, himc_vec3_cross(p->lever, p->force));
     }
+    himc_stand_feel(&b->stand, support, skeleton, s);
 }
 
 himc_spatial himc_balance_accelerate(const himc_balance *b, const himc_skeleton *skeleton,
@@ -47,11 +48,14 @@ himc_spatial himc_balance_accelerate(const himc_balance *b, const himc_skeleton 
     return root;
 }
 
-void himc_balance_legs(const tracking_error *e, himc_vec3 wanted[HIMC_JOINTS])
+void himc_balance_legs(himc_balance *b, const himc_body_state *s, const tracking_error *e,
+                       himc_vec3 wanted[HIMC_JOINTS])
 {
     double w = 2 * HIMC_PI * LEG_BANDWIDTH;
     for (int j = HIMC_LEFT_UPPER_LEG - 1; j < HIMC_LEFT_TOES - 1; j++)
         wanted[j] = himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
+    if (b->stand.standing)
+        himc_stand_legs(&b->stand, s, b->acceleration.angular, wanted);
 }
 
 /// The whole body as if rigid, about the pelvis' origin.

@@ -6,6 +6,7 @@
 #include "body/dynamics.h"
 #include "body/support.h"
 #include "control/controller.h"
+#include "control/stand.h"
 #include "control/tracking_error.h"
 
 /// What holds the body; made anew in each step by himc_balance_feel, but for the acceleration.
@@ -13,6 +14,7 @@ typedef struct himc_balance {
     himc_spatial acceleration;   ///< of the pelvis in the last step (rad/s^2, m/s^2); 0 at first
     himc_spatial carried;        ///< wrench of all supports, about the pelvis' origin (N m, N)
     himc_vec3 felt[HIMC_JOINTS]; ///< torques of the joints that act as the supports do (N m)
+    himc_stand stand;
 } himc_balance;
 
 /// The acceleration of a pelvis that is free in the last step; NULL: it is fixed.
@@ -33,8 +35,9 @@ HIMC_RT himc_spatial himc_balance_accelerate(
     const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS]);
 
 /// Relative accelerations (rad/s^2) of hips, knees and ankles in place of `wanted`: a soft posture,
-/// whatever bandwidth and gains are.
-HIMC_RT void himc_balance_legs(const tracking_error *error, himc_vec3 wanted[HIMC_JOINTS]);
+/// whatever bandwidth and gains are, and what keeps one who stands on his feet.
+HIMC_RT void himc_balance_legs(himc_balance *balance, const himc_body_state *state,
+                               const tracking_error *error, himc_vec3 wanted[HIMC_JOINTS]);
 
 /// The torques (world frame, N m) that make the relative accelerations `wanted` (rad/s^2) while the
 /// supports press as they do; keeps the pelvis' acceleration.

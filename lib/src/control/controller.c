@@ -55,7 +55,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         himc_invert(c, skeleton, s, wanted, asked);
     memcpy(torque, asked, sizeof asked);
     for (int hand = 0; c->config.human_strength && hand < HIMC_HANDS; hand++)
-        reserve[hand] = himc_strength_reserve(reference, s, (himc_hand)hand);
+        reserve[hand] = himc_strength_reserve(c, reference, s, (himc_hand)hand);
     himc_strength_apply(c, skeleton, s, reserve, torque);
     if (c->muscles && c->config.human_strength)
         himc_muscles_act(c->muscles, reference->struck, c->config.strength, c->step, torque);

@@ -97,7 +97,7 @@ static himc_quat natural_trunk(const himc_posture_regression_take *take, int cou
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         strike[hand] = mean_strike(take, count, (himc_hand)hand);
     himc_posture_init(&posture, take->skeleton, 0);
-    posture.trunk_posture = himc_posture_trunk(strike, HIMC_GRIP_GERMAN);
+    posture.trunk_posture = himc_posture_trunk(&posture, strike, HIMC_GRIP_GERMAN);
     himc_posture_at(&posture, strike, &pose);
     return pose.joint[TRUNK];
 }

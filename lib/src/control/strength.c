@@ -17,11 +17,12 @@
 /// an arm whirled at 100 m/s. A torque against the motion keeps its maximum.
 ///
 /// No stroke is lost for want of strength: where a tip goes astray, a reserve multiplies the
-/// maxima of a man's arm and trunk, smoothly from 1 to RESERVE, until it is back. No man has it;
+/// maxima of a man's arm and trunk, smoothly from 1 to that much, until it is back. No man has it;
 /// it is counted, and `info` tells it.
 #include "control/strength.h"
 
 #include "body/dynamics.h"
+#include "control/balance.h"
 #include "control/tracking_error.h"
 
 #define MEASURED_MASS 75.0 // of the man of the table (kg)
@@ -30,7 +31,9 @@
 // the reserve; chosen: calm strokes use none, and random ff strokes on four drums land
 #define ASTRAY 0.006 // a tip farther from its target draws on it (m) ...
 #define LOST 0.018   // ... and this far on all of it (m)
-#define RESERVE 6.0  // strength with all of it, over a man's; 8 pushes him off his stool's middle
+// strength with all of it, over a man's: 8 pushes him off his stool's middle, 3 off his feet
+#define RESERVE 6.0
+#define STANDING_RESERVE 2.0
 
 void himc_controller_set_human_strength(himc_controller_config *c, double mass)
 {
@@ -42,13 +45,15 @@ void himc_controller_set_human_strength(himc_controller_config *c, double mass)
         c->strength[j] = (j < 3 ? spine[j] : limb[(j - 3) / 2]) * mass / MEASURED_MASS;
 }
 
-double himc_strength_reserve(const himc_reference *r, const himc_body_state *s, himc_hand hand)
+double himc_strength_reserve(const himc_controller *c, const himc_reference *r,
+                             const himc_body_state *s, himc_hand hand)
 {
+    double all = c->balance && c->balance->stand.standing ? STANDING_RESERVE : RESERVE;
     himc_vec3 off = himc_vec3_sub(r->tip[hand].x, s->tip[hand]), n = r->normal[hand];
     if (r->released[hand]) // along the normal the contact moves it
         off = himc_vec3_madd(off, -himc_vec3_dot(off, n), n);
     double u = fmin(fmax((himc_vec3_length(off) - ASTRAY) / (LOST - ASTRAY), 0), 1);
-    return 1 + (RESERVE - 1) * u * u * (3 - 2 * u);
+    return 1 + (all - 1) * u * u * (3 - 2 * u);
 }
 
 // of the joint's strength

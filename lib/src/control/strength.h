@@ -6,7 +6,8 @@
 
 /// Factor of a man's strength in a hand's arm, for the distance of its tip from its target; 1 where
 /// that is small.
-HIMC_RT double himc_strength_reserve(const himc_reference *reference, const himc_body_state *state,
+HIMC_RT double himc_strength_reserve(const himc_controller *controller,
+                                     const himc_reference *reference, const himc_body_state *state,
                                      himc_hand hand);
 
 /// Shortens a joint's torque to its maximum at the joint's speed, times the reserve of its arm;

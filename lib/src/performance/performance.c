@@ -25,7 +25,7 @@ static void recover(himc_performance *p, double t)
     bool fallen = himc_body_has_fallen(p->body);
     if (himc_statistics_recovery(&p->statistics) == 0)
         himc_events_note(&p->events,
-                         fallen ? "the player fell off the stool and was put back"
+                         fallen ? "the player fell and was put back"
                                 : "the body flew apart at a physics rate of %g Hz and was put back",
                          p->clock.physics_rate);
     himc_motion_recover(p->motion, &p->settings, t);

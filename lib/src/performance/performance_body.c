@@ -122,7 +122,7 @@ void himc_body_init_controller(performance_body *b, const performance_settings *
     himc_controller_init(&b->controller, &s->control, &b->skeleton, &state);
     himc_muscles_rest(&b->muscles);
     if (b->skeleton.segment[HIMC_PELVIS].joint == HIMC_JOINT_FREE) {
-        himc_support_init(&b->support, &b->plant, &state);
+        himc_support_init(&b->support, &b->plant, &state, s->stance == HIMC_STANCE_STANDING);
         b->balance = (himc_balance){.carried = {{0, 0, 0}, {0, 0, 0}}};
         b->controller.balance = &b->balance;
     }

@@ -275,7 +275,7 @@ static void set_course(performance_motion *m, const performance_settings *s,
         }
     }
     b->from = trunk_at(m, t);
-    b->goal = himc_posture_trunk(place, s->grip);
+    b->goal = himc_posture_trunk(&m->body.posture, place, s->grip);
     if (m->track && himc_settings_trunk_known(s)) {
         const double *captured = s->captured.trunk.value;
         b->goal.value[HIMC_TRUNK_POSTURE_TURN] = captured[HIMC_TRUNK_POSTURE_TURN];
@@ -487,9 +487,11 @@ void himc_motion_interpolate(performance_motion *m, double t)
 }
 
 void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skeleton,
-                              const captured_player *captured, double level)
+                              const captured_player *captured, double level, himc_stance stance)
 {
     himc_posture_init(posture, skeleton, level);
+    if (stance == HIMC_STANCE_STANDING)
+        himc_posture_stand(posture);
     for (int j = HIMC_TRUNK; j < HIMC_JOINTS; j++)
         if (captured->known[j])
             posture->rest.joint[j] = captured->rest.joint[j];
@@ -507,7 +509,7 @@ static void begin_at(performance_motion *m, const performance_settings *s, doubl
     if (clear) {
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             f[0].tip[hand] = himc_motion_planned(m, (himc_hand)hand, t).x;
-        f[0].trunk = himc_posture_trunk(f[0].tip, s->grip);
+        f[0].trunk = himc_posture_trunk(&m->body.posture, f[0].tip, s->grip);
         for (int k = 1; k < HIMC_FORESEEN; k++)
             f[k] = f[0];
         m->body.avoidance = (himc_avoidance){{0}, 0};
@@ -552,7 +554,8 @@ void himc_motion_recover(performance_motion *m, const performance_settings *s, d
 void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
                        const performance_settings *s, double t)
 {
-    himc_motion_init_posture(&m->body.posture, skeleton, &s->captured, m->body.posture.level);
+    himc_motion_init_posture(&m->body.posture, skeleton, &s->captured, m->body.posture.level,
+                             s->stance);
     himc_planner_set_body(m->planner);
     begin_at(m, s, t, m->body.time == 0);
 }

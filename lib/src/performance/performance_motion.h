@@ -67,7 +67,8 @@ void himc_motion_build(performance_motion *motion, const himc_skeleton *skeleton
                        const performance_settings *settings, double t);
 /// The natural posture of a body, with the captured joints of its player.
 HIMC_RT void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skeleton,
-                                      const captured_player *captured, double level);
+                                      const captured_player *captured, double level,
+                                      himc_stance stance);
 /// The pose for making controllers: sticks at rest.
 void himc_motion_resting_pose(const performance_motion *motion, himc_pose *pose);
 /// Mean of a stroke's postures at the planned places, from the first head up.

@@ -24,8 +24,9 @@ typedef struct asked_gain {
 
 /// In the order of the words of `stance`.
 typedef enum himc_stance {
-    HIMC_STANCE_FIXED, ///< the pelvis is bolted to the world
-    HIMC_STANCE_SEATED ///< it rests on a stool, the feet on the floor
+    HIMC_STANCE_FIXED,   ///< the pelvis is bolted to the world
+    HIMC_STANCE_SEATED,  ///< it rests on a stool, the feet on the floor
+    HIMC_STANCE_STANDING ///< he stands on his feet
 } himc_stance;
 
 /// In the order of the words of `coupling`.

@@ -22,7 +22,7 @@ static bool check_sample_rate(double hz, himc_error *error)
     return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
 }
 
-// the stool as these drums need it
+// the stool as these drums need it; none for one who stands
 static void fit_stool(performance_motion *motion, performance_body *body,
                       const performance_drums *drums, const performance_settings *s)
 {
@@ -32,7 +32,9 @@ static void fit_stool(performance_motion *motion, performance_body *body,
         lowest = fmin(lowest, level);
         highest = fmax(highest, level);
     }
-    himc_body_seat(body, himc_posture_seat(&s->skeleton, lowest, highest));
+    himc_body_seat(body, s->stance == HIMC_STANCE_STANDING
+                             ? himc_posture_standing(&s->skeleton, lowest)
+                             : himc_posture_seat(&s->skeleton, lowest, highest));
     himc_motion_seat(motion, body->skeleton.segment[HIMC_PELVIS].origin.z);
 }
 

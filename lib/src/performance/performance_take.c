@@ -253,7 +253,7 @@ static bool make_track(take_job *j, himc_error *error)
     captured_player captured = captured_of(player);
     himc_posture posture = j->posture;
     if (player->lengths > 0)
-        himc_motion_init_posture(&posture, &skeleton, &captured, posture.level);
+        himc_motion_init_posture(&posture, &skeleton, &captured, posture.level, j->settings.stance);
     if (moves)
         posture.level = j->frame.center.z + skeleton.mallet_radius;
     return survey(j, &posture, error) && fit_regression(j, &skeleton, error);

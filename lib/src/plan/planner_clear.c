@@ -138,7 +138,7 @@ static himc_clearance look(const himc_planned_body *b, const moment *at, planner
     himc_posture then = b->posture;
     then.trunk_posture = r->trunk;
     himc_clearance clear = himc_avoidance_gaps(&r->avoidance, &then, &b->shells, at->tip);
-    r->goal = himc_posture_trunk(at->place, b->grip);
+    r->goal = himc_posture_trunk(&b->posture, at->place, b->grip);
     clear.work = 1 + avoid(b, at, r);
     return clear;
 }

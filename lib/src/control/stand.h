@@ -1,0 +1,25 @@
+/// stand.h: balance of one who stands.
+#ifndef HIMC_STAND_H
+#define HIMC_STAND_H
+
+#include "body/support.h"
+
+/// Where he is over his feet; made anew in each step by himc_stand_feel, but for the hips.
+typedef struct himc_stand {
+    bool standing;
+    himc_vec3 over;    ///< centre of mass, from the middle of the soles (m)
+    himc_vec3 moving;  ///< its velocity (m/s)
+    himc_vec3 pressed; ///< centre of pressure, from there (m)
+    double weight;     ///< that the soles carry (N)
+    himc_vec3 hips;    ///< relative acceleration asked of both in the last step (rad/s^2)
+} himc_stand;
+
+HIMC_RT void himc_stand_feel(himc_stand *stand, const himc_support *support,
+                             const himc_skeleton *skeleton, const himc_body_state *state);
+
+/// Adds to the relative accelerations of hips and ankles (rad/s^2) what balances; `pelvis` is the
+/// pelvis' angular acceleration in the last step.
+HIMC_RT void himc_stand_legs(himc_stand *stand, const himc_body_state *state, himc_vec3 pelvis,
+                             himc_vec3 wanted[HIMC_JOINTS]);
+
+#endif

@@ -1,0 +1,145 @@
+/// test_standing.c: a player on his feet: he plays as one who is bolted, is pushed and comes back,
+/// and if he falls is put back.
+#include "session.h"
+
+#include "performance/performance_state.h"
+
+#include <math.h>
+
+/// Of the rows after the first half second.
+typedef struct seen {
+    long rows;
+    himc_vec3 begun, last; // place of the pelvis (m)
+    double moved;          // largest way from there (m)
+    double seat;           // largest force of a seat (N)
+    double weight;         // sum of the floor's forces up (N)
+    double outside;        // centre of pressure from the middle of the ankles, largest aside (m)
+} seen;
+
+static void see(void *user, const himc_motion_row *row)
+{
+    seen *s = user;
+    himc_vec3 ankles = himc_vec3_scale(
+        himc_vec3_add(row->segment[HIMC_LEFT_FOOT], row->segment[HIMC_RIGHT_FOOT]), 0.5);
+    s->last = row->segment[HIMC_PELVIS];
+    if (s->rows++ == 0)
+        s->begun = s->last;
+    s->moved = fmax(s->moved, himc_vec3_length(himc_vec3_sub(s->last, s->begun)));
+    s->seat = fmax(s->seat, himc_vec3_length(row->seat_force));
+    for (int i = 0; i < HIMC_HANDS; i++)
+        s->weight += row->foot_force[i].z;
+    s->outside = fmax(s->outside, fabs(row->root_center.y - ankles.y));
+}
+
+// the strokes of `count` beats of half a second, in the four usual nuances
+static himc_performance *standing(const char *more, int count, const char *dynamic)
+{
+    static const char *const nuances[] = {"legato", "accent", "staccato", "tenuto"};
+    himc_performance *p = session_new();
+    session_do(p, "drum kettle");
+    session_do(p, "stance standing");
+    session_do(p, "%s", more);
+    for (int i = 0; i < count; i++)
+        session_do(p, "stroke %g %s %s %s", 1 + 0.5 * i, i % 2 ? "left" : "right", nuances[i % 4],
+                   dynamic);
+    return p;
+}
+
+static seen play(himc_performance *p, double seconds, heard *h)
+{
+    seen s = {.rows = 0};
+    session_do(p, "play");
+    session_play(p, 0.5, h);
+    himc_performance_on_motion(p, see, &s);
+    session_play(p, seconds - 0.5, h);
+    himc_performance_on_motion(p, NULL, NULL);
+    return s;
+}
+
+static void check_playing(const char *more)
+{
+    himc_performance *p = standing(more, 24, "f");
+    seen s = play(p, 14, NULL);
+    himc_performance_stats stats = himc_performance_measure(p);
+    double weight = 0;
+    for (int i = 0; i < HIMC_SEGMENTS; i++)
+        weight += p->body->plant.segment[i].mass * HIMC_GRAVITY;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, stats.recoveries, more);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(24, stats.played, more);
+    TEST_ASSERT_TRUE(stats.tip_rms < 1e-3);
+    TEST_ASSERT_TRUE(s.moved > 1e-3 && s.moved < 0.080); // he sways
+    TEST_ASSERT_TRUE(s.seat == 0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02 * weight, weight, s.weight / (double)s.rows);
+    TEST_ASSERT_TRUE(s.outside < 0.16); // within the feet
+    himc_performance_free(p);
+}
+
+static void test_he_stands_and_plays(void)
+{
+    check_playing("strength human");
+    check_playing("strength off");
+}
+
+static void test_the_small_and_the_tall_stand(void)
+{
+    check_playing("player 1.5 50");
+    check_playing("player 1.95 100");
+}
+
+static void test_he_stands_higher_than_he_sits(void)
+{
+    himc_performance *p = standing("strength human", 0, "f");
+    double stands = p->body->plant.segment[HIMC_PELVIS].origin.z;
+    session_do(p, "stance seated");
+    TEST_ASSERT_TRUE(stands > p->body->plant.segment[HIMC_PELVIS].origin.z + 0.1);
+    session_do(p, "stance standing");
+    TEST_ASSERT_EQUAL_DOUBLE(stands, p->body->plant.segment[HIMC_PELVIS].origin.z);
+    himc_performance_free(p);
+}
+
+static seen pushed(double x, double y)
+{
+    himc_performance *p = standing("strength human", 8, "f");
+    session_do(p, "at 2.2 push trunk %g %g 0 0.2", x, y);
+    seen s = play(p, 6, NULL);
+    himc_performance_stats stats = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(0, stats.recoveries);
+    TEST_ASSERT_EQUAL_INT(8, stats.played);
+    himc_performance_free(p);
+    return s;
+}
+
+static void test_a_push_from_any_side_is_answered(void)
+{
+    seen still = pushed(0, 0);
+    for (int k = 0; k < 8; k++) {
+        seen hard = pushed(60 * cos(0.25 * HIMC_PI * k), 60 * sin(0.25 * HIMC_PI * k));
+        TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(hard.last, still.last)) < 0.02);
+    }
+    TEST_ASSERT_TRUE(pushed(0, 80).moved > 1.2 * pushed(0, 40).moved);
+}
+
+static void test_a_fall_is_told_and_the_piece_goes_on(void)
+{
+    himc_performance *p = standing("strength human", 16, "mf");
+    heard h = {.strike = NULL};
+    session_do(p, "at 2 push trunk 400 0 0 0.5");
+    seen s = play(p, 6, &h);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.all, "the player fell and was put back"), h.all);
+    TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(s.last, s.begun)) < 0.1);
+    TEST_ASSERT_TRUE(h.strikes > 10);
+    TEST_ASSERT_TRUE(h.strike[h.strikes - 1].time > 4.5);
+    free(h.strike);
+    himc_performance_free(p);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_he_stands_and_plays);
+    RUN_TEST(test_the_small_and_the_tall_stand);
+    RUN_TEST(test_he_stands_higher_than_he_sits);
+    RUN_TEST(test_a_push_from_any_side_is_answered);
+    RUN_TEST(test_a_fall_is_told_and_the_piece_goes_on);
+    return UNITY_END();
+}
