@@ -64,12 +64,12 @@
 // usual seat; hands of a lower one would strike through the thighs, arms of a higher one be raised.
 #define HIGHEST_IMPACT 0.14 // over the seat, of the body's height
 #define LOWEST_IMPACT 0.03  // (m)
-// Who stands. Chosen: knees bent by 20 degrees, and the middle of the soles under the centre of mass;
-// his shoulders are higher, so he leans to places that one who sits reaches upright. Shares of the
-// height.
+// Who stands. Chosen: knees bent by 20 degrees, and the middle of the soles under the centre of
+// mass; his shoulders are higher, so he leans to places that one who sits reaches upright. Shares
+// of the height.
 #define STANDING_SHARE 0.53
 #define CROUCHING_SHARE 0.45
-#define STANDING_OVER 0.06 // hips over the lowest impact, else the knees bend more (m)
+#define STANDING_OVER 0.06       // hips over the lowest impact, else the knees bend more (m)
 #define STANDING_ANKLES (-0.008) // before the hips
 #define STANDING_LEANS_BEYOND 0.22
 #define LOWEST_STOOL 0.3 // (m)

@@ -6,7 +6,7 @@
 #include "body/dynamics.h"
 #include "body/support.h"
 #include "control/controller.h"
-#include "control/stand.h"
+#include "body/stand.h"
 #include "control/tracking_error.h"
 
 /// What holds the body; made anew in each step by himc_balance_feel, but for the acceleration.

@@ -21,17 +21,6 @@
 #define LAW(ID, name, word, accelerates) {himc_law_##name, accelerates},
 const himc_law_row himc_laws[HIMC_LAW_COUNT] = {HIMC_LAWS(LAW)};
 
-const himc_articulation *himc_controller_articulation(const himc_controller *c,
-                                                      const himc_skeleton *skeleton,
-                                                      const himc_body_state *s,
-                                                      himc_articulation *own)
-{
-    if (c->articulation)
-        return c->articulation;
-    himc_articulate_upper(skeleton, s, own);
-    return own;
-}
-
 void himc_controller_torques(const himc_controller *c, const himc_skeleton *skeleton,
                              const himc_body_state *s, const himc_reference *reference,
                              himc_vec3 torque[HIMC_JOINTS])

@@ -105,12 +105,6 @@ HIMC_RT himc_gain himc_controller_gain(const himc_controller *controller, int jo
 /// the neck after Fice, Siegmund & Blouin 2014.
 HIMC_RT void himc_controller_set_human_strength(himc_controller_config *config, double mass);
 
-/// The controller's articulation of this state, else that without the legs, computed in `own`.
-HIMC_RT const himc_articulation *himc_controller_articulation(const himc_controller *controller,
-                                                              const himc_skeleton *skeleton,
-                                                              const himc_body_state *state,
-                                                              himc_articulation *own);
-
 /// InverseKinematics and InverseDynamics of algorithm 2: the torques (world frame, N m) for this
 /// state and reference.
 HIMC_RT void himc_controller_torques(const himc_controller *controller,

@@ -58,7 +58,7 @@ void himc_settle(const himc_controller *c, const himc_skeleton *skeleton, const 
     himc_vec3 more[HIMC_JOINTS], now[HIMC_JOINTS];
     if (memcmp(&asked[arms], &given[arms], sizeof *given * (size_t)(end - arms)) == 0)
         return;
-    const himc_articulation *art = himc_controller_articulation(c, skeleton, s, &own);
+    const himc_articulation *art = himc_strength_articulation(c, skeleton, s, &own);
     memcpy(now, asked, sizeof now);
     for (int round = 0; round < ROUNDS; round++) {
         for (int j = arms; j < end; j++)

@@ -45,6 +45,17 @@ void himc_controller_set_human_strength(himc_controller_config *c, double mass)
         c->strength[j] = (j < 3 ? spine[j] : limb[(j - 3) / 2]) * mass / MEASURED_MASS;
 }
 
+const himc_articulation *himc_strength_articulation(const himc_controller *c,
+                                                    const himc_skeleton *skeleton,
+                                                    const himc_body_state *s,
+                                                    himc_articulation *own)
+{
+    if (c->articulation)
+        return c->articulation;
+    himc_articulate_upper(skeleton, s, own);
+    return own;
+}
+
 double himc_strength_reserve(const himc_controller *c, const himc_reference *r,
                              const himc_body_state *s, himc_hand hand)
 {
@@ -100,7 +111,7 @@ bool himc_strength_bound(const himc_controller *c, const himc_skeleton *skeleton
     double most = own * reserve_of(joint, reserve);
     if (asked > most) {
         himc_articulation here;
-        const himc_articulation *art = himc_controller_articulation(c, skeleton, s, &here);
+        const himc_articulation *art = himc_strength_articulation(c, skeleton, s, &here);
         bool moves = joint + 1 < art->end; // else it is a leg of a fixed pelvis
         *torque = moves ? shorten(*torque, most, &art->inverse[joint + 1])
                         : himc_vec3_scale(*torque, most / asked);

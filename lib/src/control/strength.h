@@ -4,6 +4,12 @@
 
 #include "control/controller.h"
 
+/// The controller's articulation of this state, else that without the legs, computed in `own`.
+HIMC_RT const himc_articulation *himc_strength_articulation(const himc_controller *controller,
+                                                            const himc_skeleton *skeleton,
+                                                            const himc_body_state *state,
+                                                            himc_articulation *own);
+
 /// Factor of a man's strength in a hand's arm, for the distance of its tip from its target; 1 where
 /// that is small.
 HIMC_RT double himc_strength_reserve(const himc_controller *controller,

@@ -3,16 +3,16 @@
 /// Only the pressure under his feet moves a standing player's centre of mass c. With p the centre
 /// of pressure, both from the middle of the soles, and z the height of c,
 ///     c'' = g/z (c - p)
-/// (the linear inverted pendulum: Kajita et al. 2001). He wants c'' = -w^2 c - 2 w c', so p is to be
-/// at c - z/g c'', as far as the soles reach. Ankles turn the feet until it is: a foot that turns
-/// its toes down by a little has the pressure there. Sideways the legs lean, too, hips against feet.
-/// Hips keep the pelvis upright. So a blow of the arms reaches the ground, and hips give way to a
-/// lean of the trunk by themselves.
+/// (the linear inverted pendulum: Kajita et al. 2001). He wants c'' = -w^2 c - 2 w c', so p is to
+/// be at c - z/g c'', as far as the soles reach. Ankles turn the feet until it is: a foot that
+/// turns its toes down by a little has the pressure there. Sideways the legs lean, too. Hips keep
+/// the pelvis upright. So a blow of the arms reaches the ground, and the hips give way to a trunk
+/// that leans.
 ///
 /// That is for what both legs do alike; what they do apart is the posture's. Else a leg that
 /// carries nothing swings where it likes. Accelerations of thighs and shanks are those of the last
 /// step: what a body will do depends on the ground, not on what it asks its joints for.
-#include "control/stand.h"
+#include "body/stand.h"
 
 #define SWAY 4.0          // w (rad/s); chosen: he is back in half a second
 #define UPRIGHT 3.0       // of the pelvis (Hz); chosen
