@@ -21,7 +21,7 @@ void setUp(void)
     himc_posture_init(&posture, &skeleton, 0.85);
     himc_posture_at(&posture, tip, &pose);
     himc_pose_to_state(&skeleton, &pose, NULL, &rest);
-    himc_support_init(&support, &skeleton, &rest);
+    himc_support_init(&support, &skeleton, &rest, false);
 }
 void tearDown(void)
 {
