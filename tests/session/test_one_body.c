@@ -338,7 +338,7 @@ static void test_an_arm_is_not_unfolded_for_a_hairs_breadth(void)
     himc_foreseen f = {.tip = {{0.3, 0.32, 0.995}, {0.313, -0.333, 1.2}}};
     TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &config, &error));
     himc_posture_init(&posture, &skeleton, 0.8675);
-    f.trunk = himc_posture_trunk(f.tip, HIMC_GRIP_GERMAN);
+    f.trunk = himc_posture_trunk(&posture, f.tip, HIMC_GRIP_GERMAN);
     const himc_foreseen same[HIMC_FORESEEN] = {f, f};
     for (int i = 0; i < 2; i++) {
         himc_avoidance a = {.goal = {out[i]}};

@@ -72,7 +72,7 @@ static inline himc_planner_config with_body(void)
     TEST_ASSERT_TRUE(himc_skeleton_init(&skeleton, &of, &error));
     body = (himc_planned_body){.grip = HIMC_GRIP_GERMAN};
     himc_posture_init(&body.posture, &skeleton, PLANE);
-    body.from = body.goal = himc_posture_trunk(config.rest, body.grip);
+    body.from = body.goal = himc_posture_trunk(&body.posture, config.rest, body.grip);
     config.body = &body;
     return config;
 }
