@@ -201,7 +201,8 @@ typedef struct himc_motion_row {
     himc_vec3 root_force;  ///< of the world on a fixed pelvis, or of seat and floor on the body,
                            ///< mean since the last row (N); NaN in `ik`
     himc_vec3 root_moment; ///< the same about the midpoint of the hip joints (N m); NaN in `ik`
-    himc_vec3 root_center; ///< of pressure on the plane of the seat (m); NaN if nothing presses
+    himc_vec3 root_center; ///< of pressure on the plane of the seat, or on the floor for one who
+                           ///< stands (m); NaN if nothing presses
     double root_friction;  ///< horizontal over vertical force; NaN if nothing presses
     himc_vec3 seat_force;  ///< of the stool on a body that sits, mean since the last row (N); 0 of
                            ///< one whose pelvis is fixed; NaN in `ik`

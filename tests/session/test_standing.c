@@ -14,6 +14,7 @@ typedef struct seen {
     double seat;           // largest force of a seat (N)
     double weight;         // sum of the floor's forces up (N)
     double outside;        // centre of pressure from the middle of the ankles, largest aside (m)
+    double behind, ahead;  // ... and on the floor from heel to toe, largest (m)
 } seen;
 
 static void see(void *user, const himc_motion_row *row)
@@ -28,6 +29,9 @@ static void see(void *user, const himc_motion_row *row)
     s->seat = fmax(s->seat, himc_vec3_length(row->seat_force));
     for (int i = 0; i < HIMC_HANDS; i++)
         s->weight += row->foot_force[i].z;
+    s->behind = fmax(s->behind, ankles.x - row->root_center.x);
+    s->ahead = fmax(s->ahead, row->root_center.x - ankles.x);
+    TEST_ASSERT_TRUE(fabs(row->root_center.z) < 0.01);
     s->outside = fmax(s->outside, fabs(row->root_center.y - ankles.y));
 }
 
@@ -70,7 +74,8 @@ static void check_playing(const char *more)
     TEST_ASSERT_TRUE(s.moved > 1e-3 && s.moved < 0.080); // he sways
     TEST_ASSERT_TRUE(s.seat == 0);
     TEST_ASSERT_DOUBLE_WITHIN(0.02 * weight, weight, s.weight / (double)s.rows);
-    TEST_ASSERT_TRUE(s.outside < 0.16); // within the feet
+    TEST_ASSERT_TRUE(s.outside < 0.16); // within the feet, see support.c
+    TEST_ASSERT_TRUE(s.behind < 0.055 && s.ahead < 0.15);
     himc_performance_free(p);
 }
 

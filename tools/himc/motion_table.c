@@ -94,7 +94,7 @@ static const array arrays[] = {
     {"root", "root_moment", PER_ROW, "root_moment", 3, "n_m", AT(root_moment), 0, false,
      "and its moment about the midpoint of the hip joints"},
     {"root", "root_center", PER_ROW, "root_center", 3, "m", AT(root_center), 0, false,
-     "centre of pressure on the plane of the seat; NaN without a force upwards"},
+     "centre of pressure on the plane of the seat, or the floor if he stands; NaN without a force upwards"},
     {"root", "root_friction", PER_ROW, "root_friction", 1, "", AT(root_friction), 0, false,
      "friction needed: horizontal over vertical force; NaN without a force upwards"},
     {"root", "seat_force", PER_ROW, "seat_force", 3, "n", AT(seat_force), 0, false,

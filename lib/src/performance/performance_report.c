@@ -103,15 +103,18 @@ static himc_vec3 push_point(const performance_body *b, const himc_body_state *st
                          himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
 }
 
-// where a force and its moment about the hips press on the plane of the seat
+// where a force and its moment about the hips press on the plane of the seat, or on the floor
 static himc_vec3 pressure_center(const performance_body *b, himc_vec3 f, himc_vec3 m)
 {
     himc_vec3 hips = b->state.origin[HIMC_PELVIS];
-    double seat = himc_posture_stool(&b->plant), down = hips.z - seat;
+    bool stands = b->controller.balance && b->support.standing;
+    double plane =
+        stands ? b->support.point[HIMC_SEAT_POINTS].plane : himc_posture_stool(&b->plant);
+    double down = hips.z - plane;
     if (f.z <= 0)
         return himc_vec3_make(NAN, NAN, NAN);
     return himc_vec3_make(hips.x - (m.y + down * f.x) / f.z, hips.y + (m.x - down * f.y) / f.z,
-                          seat);
+                          plane);
 }
 
 // how the world has held the pelvis since the last row, and what a stool would have to do instead
