@@ -143,7 +143,7 @@ HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB",
 HIMC_SETTING_ROW(
     STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength, "", NOTHING,
     "human: joints have a man's largest torques, 80 N m at the shoulder of 75 kg, up to 6 times "
-    "that while a tip is astray, and muscles hold in a contact; off: no limit, as published; or "
+    "that (standing 2) while a tip is astray, and muscles hold in a contact; off: no limit, as published; or "
     "sets the largest torque of a joint")
 HIMC_SETTING_ROW(
     GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,

@@ -205,7 +205,7 @@ typedef struct himc_motion_row {
                            ///< stands (m); NaN if nothing presses
     double root_friction;  ///< horizontal over vertical force; NaN if nothing presses
     himc_vec3 seat_force;  ///< of the stool on a body that sits, mean since the last row (N); 0 of
-                           ///< one whose pelvis is fixed; NaN in `ik`
+                           ///< one who stands or is fixed; NaN in `ik`
     himc_vec3 foot_force[HIMC_HANDS]; ///< of the floor on the left and right foot, likewise
     himc_energy energy;               ///< (J)
 } himc_motion_row;
@@ -218,10 +218,10 @@ void himc_performance_on_motion(himc_performance *performance,
 /// The moving body (body.h).
 typedef struct himc_body_state himc_body_state;
 
-/// Forces of stool and floor on a body that sits (N), in one physics step.
+/// Forces of stool and floor on a body whose pelvis is free (N), in one physics step.
 typedef struct himc_support_forces {
     himc_vec3 seat, foot[HIMC_HANDS];
-    himc_vec3 center; ///< of pressure on the plane of the seat (m); NaN if nothing presses
+    himc_vec3 center; ///< of pressure (m), as himc_motion_row.root_center
 } himc_support_forces;
 
 /// The body and its targets at a task tick; borrowed for the call.

@@ -68,14 +68,6 @@ static himc_performance *seated(const char *more)
     return p;
 }
 
-static void add_strokes(himc_performance *p, int count, const char *dynamic)
-{
-    static const char *const nuances[] = {"legato", "accent", "staccato", "tenuto"};
-    for (int i = 0; i < count; i++)
-        session_do(p, "stroke %g %s %s %s", 1 + 0.5 * i, i % 2 ? "left" : "right", nuances[i % 4],
-                   dynamic);
-}
-
 static seen play(himc_performance *p, double seconds, heard *h)
 {
     seen s = {.rows = 0};
@@ -90,7 +82,7 @@ static seen play(himc_performance *p, double seconds, heard *h)
 static void test_he_plays_as_one_who_is_bolted_and_stays(void)
 {
     himc_performance *p = seated(NULL);
-    add_strokes(p, 24, "ff");
+    session_strokes(p, 24, "ff");
     seen s = play(p, 9, NULL);
     himc_performance_stats stats = himc_performance_measure(p);
     TEST_ASSERT_EQUAL_INT(24, stats.strokes);
@@ -121,7 +113,7 @@ static void test_a_tick_has_the_forces_of_its_row(void)
     himc_performance *p = seated("rate physics 2000");
     double apart = 0;
     session_do(p, "rate task 2000");
-    add_strokes(p, 4, "f");
+    session_strokes(p, 4, "f");
     session_do(p, "play");
     session_play(p, 0.5, NULL);
     seen s = {.rows = 0};
@@ -136,7 +128,7 @@ static void test_a_tick_has_the_forces_of_its_row(void)
 static void test_seat_and_floor_carry_him(void)
 {
     himc_performance *p = seated("rate physics 2000");
-    add_strokes(p, 4, "f");
+    session_strokes(p, 4, "f");
     seen s = play(p, 2, NULL);
     double weight = 0;
     for (int i = 0; i < HIMC_SEGMENTS; i++)
@@ -150,7 +142,7 @@ static void test_seat_and_floor_carry_him(void)
 static double pushed(const char *push, int *played, long *fallen)
 {
     himc_performance *p = seated(NULL);
-    add_strokes(p, 8, "f");
+    session_strokes(p, 8, "f");
     if (*push)
         session_do(p, "at 2.2 %s", push);
     seen s = play(p, 4, NULL);
@@ -259,7 +251,7 @@ static void test_he_does_not_bounce_on_his_seat(void)
 static void test_muscles_hold_his_arms_and_he_keeps_his_seat(void)
 {
     himc_performance *p = seated("strength human");
-    add_strokes(p, 24, "ff");
+    session_strokes(p, 24, "ff");
     seen s = play(p, 14, NULL);
     himc_performance_stats stats = himc_performance_measure(p);
     TEST_ASSERT_EQUAL_INT(0, stats.recoveries);
@@ -274,7 +266,7 @@ static void test_a_fall_is_told_once_and_the_piece_goes_on(void)
 {
     himc_performance *p = seated(NULL);
     heard h = {.strike = NULL};
-    add_strokes(p, 16, "mf");
+    session_strokes(p, 16, "mf");
     session_do(p, "at 2 push trunk 1000 0 0 1");
     seen s = play(p, 6, &h);
     TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(s.last, s.begun)) < 0.1); // on his seat
@@ -291,7 +283,7 @@ static void test_both_engines_move_him_alike(void)
     himc_vec3 end[2];
     for (int ode = 0; ode < 2; ode++) {
         himc_performance *p = seated(ode ? "engine ode" : NULL);
-        add_strokes(p, 4, "f");
+        session_strokes(p, 4, "f");
         end[ode] = play(p, 2.2, NULL).last;
         himc_performance_free(p);
     }
@@ -304,7 +296,7 @@ static void test_other_laws_and_modes_sit_too(void)
                                            "rate physics 2000"};
     for (int k = 0; k < 4; k++) {
         himc_performance *p = seated(settings[k]);
-        add_strokes(p, 6, "mf");
+        session_strokes(p, 6, "mf");
         seen s = play(p, 4, NULL);
         TEST_ASSERT_TRUE_MESSAGE(s.moved < 0.02 && s.tilt < 0.1, settings[k]);
         TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
@@ -319,7 +311,7 @@ static void test_he_sits_on_a_high_stool_too(void)
     session_do(p, "stance seated");
     double usual = p->body->plant.segment[HIMC_PELVIS].origin.z;
     session_do(p, "kettle place 0.4 0 1.3");
-    add_strokes(p, 4, "mf");
+    session_strokes(p, 4, "mf");
     seen s = play(p, 3, NULL);
     TEST_ASSERT_TRUE(p->body->plant.segment[HIMC_PELVIS].origin.z > usual + 0.1);
     TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
@@ -330,7 +322,7 @@ static void test_he_sits_on_a_high_stool_too(void)
 static void test_fixed_is_bolted_again(void)
 {
     himc_performance *p = seated("stance fixed");
-    add_strokes(p, 4, "f");
+    session_strokes(p, 4, "f");
     seen s = play(p, 2, NULL);
     TEST_ASSERT_TRUE(s.moved == 0 && s.tilt == 0 && (s.foot[HIMC_LEFT] + s.foot[HIMC_RIGHT]) == 0 &&
                      s.weight == 0);

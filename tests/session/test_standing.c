@@ -35,17 +35,13 @@ static void see(void *user, const himc_motion_row *row)
     s->outside = fmax(s->outside, fabs(row->root_center.y - ankles.y));
 }
 
-// the strokes of `count` beats of half a second, in the four usual nuances
 static himc_performance *standing(const char *more, int count, const char *dynamic)
 {
-    static const char *const nuances[] = {"legato", "accent", "staccato", "tenuto"};
     himc_performance *p = session_new();
     session_do(p, "drum kettle");
     session_do(p, "stance standing");
     session_do(p, "%s", more);
-    for (int i = 0; i < count; i++)
-        session_do(p, "stroke %g %s %s %s", 1 + 0.5 * i, i % 2 ? "left" : "right", nuances[i % 4],
-                   dynamic);
+    session_strokes(p, count, dynamic);
     return p;
 }
 

@@ -88,6 +88,15 @@ static inline void session_score(himc_performance *p, const char *path, const ch
     session_do(p, "score %s", path);
 }
 
+/// Adds strokes at beats 1, 1.5, 2 ..., right and left, in four nuances.
+static inline void session_strokes(himc_performance *p, int count, const char *dynamic)
+{
+    static const char *const nuances[] = {"legato", "accent", "staccato", "tenuto"};
+    for (int i = 0; i < count; i++)
+        session_do(p, "stroke %g %s %s %s", 1 + 0.5 * i, i % 2 ? "left" : "right", nuances[i % 4],
+                   dynamic);
+}
+
 static inline void session_drum(himc_performance *p, int drum, const char *text)
 {
     himc_command c;

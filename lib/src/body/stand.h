@@ -14,11 +14,12 @@ typedef struct himc_stand {
     himc_vec3 hips;    ///< relative acceleration asked of both in the last step (rad/s^2)
 } himc_stand;
 
+/// Finds where this body is over its soles; nothing of one who does not stand.
 HIMC_RT void himc_stand_feel(himc_stand *stand, const himc_support *support,
                              const himc_skeleton *skeleton, const himc_body_state *state);
 
-/// Adds to the relative accelerations of hips and ankles (rad/s^2) what balances; `pelvis` is the
-/// pelvis' angular acceleration in the last step.
+/// Changes the relative accelerations of hips and ankles (rad/s^2) so that he keeps his balance;
+/// `pelvis` is the pelvis' angular acceleration in the last step (rad/s^2).
 HIMC_RT void himc_stand_legs(himc_stand *stand, const himc_body_state *state, himc_vec3 pelvis,
                              himc_vec3 wanted[HIMC_JOINTS]);
 

@@ -27,7 +27,7 @@ typedef struct himc_support {
 } himc_support;
 
 /// Seat and floor where this body rests in that state: a quarter of its weight on the feet, unless
-/// they hang; the floor alone where it is `standing`.
+/// they hang; of one who is `standing` the floor alone.
 HIMC_RT void himc_support_init(himc_support *support, const himc_skeleton *skeleton,
                                const himc_body_state *rest, bool standing);
 

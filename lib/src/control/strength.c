@@ -1,11 +1,12 @@
 /// strength.c: torque maxima, in the 2012 paper a feature of its physics engine (section 3.3).
 ///
-/// There each axis of a motor has its own maximum; here a joint's torque is shortened as a whole,
-/// and so that the body's accelerations differ least from those asked for: with A what a torque t
-/// at the joint accelerates it by, t = (A + l)^-1 A t0, and l such that t has the length it may
-/// have. So what is missing is taken where the limb is heavy. A torque that keeps its direction
-/// instead has an upper arm, whose own axis is light, whirl about it. Measured isometric
-/// maxima: neck 51 N m backwards, 30 forwards (Fice, Siegmund & Blouin 2014, men); shoulder 68 +-
+/// There each axis of a motor has its own maximum; here the length of a joint's torque has one. Of
+/// all torques t of that length the one is given whose acceleration A t is nearest to that of the
+/// torque asked for, t0, in the norm of 1/A: t = (A + l)^-1 A t0. So what is missing is missing
+/// where the limb is heavy. If the torque kept its direction, an upper arm would whirl about its
+/// own axis, where it is light.
+///
+/// Measured isometric maxima: neck 51 N m backwards, 30 forwards (Fice, Siegmund & Blouin 2014, men); shoulder 68 +-
 /// 28, wrist 10 +- 5 (Holzbaur, Delp, Gold & Murray 2007, women and men); wrist 12 in flexion, 7 in
 /// extension, 11 sideways (Delp, Grierson & Buchanan 1996, men). Those for a man of 75 kg are taken
 /// from their upper half; the elbow's stands near the shoulder's, the fingers' on a thin stick, the
@@ -16,9 +17,9 @@
 /// above FASTEST: torques cut short one by one do not go together any more, and without this such
 /// an arm whirled at 100 m/s. A torque against the motion keeps its maximum.
 ///
-/// No stroke is lost for want of strength: where a tip goes astray, a reserve multiplies the
-/// maxima of a man's arm and trunk, smoothly from 1 to that much, until it is back. No man has it;
-/// it is counted, and `info` tells it.
+/// A stroke is not lost for want of strength: while a tip is astray, a reserve multiplies the
+/// maxima of a man's arm and trunk, the more the farther. No man has it; it is counted, and `info`
+/// tells it.
 #include "control/strength.h"
 
 #include "body/dynamics.h"
@@ -31,7 +32,8 @@
 // the reserve; chosen: calm strokes use none, and random ff strokes on four drums land
 #define ASTRAY 0.006 // a tip farther from its target draws on it (m) ...
 #define LOST 0.018   // ... and this far on all of it (m)
-// strength with all of it, over a man's: 8 pushes him off his stool's middle, 3 off his feet
+// strength with all of it, over a man's; measured: 8 moves him on his stool, 3 throws him off his
+// feet
 #define RESERVE 6.0
 #define STANDING_RESERVE 2.0
 

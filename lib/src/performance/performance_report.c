@@ -139,7 +139,7 @@ static void take_root(performance_body *b, himc_motion_row *row)
     row->root_friction = f.z > 0 ? hypot(f.x, f.y) / f.z : NAN;
 }
 
-// of a body that sits: how seat and floor hold it in the last step
+// of a pelvis that is free: how seat and floor hold it in the last step
 static himc_support_forces support_forces(const performance_body *b)
 {
     himc_support_forces all = {{0, 0, 0}, {{0, 0, 0}}, {0, 0, 0}};
