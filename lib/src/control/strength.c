@@ -6,11 +6,12 @@
 /// where the limb is heavy. If the torque kept its direction, an upper arm would whirl about its
 /// own axis, where it is light.
 ///
-/// Measured isometric maxima: neck 51 N m backwards, 30 forwards (Fice, Siegmund & Blouin 2014, men); shoulder 68 +-
-/// 28, wrist 10 +- 5 (Holzbaur, Delp, Gold & Murray 2007, women and men); wrist 12 in flexion, 7 in
-/// extension, 11 sideways (Delp, Grierson & Buchanan 1996, men). Those for a man of 75 kg are taken
-/// from their upper half; the elbow's stands near the shoulder's, the fingers' on a thin stick, the
-/// trunk's and the legs' are round figures of the size dynamometers show.
+/// Measured isometric maxima: neck 51 N m backwards, 30 forwards (Fice, Siegmund & Blouin 2014,
+/// men); shoulder 68 +- 28, wrist 10 +- 5 (Holzbaur, Delp, Gold & Murray 2007, women and men);
+/// wrist 12 in flexion, 7 in extension, 11 sideways (Delp, Grierson & Buchanan 1996, men). Those
+/// for a man of 75 kg are taken from their upper half; the elbow's stands near the shoulder's, the
+/// fingers' on a thin stick, the trunk's and the legs' are round figures of the size dynamometers
+/// show.
 ///
 /// A muscle that shortens pulls less, and at its highest speed not at all (Hill 1938). So a maximum
 /// falls with the joint's speed v along the torque, most (1 - v/FASTEST), and no joint gets power
