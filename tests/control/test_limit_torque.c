@@ -4,6 +4,7 @@
 #include "control/controller.h"
 
 #include "control/limit_torque.h"
+#include "control/balance.h"
 #include "control/strength.h"
 
 #include "unity.h"
@@ -390,6 +391,10 @@ static void test_a_tip_astray_draws_on_a_reserve_that_is_counted(void)
         TEST_ASSERT_TRUE(off < 0.006 ? now == 1 : off > 0.0185 ? now == 6 : now - before < 1);
         before = now;
     }
+    himc_balance stands = {.stand = {.standing = true}};
+    controller.balance = &stands;
+    TEST_ASSERT_EQUAL_DOUBLE(2, himc_strength_reserve(&controller, &reference, &state, HIMC_LEFT));
+    controller.balance = NULL;
     reference.released[HIMC_LEFT] = true;
     reference.normal[HIMC_LEFT] = himc_vec3_make(0, 1, 0);
     TEST_ASSERT_EQUAL_DOUBLE(1, himc_strength_reserve(&controller, &reference, &state, HIMC_LEFT));

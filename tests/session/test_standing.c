@@ -98,6 +98,16 @@ static void test_he_stands_higher_than_he_sits(void)
     himc_performance_free(p);
 }
 
+static void test_he_leans_to_the_middle_of_the_head(void)
+{
+    himc_performance *p = standing("strength human", 0, "f");
+    for (int i = 0; i < 6; i++)
+        session_do(p, "stroke %d %s legato f center", 2 + i, i % 2 ? "left" : "right");
+    play(p, 6, NULL);
+    TEST_ASSERT_EQUAL_INT(6, himc_performance_measure(p).played);
+    himc_performance_free(p);
+}
+
 static seen pushed(double x, double y)
 {
     himc_performance *p = standing("strength human", 8, "f");
@@ -140,6 +150,7 @@ int main(void)
     RUN_TEST(test_he_stands_and_plays);
     RUN_TEST(test_the_small_and_the_tall_stand);
     RUN_TEST(test_he_stands_higher_than_he_sits);
+    RUN_TEST(test_he_leans_to_the_middle_of_the_head);
     RUN_TEST(test_a_push_from_any_side_is_answered);
     RUN_TEST(test_a_fall_is_told_and_the_piece_goes_on);
     return UNITY_END();
