@@ -197,6 +197,26 @@ static void test_a_hand_comes_to_a_damping_that_nobody_foresaw(void)
     himc_performance_free(p);
 }
 
+/// The wrist that avoids the other arm is high, and its stick points down.
+static void test_a_hand_that_comes_to_damp_strikes_no_head(void)
+{
+    static const char *const score[] = {
+        "stroke 1 left legato mf low; stroke 2 right legato mf kettle; stroke 4 left legato f low; "
+        "stroke 10 right legato mf low; at 4.35 low damp 1; at 4.65 kettle damp 1; play;",
+        "stroke 1 left legato mf low; stroke 4 left legato mf kettle; stroke 5 left legato mf low; "
+        "at 1.45 low damp 1; at 1.45 kettle damp 1; play;"};
+    for (int k = 0; k < 2; k++) {
+        himc_performance *p = session_new();
+        char text[400];
+        snprintf(text, sizeof text, "drum kettle 26; drum low 29; alive 1; %s", score[k]);
+        session_score(p, "build/damp.txt", text);
+        session_play(p, 8, NULL);
+        TEST_ASSERT_EQUAL_INT(k == 0 ? 4 : 3, himc_performance_measure(p).played);
+        TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).unplanned_contacts);
+        himc_performance_free(p);
+    }
+}
+
 static void test_tips_strike_as_without_and_0_is_as_never_said(void)
 {
     himc_performance *p[3];
@@ -225,6 +245,7 @@ int main(void)
     RUN_TEST(test_a_free_hand_lies_on_a_damped_head_in_time_and_rises_again);
     RUN_TEST(test_a_head_is_damped_in_time_without_a_free_hand);
     RUN_TEST(test_a_hand_comes_to_a_damping_that_nobody_foresaw);
+    RUN_TEST(test_a_hand_that_comes_to_damp_strikes_no_head);
     RUN_TEST(test_tips_strike_as_without_and_0_is_as_never_said);
     return UNITY_END();
 }

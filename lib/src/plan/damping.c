@@ -9,11 +9,12 @@
 
 #define FINGERS_BACK 0.55 // from the centre towards the performer, of the radius; chosen
 #define FINGERS_OVER 0.03 // the grip over the head: fingers are so thick (m); chosen
-#define LEAST_STAY 0.25   // as a hand in an imported score lies (s)
-#define NEXT_STROKE 0.4   // a hand then has so much time to its next stroke (s); chosen
-#define SETTLED 0.06      // after a stroke, its rebound is over (s); chosen
-#define QUICK 0.25        // a hand that is called late comes within this (s); chosen
-#define LATEST 0.3        // no hand comes later than this (s); chosen
+#define TIP_OVER 0.015  // the mallet over the head, at least (m); chosen: a lifted wrist lowers it
+#define LEAST_STAY 0.25 // as a hand in an imported score lies (s)
+#define NEXT_STROKE 0.4 // a hand then has so much time to its next stroke (s); chosen
+#define SETTLED 0.06    // after a stroke, its rebound is over (s); chosen
+#define QUICK 0.25      // a hand that is called late comes within this (s); chosen
+#define LATEST 0.3      // no hand comes later than this (s); chosen
 
 // the free hand that has the shorter way comes; false if none can
 static bool send(himc_damping *d, himc_planner *planner, const himc_posture *posture,
@@ -27,6 +28,9 @@ static bool send(himc_damping *d, himc_planner *planner, const himc_posture *pos
     fingers = himc_vec3_madd(fingers, FINGERS_OVER, himc_head_frame_normal(head->frame));
     for (int i = 0; i < HIMC_HANDS; i++) {
         place[i] = himc_posture_tip_of_grip(posture, (himc_hand)i, fingers);
+        double over = himc_head_frame_from_world(head->frame, place[i]).z;
+        double lack = TIP_OVER + posture->skeleton.mallet_radius - over;
+        place[i] = himc_vec3_madd(place[i], fmax(lack, 0), himc_head_frame_normal(head->frame));
         himc_vec3 now = himc_planner_target(planner, (himc_hand)i, t).x;
         bool can = d->lies_on[i] == 0 && t > free[i].from + SETTLED &&
                    at + LEAST_STAY + NEXT_STROKE < free[i].until;
