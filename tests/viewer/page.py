@@ -1172,7 +1172,7 @@ def figure_over_inspector():
         return [sheet.height, Math.min(...heights), sheet.top - Math.max(...heights)]"""
     settled = """
         const { now, goal, lift } = viewer.view, left = document.querySelector("footer").offsetHeight - 60;
-        return Math.abs(lift - left / 2 / innerHeight) < 0.02 && Math.abs(now.distance - goal.distance) < 0.01"""
+        return Math.abs(lift - left / 2 / innerHeight) < 0.004 && Math.abs(now.distance - goal.distance) < 0.01"""
     assert browser.wait(settled)
     folded = browser.run(framed)
     browser.run("viewer.actions.pick(viewer.editor.piece.scene.strikes.find(s => s.beat === 11))")
@@ -1185,7 +1185,7 @@ def figure_over_inspector():
     assert not faults, faults
     assert folded[0] < chosen[0] < 0.35 * 844, (folded, chosen)
     assert min(folded[1:] + chosen[1:]) > 0, (folded, chosen)
-    return f"{folded[0]:.0f} and {chosen[0]:.0f} of 844 pixels"
+    return f"{folded[0]:.0f} and {chosen[0]:.0f} of 844 pixels, {min(folded[1:] + chosen[1:]):.0f} free"
 
 
 def test_a_stroke_is_moved_in_time_and_a_phone_shows_it():

@@ -387,7 +387,7 @@ const aside = () => (lying.matches ? inspector.getBoundingClientRect().right / 2
 
 const resized = new ResizeObserver(() => {
     document.body.style.setProperty("--footer", `${footer.offsetHeight}px`);
-    const moves = Math.abs(lifted() - view.lift) > 0.01 || Math.abs(aside() - view.aside) > 0.01;
+    const moves = Math.abs(lifted() - view.lift) > 0.002 || Math.abs(aside() - view.aside) > 0.002;
     if (phone.matches && moves) setLift(lifted());
 });
 for (const part of [footer, inspector]) resized.observe(part);
