@@ -71,6 +71,7 @@
 #define CROUCHING_SHARE 0.45
 #define STANDING_OVER 0.06       // hips over the lowest impact, else the knees bend more (m)
 #define STANDING_ANKLES (-0.008) // before the hips
+#define STANDING_APART 0.08      // each leg to its side (rad): feet a shoulder's width apart
 #define STANDING_LEANS_BEYOND 0.22
 #define LOWEST_STOOL 0.3 // (m)
 // A point in reach of every body (himc_posture_reachable). Chosen: in front of the shoulder.
@@ -119,15 +120,20 @@ void himc_posture_stand(himc_posture *posture)
     double thigh = skeleton->segment[HIMC_LEFT_UPPER_LEG].length,
            shank = skeleton->segment[HIMC_LEFT_LOWER_LEG].length,
            ahead = STANDING_ANKLES * skeleton->height,
-           down = skeleton->segment[HIMC_PELVIS].origin.z - HIMC_ANKLE_HEIGHT,
+           down =
+               (skeleton->segment[HIMC_PELVIS].origin.z - HIMC_ANKLE_HEIGHT) / cos(STANDING_APART),
            leg = fmin(hypot(ahead, down), thigh + shank);
     double raise = corner(thigh, leg, shank) + atan2(ahead, down);
     double knee = HIMC_PI - corner(thigh, shank, leg);
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_quat *joint = posture->rest.joint;
-        joint[HIMC_LEFT_UPPER_LEG - 1 + i] = himc_quat_exp(himc_vec3_make(0, -raise, 0));
+        double apart = i == HIMC_LEFT ? STANDING_APART : -STANDING_APART;
+        himc_quat out = himc_quat_exp(himc_vec3_make(apart, 0, 0)), in = himc_quat_conj(out);
+        joint[HIMC_LEFT_UPPER_LEG - 1 + i] =
+            himc_quat_mul(out, himc_quat_exp(himc_vec3_make(0, -raise, 0)));
         joint[HIMC_LEFT_LOWER_LEG - 1 + i] = himc_quat_exp(himc_vec3_make(0, knee, 0));
-        joint[HIMC_LEFT_FOOT - 1 + i] = himc_quat_exp(himc_vec3_make(0, raise - knee, 0));
+        joint[HIMC_LEFT_FOOT - 1 + i] =
+            himc_quat_mul(himc_quat_exp(himc_vec3_make(0, raise - knee, 0)), in);
     }
     posture->leans_beyond = STANDING_LEANS_BEYOND * skeleton->height;
 }

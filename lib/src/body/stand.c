@@ -1,27 +1,37 @@
 /// stand.c: balance on two feet.
 ///
 /// Only the pressure under his feet moves a standing player's centre of mass c. With p the centre
-/// of pressure, both from the middle of the soles, and z the height of c,
+/// of pressure, both from the middle of the soles, z the height of c and c0 where c is wanted,
 ///     c'' = g/z (c - p)
-/// (the linear inverted pendulum: Kajita et al. 2001). He wants c'' = -w^2 c - 2 w c', so p is to
-/// be at c - z/g c'', as far as the soles reach. Ankles turn the feet until it is: a foot whose
-/// toes go down has the pressure at its toes. Sideways the legs lean, too. Hips keep the pelvis
-/// upright. A blow of the arms so reaches the ground, and when the trunk leans forwards the hips go
-/// back.
+/// (the linear inverted pendulum: Kajita et al. 2001). He wants c'' = -w^2 (c - c0) - 2 w c', so p
+/// is to be at c - z/g c'', as far as the soles reach. Two things turn until it is there: the feet,
+/// as toes that go down have the pressure at them, and the pelvis sideways, as it loads the foot
+/// that it presses down. Forwards the hips keep the pelvis upright. So a blow of the arms reaches
+/// the ground.
+///
+/// c0 is where c would be over soles that the pelvis had not left: he leans to a drum and his hips
+/// stay. Where c would come too near the edge of the soles, they go to the other side.
 ///
 /// All this moves both legs alike; the difference between them is left to the posture, since a leg
 /// that carries nothing would swing where it likes. How thighs and shanks accelerate is taken from
 /// the last step: that depends on the ground, too, and not only on the torques of the joints.
 #include "body/stand.h"
 
-#define SWAY 4.0     // w (rad/s); chosen: he is back in half a second
-#define UPRIGHT 3.0  // of the pelvis (Hz); chosen
-#define FOOT 6.0     // of the centre of pressure (Hz); chosen: faster than he sways
-#define TILT 8000.0  // moment of the floor over the soles' angle (N m/rad); from support.c
+#define SWAY 4.0    // w (rad/s); chosen: he is back in half a second
+#define UPRIGHT 3.0 // of the pelvis (Hz); chosen
+#define FOOT 6.0    // of the centre of pressure by the feet (Hz); chosen: faster than he sways
+#define LOAD 9.0   // of the same by the pelvis (Hz); chosen: a foot that has left the floor is back
+#define FOLLOW 3.0 // of c0 (1/s); chosen: slower than he sways
 #define QUICKEST 1.0 // sway (m/s^2); chosen: the pressure moves 0.1 m
+// of the floor under both soles; from support.c
+#define TILT 8000.0 // moment over their angle (N m/rad)
+#define PRESS 7.1e5 // force over their depth (N/m)
 // how far from the middle of the soles the pressure is wanted at most; chosen: within the feet
-#define SOLE_HALF 0.08    // to heels and toes (m)
-#define FEET_HALF 0.10    // to the left and right (m)
+#define SOLE_HALF 0.08 // to heels and toes (m)
+#define FEET_HALF 0.16 // to the left and right (m)
+// the same of c0; chosen: half of it is left for blows
+#define GOAL_AHEAD 0.04   // (m)
+#define GOAL_ASIDE 0.06   // (m)
 #define LEAST_WEIGHT 50.0 // of feet that have hardly any ground (N); chosen
 enum { HIP = HIMC_LEFT_UPPER_LEG - 1, KNEE = HIMC_LEFT_LOWER_LEG - 1, ANKLE = HIMC_LEFT_FOOT - 1 };
 
@@ -52,43 +62,49 @@ static himc_vec3 find_center(const himc_skeleton *skeleton, const himc_body_stat
     return himc_vec3_scale(center, 1 / mass);
 }
 
+static double within(double x, double most)
+{
+    return fmin(fmax(x, -most), most);
+}
+
 void himc_stand_feel(himc_stand *b, const himc_support *support, const himc_skeleton *skeleton,
                      const himc_body_state *s)
 {
     double weight = 0;
     himc_vec3 middle = {0, 0, 0}, pressed = {0, 0, 0};
+    const himc_support_point *sole = &support->point[HIMC_SEAT_POINTS];
     b->standing = support->standing;
     if (!b->standing)
         return;
-    for (int i = HIMC_SEAT_POINTS; i < HIMC_SUPPORTS; i++) {
-        const himc_support_point *p = &support->point[i];
-        middle = himc_vec3_madd(middle, 1.0 / (2 * HIMC_SOLE_POINTS), p->lever);
-        pressed = himc_vec3_madd(pressed, p->force.z, p->lever);
-        weight += p->force.z;
+    for (int i = 0; i < 2 * HIMC_SOLE_POINTS; i++) {
+        middle = himc_vec3_madd(middle, 1.0 / (2 * HIMC_SOLE_POINTS), sole[i].lever);
+        pressed = himc_vec3_madd(pressed, sole[i].force.z, sole[i].lever);
+        weight += sole[i].force.z;
     }
     b->weight = fmax(weight, LEAST_WEIGHT);
+    b->aside = 0.5 * (sole[0].lever.y - sole[HIMC_SOLE_POINTS].lever.y);
     b->over = himc_vec3_sub(find_center(skeleton, s, &b->moving), middle);
+    b->stays = himc_vec3_make(within(b->over.x + middle.x - support->soles_ahead, GOAL_AHEAD),
+                              within(b->over.y + middle.y, GOAL_ASIDE), 0);
     b->pressed = himc_vec3_scale(himc_vec3_madd(pressed, -weight, middle), 1 / b->weight);
 }
 
-// to the middle of the soles (m/s^2)
+// to its goal (m/s^2)
 static himc_vec3 sway(const himc_stand *b)
 {
-    himc_vec3 a = himc_vec3_madd(himc_vec3_scale(b->over, -SWAY * SWAY), -2 * SWAY, b->moving);
+    himc_vec3 off = himc_vec3_sub(b->over, b->goal);
+    himc_vec3 a = himc_vec3_madd(himc_vec3_scale(off, -SWAY * SWAY), -2 * SWAY, b->moving);
     a.z = 0;
     double size = himc_vec3_length(a);
     return himc_vec3_scale(a, size > QUICKEST ? QUICKEST / size : 1);
 }
 
-// the feet's angular acceleration that brings the pressure to where that sway needs it
-static himc_vec3 turn_feet(const himc_stand *b, himc_vec3 a, himc_vec3 spin)
+// the way of the centre of pressure to where that sway needs it (m)
+static himc_vec3 pressure_off(const himc_stand *b, himc_vec3 a)
 {
-    double w = 2 * HIMC_PI * FOOT;
     himc_vec3 p = himc_vec3_madd(b->over, -b->over.z / HIMC_GRAVITY, a);
-    himc_vec3 off = {fmin(fmax(p.x, -SOLE_HALF), SOLE_HALF) - b->pressed.x,
-                     fmin(fmax(p.y, -FEET_HALF), FEET_HALF) - b->pressed.y, 0};
-    himc_vec3 more = himc_vec3_scale(himc_vec3_cross(up, off), b->weight / TILT);
-    return himc_vec3_madd(himc_vec3_scale(more, w * w), -2 * w, spin);
+    return himc_vec3_make(within(p.x, SOLE_HALF) - b->pressed.x,
+                          within(p.y, FEET_HALF) - b->pressed.y, 0);
 }
 
 static himc_vec3 mean(const himc_vec3 *pair)
@@ -96,19 +112,26 @@ static himc_vec3 mean(const himc_vec3 *pair)
     return himc_vec3_scale(himc_vec3_add(pair[HIMC_LEFT], pair[HIMC_RIGHT]), 0.5);
 }
 
-void himc_stand_legs(himc_stand *b, const himc_body_state *s, himc_vec3 pelvis,
+// critically damped, to an angle off (rad/s^2)
+static himc_vec3 turn(himc_vec3 angle, himc_vec3 spin, double frequency)
+{
+    double w = 2 * HIMC_PI * frequency;
+    return himc_vec3_madd(himc_vec3_scale(angle, w * w), -2 * w, spin);
+}
+
+void himc_stand_legs(himc_stand *b, const himc_body_state *s, himc_vec3 pelvis, double step,
                      himc_vec3 wanted[HIMC_JOINTS])
 {
-    double w = 2 * HIMC_PI * UPRIGHT;
-    himc_vec3 a = sway(b), knees = mean(&wanted[KNEE]);
-    himc_vec3 tilt = himc_quat_log(s->orientation[HIMC_PELVIS]), spin = s->spin[HIMC_PELVIS];
-    himc_vec3 upright = himc_vec3_madd(himc_vec3_scale(tilt, -w * w), -2 * w, spin);
+    b->goal = himc_vec3_madd(b->goal, step * FOLLOW, himc_vec3_sub(b->stays, b->goal));
+    himc_vec3 knees = mean(&wanted[KNEE]), spin = s->spin[HIMC_PELVIS];
     himc_vec3 usual_hips = mean(&wanted[HIP]), usual_ankles = mean(&wanted[ANKLE]);
+    himc_vec3 moment = himc_vec3_scale(himc_vec3_cross(up, pressure_off(b, sway(b))), b->weight);
+    himc_vec3 upright =
+        turn(himc_vec3_scale(himc_quat_log(s->orientation[HIMC_PELVIS]), -1), spin, UPRIGHT);
+    himc_vec3 load = turn(himc_vec3_scale(moment, 1 / (PRESS * b->aside * b->aside)), spin, LOAD);
+    himc_vec3 feet = turn(himc_vec3_scale(moment, 1 / TILT), mean(&s->spin[HIMC_LEFT_FOOT]), FOOT);
     himc_vec3 thighs = himc_vec3_add(pelvis, b->hips);
-    himc_vec3 hips = himc_vec3_sub(thighs, upright);
-    hips.x = usual_hips.x - a.y / b->over.z;
-    hips.z = usual_hips.z;
-    himc_vec3 feet = turn_feet(b, a, mean(&s->spin[HIMC_LEFT_FOOT]));
+    himc_vec3 hips = {thighs.x - load.x, thighs.y - upright.y, usual_hips.z};
     himc_vec3 shanks = himc_vec3_add(himc_vec3_add(pelvis, hips), knees);
     himc_vec3 ankles = himc_vec3_sub(feet, shanks);
     ankles.z = usual_ankles.z;

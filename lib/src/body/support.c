@@ -92,6 +92,7 @@ void himc_support_init(himc_support *s, const himc_skeleton *skeleton, const him
     for (int by = 0; by < CARRIERS; by++)
         ahead[by] /= points[by];
     s->standing = standing;
+    s->soles_ahead = ahead[SOLES];
     // shares that balance about the axis from left to right
     bool hang = !standing && lowest >= 0.5 * HIMC_ANKLE_HEIGHT; // the feet
     share[SOLES] = hang ? 0 : FEET_SHARE;

@@ -23,7 +23,8 @@ typedef struct himc_support_point {
 
 typedef struct himc_support {
     himc_support_point point[HIMC_SUPPORTS];
-    bool standing; ///< the soles carry all
+    bool standing;      ///< the soles carry all
+    double soles_ahead; ///< their middle, of the hips at rest (m)
 } himc_support;
 
 /// Seat and floor where this body rests in that state: a quarter of its weight on the feet, unless

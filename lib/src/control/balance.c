@@ -49,13 +49,13 @@ himc_spatial himc_balance_accelerate(const himc_balance *b, const himc_skeleton 
 }
 
 void himc_balance_legs(himc_balance *b, const himc_body_state *s, const tracking_error *e,
-                       himc_vec3 wanted[HIMC_JOINTS])
+                       double step, himc_vec3 wanted[HIMC_JOINTS])
 {
     double w = 2 * HIMC_PI * LEG_BANDWIDTH;
     for (int j = HIMC_LEFT_UPPER_LEG - 1; j < HIMC_LEFT_TOES - 1; j++)
         wanted[j] = himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
     if (b->stand.standing)
-        himc_stand_legs(&b->stand, s, b->acceleration.angular, wanted);
+        himc_stand_legs(&b->stand, s, b->acceleration.angular, step, wanted);
 }
 
 /// The whole body as if rigid, about the pelvis' origin.

@@ -9,7 +9,8 @@
 #include "body/stand.h"
 #include "control/tracking_error.h"
 
-/// What holds the body; made anew in each step by himc_balance_feel, but for the acceleration.
+/// What holds the body; made anew in each step by himc_balance_feel, but for the
+/// acceleration and what a stand keeps.
 typedef struct himc_balance {
     himc_spatial acceleration;   ///< of the pelvis in the last step (rad/s^2, m/s^2); 0 at first
     himc_spatial carried;        ///< wrench of all supports, about the pelvis' origin (N m, N)
@@ -35,9 +36,11 @@ HIMC_RT himc_spatial himc_balance_accelerate(
     const himc_vec3 *tip_force, himc_vec3 relative[HIMC_JOINTS]);
 
 /// Relative accelerations (rad/s^2) of hips, knees and ankles in place of `wanted`: a soft posture,
-/// whatever bandwidth and gains are, and what keeps one who stands on his feet.
+/// whatever bandwidth and gains are, and what keeps one who stands on his feet; `step` is the time
+/// to the next (s).
 HIMC_RT void himc_balance_legs(himc_balance *balance, const himc_body_state *state,
-                               const tracking_error *error, himc_vec3 wanted[HIMC_JOINTS]);
+                               const tracking_error *error, double step,
+                               himc_vec3 wanted[HIMC_JOINTS]);
 
 /// The torques (world frame, N m) that make the relative accelerations `wanted` (rad/s^2) while the
 /// supports press as they do; keeps the pelvis' acceleration.

@@ -49,7 +49,7 @@ void himc_law_computed_torque(const law_input *in, himc_vec3 wanted[HIMC_JOINTS]
     // a seated player's legs are relaxed where the user has set no gains
     memcpy(soft, wanted, sizeof soft);
     if (c->balance)
-        himc_balance_legs(c->balance, in->state, e, soft);
+        himc_balance_legs(c->balance, in->state, e, c->step, soft);
     for (int j = 0; j < HIMC_JOINTS; j++)
         wanted[j] = c->config.gain_set[j] ? wanted[j] : soft[j];
     // in contact the tip has the hand's acceleration along the normal, for any gains of the joints
