@@ -7,8 +7,6 @@
 #include "head/modes.h"
 
 #include "head/bessel.h"
-#include "head/lugs.h"
-#include "head/mode_list.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -135,21 +133,11 @@ void himc_modes_free(himc_modes *modes)
     free(modes);
 }
 
-int himc_modes_count(const himc_modes *modes)
-{
-    return modes->count;
-}
-
 int himc_modes_common(const himc_modes *a, const himc_modes *b)
 {
     if (a->statistical && b->statistical)
         return a->count;
     return a->exact < b->exact ? a->exact : b->exact;
-}
-
-const himc_shape *himc_modes_shape(const himc_modes *modes)
-{
-    return &modes->shape;
 }
 
 void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed)
@@ -162,25 +150,15 @@ void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed)
     modes->seed = seed;
 }
 
-const himc_lugs_pair *himc_modes_pairs(const himc_modes *modes)
-{
-    return modes->pairs;
-}
-
 void himc_modes_mix_as(himc_modes *modes, const himc_mixture *mixture)
 {
     himc_mixture *own = &modes->mixture;
     if (mixture)
         *own = *mixture;
-    own->count = 0;
+    own->count = modes->block[0].count = modes->block[1].count = 0;
     for (int i = 0; mixture && i < modes->entry_count && own->count < HIMC_MIXED; i++)
         if (modes->entries[i].m == 0)
             own->index[own->count++] = modes->first[i];
-}
-
-const himc_mixture *himc_modes_mixture(const himc_modes *modes)
-{
-    return &modes->mixture;
 }
 
 void himc_modes_mix(const himc_modes *modes, double *numbers)

@@ -21,7 +21,7 @@
 
 #include "base/jacobi.h"
 #include "head/bessel.h"
-#include "head/mode_list.h"
+#include "head/modes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -261,16 +261,6 @@ void himc_uneven_find(himc_modes *modes, double tension, const double *mass, dou
 {
     for (int parity = 0; parity < 2; parity++)
         find_block(modes, parity, tension, mass, stiffness);
-}
-
-void himc_uneven_clear(himc_modes *modes)
-{
-    modes->block[0].count = modes->block[1].count = 0;
-}
-
-const himc_uneven_block *himc_uneven_block_of(const himc_modes *modes, int parity)
-{
-    return &modes->block[parity];
 }
 
 const himc_uneven_block *himc_uneven_of(const himc_modes *modes, int index, int *row)
