@@ -22,7 +22,7 @@
 // modes of a head, those that are computed faster counted for less
 static int mode_work(const himc_membrane *membrane)
 {
-    int count = himc_membrane_modes(membrane);
+    int count = membrane->model->modes->count;
     bool statistical = himc_membrane_mode(membrane, count - 1).m < 0;
     return statistical ? count - HIMC_STATISTICAL_MODES + HIMC_STATISTICAL_MODES / STATISTICAL_WORK
                        : count;

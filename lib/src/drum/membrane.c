@@ -327,22 +327,6 @@ void himc_membrane_share(himc_membrane *m, bool shares)
         change(m, &config, NULL, 1);
 }
 
-const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count)
-{
-    *count = membrane->model->shared_count;
-    return membrane->model->shared;
-}
-
-unsigned himc_membrane_revision(const himc_membrane *membrane)
-{
-    return membrane->revision;
-}
-
-void himc_membrane_kick(himc_membrane *membrane, int index, double change)
-{
-    himc_bank_kick(membrane->model->bank, index, change);
-}
-
 void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)
 {
     if (membrane->model->config.muted == mute)

@@ -27,16 +27,11 @@ double himc_membrane_rate(const himc_membrane *membrane)
     return membrane->model->config.rate;
 }
 
-int himc_membrane_modes(const himc_membrane *membrane)
-{
-    return membrane->model->modes->count;
-}
-
 himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
-    if (index >= himc_membrane_modes(membrane))
-        return (himc_mode){0};
     const himc_model *model = membrane->model;
+    if (index >= model->modes->count)
+        return (himc_mode){0};
     himc_mode mode = himc_model_mode(model, index);
     for (int i = 0; i < model->shared_count; i++)
         mode.decay += model->shared[i].index == index ? model->shared[i].decay : 0;
