@@ -121,7 +121,7 @@ himc_performance *himc_performance_make(const himc_performance_config *config, h
         free(p);
         return NULL;
     }
-    himc_clock_init(&p->clock, config->sample_rate);
+    p->clock.sample_rate = config->sample_rate;
     himc_drums_begin(&p->drums, config->heard);
     begin(p, &parts);
     return p;
