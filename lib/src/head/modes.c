@@ -161,19 +161,26 @@ void himc_modes_mix_as(himc_modes *modes, const himc_mixture *mixture)
             own->index[own->count++] = modes->first[i];
 }
 
+// of the numbers at `index` (count) the sums of their parts, rows of `width`
+static void mix(int count, const int *index, const double *part, int width, double *numbers)
+{
+    double bare[HIMC_UNEVEN_MODES];
+    for (int n = 0; n < count; n++)
+        bare[n] = numbers[index[n]];
+    for (int n = 0; n < count; n++, part += width) {
+        double sum = 0;
+        for (int k = 0; k < count; k++)
+            sum += part[k] * bare[k];
+        numbers[index[n]] = sum;
+    }
+}
+
 void himc_modes_mix(const himc_modes *modes, double *numbers)
 {
-    const himc_mixture *mix = &modes->mixture;
-    double bare[HIMC_MIXED];
-    for (int n = 0; n < mix->count; n++)
-        bare[n] = numbers[mix->index[n]];
-    for (int n = 0; n < mix->count; n++) {
-        double sum = 0;
-        for (int k = 0; k < mix->count; k++)
-            sum += mix->part[n][k] * bare[k];
-        numbers[mix->index[n]] = sum;
-    }
-    himc_uneven_mix(modes, numbers);
+    const himc_mixture *m = &modes->mixture;
+    mix(m->count, m->index, m->part[0], HIMC_MIXED, numbers);
+    for (const himc_uneven_block *b = modes->block; b < modes->block + 2; b++)
+        mix(b->count, b->index, b->part[0], HIMC_UNEVEN_MODES, numbers);
 }
 
 himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int index)

@@ -273,19 +273,3 @@ const himc_uneven_block *himc_uneven_of(const himc_modes *modes, int index, int 
             }
     return NULL;
 }
-
-void himc_uneven_mix(const himc_modes *modes, double *numbers)
-{
-    for (int parity = 0; parity < 2; parity++) {
-        const himc_uneven_block *b = &modes->block[parity];
-        double even[HIMC_UNEVEN_MODES];
-        for (int i = 0; i < b->count; i++)
-            even[i] = numbers[b->index[i]];
-        for (int i = 0; i < b->count; i++) {
-            double sum = 0;
-            for (int l = 0; l < b->count; l++)
-                sum += b->part[i][l] * even[l];
-            numbers[b->index[i]] = sum;
-        }
-    }
-}

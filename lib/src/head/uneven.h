@@ -40,8 +40,4 @@ HIMC_RT void himc_uneven_find(himc_modes *modes, double tension, const double *m
 /// The block that has mode `index`, and its row there; NULL if it mixes with none.
 HIMC_RT const himc_uneven_block *himc_uneven_of(const himc_modes *modes, int index, int *row);
 
-/// Makes of numbers of the even head's shapes (as many as the list has), linear in the shapes,
-/// those of the uneven one's.
-HIMC_RT void himc_uneven_mix(const himc_modes *modes, double *numbers);
-
 #endif
