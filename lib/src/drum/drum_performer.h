@@ -42,6 +42,8 @@ HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 HIMC_RT double himc_drum_usual_radius(const himc_drum *drum);
 /// Whether a drum may stand there: within 10 m of the origin on each axis.
 bool himc_drum_check_place(himc_vec3 center, himc_error *error);
+/// Whether it may have that sample rate (Hz).
+bool himc_drum_check_rate(double rate, himc_error *error);
 /// Brings the head to rest, without a click, and drops the drum's own mallets and waiting strikes.
 HIMC_RT void himc_drum_rest(himc_drum *drum);
 /// Moves the head's centre (m), until the command `place` does.

@@ -249,8 +249,9 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
         return;
     himc_vec3 x = himc_posture_reachable(&p->motion->body.posture, hand, asked);
     bool free = himc_motion_free_hand(p->motion, hand, step_time(p));
-    bool reached = himc_vec3_length(himc_vec3_sub(x, asked)) <= MISSED_TARGET;
-    bool first = himc_motion_note_target(p->motion, hand, free && reached);
+    bool good = free && himc_vec3_length(himc_vec3_sub(x, asked)) <= MISSED_TARGET;
+    bool first = !good && !p->motion->out_of_reach[hand];
+    p->motion->out_of_reach[hand] = !good;
     if (first && free)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
                          himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);

@@ -179,12 +179,10 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
 
 // performance_take.c
 /// The command `take` as a job; without a command one to try takes with, as the performance is now.
-/// NULL with the reason.
+/// The command of the take that is loaded (written.take_command) loads it once more, for the player
+/// of the settings, as if its drum still stood where the take found it. NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
-/// Loads the take once more, for the player of the settings, as if its drum still stood where the
-/// take found it. NULL without memory.
-himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error);
 /// The command `nudge` for a take; NULL: there is none, and it is refused.
 bool himc_performance_nudge(himc_track *track, const himc_command *command, himc_error *error);
 /// True if a job could play this command's take, the first drum being at `place` (NULL: there is

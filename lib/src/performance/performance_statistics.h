@@ -45,8 +45,6 @@ HIMC_RT void himc_statistics_joints(performance_statistics *statistics,
 /// True once, when a joint has turned faster than any person's: the joint and its rate (rad/s).
 /// Not after a recovery, which is told.
 HIMC_RT bool himc_statistics_too_fast(performance_statistics *statistics, int *joint, double *rate);
-/// Adds a contact that no stroke asked for.
-HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
 /// Adds a contact of that force (N) that has lasted so long (s).
 HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double force,
                                      double duration);
@@ -56,8 +54,6 @@ HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int str
 /// the distance to where it was asked for (m).
 HIMC_RT void himc_statistics_landed(performance_statistics *statistics, double speed,
                                     double captured, double yields);
-/// Counts a stroke that has landed beside its place; returns how many there were before.
-HIMC_RT long himc_statistics_aside(performance_statistics *statistics);
 /// Adds a hit, with the time from its command to its planned contact (s).
 HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double latency);
 /// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.
