@@ -72,21 +72,13 @@ static int count_filled(himc_span line, char separator)
     return count;
 }
 
-static bool is_filled(himc_span row, char separator)
-{
-    bool filled = false;
-    while (row.at && !filled)
-        filled = himc_span_cell(&row, separator).length > 0;
-    return filled;
-}
-
 // the rows that are not blank
 static int count_rows(const plan *p)
 {
     himc_span line;
     int rows = 0;
     for (himc_text rest = p->text; himc_text_line(&rest, &line);) {
-        bool filled = is_filled(line, p->separator);
+        bool filled = count_filled(line, p->separator) > 0;
         if (!filled && p->ends_with_blank)
             break;
         rows += filled;
@@ -516,7 +508,7 @@ static bool read_table(plan *p)
         plan look = *p;
         for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
             himc_span cell = {"", 0};
-            if (!is_filled(line, p->separator))
+            if (count_filled(line, p->separator) == 0)
                 continue;
             for (int column = 0; column <= p->time; column++)
                 cell = himc_span_cell(&line, p->separator);
@@ -543,7 +535,7 @@ static bool read_table(plan *p)
         himc_take_set_name(p->take, i, p->names[i].at, p->names[i].length);
     double first = NAN, last = NAN;
     for (int frame = 0; frame < rows && himc_text_line(&p->text, &line);) {
-        if (!is_filled(line, p->separator))
+        if (count_filled(line, p->separator) == 0)
             continue;
         if (!read_row(p, line, frame, &last))
             return false;
