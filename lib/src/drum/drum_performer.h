@@ -97,9 +97,6 @@ HIMC_RT void himc_drum_settings_take_head(himc_drum_settings *settings,
 bool himc_drum_settings_command(himc_drum_settings *settings, const himc_command *command,
                                 himc_error *error);
 
-/// Carries out the lines of a preset, NAME of NAME.txt.
-bool himc_drum_settings_preset(himc_drum_settings *settings, const char *name, himc_error *error);
-
 /// A drum with these settings, at rest; NULL with the reason.
 himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error);
 /// Gives the drum these settings. *made, or NULL, is a model of their head, and then the one that

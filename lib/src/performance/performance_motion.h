@@ -43,14 +43,16 @@ typedef struct performance_motion {
     himc_damping damping;
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
-    himc_setpoint from, to;            ///< of the ticks before and after
-    himc_setpoint_course between;      ///< these ticks
-    himc_reference reference;          ///< now; the contacts say how it holds the sticks
-    himc_head_frame under[HIMC_HANDS]; ///< head on which deeper targets press; radius 0: none
-    bool replan;                       ///< `from` is read again, too
+    himc_setpoint from, to;       ///< of the ticks before and after
+    himc_setpoint_course between; ///< these ticks
+    himc_reference reference;     ///< now: the step sets it, the contacts how it holds the sticks
+    /// head on which deeper targets press, radius 0: none; set by the contacts
+    himc_head_frame under[HIMC_HANDS];
+    bool replan; ///< `from` is read again, too
     live_target live[HIMC_HANDS];
-    bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
-    double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
+    bool out_of_reach[HIMC_HANDS]; ///< the last live target; performance_play.c says so
+    /// planned time of the last stroke struck or given up (s), as the contacts say
+    double answered[HIMC_HANDS];
     bool playing;
     bool over;                  ///< played to its end: its time goes on until `play` or `stop`
     long last_beat, last_round; ///< that have been reported

@@ -49,7 +49,8 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
            himc_check_range("roll: DYNAMIC", rolls ? s->last_dynamic : 0, 0, 1, "", error);
 }
 
-void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, int drum)
+// writes the name of drum `drum` (below 0: none) into a stroke that is no roll, for lines
+static void name_drum(const himc_performance *p, himc_stroke *stroke, int drum)
 {
     if (drum >= 0 && stroke->ornament < HIMC_ROLL_SINGLE)
         himc_format(stroke->drum, sizeof stroke->drum, "%s",
@@ -82,7 +83,7 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke,
     himc_motion_replan(p->motion);
     himc_stroke plain = *stroke;
     plain.ornament = HIMC_PLAIN;
-    himc_performance_name_drum(p, &plain, drum);
+    name_drum(p, &plain, drum);
     if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum, error))
         return false;
     himc_performance_add_ornament(p, stroke, drum);
@@ -105,7 +106,7 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
     himc_stroke own = *stroke;
     if (stroke->ornament == HIMC_PLAIN)
         return;
-    himc_performance_name_drum(p, &own, drum);
+    name_drum(p, &own, drum);
     int left_out = himc_planner_add_ornament(p->motion->planner, &own, drum,
                                              himc_drum_pitch(p->drums.slot[drum].drum));
     if (left_out == 0)
@@ -183,7 +184,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return himc_error_set(error, "hit: not possible while a take is playing");
     if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
         return false;
-    himc_performance_name_drum(p, &own, asked.drum);
+    name_drum(p, &own, asked.drum);
     tell_places(p);
     // a command that acts in this step was meant for its sample, up to a step before
     int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;

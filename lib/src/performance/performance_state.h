@@ -1,8 +1,8 @@
 /// performance_state.h: the parts of a performance, and the functions of the files that work on
 /// several of them.
 ///
-/// Each part has its own type and one file that writes it; other files read it or call that file's
-/// functions. In the order of the calls:
+/// Each part has its own type and one file that writes it, but for a field that says who else does;
+/// other files read it or call that file's functions. In the order of the calls:
 ///
 ///     performance_settings        the settings: one table
 ///     performance_clock, _events, _queue, _statistics, _drums, _body, _motion    the parts alone
@@ -165,8 +165,6 @@ himc_job *himc_performance_change_job(himc_performance *p, const himc_command *c
 HIMC_RT void himc_performance_tell_misses(himc_performance *p);
 /// himc_performance_add_stroke, but nothing is written, and the beat may be any.
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
-/// Writes the name of drum `drum` (below 0: none) into a stroke that is no roll, for lines.
-HIMC_RT void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, int drum);
 /// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many
 /// are left out.
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum);

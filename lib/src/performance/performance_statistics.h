@@ -11,13 +11,14 @@
 #define HIMC_FASTEST_JOINT 160.0 // (rad/s)
 
 typedef struct performance_statistics {
-    himc_performance_stats told; ///< the counts and largest values that it tells as they are
-    double square_sum;           ///< of the distances from tip to target outside contact (m^2)
+    /// the counts and largest values that it tells as they are; the contacts count unplanned ones
+    himc_performance_stats told;
+    double square_sum; ///< of the distances from tip to target outside contact (m^2)
     long square_count;
     double height_sum; ///< of strokes, apex to contact (m)
     long height_count;
     double apex[HIMC_HANDS]; ///< highest target over the head since the last strike (m)
-    long aside;              ///< strokes that have landed beside their place
+    long aside;              ///< strokes landed beside their place, as the contacts count
     double captured_sum;     ///< of squared distances from tip to capture (m^2)
     long captured_count;
     double captured_most;                   ///< the largest of them (m^2)
