@@ -188,6 +188,7 @@ static int head_under(const stick_contact *c, const contact_scene *s, himc_hand 
 void himc_contacts_look_down(performance_contacts *contacts, const contact_scene *s, double t,
                              double next)
 {
+    const himc_head_frame none = {.radius = 0};
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         const stick_contact *c = &contacts->hand[i];
@@ -198,7 +199,7 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
                                       : stroke.any && stroke.time < next + (next - t) &&
                                             !rests_after(s, hand, stroke.drum, stroke.time);
         int under = rebounds ? -1 : head_under(c, s, hand);
-        s->motion->under[hand] = under < 0 ? (himc_head_frame){.radius = 0} : *frame_of(s, under);
+        s->motion->under[hand] = under < 0 ? none : *frame_of(s, under);
     }
 }
 

@@ -182,14 +182,15 @@ bool himc_settings_read(performance_settings *s, const performance_settings *usu
     if (!row)
         return true;
     void *field = (char *)s + row->at;
+    const void *field_usual = (const char *)usual + row->at;
     const double first = c->count > 0 ? c->atom[0].number : 0;
     switch (row->kind) {
     case KIND_switch: *(bool *)field = first != 0; break;
     case KIND_word: memcpy(field, &c->choice[0], sizeof(int)); break;
     case KIND_numbers:
         for (size_t i = 0; i < row->size / sizeof(double); i++)
-            ((double *)field)[i] = himc_argument_usual(
-                c->atom[i].number, ((const double *)((const char *)usual + row->at))[i]);
+            ((double *)field)[i] =
+                himc_argument_usual(c->atom[i].number, ((const double *)field_usual)[i]);
         break;
     case KIND_rate:
         if (c->form == PHYSICS)
