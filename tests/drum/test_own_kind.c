@@ -10,7 +10,7 @@
 
 #include "drum/drum_performer.h"
 #include "drum/membrane_state.h"
-#include "head/mode_list.h"
+#include "head/modes.h"
 #include "head/pickup.h"
 #include "performance/performance_state.h"
 

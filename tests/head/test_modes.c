@@ -26,7 +26,7 @@ void tearDown(void)
 
 static himc_mode find(const himc_modes *modes, int m, int n, bool sine)
 {
-    for (int i = 0; i < himc_modes_count(modes); i++) {
+    for (int i = 0; i < modes->count; i++) {
         himc_mode mode = himc_modes_get(modes, &head, i);
         if (mode.m == m && mode.n == n && mode.sine == sine)
             return mode;

@@ -3,11 +3,13 @@
 #ifndef HIMC_TESTS_C3D_FILES_H
 #define HIMC_TESTS_C3D_FILES_H
 
-#include "capture/c3d_parameters.h"
+#include "capture/take.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef enum c3d_processor { C3D_INTEL = 84, C3D_DEC = 85, C3D_MIPS = 86 } c3d_processor;
 
 typedef struct maker {
     c3d_processor processor;

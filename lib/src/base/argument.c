@@ -59,7 +59,7 @@ static const himc_argument arguments[] = {
     {"HZ", "physics", HIMC_ARGUMENT_NUMBER, HIMC_PHYSICS_RATE_MIN, HIMC_PHYSICS_RATE_MAX, "Hz",
      NULL},
     {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
-    // principal mode; chosen: wider than any head's range, which do_tune tells
+    // principal mode; chosen: wider than any head's range, which find_tune tells
     {"HZ", "tune|gliss", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
@@ -80,7 +80,7 @@ static const himc_argument arguments[] = {
     {"K", NULL, HIMC_ARGUMENT_NUMBER, 1e3, 1e13, "N/m^alpha", NULL},
     {"ALPHA", NULL, HIMC_ARGUMENT_NUMBER, 1, 4, "", NULL},
     {"VOLUME", "room", HIMC_ARGUMENT_NUMBER, 20, 1e5, "m^3", NULL},
-    // chosen: wider than any head's range, half to twice its usual volume, which do_kettle tells
+    // chosen: wider than any head's range, half to twice its usual volume (himc_air_check)
     {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10,
      "m^3, half to twice the usual one of the head's size", NULL},
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},

@@ -27,7 +27,7 @@ typedef enum himc_job_state {
 #define HIMC_JOB_TRIES 3
 
 typedef struct himc_job himc_job;
-/// The first member of each kind of job.
+/// The first member of each kind of job. No `error` is NULL.
 struct himc_job {
     bool (*prepare)(himc_job *job, himc_error *error); ///< false with the reason: it has failed
     himc_job_state (*install)(himc_job *job, himc_error *error); ///< bounded time
@@ -64,7 +64,9 @@ static inline bool himc_job_carry_out(himc_job *job, himc_error *why)
 {
     if (!job)
         return false;
+    himc_error untold = {""};
     himc_job_state state = HIMC_JOB_AGAIN;
+    why = why ? why : &untold;
     while (state == HIMC_JOB_AGAIN || state == HIMC_JOB_MORE) {
         if (state == HIMC_JOB_AGAIN && !job->prepare(job, why))
             state = HIMC_JOB_FAILED;

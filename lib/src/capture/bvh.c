@@ -14,6 +14,7 @@
 /// -R01/R11, tan y = -R20/R22. The library's (x, y, z) becomes (x, z, -y), a rotation q becomes c q
 /// c* with the quarter turn c about x that does this. A written file reads back to the last printed
 /// digit.
+#include "base/array.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
 
@@ -38,7 +39,7 @@ typedef struct bvh {
     himc_text text;
     himc_span line; // rest of the current line
     node *nodes;
-    int count, channels;
+    int count, room, channels;
     himc_error *error;
 } bvh;
 
@@ -111,13 +112,8 @@ static bool open_node(bvh *r, int parent, bool is_end)
     if (r->count >= MOST_NODES)
         return himc_error_set(r->error, "%s:%d: too many joints, expected %d", r->take->file,
                               r->text.line, MOST_NODES);
-    // grown by doubling
-    if ((r->count & (r->count - 1)) == 0) {
-        node *grown = realloc(r->nodes, (size_t)(r->count ? 2 * r->count : 1) * sizeof *grown);
-        if (!grown)
-            return himc_error_set(r->error, "%s: no memory", r->take->file);
-        r->nodes = grown;
-    }
+    if (!himc_array_grow(&r->nodes, r->count, &r->room, sizeof *r->nodes, NULL))
+        return himc_error_set(r->error, "%s: no memory", r->take->file);
     node *n = &r->nodes[r->count++];
     *n = (node){.parent = parent, .depth = depth, .is_end = is_end};
     if (is_end) {

@@ -2,14 +2,23 @@
 /// every point's x, y, z and a residual, and the analog samples taken during the frame, which are
 /// skipped; read and written.
 ///
-/// Points are floats if POINT:SCALE is negative, else 16-bit integers times it; numbers are those
-/// of three processors (c3d_parameters.c). A negative residual, or a coordinate that is not finite,
-/// is a gap. Counts beyond 65535 frames come from TRIAL:ACTUAL_START_FIELD and ACTUAL_END_FIELD
-/// (two words each) or POINT:LONG_FRAMES. Values that Vicon's models store among the points
-/// (angles, forces, moments, powers, scalars) are not positions and are left out. Event times count
-/// from frame 1, so a file that begins later subtracts its start. Reference: the C3D file format
-/// user guide, Motion Lab Systems 2008.
-#include "capture/c3d_parameters.h"
+/// Parameters are a chain of records, groups (negative number) and parameters (positive), in any
+/// order; each gives the distance to the next, from its own place.
+///
+///     name length, +-group, name, distance to next, [type, dimensions, sizes..., data], text
+///
+/// Numbers are Intel's (little endian, IEEE), MIPS's (big endian, IEEE) or DEC's: little-endian
+/// words, high word first, sign, 8 bits of exponent e and 23 of mantissa m with value (1/2 + m /
+/// 2^24) 2^(e - 128) and no infinities; e = 0 is zero, or reserved if the sign is set. Invariant:
+/// for any contents nothing outside the file's bytes is read; the walk always moves forward.
+///
+/// Points are floats if POINT:SCALE is negative, else 16-bit integers times it. A negative
+/// residual, or a coordinate that is not finite, is a gap. Counts beyond 65535 frames come from
+/// TRIAL:ACTUAL_START_FIELD and ACTUAL_END_FIELD (two words each) or POINT:LONG_FRAMES. Values that
+/// Vicon's models store among the points (angles, forces, moments, powers, scalars) are not
+/// positions and are left out. Event times count from frame 1, so a file that begins later
+/// subtracts its start. Reference: the C3D file format user guide, Motion Lab Systems 2008.
+#include "base/array.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
 
@@ -17,11 +26,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+// by the format
+#define BLOCK 512  // (bytes)
+#define GROUPS 128 // most
+
+enum { INTEL = 84, DEC = 85, MIPS = 86 }; // processors
+
+typedef struct parameter {
+    int group;
+    char name[24];             // upper case, cut to 23 letters
+    int type;                  // bytes of an element: -1 characters, 1, 2, 4 (real)
+    int dimensions;            // 0 .. 7
+    unsigned char size[7];     // of each dimension, the first runs fastest
+    int count;                 // elements: product of sizes, 1 without dimensions
+    const unsigned char *data; // in the file, count x |type| bytes
+} parameter;
+
 typedef struct c3d {
     himc_take *take;
     const unsigned char *bytes;
     size_t size;
-    c3d_parameters parameters;
+    int processor;
+    char groups[GROUPS][24]; // names by number, "" if there is none
+    parameter *list;         // owned
+    int count, room;
     int points; // in the file
     int analog; // samples per frame
     double scale;
@@ -33,33 +61,187 @@ typedef struct c3d {
     himc_error *error;
 } c3d;
 
-static unsigned header_word(const c3d *r, int number)
+// numbers
+
+// 16 bits, unsigned
+static unsigned word_at(int processor, const unsigned char *at)
 {
-    return himc_c3d_word(r->parameters.processor, r->bytes + 2 * (number - 1));
+    return processor == MIPS ? (unsigned)(at[0] << 8 | at[1]) : (unsigned)(at[1] << 8 | at[0]);
 }
 
-static double parameter(const c3d *r, const char *group, const char *name, int index,
-                        double fallback)
+// 16 bits, signed
+static int integer_at(int processor, const unsigned char *at)
 {
-    return himc_c3d_number(&r->parameters, himc_c3d_find(&r->parameters, group, name), index,
-                           fallback);
+    int word = (int)word_at(processor, at);
+    return word < 32768 ? word : word - 65536;
+}
+
+double himc_c3d_real(int processor, const unsigned char *at)
+{
+    uint32_t first = word_at(processor, at), second = word_at(processor, at + 2);
+    uint32_t bits = processor == INTEL ? second << 16 | first : first << 16 | second;
+    if (processor == DEC) {
+        int exponent = (int)(bits >> 23 & 255);
+        double mantissa = 0.5 + (double)(bits & 0x7FFFFF) / 16777216.0;
+        if (exponent == 0)
+            return bits >> 31 ? NAN : 0;
+        return ldexp(bits >> 31 ? -mantissa : mantissa, exponent - 128);
+    }
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+// parameters
+
+// reads the value at `at`; false if it goes beyond the end of the file
+static bool read_value(parameter *q, const unsigned char *at, const unsigned char *end)
+{
+    if (end - at < 2)
+        return false;
+    q->type = at[0] < 128 ? at[0] : at[0] - 256;
+    q->dimensions = at[1];
+    at += 2;
+    if ((q->type != -1 && q->type != 1 && q->type != 2 && q->type != 4) || q->dimensions > 7 ||
+        end - at < q->dimensions)
+        return false;
+    int64_t count = 1;
+    for (int i = 0; i < q->dimensions; i++) {
+        q->size[i] = *at++;
+        count *= q->size[i];
+        if (count > end - at)
+            return false;
+    }
+    if (count * abs(q->type) > end - at)
+        return false;
+    q->count = (int)count;
+    q->data = at;
+    return true;
+}
+
+// reads the record at *at and moves *at to the next, to NULL after the last
+static bool read_record(c3d *r, const unsigned char **at, const unsigned char *section_end)
+{
+    const unsigned char *end = r->bytes + r->size;
+    const unsigned char *a = *at;
+    bool fits = end - a >= 2;
+    int length = fits ? abs(a[0] < 128 ? a[0] : a[0] - 256) : 0;
+    int group = fits ? (a[1] < 128 ? a[1] : a[1] - 256) : 0;
+    if (fits && (length == 0 || group == 0)) {
+        *at = NULL;
+        return true;
+    }
+    if (!fits || end - a < length + 4)
+        return himc_error_set(r->error, "its parameters go beyond the end of the file");
+    parameter q = {.group = abs(group)};
+    for (int i = 0; i < length && i < (int)sizeof q.name - 1; i++) {
+        int c = a[2 + i];
+        q.name[i] = (char)(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    }
+    const unsigned char *link = a + 2 + length;
+    if (group < 0 && q.group < GROUPS)
+        memcpy(r->groups[q.group], q.name, sizeof q.name);
+    if (group > 0 && !read_value(&q, link + 2, end))
+        return himc_error_set(r->error, "parameter %.23s does not fit into the file", q.name);
+    if (group > 0 && !himc_array_grow(&r->list, r->count, &r->room, sizeof q, NULL))
+        return himc_error_set(r->error, "no memory");
+    if (group > 0)
+        r->list[r->count++] = q;
+    unsigned distance = word_at(r->processor, link);
+    if (distance != 0 && (distance < 2 || distance >= (size_t)(end - link)))
+        return himc_error_set(
+            r->error, "the record after parameter %.23s is beyond the end of the file", q.name);
+    *at = distance == 0 ? NULL : link + distance;
+    // a next record outside the section that is not where this one ends is a remnant of an earlier
+    // file: some of the format's own test suite have such behind their last
+    if (group > 0 && *at > section_end) {
+        const unsigned char *text = q.data + (size_t)q.count * (size_t)abs(q.type);
+        if (text >= end || *at != text + 1 + *text)
+            *at = NULL;
+    }
+    return true;
+}
+
+// false with the reason, without file name
+static bool read_parameters(c3d *r)
+{
+    size_t offset = (size_t)(r->bytes[0] - 1) * BLOCK;
+    if (offset + 4 > r->size)
+        return himc_error_set(r->error,
+                              "its parameters begin at byte %zu, but the file has %zu bytes",
+                              offset, r->size);
+    r->processor = r->bytes[offset + 3];
+    if (r->processor < INTEL || r->processor > MIPS)
+        return himc_error_set(r->error, "processor is %d, expected 84 (Intel), 85 (DEC), 86 (MIPS)",
+                              r->processor);
+    size_t section = offset + (size_t)BLOCK * r->bytes[offset + 2];
+    const unsigned char *at = r->bytes + offset + 4;
+    const unsigned char *section_end = r->bytes + (section < r->size ? section : r->size);
+    while (at)
+        if (!read_record(r, &at, section_end))
+            return false;
+    return true;
+}
+
+// NULL if there is none
+static const parameter *find(const c3d *r, const char *group, const char *name)
+{
+    for (int i = 0; i < r->count; i++) {
+        const parameter *q = &r->list[i];
+        if (q->group < GROUPS && strcmp(r->groups[q->group], group) == 0 &&
+            strcmp(q->name, name) == 0)
+            return q;
+    }
+    return NULL;
+}
+
+// an element as a number, whatever its type (2-byte integers unsigned); `fallback` where there is
+// none
+static double element(const c3d *r, const parameter *q, int index, double fallback)
+{
+    if (!q || index >= q->count || q->type == -1)
+        return fallback;
+    return q->type == 1   ? q->data[index]
+           : q->type == 2 ? word_at(r->processor, q->data + 2 * index)
+                          : himc_c3d_real(r->processor, q->data + 4 * index);
+}
+
+static double number(const c3d *r, const char *group, const char *name, int index, double fallback)
+{
+    return element(r, find(r, group, name), index, fallback);
+}
+
+// string `index` of a table of characters; false if there is none
+static bool row_of(const parameter *q, int index, himc_span *row)
+{
+    int width = q && q->type == -1 && q->dimensions > 0 ? q->size[0] : 0;
+    if (width == 0 || index >= q->count / width)
+        return false;
+    *row = (himc_span){(const char *)q->data + (size_t)index * (size_t)width, (size_t)width};
+    return true;
 }
 
 // a string without blanks at its ends, empty if there is none
 static himc_span string(const c3d *r, const char *group, const char *name, int index)
 {
     himc_span span = {"", 0};
-    himc_c3d_string(himc_c3d_find(&r->parameters, group, name), index, &span.at, &span.length);
+    row_of(find(r, group, name), index, &span);
     return himc_span_trim(span);
 }
+
+static unsigned header_word(const c3d *r, int index)
+{
+    return word_at(r->processor, r->bytes + 2 * (index - 1));
+}
+
+// frames
 
 static bool read_layout(c3d *r)
 {
     r->points = (int)header_word(r, 2);
     r->analog = (int)header_word(r, 3);
-    r->scale =
-        parameter(r, "POINT", "SCALE", 0, himc_c3d_real(r->parameters.processor, r->bytes + 12));
-    double used = parameter(r, "POINT", "USED", 0, r->points);
+    r->scale = number(r, "POINT", "SCALE", 0, himc_c3d_real(r->processor, r->bytes + 12));
+    double used = number(r, "POINT", "USED", 0, r->points);
     if (r->points < 1)
         return himc_error_set(r->error, "%s: the header says 0 points, expected 1 .. 65535",
                               r->take->file);
@@ -78,19 +260,19 @@ static bool read_layout(c3d *r)
     r->stride = r->width * (4 * (size_t)r->points + (size_t)r->analog);
     unsigned block = header_word(r, 9);
     if (block < 2)
-        block = (unsigned)fmin(65535, fmax(0, parameter(r, "POINT", "DATA_START", 0, 0)));
-    r->data = (size_t)(block - 1) * C3D_BLOCK;
+        block = (unsigned)fmin(65535, fmax(0, number(r, "POINT", "DATA_START", 0, 0)));
+    r->data = (size_t)(block - 1) * BLOCK;
     if (block < 2 || r->data >= r->size)
         return himc_error_set(r->error,
                               "%s: the frames begin at block %u, but the file has %zu blocks",
-                              r->take->file, block, (r->size + C3D_BLOCK - 1) / C3D_BLOCK);
+                              r->take->file, block, (r->size + BLOCK - 1) / BLOCK);
     return true;
 }
 
 // a field number of TRIAL, of two words; 0 if there is none
 static double field(const c3d *r, const char *name)
 {
-    double low = parameter(r, "TRIAL", name, 0, 0), high = parameter(r, "TRIAL", name, 1, 0);
+    double low = number(r, "TRIAL", name, 0, 0), high = number(r, "TRIAL", name, 1, 0);
     return low + 65536 * high;
 }
 
@@ -100,8 +282,8 @@ static bool count_frames(const c3d *r, int *frames)
     int first = (int)header_word(r, 4), last = (int)header_word(r, 5);
     double start = field(r, "ACTUAL_START_FIELD"), end = field(r, "ACTUAL_END_FIELD");
     double said[] = {start > 0 && end >= start ? end - start + 1 : 0,
-                     parameter(r, "POINT", "LONG_FRAMES", 0, 0),
-                     last >= first ? last - first + 1 : 0, parameter(r, "POINT", "FRAMES", 0, 0)};
+                     number(r, "POINT", "LONG_FRAMES", 0, 0), last >= first ? last - first + 1 : 0,
+                     number(r, "POINT", "FRAMES", 0, 0)};
     double there = floor((double)(r->size - r->data) / (double)r->stride), most = 0;
     for (int i = 0; i < 4; i++) {
         most = said[i] >= 1 && most == 0 ? said[i] : most;
@@ -135,10 +317,10 @@ static int by_text(const void *a, const void *b)
 static bool choose_points(c3d *r, int *count)
 {
     static const char *const lists[] = {"ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS"};
-    const c3d_parameter *list[5];
+    const parameter *list[5];
     size_t models = 0, most = 1;
     for (int k = 0; k < 5; k++) {
-        list[k] = himc_c3d_find(&r->parameters, "POINT", lists[k]);
+        list[k] = find(r, "POINT", lists[k]);
         most += list[k] ? (size_t)list[k]->count : 0; // a label has a byte at least
     }
     himc_span *model = malloc(most * sizeof *model), label;
@@ -150,16 +332,16 @@ static bool choose_points(c3d *r, int *count)
     }
     // the trimmed labels of a model's values, sorted
     for (int k = 0; k < 5; k++)
-        for (int i = 0; himc_c3d_string(list[k], i, &label.at, &label.length); i++)
+        for (int i = 0; row_of(list[k], i, &label); i++)
             model[models++] = himc_span_trim(label);
     qsort(model, models, sizeof *model, by_text);
     char name[24] = "LABELS";
     for (int k = 2, point = 0; k < 256; k++) {
-        const c3d_parameter *labels = himc_c3d_find(&r->parameters, "POINT", name);
+        const parameter *labels = find(r, "POINT", name);
         if (!labels || labels->type != -1 || labels->dimensions == 0 || labels->size[0] == 0)
             break;
         for (int i = 0; point < r->points; i++, point++)
-            if (!himc_c3d_string(labels, i, &r->label[point].at, &r->label[point].length))
+            if (!row_of(labels, i, &r->label[point]))
                 break;
         snprintf(name, sizeof name, "LABELS%d", k);
     }
@@ -183,7 +365,6 @@ static bool choose_points(c3d *r, int *count)
 
 static void read_points(const c3d *r)
 {
-    c3d_processor processor = r->parameters.processor;
     for (int i = 0; i < r->points; i++) {
         if (r->kept[i] < 0)
             continue;
@@ -193,9 +374,8 @@ static void read_points(const c3d *r)
                 r->bytes + r->data + (size_t)frame * r->stride + 4 * r->width * (size_t)i;
             double v[4]; // x, y, z, residual
             for (int k = 0; k < 4; k++)
-                v[k] = r->is_float
-                           ? himc_c3d_real(processor, at + 4 * k)
-                           : himc_c3d_integer(processor, at + 2 * k) * (k < 3 ? r->scale : 1);
+                v[k] = r->is_float ? himc_c3d_real(r->processor, at + 4 * k)
+                                   : integer_at(r->processor, at + 2 * k) * (k < 3 ? r->scale : 1);
             bool seen = v[3] >= 0;
             for (int k = 0; k < 3; k++)
                 seen = seen && fabs(v[k]) <= TAKE_LARGEST;
@@ -230,9 +410,9 @@ static void add_event(c3d *r, double time, himc_span context, himc_span label)
 
 static bool read_events(c3d *r)
 {
-    const c3d_parameter *times = himc_c3d_find(&r->parameters, "EVENT", "TIMES");
+    const parameter *times = find(r, "EVENT", "TIMES");
     int group = times && times->dimensions == 2 && times->size[0] == 2 ? times->size[1] : 0;
-    group = (int)fmin(group, fmax(0, parameter(r, "EVENT", "USED", 0, 0)));
+    group = (int)fmin(group, fmax(0, number(r, "EVENT", "USED", 0, 0)));
     // without a group EVENT up to 18 events of the header; the key 12345 says they have labels
     int header = group == 0 && header_word(r, 150) == 12345 ? (int)header_word(r, 151) : 0;
     header = header < 18 ? header : 18;
@@ -240,15 +420,15 @@ static bool read_events(c3d *r)
     if (!r->take->events)
         return himc_error_set(r->error, "%s: no memory", r->take->file);
     for (int i = 0; i < group; i++) {
-        double minutes = himc_c3d_number(&r->parameters, times, 2 * i, 0);
-        double seconds = himc_c3d_number(&r->parameters, times, 2 * i + 1, 0);
+        double minutes = element(r, times, 2 * i, 0);
+        double seconds = element(r, times, 2 * i + 1, 0);
         add_event(r, 60 * minutes + seconds, string(r, "EVENT", "CONTEXTS", i),
                   string(r, "EVENT", "LABELS", i));
     }
     for (int i = 0; i < header; i++) {
         himc_span label = {(const char *)r->bytes + 396 + 4 * i, 4};
-        add_event(r, himc_c3d_real(r->parameters.processor, r->bytes + 304 + 4 * i),
-                  (himc_span){"", 0}, himc_span_trim(label));
+        add_event(r, himc_c3d_real(r->processor, r->bytes + 304 + 4 * i), (himc_span){"", 0},
+                  himc_span_trim(label));
     }
     return true;
 }
@@ -258,8 +438,7 @@ static bool read_events(c3d *r)
 static bool read_analog(c3d *r)
 {
     himc_take *take = r->take;
-    c3d_processor processor = r->parameters.processor;
-    int channels = (int)parameter(r, "ANALOG", "USED", 0, 0);
+    int channels = (int)number(r, "ANALOG", "USED", 0, 0);
     if (r->analog == 0 || channels < 1 || r->analog % channels != 0)
         return true;
     int each = r->analog / channels;
@@ -271,10 +450,10 @@ static bool read_analog(c3d *r)
     take->analog_samples = take->frames * each;
     take->analog_rate = take->rate * each;
     bool is_unsigned = himc_span_is(string(r, "ANALOG", "FORMAT", 0), "unsigned");
-    double general = parameter(r, "ANALOG", "GEN_SCALE", 0, 1);
+    double general = number(r, "ANALOG", "GEN_SCALE", 0, 1);
     for (int channel = 0; channel < channels; channel++) {
-        double offset = parameter(r, "ANALOG", "OFFSET", channel, 0);
-        double scale = general * parameter(r, "ANALOG", "SCALE", channel, 1);
+        double offset = number(r, "ANALOG", "OFFSET", channel, 0);
+        double scale = general * number(r, "ANALOG", "SCALE", channel, 1);
         // "EMG1 (V)"
         himc_span label = string(r, "ANALOG", "LABELS", channel),
                   unit = string(r, "ANALOG", "UNITS", channel);
@@ -289,9 +468,9 @@ static bool read_analog(c3d *r)
             const unsigned char *at =
                 r->bytes + r->data + frame * r->stride +
                 r->width * (4 * (size_t)r->points + sample * (size_t)channels + (size_t)channel);
-            double raw = r->is_float   ? himc_c3d_real(processor, at)
-                         : is_unsigned ? (double)himc_c3d_word(processor, at)
-                                       : (double)himc_c3d_integer(processor, at);
+            double raw = r->is_float   ? himc_c3d_real(r->processor, at)
+                         : is_unsigned ? (double)word_at(r->processor, at)
+                                       : (double)integer_at(r->processor, at);
             take->analog[(size_t)i * (size_t)channels + (size_t)channel] = (raw - offset) * scale;
         }
     }
@@ -311,8 +490,8 @@ static bool read_statements(c3d *r)
     if (nul)
         unit = himc_span_trim((himc_span){unit.at, (size_t)(nul - unit.at)});
     take->file_unit = himc_take_unit(himc_span_text(unit, text));
-    snprintf(take->format, sizeof take->format, "C3D (%s, %s)",
-             processors[r->parameters.processor - C3D_INTEL], r->is_float ? "floats" : "integers");
+    snprintf(take->format, sizeof take->format, "C3D (%s, %s)", processors[r->processor - INTEL],
+             r->is_float ? "floats" : "integers");
     take->format_up = himc_vec3_make(0, 0, 1);
     take->file_up = read_axis(r, "Y_SCREEN");
     take->file_right = read_axis(r, "X_SCREEN");
@@ -320,9 +499,9 @@ static bool read_statements(c3d *r)
     double mass = 0, height = 0;
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3 && mass <= 0; k++)
-            mass = parameter(r, groups[i], masses[k], 0, 0);
+            mass = number(r, groups[i], masses[k], 0, 0);
         if (height <= 0)
-            height = parameter(r, groups[i], "HEIGHT", 0, 0);
+            height = number(r, groups[i], "HEIGHT", 0, 0);
     }
     height *= height > 100 ? 0.001 : 1;
     take->mass = mass >= TAKE_LEAST_MASS && mass <= TAKE_MOST_MASS ? mass : 0;
@@ -343,20 +522,17 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
     const unsigned char *bytes = file;
     c3d r = {.take = take, .bytes = bytes, .size = size, .error = error};
     int frames = 0, points = 0;
-    if (size < C3D_BLOCK)
+    if (size < BLOCK)
         return himc_error_set(error, "%s: %zu bytes, expected at least a header of %d", take->file,
-                              size, C3D_BLOCK);
+                              size, BLOCK);
     if (bytes[1] != 0x50 || bytes[0] < 2)
         return himc_error_set(error,
                               "%s: begins with bytes %d %d, expected for C3D: 2 .. 255 and 80",
                               take->file, bytes[0], bytes[1]);
-    bool ok = himc_c3d_parameters_read(&r.parameters, bytes, size,
-                                       (size_t)(bytes[0] - 1) * C3D_BLOCK, error) ||
-              himc_error_prefix(error, "%s", take->file);
+    bool ok = read_parameters(&r) || himc_error_prefix(error, "%s", take->file);
     ok = ok && read_layout(&r) && count_frames(&r, &frames) && choose_points(&r, &points);
     if (ok) {
-        double rate =
-            parameter(&r, "POINT", "RATE", 0, himc_c3d_real(r.parameters.processor, bytes + 20));
+        double rate = number(&r, "POINT", "RATE", 0, himc_c3d_real(r.processor, bytes + 20));
         ok = himc_take_allocate(take, rate, frames, points, false, error) && read_statements(&r);
     }
     if (ok)
@@ -364,7 +540,7 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
     ok = ok && read_events(&r) && read_analog(&r);
     free(r.kept);
     free(r.label);
-    himc_c3d_parameters_free(&r.parameters);
+    free(r.list);
     return ok;
 }
 
@@ -471,7 +647,7 @@ static void put_parameters(bytes *b, const himc_take *take, int blocks)
     put_byte(b, 1);
     put_byte(b, 0x50);
     put_byte(b, blocks);
-    put_byte(b, C3D_INTEL);
+    put_byte(b, INTEL);
     put_group(b, 1, "POINT");
     put_word_parameter(b, 1, "USED", take->points);
     put_real_parameter(b, 1, "SCALE", -1);
@@ -488,7 +664,7 @@ static void put_parameters(bytes *b, const himc_take *take, int blocks)
     put_group(b, 2, "TRIAL");
     put_field(b, "ACTUAL_START_FIELD", 1);
     put_field(b, "ACTUAL_END_FIELD", (unsigned)take->frames);
-    b->at = begin + (size_t)blocks * C3D_BLOCK;
+    b->at = begin + (size_t)blocks * BLOCK;
 }
 
 bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
@@ -496,8 +672,8 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
     if (take->points > MOST_LABELS)
         return himc_error_set(error, "%s: %d points, expected up to %d in a .c3d", take->file,
                               take->points, MOST_LABELS);
-    int blocks = 2 + (take->points * TAKE_NAME + C3D_BLOCK - 1) / C3D_BLOCK;
-    size_t before = (size_t)(1 + blocks) * C3D_BLOCK, row = 16 * (size_t)take->points;
+    int blocks = 2 + (take->points * TAKE_NAME + BLOCK - 1) / BLOCK;
+    size_t before = (size_t)(1 + blocks) * BLOCK, row = 16 * (size_t)take->points;
     unsigned char *buffer = calloc(1, before > row ? before : row);
     if (!buffer)
         return himc_error_set(error, "%s: no memory", take->file);
@@ -513,7 +689,7 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
     put_word(&b, (unsigned)(2 + blocks));
     put_word(&b, 0);
     put_real(&b, take->rate);
-    b.at = buffer + C3D_BLOCK;
+    b.at = buffer + BLOCK;
     put_parameters(&b, take, blocks);
     fwrite(buffer, 1, before, file);
     for (int frame = 0; frame < take->frames; frame++) {

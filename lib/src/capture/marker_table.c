@@ -1,6 +1,6 @@
 /// marker_table.c: tables of markers as text: Vicon Nexus' ASCII export (.csv), OptiTrack Motive's
 /// export (.csv), Qualisys' TSV, Motion Analysis' and OpenSim's TRC, and any CSV with columns
-/// NAME_x, NAME_y, NAME_z.
+/// NAME_x, NAME_y, NAME_z; TRC is written, too.
 ///
 /// All are a head that says rate, unit and the column where each marker's three cells begin,
 /// then rows of numbers. A head is read into a plan; one loop reads the rows of all. Three cells
@@ -72,21 +72,13 @@ static int count_filled(himc_span line, char separator)
     return count;
 }
 
-static bool is_filled(himc_span row, char separator)
-{
-    bool filled = false;
-    while (row.at && !filled)
-        filled = himc_span_cell(&row, separator).length > 0;
-    return filled;
-}
-
 // the rows that are not blank
 static int count_rows(const plan *p)
 {
     himc_span line;
     int rows = 0;
     for (himc_text rest = p->text; himc_text_line(&rest, &line);) {
-        bool filled = is_filled(line, p->separator);
+        bool filled = count_filled(line, p->separator) > 0;
         if (!filled && p->ends_with_blank)
             break;
         rows += filled;
@@ -516,7 +508,7 @@ static bool read_table(plan *p)
         plan look = *p;
         for (int row = 0; row < rows && himc_text_line(&look.text, &line);) {
             himc_span cell = {"", 0};
-            if (!is_filled(line, p->separator))
+            if (count_filled(line, p->separator) == 0)
                 continue;
             for (int column = 0; column <= p->time; column++)
                 cell = himc_span_cell(&line, p->separator);
@@ -543,7 +535,7 @@ static bool read_table(plan *p)
         himc_take_set_name(p->take, i, p->names[i].at, p->names[i].length);
     double first = NAN, last = NAN;
     for (int frame = 0; frame < rows && himc_text_line(&p->text, &line);) {
-        if (!is_filled(line, p->separator))
+        if (count_filled(line, p->separator) == 0)
             continue;
         if (!read_row(p, line, frame, &last))
             return false;
@@ -603,4 +595,39 @@ bool himc_tsv_read(himc_take *take, const void *bytes, size_t size, himc_error *
 bool himc_trc_read(himc_take *take, const void *bytes, size_t size, himc_error *error)
 {
     return read_as(take, bytes, size, '\t', read_trc, error);
+}
+
+// in millimetres, y up
+bool himc_trc_write(FILE *file, const himc_take *take, himc_error *error)
+{
+    (void)error;
+    fprintf(file, "PathFileType\t4\t(X/Y/Z)\t%s\n", take->file);
+    fputs("DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
+          "OrigNumFrames\n",
+          file);
+    himc_text_put_number(file, take->rate, 6);
+    fputc('\t', file);
+    himc_text_put_number(file, take->rate, 6);
+    fprintf(file, "\t%d\t%d\tmm\t", take->frames, take->points);
+    himc_text_put_number(file, take->rate, 6);
+    fprintf(file, "\t1\t%d\nFrame#\tTime", take->frames);
+    for (int i = 0; i < take->points; i++)
+        fprintf(file, "\t%s\t\t", take->names[i]);
+    fputs("\n\t", file);
+    for (int i = 1; i <= take->points; i++)
+        fprintf(file, "\tX%d\tY%d\tZ%d", i, i, i);
+    fputc('\n', file);
+    for (int frame = 0; frame < take->frames; frame++) {
+        fprintf(file, "%d\t", frame + 1);
+        himc_text_put_number(file, frame / take->rate, 6);
+        for (int i = 0; i < take->points; i++) {
+            himc_vec3 x = himc_take_y_up(*himc_take_at(take, frame, i));
+            if (himc_vec3_finite(x))
+                himc_text_put_vec3(file, himc_vec3_scale(x, 1000), 4, '\t');
+            else
+                fputs("\t\t\t", file);
+        }
+        fputc('\n', file);
+    }
+    return true;
 }

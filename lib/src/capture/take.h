@@ -172,7 +172,7 @@ static inline himc_vec3 himc_take_y_up(himc_vec3 x)
     return himc_vec3_make(x.x, x.z, -x.y);
 }
 
-// Formats: bvh.c, c3d.c, marker_table.c, trc.c.
+// Formats: bvh.c, c3d.c, marker_table.c.
 
 /// A row a format, READ of one that is only read: its suffix, and how its files begin, several ways
 /// joined by '|', where \a stands for any byte below 8. himc_SUFFIX_read gets the bytes of the
@@ -190,6 +190,8 @@ static inline himc_vec3 himc_take_y_up(himc_vec3 x)
     HIMC_TAKE_READER(suffix, begins)     \
     bool himc_##suffix##_write(FILE *file, const himc_take *take, himc_error *error);
 HIMC_TAKE_FORMATS(HIMC_TAKE_READER, HIMC_TAKE_WRITER)
+/// A number of 32 bits of a C3D's processor (84 Intel, 85 DEC, 86 MIPS); NaN where reserved.
+double himc_c3d_real(int processor, const unsigned char *at);
 
 // Files: take_file.c.
 

@@ -32,9 +32,9 @@
 #define LEAST 1e-13 // (m/s) a head at rest does not notice less; chosen: 260 dB below a stroke
 #define MODES (HIMC_NEIGHBOURS * HIMC_SHARED)
 
-static const himc_shared_mode *shared(const himc_air_between *air, int i, int *count)
+static himc_membrane *head_of(const himc_air_between *air, int drum)
 {
-    return himc_membrane_shared(himc_drum_membrane(air->drum[i]), count);
+    return himc_drum_membrane(air->drum[drum]);
 }
 
 static int interval(const himc_air_between *air)
@@ -76,13 +76,14 @@ typedef struct sender {
 // all of them; returns their number
 static int find_senders(const himc_air_between *air, int band, sender *senders)
 {
-    int found = 0, count;
+    int found = 0;
     for (int drum = 0; drum < air->count; drum++) {
-        const himc_shared_mode *mode = shared(air, drum, &count);
-        for (int i = 0; i < count; i++) {
-            double weight = weight_in(band, mode[i].omega) * sqrt(2 * HIMC_PI / HIMC_AIR_AZIMUTHS);
+        const himc_model *model = head_of(air, drum)->model;
+        for (int i = 0; i < model->shared_count; i++) {
+            const himc_shared_mode *mode = &model->shared[i];
+            double weight = weight_in(band, mode->omega) * sqrt(2 * HIMC_PI / HIMC_AIR_AZIMUTHS);
             if (weight > 0)
-                senders[found++] = (sender){air->first[drum] + i, drum, &mode[i], weight};
+                senders[found++] = (sender){air->first[drum] + i, drum, mode, weight};
         }
     }
     return found;
@@ -168,13 +169,13 @@ static void find_change(himc_air_between *air)
     double sum[MODES][MODES], root[MODES]; // 1 + t S/2
     sender senders[MODES];
     double t = interval(air) / himc_drum_rate(air->drum[0]);
-    int n = 0, count;
+    int n = 0;
     for (int drum = 0; drum < air->count; drum++) {
-        const himc_shared_mode *mode = shared(air, drum, &count);
+        const himc_membrane *head = head_of(air, drum);
         air->first[drum] = n;
-        air->revision[drum] = himc_membrane_revision(himc_drum_membrane(air->drum[drum]));
-        for (int i = 0; i < count; i++)
-            root[n++] = sqrt(mode[i].mass);
+        air->revision[drum] = head->revision;
+        for (int i = 0; i < head->model->shared_count; i++)
+            root[n++] = sqrt(head->model->shared[i].mass);
     }
     air->first[air->count] = n;
     for (int i = 0; i < n; i++)
@@ -229,16 +230,15 @@ int himc_air_between_until(const himc_air_between *air, int64_t now, int n)
 // changes a drum's velocities
 static void kick(const himc_air_between *air, int drum, const double *change)
 {
-    int count;
-    const himc_shared_mode *mode = shared(air, drum, &count);
-    himc_membrane *head = himc_drum_membrane(air->drum[drum]);
+    himc_membrane *head = head_of(air, drum);
+    const himc_model *model = head->model;
     double most = 0;
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < model->shared_count; i++)
         most = fmax(most, fabs(change[i]));
     if (himc_membrane_at_rest(head) && most < LEAST)
         return;
-    for (int i = 0; i < count; i++)
-        himc_membrane_kick(head, mode[i].index, change[i]);
+    for (int i = 0; i < model->shared_count; i++)
+        himc_bank_kick(model->bank, model->shared[i].index, change[i]);
 }
 
 bool himc_air_between_due(const himc_air_between *air, int64_t now)
@@ -250,10 +250,9 @@ void himc_air_between_exchange(himc_air_between *air)
 {
     double v[MODES], change[MODES], q;
     bool stale = false, moves = false;
-    int count;
     for (int drum = 0; drum < air->count; drum++) {
-        const himc_membrane *head = himc_drum_membrane(air->drum[drum]);
-        stale = stale || air->revision[drum] != himc_membrane_revision(head);
+        const himc_membrane *head = head_of(air, drum);
+        stale = stale || air->revision[drum] != head->revision;
         moves = moves || !himc_membrane_at_rest(head);
     }
     if (stale)
@@ -261,10 +260,9 @@ void himc_air_between_exchange(himc_air_between *air)
     if (!moves)
         return;
     for (int drum = 0; drum < air->count; drum++) {
-        const himc_shared_mode *mode = shared(air, drum, &count);
-        for (int i = 0; i < count; i++)
-            himc_membrane_state(himc_drum_membrane(air->drum[drum]), mode[i].index, &q,
-                                &v[air->first[drum] + i]);
+        const himc_model *model = head_of(air, drum)->model;
+        for (int i = 0; i < model->shared_count; i++)
+            himc_bank_state(model->bank, model->shared[i].index, &q, &v[air->first[drum] + i]);
     }
     int n = air->first[air->count];
     for (int i = 0; i < n; i++) {

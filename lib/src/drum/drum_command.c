@@ -1,5 +1,5 @@
-/// drum_command.c: a drum's commands, one function for each row of command_rows.h that is for a
-/// drum. They act on settings; a drum takes them when they are good.
+/// drum_command.c: a drum's commands, the rows of command_rows.h that are for a drum. They act on
+/// settings; a drum takes them when they are good.
 #include "drum/drum_state.h"
 
 #include "base/argument.h"
@@ -208,17 +208,9 @@ static bool change_head(himc_drum_settings *s, const himc_command *c, himc_error
     return true;
 }
 
-static bool do_noise(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    s->noise = number(c, 0);
-    return true;
-}
-
-static bool do_mallet(himc_drum_settings *s, const himc_command *c, himc_error *error)
+static void change_mallets(himc_drum_settings *s, const himc_command *c)
 {
     enum { PRESET, NUMBERS, HAND_PRESET, HAND_NUMBERS };
-    (void)error;
     bool numbers = c->form == NUMBERS || c->form == HAND_NUMBERS;
     int first = c->form >= HAND_PRESET; // atom behind the hand
     himc_mallet_head mallet = {.radius = OWN_RADIUS, .noise = 1};
@@ -234,7 +226,6 @@ static bool do_mallet(himc_drum_settings *s, const himc_command *c, himc_error *
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         if (first == 0 || hand == c->choice[0])
             take_mallet(s, hand, &mallet, name);
-    return true;
 }
 
 bool himc_drum_check_place(himc_vec3 center, himc_error *error)
@@ -242,15 +233,6 @@ bool himc_drum_check_place(himc_vec3 center, himc_error *error)
     return himc_check_range("place X", center.x, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error) &&
            himc_check_range("place Y", center.y, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error) &&
            himc_check_range("place Z", center.z, -FARTHEST_PLACE, FARTHEST_PLACE, "m", error);
-}
-
-static bool do_place(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    s->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
-    s->place.tilt = c->count == 4 ? number(c, 3) : s->place.tilt;
-    s->placed = true;
-    return true;
 }
 
 // Pickup `index` from the command's atoms from `first` on; the others stay. `pickup` and `channel`
@@ -277,17 +259,10 @@ static bool change_pickup(himc_drum_settings *s, const himc_command *c, int firs
     return true;
 }
 
-static bool do_pickup(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    return change_pickup(s, c, 0, 0, error);
-}
-
 // each new pickup is PICKUP_STEP to the right of the one before
-static bool do_pickups(himc_drum_settings *s, const himc_command *c, himc_error *error)
+static void set_pickup_count(himc_drum_settings *s, int wanted)
 {
     himc_pickup *all = s->head.pickups;
-    int wanted = (int)number(c, 0);
-    (void)error;
     for (int i = s->head.pickup_count; i < wanted; i++) {
         all[i] = all[i - 1];
         all[i].kind = HIMC_PICKUP_AIR;
@@ -295,22 +270,6 @@ static bool do_pickups(himc_drum_settings *s, const himc_command *c, himc_error 
         all[i].azimuth = himc_argument_single(remainder(all[i].azimuth - PICKUP_STEP, 2 * HIMC_PI));
     }
     s->head.pickup_count = wanted;
-    return true;
-}
-
-static bool do_listener(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    enum { OFF };
-    (void)error;
-    s->picked = c->form == OFF;
-    return true;
-}
-
-static bool do_channel(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    int channel = (int)number(c, 0);
-    return himc_check_range("channel", channel, 1, s->head.pickup_count, "", error) &&
-           change_pickup(s, c, 1, channel - 1, error);
 }
 
 // takes the outline and its reference
@@ -332,7 +291,7 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
     return good;
 }
 
-static bool do_shape(himc_drum_settings *s, const himc_command *c, himc_error *error)
+static bool change_shape(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
 #define KIND(name, form) &himc_kind_##name,
 #define LISTED(name, form) form ", "
@@ -352,21 +311,7 @@ static bool do_shape(himc_drum_settings *s, const himc_command *c, himc_error *e
     return himc_error_set(error, "shape: %.80s, expected " HIMC_KINDS(LISTED) "or a file", file);
 }
 
-static bool do_gain(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    s->gain = pow(10, number(c, 0) / 20);
-    return true;
-}
-
-static bool do_mute(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    (void)error;
-    s->mute = number(c, 0) == 1;
-    return true;
-}
-
-static bool do_technique(himc_drum_settings *s, const himc_command *c, himc_error *error)
+static bool change_technique(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
     himc_technique wanted = (himc_technique)c->choice[0];
     if (wanted != HIMC_TECHNIQUE_MODAL && !s->external_sound)
@@ -378,46 +323,39 @@ static bool do_technique(himc_drum_settings *s, const himc_command *c, himc_erro
     return true;
 }
 
-static bool do_strike(himc_drum_settings *s, const himc_command *c, himc_error *error)
-{
-    return himc_drum_may_strike(&s->place, number(c, 0), number(c, 1), number(c, 2), error);
-}
-
-#define do_radius change_head
-#define do_tension change_head
-#define do_density change_head
-#define do_glide change_head
-#define do_damp change_head
-#define do_muffle change_head
-#define do_skin change_head
-#define do_decay change_head
-#define do_tune change_head
-#define do_gliss change_head
-#define do_modes change_head
-#define do_air change_head
-#define do_kettle change_head
-#define do_uniformity change_head
-typedef bool drum_action(himc_drum_settings *s, const himc_command *command, himc_error *error);
-
-// the action of each row for a drum is do_ and its word; these two are jobs (drum_job.c)
-#define do_info NULL
-#define do_dump NULL
-#define do_preset NULL
-static drum_action *const actions[HIMC_COMMANDS] = {
-#define ACTION_PERFORMER(ID, word)
-#define ACTION_DRUM(ID, word) [HIMC_COMMAND_##ID] = do_##word,
-#define HIMC_COMMAND_ROW(ID, word, receiver, when, marks, atoms, does) ACTION_##receiver(ID, word)
-#include "himc/command_rows.h"
-};
-
-bool himc_drum_settings_command(himc_drum_settings *settings, const himc_command *command,
+bool himc_drum_settings_command(himc_drum_settings *s, const himc_command *command,
                                 himc_error *error)
 {
+    enum { OFF };         // form of `listener`
     himc_command checked; // also one that was put together without the parser
+    const himc_command *c = &checked;
     if (!himc_command_check(&checked, HIMC_DRUM, command, error))
         return false;
-    drum_action *act = actions[checked.id];
-    return !act || act(settings, &checked, error);
+    switch (c->id) {
+    case HIMC_COMMAND_SHAPE: return change_shape(s, c, error);
+    case HIMC_COMMAND_MALLET: change_mallets(s, c); return true;
+    case HIMC_COMMAND_NOISE: s->noise = number(c, 0); return true;
+    case HIMC_COMMAND_PLACE:
+        s->place.center = himc_vec3_make(number(c, 0), number(c, 1), number(c, 2));
+        s->place.tilt = c->count == 4 ? number(c, 3) : s->place.tilt;
+        s->placed = true;
+        return true;
+    case HIMC_COMMAND_PICKUP: return change_pickup(s, c, 0, 0, error);
+    case HIMC_COMMAND_PICKUPS: set_pickup_count(s, (int)number(c, 0)); return true;
+    case HIMC_COMMAND_CHANNEL:
+        return himc_check_range("channel", number(c, 0), 1, s->head.pickup_count, "", error) &&
+               change_pickup(s, c, 1, (int)number(c, 0) - 1, error);
+    case HIMC_COMMAND_DRUM_LISTENER: s->picked = c->form == OFF; return true;
+    case HIMC_COMMAND_DRUM_GAIN: s->gain = pow(10, number(c, 0) / 20); return true;
+    case HIMC_COMMAND_DRUM_MUTE: s->mute = number(c, 0) == 1; return true;
+    case HIMC_COMMAND_TECHNIQUE: return change_technique(s, c, error);
+    case HIMC_COMMAND_STRIKE:
+        return himc_drum_may_strike(&s->place, number(c, 0), number(c, 1), number(c, 2), error);
+    case HIMC_COMMAND_DRUM_INFO: // the host answers; the other two are jobs (drum_job.c)
+    case HIMC_COMMAND_DRUM_DUMP:
+    case HIMC_COMMAND_DRUM_PRESET: return true;
+    default: return change_head(s, c, error);
+    }
 }
 
 static bool has_one_mallet(const himc_drum_settings *s)
@@ -434,6 +372,7 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
     double principal = himc_membrane_principal(drum->membrane, head);
     const himc_word *name = drum->set.mallet_name;
     bool same = has_one_mallet(&drum->set);
+    int modes = drum->membrane->model->modes->count;
     char mallets[2 * sizeof name->text + sizeof " and "];
     snprintf(mallets, sizeof mallets, "%s%s%s", name[HIMC_LEFT].text, same ? "" : " and ",
              same ? "" : name[HIMC_RIGHT].text);
@@ -441,14 +380,12 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
              "%s: radius %.4g m, tension %.5g N/m, density %.4g kg/m2, principal mode %.5g Hz, "
              "%d modes (%d audible), uniformity %.3g, seed %d, "
              "mallet %s, technique %s, at %.4g %.4g %.4g m",
-             drum->set.name, head->radius, head->tension, head->density, principal,
-             himc_membrane_modes(drum->membrane), himc_membrane_audible(drum->membrane),
-             head->uniformity, head->uniformity_seed, mallets,
-             himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text,
+             drum->set.name, head->radius, head->tension, head->density, principal, modes,
+             himc_membrane_audible(drum->membrane), head->uniformity, head->uniformity_seed,
+             mallets, himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text,
              p->center.x, p->center.y, p->center.z);
     to->line(to->user, text);
-    int last = himc_membrane_modes(drum->membrane) - 1;
-    double highest = himc_membrane_mode(drum->membrane, last).frequency;
+    double highest = himc_membrane_mode(drum->membrane, modes - 1).frequency;
     if (head->modes == HIMC_MODES_AUTO || highest > FULL_SOUND)
         return;
     snprintf(text, sizeof text, "%s: nothing sounds above %.0f Hz: more `modes`, or `modes auto`",

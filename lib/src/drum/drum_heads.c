@@ -154,6 +154,14 @@ bool himc_drum_heads_prepare(himc_drum_heads *heads, himc_error *error)
     return good;
 }
 
+/// Those of the chain that hold at a beat.
+static himc_drum_heads *heads_at(himc_drum_heads *heads, double beat)
+{
+    while (heads && heads->before && beat < heads->from)
+        heads = heads->before;
+    return heads;
+}
+
 // the last change at or before a beat; usually the present one or its neighbour
 static int change_at(const himc_drum_heads *heads, double beat)
 {
@@ -344,9 +352,7 @@ himc_drum_heads *himc_drum_heads_follow(himc_drum_heads *heads, himc_drum_heads 
     heads->from = from;
     if (before)
         heads->told = before->told;
-    himc_drum_heads *present = before;
-    while (present && present->before && now < present->from)
-        present = present->before;
+    himc_drum_heads *present = heads_at(before, now);
     himc_drum_heads *over = present ? present->before : NULL;
     if (present)
         present->before = NULL;
@@ -377,14 +383,6 @@ struct himc_head_insertion {
     int at;    ///< the new one's index
     bool anew; ///< the drum was changed by hand: all heads are made again
 };
-
-/// Those of the chain that hold at a beat.
-static himc_drum_heads *heads_at(himc_drum_heads *heads, double beat)
-{
-    while (heads && heads->before && beat < heads->from)
-        heads = heads->before;
-    return heads;
-}
 
 himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *drum, double beat,
                                              const himc_command *command, himc_error *error)

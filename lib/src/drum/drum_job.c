@@ -22,7 +22,7 @@
 // modes of a head, those that are computed faster counted for less
 static int mode_work(const himc_membrane *membrane)
 {
-    int count = himc_membrane_modes(membrane);
+    int count = membrane->model->modes->count;
     bool statistical = himc_membrane_mode(membrane, count - 1).m < 0;
     return statistical ? count - HIMC_STATISTICAL_MODES + HIMC_STATISTICAL_MODES / STATISTICAL_WORK
                        : count;
@@ -98,7 +98,8 @@ static bool run_lines(himc_drum_settings *s, const char *rest, const char *name,
     return good;
 }
 
-bool himc_drum_settings_preset(himc_drum_settings *s, const char *name, himc_error *error)
+// the lines of NAME.txt
+static bool run_preset(himc_drum_settings *s, const char *name, himc_error *error)
 {
     char path[HIMC_PATH_SIZE + 8];
     size_t size;
@@ -121,11 +122,10 @@ static bool prepare(himc_job *job, himc_error *error)
     himc_model_free(j->made);
     j->made = NULL;
     j->after = himc_drum_settings_copy(&j->before);
-    bool good = j->listens ? true
-                : j->state ? run_lines(&j->after, j->state, "state", error)
-                : is_preset(j)
-                    ? himc_drum_settings_preset(&j->after, j->command.atom[0].symbol, error)
-                    : himc_drum_settings_command(&j->after, &j->command, error);
+    bool good = j->listens     ? true
+                : j->state     ? run_lines(&j->after, j->state, "state", error)
+                : is_preset(j) ? run_preset(&j->after, j->command.atom[0].symbol, error)
+                               : himc_drum_settings_command(&j->after, &j->command, error);
     if (!good)
         return false;
     bool heard = himc_listener_hears(&j->listener, j->after.picked);

@@ -179,7 +179,7 @@ static void mix_state(himc_membrane *m, const himc_uneven_block *block, bool bac
 static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before,
                        const himc_uneven_block mixed[2], bool whole)
 {
-    const himc_lugs_pair *after = himc_modes_pairs(m->model->modes);
+    const himc_lugs_pair *after = m->model->modes->pairs;
     if (memcmp(before, after, sizeof *before * HIMC_LUGS_ORDERS) == 0)
         return;
     const himc_modes *modes = m->model->modes;
@@ -201,7 +201,7 @@ static void turn_pairs(himc_membrane *m, const himc_lugs_pair *before,
                          c * v[1] - s * v[0]);
     }
     for (int parity = 0; parity < 2 && whole; parity++)
-        mix_state(m, himc_uneven_block_of(modes, parity), true);
+        mix_state(m, &modes->block[parity], true);
 }
 
 // Gives the membrane the model `made`, whose config this is, or if that is NULL makes that of
@@ -215,10 +215,9 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
     himc_lugs_pair pairs[HIMC_LUGS_ORDERS];
     bool outline = himc_shape_equal(&was->config.shape, &config->shape);
     bool bends = outline && !himc_head_equal(&was->config.head, &config->head);
-    memcpy(pairs, himc_modes_pairs(was->modes), sizeof pairs);
-    int count = himc_modes_count(was->modes);
-    himc_uneven_block mixed[2] = {*himc_uneven_block_of(was->modes, 0),
-                                  *himc_uneven_block_of(was->modes, 1)};
+    memcpy(pairs, was->modes->pairs, sizeof pairs);
+    int count = was->modes->count;
+    himc_uneven_block mixed[2] = {was->modes->block[0], was->modes->block[1]};
     if (bends)
         bend(m, -1);
     m->revision++;
@@ -245,7 +244,7 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
     }
     himc_model_watch(m->model, m->watch_x, m->watch_y);
     if (bends) {
-        turn_pairs(m, pairs, mixed, count == himc_modes_count(m->model->modes));
+        turn_pairs(m, pairs, mixed, count == m->model->modes->count);
         bend(m, 1);
     }
     keep_energy(m, energy);
@@ -326,22 +325,6 @@ void himc_membrane_share(himc_membrane *m, bool shares)
     config.shares = shares;
     if (m->model->config.shares != shares)
         change(m, &config, NULL, 1);
-}
-
-const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count)
-{
-    *count = membrane->model->shared_count;
-    return membrane->model->shared;
-}
-
-unsigned himc_membrane_revision(const himc_membrane *membrane)
-{
-    return membrane->revision;
-}
-
-void himc_membrane_kick(himc_membrane *membrane, int index, double change)
-{
-    himc_bank_kick(membrane->model->bank, index, change);
 }
 
 void himc_membrane_mute_pickups(himc_membrane *membrane, bool mute)

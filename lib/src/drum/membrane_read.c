@@ -27,16 +27,11 @@ double himc_membrane_rate(const himc_membrane *membrane)
     return membrane->model->config.rate;
 }
 
-int himc_membrane_modes(const himc_membrane *membrane)
-{
-    return himc_modes_count(membrane->model->modes);
-}
-
 himc_mode himc_membrane_mode(const himc_membrane *membrane, int index)
 {
-    if (index >= himc_membrane_modes(membrane))
-        return (himc_mode){0};
     const himc_model *model = membrane->model;
+    if (index >= model->modes->count)
+        return (himc_mode){0};
     himc_mode mode = himc_model_mode(model, index);
     for (int i = 0; i < model->shared_count; i++)
         mode.decay += model->shared[i].index == index ? model->shared[i].decay : 0;
@@ -72,7 +67,7 @@ static double coordinate(const himc_membrane *membrane, int count, const double 
 // displacements of the bare shapes of order 0, from those of what a kettle makes of them
 static void unmix(const himc_modes *modes, int count, double *displacement)
 {
-    const himc_mixture *mix = himc_modes_mixture(modes);
+    const himc_mixture *mix = &modes->mixture;
     double mixed[HIMC_MIXED];
     for (int n = 0; n < mix->count; n++)
         mixed[n] = mix->index[n] < count ? displacement[mix->index[n]] : 0;
@@ -109,8 +104,8 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, const doubl
         himc_mode mode = himc_modes_get(modes, head, i);
         if (mode.m <= 0 || mode.sine)
             continue;
-        const himc_lugs_pair *axis = &himc_modes_pairs(modes)[mode.m];
-        bool whole = i + 1 < himc_modes_count(modes) && himc_modes_get(modes, head, i + 1).sine;
+        const himc_lugs_pair *axis = &modes->pairs[mode.m];
+        bool whole = i + 1 < modes->count && himc_modes_get(modes, head, i + 1).sine;
         double cosine = displacement[i],
                sine = whole ? even_displacement(membrane, count, modal, i + 1) : 0;
         displacement[i] = cosine * axis->cosine - sine * axis->sine;

@@ -58,8 +58,6 @@ HIMC_RT const himc_unit_response *himc_strike_point_response(himc_membrane *m, s
 
 /// Its config, borrowed.
 HIMC_RT const himc_membrane_config *himc_membrane_config_of(const himc_membrane *membrane);
-/// Number of its modes.
-HIMC_RT int himc_membrane_modes(const himc_membrane *membrane);
 /// A membrane at rest with that model, which it owns from now on. NULL, and the model freed, with
 /// the reason; a model that is NULL has one.
 himc_membrane *himc_membrane_new_of(himc_model *model, himc_error *error);
@@ -82,12 +80,6 @@ bool himc_membrane_become(himc_membrane *membrane, const himc_membrane_config *c
 HIMC_RT void himc_membrane_set_rays(himc_membrane *membrane, const himc_pickup *rays);
 /// Whether the air between this head and others takes what its shared modes radiate.
 HIMC_RT void himc_membrane_share(himc_membrane *membrane, bool shares);
-/// The shared modes (*count), none if it does not share. Borrowed.
-HIMC_RT const himc_shared_mode *himc_membrane_shared(const himc_membrane *membrane, int *count);
-/// Grows by one with every change of head or rate.
-HIMC_RT unsigned himc_membrane_revision(const himc_membrane *membrane);
-/// Between two samples: changes the velocity of mode `index` (m/s).
-HIMC_RT void himc_membrane_kick(himc_membrane *membrane, int index, double change);
 
 /// himc_membrane_run with a row for each of the HIMC_OUTPUTS; rows of muted pickups stay as they
 /// are.

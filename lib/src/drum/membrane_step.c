@@ -28,7 +28,7 @@ static const double *weights(himc_membrane *m, double b)
     }
     oldest->b = b;
     oldest->age = ++m->model->clock;
-    for (int i = 0; i < himc_modes_count(m->model->modes); i++)
+    for (int i = 0; i < m->model->modes->count; i++)
         oldest->weight[i] = i > 0 && c->wave[i] == c->wave[i - 1]
                                 ? oldest->weight[i - 1]
                                 : himc_patch_weight(c->wave[i] * b);
@@ -46,7 +46,7 @@ static void spread(himc_membrane *m, strike_point *s)
     if (!(b > 0))
         return;
     const double *weight = weights(m, b);
-    for (int i = 0; i < himc_modes_count(c->modes); i++)
+    for (int i = 0; i < c->modes->count; i++)
         s->shape[i] *= weight[i];
     if (!kind->compliance)
         return;

@@ -96,8 +96,7 @@ static void copy(himc_model *c, const himc_model *from)
     size_t row = sizeof(double) * (size_t)himc_bank_padded(c->bank);
     himc_bank_copy(c->bank, from->bank);
     memcpy(c->memory, from->memory, row * ARRAYS);
-    memcpy(c->oscillators, from->oscillators,
-           sizeof *c->oscillators * (size_t)himc_modes_count(c->modes));
+    memcpy(c->oscillators, from->oscillators, sizeof *c->oscillators * (size_t)c->modes->count);
     memcpy(c->shared, from->shared, sizeof c->shared);
     c->shared_count = from->shared_count;
     c->air = from->air;
@@ -121,7 +120,7 @@ himc_model *himc_model_new(const himc_membrane_config *config, const himc_model 
     c->modes = like && himc_model_has_room(like, config)
                    ? himc_modes_copy(like->modes, error)
                    : himc_modes_new(&config->shape, config->head.modes, error);
-    int count = c->modes ? himc_modes_count(c->modes) : 0;
+    int count = c->modes ? c->modes->count : 0;
     c->bank = c->modes ? himc_bank_new(count, error) : NULL;
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
     size_t bytes = sizeof(double) * (size_t)(c->bank ? himc_bank_padded(c->bank) : 0) * ARRAYS;
@@ -189,10 +188,9 @@ static void mix_orders(himc_model *m)
 {
     const himc_head *head = &m->config.head;
     double *stiffness = m->on_q, *mass = m->on_v, *decay = m->on_force, *stretch = m->scratch;
-    himc_uneven_clear(m->modes);
     if (!m->config.shape.kind->air || head->uniformity == 1)
         return;
-    int count = himc_modes_count(m->modes), row;
+    int count = m->modes->count, row;
     for (int i = 0; i < count; i++) {
         const himc_oscillator *o = &m->oscillators[i];
         stiffness[i] = o->mass * o->omega * o->omega;
@@ -232,7 +230,7 @@ static void find_oscillators(himc_model *m)
     himc_air_load load = {0};
     for (int i = 0; i < HIMC_PATCHES; i++)
         m->patches[i].b = 0;
-    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+    for (int i = 0; i < m->modes->count; i++) {
         himc_mode mode = himc_modes_get(m->modes, &m->config.head, i);
         m->most[i] = kind->largest ? kind->largest(&mode) : INFINITY;
         m->wave[i] = mode.zero / m->config.head.radius;
@@ -246,7 +244,7 @@ static void find_oscillators(himc_model *m)
             mode = himc_air_loaded(&load, &m->config.head, &mode);
         m->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
     }
-    const himc_mixture *mix = himc_modes_mixture(m->modes);
+    const himc_mixture *mix = &m->modes->mixture;
     for (int n = 0; n < mix->count; n++)
         for (int k = 0; k < mix->count; k++)
             m->most[mix->index[n]] += k == n ? 0 : fabs(mix->part[n][k]);
@@ -301,7 +299,7 @@ static void find_output(himc_model *m, int index)
         himc_modes_shapes(m->modes, m->config.head.radius, pickup->x, pickup->y, m->scratch);
         himc_modes_mix(m->modes, m->scratch);
     }
-    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+    for (int i = 0; i < m->modes->count; i++) {
         himc_mode mode = himc_model_mode(m, i);
         pickup_weights w =
             himc_pickup_weights(pickup, &m->config.head, m->modes, i, &mode, m->scratch[i]);
@@ -319,7 +317,7 @@ static void find_form(himc_model *m)
 {
     if (!m->config.rays || !m->config.shape.kind->form)
         return;
-    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+    for (int i = 0; i < m->modes->count; i++) {
         himc_mode mode = himc_model_mode(m, i);
         pickup_weights w = m->config.shape.kind->form(&mode);
         m->on_q[i] = w.displacement;
@@ -349,7 +347,7 @@ void himc_model_watch(himc_model *m, double x, double y)
 
 static void set_bank(himc_model *m)
 {
-    himc_bank_set(m->bank, m->oscillators, himc_modes_count(m->modes), m->config.rate);
+    himc_bank_set(m->bank, m->oscillators, m->modes->count, m->config.rate);
     // off while it could not raise the tension by SLACK of it, even with twice the energy
     double stiffness = himc_model_film_stiffness(m), tension = m->config.head.tension;
     himc_bank_set_film(m->bank, stiffness > 0 ? m->stretch : NULL,
@@ -360,7 +358,7 @@ void himc_model_make(himc_model *m, const himc_membrane_config *config)
 {
     bool muted = m->config.muted;
     m->config = *config;
-    m->config.shape = *himc_modes_shape(m->modes); // it has the grid
+    m->config.shape = m->modes->shape; // it has the grid
     m->config.muted = muted;
     himc_membrane_config_keep_pickups(&m->config);
     const himc_head *head = &m->config.head;
@@ -433,7 +431,7 @@ void himc_model_approach(himc_model *m, himc_model *goal, double share)
         if (himc_membrane_config_has(&m->config, k) && m->config.pickups[k].kind == HIMC_PICKUP_AIR)
             approach_pressures(m, goal, k, share);
     m->config.head.tension *= pow(goal->config.head.tension / before, share);
-    for (int i = 0; i < himc_modes_count(m->modes); i++) {
+    for (int i = 0; i < m->modes->count; i++) {
         himc_oscillator *o = &m->oscillators[i];
         const himc_oscillator *to = &goal->oscillators[i];
         o->omega *= pow(to->omega / o->omega, share);

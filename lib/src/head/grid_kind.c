@@ -3,8 +3,7 @@
 /// Between places a shape is a plane fitted to the nearest eight by least squares. The weights are
 /// infinite at a place and 0 at the ninth, so the surface passes through the places and has no
 /// steps as the neighbours change (moving least squares: Lancaster & Salkauskas 1981).
-#include "head/kind.h"
-#include "head/mode_list.h"
+#include "head/modes.h"
 #include "head/pickup.h"
 
 #include <math.h>

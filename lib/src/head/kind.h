@@ -49,7 +49,7 @@ struct himc_kind {
     /// Area of the film that the outline holds, per radius^2; 0 without a film.
     double (*film)(const himc_shape *shape);
 
-    /// Lists `modes->exact` modes (mode_list.h), if `automatic` also what stands for those above.
+    /// Lists `modes->exact` modes (modes.h), if `automatic` also what stands for those above.
     /// False without memory.
     bool (*list)(himc_modes *modes, bool automatic);
     /// himc_modes_shapes

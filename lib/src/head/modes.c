@@ -7,8 +7,6 @@
 #include "head/modes.h"
 
 #include "head/bessel.h"
-#include "head/lugs.h"
-#include "head/mode_list.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -135,21 +133,11 @@ void himc_modes_free(himc_modes *modes)
     free(modes);
 }
 
-int himc_modes_count(const himc_modes *modes)
-{
-    return modes->count;
-}
-
 int himc_modes_common(const himc_modes *a, const himc_modes *b)
 {
     if (a->statistical && b->statistical)
         return a->count;
     return a->exact < b->exact ? a->exact : b->exact;
-}
-
-const himc_shape *himc_modes_shape(const himc_modes *modes)
-{
-    return &modes->shape;
 }
 
 void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed)
@@ -162,40 +150,37 @@ void himc_modes_set_lugs(himc_modes *modes, double uniformity, int seed)
     modes->seed = seed;
 }
 
-const himc_lugs_pair *himc_modes_pairs(const himc_modes *modes)
-{
-    return modes->pairs;
-}
-
 void himc_modes_mix_as(himc_modes *modes, const himc_mixture *mixture)
 {
     himc_mixture *own = &modes->mixture;
     if (mixture)
         *own = *mixture;
-    own->count = 0;
+    own->count = modes->block[0].count = modes->block[1].count = 0;
     for (int i = 0; mixture && i < modes->entry_count && own->count < HIMC_MIXED; i++)
         if (modes->entries[i].m == 0)
             own->index[own->count++] = modes->first[i];
 }
 
-const himc_mixture *himc_modes_mixture(const himc_modes *modes)
+// of the numbers at `index` (count) the sums of their parts, rows of `width`
+static void mix(int count, const int *index, const double *part, int width, double *numbers)
 {
-    return &modes->mixture;
+    double bare[HIMC_UNEVEN_MODES];
+    for (int n = 0; n < count; n++)
+        bare[n] = numbers[index[n]];
+    for (int n = 0; n < count; n++, part += width) {
+        double sum = 0;
+        for (int k = 0; k < count; k++)
+            sum += part[k] * bare[k];
+        numbers[index[n]] = sum;
+    }
 }
 
 void himc_modes_mix(const himc_modes *modes, double *numbers)
 {
-    const himc_mixture *mix = &modes->mixture;
-    double bare[HIMC_MIXED];
-    for (int n = 0; n < mix->count; n++)
-        bare[n] = numbers[mix->index[n]];
-    for (int n = 0; n < mix->count; n++) {
-        double sum = 0;
-        for (int k = 0; k < mix->count; k++)
-            sum += mix->part[n][k] * bare[k];
-        numbers[mix->index[n]] = sum;
-    }
-    himc_uneven_mix(modes, numbers);
+    const himc_mixture *m = &modes->mixture;
+    mix(m->count, m->index, m->part[0], HIMC_MIXED, numbers);
+    for (const himc_uneven_block *b = modes->block; b < modes->block + 2; b++)
+        mix(b->count, b->index, b->part[0], HIMC_UNEVEN_MODES, numbers);
 }
 
 himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int index)

@@ -26,7 +26,6 @@
 
 #include "head/air.h"
 #include "head/bessel.h"
-#include "head/mode_list.h"
 
 #include <math.h>
 
@@ -69,7 +68,7 @@ static double overlap(double j, double next, double x, double bessel)
 static double whole_overlap(const himc_head *head, const himc_modes *modes, const himc_mode *mode,
                             double x, double bessel)
 {
-    const himc_mixture *mix = himc_modes_mixture(modes);
+    const himc_mixture *mix = &modes->mixture;
     if (mode->m != 0 || mode->n > mix->count)
         return overlap(mode->zero, bessel_next(mode), x, bessel);
     double sum = 0;
@@ -84,7 +83,7 @@ static double whole_overlap(const himc_head *head, const himc_modes *modes, cons
 static void find_overlaps(const himc_modes *modes, const himc_uneven_block *block, double x,
                           double overlaps[HIMC_UNEVEN_MODES])
 {
-    const himc_mixture *mix = himc_modes_mixture(modes);
+    const himc_mixture *mix = &modes->mixture;
     double j[HIMC_UNEVEN_ORDERS], bare[HIMC_UNEVEN_RANKS];
     int of_order_0 = 0, at[HIMC_UNEVEN_RANKS];
     himc_bessel_orders(x, HIMC_UNEVEN_ORDERS - 1, j);

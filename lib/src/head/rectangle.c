@@ -4,8 +4,7 @@
 /// Ingard 1968, section 5.2). Its transform is a product of two of
 ///     int_0^1 sin(m pi u) exp(i s (u - 1/2)) du = m pi/(m^2 pi^2 - s^2) {2 cos s/2 | 2 i sin s/2}
 /// for m odd | even (up to sign).
-#include "head/kind.h"
-#include "head/mode_list.h"
+#include "head/modes.h"
 #include "head/pickup.h"
 
 #include <math.h>

@@ -13,8 +13,7 @@
 ///     C(b) = [ln((a^2 - r0^2)/(a b)) + 1/4]/(2 pi T).
 /// Without a patch, a sum over modes grows for ever with their number.
 #include "head/bessel.h"
-#include "head/kind.h"
-#include "head/mode_list.h"
+#include "head/modes.h"
 #include "head/pickup.h"
 
 #include <math.h>

@@ -49,7 +49,7 @@ int himc_shared_find(const himc_head *head, const himc_modes *modes, const himc_
                      double highest, himc_shared_mode *shared)
 {
     int count = 0;
-    for (int i = 0; i < himc_modes_count(modes) && count < HIMC_SHARED; i++) {
+    for (int i = 0; i < modes->count && count < HIMC_SHARED; i++) {
         himc_mode bare = himc_modes_get(modes, head, i);
         himc_mode mode = himc_air_mode(air, head, &bare);
         himc_shared_mode *s = &shared[count];

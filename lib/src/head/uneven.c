@@ -21,7 +21,7 @@
 
 #include "base/jacobi.h"
 #include "head/bessel.h"
-#include "head/mode_list.h"
+#include "head/modes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -263,16 +263,6 @@ void himc_uneven_find(himc_modes *modes, double tension, const double *mass, dou
         find_block(modes, parity, tension, mass, stiffness);
 }
 
-void himc_uneven_clear(himc_modes *modes)
-{
-    modes->block[0].count = modes->block[1].count = 0;
-}
-
-const himc_uneven_block *himc_uneven_block_of(const himc_modes *modes, int parity)
-{
-    return &modes->block[parity];
-}
-
 const himc_uneven_block *himc_uneven_of(const himc_modes *modes, int index, int *row)
 {
     for (int parity = 0; parity < 2 && index < modes->exact; parity++)
@@ -282,20 +272,4 @@ const himc_uneven_block *himc_uneven_of(const himc_modes *modes, int index, int 
                 return &modes->block[parity];
             }
     return NULL;
-}
-
-void himc_uneven_mix(const himc_modes *modes, double *numbers)
-{
-    for (int parity = 0; parity < 2; parity++) {
-        const himc_uneven_block *b = &modes->block[parity];
-        double even[HIMC_UNEVEN_MODES];
-        for (int i = 0; i < b->count; i++)
-            even[i] = numbers[b->index[i]];
-        for (int i = 0; i < b->count; i++) {
-            double sum = 0;
-            for (int l = 0; l < b->count; l++)
-                sum += b->part[i][l] * even[l];
-            numbers[b->index[i]] = sum;
-        }
-    }
 }

@@ -36,16 +36,8 @@ himc_uneven_pair *himc_uneven_pairs(const himc_modes *modes, int *count);
 /// one's. Their masses (kg) stay. `tension` (N/m) is the mean one.
 HIMC_RT void himc_uneven_find(himc_modes *modes, double tension, const double *mass,
                               double *stiffness);
-/// Makes an even head of it again: no blocks.
-HIMC_RT void himc_uneven_clear(himc_modes *modes);
 
-/// The block of all even (0) or all odd orders (1); it is empty in an even head.
-HIMC_RT const himc_uneven_block *himc_uneven_block_of(const himc_modes *modes, int parity);
 /// The block that has mode `index`, and its row there; NULL if it mixes with none.
 HIMC_RT const himc_uneven_block *himc_uneven_of(const himc_modes *modes, int index, int *row);
-
-/// Makes of numbers of the even head's shapes (as many as the list has), linear in the shapes,
-/// those of the uneven one's.
-HIMC_RT void himc_uneven_mix(const himc_modes *modes, double *numbers);
 
 #endif

@@ -10,6 +10,7 @@
 #include "midi/smf.h"
 
 #include "base/argument.h"
+#include "base/array.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -85,14 +86,8 @@ static bool next_length(reader *r, uint32_t *length)
 
 static bool add_event(reader *r, const event *e)
 {
-    if (r->count == r->room) {
-        int room = r->room ? 2 * r->room : 1024;
-        event *bigger = realloc(r->events, (size_t)room * sizeof *bigger);
-        if (!bigger)
-            return himc_error_set(r->error, "out of memory for %d events", room);
-        r->events = bigger;
-        r->room = room;
-    }
+    if (!himc_array_grow(&r->events, r->count, &r->room, sizeof *e, NULL))
+        return himc_error_set(r->error, "out of memory for %d events", 2 * r->room);
     r->events[r->count] = *e;
     r->events[r->count].tick = r->tick;
     r->events[r->count].track = (uint16_t)r->track;

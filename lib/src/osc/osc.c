@@ -230,22 +230,17 @@ static double system_wall(void *user)
     return read_clock(CLOCK_REALTIME);
 }
 
-static osc_bucket full_bucket(double rate, double size, double now)
-{
-    return (osc_bucket){.level = size, .rate = rate, .size = size, .last = now};
-}
-
 static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *error)
 {
     osc_subscriptions *s = &osc->subscriptions;
     struct stat about;
     double now = himc_osc_now(osc);
-    osc->packets = full_bucket(8000, 8000, now); // chosen: far more than players send
+    osc->packets = himc_osc_bucket(8000, 8000, now); // chosen: far more than players send
     // points of commands; chosen: 4 targets at 250 Hz; a score of 1000 strokes, sent one by one
-    osc->points = full_bucket(1000, 4000, now);
-    osc->answers = full_bucket(LINES_PER_SECOND, LINES_PER_SECOND, now);
+    osc->points = himc_osc_bucket(1000, 4000, now);
+    osc->answers = himc_osc_bucket(LINES_PER_SECOND, LINES_PER_SECOND, now);
     // the host's time for commands (s); chosen: the sound needs the rest; two heads of 2000 modes
-    osc->host.work = full_bucket(0.1, 0.05, now);
+    osc->host.work = himc_osc_bucket(0.1, 0.05, now);
     s->network = &osc->network;
     s->counts = &osc->counts;
     s->lines = &osc->lines;

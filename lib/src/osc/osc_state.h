@@ -16,11 +16,6 @@
 
 #define OSC_CUT "the answer is cut after %d lines: "
 
-/// So much a second, so much at once.
-typedef struct osc_bucket {
-    double level, rate, size, last;
-} osc_bucket;
-
 /// A line of an answer.
 typedef struct osc_line {
     osc_address to;
@@ -108,18 +103,6 @@ struct himc_osc {
 static inline double himc_osc_now(const himc_osc *osc)
 {
     return osc->clock.monotonic(osc->clock.user);
-}
-
-/// Takes `cost` from the bucket; false if it has not so much.
-static inline bool himc_osc_afford(osc_bucket *b, double now, double cost)
-{
-    b->level += b->rate * (now - b->last);
-    b->level = b->level > b->size ? b->size : b->level;
-    b->last = now;
-    if (b->level < cost)
-        return false;
-    b->level -= cost;
-    return true;
 }
 
 #endif

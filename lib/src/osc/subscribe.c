@@ -323,23 +323,17 @@ bool himc_osc_allows(osc_subscriptions *s, const osc_address *to, double bytes, 
         osc_allowance *one = &s->allowance[i];
         if (himc_osc_address_same_host(&one->host, to))
             a = one;
-        else if (!full && (one->last == 0 || now - one->last >= HOST_BURST)) // as a new one
+        else if (!full &&
+                 (one->bytes.last == 0 || now - one->bytes.last >= HOST_BURST)) // as a new one
             full = one;
     }
     if (!a && full) {
         a = full;
-        *a = (osc_allowance){.host = *to, .left = HOST_BURST * HOST_BYTES, .last = now};
+        *a = (osc_allowance){*to, himc_osc_bucket(HOST_BYTES, HOST_BURST * HOST_BYTES, now)};
     }
-    if (a) {
-        a->left = fmin(a->left + HOST_BYTES * (now - a->last), HOST_BURST * HOST_BYTES);
-        a->last = now;
-    }
-    if (!a || a->left < bytes) {
-        himc_osc_add(s->counts, COUNT_CAPPED, packets);
-        return false;
-    }
-    a->left -= bytes;
-    return true;
+    bool allowed = a && himc_osc_afford(&a->bytes, now, bytes);
+    himc_osc_add(s->counts, COUNT_CAPPED, allowed ? 0 : packets);
+    return allowed;
 }
 
 static void send_packets(osc_subscriptions *s, const osc_address *to, const osc_packets *p,

@@ -74,10 +74,33 @@ typedef struct osc_subscription {
     double expires;                             ///< unless renewed (s); 0: never
 } osc_subscription;
 
+/// So much a second, so much at once.
+typedef struct osc_bucket {
+    double level, rate, size, last;
+} osc_bucket;
+
+/// A full one.
+static inline osc_bucket himc_osc_bucket(double rate, double size, double now)
+{
+    return (osc_bucket){.level = size, .rate = rate, .size = size, .last = now};
+}
+
+/// Takes `cost` from the bucket; false if it has not so much.
+static inline bool himc_osc_afford(osc_bucket *b, double now, double cost)
+{
+    b->level += b->rate * (now - b->last);
+    b->level = b->level > b->size ? b->size : b->level;
+    b->last = now;
+    if (b->level < cost)
+        return false;
+    b->level -= cost;
+    return true;
+}
+
 /// The bytes that a host elsewhere may still be sent.
 typedef struct osc_allowance {
     osc_address host;
-    double left, last; ///< at that time (bytes; s)
+    osc_bucket bytes;
 } osc_allowance;
 
 typedef struct osc_subscriptions {

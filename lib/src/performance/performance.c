@@ -138,7 +138,7 @@ static void performance_step(himc_performance *p)
             p->body, beat, himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
     }
     himc_motion_think(p->motion, h, himc_contacts_busy(&p->contacts));
-    himc_motion_interpolate(p->motion, t);
+    himc_setpoint_at(&p->motion->between, t, &p->motion->reference);
     himc_contacts_release(&p->contacts, &scene, t);
     step_body(p, n, t, h, tick);
     if (tick) {
@@ -150,7 +150,8 @@ static void performance_step(himc_performance *p)
                              himc_joint_name(joint), rate, HIMC_FASTEST_JOINT);
     }
     watch(p, t);
-    himc_clock_step(&p->clock, n);
+    p->clock.made += n;
+    p->clock.step++;
 }
 
 void himc_performance_process(himc_performance *p, int n, double *const force[HIMC_HANDS])
@@ -165,7 +166,7 @@ void himc_performance_process(himc_performance *p, int n, double *const force[HI
             if (force && force[hand])
                 memcpy(force[hand] + done, c->force[hand] + c->force_count - ready,
                        (size_t)count * sizeof(double));
-        himc_clock_play(&p->clock, count);
+        p->clock.played += count;
         done += count;
     }
     himc_drums_catch_up(&p->drums);
@@ -186,7 +187,7 @@ uint64_t himc_performance_time(const himc_performance *p)
 
 void himc_performance_realign(himc_performance *p)
 {
-    himc_clock_realign(&p->clock);
+    p->clock.aligned = p->clock.played;
     for (int i = 0; i < p->drums.count; i++)
         himc_drum_realign(p->drums.slot[i].drum, himc_clock_ahead(&p->clock));
 }

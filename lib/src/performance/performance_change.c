@@ -57,12 +57,10 @@ static himc_job_state install(himc_job *job, himc_error *error)
     change_job *j = (change_job *)job;
     himc_performance *p = j->performance;
     const himc_score_line *line = &j->line;
-    himc_error why = {""};
     planned_push push;
     double now = himc_motion_score_beat(p->motion, step_time(p));
     int index;
     bool good;
-    error = error ? error : &why;
     if (!j->insertion) {
         good = himc_body_read_push(&line->command, p->settings.stance, &push, error);
         push.beat = line->beat;

@@ -7,7 +7,6 @@
 #include "base/format.h"
 #include "base/head_frame.h"
 #include "base/text.h"
-#include "drum/drum_state.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -538,9 +538,7 @@ static himc_job_state begin(score_job *j, himc_error *error)
 static himc_job_state install(himc_job *job, himc_error *error)
 {
     score_job *j = (score_job *)job;
-    himc_error why = {""};
     himc_job_state state;
-    error = error ? error : &why;
     switch (j->part) {
     case BEGINNING: state = begin(j, error); break;
     case BEFORE_STROKES: state = run_lines(j, false, error); break;

@@ -1,11 +1,11 @@
 /// performance_settings.c: the table of settings, from the rows HIMC_SETTING_ROW of
 /// himc/command_rows.h.
 ///
-/// The kind of a row is two functions: read_KIND stores a command's atoms in the field, tell_KIND
-/// tells the field as a command. Three kinds serve most rows; a command that is more than its field
-/// has a kind of its own. Invariant: read_KIND stores what tell_KIND tells as it was, bit by bit.
-/// Numbers are told in single precision, so one that equals the default in single precision is the
-/// default (himc_argument_usual).
+/// The kind of a row says how a command's atoms are read into the field, and how the field is told
+/// as a command. Three kinds serve most rows; a command that is more than its field has a kind of
+/// its own. Invariant: what is told is read as it was, bit by bit. Numbers are told in single
+/// precision, so one that equals the default in single precision is the default
+/// (himc_argument_usual).
 #include "performance/performance_settings.h"
 
 #include "base/argument.h"
@@ -19,123 +19,37 @@
 /// That a hit needs from rest (s): measured, an accent at ff; vertical accents need more from f on.
 #define LONGEST_PREPARATION 0.33
 
-/// A command to be stored.
-typedef struct reading {
-    const himc_command *command;
-    performance_settings *settings;
-    const performance_settings *usual;
-    void *field;             ///< of `settings`
-    const void *usual_field; ///< of `usual`
-    size_t size;             ///< of the field (bytes)
-    himc_error *error;
-} reading;
-
-/// A setting to be told.
-typedef struct telling {
-    himc_command_id id;
-    const performance_settings *settings;
-    const void *field;
-    size_t size;
-    const himc_line_sink *to;
-} telling;
-
-static void tell(const telling *t, const char *word, int count, const double *numbers)
-{
-    himc_state_tell(t->to, himc_command_table((int)t->id)->name, word, count, numbers);
-}
-
-// kinds of many rows
-
-static bool read_switch(const reading *r)
-{
-    *(bool *)r->field = r->command->atom[0].number != 0;
-    return true;
-}
-
-static void tell_switch(const telling *t)
-{
-    tell(t, NULL, 1, (double[]){*(const bool *)t->field});
-}
-
-// an enum, in the order of the words of the first atom
-static bool read_word(const reading *r)
-{
-    memcpy(r->field, &r->command->choice[0], sizeof(int));
-    return true;
-}
-
-static void tell_word(const telling *t)
-{
-    int choice;
-    memcpy(&choice, t->field, sizeof choice);
-    tell(t, himc_command_word(t->id, 0, choice).text, 0, NULL);
-}
-
-static bool read_numbers(const reading *r)
-{
-    double *to = r->field;
-    for (size_t i = 0; i < r->size / sizeof *to; i++)
-        to[i] =
-            himc_argument_usual(r->command->atom[i].number, ((const double *)r->usual_field)[i]);
-    return true;
-}
-
-static void tell_numbers(const telling *t)
-{
-    tell(t, NULL, (int)(t->size / sizeof(double)), t->field);
-}
-
-// kinds of one row
-
-static bool read_rate(const reading *r)
-{
-    enum { PHYSICS };
-    bool physics = r->command->form == PHYSICS;
-    double hz = r->command->atom[1].number;
-    *(physics ? &r->settings->physics_rate : &r->settings->task_rate) =
-        himc_argument_usual(hz, physics ? r->usual->physics_rate : r->usual->task_rate);
-    return true;
-}
-
-static void tell_rate(const telling *t)
-{
-    tell(t, "physics", 1, &t->settings->physics_rate);
-    tell(t, "task", 1, &t->settings->task_rate);
-}
+// kinds of one row that are more than a line or two
 
 // Height and mass as asked for replace those of a take's player, whether the take comes after or
 // has come before. The usual ones are as if nobody had asked.
-static bool read_player(const reading *r)
+static void read_player(performance_settings *s, const himc_skeleton_config *usual,
+                        const himc_command *c)
 {
-    performance_settings *s = r->settings;
-    const himc_skeleton_config *usual = &r->usual->skeleton;
-    s->skeleton.height = himc_argument_usual(r->command->atom[0].number, usual->height);
-    s->skeleton.mass = himc_argument_usual(r->command->atom[1].number, usual->mass);
+    s->skeleton.height = himc_argument_usual(c->atom[0].number, usual->height);
+    s->skeleton.mass = himc_argument_usual(c->atom[1].number, usual->mass);
     bool asked = s->skeleton.height != usual->height || s->skeleton.mass != usual->mass;
     s->asked_height = asked ? s->skeleton.height : 0;
     s->asked_mass = asked ? s->skeleton.mass : 0;
     s->skeleton.seat = s->skeleton.shoulders = 0; // not those measured from a take
     memset(s->skeleton.length, 0, sizeof s->skeleton.length);
-    return true;
 }
 
 // a take has measured the player if it has lengths; then the take's line tells them, and `player`
 // only what has been asked for instead
-static void tell_player(const telling *t)
+static void tell_player(const performance_settings *settings, const himc_line_sink *to)
 {
-    const himc_skeleton_config *s = &t->settings->skeleton;
+    const himc_skeleton_config *s = &settings->skeleton;
     bool measured = s->seat != 0 || s->shoulders != 0;
     for (size_t i = 0; i < sizeof s->length / sizeof *s->length; i++)
         measured = measured || s->length[i] != 0;
-    if (!measured || t->settings->asked_height > 0)
-        tell(t, NULL, 2, (double[]){s->height, s->mass});
+    if (!measured || settings->asked_height > 0)
+        himc_state_tell(to, "player", NULL, 2, (double[]){s->height, s->mass});
 }
 
-static bool read_gain(const reading *r)
+static bool read_gain(performance_settings *s, const himc_command *c, himc_error *error)
 {
     enum { RESET, FREQUENCY, JOINT };
-    performance_settings *s = r->settings;
-    const himc_command *c = r->command;
     int joint;
     if (c->form == RESET) {
         memset(s->control.gain_set, 0, sizeof s->control.gain_set);
@@ -146,7 +60,7 @@ static bool read_gain(const reading *r)
             s->gain[joint] = (asked_gain){.frequency = c->atom[1].number};
         }
     } else if (c->form == JOINT) {
-        if (!himc_body_find_joint(c->atom[0].symbol, "gain: JOINT", &joint, r->error))
+        if (!himc_body_find_joint(c->atom[0].symbol, "gain: JOINT", &joint, error))
             return false;
         s->control.gain_set[joint] = true;
         s->gain[joint] = (asked_gain){c->atom[1].number, c->atom[2].number, 0};
@@ -154,33 +68,33 @@ static bool read_gain(const reading *r)
     return true;
 }
 
-static void tell_gain(const telling *t)
+static void tell_gain(const performance_settings *s, const himc_line_sink *to)
 {
-    const asked_gain *asked = t->settings->gain;
+    const asked_gain *asked = s->gain;
     double frequency = 0;
-    tell(t, "reset", 0, NULL);
+    himc_state_tell(to, "gain", "reset", 0, NULL);
     for (int j = 0; j < HIMC_JOINTS; j++)
         frequency = fmax(frequency, asked[j].frequency);
     if (frequency > 0)
-        tell(t, "frequency", 1, &frequency);
+        himc_state_tell(to, "gain", "frequency", 1, &frequency);
     for (int j = 0; j < HIMC_JOINTS; j++)
-        if (t->settings->control.gain_set[j] && asked[j].frequency == 0)
-            tell(t, himc_joint_name(j), 2, (double[]){asked[j].stiffness, asked[j].damping});
+        if (s->control.gain_set[j] && asked[j].frequency == 0)
+            himc_state_tell(to, "gain", himc_joint_name(j), 2,
+                            (double[]){asked[j].stiffness, asked[j].damping});
 }
 
-static bool read_strength(const reading *r)
+static bool read_strength(performance_settings *s, const himc_command *c, himc_error *error)
 {
     enum { ALL, JOINT };
     enum { HUMAN };
-    himc_controller_config *config = &r->settings->control;
-    const himc_command *c = r->command;
+    himc_controller_config *config = &s->control;
     int joint;
     if (c->form == JOINT) {
-        if (!himc_body_find_joint(c->atom[0].symbol, "strength: JOINT", &joint, r->error))
+        if (!himc_body_find_joint(c->atom[0].symbol, "strength: JOINT", &joint, error))
             return false;
         config->strength[joint] = c->atom[1].number;
     } else if (c->choice[0] == HUMAN) {
-        himc_controller_set_human_strength(config, r->settings->skeleton.mass);
+        himc_controller_set_human_strength(config, s->skeleton.mass);
     } else {
         memset(config->strength, 0, sizeof config->strength);
         config->human_strength = false;
@@ -188,68 +102,45 @@ static bool read_strength(const reading *r)
     return true;
 }
 
-static void tell_strength(const telling *t)
+static void tell_strength(const performance_settings *s, const himc_line_sink *to)
 {
-    const himc_controller_config *c = &t->settings->control;
+    const himc_controller_config *c = &s->control;
     himc_controller_config all = {.human_strength = false};
     if (c->human_strength)
-        himc_controller_set_human_strength(&all, t->settings->skeleton.mass);
-    tell(t, c->human_strength ? "human" : "off", 0, NULL);
+        himc_controller_set_human_strength(&all, s->skeleton.mass);
+    himc_state_tell(to, "strength", c->human_strength ? "human" : "off", 0, NULL);
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (c->strength[j] != all.strength[j])
-            tell(t, himc_joint_name(j), 1, &c->strength[j]);
+            himc_state_tell(to, "strength", himc_joint_name(j), 1, &c->strength[j]);
 }
 
-static bool read_grip(const reading *r)
-{
-    enum { PALMS, SERVO };
-    const himc_command *c = r->command;
-    r->settings->servo = c->form == SERVO || c->count > 1;
-    return c->form == SERVO || read_word(r);
-}
-
-static void tell_grip(const telling *t)
+static void tell_grip(const performance_settings *s, const himc_line_sink *to)
 {
     himc_state_line line = himc_state_begin("grip");
-    himc_state_word(&line, himc_command_word(t->id, 0, (int)t->settings->grip).text);
-    if (t->settings->servo)
+    himc_state_word(&line, himc_command_word(HIMC_COMMAND_GRIP, 0, (int)s->grip).text);
+    if (s->servo)
         himc_state_word(&line, "servo");
-    himc_state_end(&line, t->to);
-}
-
-static bool read_human(const reading *r)
-{
-    const himc_command *c = r->command;
-    r->settings->human =
-        (himc_human){c->atom[0].number, c->count > 1 ? (uint32_t)c->atom[1].number : 0};
-    return true;
-}
-
-static void tell_human(const telling *t)
-{
-    const himc_human *human = &t->settings->human;
-    tell(t, NULL, 2, (double[]){human->amount, human->seed});
-}
-
-static bool read_latency(const reading *r)
-{
-    enum { TIME, AUTO };
-    r->settings->latency =
-        r->command->form == AUTO ? LONGEST_PREPARATION : 1e-3 * r->command->atom[0].number;
-    return true;
-}
-
-static void tell_latency(const telling *t)
-{
-    tell(t, NULL, 1, (double[]){1e3 * t->settings->latency});
+    himc_state_end(&line, to);
 }
 
 // the table
 
+typedef enum setting_kind {
+    KIND_switch,
+    KIND_word, ///< an enum, in the order of the words of the first atom
+    KIND_numbers,
+    KIND_rate,
+    KIND_player,
+    KIND_gain,
+    KIND_strength,
+    KIND_grip,
+    KIND_human,
+    KIND_latency
+} setting_kind;
+
 typedef struct setting {
     himc_command_id id;
-    bool (*read)(const reading *);
-    void (*tell)(const telling *);
+    setting_kind kind;
     size_t at, size; ///< of the field, in performance_settings
     const char *usual;
     setting_effect after;
@@ -258,8 +149,7 @@ typedef struct setting {
 static const setting table[] = {
 #define HIMC_SETTING_ROW(ID, word, when, atoms, kind, field, usual, after, does) \
     {HIMC_COMMAND_##ID,                                                          \
-     read_##kind,                                                                \
-     tell_##kind,                                                                \
+     KIND_##kind,                                                                \
      offsetof(performance_settings, field),                                      \
      sizeof((performance_settings *)NULL)->field,                                \
      usual,                                                                      \
@@ -285,9 +175,72 @@ setting_effect himc_settings_effect(himc_command_id id)
 bool himc_settings_read(performance_settings *s, const performance_settings *usual,
                         const himc_command *c, himc_error *error)
 {
+    enum { PHYSICS };      // form of `rate`
+    enum { PALMS, SERVO }; // of `grip`
+    enum { TIME, AUTO };   // of `latency`
     const setting *row = find(c->id);
-    return !row || row->read(&(reading){c, s, usual, (char *)s + row->at,
-                                        (const char *)usual + row->at, row->size, error});
+    if (!row)
+        return true;
+    void *field = (char *)s + row->at;
+    const void *field_usual = (const char *)usual + row->at;
+    const double first = c->count > 0 ? c->atom[0].number : 0;
+    switch (row->kind) {
+    case KIND_switch: *(bool *)field = first != 0; break;
+    case KIND_word: memcpy(field, &c->choice[0], sizeof(int)); break;
+    case KIND_numbers:
+        for (size_t i = 0; i < row->size / sizeof(double); i++)
+            ((double *)field)[i] =
+                himc_argument_usual(c->atom[i].number, ((const double *)field_usual)[i]);
+        break;
+    case KIND_rate:
+        if (c->form == PHYSICS)
+            s->physics_rate = himc_argument_usual(c->atom[1].number, usual->physics_rate);
+        else
+            s->task_rate = himc_argument_usual(c->atom[1].number, usual->task_rate);
+        break;
+    case KIND_player: read_player(s, &usual->skeleton, c); break;
+    case KIND_gain: return read_gain(s, c, error);
+    case KIND_strength: return read_strength(s, c, error);
+    case KIND_grip:
+        s->servo = c->form == SERVO || c->count > 1;
+        if (c->form != SERVO)
+            s->grip = (himc_grip)c->choice[0];
+        break;
+    case KIND_human:
+        s->human = (himc_human){first, c->count > 1 ? (uint32_t)c->atom[1].number : 0};
+        break;
+    case KIND_latency: s->latency = c->form == AUTO ? LONGEST_PREPARATION : 1e-3 * first; break;
+    }
+    return true;
+}
+
+static void tell(const setting *row, const performance_settings *s, const himc_line_sink *to)
+{
+    const char *name = himc_command_table((int)row->id)->name;
+    const void *field = (const char *)s + row->at;
+    int choice;
+    switch (row->kind) {
+    case KIND_switch: himc_state_tell(to, name, NULL, 1, (double[]){*(const bool *)field}); break;
+    case KIND_word:
+        memcpy(&choice, field, sizeof choice);
+        himc_state_tell(to, name, himc_command_word(row->id, 0, choice).text, 0, NULL);
+        break;
+    case KIND_numbers:
+        himc_state_tell(to, name, NULL, (int)(row->size / sizeof(double)), field);
+        break;
+    case KIND_rate:
+        himc_state_tell(to, name, "physics", 1, &s->physics_rate);
+        himc_state_tell(to, name, "task", 1, &s->task_rate);
+        break;
+    case KIND_player: tell_player(s, to); break;
+    case KIND_gain: tell_gain(s, to); break;
+    case KIND_strength: tell_strength(s, to); break;
+    case KIND_grip: tell_grip(s, to); break;
+    case KIND_human:
+        himc_state_tell(to, name, NULL, 2, (double[]){s->human.amount, s->human.seed});
+        break;
+    case KIND_latency: himc_state_tell(to, name, NULL, 1, (double[]){1e3 * s->latency}); break;
+    }
 }
 
 void himc_settings_tell(const performance_settings *s, himc_command_id from, himc_command_id to,
@@ -295,7 +248,7 @@ void himc_settings_tell(const performance_settings *s, himc_command_id from, him
 {
     for (const setting *row = table; row < table + SETTINGS; row++)
         if (row->id >= from && row->id < to)
-            row->tell(&(telling){row->id, s, (const char *)s + row->at, row->size, sink});
+            tell(row, s, sink);
 }
 
 performance_settings himc_settings_default(const himc_performance_config *config)
