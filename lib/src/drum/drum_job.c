@@ -98,8 +98,7 @@ static bool run_lines(himc_drum_settings *s, const char *rest, const char *name,
     return good;
 }
 
-// the lines of NAME.txt
-static bool run_preset(himc_drum_settings *s, const char *name, himc_error *error)
+bool himc_drum_settings_preset(himc_drum_settings *s, const char *name, himc_error *error)
 {
     char path[HIMC_PATH_SIZE + 8];
     size_t size;
@@ -122,10 +121,11 @@ static bool prepare(himc_job *job, himc_error *error)
     himc_model_free(j->made);
     j->made = NULL;
     j->after = himc_drum_settings_copy(&j->before);
-    bool good = j->listens     ? true
-                : j->state     ? run_lines(&j->after, j->state, "state", error)
-                : is_preset(j) ? run_preset(&j->after, j->command.atom[0].symbol, error)
-                               : himc_drum_settings_command(&j->after, &j->command, error);
+    bool good = j->listens ? true
+                : j->state ? run_lines(&j->after, j->state, "state", error)
+                : is_preset(j)
+                    ? himc_drum_settings_preset(&j->after, j->command.atom[0].symbol, error)
+                    : himc_drum_settings_command(&j->after, &j->command, error);
     if (!good)
         return false;
     bool heard = himc_listener_hears(&j->listener, j->after.picked);

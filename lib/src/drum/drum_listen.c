@@ -31,7 +31,7 @@ void himc_drum_find_ways(himc_drum *drum)
     if (!himc_drum_is_heard(drum)) {
         himc_membrane_mute_pickups(drum->membrane, false);
         if (drum->ears)
-            drum->ears->on = false; // the pickups come back, in 5 ms
+            himc_ears_close(drum->ears);
         if (!himc_ears_heard(drum->ears))
             himc_membrane_set_rays(drum->membrane, NULL);
         return;

@@ -42,8 +42,6 @@ HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 HIMC_RT double himc_drum_usual_radius(const himc_drum *drum);
 /// Whether a drum may stand there: within 10 m of the origin on each axis.
 bool himc_drum_check_place(himc_vec3 center, himc_error *error);
-/// Whether it may have that sample rate (Hz).
-bool himc_drum_check_rate(double rate, himc_error *error);
 /// Brings the head to rest, without a click, and drops the drum's own mallets and waiting strikes.
 HIMC_RT void himc_drum_rest(himc_drum *drum);
 /// Moves the head's centre (m), until the command `place` does.
@@ -96,6 +94,9 @@ HIMC_RT void himc_drum_settings_take_head(himc_drum_settings *settings,
 /// with the reason, and nothing changed, if it is refused.
 bool himc_drum_settings_command(himc_drum_settings *settings, const himc_command *command,
                                 himc_error *error);
+
+/// Carries out the lines of a preset, NAME of NAME.txt.
+bool himc_drum_settings_preset(himc_drum_settings *settings, const char *name, himc_error *error);
 
 /// A drum with these settings, at rest; NULL with the reason.
 himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error);

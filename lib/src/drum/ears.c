@@ -180,11 +180,15 @@ void himc_ears_set(himc_ears *e, const himc_ear_paths *paths, const himc_walls *
         e->now = e->next;
         e->reach = longest(&e->now);
         e->at = e->silent = 0;
-        e->room.on = false;
-        e->room.faded = 1;
+        himc_room_leave(&e->room);
     }
     himc_room_set(&e->room, walls, rate);
     e->on = true;
+}
+
+void himc_ears_close(himc_ears *e)
+{
+    e->on = false;
 }
 
 bool himc_ears_at_rest(const himc_ears *e)

@@ -82,6 +82,8 @@ typedef struct himc_ears {
 /// Begins to listen between these walls, or changes place or walls, in 5 ms.
 HIMC_RT void himc_ears_set(himc_ears *ears, const himc_ear_paths *paths, const himc_walls *walls,
                            double rate);
+/// The pickups come back, in 5 ms.
+HIMC_RT void himc_ears_close(himc_ears *ears);
 
 /// True if the ears are heard: set, or giving way. NULL is nobody's.
 static inline bool himc_ears_heard(const himc_ears *ears)

@@ -112,6 +112,12 @@ void himc_room_set(himc_room *r, const himc_walls *walls, double rate)
     r->step = 1 / (FADE * rate);
 }
 
+void himc_room_leave(himc_room *r)
+{
+    r->on = false;
+    r->faded = 1;
+}
+
 // two delays at once, as any x86-64 has it
 typedef double pair __attribute__((vector_size(2 * sizeof(double)), aligned(8), may_alias));
 #define PAIRS (HIMC_ROOM_LINES / 2)

@@ -45,6 +45,8 @@ typedef struct himc_room {
 
 /// Sets the walls, at a sample rate. They change over in 5 ms.
 HIMC_RT void himc_room_set(himc_room *room, const himc_walls *walls, double rate);
+/// Nobody hears it any more: it ends at once.
+HIMC_RT void himc_room_leave(himc_room *room);
 /// True if it sounds, or may.
 static inline bool himc_room_heard(const himc_room *room)
 {

@@ -138,7 +138,7 @@ static void performance_step(himc_performance *p)
             p->body, beat, himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
     }
     himc_motion_think(p->motion, h, himc_contacts_busy(&p->contacts));
-    himc_setpoint_at(&p->motion->between, t, &p->motion->reference);
+    himc_motion_interpolate(p->motion, t);
     himc_contacts_release(&p->contacts, &scene, t);
     step_body(p, n, t, h, tick);
     if (tick) {

@@ -269,6 +269,11 @@ himc_vec3 himc_body_pushed(const performance_body *b, int segment, double t)
     return t < b->push[segment].until ? b->push[segment].force : himc_vec3_make(0, 0, 0);
 }
 
+himc_vec3 himc_body_pushed_at(const performance_body *b, int segment, double t)
+{
+    return t < b->push[segment].until ? b->push[segment].at : b->plant.segment[segment].center;
+}
+
 bool himc_body_simulate(performance_body *b, double t, double h)
 {
     world_contact contact[HIMC_SEGMENTS + HIMC_HANDS + HIMC_SUPPORTS];

@@ -22,8 +22,7 @@ static bool set(himc_performance *p, const himc_command *c, himc_error *error)
         if (!p->motion->track || p->written.take_command.count == 0)
             return himc_performance_rebuild(p, &s, error);
         p->settings = s; // a take is loaded again for a body of other size: its lengths stay
-        if (himc_job_carry_out(himc_performance_take_job(p, &p->written.take_command, error),
-                               error))
+        if (himc_job_carry_out(himc_performance_take_again_job(p, error), error))
             return true;
         p->settings = old;
         return false;

@@ -188,7 +188,6 @@ static int head_under(const stick_contact *c, const contact_scene *s, himc_hand 
 void himc_contacts_look_down(performance_contacts *contacts, const contact_scene *s, double t,
                              double next)
 {
-    const himc_head_frame none = {.radius = 0};
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         const stick_contact *c = &contacts->hand[i];
@@ -199,7 +198,7 @@ void himc_contacts_look_down(performance_contacts *contacts, const contact_scene
                                       : stroke.any && stroke.time < next + (next - t) &&
                                             !rests_after(s, hand, stroke.drum, stroke.time);
         int under = rebounds ? -1 : head_under(c, s, hand);
-        s->motion->under[hand] = under < 0 ? none : *frame_of(s, under);
+        himc_motion_set_under(s->motion, hand, under < 0 ? NULL : frame_of(s, under));
     }
 }
 
@@ -227,7 +226,7 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
                           .planned_time = next->time,
                           .beat = stroke.beat};
     memcpy(missed.nuance, stroke.nuance, sizeof missed.nuance);
-    s->motion->answered[hand] = next->time;
+    himc_motion_answer(s->motion, hand, next->time);
     himc_statistics_strokes(s->statistics, 1, 0);
     if (name_stroke(s, hand, t, name))
         himc_events_note(s->events, "%s: the stick missed the head at %.3f s", name, next->time);
@@ -241,7 +240,6 @@ static void give_up(const stick_contact *c, const contact_scene *s, himc_hand ha
 
 static void release_hand(stick_contact *c, const contact_scene *s, himc_hand hand, double t)
 {
-    himc_reference *r = &s->motion->reference;
     himc_source_contact next = himc_motion_next(s->motion, s->drums, hand, t);
     bool due = next.any && t >= next.time && !is_free(c);
     // nothing would stop a stick that is let go beside all heads; the take goes on by itself
@@ -261,18 +259,18 @@ static void release_hand(stick_contact *c, const contact_scene *s, himc_hand han
             himc_bounce_acceleration(&c->bounce, height_of(c, s, hand), velocity_of(c, s, hand));
     } else if (c->touching && c->pressed) {
         himc_target tip = {s->body->state.tip[hand], s->body->state.tip_velocity[hand], {0, 0, 0}};
-        yield = himc_grip_press(&r->tip[hand], &tip, normal_of(s, c->drum), c->stick.mass);
+        yield = himc_grip_press(&s->motion->reference.tip[hand], &tip, normal_of(s, c->drum),
+                                c->stick.mass);
     }
-    r->released[hand] = released;
-    r->yield[hand] = yield;
-    r->struck[hand] = c->touching && !c->pressed && !c->bounce.on;
+    himc_motion_release(s->motion, hand, released, yield);
+    s->motion->reference.struck[hand] = c->touching && !c->pressed && !c->bounce.on;
     if (drum < s->drums->count)
-        r->normal[hand] = normal_of(s, drum);
+        himc_motion_set_normal(s->motion, hand, normal_of(s, drum));
     if (!is_free(c) || !is_kinematic(s))
         return;
     // in `ik` the contact moves the end of the stick, and the arm follows
-    himc_target tip = r->tip[hand];
-    himc_vec3 n = r->normal[hand];
+    himc_target tip = s->motion->reference.tip[hand];
+    himc_vec3 n = s->motion->reference.normal[hand];
     double height = over_head(s, c->drum, tip.x).z;
     tip.x = himc_vec3_madd(tip.x, c->stick.height - height, n);
     tip.v = himc_vec3_madd(tip.v, c->stick.velocity - himc_vec3_dot(n, tip.v), n);
@@ -372,7 +370,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     strcpy(c->strike.drum, himc_drum_name(s->drums->slot[c->drum].drum));
     strcpy(c->strike.nuance, nuance.text);
     if (!bounced && !planned)
-        s->statistics->told.unplanned_contacts++;
+        himc_statistics_unplanned(s->statistics);
     if (!planned)
         return;
     if (next.bounces && !s->settings->servo)
@@ -380,11 +378,12 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
     bool played =
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
-    s->motion->answered[hand] = next.time;
+    himc_motion_answer(s->motion, hand, next.time);
     himc_statistics_strokes(s->statistics, 1, played);
     himc_statistics_landed(s->statistics, -velocity, next.speed, next.yields);
     char name[HIMC_PLANNER_NAME];
-    if (off > PLAYED_PLACE && himc_motion_plays_score(s->motion) && s->statistics->aside++ == 0 &&
+    if (off > PLAYED_PLACE && himc_motion_plays_score(s->motion) &&
+        himc_statistics_aside(s->statistics) == 0 &&
         name_stroke(s, hand, time, name)) // once: a stroke of a score, or a hit
         himc_events_note(s->events, "%s: landed at %.3g %.3g, %.2g m from its place", name,
                          c->strike.x, c->strike.y, off);
@@ -563,8 +562,7 @@ void himc_contacts_finish(performance_contacts *c, const contact_scene *s, doubl
         if (!near && (presses || !himc_bounce_is_over(&own->bounce, t, velocity_of(own, s, hand))))
             continue;
         own->bounce = (himc_bounce){.begin = t};
-        s->motion->reference.released[hand] = true;
-        s->motion->reference.yield[hand] = 0; // the plan begins without their acceleration
+        himc_motion_release(s->motion, hand, true, 0); // the plan begins without their acceleration
         go_on_from_here(own, s, hand, t);
         own->pressed = true; // a contact that goes on is no stroke
     }

@@ -97,6 +97,11 @@ void himc_motion_replan(performance_motion *m)
     m->replan = true;
 }
 
+void himc_motion_seat(performance_motion *m, double height)
+{
+    m->body.posture.skeleton.segment[HIMC_PELVIS].origin.z = height;
+}
+
 bool himc_motion_rests_elsewhere(const performance_motion *m)
 {
     double far = 0;
@@ -215,6 +220,11 @@ himc_source_stroke himc_motion_stroke(const performance_motion *m, const perform
     himc_source_stroke next = m->source[hand].kind->stroke(m->source[hand].of, hand, t);
     next.any = next.any && next.drum < drums->count && is_coming(m, hand, next.time);
     return next;
+}
+
+void himc_motion_answer(performance_motion *m, himc_hand hand, double planned_time)
+{
+    m->answered[hand] = planned_time;
 }
 
 void himc_motion_correct(performance_motion *m, const performance_settings *s, himc_hand hand,
@@ -471,6 +481,11 @@ void himc_motion_think(performance_motion *m, double h, bool busy)
     himc_planner_think(m->planner, h * (busy ? BUSY_WORK : WORK));
 }
 
+void himc_motion_interpolate(performance_motion *m, double t)
+{
+    himc_setpoint_at(&m->between, t, &m->reference);
+}
+
 void himc_motion_init_posture(himc_posture *posture, const himc_skeleton *skeleton,
                               const captured_player *captured, double level, himc_stance stance)
 {
@@ -571,6 +586,17 @@ himc_pose himc_motion_mean_pose(const performance_motion *m, double t)
 
 // contact
 
+void himc_motion_release(performance_motion *m, himc_hand hand, bool released, double yield)
+{
+    m->reference.released[hand] = released;
+    m->reference.yield[hand] = yield;
+}
+
+void himc_motion_set_under(performance_motion *m, himc_hand hand, const himc_head_frame *head)
+{
+    m->under[hand] = head ? *head : (himc_head_frame){.radius = 0};
+}
+
 bool himc_motion_rests_after(const performance_motion *m, himc_hand hand, double time,
                              const himc_head_frame *head)
 {
@@ -579,6 +605,11 @@ bool himc_motion_rests_after(const performance_motion *m, himc_hand hand, double
             height_over(m, head, himc_motion_planned(m, hand, time + rests_at[i]).x) > RESTS_BELOW)
             return false;
     return true;
+}
+
+void himc_motion_set_normal(performance_motion *m, himc_hand hand, himc_vec3 normal)
+{
+    m->reference.normal[hand] = normal;
 }
 
 void himc_motion_move_tip(performance_motion *m, const performance_settings *s, himc_hand hand,
@@ -616,6 +647,13 @@ void himc_motion_stop(performance_motion *m, double t)
         himc_planner_stop(m->planner, t);
     m->playing = m->over = false;
     m->replan = true;
+}
+
+bool himc_motion_note_target(performance_motion *m, himc_hand hand, bool good)
+{
+    bool first = !good && !m->out_of_reach[hand];
+    m->out_of_reach[hand] = !good;
+    return first;
 }
 
 himc_vec3 himc_motion_ease_down(performance_motion *m, himc_hand hand, double t, himc_vec3 target,

@@ -43,16 +43,14 @@ typedef struct performance_motion {
     himc_damping damping;
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
-    himc_setpoint from, to;       ///< of the ticks before and after
-    himc_setpoint_course between; ///< these ticks
-    himc_reference reference;     ///< now: the step sets it, the contacts how it holds the sticks
-    /// head on which deeper targets press, radius 0: none; set by the contacts
-    himc_head_frame under[HIMC_HANDS];
-    bool replan; ///< `from` is read again, too
+    himc_setpoint from, to;            ///< of the ticks before and after
+    himc_setpoint_course between;      ///< these ticks
+    himc_reference reference;          ///< now
+    himc_head_frame under[HIMC_HANDS]; ///< head on which deeper targets press; radius 0: none
+    bool replan;                       ///< `from` is read again, too
     live_target live[HIMC_HANDS];
-    bool out_of_reach[HIMC_HANDS]; ///< the last live target; performance_play.c says so
-    /// planned time of the last stroke struck or given up (s), as the contacts say
-    double answered[HIMC_HANDS];
+    bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
+    double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
     bool over;                  ///< played to its end: its time goes on until `play` or `stop`
     long last_beat, last_round; ///< that have been reported
@@ -78,6 +76,8 @@ HIMC_RT himc_pose himc_motion_mean_pose(const performance_motion *motion, double
 
 /// Reads the setpoints again at the next step.
 HIMC_RT void himc_motion_replan(performance_motion *motion);
+/// The stool has this height (m); himc_motion_build then gives it to the postures.
+HIMC_RT void himc_motion_seat(performance_motion *motion, double height);
 /// True if the hands of the planner rest elsewhere at the start than the last setpoints say.
 HIMC_RT bool himc_motion_rests_elsewhere(const performance_motion *motion);
 /// Sets the head frame of drum `index`.
@@ -95,6 +95,8 @@ HIMC_RT void himc_motion_recover(performance_motion *motion, const performance_s
 /// Lets the planner rehearse its plan, for a step of `h` (s), less if a stick is `busy` with a
 /// head.
 HIMC_RT void himc_motion_think(performance_motion *motion, double h, bool busy);
+/// The reference at `t` between the ticks.
+HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
 
 /// Planned state of a tip.
 HIMC_RT himc_target himc_motion_planned(const performance_motion *motion, himc_hand hand, double t);
@@ -105,6 +107,8 @@ HIMC_RT himc_source_contact himc_motion_next(const performance_motion *motion,
 HIMC_RT himc_source_stroke himc_motion_stroke(const performance_motion *motion,
                                               const performance_drums *drums, himc_hand hand,
                                               double t);
+/// Ends the stroke planned for that time: struck or given up.
+HIMC_RT void himc_motion_answer(performance_motion *motion, himc_hand hand, double planned_time);
 /// Corrects the last milliseconds of a hit from that state of the tip. Only control that feeds the
 /// acceleration forward can follow so short a plan.
 HIMC_RT void himc_motion_correct(performance_motion *motion, const performance_settings *settings,
@@ -112,9 +116,17 @@ HIMC_RT void himc_motion_correct(performance_motion *motion, const performance_s
 /// Continues the plan from that state of the tip, which has left the head.
 HIMC_RT void himc_motion_go_on_from(performance_motion *motion, himc_hand hand, double t,
                                     const himc_target *measured);
+/// Sets whether control releases the normal of a head, and the acceleration that the hand gives the
+/// stick there (m/s^2).
+HIMC_RT void himc_motion_release(performance_motion *motion, himc_hand hand, bool released,
+                                 double yield);
+/// The head on which targets of the hand press from the next tick on, not deeper; NULL: none.
+HIMC_RT void himc_motion_set_under(performance_motion *motion, himc_hand hand,
+                                   const himc_head_frame *head);
 /// True if the tip rests on a head of that level after the stroke at `time`, as a take can have it.
 HIMC_RT bool himc_motion_rests_after(const performance_motion *motion, himc_hand hand, double time,
                                      const himc_head_frame *head);
+HIMC_RT void himc_motion_set_normal(performance_motion *motion, himc_hand hand, himc_vec3 normal);
 /// In `ik`: sets the tip's target to that state, and the posture accordingly.
 HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_settings *settings,
                                   himc_hand hand, const himc_target *tip, double t);
@@ -151,6 +163,9 @@ HIMC_RT void himc_motion_go_on(performance_motion *motion, double t);
 /// `play` and `stop`.
 HIMC_RT void himc_motion_play(performance_motion *motion, double t);
 HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
+/// Takes note if a live target is followed: `good` is false if it is refused or out of reach. True
+/// for the first one of a stream that is not.
+HIMC_RT bool himc_motion_note_target(performance_motion *motion, himc_hand hand, bool good);
 /// Takes note of a live target at `t`, in that head (NULL: in none). One that has jumped into a
 /// head comes down to it slowly: returns where it is meanwhile.
 HIMC_RT himc_vec3 himc_motion_ease_down(performance_motion *motion, himc_hand hand, double t,

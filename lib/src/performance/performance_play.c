@@ -49,8 +49,7 @@ static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
            himc_check_range("roll: DYNAMIC", rolls ? s->last_dynamic : 0, 0, 1, "", error);
 }
 
-// writes the name of drum `drum` (below 0: none) into a stroke that is no roll, for lines
-static void name_drum(const himc_performance *p, himc_stroke *stroke, int drum)
+void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, int drum)
 {
     if (drum >= 0 && stroke->ornament < HIMC_ROLL_SINGLE)
         himc_format(stroke->drum, sizeof stroke->drum, "%s",
@@ -83,7 +82,7 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke,
     himc_motion_replan(p->motion);
     himc_stroke plain = *stroke;
     plain.ornament = HIMC_PLAIN;
-    name_drum(p, &plain, drum);
+    himc_performance_name_drum(p, &plain, drum);
     if (!rolls && !himc_planner_add(p->motion->planner, &plain, drum, error))
         return false;
     himc_performance_add_ornament(p, stroke, drum);
@@ -106,7 +105,7 @@ void himc_performance_add_ornament(himc_performance *p, const himc_stroke *strok
     himc_stroke own = *stroke;
     if (stroke->ornament == HIMC_PLAIN)
         return;
-    name_drum(p, &own, drum);
+    himc_performance_name_drum(p, &own, drum);
     int left_out = himc_planner_add_ornament(p->motion->planner, &own, drum,
                                              himc_drum_pitch(p->drums.slot[drum].drum));
     if (left_out == 0)
@@ -184,7 +183,7 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         return himc_error_set(error, "hit: not possible while a take is playing");
     if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
         return false;
-    name_drum(p, &own, asked.drum);
+    himc_performance_name_drum(p, &own, asked.drum);
     tell_places(p);
     // a command that acts in this step was meant for its sample, up to a step before
     int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
@@ -250,9 +249,8 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
         return;
     himc_vec3 x = himc_posture_reachable(&p->motion->body.posture, hand, asked);
     bool free = himc_motion_free_hand(p->motion, hand, step_time(p));
-    bool good = free && himc_vec3_length(himc_vec3_sub(x, asked)) <= MISSED_TARGET;
-    bool first = !good && !p->motion->out_of_reach[hand];
-    p->motion->out_of_reach[hand] = !good;
+    bool reached = himc_vec3_length(himc_vec3_sub(x, asked)) <= MISSED_TARGET;
+    bool first = himc_motion_note_target(p->motion, hand, free && reached);
     if (first && free)
         himc_events_note(&p->events, "target %s %g %g %g: out of reach, going to %.3f %.3f %.3f",
                          himc_hand_name(hand), asked.x, asked.y, asked.z, x.x, x.y, x.z);

@@ -96,12 +96,11 @@ static double null_share(const himc_body_state *state, himc_hand hand, const him
     return all > 0 ? share / all : 0;
 }
 
-// where a push acts on a segment, its centre of mass without one
 static himc_vec3 push_point(const performance_body *b, const himc_body_state *state, int i,
                             double t)
 {
-    himc_vec3 at = t < b->push[i].until ? b->push[i].at : b->plant.segment[i].center;
-    return himc_vec3_add(state->origin[i], himc_mat3_apply(&state->rotation[i], at));
+    return himc_vec3_add(state->origin[i],
+                         himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
 }
 
 // where a force and its moment about the hips press on the plane of the seat, or on the floor

@@ -17,6 +17,11 @@ himc_performance_config himc_performance_default(void)
     return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
 }
 
+static bool check_sample_rate(double hz, himc_error *error)
+{
+    return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
+}
+
 // the stool as these drums need it; none for one who stands
 static void fit_stool(performance_motion *motion, performance_body *body,
                       const performance_drums *drums, const performance_settings *s)
@@ -30,8 +35,7 @@ static void fit_stool(performance_motion *motion, performance_body *body,
     himc_body_seat(body, s->stance == HIMC_STANCE_STANDING
                              ? himc_posture_standing(&s->skeleton, lowest)
                              : himc_posture_seat(&s->skeleton, lowest, highest));
-    motion->body.posture.skeleton.segment[HIMC_PELVIS].origin.z =
-        body->skeleton.segment[HIMC_PELVIS].origin.z;
+    himc_motion_seat(motion, body->skeleton.segment[HIMC_PELVIS].origin.z);
 }
 
 // body and motion begin together, at the targets of `t`
@@ -96,7 +100,7 @@ static void free_written(performance_written *written)
 himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)
 {
     made_parts parts;
-    if (!himc_drum_check_rate(config->sample_rate, error) ||
+    if (!check_sample_rate(config->sample_rate, error) ||
         !himc_check_range("physics rate", config->physics_rate, HIMC_PHYSICS_RATE_MIN,
                           HIMC_PHYSICS_RATE_MAX, "Hz", error) ||
         !himc_check_range("task rate", config->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX,
@@ -220,7 +224,7 @@ const himc_skeleton *himc_performance_plant(const himc_performance *p)
 
 bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_error *error)
 {
-    if (!himc_drum_check_rate(sample_rate, error))
+    if (!check_sample_rate(sample_rate, error))
         return false;
     if (sample_rate == p->clock.sample_rate)
         return true;

@@ -1,8 +1,8 @@
 /// performance_state.h: the parts of a performance, and the functions of the files that work on
 /// several of them.
 ///
-/// Each part has its own type and one file that writes it, but for a field that says who else does;
-/// other files read it or call that file's functions. In the order of the calls:
+/// Each part has its own type and one file that writes it; other files read it or call that file's
+/// functions. In the order of the calls:
 ///
 ///     performance_settings        the settings: one table
 ///     performance_clock, _events, _queue, _statistics, _drums, _body, _motion    the parts alone
@@ -165,6 +165,8 @@ himc_job *himc_performance_change_job(himc_performance *p, const himc_command *c
 HIMC_RT void himc_performance_tell_misses(himc_performance *p);
 /// himc_performance_add_stroke, but nothing is written, and the beat may be any.
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
+/// Writes the name of drum `drum` (below 0: none) into a stroke that is no roll, for lines.
+HIMC_RT void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, int drum);
 /// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many
 /// are left out.
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum);
@@ -177,10 +179,12 @@ int himc_performance_count_units(const himc_command *command, const himc_take_op
 
 // performance_take.c
 /// The command `take` as a job; without a command one to try takes with, as the performance is now.
-/// The command of the take that is loaded (written.take_command) loads it once more, for the player
-/// of the settings, as if its drum still stood where the take found it. NULL with the reason.
+/// NULL with the reason.
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
+/// Loads the take once more, for the player of the settings, as if its drum still stood where the
+/// take found it. NULL without memory.
+himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error);
 /// The command `nudge` for a take; NULL: there is none, and it is refused.
 bool himc_performance_nudge(himc_track *track, const himc_command *command, himc_error *error);
 /// True if a job could play this command's take, the first drum being at `place` (NULL: there is

@@ -65,6 +65,11 @@ bool himc_statistics_too_fast(performance_statistics *s, int *joint, double *rat
     return s->told_fast;
 }
 
+void himc_statistics_unplanned(performance_statistics *s)
+{
+    s->told.unplanned_contacts++;
+}
+
 void himc_statistics_contact(performance_statistics *s, double force, double duration)
 {
     s->told.peak_force = fmax(s->told.peak_force, force);
@@ -83,6 +88,11 @@ void himc_statistics_landed(performance_statistics *s, double speed, double capt
     s->captured_impact_sum += isfinite(captured) ? captured : 0;
     s->told.moved += yields > 0;
     s->told.moved_most = fmax(s->told.moved_most, yields);
+}
+
+long himc_statistics_aside(performance_statistics *s)
+{
+    return s->aside++;
 }
 
 void himc_statistics_hit(performance_statistics *s, double latency)

@@ -11,14 +11,13 @@
 #define HIMC_FASTEST_JOINT 160.0 // (rad/s)
 
 typedef struct performance_statistics {
-    /// the counts and largest values that it tells as they are; the contacts count unplanned ones
-    himc_performance_stats told;
-    double square_sum; ///< of the distances from tip to target outside contact (m^2)
+    himc_performance_stats told; ///< the counts and largest values that it tells as they are
+    double square_sum;           ///< of the distances from tip to target outside contact (m^2)
     long square_count;
     double height_sum; ///< of strokes, apex to contact (m)
     long height_count;
     double apex[HIMC_HANDS]; ///< highest target over the head since the last strike (m)
-    long aside;              ///< strokes landed beside their place, as the contacts count
+    long aside;              ///< strokes that have landed beside their place
     double captured_sum;     ///< of squared distances from tip to capture (m^2)
     long captured_count;
     double captured_most;                   ///< the largest of them (m^2)
@@ -46,6 +45,8 @@ HIMC_RT void himc_statistics_joints(performance_statistics *statistics,
 /// True once, when a joint has turned faster than any person's: the joint and its rate (rad/s).
 /// Not after a recovery, which is told.
 HIMC_RT bool himc_statistics_too_fast(performance_statistics *statistics, int *joint, double *rate);
+/// Adds a contact that no stroke asked for.
+HIMC_RT void himc_statistics_unplanned(performance_statistics *statistics);
 /// Adds a contact of that force (N) that has lasted so long (s).
 HIMC_RT void himc_statistics_contact(performance_statistics *statistics, double force,
                                      double duration);
@@ -55,6 +56,8 @@ HIMC_RT void himc_statistics_strokes(performance_statistics *statistics, int str
 /// the distance to where it was asked for (m).
 HIMC_RT void himc_statistics_landed(performance_statistics *statistics, double speed,
                                     double captured, double yields);
+/// Counts a stroke that has landed beside its place; returns how many there were before.
+HIMC_RT long himc_statistics_aside(performance_statistics *statistics);
 /// Adds a hit, with the time from its command to its planned contact (s).
 HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double latency);
 /// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.

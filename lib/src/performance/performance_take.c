@@ -431,7 +431,7 @@ static void free_job(himc_job *job)
 
 // of the file that the command names; else `name` begins errors
 static take_job *job_of(himc_performance *p, const himc_command *command, const char *name,
-                        himc_error *error)
+                        bool again, himc_error *error)
 {
     take_job *j = himc_job_new(sizeof *j, "take", (himc_job){prepare, install, free_job}, error);
     if (!j)
@@ -440,7 +440,7 @@ static take_job *job_of(himc_performance *p, const himc_command *command, const 
     if (command)
         himc_command_copy(&j->command, command);
     j->name = command ? j->command.atom[0].symbol : name;
-    j->again = command == &p->written.take_command;
+    j->again = again;
     copy_performance(j);
     return j;
 }
@@ -448,7 +448,12 @@ static take_job *job_of(himc_performance *p, const himc_command *command, const 
 himc_job *himc_performance_take_job(himc_performance *p, const himc_command *command,
                                     himc_error *error)
 {
-    return (himc_job *)job_of(p, command, "take", error);
+    return (himc_job *)job_of(p, command, "take", false, error);
+}
+
+himc_job *himc_performance_take_again_job(himc_performance *p, himc_error *error)
+{
+    return (himc_job *)job_of(p, &p->written.take_command, NULL, true, error);
 }
 
 bool himc_performance_try_take(himc_job *job, const himc_command *command,
@@ -469,7 +474,7 @@ bool himc_performance_try_take(himc_job *job, const himc_command *command,
 bool himc_performance_play_player(himc_performance *p, himc_take *take, himc_player *player,
                                   const char *name, himc_error *error)
 {
-    take_job *j = player ? job_of(p, NULL, name, error) : NULL;
+    take_job *j = player ? job_of(p, NULL, name, false, error) : NULL;
     if (!j)
         return false;
     j->given = true;
