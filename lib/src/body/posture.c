@@ -107,12 +107,6 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     }
 }
 
-// angle between the sides `a` and `b` of a triangle, `c` the third
-static double corner(double a, double b, double c)
-{
-    return acos(fmin(fmax((a * a + b * b - c * c) / (2 * a * b), -1), 1));
-}
-
 void himc_posture_stand(himc_posture *posture)
 {
     const himc_skeleton *skeleton = &posture->skeleton;
@@ -121,8 +115,8 @@ void himc_posture_stand(himc_posture *posture)
            ahead = STANDING_ANKLES * skeleton->height,
            down = skeleton->segment[HIMC_PELVIS].origin.z - HIMC_ANKLE_HEIGHT,
            leg = fmin(hypot(ahead, down), thigh + shank);
-    double raise = corner(thigh, leg, shank) + atan2(ahead, down);
-    double knee = HIMC_PI - corner(thigh, shank, leg);
+    double raise = himc_corner(thigh, leg, shank) + atan2(ahead, down);
+    double knee = HIMC_PI - himc_corner(thigh, shank, leg);
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_quat *joint = posture->rest.joint;
         joint[HIMC_LEFT_UPPER_LEG - 1 + i] = himc_quat_exp(himc_vec3_make(0, -raise, 0));
