@@ -196,6 +196,22 @@ static void test_others_do_not_pedal(void)
     TEST_ASSERT_TRUE(standing.way[HIMC_LEFT] < 0.02 && standing.way[HIMC_RIGHT] < 0.02);
 }
 
+static void test_the_size_of_blocks_changes_no_bit(void)
+{
+    static const int size[] = {480, 37};
+    himc_body_state end[2];
+    for (int k = 0; k < 2; k++) {
+        himc_performance *p = player("seated", FRONT);
+        session_do(p, GLISS);
+        session_do(p, "play");
+        for (int left = 3 * 48000; left > 0; left -= size[k])
+            himc_performance_process(p, left < size[k] ? left : size[k], NULL);
+        end[k] = p->body->state;
+        himc_performance_free(p);
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&end[0].origin, &end[1].origin, sizeof end[0].origin);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -206,5 +222,6 @@ int main(void)
     RUN_TEST(test_mirrored_drums_take_mirrored_feet);
     RUN_TEST(test_a_pedal_out_of_reach_is_left_alone_and_told);
     RUN_TEST(test_others_do_not_pedal);
+    RUN_TEST(test_the_size_of_blocks_changes_no_bit);
     return UNITY_END();
 }

@@ -181,7 +181,7 @@ void himc_pedal_go(himc_pedal_foot *f, const himc_posture *posture, const himc_p
 {
     himc_hand side = pedal ? pedal->foot : f->foot;
     placed rest = resting(posture, side);
-    bool moving = himc_pedal_moves(f, f->foot, t);
+    bool moving = f->away || !is_over(&f->heel, t);
     himc_target heel = heel_at(f, t), turn = course_at(&f->turn, t);
     himc_vec3 at = rest.heel, turned = {rest.heading, 0, 0};
     f->back = f->aside = 0;

@@ -283,8 +283,9 @@ static void set_course(performance_motion *m, const performance_settings *s,
     }
     if (s->alive && !m->track) // a take shows its own
         himc_alive_add(&b->posture, &first, t, &b->goal);
-    b->goal.value[HIMC_TRUNK_POSTURE_LEAN] -= m->foot.back;
-    b->goal.value[HIMC_TRUNK_POSTURE_SIDE] += m->foot.aside;
+    double turn = b->goal.value[HIMC_TRUNK_POSTURE_TURN];
+    b->goal.value[HIMC_TRUNK_POSTURE_LEAN] -= m->foot.back * cos(turn) + m->foot.aside * sin(turn);
+    b->goal.value[HIMC_TRUNK_POSTURE_SIDE] += m->foot.aside * cos(turn) - m->foot.back * sin(turn);
     if (t - b->avoided >= HIMC_AVOIDANCE_PERIOD) { // the arms stay clear along the tips' way
         for (int k = 0; k < HIMC_FORESEEN; k++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)

@@ -8,7 +8,7 @@
 
 // a foot on a pedal; chosen
 #define PEDAL_STAYS 0.15    // after the pedal has come to rest (s) ...
-#define PEDAL_AGAIN 1.5     // ... and if it moves again so soon (s)
+#define PEDAL_AGAIN 3.0     // ... and if it moves again so soon (s)
 #define PEDAL_QUICKEST 0.12 // of a foot that tunes at once (s)
 
 // somebody moves the pedal of that drum now, or the score does within `ahead` (s)
