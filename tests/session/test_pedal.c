@@ -196,6 +196,24 @@ static void test_others_do_not_pedal(void)
     TEST_ASSERT_TRUE(standing.way[HIMC_LEFT] < 0.02 && standing.way[HIMC_RIGHT] < 0.02);
 }
 
+static void test_who_is_pushed_off_his_place_takes_his_foot_back(void)
+{
+    himc_performance *p = player("seated", FRONT);
+    seen s = {.pedal = {.foot = HIMC_RIGHT}};
+    session_do(p, "at 2 kettle gliss A3 6");
+    session_do(p, "at 5 push pelvis 0 400 0 0.3");
+    session_do(p, "play");
+    session_play(p, 2.9, NULL);
+    TEST_ASSERT_TRUE(p->motion->foot.away);
+    himc_performance_on_tick(p, see, &s);
+    session_play(p, 0.6, NULL);
+    TEST_ASSERT_TRUE(s.moved > 0.025);
+    TEST_ASSERT_FALSE(p->motion->foot.away);
+    session_play(p, 3, NULL);
+    TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+    himc_performance_free(p);
+}
+
 static void test_the_size_of_blocks_changes_no_bit(void)
 {
     static const int size[] = {480, 37};
@@ -222,6 +240,7 @@ int main(void)
     RUN_TEST(test_mirrored_drums_take_mirrored_feet);
     RUN_TEST(test_a_pedal_out_of_reach_is_left_alone_and_told);
     RUN_TEST(test_others_do_not_pedal);
+    RUN_TEST(test_who_is_pushed_off_his_place_takes_his_foot_back);
     RUN_TEST(test_the_size_of_blocks_changes_no_bit);
     return UNITY_END();
 }
