@@ -115,8 +115,8 @@ HIMC_SETTING_ROW(PLAYER, player, NOW, "HEIGHT MASS", player, skeleton, "", BODY,
                  "changes the performer's body")
 HIMC_SETTING_ROW(STANCE, stance, NOW, "fixed|seated|standing", word, stance, "fixed", BODY,
                  "fixed: the pelvis is held, as published; seated: it rests on the stool, the feet "
-                 "on the floor, and gives way; standing: he balances on his feet, with `law "
-                 "computed-torque`")
+                 "on the floor, and gives way, and a foot works the pedal that moves; standing: he "
+                 "balances on his feet, without pedals, with `law computed-torque`")
 HIMC_SETTING_ROW(MODE, mode, AT_SAMPLE, "himc|id|ik", word, control.mode, "", MODE,
                  "chooses the control pipeline")
 HIMC_SETTING_ROW(SOLVER, solver, AT_SAMPLE, "dls|pinv|transpose|nakamura|sdls", word,

@@ -11,7 +11,9 @@ from browser import Browser
 from scene import Scene
 
 BUILD, MADE = os.environ["HIMC_BUILD"], os.environ["HIMC_MADE"]  # by prepare.sh
-PLAY, FOUR, COMPARED, SEATED = (os.path.join(MADE, f"{f}.himc") for f in ("play", "four", "compared", "seated"))
+PLAY, FOUR, COMPARED, SEATED, PEDAL = (
+    os.path.join(MADE, f"{f}.himc") for f in ("play", "four", "compared", "seated", "pedal")
+)
 RESTS, PUSHED, LANDED = 4.5, 2.73, 2.98  # times in tests/viewer/seated.txt (s): his seat is left at the second
 WEIGHT = 736.4  # (N)
 WIDTH, HEIGHT = 1280, 720
@@ -274,6 +276,28 @@ def test_a_push_moves_pelvis_and_legs_and_no_stool():
     forces = [arrow[2] if arrow else 0 for arrow in pushed["seen"]]
     assert forces[0] < 200 < forces[1] + forces[2], forces
     return f"{1000 * moved:.0f} mm"
+
+
+def test_the_foot_is_on_the_pedal_that_turns():
+    under = """
+        viewer.playback.seek(1000 * arguments[0]);
+        viewer.step(1, false), viewer.step(1, false);
+        const [drum] = viewer.drums.values(), [first] = viewer.performers.values(), make = () => first.figure.scale.clone(),
+            [, foot] = first.feet(), ball = make().set(0.13, 0, -0.075).applyMatrix4(foot);
+        drum.pedal.updateWorldMatrix(true, false);
+        const world = drum.pedal.matrixWorld,
+            plate = ball.clone().applyMatrix4(world.clone().getInverse(world));
+        return [drum.pedal.rotation.y, plate.x, plate.y, plate.z];
+        """
+    show(PEDAL, 0.1)
+    _, *away = browser.run(under, 0.5)
+    before, *at = browser.run(under, 2.05)
+    after, *then = browser.run(under, 3.0)
+    assert math.hypot(*away) > 0.2, away
+    for x, y, z in (at, then):
+        assert -0.22 < x < -0.15 and abs(y) < 0.03 and abs(z) < 0.01, (x, y, z)
+    assert before - after > 0.05, (before, after)
+    return f"its end goes down by {205 * (before - after):.0f} mm"
 
 
 def test_lanes_of_seat_and_feet_are_those_of_one_who_sits_freely():

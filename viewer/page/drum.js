@@ -9,7 +9,10 @@ const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     SECTORS = 72,
     MODES = 64,
     ABSENT_AFTER = 4000, // without amplitudes and strikes (ms); chosen: a drum at rest may send rarely
-    FOOT_REACH = 0.2, // from below the hoop to a foot that could use the pedal (m); chosen
+    HINGE = 0.07, // of the pedal, outside the head's edge (m); this and its angle as in pedal.c
+    PEDAL = 0.22, // at rest (rad)
+    HEEL = [-0.055, 0, -0.075], // in the foot's frame (m)
+    TREADS = 0.06, // a heel so near the hinge has its foot on the pedal (m); chosen
     LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
     AT_REST = 1e-16; // sum of squared amplitudes (m^2): 10 nm, far below a pixel
 const net = new Net(RINGS, SECTORS);
@@ -145,12 +148,14 @@ function stand(a, z) {
         );
         steel.push(rod(around(a * 0.97, t, floor(0.03)), foot, 0.014));
     }
-    const reach = a + 0.07, // of the pedal, its heel's end on the floor
-        plate = new THREE.BoxBufferGeometry(0.21, 0.085, 0.012).rotateY(0.2);
-    steel.push(plate.translate(reach - 0.11, 0, floor(0.034)), rod([reach - 0.18, 0, floor(0.05)], [0, 0, hub], 0.012));
-    dark.push(new THREE.BoxBufferGeometry(0.03, 0.11, 0.012).translate(reach - 0.01, 0, floor(0.006)));
+    const hinge = a + HINGE;
+    steel.push(rod([hinge - 0.18, 0, floor(0.05)], [0, 0, hub], 0.012));
+    dark.push(new THREE.BoxBufferGeometry(0.03, 0.11, 0.008).translate(hinge - 0.01, 0, floor(0.004)));
     return metals(steel, dark);
 }
+
+// below a sole, from its hinge inwards
+const plate = () => metals([new THREE.BoxBufferGeometry(0.19, 0.085, 0.01).translate(-0.12, 0, -0.006)], []);
 
 // with its axle across the leg
 const wheel = (r, t, h) =>
@@ -248,20 +253,17 @@ export class Drum {
         this.tilted.position.set(x, y, z);
         this.tilted.rotation.y = -tilt;
         this.legs.position.set(x, y, z);
-        this.player = null; // it is turned to no one yet
     }
 
-    // Turns the pedal beside the right foot if it is near, or else to the player, and the gauge to the
-    // player.
+    // Turns pedal and gauge to the player; a foot on the pedal turns that.
     turn(player) {
-        if (this.player === player) return;
-        this.player = player;
-        const [x, y] = this.place,
-            [hips, foot] = player.stance(),
-            to = ([px, py]) => Math.atan2(py - y, px - x),
-            near = Math.hypot(foot[0] - x, foot[1] - y) < this.place[4] + FOOT_REACH;
-        this.legs.rotation.z = to(near ? foot : hips);
-        this.trim.rotation.z = to(hips);
+        const [x, y, , , a] = this.place,
+            to = Math.atan2(-y, -x),
+            hinge = new THREE.Vector3(x + (a + HINGE) * Math.cos(to), y + (a + HINGE) * Math.sin(to), 0);
+        this.legs.rotation.z = this.trim.rotation.z = to;
+        for (const foot of player.feet())
+            if (new THREE.Vector3(...HEEL).applyMatrix4(foot).distanceTo(hinge) < TREADS)
+                this.pedal.rotation.y = Math.asin(foot.elements[2] / Math.hypot(...foot.elements.slice(0, 3)));
     }
 
     // where it is struck, in its group's frame, which is its player's (m)
@@ -277,6 +279,10 @@ export class Drum {
         this.trim = new THREE.Mesh(fittings(a), m.metal);
         this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, this.trim);
         this.legs = new THREE.Mesh(stand(a, z), m.metal);
+        this.pedal = new THREE.Mesh(plate(), m.metal);
+        this.pedal.position.set(a + HINGE, 0, -z);
+        this.pedal.rotation.y = PEDAL;
+        this.legs.add(this.pedal);
         this.group.add(this.legs);
         this.group.traverse(o => (o.castShadow = o.receiveShadow = true));
         this.head.castShadow = false;

@@ -12,7 +12,6 @@ import { Trail } from "./strike.js";
 import { Supports } from "./support.js";
 
 const KEPT = 256, // poses: chosen, 1 s at 250 Hz
-    PEDAL = [0.07, 0.1, -0.07], // left of the right foot (m)
     ABSENT_AFTER = 2000; // without a pose (ms); chosen: longer than a pause of the network
 const qa = new THREE.Quaternion(),
     qb = new THREE.Quaternion();
@@ -149,10 +148,9 @@ export class Performer {
         stool.visible = !this.ghostly && !(seat === 0 && left + right > STANDS);
     }
 
-    // in the group's frame (m): the hips, and beside the right foot, where a pedal may be
-    stance() {
-        const foot = this.figure.bones[bone("right-foot")].matrixWorld;
-        return [this.pose, new THREE.Vector3(...PEDAL).applyMatrix4(foot).toArray()];
+    // their places in the group's frame (m)
+    feet() {
+        return ["left-foot", "right-foot"].map(name => this.figure.bones[bone(name)].matrixWorld);
     }
 
     // drawn in one transparent colour, without a stool; `color` null: as a performer

@@ -108,12 +108,6 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     }
 }
 
-// angle between the sides `a` and `b` of a triangle, `c` the third
-static double corner(double a, double b, double c)
-{
-    return acos(fmin(fmax((a * a + b * b - c * c) / (2 * a * b), -1), 1));
-}
-
 void himc_posture_stand(himc_posture *posture)
 {
     const himc_skeleton *skeleton = &posture->skeleton;
@@ -123,8 +117,8 @@ void himc_posture_stand(himc_posture *posture)
            down =
                (skeleton->segment[HIMC_PELVIS].origin.z - HIMC_ANKLE_HEIGHT) / cos(STANDING_APART),
            leg = fmin(hypot(ahead, down), thigh + shank);
-    double raise = corner(thigh, leg, shank) + atan2(ahead, down);
-    double knee = HIMC_PI - corner(thigh, shank, leg);
+    double raise = himc_corner(thigh, leg, shank) + atan2(ahead, down);
+    double knee = HIMC_PI - himc_corner(thigh, shank, leg);
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_quat *joint = posture->rest.joint;
         double apart = i == HIMC_LEFT ? STANDING_APART : -STANDING_APART;

@@ -100,6 +100,12 @@ HIMC_RT void himc_posture_stand(himc_posture *posture);
 #define HIMC_SEAT_DEPTH (0.086 / 1.75)
 #define HIMC_ANKLE_HEIGHT 0.075 ///< of the ankle over the floor (m)
 
+/// Angle between the sides `a` and `b` of a triangle, `c` the third.
+HIMC_RT static inline double himc_corner(double a, double b, double c)
+{
+    return acos(fmin(fmax((a * a + b * b - c * c) / (2 * a * b), -1), 1));
+}
+
 /// Height of the stool's seat (m).
 static inline double himc_posture_stool(const himc_skeleton *body)
 {

@@ -23,7 +23,6 @@
 #define SEAT_HOLLOW 0.12    // radius of the cushion under each point (m); brings him back
 #define LEAST_SHARE 0.1     // of sit bones and of thighs, whatever the balance; chosen
 #define LEAST_PRESSURE 1e-6 // (N); chosen: nothing
-#define SOLE_BEHIND 0.055   // the ankle, of a sole (m)
 #define SOLE_AHEAD 0.15     // (m)
 #define SOLE_ASIDE 0.04     // (m)
 #define THIGH_DEPTH 0.075   // its axis over the seat, at 1.75 m (m)
@@ -58,7 +57,7 @@ static void place_points(himc_support *s, const himc_skeleton *skeleton)
         for (int k = 0; k < HIMC_SOLE_POINTS; k++)
             s->point[HIMC_SEAT_POINTS + HIMC_SOLE_POINTS * side + k] = (himc_support_point){
                 .segment = foot,
-                .at = himc_vec3_make(k < 2 ? -SOLE_BEHIND : SOLE_AHEAD,
+                .at = himc_vec3_make(k < 2 ? -HIMC_SOLE_BEHIND : SOLE_AHEAD,
                                      k % 2 ? SOLE_ASIDE : -SOLE_ASIDE, -HIMC_ANKLE_HEIGHT)};
     }
 }
@@ -130,10 +129,12 @@ static const struct {
               SOLE_DRAG, 0.8}};
 #define PATCHES ((int)(sizeof patch / sizeof *patch))
 
-// the pressure on a point, and on a hollow the force towards its bottom
+// the pressure on a point, and on a hollow the force towards its bottom; a thigh that moves with
+// its foot slides over the cushion
 static double press_down(himc_support_point *p, int k, himc_vec3 place, double velocity)
 {
-    double x = place.x - p->home.x, y = place.y - p->home.y, curvature = patch[k].curvature;
+    double x = place.x - p->home.x, y = place.y - p->home.y,
+           curvature = p->slides ? 0 : patch[k].curvature;
     double depth = fmax(p->plane + 0.5 * curvature * (x * x + y * y) - place.z, 0);
     double force = patch[k].stiffness * depth * sqrt(depth) * fmax(1 - DAMPING * velocity, 0);
     p->force = himc_vec3_make(-force * curvature * x, -force * curvature * y, force);
@@ -147,6 +148,12 @@ static double too_much(himc_vec3 force, double most)
     return along > most ? 1 - most / along : 0;
 }
 
+// of a point in what holds its patch
+static double share_of(const himc_support_point *p, double all)
+{
+    return p->slides ? 0 : p->force.z / fmax(all, LEAST_PRESSURE);
+}
+
 // the forces of a patch whose points are at `place` and move at `velocity`; the anchors come along
 // as soon as the springs alone would hold too much
 static void press(himc_support_point *point, int k, const himc_vec3 *place,
@@ -155,12 +162,14 @@ static void press(himc_support_point *point, int k, const himc_vec3 *place,
     double all = 0;
     bool touched = point->touching;
     himc_vec3 held = {0, 0, 0}, sum = {0, 0, 0}, grip[HIMC_SUPPORTS];
-    for (int i = 0; i < patch[k].count; i++)
-        all += press_down(&point[i], k, place[i], velocity[i].z);
+    for (int i = 0; i < patch[k].count; i++) {
+        double pressure = press_down(&point[i], k, place[i], velocity[i].z);
+        all += point[i].slides ? 0 : pressure;
+    }
     for (int i = 0; i < patch[k].count; i++) {
         himc_support_point *p = &point[i];
-        double share = p->force.z / fmax(all, LEAST_PRESSURE);
-        if (!touched)
+        double share = share_of(p, all);
+        if (!touched || p->slides)
             p->anchor = place[i];
         p->touching = all > 0;
         held = himc_vec3_madd(held, share * patch[k].hold, himc_vec3_sub(p->anchor, place[i]));
@@ -169,7 +178,7 @@ static void press(himc_support_point *point, int k, const himc_vec3 *place,
     himc_vec3 slip = himc_vec3_scale(held, too_much(held, most) / patch[k].hold);
     for (int i = 0; i < patch[k].count; i++) {
         himc_support_point *p = &point[i];
-        double share = p->force.z / fmax(all, LEAST_PRESSURE);
+        double share = share_of(p, all);
         p->anchor.x -= slip.x;
         p->anchor.y -= slip.y;
         himc_vec3 way = himc_vec3_sub(p->anchor, place[i]);
@@ -180,10 +189,16 @@ static void press(himc_support_point *point, int k, const himc_vec3 *place,
     }
     double less = too_much(sum, most);
     for (int i = 0; i < patch[k].count; i++) {
-        double share = point[i].force.z / fmax(all, LEAST_PRESSURE);
+        double share = share_of(&point[i], all);
         point[i].force.x += grip[i].x - share * less * sum.x;
         point[i].force.y += grip[i].y - share * less * sum.y;
     }
+}
+
+void himc_support_slide(himc_support *s, const bool moves[HIMC_HANDS])
+{
+    for (int i = 0; i < HIMC_SEAT_POINTS; i++)
+        s->point[i].slides = carrier_of(i) == THIGHS && moves[i / (HIMC_SEAT_POINTS / 2)];
 }
 
 void himc_support_press(himc_support *s, const himc_skeleton *skeleton,

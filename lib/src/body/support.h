@@ -5,8 +5,9 @@
 
 #include "body/tree.h"
 
-#define HIMC_SEAT_POINTS 6 ///< two sit bones, two points under each thigh
-#define HIMC_SOLE_POINTS 4 ///< of each sole, after the seat's
+#define HIMC_SEAT_POINTS 6     ///< two sit bones, two points under each thigh
+#define HIMC_SOLE_POINTS 4     ///< of each sole, after the seat's
+#define HIMC_SOLE_BEHIND 0.055 ///< the ankle, of a sole (m)
 #define HIMC_SUPPORTS (HIMC_SEAT_POINTS + 2 * HIMC_SOLE_POINTS)
 
 /// A point of the body above a plane.
@@ -17,6 +18,7 @@ typedef struct himc_support_point {
     himc_vec3 home;  ///< where it rests, and the plane is lowest (m)
     himc_vec3 lever; ///< from the pelvis' origin, world frame (m)
     himc_vec3 force; ///< on the body (N)
+    bool slides;     ///< nothing holds it along its plane
     bool touching;
     himc_vec3 anchor; ///< where friction would have it, while it touches (m)
 } himc_support_point;
@@ -34,6 +36,9 @@ HIMC_RT void himc_support_init(himc_support *support, const himc_skeleton *skele
 
 /// Forgets where the points touch: for a body that has been put elsewhere.
 HIMC_RT void himc_support_lift(himc_support *support);
+
+/// Whether the thigh of each side slides over the seat, as its foot goes elsewhere.
+HIMC_RT void himc_support_slide(himc_support *support, const bool moves[HIMC_HANDS]);
 
 /// Finds places and forces of the points in this state, and where they slip to.
 HIMC_RT void himc_support_press(himc_support *support, const himc_skeleton *skeleton,

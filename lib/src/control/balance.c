@@ -53,7 +53,8 @@ void himc_balance_legs(himc_balance *b, const himc_body_state *s, const tracking
 {
     double w = 2 * HIMC_PI * LEG_BANDWIDTH;
     for (int j = HIMC_LEFT_UPPER_LEG - 1; j < HIMC_LEFT_TOES - 1; j++)
-        wanted[j] = himc_vec3_madd(himc_vec3_scale(e->angle[j], w * w), 2 * w, e->rate[j]);
+        wanted[j] = himc_vec3_madd(himc_vec3_madd(e->acceleration[j], w * w, e->angle[j]), 2 * w,
+                                   e->rate[j]);
     if (b->stand.standing)
         himc_stand_legs(&b->stand, s, b->acceleration.angular, step, wanted);
 }

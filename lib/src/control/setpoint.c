@@ -1,6 +1,7 @@
 /// setpoint.c: every channel of the targets moves on a quintic from tick to tick, with one set of
 /// powers of the time for all joints (interpolate.c). What stays the same between two ticks is
-/// computed once. Legs keep their posture: only the joints of trunk, neck, head and arms move.
+/// computed once. Legs keep their posture; those that work a pedal come to the second tick with its
+/// rate and acceleration.
 #include "control/setpoint.h"
 
 static joint_state state_of(const himc_posture_motion *m, int j)
@@ -23,7 +24,9 @@ void himc_setpoint_course_make(himc_setpoint_course *course, const himc_setpoint
 {
     double length = to->time - from->time;
     course->from = from->time;
+    course->to = to->time;
     course->posture = to->posture;
+    course->legs = false;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         course->tip[hand] = himc_quintic_make(&from->tip[hand], &to->tip[hand], length);
     for (int lane = 0; lane < HIMC_JOINT_LANES; lane++) {
@@ -41,9 +44,12 @@ void himc_setpoint_at(const himc_setpoint_course *course, double time, himc_refe
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         reference->tip[hand] = himc_quintic_at(&course->tip[hand], t);
     for (int j = HIMC_MOVING_JOINTS; j < HIMC_JOINTS; j++) {
-        out->joint[j] = course->posture.joint[j];
-        out->rate[j] = course->posture.rate[j];
-        out->acceleration[j] = course->posture.acceleration[j];
+        const himc_posture_motion *p = &course->posture;
+        double late = time - course->to;
+        out->joint[j] = course->legs ? himc_posture_joint_after(p, j, late) : p->joint[j];
+        out->rate[j] =
+            course->legs ? himc_vec3_madd(p->rate[j], late, p->acceleration[j]) : p->rate[j];
+        out->acceleration[j] = p->acceleration[j];
     }
     joint_states now;
     himc_joint_courses_at(&course->joints, &powers, &now);

@@ -21,9 +21,10 @@ HIMC_RT bool himc_setpoint_finite(const himc_setpoint *tick);
 
 /// The motion between two ticks.
 typedef struct himc_setpoint_course {
-    double from; ///< time of the first tick (s)
+    double from, to; ///< times of the ticks (s)
     himc_quintic tip[HIMC_HANDS];
-    himc_posture_motion posture; ///< at the second tick, for joints that do not move
+    himc_posture_motion posture; ///< at the second tick, for the legs
+    bool legs;                   ///< the legs move; the caller says so
     joint_courses joints;        ///< the first HIMC_MOVING_JOINTS, the rest like the first
 } himc_setpoint_course;
 

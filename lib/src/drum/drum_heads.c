@@ -237,6 +237,21 @@ double himc_drum_heads_damp(const himc_drum_heads *heads, double beat)
     return from > 0 || heads->now == -1 ? present : heads->first.damp;
 }
 
+bool himc_drum_heads_pedal(const himc_drum_heads *heads, double from, double to)
+{
+    for (double end = HUGE_VAL; heads; end = heads->from, heads = heads->before)
+        for (int i = change_at(heads, from) + 1; i < heads->count; i++) {
+            const head_change *c = &heads->change[i];
+            if (c->beat > to || c->beat >= end)
+                break;
+            bool pedal = c->id == HIMC_COMMAND_GLISS || c->id == HIMC_COMMAND_TUNE ||
+                         c->id == HIMC_COMMAND_TENSION;
+            if (pedal && (!heads->before || c->beat >= heads->from))
+                return true;
+        }
+    return false;
+}
+
 /// Carries the command of a change out on a head of the drum, which may refuse it.
 static bool redo(const himc_drum *drum, const head_change *change, himc_head *head,
                  himc_error *error)

@@ -40,6 +40,9 @@ HIMC_RT void himc_drum_fade(himc_drum *drum, double factor);
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 /// The radius that it had when it was made (m).
 HIMC_RT double himc_drum_usual_radius(const himc_drum *drum);
+/// Where its pedal stands, or goes to: octaves over the usual pitch. Returns how long it takes, or
+/// the last one took (s).
+HIMC_RT double himc_drum_pedal(const himc_drum *drum, double *octaves);
 /// Whether a drum may stand there: within 10 m of the origin on each axis.
 bool himc_drum_check_place(himc_vec3 center, himc_error *error);
 /// Brings the head to rest, without a click, and drops the drum's own mallets and waiting strikes.
@@ -126,6 +129,8 @@ HIMC_RT double himc_drum_heads_last(const himc_drum_heads *heads);
 HIMC_RT bool himc_drum_heads_due(const himc_drum_heads *heads, double beat);
 /// The damping of the head at that beat (himc_head.damp).
 HIMC_RT double himc_drum_heads_damp(const himc_drum_heads *heads, double beat);
+/// True if a change behind beat `from`, up to `to`, moves the pedal.
+HIMC_RT bool himc_drum_heads_pedal(const himc_drum_heads *heads, double from, double to);
 /// Gives the drum the head that it has at that beat: that of the form before the first change.
 /// Quick where the drum has still the pickups and the listener of the form, else the head is
 /// computed now. Between two samples. False with the reason if a change cannot act on the drum as

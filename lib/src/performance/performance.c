@@ -123,6 +123,7 @@ static void performance_step(himc_performance *p)
     if (tick || p->motion->replan) {
         double next = himc_clock_next_tick(&p->clock);
         himc_contacts_look_down(&p->contacts, &scene, t, next);
+        himc_performance_move_foot(p, t);
         himc_motion_read_task(p->motion, &p->settings, &p->drums, t, next);
         if (!himc_motion_is_finite(p->motion))
             recover(p, t);

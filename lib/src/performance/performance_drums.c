@@ -442,6 +442,7 @@ bool himc_drums_noticed(performance_drums *d, int index)
     bool changed = revision != d->slot[index].revision;
     d->slot[index].revision = revision;
     d->slot[index].reach_told = d->slot[index].reach_told && !changed;
+    d->slot[index].pedal_told = d->slot[index].pedal_told && !changed;
     return changed;
 }
 

@@ -23,6 +23,7 @@ typedef struct drum_slot {
     unsigned revision;      ///< last one given to the planner
     bool untold;            ///< auto-placed; the user has not been notified
     bool reach_told;        ///< out of reach there, and the user has been notified
+    bool pedal_told;        ///< the same of its pedal
     bool moved;             ///< moved by the performer, see himc_drums_put_back
     bool placed;            ///< himc_drum_is_placed before that ...
     himc_vec3 found, at;    ///< ... its position then, and its new position (m)

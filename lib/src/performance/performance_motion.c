@@ -283,6 +283,9 @@ static void set_course(performance_motion *m, const performance_settings *s,
     }
     if (s->alive && !m->track) // a take shows its own
         himc_alive_add(&b->posture, &first, t, &b->goal);
+    double turn = b->goal.value[HIMC_TRUNK_POSTURE_TURN];
+    b->goal.value[HIMC_TRUNK_POSTURE_LEAN] -= m->foot.back * cos(turn) + m->foot.aside * sin(turn);
+    b->goal.value[HIMC_TRUNK_POSTURE_SIDE] += m->foot.aside * cos(turn) - m->foot.back * sin(turn);
     if (t - b->avoided >= HIMC_AVOIDANCE_PERIOD) { // the arms stay clear along the tips' way
         for (int k = 0; k < HIMC_FORESEEN; k++)
             for (int hand = 0; hand < HIMC_HANDS; hand++)
@@ -363,6 +366,7 @@ static void find_posture(const performance_motion *m, const performance_settings
     himc_posture_moving(&now, tip, motion);
     if (s->control.mode != HIMC_PIPELINE_HIMC && isfinite(at) && himc_track_has_posture(m->track))
         himc_track_posture(m->track, &m->body.posture.skeleton, at, s->bend ? tip : NULL, motion);
+    himc_pedal_leg(&m->foot, &m->body.posture, t, motion);
 }
 
 void himc_motion_set_regression(performance_motion *m, const performance_settings *s,
@@ -473,6 +477,7 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
         m->from = m->to;
     fill_tick(m, s, &m->to, next);
     himc_setpoint_course_make(&m->between, &m->from, &m->to);
+    m->between.legs = himc_pedal_moves(&m->foot, m->foot.foot, t);
     m->replan = false;
 }
 
@@ -556,6 +561,8 @@ void himc_motion_build(performance_motion *m, const himc_skeleton *skeleton,
 {
     himc_motion_init_posture(&m->body.posture, skeleton, &s->captured, m->body.posture.level,
                              s->stance);
+    m->foot = (himc_pedal_foot){.away = false};
+    memset(m->pedal, 0, sizeof m->pedal);
     himc_planner_set_body(m->planner);
     begin_at(m, s, t, m->body.time == 0);
 }

@@ -3,6 +3,7 @@
 #ifndef HIMC_PERFORMANCE_MOTION_H
 #define HIMC_PERFORMANCE_MOTION_H
 
+#include "body/pedal.h"
 #include "plan/planner.h"
 #include "plan/damping.h"
 #include "control/posture_crossfade.h"
@@ -25,6 +26,13 @@ typedef struct hand_source {
     void *of; ///< borrowed
 } hand_source;
 
+/// The pedal of a drum, as it was last seen.
+typedef struct seen_pedal {
+    bool known;
+    double octaves; ///< himc_drum_pedal
+    double until;   ///< a foot is wanted on it (s)
+} seen_pedal;
+
 typedef struct performance_motion {
     himc_planner *planner;          ///< owned
     himc_track *track;              ///< owned; of the take that is loaded, NULL: none
@@ -41,6 +49,9 @@ typedef struct performance_motion {
     himc_hand_style style[HIMC_HANDS]; ///< of the present stroke ...
     double level[HIMC_HANDS];          ///< ... and the tip's height in its contact (m)
     himc_damping damping;
+    himc_pedal_foot foot;
+    int pedalled; ///< the drum on whose pedal that is, or was
+    seen_pedal pedal[HIMC_DRUMS];
     bool crossfade_due; ///< joint targets change their source at the next tick
     himc_posture_crossfade crossfade;
     himc_setpoint from, to;            ///< of the ticks before and after

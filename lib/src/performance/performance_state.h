@@ -8,6 +8,7 @@
 ///     performance_clock, _events, _queue, _statistics, _drums, _body, _motion    the parts alone
 ///     performance_contacts        sticks on heads: acts on motion, statistics and events
 ///     performance_report.c        reports: figures, rows of motion, `info`; the recording
+///     performance_pedal.c         the foot on a pedal: acts on motion
 ///     performance_setup.c         new, rebuild, reset: puts the parts together
 ///     performance_change.c        what a score has at beats: pedals, hands, pushes
 ///     performance_play.c, _take.c, _score.c     playing strokes, takes and scores
@@ -111,6 +112,10 @@ void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke);
 /// A change of a head in a score whose beat 0 is at beat `from`.
 void himc_written_change(himc_text_lines *lines, const himc_score_line *change, double from);
 void himc_written_units(himc_text_lines *lines, const himc_command *command);
+
+// performance_pedal.c
+/// Sends a foot of one who sits to the pedal that moves next, or back; a take shows its own.
+HIMC_RT void himc_performance_move_foot(himc_performance *p, double t);
 
 // performance_setup.c
 /// A performance that takes no commands yet; NULL with the reason.
