@@ -262,7 +262,7 @@ static void test_muscles_hold_his_arms_and_he_keeps_his_seat(void)
     himc_performance_free(p);
 }
 
-static void test_a_fall_is_told_once_and_the_piece_goes_on(void)
+static void test_a_fall_is_told_and_the_piece_goes_on(void)
 {
     himc_performance *p = seated(NULL);
     heard h = {.strike = NULL};
@@ -270,7 +270,7 @@ static void test_a_fall_is_told_once_and_the_piece_goes_on(void)
     session_do(p, "at 2 push trunk 1000 0 0 1");
     seen s = play(p, 6, &h);
     TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(s.last, s.begun)) < 0.1); // on his seat
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.all, "the player fell and was put back"), h.all);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.all, "the player fell at 1."), h.all);
     TEST_ASSERT_TRUE(himc_performance_measure(p).recoveries > 0);
     TEST_ASSERT_TRUE(h.strikes > 10);
     TEST_ASSERT_TRUE(h.strike[h.strikes - 1].time > 4.5);
@@ -342,7 +342,7 @@ int main(void)
     RUN_TEST(test_a_pelvis_that_is_free_can_be_pushed);
     RUN_TEST(test_he_does_not_bounce_on_his_seat);
     RUN_TEST(test_muscles_hold_his_arms_and_he_keeps_his_seat);
-    RUN_TEST(test_a_fall_is_told_once_and_the_piece_goes_on);
+    RUN_TEST(test_a_fall_is_told_and_the_piece_goes_on);
     RUN_TEST(test_both_engines_move_him_alike);
     RUN_TEST(test_other_laws_and_modes_sit_too);
     RUN_TEST(test_he_sits_on_a_high_stool_too);

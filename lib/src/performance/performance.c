@@ -18,15 +18,20 @@ static contact_scene scene_of(himc_performance *p)
                            .events = &p->events};
 }
 
-// Replaces an invalid state of the physics by that of the targets, and counts it; targets that are
-// not finite are replaced as well.
+// Replaces an invalid state of the physics by that of the targets, and counts it. A fall is told each
+// time. Targets that are not finite are replaced as well.
 static void recover(himc_performance *p, double t)
 {
-    bool fallen = himc_body_has_fallen(p->body);
-    if (himc_statistics_recovery(&p->statistics) == 0)
+    bool servo = p->body->controller.config.law != HIMC_LAW_COMPUTED_TORQUE;
+    long before = himc_statistics_recovery(&p->statistics);
+    if (himc_body_has_fallen(p->body))
+        himc_events_note(&p->events, "the player fell at %.1f s and was put back%s", t,
+                         servo && p->settings.stance == HIMC_STANCE_STANDING
+                             ? ": he keeps his balance with law computed-torque only"
+                             : "");
+    else if (before == 0)
         himc_events_note(&p->events,
-                         fallen ? "the player fell and was put back"
-                                : "the body flew apart at a physics rate of %g Hz and was put back",
+                         "the body flew apart at a physics rate of %g Hz and was put back",
                          p->clock.physics_rate);
     himc_motion_recover(p->motion, &p->settings, t);
     himc_body_place(p->body, &p->motion->from);
