@@ -14,6 +14,7 @@ const presets = {
 };
 
 export const ALONE = 0.45; // what the cameras show on either side of a performer with one drum (m)
+export const SEATED = 1.35; // what they show of his height, to the joint of the head (m)
 const FEET = 1.4, // how much farther off the feet are seen too; chosen
     FOV = 38, // of the height (degrees)
     ASIDE = 0.25, // of the spread: how far before the performer the camera then looks
@@ -37,6 +38,7 @@ export class View {
         this.whole = false; // nothing of the performer behind the writing, not his feet either
         this.deep = 0; // how much nearer to the camera the outer performers are (m)
         this.spread = 0; // of all, on either side beyond ALONE (m)
+        this.tall = 0; // of the tallest, beyond SEATED (m)
         this.pointers = new Map();
         this.preset("stage");
         this.settle();
@@ -71,14 +73,16 @@ export class View {
                 narrow = Math.max(1, 0.95 / Math.max(0.3, wide)),
                 above = this.whole ? FEET / (1 - 2 * this.lift) : 1 + 2 * this.lift, // what is left over the writing
                 half = Math.tan((FOV * Math.PI) / 360),
+                upright = ["stage", "front", "side"].includes(name) ? this.tall : 0,
                 near = name === "top" ? 0 : NEARER + Math.max(0, this.deep - ASIDE * this.spread);
             this.name = name;
             Object.assign(this.goal, {
                 azimuth,
                 elevation,
-                distance: Math.max(distance * Math.max(narrow, above), (ALONE + this.spread) / (half * wide) + near),
+                distance: Math.max((distance + (0.8 * upright) / half) * Math.max(narrow, above), (ALONE + this.spread) / (half * wide) + near),
             });
             this.goal.target.set(...target);
+            this.goal.target.z += 0.6 * upright; // and air over his head
             if (this.spread && name !== "top") this.goal.target.x += ASIDE * this.spread;
             if (this.follow(name)) this.goal.distance = distance * narrow;
         }

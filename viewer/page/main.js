@@ -2,7 +2,7 @@
 // the browser asks for one.
 import * as THREE from "./three.js";
 import { Stage, discard } from "./stage.js";
-import { ALONE, View } from "./camera.js";
+import { ALONE, SEATED, View } from "./camera.js";
 import { Stream } from "./stream.js";
 import { Performer } from "./performer.js";
 import { Drum } from "./drum.js";
@@ -269,10 +269,12 @@ function arrange(now) {
             (p.group.position.copy(here[0].group.position), (p.group.rotation.z = here[0].group.rotation.z));
     const last = Math.min(Math.PI / 2, ((n - 1) / 2) * step),
         wide = n > 1 ? radius * Math.sin(last) : 0,
-        spread = wide + Math.round(20 * Math.max(0, drumsReach - ALONE)) / 20;
+        spread = wide + Math.round(20 * Math.max(0, drumsReach - ALONE)) / 20,
+        high = here.reduce((most, p) => Math.max(most, p.height()), SEATED),
+        tall = Math.round(5 * (high - SEATED)) / 5; // so that a nod moves no camera
     stage.cover(0.35 * spread, spread + 1);
-    if (spread !== view.spread) {
-        ((view.spread = spread), (view.deep = n > 1 ? radius * (1 - Math.cos(last)) : 0));
+    if (spread !== view.spread || tall !== view.tall) {
+        ((view.spread = spread), (view.tall = tall), (view.deep = n > 1 ? radius * (1 - Math.cos(last)) : 0));
         if (view.name) view.preset(view.name);
     }
     return here[0];

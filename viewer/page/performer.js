@@ -153,6 +153,11 @@ export class Performer {
         return ["left-foot", "right-foot"].map(name => this.figure.bones[bone(name)].matrixWorld);
     }
 
+    // of the joint of his head (m)
+    height() {
+        return this.figure.bones[bone("head")].matrixWorld.elements[14];
+    }
+
     // drawn in one transparent colour, without a stool; `color` null: as a performer
     ghost(color) {
         if (this.ghostly === color) return;

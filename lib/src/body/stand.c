@@ -27,8 +27,8 @@
 #define TILT 8000.0 // moment over their angle (N m/rad)
 #define PRESS 7.1e5 // force over their depth (N/m)
 // how far from the middle of the soles the pressure is wanted at most; chosen: within the feet
-#define SOLE_HALF 0.08 // to heels and toes (m)
-#define FEET_HALF 0.16 // to the left and right (m)
+#define SOLE_HALF 0.095 // to heels and toes (m)
+#define FEET_HALF 0.16  // to the left and right (m)
 // the same of c0; chosen: half of it is left for blows
 #define GOAL_AHEAD 0.04   // (m)
 #define GOAL_ASIDE 0.06   // (m)
