@@ -542,7 +542,7 @@ check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n
     "40 notes are played as 3 rolls 0 3 single " ]
 refuses test_export_needs_an_output "no -o F.xml given" export
 refuses test_export_of_another_format_is_refused "-o: piece.mid, expected a name that ends with .xml" export piece.txt -o piece.mid
-refuses test_export_of_no_stance_is_refused '--stance: "standing", expected fixed or seated' export --stance standing -o x.xml
+refuses test_export_of_no_stance_is_refused 'expected fixed seated standing' export --stance lying -o x.xml
 refuses test_export_does_not_write_over_its_setup "named twice" export still.xml -o ./still.xml
 refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
 refuses test_import_does_not_write_over_its_source "named twice" import roll.mid -o ./roll.mid

@@ -152,7 +152,7 @@ enum { OUT, STANCE };
 static const cli_option options[] = {
     {"output", 'o', "F.xml", "the model; - is the standard output"},
     {"stance", 0, "STANCE",
-     "fixed: the pelvis is held; seated: it has a free joint; else as SETUP says"},
+     "fixed: the pelvis is held; seated, standing: it has a free joint; else as SETUP says"},
     {0},
 };
 
@@ -160,18 +160,18 @@ static bool export(const cli_arguments *arguments, himc_error *error)
 {
     const char *path = arguments->operand, *out = arguments->value[OUT];
     const char *stance = arguments->value[STANCE];
-    model m = {.free = stance && !strcmp(stance, "seated")};
+    model m = {.free = false};
     if (!out)
         return himc_error_set(error, "no -o F.xml given (himc export --help)");
-    if (stance && !m.free && strcmp(stance, "fixed"))
-        return himc_error_set(error, "--stance: \"%s\", expected fixed or seated", stance);
     if (!cli_ending_is("-o", out, ".xml", error) ||
         (path && (!(path = cli_input(path, error)) || !cli_apart(out, &path, 1, error))))
         return false;
     himc_performance *p = cli_load(path, RATE, NULL, error);
-    if (p && !stance)
+    bool good = p && (!stance || cli_tell(p, "stance", stance, error));
+    if (good) {
         m.free = himc_performance_plant(p)->segment[HIMC_PELVIS].joint == HIMC_JOINT_FREE;
-    bool good = p && write_model(&m, p, out, error);
+        good = write_model(&m, p, out, error);
+    }
     himc_performance_free(p);
     return good;
 }

@@ -18,8 +18,8 @@ static contact_scene scene_of(himc_performance *p)
                            .events = &p->events};
 }
 
-// Replaces an invalid state of the physics by that of the targets, and counts it. A fall is told each
-// time. Targets that are not finite are replaced as well.
+// Replaces an invalid state of the physics by that of the targets, and counts it; each fall is told.
+// Targets that are not finite are replaced as well.
 static void recover(himc_performance *p, double t)
 {
     bool servo = p->body->controller.config.law != HIMC_LAW_COMPUTED_TORQUE;

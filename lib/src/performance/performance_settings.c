@@ -1,10 +1,11 @@
 /// performance_settings.c: the table of settings, from the rows HIMC_SETTING_ROW of
 /// himc/command_rows.h.
 ///
-/// The kind of a row says how a command's atoms are read into the field, and how the field is told as
-/// a command. Three kinds serve most rows; a command that is more than its field has a kind of its
-/// own. Invariant: what is told is read as it was, bit by bit. Numbers are told in single precision,
-/// so one that equals the default in single precision is the default (himc_argument_usual).
+/// The kind of a row says how a command's atoms are read into the field, and how the field is told
+/// as a command. Three kinds serve most rows; a command that is more than its field has a kind of
+/// its own. Invariant: what is told is read as it was, bit by bit. Numbers are told in single
+/// precision, so one that equals the default in single precision is the default
+/// (himc_argument_usual).
 #include "performance/performance_settings.h"
 
 #include "base/argument.h"
