@@ -18,7 +18,7 @@ static contact_scene scene_of(himc_performance *p)
                            .events = &p->events};
 }
 
-// Replaces an invalid state of the physics by that of the targets, and counts it; each fall is told.
+// Replaces an invalid state of the physics by that of the targets, counts it and tells each fall.
 // Targets that are not finite are replaced as well.
 static void recover(himc_performance *p, double t)
 {
