@@ -18,10 +18,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RATE 48000                 // sample rate (Hz)
-#define BLOCK 64                   // (samples)
+#define RATE 48000                     // sample rate (Hz)
+#define BLOCK 64                       // (samples)
 #define KINDS (1 + 2 * HIMC_LAW_COUNT) // ik; id and himc under each law
-#define LEARNED 16                 // other takes that a regression is learned from, at most; chosen
+#define LEARNED 16 // other takes that a regression is learned from, at most; chosen
 
 typedef struct own_result {
     double rms, most;       ///< to the capture (m)
