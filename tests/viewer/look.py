@@ -11,8 +11,8 @@ from browser import Browser
 from scene import Scene
 
 BUILD, MADE = os.environ["HIMC_BUILD"], os.environ["HIMC_MADE"]  # by prepare.sh
-PLAY, FOUR, COMPARED, SEATED, PEDAL = (
-    os.path.join(MADE, f"{f}.himc") for f in ("play", "four", "compared", "seated", "pedal")
+PLAY, FOUR, COMPARED, SEATED, PEDAL, STANDING = (
+    os.path.join(MADE, f"{f}.himc") for f in ("play", "four", "compared", "seated", "pedal", "standing")
 )
 RESTS, PUSHED, LANDED = 4.5, 2.73, 2.98  # times in tests/viewer/seated.txt (s): his seat is left at the second
 WEIGHT = 736.4  # (N)
@@ -328,6 +328,17 @@ def test_lanes_of_seat_and_feet_are_those_of_one_who_sits_freely():
     show(PLAY, 5)
     assert browser.run(lanes)[-1] == "spectrum"
     return f"{drawn} pixels"
+
+
+def test_who_stands_is_seen_to_his_crown():
+    show(STANDING, 0.1)
+    seen = []
+    for camera in ("stage", "front", "side"):
+        head, floor = on_screen(camera, "[0.2, -1.6].map(up => { const [p] = viewer.performers.values(), v = p.points()[3].clone();"
+                                        " v.z += up; return v; })")
+        seen.append(head[1])
+        assert 0 < head[1] < 0.15 * HEIGHT and floor[1] < HEIGHT, (camera, head, floor)
+    return ", ".join(f"{y:.0f}" for y in seen) + " pixels over his crown"
 
 
 def test_a_scene_is_kept_in_few_bytes():

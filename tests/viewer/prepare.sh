@@ -19,7 +19,7 @@ for program in sender perform; do
 done
 "$HIMC_BUILD/bin/himc" render patches/improvisation.txt -o "$dir/play.wav" \
     --motion "$dir/motion.csv" --strokes "$dir/strokes.csv" --scene "$dir/play.himc" >/dev/null 2>&1 &&
-    for piece in four seated pedal; do
+    for piece in four seated pedal standing; do
         "$HIMC_BUILD/bin/himc" render tests/viewer/$piece.txt -o "$dir/$piece.wav" --scene "$dir/$piece.himc" \
             >/dev/null 2>&1 || exit 1
     done || exit 1
