@@ -91,7 +91,7 @@ static void refused(const char *text, const char *why)
 static void test_pushes_of_unknown_segments_or_too_hard_are_refused_in_one_line(void)
 {
     refused("push pelvis 1 0 0 1",
-            "push: pelvis: `stance fixed` holds it, expected `stance seated`");
+            "push: pelvis: `stance fixed` holds it, expected `stance seated` or `standing`");
     refused("push tail 1 0 0 1", "push: SEGMENT: tail, expected pelvis trunk neck");
     refused("push trunk 1 0 2000 1", "push: FZ: 2000, expected -1000 .. 1000 N");
     refused("push trunk 1 0 0 -1", "push: SECONDS: -1, expected 0 .. 10 s");

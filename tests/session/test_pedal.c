@@ -214,6 +214,39 @@ static void test_who_is_pushed_off_his_place_takes_his_foot_back(void)
     himc_performance_free(p);
 }
 
+// times he is put back within 7 s
+static long put_back(const char *gliss, const char *more)
+{
+    himc_performance *p = player("seated", FRONT);
+    session_do(p, "%s", gliss);
+    session_do(p, "%s", more);
+    session_do(p, "play");
+    session_play(p, 7, NULL);
+    long times = himc_performance_measure(p).recoveries;
+    himc_performance_free(p);
+    return times;
+}
+
+static void test_who_falls_with_a_foot_on_a_pedal_falls_once(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, put_back("at 3 kettle gliss A3 4", "at 6 push trunk 0 400 0 0.5"));
+}
+
+static void test_a_slow_task_rate_pedals_too(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, put_back(GLISS, "rate task 50"));
+}
+
+static void test_a_gliss_under_way_is_taken_up(void)
+{
+    himc_performance *p = player("seated", FRONT);
+    session_do(p, "kettle gliss A3 5");
+    session_do(p, "play");
+    session_play(p, 1, NULL);
+    TEST_ASSERT_TRUE(p->motion->foot.away);
+    himc_performance_free(p);
+}
+
 static void test_the_size_of_blocks_changes_no_bit(void)
 {
     static const int size[] = {480, 37};
@@ -241,6 +274,9 @@ int main(void)
     RUN_TEST(test_a_pedal_out_of_reach_is_left_alone_and_told);
     RUN_TEST(test_others_do_not_pedal);
     RUN_TEST(test_who_is_pushed_off_his_place_takes_his_foot_back);
+    RUN_TEST(test_who_falls_with_a_foot_on_a_pedal_falls_once);
+    RUN_TEST(test_a_slow_task_rate_pedals_too);
+    RUN_TEST(test_a_gliss_under_way_is_taken_up);
     RUN_TEST(test_the_size_of_blocks_changes_no_bit);
     return UNITY_END();
 }

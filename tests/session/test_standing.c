@@ -195,6 +195,30 @@ static void test_a_fall_is_told_and_the_piece_goes_on(void)
     himc_performance_free(p);
 }
 
+static void test_a_leg_that_is_pushed_to_the_other_makes_him_fall_in_one_piece(void)
+{
+    himc_performance *p = standing("strength human", 4, "f");
+    heard h = {.strike = NULL};
+    session_do(p, "at 4 push left-lower-leg 0 -300 100 0.3");
+    play(p, 4, &h);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(h.all, "the player fell at"), h.all);
+    TEST_ASSERT_NULL_MESSAGE(strstr(h.all, "flew apart"), h.all);
+    free(h.strike);
+    himc_performance_free(p);
+}
+
+static void test_tall_and_low_are_played_with_bent_knees(void)
+{
+    static const char *const setting[] = {"player 2.2 110", "kettle place 0.65 0 0.65"};
+    for (int i = 0; i < 2; i++) {
+        himc_performance *p = standing(setting[i], 8, "f");
+        play(p, 6, NULL);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(8, himc_performance_measure(p).played, setting[i]);
+        TEST_ASSERT_EQUAL_INT(0, himc_performance_measure(p).recoveries);
+        himc_performance_free(p);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -205,6 +229,8 @@ int main(void)
     RUN_TEST(test_he_plays_four_drums_and_mirrored_is_mirrored);
     RUN_TEST(test_he_is_quiet_after_a_loud_stroke);
     RUN_TEST(test_a_push_from_any_side_is_answered);
+    RUN_TEST(test_tall_and_low_are_played_with_bent_knees);
+    RUN_TEST(test_a_leg_that_is_pushed_to_the_other_makes_him_fall_in_one_piece);
     RUN_TEST(test_a_fall_is_told_and_the_piece_goes_on);
     return UNITY_END();
 }

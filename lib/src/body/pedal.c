@@ -31,7 +31,8 @@
 #define FOLLOWS 40.0      // (1/s)
 #define FADES 12.0        // afterwards, as the foot takes its load (1/s) ...
 #define SETTLES 0.8       // ... during that time (s)
-#define LONGEST_STEP 0.02 // (s)
+#define LONGEST_STEP 0.02 // after a time without ticks (s)
+#define STABLE 0.5        // rate of the filter times its step; from 0.7 on it grows
 // the trunk leans away from a foot that is lifted; measured: the seat then slips least
 #define LEANS_BACK 0.12  // (rad)
 #define LEANS_ASIDE 0.09 // (rad)
@@ -228,8 +229,8 @@ void himc_pedal_feel(himc_pedal_foot *f, const himc_body_state *s, himc_vec3 hom
     f->felt = t;
     if (!himc_pedal_moves(f, f->foot, t)) {
         f->sway = f->tilt = himc_target_at_rest(sway);
-    } else if (t >= f->heel.begun && !is_over(&f->heel, t)) { // with what the filter is late by
-        w = FOLLOWS;
+    } else if (t >= f->heel.begun && !is_over(&f->heel, t)) { // and the filter's delay, 3 / w
+        w = fmin(FOLLOWS, STABLE / fmax(dt, 1e-4));           // a slow task rate has long steps
         sway = himc_vec3_madd(himc_vec3_sub(s->origin[0], home), 3 / w, s->velocity);
         tilt = himc_vec3_madd(himc_quat_log(s->orientation[0]), 3 / w, s->spin[0]);
     }

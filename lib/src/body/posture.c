@@ -68,7 +68,7 @@
 // mass; his shoulders are higher, so he leans to places that one who sits reaches upright. Shares
 // of the height.
 #define STANDING_SHARE 0.53
-#define CROUCHING_SHARE 0.45
+#define CROUCHING_SHARE 0.40
 #define STANDING_OVER 0.06       // hips over the lowest impact, else the knees bend more (m)
 #define STANDING_ANKLES (-0.008) // before the hips
 #define STANDING_APART 0.08      // each leg to its side (rad): feet a shoulder's width apart

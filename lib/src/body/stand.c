@@ -4,34 +4,33 @@
 /// of pressure, both from the middle of the soles, z the height of c and c0 where c is wanted,
 ///     c'' = g/z (c - p)
 /// (the linear inverted pendulum: Kajita et al. 2001). He wants c'' = -w^2 (c - c0) - 2 w c', so p
-/// is to be at c - z/g c'', as far as the soles reach. Two things turn until it is there: the feet,
-/// as toes that go down have the pressure at them, and the pelvis sideways, as it loads the foot
-/// that it presses down. Forwards the hips keep the pelvis upright. So a blow of the arms reaches
-/// the ground.
+/// is to be at c - z/g c'', within the soles. Two rotations bring it there: the feet's (toes down:
+/// p goes forwards) and the pelvis' to the side (it loads the foot on the lower side). Forwards the
+/// hips keep the pelvis upright. So a blow of the arms reaches the ground.
 ///
-/// c0 is where c would be over soles that the pelvis had not left: he leans to a drum and his hips
-/// stay. Where c would come too near the edge of the soles, they go to the other side.
+/// c0 is c with the pelvis at its place, so the hips stay where he leans to a drum; but it keeps
+/// off the edge of the soles, and then the hips go to the other side.
 ///
-/// All this moves both legs alike; the difference between them is left to the posture, since a leg
-/// that carries nothing would swing where it likes. How thighs and shanks accelerate is taken from
-/// the last step: that depends on the ground, too, and not only on the torques of the joints.
+/// Both legs get the same correction; their difference is the soft posture's, since a leg without
+/// load has nothing else to go by. So a foot that is pushed up by 20 N can make him fall. How
+/// thighs and shanks accelerate is taken from the last step: that depends on the ground, too, and
+/// not only on the torques of the joints.
 #include "body/stand.h"
 
-#define SWAY 4.0    // w (rad/s); chosen: he is back in half a second
+#define SWAY 4.0    // w (rad/s); chosen: back at c0 in half a second
 #define UPRIGHT 3.0 // of the pelvis (Hz); chosen
 #define FOOT 6.0    // of the centre of pressure by the feet (Hz); chosen: faster than he sways
 #define LOAD 9.0   // of the same by the pelvis (Hz); chosen: a foot that has left the floor is back
 #define FOLLOW 3.0 // of c0 (1/s); chosen: slower than he sways
-#define QUICKEST 1.0 // sway (m/s^2); chosen: the pressure moves 0.1 m
+#define QUICKEST 1.0 // c'' (m/s^2); chosen: the pressure moves 0.1 m
 // of the floor under both soles; from support.c
-#define TILT 8000.0 // moment over their angle (N m/rad)
-#define PRESS 7.1e5 // force over their depth (N/m)
-// how far from the middle of the soles the pressure is wanted at most; chosen: within the feet
-#define SOLE_HALF 0.095 // to heels and toes (m)
-#define FEET_HALF 0.16  // to the left and right (m)
+#define TILT 8000.0     // moment over their angle (N m/rad)
+#define PRESS 7.1e5     // force over their depth (N/m)
+#define SOLE_HALF 0.095 // the pressure is wanted at most so far to heels and toes (m); chosen
 // the same of c0; chosen: half of it is left for blows
 #define GOAL_AHEAD 0.04   // (m)
 #define GOAL_ASIDE 0.06   // (m)
+#define CLOSED 0.05       // feet that are nearer to each other count as so far apart (m); chosen
 #define LEAST_WEIGHT 50.0 // of feet that have hardly any ground (N); chosen
 enum { HIP = HIMC_LEFT_UPPER_LEG - 1, KNEE = HIMC_LEFT_LOWER_LEG - 1, ANKLE = HIMC_LEFT_FOOT - 1 };
 
@@ -99,12 +98,12 @@ static himc_vec3 sway(const himc_stand *b)
     return himc_vec3_scale(a, size > QUICKEST ? QUICKEST / size : 1);
 }
 
-// the way of the centre of pressure to where that sway needs it (m)
+// from the centre of pressure to where that sway needs it (m)
 static himc_vec3 pressure_off(const himc_stand *b, himc_vec3 a)
 {
     himc_vec3 p = himc_vec3_madd(b->over, -b->over.z / HIMC_GRAVITY, a);
     return himc_vec3_make(within(p.x, SOLE_HALF) - b->pressed.x,
-                          within(p.y, FEET_HALF) - b->pressed.y, 0);
+                          within(p.y, b->aside) - b->pressed.y, 0);
 }
 
 static himc_vec3 mean(const himc_vec3 *pair)
@@ -122,13 +121,14 @@ static himc_vec3 turn(himc_vec3 angle, himc_vec3 spin, double frequency)
 void himc_stand_legs(himc_stand *b, const himc_body_state *s, himc_vec3 pelvis, double step,
                      himc_vec3 wanted[HIMC_JOINTS])
 {
+    double aside = fmax(b->aside, CLOSED);
     b->goal = himc_vec3_madd(b->goal, step * FOLLOW, himc_vec3_sub(b->stays, b->goal));
     himc_vec3 knees = mean(&wanted[KNEE]), spin = s->spin[HIMC_PELVIS];
     himc_vec3 usual_hips = mean(&wanted[HIP]), usual_ankles = mean(&wanted[ANKLE]);
     himc_vec3 moment = himc_vec3_scale(himc_vec3_cross(up, pressure_off(b, sway(b))), b->weight);
     himc_vec3 upright =
         turn(himc_vec3_scale(himc_quat_log(s->orientation[HIMC_PELVIS]), -1), spin, UPRIGHT);
-    himc_vec3 load = turn(himc_vec3_scale(moment, 1 / (PRESS * b->aside * b->aside)), spin, LOAD);
+    himc_vec3 load = turn(himc_vec3_scale(moment, 1 / (PRESS * aside * aside)), spin, LOAD);
     himc_vec3 feet = turn(himc_vec3_scale(moment, 1 / TILT), mean(&s->spin[HIMC_LEFT_FOOT]), FOOT);
     himc_vec3 thighs = himc_vec3_add(pelvis, b->hips);
     himc_vec3 hips = {thighs.x - load.x, thighs.y - upright.y, usual_hips.z};

@@ -4,7 +4,7 @@
 
 #include "body/support.h"
 
-/// Where he is over his feet; made anew in each step by himc_stand_feel, but for goal and hips.
+/// Where he is over his feet; computed again in each step by himc_stand_feel, except goal and hips.
 typedef struct himc_stand {
     bool standing;
     himc_vec3 over;    ///< centre of mass, from the middle of the soles (m)
@@ -17,7 +17,7 @@ typedef struct himc_stand {
     himc_vec3 hips;    ///< relative acceleration asked of both in the last step (rad/s^2)
 } himc_stand;
 
-/// Finds where this body is over its soles; nothing of one who does not stand.
+/// Measures centre of mass and pressure over the soles; of one who does not stand nothing.
 HIMC_RT void himc_stand_feel(himc_stand *stand, const himc_support *support,
                              const himc_skeleton *skeleton, const himc_body_state *state);
 

@@ -30,7 +30,7 @@ double himc_drum_pedal(const himc_drum *drum, double *octaves)
     double tension =
         himc_drum_glides(drum) ? g->tension : himc_membrane_config_of(drum->membrane)->head.tension;
     *octaves = 0.5 * log2(tension / drum->set.usual.tension);
-    return g->seconds;
+    return himc_drum_gliss_rest(drum);
 }
 
 static int samples_of_step(const himc_drum *drum)
@@ -60,7 +60,6 @@ static bool begin(himc_drum *drum, const himc_membrane_config *to, double second
         g->goal = goal;
     }
     g->tension = to->head.tension;
-    g->seconds = seconds;
     g->left = (int)fmax(1, round(seconds / GLISS_STEP));
     g->next = drum->time + (uint64_t)samples_of_step(drum);
     return true;
@@ -81,7 +80,6 @@ bool himc_drum_take_head(himc_drum *drum, const himc_membrane_config *to, double
                (goes_on || begin(drum, to, seconds, made, error));
     }
     g->left = 0;
-    g->seconds = 0;
     if (!made || !*made)
         return himc_membrane_become(drum->membrane, to, error);
     *made = himc_membrane_exchange(drum->membrane, *made);

@@ -42,7 +42,6 @@ typedef struct drum_told_head {
 typedef struct drum_gliss {
     himc_model *goal; ///< owned; the head at the end; else of no use, or NULL
     double tension;   ///< there (N/m)
-    double seconds;   ///< of the last one that moved
     int left;         ///< steps to go; 0: the pedal rests
     uint64_t next;    ///< sample before which the next step is made
 } drum_gliss;

@@ -22,14 +22,15 @@ static contact_scene scene_of(himc_performance *p)
 // Targets that are not finite are replaced as well.
 static void recover(himc_performance *p, double t)
 {
-    bool servo = p->body->controller.config.law != HIMC_LAW_COMPUTED_TORQUE;
-    long before = himc_statistics_recovery(&p->statistics);
-    if (himc_body_has_fallen(p->body))
+    bool servo = p->body->controller.config.law != HIMC_LAW_COMPUTED_TORQUE,
+         fell = himc_body_has_fallen(p->body),
+         tell = himc_statistics_recovery(&p->statistics, fell);
+    if (tell && fell)
         himc_events_note(&p->events, "the player fell at %.1f s and was put back%s", t,
                          servo && p->settings.stance == HIMC_STANCE_STANDING
                              ? ": he keeps his balance with law computed-torque only"
                              : "");
-    else if (before == 0)
+    else if (tell)
         himc_events_note(&p->events,
                          "the body flew apart at a physics rate of %g Hz and was put back",
                          p->clock.physics_rate);

@@ -373,6 +373,6 @@ bool himc_body_read_push(const himc_command *c, himc_stance stance, planned_push
         if (strcmp(atom[0].symbol, himc_segment_name(out->segment)) == 0)
             return out->segment != HIMC_PELVIS || stance != HIMC_STANCE_FIXED ||
                    himc_error_set(error, "push: pelvis: `stance fixed` holds it, expected `stance "
-                                         "seated`");
+                                         "seated` or `standing`");
     return refuse_name("push: SEGMENT", atom[0].symbol, himc_segment_name, HIMC_SEGMENTS, error);
 }

@@ -539,6 +539,11 @@ bool himc_motion_is_finite(const performance_motion *m)
 
 void himc_motion_recover(performance_motion *m, const performance_settings *s, double t)
 {
+    if (himc_pedal_moves(&m->foot, m->foot.foot, t)) { // both feet are on the floor again
+        m->foot = (himc_pedal_foot){.away = false};
+        fill_tick(m, s, &m->from, t);
+        m->replan = true;
+    }
     if (himc_motion_is_finite(m))
         return;
     himc_planner_recover(m->planner, t);

@@ -15,7 +15,7 @@
 #define UNSTEADY 0.025      // ... and needs it back so far from it (m)
 #define PEDAL_QUICKEST 0.12 // of a foot that tunes at once (s)
 
-// somebody moves the pedal of that drum now, or the score does within `ahead` (s)
+// the pedal of that drum moves now, or the score does within `ahead` (s)
 static bool pedal_moves(const performance_motion *m, const performance_drums *drums, int index,
                         double t, double ahead)
 {
@@ -33,7 +33,7 @@ static double angle_of(const performance_motion *m, int index)
     return himc_pedal_angle(m->pedal[index].octaves);
 }
 
-// a foot on a pedal turns with it, and one is wanted where a `gliss` without a score moves it
+// a foot on a pedal turns with it, and a `gliss` without a score asks for one
 static void see_pedals(performance_motion *m, const performance_drums *drums, double t)
 {
     for (int i = 0; i < drums->count; i++) {
@@ -43,7 +43,7 @@ static void see_pedals(performance_motion *m, const performance_drums *drums, do
         double takes = fmax(seconds, PEDAL_QUICKEST);
         p->known = true;
         p->octaves = octaves;
-        if (moved && (seconds > 0 || on))
+        if (seconds > 0 || (moved && on))
             p->until = t + takes + PEDAL_STAYS;
         if (moved && on)
             himc_pedal_press(&m->foot, angle_of(m, i), t, takes);

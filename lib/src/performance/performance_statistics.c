@@ -109,11 +109,14 @@ void himc_statistics_contact_work(performance_statistics *s, himc_hand hand, dou
     s->mallet[hand] += own;
 }
 
-long himc_statistics_recovery(performance_statistics *s)
+bool himc_statistics_recovery(performance_statistics *s, bool fell)
 {
+    bool tell = fell || !s->told_apart;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         s->apex[hand] = 0;
-    return s->told.recoveries++;
+    s->told_apart |= !fell;
+    s->told.recoveries++;
+    return tell;
 }
 
 himc_performance_stats himc_statistics_told(const performance_statistics *s)

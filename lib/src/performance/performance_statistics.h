@@ -23,6 +23,7 @@ typedef struct performance_statistics {
     double captured_most;                   ///< the largest of them (m^2)
     double impact_sum, captured_impact_sum; ///< of the same impacts, played and captured (m/s)
     double rate[HIMC_JOINTS];               ///< largest squared rate of each joint (rad^2/s^2)
+    bool told_apart;                        ///< the body has flown apart
     bool told_fast;                         ///< himc_statistics_too_fast has been true
     double torque[HIMC_JOINTS];             ///< largest squared torque (N^2 m^2)
     double given;                           ///< by sticks to heads (J)
@@ -63,8 +64,9 @@ HIMC_RT void himc_statistics_hit(performance_statistics *statistics, double late
 /// Adds the work of a head on a stick (J), of which `own` is on the mallet's own mass.
 HIMC_RT void himc_statistics_contact_work(performance_statistics *statistics, himc_hand hand,
                                           double work, double own);
-/// Counts a state that was not finite and was replaced; returns the count before.
-HIMC_RT long himc_statistics_recovery(performance_statistics *statistics);
+/// Counts a body that was put back, after a fall or because it flew apart; true if that is to be
+/// told: each fall, and the first time that it flew apart.
+HIMC_RT bool himc_statistics_recovery(performance_statistics *statistics, bool fell);
 
 /// The figures; 0 in the fields that this part does not measure.
 HIMC_RT himc_performance_stats himc_statistics_told(const performance_statistics *statistics);
