@@ -72,7 +72,7 @@
 #define STANDING_OVER 0.06       // hips over the lowest impact, else the knees bend more (m)
 #define STANDING_ANKLES (-0.008) // before the hips
 #define STANDING_APART 0.08      // each leg to its side (rad): feet a shoulder's width apart
-#define STANDING_LEANS_BEYOND 0.22
+#define STANDING_LEANS_BEYOND 0.20
 #define LOWEST_STOOL 0.3 // (m)
 // A point in reach of every body (himc_posture_reachable). Chosen: in front of the shoulder.
 #define REACHED_AHEAD 0.27 // of the body's height, from the world's origin
