@@ -27,7 +27,7 @@
 #define TILT 8000.0     // moment over their angle (N m/rad)
 #define PRESS 7.1e5     // force over their depth (N/m)
 #define SOLE_HALF 0.095 // the pressure is wanted at most so far to heels and toes (m); chosen
-// the same of c0; chosen: half of it is left for blows
+// c0 is at most so far from the middle of the soles; chosen: half of them is left for blows
 #define GOAL_AHEAD 0.04   // (m)
 #define GOAL_ASIDE 0.06   // (m)
 #define CLOSED 0.05       // feet that are nearer to each other count as so far apart (m); chosen

@@ -9,8 +9,8 @@
 #include "body/stand.h"
 #include "control/tracking_error.h"
 
-/// What holds the body; made anew in each step by himc_balance_feel, but for the
-/// acceleration and what a stand keeps.
+/// What holds the body; computed again in each step by himc_balance_feel, except the
+/// acceleration and what `stand` keeps.
 typedef struct himc_balance {
     himc_spatial acceleration;   ///< of the pelvis in the last step (rad/s^2, m/s^2); 0 at first
     himc_spatial carried;        ///< wrench of all supports, about the pelvis' origin (N m, N)
