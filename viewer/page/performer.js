@@ -150,7 +150,7 @@ export class Performer {
 
     // their places in the group's frame (m)
     feet() {
-        return ["left-foot", "right-foot"].map(name => this.figure.bones[bone(name)].matrixWorld);
+        return ["left", "right"].map(side => this.figure.bones[bone(`${side}-foot`)].matrixWorld);
     }
 
     // of the joint of his head (m)
