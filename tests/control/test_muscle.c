@@ -5,11 +5,13 @@
 #include "unity.h"
 
 #include <math.h>
+#include <string.h>
 
 #define STEP 1e-4
 
 static const bool none[HIMC_HANDS], left[HIMC_HANDS] = {[HIMC_LEFT] = true};
 static double strength[HIMC_JOINTS];
+static himc_vec3 rate[HIMC_JOINTS];
 static himc_muscles muscles;
 
 void setUp(void)
@@ -17,16 +19,24 @@ void setUp(void)
     for (int j = 0; j < HIMC_JOINTS; j++)
         strength[j] = 40;
     himc_muscles_rest(&muscles);
+    memset(rate, 0, sizeof rate);
 }
 void tearDown(void)
 {
+}
+
+static const double own[HIMC_HANDS] = {1, 1};
+
+static void act_on(const bool struck[HIMC_HANDS], himc_vec3 torque[HIMC_JOINTS])
+{
+    himc_muscles_act(&muscles, &(himc_muscle_input){struck, own, strength, rate, STEP}, torque);
 }
 
 static void act(const bool struck[HIMC_HANDS], double asked, himc_vec3 torque[HIMC_JOINTS])
 {
     for (int j = 0; j < HIMC_JOINTS; j++)
         torque[j] = himc_vec3_make(asked, -0.5 * asked, 0);
-    himc_muscles_act(&muscles, struck, strength, STEP, torque);
+    act_on(struck, torque);
 }
 
 static void test_without_a_contact_torques_are_those_of_the_law(void)
@@ -55,6 +65,28 @@ static void test_in_a_contact_torques_hold_but_for_a_share_of_the_strength(void)
     TEST_ASSERT_EQUAL_DOUBLE(300, torque[HIMC_TRUNK - 1].x);
 }
 
+// in a contact, and while the arm draws on its reserve, against what the rate has too much
+static void test_muscles_that_pull_on_both_sides_resist(void)
+{
+    himc_vec3 torque[HIMC_JOINTS];
+    double astray[HIMC_HANDS] = {1.5, 1};
+    himc_muscle_input in = {none, astray, strength, rate, STEP};
+    int j = himc_arm_joint(HIMC_LEFT, 1), other = himc_arm_joint(HIMC_RIGHT, 1);
+    rate[j] = rate[other] = himc_vec3_make(0, 0, -8);
+    memset(torque, 0, sizeof torque);
+    himc_muscles_act(&muscles, &in, torque);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -0.5 * 1.5 * 8, torque[j].z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 6.0 / 40, muscles.co_contraction[j]);
+    TEST_ASSERT_EQUAL_DOUBLE(0, torque[other].z);
+    memset(torque, 0, sizeof torque);
+    act_on((bool[HIMC_HANDS]){false, true}, torque);
+    TEST_ASSERT_EQUAL_DOUBLE(0, torque[j].z);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -12, torque[other].z);
+    rate[other].z = -1000; // within its strength
+    act_on((bool[HIMC_HANDS]){false, true}, torque);
+    TEST_ASSERT_TRUE(torque[other].z > -2 * 40 && torque[other].z < -40);
+}
+
 // what an elbow no longer gives against a shoulder would whirl the upper arm
 static void test_the_torques_of_an_arm_stay_together(void)
 {
@@ -65,7 +97,7 @@ static void test_the_torques_of_an_arm_stay_together(void)
     for (int i = 0; i < 100; i++) {
         for (int j = 0; j < HIMC_JOINTS; j++)
             torque[j] = himc_vec3_make(0, j == elbow ? 40 : 20, 0);
-        himc_muscles_act(&muscles, left, strength, STEP, torque);
+        act_on(left, torque);
         double done = (20 - torque[shoulder].x) / 20;
         TEST_ASSERT_TRUE(done > 0 && done < 0.5);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 20 - 20 * done, torque[elbow].x);
@@ -105,6 +137,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_without_a_contact_torques_are_those_of_the_law);
     RUN_TEST(test_in_a_contact_torques_hold_but_for_a_share_of_the_strength);
+    RUN_TEST(test_muscles_that_pull_on_both_sides_resist);
     RUN_TEST(test_the_torques_of_an_arm_stay_together);
     RUN_TEST(test_after_a_contact_the_law_has_its_torques_back_without_a_jump);
     RUN_TEST(test_a_joint_without_a_strength_has_no_muscle);

@@ -5,6 +5,7 @@
 #include "body/posture.h"
 #include "control/balance.h"
 #include "control/settle.h"
+#include "control/strength.h"
 
 #include "bodies.h"
 #include "unity.h"
@@ -69,6 +70,38 @@ static double trunk_and_legs_miss(void)
     return miss;
 }
 
+// one share of what was wanted in the whole arm; the other arm, trunk and legs are left alone
+static void test_an_arm_that_is_too_weak_does_the_same_slower(void)
+{
+    int slower = 0;
+    for (int n = 0; n < 100; n++) {
+        himc_vec3 before[HIMC_JOINTS], torque[HIMC_JOINTS];
+        prepare(n % 2);
+        controller.config.human_strength = true;
+        int weak = himc_arm_joint(HIMC_LEFT, n % 2);
+        memset(controller.config.strength, 0, sizeof controller.config.strength);
+        controller.config.strength[weak] = 0.8 * himc_vec3_length(asked[weak]);
+        memcpy(before, wanted, sizeof before);
+        double most =
+            himc_strength_most(&controller, &skeleton, &state, weak, reserve, asked[weak]);
+        himc_slow_weak_arms(&controller, &skeleton, &state, reserve, wanted, asked);
+        himc_invert(&controller, &skeleton, &state, wanted, torque);
+        double share = wanted[weak].x / before[weak].x;
+        TEST_ASSERT_TRUE(share >= 0.3 && share <= 1);
+        for (int j = 0; j < HIMC_JOINTS; j++) {
+            bool of_it = of_an_arm(j) && (j - (HIMC_LEFT_UPPER_ARM - 1)) % HIMC_HANDS == 0;
+            himc_vec3 rest = himc_vec3_madd(wanted[j], of_it ? -share : -1, before[j]);
+            TEST_ASSERT_TRUE(himc_vec3_length(rest) < 1e-9);
+            TEST_ASSERT_TRUE(himc_vec3_length(himc_vec3_sub(torque[j], asked[j])) < 1e-9);
+        }
+        if (share > 0.31 && share < 1) { // as much as it can; a free pelvis brings the other arm in
+            TEST_ASSERT_DOUBLE_WITHIN(0.02 * most, most, himc_vec3_length(asked[weak]));
+            slower++;
+        }
+    }
+    TEST_ASSERT_TRUE(slower > 20);
+}
+
 static void test_trunk_and_legs_move_as_wanted_whatever_the_arms_give(void)
 {
     for (int n = 0; n < 200; n++) {
@@ -122,6 +155,7 @@ static void test_a_waist_gives_no_more_than_its_strength_and_an_arms_reserve(voi
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_an_arm_that_is_too_weak_does_the_same_slower);
     RUN_TEST(test_trunk_and_legs_move_as_wanted_whatever_the_arms_give);
     RUN_TEST(test_the_arms_accelerations_become_those_of_their_torques);
     RUN_TEST(test_arms_that_give_what_was_asked_change_nothing);

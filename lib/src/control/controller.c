@@ -42,12 +42,15 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     law->find(&in, law->accelerates ? wanted : asked);
     if (law->accelerates)
         himc_invert(c, skeleton, s, wanted, asked);
-    memcpy(torque, asked, sizeof asked);
     for (int hand = 0; c->config.human_strength && hand < HIMC_HANDS; hand++)
         reserve[hand] = himc_strength_reserve(c, reference, s, (himc_hand)hand);
+    if (law->accelerates && c->config.human_strength)
+        himc_slow_weak_arms(c, skeleton, s, reserve, wanted, asked);
+    memcpy(torque, asked, sizeof asked);
     himc_strength_apply(c, skeleton, s, reserve, torque);
+    himc_muscle_input muscles = {reference->struck, reserve, c->config.strength, e.rate, c->step};
     if (c->muscles && c->config.human_strength)
-        himc_muscles_act(c->muscles, reference->struck, c->config.strength, c->step, torque);
+        himc_muscles_act(c->muscles, &muscles, torque);
     if (law->accelerates)
         himc_settle(c, skeleton, s, reserve, wanted, asked, torque);
 }

@@ -18,6 +18,9 @@
 #define RECOVERED 8.0    // of the strength, which co-contraction then may have: all, and a reserve
 // co-contraction over strength from shoulder to grip; chosen: slow heavy joints are soft
 static const double shares[HIMC_ARM_JOINTS] = {0.20, 0.25, 0.25, 0.25};
+// of co-contracted muscles (N m s/rad), likewise; chosen: without it an arm that is nearly straight
+// is whirled about its length, where it is light, by what its joints do not agree about
+static const double viscosity[HIMC_ARM_JOINTS] = {3, 1.5, 0.3, 0.03};
 
 void himc_muscles_rest(himc_muscles *m)
 {
@@ -30,43 +33,58 @@ static double over(double strength, double share, himc_vec3 missing)
     return strength > 0 ? share * strength / himc_vec3_length(missing) : HUGE_VAL;
 }
 
-static void hold(himc_muscles *m, himc_hand hand, double more, const double strength[HIMC_JOINTS],
-                 double h, himc_vec3 torque[HIMC_JOINTS])
+static void hold(himc_muscles *m, himc_hand hand, double more, const himc_muscle_input *in,
+                 himc_vec3 torque[HIMC_JOINTS])
 {
     double rise = 1, share = 1;
     himc_vec3 missing[HIMC_ARM_JOINTS];
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
         missing[k] = himc_vec3_sub(torque[j], m->active[j]);
-        rise = fmin(rise, over(strength[j], h / ACTIVATION, missing[k]));
+        rise = fmin(rise, over(in->strength[j], in->h / ACTIVATION, missing[k]));
     }
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
-        m->active[j] = himc_vec3_madd(m->active[j], strength[j] > 0 ? rise : 1, missing[k]);
+        m->active[j] = himc_vec3_madd(m->active[j], in->strength[j] > 0 ? rise : 1, missing[k]);
         missing[k] = himc_vec3_sub(torque[j], m->active[j]);
-        share = fmin(share, over(strength[j], shares[k] + more, missing[k]));
+        share = fmin(share, over(in->strength[j], shares[k] + more, missing[k]));
     }
     for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
         torque[j] = himc_vec3_madd(m->active[j], share, missing[k]);
         m->co_contraction[j] =
-            strength[j] > 0 ? share * himc_vec3_length(missing[k]) / strength[j] : 0;
+            in->strength[j] > 0 ? share * himc_vec3_length(missing[k]) / in->strength[j] : 0;
     }
 }
 
-void himc_muscles_act(himc_muscles *m, const bool struck[HIMC_HANDS],
-                      const double strength[HIMC_JOINTS], double h, himc_vec3 torque[HIMC_JOINTS])
+// muscles that pull on both sides of a joint resist its speed, whatever is asked of them
+static void resist(himc_muscles *m, himc_hand hand, double tense, const himc_muscle_input *in,
+                   himc_vec3 torque[HIMC_JOINTS])
+{
+    for (int k = 0; tense > 0 && k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        himc_vec3 brakes = himc_vec3_scale(in->rate[j], tense * viscosity[k]);
+        if (in->strength[j] <= 0)
+            continue;
+        brakes = himc_vec3_scale(brakes, fmin(over(in->strength[j], 1, brakes), 1));
+        torque[j] = himc_vec3_add(torque[j], brakes);
+        m->co_contraction[j] += himc_vec3_length(brakes) / in->strength[j];
+    }
+}
+
+void himc_muscles_act(himc_muscles *m, const himc_muscle_input *in, himc_vec3 torque[HIMC_JOINTS])
 {
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
-        m->since[hand] = struck[hand] ? 0 : m->since[hand] + h;
+        m->since[hand] = in->struck[hand] ? 0 : m->since[hand] + in->h;
         double u = m->since[hand] / RECOVERY;
         if (u < 1)
-            hold(m, hand, RECOVERED * u * u, strength, h, torque);
+            hold(m, hand, RECOVERED * u * u, in, torque);
         for (int k = 0; u >= 1 && k < HIMC_ARM_JOINTS; k++) {
             int j = himc_arm_joint(hand, k);
             m->active[j] = torque[j];
             m->co_contraction[j] = 0;
         }
+        resist(m, hand, u < 1 ? 1 : fmin(in->reserve[hand] - 1, 1), in, torque);
     }
 }

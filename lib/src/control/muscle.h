@@ -15,10 +15,17 @@ typedef struct himc_muscles {
 /// No contact has been.
 HIMC_RT void himc_muscles_rest(himc_muscles *muscles);
 
-/// One step of `h` (s) from the torques that the law asks for to those that muscles of that
-/// strength give (N m; 0: no maximum, no muscle), with hands that touch in a stroke.
-HIMC_RT void himc_muscles_act(himc_muscles *muscles, const bool struck[HIMC_HANDS],
-                              const double strength[HIMC_JOINTS], double h,
+/// What muscles feel in one step of `h` (s).
+typedef struct himc_muscle_input {
+    const bool *struck;     ///< hands that touch in a stroke
+    const double *reserve;  ///< of each arm (strength.h)
+    const double *strength; ///< of the joints (N m); 0: no maximum, no muscle
+    const himc_vec3 *rate;  ///< what the joints' rates miss (rad/s)
+    double h;
+} himc_muscle_input;
+
+/// From the torques that the law asks for to those that muscles give (N m).
+HIMC_RT void himc_muscles_act(himc_muscles *muscles, const himc_muscle_input *in,
                               himc_vec3 torque[HIMC_JOINTS]);
 
 #endif

@@ -6,6 +6,11 @@
 /// So the arms' accelerations under their true torques are found, by the sweeps of fwdyn.c over an
 /// arm whose shoulder moves as wanted, and inverse dynamics is asked again with them. What the
 /// pelvis then does changes the arms' torques a little: two rounds leave a fiftieth of that.
+///
+/// Torques that are cut short joint by joint do not agree any more: an arm that is nearly straight,
+/// at the end of its reach, was whirled and threw the player off his feet. So first an arm that is
+/// too weak accelerates less, the same way: its torques go towards those with which its joints keep
+/// their rates. What is missing then is cut (strength.c).
 #include "control/settle.h"
 
 #include "body/dynamics.h"
@@ -15,6 +20,9 @@
 #include <string.h>
 
 #define ROUNDS 2
+// of what is wanted; chosen: with less, one joint that is fast and has no strength left stops all
+#define LEAST_SHARE 0.3
+enum { ARMS = HIMC_LEFT_UPPER_ARM - 1, ARMS_END = HIMC_LEFT_UPPER_LEG - 1 };
 
 void himc_invert(const himc_controller *c, const himc_skeleton *skeleton, const himc_body_state *s,
                  const himc_vec3 wanted[HIMC_JOINTS], himc_vec3 torque[HIMC_JOINTS])
@@ -23,6 +31,43 @@ void himc_invert(const himc_controller *c, const himc_skeleton *skeleton, const 
         himc_balance_torques(c, skeleton, s, wanted, torque);
     else
         himc_inverse_dynamics_of(skeleton, s, c->articulation, wanted, NULL, torque, NULL);
+}
+
+// the largest share of the way from a to b that is no longer than `most`, 0 .. 1
+static double share_within(himc_vec3 a, himc_vec3 b, double most)
+{
+    himc_vec3 way = himc_vec3_sub(b, a);
+    double square = himc_vec3_dot(way, way), along = himc_vec3_dot(a, way);
+    double left = most * most - himc_vec3_dot(a, a);
+    if (himc_vec3_length(b) <= most)
+        return 1;
+    return left > 0 ? (sqrt(along * along + square * left) - along) / square : 0;
+}
+
+void himc_slow_weak_arms(const himc_controller *c, const himc_skeleton *skeleton,
+                         const himc_body_state *s, const double reserve[HIMC_HANDS],
+                         himc_vec3 wanted[HIMC_JOINTS], himc_vec3 asked[HIMC_JOINTS])
+{
+    himc_vec3 steady[HIMC_JOINTS], keeps[HIMC_JOINTS];
+    double most[HIMC_JOINTS];
+    bool weak = false;
+    memcpy(steady, wanted, sizeof steady);
+    for (int j = ARMS; j < ARMS_END; j++) {
+        most[j] = himc_strength_most(c, skeleton, s, j, reserve, asked[j]);
+        weak |= himc_vec3_length(asked[j]) > most[j];
+        steady[j] = himc_vec3_make(0, 0, 0);
+    }
+    if (!weak)
+        return;
+    himc_invert(c, skeleton, s, steady, keeps);
+    for (int i = 0; i < HIMC_HANDS; i++) {
+        double share = 1;
+        for (int j = ARMS + i; j < ARMS_END; j += HIMC_HANDS)
+            share = fmin(share, share_within(keeps[j], asked[j], most[j]));
+        for (int j = ARMS + i; j < ARMS_END; j += HIMC_HANDS)
+            wanted[j] = himc_vec3_scale(wanted[j], fmax(share, LEAST_SHARE));
+    }
+    himc_invert(c, skeleton, s, wanted, asked);
 }
 
 // adds what these torques at an arm's joints, and none elsewhere, make of its relative
@@ -53,22 +98,21 @@ void himc_settle(const himc_controller *c, const himc_skeleton *skeleton, const 
                  const double reserve[HIMC_HANDS], himc_vec3 wanted[HIMC_JOINTS],
                  const himc_vec3 asked[HIMC_JOINTS], himc_vec3 given[HIMC_JOINTS])
 {
-    const int arms = HIMC_LEFT_UPPER_ARM - 1, end = HIMC_LEFT_UPPER_LEG - 1;
     himc_articulation own;
     himc_vec3 more[HIMC_JOINTS], now[HIMC_JOINTS];
-    if (memcmp(&asked[arms], &given[arms], sizeof *given * (size_t)(end - arms)) == 0)
+    if (memcmp(&asked[ARMS], &given[ARMS], sizeof *given * (ARMS_END - ARMS)) == 0)
         return;
     const himc_articulation *art = himc_strength_articulation(c, skeleton, s, &own);
     memcpy(now, asked, sizeof now);
     for (int round = 0; round < ROUNDS; round++) {
-        for (int j = arms; j < end; j++)
+        for (int j = ARMS; j < ARMS_END; j++)
             more[j] = himc_vec3_sub(given[j], now[j]);
         accelerate_arm(art, HIMC_LEFT, more, wanted);
         accelerate_arm(art, HIMC_RIGHT, more, wanted);
         himc_invert(c, skeleton, s, wanted, now);
     }
     for (int j = 0; j < HIMC_JOINTS; j++)
-        if (j < arms || j >= end) {
+        if (j < ARMS || j >= ARMS_END) {
             given[j] = now[j];
             himc_strength_bound(c, skeleton, s, j, reserve, &given[j]);
         }

@@ -10,6 +10,12 @@ HIMC_RT void himc_invert(const himc_controller *controller, const himc_skeleton 
                          const himc_body_state *state, const himc_vec3 wanted[HIMC_JOINTS],
                          himc_vec3 torque[HIMC_JOINTS]);
 
+/// Where an arm is too weak for the torques of `asked`, it does what is `wanted` of it slower, all
+/// its joints by one share; `asked` becomes the torques for that.
+HIMC_RT void himc_slow_weak_arms(const himc_controller *controller, const himc_skeleton *skeleton,
+                                 const himc_body_state *state, const double reserve[HIMC_HANDS],
+                                 himc_vec3 wanted[HIMC_JOINTS], himc_vec3 asked[HIMC_JOINTS]);
+
 /// himc_invert asked for `asked`, and the arms have the torques of `given`: those of trunk and legs
 /// that make the accelerations wanted of them all the same are put into `given`, within their
 /// strength times `reserve` (strength.h). `wanted` becomes what the arms do.

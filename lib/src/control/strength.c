@@ -101,17 +101,26 @@ static himc_vec3 shorten(himc_vec3 asked, double most, const himc_symmetric *a)
     return himc_vec3_scale(t, most / himc_vec3_length(t));
 }
 
+double himc_strength_most(const himc_controller *c, const himc_skeleton *skeleton,
+                          const himc_body_state *s, int joint, const double reserve[HIMC_HANDS],
+                          himc_vec3 torque)
+{
+    double asked = himc_vec3_length(torque), strength = c->config.strength[joint];
+    if (strength <= 0 || asked <= 0)
+        return HUGE_VAL;
+    // what a muscle of this strength has left at the joint's speed along the torque
+    double speed = himc_vec3_dot(himc_relative_spin(skeleton, s, joint), torque) / asked;
+    double own = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
+    return own * reserve_of(joint, reserve);
+}
+
 bool himc_strength_bound(const himc_controller *c, const himc_skeleton *skeleton,
                          const himc_body_state *s, int joint, const double reserve[HIMC_HANDS],
                          himc_vec3 *torque)
 {
-    double asked = himc_vec3_length(*torque), strength = c->config.strength[joint];
-    if (strength <= 0 || asked <= 0)
-        return false;
-    // what a muscle of this strength has left at the joint's speed along the torque
-    double speed = himc_vec3_dot(himc_relative_spin(skeleton, s, joint), *torque) / asked;
-    double own = strength * fmin(fmax(1 - speed / FASTEST, 0), 1);
-    double most = own * reserve_of(joint, reserve);
+    double asked = himc_vec3_length(*torque);
+    double most = himc_strength_most(c, skeleton, s, joint, reserve, *torque);
+    bool weak = asked * reserve_of(joint, reserve) > most;
     if (asked > most) {
         himc_articulation here;
         const himc_articulation *art = himc_strength_articulation(c, skeleton, s, &here);
@@ -119,7 +128,7 @@ bool himc_strength_bound(const himc_controller *c, const himc_skeleton *skeleton
         *torque = moves ? shorten(*torque, most, &art->inverse[joint + 1])
                         : himc_vec3_scale(*torque, most / asked);
     }
-    return asked > own;
+    return weak;
 }
 
 void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton,

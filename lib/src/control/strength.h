@@ -16,8 +16,13 @@ HIMC_RT double himc_strength_reserve(const himc_controller *controller,
                                      const himc_reference *reference, const himc_body_state *state,
                                      himc_hand hand);
 
-/// Shortens a joint's torque to its maximum at the joint's speed, times the reserve of its arm;
-/// false: it was within that maximum.
+/// The joint's maximum at its speed along this torque, times the reserve of its arm (N m); infinite
+/// without one.
+HIMC_RT double himc_strength_most(const himc_controller *controller, const himc_skeleton *skeleton,
+                                  const himc_body_state *state, int joint,
+                                  const double reserve[HIMC_HANDS], himc_vec3 torque);
+
+/// Shortens a joint's torque to that maximum; false: it was within that of a man without reserve.
 HIMC_RT bool himc_strength_bound(const himc_controller *controller, const himc_skeleton *skeleton,
                                  const himc_body_state *state, int joint,
                                  const double reserve[HIMC_HANDS], himc_vec3 *torque);
