@@ -71,9 +71,19 @@ static void test_a_leap_whips_no_elbow(void)
     TEST_ASSERT_TRUE(w.nearest > 0.5);
 }
 
+// every 0.45 s from the drum beside him to one across, or back
+static void test_the_elbow_of_a_fast_leap_swings_ahead_and_no_more_than_it_must(void)
+{
+    whip w = leap(HIMC_LEFT, 0.45);
+    printf("elbow %.2f m/s, joints %.1f rad/s\n", w.fastest, w.turns);
+    TEST_ASSERT_TRUE(w.fastest < 3.3);
+    TEST_ASSERT_TRUE(w.turns < 900 * HIMC_PI / 180);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_the_elbow_of_a_fast_leap_swings_ahead_and_no_more_than_it_must);
     RUN_TEST(test_a_leap_whips_no_elbow);
     return UNITY_END();
 }

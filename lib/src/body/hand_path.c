@@ -25,10 +25,10 @@
 #define FRENCH_STEEP 4.1 // of the stick's in French grip, whose fingers move it more (rad/m)
 // of the grip over the mallet's centre at impact (m); chosen: the shaft passes the hoop by 12 mm
 #define OVER 0.012
-#define DROOP (-0.2)       // elevation of the hand at impact (rad); chosen: fingers a little lower
-#define SWING 60.0         // of the elbow towards where it would hang (1/s) ...
-#define FASTEST_SWING 15.0 // ... at most (rad/s); chosen: slower, it is late for the wrist's return
-#define HIGHEST_RISE 0.08  // of the grip before the tip (m); chosen
+#define DROOP (-0.2)      // elevation of the hand at impact (rad); chosen: fingers a little lower
+#define SWING 30.0        // of the elbow towards where it will hang (1/s) ...
+#define FASTEST_SWING 8.0 // ... at most (rad/s); chosen: 2 m/s of the elbow's point
+#define HIGHEST_RISE 0.08 // of the grip before the tip (m); chosen
 // of a resting hand, as in a calm legato: share of the stick's elevation, and the elbow (rad/m)
 #define RESTING_WRIST 0.53
 #define RESTING_ELBOW 0.4

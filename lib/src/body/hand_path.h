@@ -23,8 +23,8 @@ typedef struct himc_hand_path {
     double rate[HIMC_HAND_PATH_PARTS];         ///< (1/s)
     double acceleration[HIMC_HAND_PATH_PARTS]; ///< (1/s^2)
     double goal[HIMC_HAND_PATH_PARTS];
-    himc_vec3 hang; ///< unit vector to the elbow, across the line from shoulder to wrist; 0: none
-                    ///< yet, it hangs as it would at rest
+    himc_vec3 hang; ///< unit vector from the shoulder towards the elbow, of which the part across
+                    ///< the line to the wrist counts; 0: none yet, it hangs as it would at rest
 } himc_hand_path;
 
 /// How the joints share a stroke.
@@ -60,6 +60,7 @@ typedef struct himc_hand_ahead {
 /// How long before its effect the way of the tip must be known for a lead (s).
 HIMC_RT double himc_hand_path_foresight(double lead);
 #define HIMC_HAND_PATH_RISES 0.015 ///< (s); chosen: the hand starts up in the contact
+#define HIMC_HAND_PATH_SWINGS 0.05 ///< (s); chosen: half the delay of the elbow's swing
 
 /// Aims the path at the way of the tip; `stick` is the length from grip to tip (m). A path that
 /// does not move yet begins there at rest.

@@ -41,6 +41,7 @@
 #define ROLL_PARTS 1.0  // ... grows while it falls by this ...
 #define ELBOW_SHARE 1.2 // ... to this
 // The triangle. Chosen: the limits keep its angles away from 0 and pi, where rates are infinite.
+#define STRAIGHT 0.15       // elbows nearer to the line to the wrist are carried along by it (m)
 #define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
 #define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
 // The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach
@@ -492,17 +493,28 @@ himc_arm_levers himc_arm_levers_of(const himc_skeleton *skeleton, himc_vec3 wais
     return himc_arm_levers_at(waist, pose->joint[HIMC_TRUNK - 1], joint, skeleton->tip, pose, hand);
 }
 
-void himc_posture_swing(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
+// Where the line to the wrist turns, an elbow whose direction across it is carried along moves with
+// it. The elbow stays where it is instead if the direction kept is that from the shoulder, whose
+// part along the line fades for a straight arm.
+void himc_posture_swing(const himc_posture *posture, himc_hand hand, himc_vec3 tip, himc_vec3 soon,
                         himc_hand_path *path)
 {
-    himc_posture now = *posture;
+    himc_posture now = *posture, then = *posture;
     now.hand[hand] = *path;
+    then.hand[hand].moving = false;
     arm a = arm_of(&now, hand);
+    a.out = 0;
+    arm b = a;
     solve_wrist(&now, hand, tip, &a);
     solve_elbow(&now, hand, &a);
-    himc_vec3 across = himc_vec3_cross(a.line, a.hang);
-    himc_hand_path_swing(path, a.hang,
-                         atan2(himc_vec3_dot(a.rests, across), himc_vec3_dot(a.rests, a.hang)));
+    solve_wrist(&then, hand, soon, &b);
+    solve_elbow(&then, hand, &b);
+    himc_vec3 across = himc_vec3_cross(a.line, a.hang), to = himc_vec3_sub(b.elbow, b.shoulder),
+              upper = himc_vec3_sub(a.elbow, a.shoulder);
+    double along = himc_vec3_dot(upper, a.line), away = himc_vec3_dot(upper, a.hang);
+    double share = along * away / (away * away + STRAIGHT * STRAIGHT);
+    himc_hand_path_swing(path, himc_vec3_unit(himc_vec3_madd(a.hang, share, a.line)),
+                         atan2(himc_vec3_dot(to, across), himc_vec3_dot(to, a.hang)));
 }
 
 // before and after, as both sides of a tick have the same derivatives

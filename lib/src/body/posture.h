@@ -139,9 +139,10 @@ HIMC_RT double himc_posture_at(const himc_posture *posture, const himc_vec3 tip[
 HIMC_RT void himc_posture_moving(const himc_posture *posture, const himc_target tip[HIMC_HANDS],
                                  himc_posture_motion *motion);
 
-/// Lets the elbow of a hand that moves swing to where it would hang with the tip at `tip` (m).
+/// Lets the elbow of a hand that moves, its tip at `tip` (m), swing to where it would hang with the
+/// tip at `soon` (m), where that is at HIMC_HAND_PATH_SWINGS from now.
 HIMC_RT void himc_posture_swing(const himc_posture *posture, himc_hand hand, himc_vec3 tip,
-                                himc_hand_path *path);
+                                himc_vec3 soon, himc_hand_path *path);
 
 /// The capsules of arms, sticks, trunk, head and thighs in that posture; the others are left alone.
 /// Returns the larger distance of a tip out of reach (m).

@@ -349,7 +349,8 @@ static void aim_hands(performance_motion *m, const performance_drums *drums, dou
             .french = m->body.posture.trunk_posture.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP]};
         m->path[i] = himc_hand_path_at(&m->path[i], t);
         himc_hand_path_aim(&m->path[i], style, &ahead, stick);
-        himc_posture_swing(&m->body.posture, hand, himc_motion_planned(m, hand, t).x, &m->path[i]);
+        himc_posture_swing(&m->body.posture, hand, himc_motion_planned(m, hand, t).x,
+                           himc_motion_planned(m, hand, t + HIMC_HAND_PATH_SWINGS).x, &m->path[i]);
     }
 }
 
