@@ -22,8 +22,6 @@
 #include "capture/take.h"
 #include "capture/take_text.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 // by the format

@@ -19,7 +19,6 @@
 
 #include "capture/take.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -7,12 +7,10 @@
 /// file of markers has no rotations; there each segment has another marker beside its joint, which
 /// with the one at its far end determines the rotation.
 #define _POSIX_C_SOURCE 200809L
-#include "himc/mocap.h"
 
 #include "base/file.h"
 #include "capture/take.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

@@ -1,7 +1,6 @@
 /// take_tips.c: the stick tips: points found by their names, with gaps bridged.
 #include "capture/take.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static int best_tip(const himc_take *take, int side)

@@ -10,7 +10,6 @@
 #include "base/head_frame.h"
 #include "base/line.h"
 #include "drum/contact.h"
-#include "drum/membrane_state.h"
 #include "drum/strike_point.h"
 
 #include <math.h>

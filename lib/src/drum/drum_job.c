@@ -5,12 +5,9 @@
 #include "drum/drum_state.h"
 
 #include "base/file.h"
-#include "base/head_frame.h"
-#include "base/text.h"
 #include "head/statistical.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -4,7 +4,6 @@
 #define HIMC_DRUM_STATE_H
 
 #include "drum/drum_performer.h"
-#include "drum/ears.h"
 #include "drum/membrane_state.h"
 #include "drum/stroke_noise.h"
 

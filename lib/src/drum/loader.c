@@ -10,12 +10,9 @@
 #define _POSIX_C_SOURCE 200809L
 #include "himc/loader.h"
 #include "drum/drum_performer.h"
-#include "base/job.h"
 #include "system/thread.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define WAITING_LOADS 256 // chosen: a page of a patch, sent at once

@@ -8,7 +8,6 @@
 #include "drum/membrane_state.h"
 
 #include "head/pickup.h"
-#include "head/uneven.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -13,7 +13,6 @@
 #include "system/aligned.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // arrays of a model: its own, what rays have in common, those of each output, patch, strike point

@@ -8,7 +8,6 @@
 #ifndef HIMC_MODEL_H
 #define HIMC_MODEL_H
 
-#include "bank/bank.h"
 #include "drum/membrane_config.h"
 #include "drum/strike_point.h"
 #include "head/air.h"

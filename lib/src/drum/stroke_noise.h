@@ -4,8 +4,6 @@
 
 #include "himc/base.h"
 
-#include <stdint.h>
-
 enum { HIMC_NOISE_BANDS = 4, HIMC_NOISE_ROWS = 2 };
 enum { HIMC_NOISE_LANES = HIMC_NOISE_BANDS * HIMC_NOISE_ROWS };
 

@@ -18,7 +18,6 @@
 #include "base/line.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 #ifndef HIMC_PERFORMANCE_BODY_H
 #define HIMC_PERFORMANCE_BODY_H
 
-#include "body/character.h"
 #include "control/balance.h"
 #include "control/muscle.h"
 #include "control/setpoint.h"

@@ -9,7 +9,6 @@
 #include "himc/base.h"
 
 #include <math.h>
-#include <stdint.h>
 
 /// All counts are in samples from time 0: the moment at which the performance was made or reset.
 typedef struct performance_clock {

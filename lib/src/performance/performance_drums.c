@@ -5,7 +5,6 @@
 /// then to the left. So no two drums are at one place, where a stick could not tell them apart.
 #include "performance/performance_drums.h"
 #include "base/format.h"
-#include "base/head_frame.h"
 #include "base/text.h"
 
 #include <stdlib.h>

@@ -4,8 +4,6 @@
 
 #include "base/head_frame.h"
 #include "drum/air_between.h"
-#include "drum/drum_performer.h"
-#include "himc/drum.h"
 #include "performance/performance_events.h"
 
 #define FIRST_DRUM "drum" // name of a drum made for strokes without one

@@ -11,10 +11,7 @@
 
 #include "base/argument.h"
 #include "base/file.h"
-#include "base/format.h"
-#include "base/text.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define METRES_PER_INCH 0.0254

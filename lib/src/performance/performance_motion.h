@@ -4,7 +4,6 @@
 #define HIMC_PERFORMANCE_MOTION_H
 
 #include "body/pedal.h"
-#include "plan/planner.h"
 #include "plan/damping.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"

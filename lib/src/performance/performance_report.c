@@ -6,7 +6,6 @@
 #include "body/dynamics.h"
 #include "control/tracking_error.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

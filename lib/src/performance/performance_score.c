@@ -14,10 +14,8 @@
 #include "midi/score_file.h"
 #include "performance/confine.h"
 #include "performance/research.h"
-#include "plan/ornament.h"
 #include "plan/score.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

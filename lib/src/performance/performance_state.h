@@ -21,7 +21,6 @@
 #include "base/job.h"
 #include "base/line.h"
 #include "base/text.h"
-#include "drum/drum_performer.h"
 #include "himc/mocap.h"
 #include "performance/performance_body.h"
 #include "performance/performance_clock.h"

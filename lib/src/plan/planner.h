@@ -8,7 +8,6 @@
 #ifndef HIMC_PLANNER_H
 #define HIMC_PLANNER_H
 
-#include "base/quintic.h"
 #include "body/avoidance.h"
 #include "body/source.h"
 #include "himc/score.h"

@@ -8,12 +8,8 @@
 #ifndef HIMC_PLANNER_STATE_H
 #define HIMC_PLANNER_STATE_H
 
-#include "base/head_frame.h"
 #include "plan/follow.h"
-#include "plan/human.h"
-#include "plan/planner.h"
 #include "plan/planner_notes.h"
-#include "plan/planner_score.h"
 
 /// Strokes that wait for a hand; chosen: as many as can be planned, so that all can be put back.
 #define PLANNER_WAITING 16

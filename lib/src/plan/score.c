@@ -13,9 +13,7 @@
 #include "base/text.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 // chosen: more than a day of drumming, and small enough for any machine's memory

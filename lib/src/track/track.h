@@ -8,7 +8,6 @@
 #define HIMC_TRACK_H
 
 #include "himc/mocap.h"
-#include "body/posture.h"
 #include "body/source.h"
 
 /// The command `nudge`: a tip is `way` off its captured path at `time`, and on it again `span`
