@@ -120,15 +120,6 @@ static const himc_head *head_of(const himc_drum_heads *heads, int change)
     return change < 0 ? &heads->first : &heads->change[change].head;
 }
 
-// the place of the model of that config, or NULL
-static himc_model **find_spare(himc_drum_heads *heads, const himc_membrane_config *config)
-{
-    for (int i = 0; i < heads->spares; i++)
-        if (himc_membrane_config_equal(&heads->spare[i]->config, config))
-            return &heads->spare[i];
-    return NULL;
-}
-
 static bool add_spare(himc_drum_heads *heads, const himc_membrane_config *config, himc_error *error)
 {
     himc_model *made = himc_model_new(config, heads->spares ? heads->spare[0] : NULL, error);
@@ -292,7 +283,10 @@ static bool give(himc_drum_heads *heads, himc_drum *drum, const himc_head *head,
     if (himc_head_equal(&config.head, head) && !(seconds >= 0 && himc_drum_glides(drum)))
         return true;
     config.head = *head;
-    himc_model **spare = find_spare(heads, &config);
+    himc_model **spare = NULL; // of that config
+    for (int i = heads->spares - 1; i >= 0; i--)
+        if (himc_membrane_config_equal(&heads->spare[i]->config, &config))
+            spare = &heads->spare[i];
     bool good = himc_drum_take_head(drum, &config, seconds, spare, error);
     himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);
     if (spare && !*spare)

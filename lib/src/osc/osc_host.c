@@ -132,27 +132,13 @@ static void put_head(himc_osc *osc, himc_drum *drum, double time)
     end(osc);
 }
 
-// the sum of all drums from sample `first` on
-static void mix(himc_performance *performance, uint64_t first, osc_sound *out)
-{
-    double heard[SOUND_FRAMES];
-    himc_drum *drum;
-    memset(out->sample, 0, sizeof out->sample);
-    out->channels = 1;
-    for (int channel = 0; channel < 2; channel++)
-        for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
-            himc_drum_read_channel(drum, channel, first, SOUND_FRAMES, heard);
-            for (int i = 0; i < SOUND_FRAMES; i++)
-                out->sample[i][channel] += (float)heard[i];
-        }
-    for (int i = 0; i < SOUND_FRAMES; i++)
-        out->channels = out->sample[i][1] != out->sample[i][0] ? 2 : out->channels;
-}
-
+// the sum of all drums
 static void put_sound(himc_osc *osc, himc_performance *performance, const himc_performance_stats *s)
 {
     uint64_t now = himc_performance_time(performance), *heard = &osc->host.heard;
     bool wanted = atomic_load_explicit(&osc->subscriptions.sounds, memory_order_relaxed) > 0;
+    double sample[SOUND_FRAMES];
+    himc_drum *drum;
     // a pause, or time that was counted from 0 again
     if (!wanted || *heard > now || now - *heard > HIMC_DRUM_RING / 2)
         *heard = now;
@@ -161,9 +147,16 @@ static void put_sound(himc_osc *osc, himc_performance *performance, const himc_p
             begin(osc, STATE_SOUND, s->seconds - (double)(now - *heard) / s->sample_rate);
         if (!state)
             continue;
-        state->sound.first = (uint32_t)*heard;
-        state->sound.rate = (int)s->sample_rate;
-        mix(performance, *heard, &state->sound);
+        osc_sound *out = &state->sound;
+        *out = (osc_sound){.first = (uint32_t)*heard, .rate = (int)s->sample_rate, .channels = 1};
+        for (int channel = 0; channel < 2; channel++)
+            for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
+                himc_drum_read_channel(drum, channel, *heard, SOUND_FRAMES, sample);
+                for (int i = 0; i < SOUND_FRAMES; i++)
+                    out->sample[i][channel] += (float)sample[i];
+            }
+        for (int i = 0; i < SOUND_FRAMES; i++)
+            out->channels = out->sample[i][1] != out->sample[i][0] ? 2 : out->channels;
         end(osc);
     }
 }

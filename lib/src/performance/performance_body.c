@@ -263,14 +263,10 @@ void himc_body_control(performance_body *b, const himc_reference *reference, dou
     himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
 }
 
-himc_vec3 himc_body_pushed(const performance_body *b, int segment, double t)
+body_push himc_body_pushed(const performance_body *b, int segment, double t)
 {
-    return t < b->push[segment].until ? b->push[segment].force : himc_vec3_make(0, 0, 0);
-}
-
-himc_vec3 himc_body_pushed_at(const performance_body *b, int segment, double t)
-{
-    return t < b->push[segment].until ? b->push[segment].at : b->plant.segment[segment].center;
+    return t < b->push[segment].until ? b->push[segment]
+                                      : (body_push){.at = b->plant.segment[segment].center};
 }
 
 bool himc_body_simulate(performance_body *b, double t, double h)

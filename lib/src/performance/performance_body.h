@@ -114,10 +114,8 @@ HIMC_RT void himc_body_control(performance_body *body, const himc_reference *ref
 /// Moves the simulated body by `h` (s) from time `t` (s), under its torques, tip forces and pushes.
 /// False if the engine fails.
 HIMC_RT bool himc_body_simulate(performance_body *body, double t, double h);
-/// The push on a segment at time `t` (N).
-HIMC_RT himc_vec3 himc_body_pushed(const performance_body *body, int segment, double t);
-/// Where it acts, its centre of mass without one; in the segment's frame (m).
-HIMC_RT himc_vec3 himc_body_pushed_at(const performance_body *body, int segment, double t);
+/// The push on a segment at time `t`; without one it is 0, at the centre of mass.
+HIMC_RT body_push himc_body_pushed(const performance_body *body, int segment, double t);
 /// Adds up the work on the body from 0 on, or no longer.
 HIMC_RT void himc_body_account(performance_body *body, bool on);
 /// Moves the body by inverse kinematics, by `h` (s). False if the state is not finite.

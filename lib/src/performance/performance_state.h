@@ -202,12 +202,10 @@ bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limit
                                    himc_error *error);
 
 // performance_score.c
-/// The command `score` as a job: all of the score, or nothing. NULL without memory.
-himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
-                                     himc_error *error);
-
-/// The text of a score, borrowed, as a job. NULL without memory.
-himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
+/// The command `score` as a job: all of the score, or nothing. Without a command of a text, which is
+/// borrowed; `name` begins errors. NULL without memory.
+himc_job *himc_performance_score_job(himc_performance *p, const char *text, const char *name,
+                                     const himc_command *command, himc_error *error);
 
 // performance_command.c
 /// How a performance takes commands.
