@@ -271,41 +271,37 @@ static void loaded(void *object, const char *error)
     refuse_to(osc, &h->loading_for, line.text);
 }
 
-static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_order *order,
-                      himc_error *error)
-{
-    osc_host *h = &osc->host;
-    const himc_command *command = &order->command;
-    const himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
-    if (!h->loader)
-        return himc_performance_command(performance, command, 0, error);
-    bool good = himc_loader_command(h->loader, &to, command, error);
-    h->loading = good && himc_loader_busy(h->loader);
-    h->loading_for = order->from;
-    memcpy(h->loading_drum, command->drum, sizeof h->loading_drum);
-    return good;
-}
-
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
 {
     himc_error error = {""};
     osc_sender from = {.osc = osc, .address = &order->from};
-    osc_dump *dump = &osc->host.dump;
-    himc_command_id id = order->command.id;
+    osc_host *h = &osc->host;
+    const himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
+    const himc_command *command = &order->command;
+    himc_command_id id = command->id;
     const himc_runner *runner = (const himc_runner *)(const void *)performance; // its first member
     const himc_drum *drum = NULL;
     if (id == HIMC_COMMAND_DRUM_DUMP || id == HIMC_COMMAND_DRUM_INFO)
-        drum = runner->drum(performance, &order->command, &error);
-    if (id == HIMC_COMMAND_INFO)
+        drum = runner->drum(performance, command, &error);
+    bool good = true;
+    if (id == HIMC_COMMAND_INFO) {
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
-    else if (id == HIMC_COMMAND_DUMP)
-        *dump = (osc_dump){
-            .tells = true, .to = order->from, .from = {.osc = osc, .address = &dump->to}};
-    else if (drum)
+    } else if (id == HIMC_COMMAND_DUMP) {
+        h->dump = (osc_dump){
+            .tells = true, .to = order->from, .from = {.osc = osc, .address = &h->dump.to}};
+    } else if (drum) {
         himc_drum_describe(drum,
                            id == HIMC_COMMAND_DRUM_INFO ? HIMC_DESCRIBE_INFO : HIMC_DESCRIBE_STATE,
                            answer, &from);
-    else if (!carry_out(osc, performance, order, &error))
+    } else if (h->loader) {
+        good = himc_loader_command(h->loader, &to, command, &error);
+        h->loading = good && himc_loader_busy(h->loader);
+        h->loading_for = order->from;
+        memcpy(h->loading_drum, command->drum, sizeof h->loading_drum);
+    } else {
+        good = himc_performance_command(performance, command, 0, &error);
+    }
+    if (!good)
         refuse_to(osc, &order->from, error.text);
 }
 
