@@ -426,17 +426,6 @@ himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *
     return j;
 }
 
-static bool is_known(const himc_head_insertion *j, const himc_head *head)
-{
-    const himc_drum_heads *made = j->made;
-    bool known = himc_head_equal(head, &made->settings.head.head);
-    for (int i = 0; i < j->known_count; i++)
-        known = known || himc_head_equal(head, &j->known[i]);
-    for (int i = 0; i < made->spares; i++)
-        known = known || himc_head_equal(head, &made->spare[i]->config.head);
-    return known;
-}
-
 bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
 {
     himc_drum_heads *made = j->made;
@@ -447,8 +436,14 @@ bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
     for (int i = from; i < made->count && good; i++) {
         good = find_head(&after, &made->change[i], error);
         bool room = j->known_count + made->spares < MOST_SPARES;
+        const himc_head *head = &after.head.head;
+        bool known = himc_head_equal(head, &made->settings.head.head);
+        for (int k = 0; k < j->known_count; k++)
+            known = known || himc_head_equal(head, &j->known[k]);
+        for (int k = 0; k < made->spares; k++)
+            known = known || himc_head_equal(head, &made->spare[k]->config.head);
         bool gliss = made->change[i].id == HIMC_COMMAND_GLISS;
-        if (good && room && (gliss || !is_known(j, &after.head.head)))
+        if (good && room && (gliss || !known))
             good = add_spare(made, &after.head, error);
     }
     himc_drum_settings_free(&after);

@@ -108,7 +108,6 @@ himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *erro
 /// without memory.
 bool himc_drum_set(himc_drum *drum, const himc_drum_settings *settings, himc_model **made,
                    himc_error *error);
-/// True if the drum's head is that of the settings.
 HIMC_RT bool himc_drum_has_head(const himc_drum *drum, const himc_drum_settings *settings);
 
 // Heads that a drum gets one after the other while a score plays (drum_heads.c).

@@ -61,7 +61,6 @@ typedef struct body_parts {
 /// Makes segments for these settings, for himc_body_adopt or himc_character_free.
 bool himc_body_make_parts(body_parts *parts, const performance_settings *settings,
                           himc_error *error);
-/// Replaces the body's segments.
 void himc_body_adopt(performance_body *body, const body_parts *parts);
 /// Puts the body into the posture of a tick: at rest, or back from a state that was not finite.
 HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
@@ -76,7 +75,6 @@ void himc_body_init_controller(performance_body *body, const performance_setting
 HIMC_RT void himc_body_configure(performance_body *body, const performance_settings *settings);
 /// Joint limits from now on; NULL for none.
 HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
-/// Sets the counts of limits to zero.
 HIMC_RT void himc_body_clear_limit_counts(performance_body *body);
 /// Begins a push at `t` (s); another one of that segment ends.
 HIMC_RT void himc_body_push(performance_body *body, const planned_push *push, double t);

@@ -147,7 +147,6 @@ struct himc_planner {
 // planner_goal.c
 /// How far out of a hand's reach a place is (m).
 HIMC_RT double himc_planner_beyond(const himc_planner *planner, himc_hand hand, himc_vec3 place);
-/// True if the hand reaches it.
 HIMC_RT bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, himc_vec3 place);
 /// A stroke's spot moved to the left on its head, not over the rim (m).
 HIMC_RT himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *stroke,
