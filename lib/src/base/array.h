@@ -1,10 +1,19 @@
-/// array.h: an array on the heap that grows.
+/// array.h: memory on the heap: an object, an array that grows.
 #ifndef HIMC_ARRAY_H
 #define HIMC_ARRAY_H
 
 #include "himc/base.h"
 
 #include <stdlib.h>
+
+/// `size` bytes of zeros, owned; NULL with the reason, which begins with `what`.
+static inline void *himc_new(size_t size, const char *what, himc_error *error)
+{
+    void *made = calloc(1, size);
+    if (!made)
+        himc_error_set(error, "%s: out of memory", what);
+    return made;
+}
 
 /// Makes room for one more of `count` elements of `size` bytes; `array` points to the pointer to
 /// the first one. Without room it doubles. False without memory, and nothing changed.

@@ -9,6 +9,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "base/file.h"
+#include "base/array.h"
 #include "capture/take.h"
 
 #include <stdlib.h>
@@ -128,11 +129,9 @@ static himc_vec3 on_segment(const himc_body_state *state, int i, himc_vec3 x)
 
 himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
 {
-    himc_take *take = calloc(1, sizeof *take);
-    if (!take) {
-        himc_error_set(error, "%s: no memory", r->path);
+    himc_take *take = himc_new(sizeof *take, r->path, error);
+    if (!take)
         return NULL;
-    }
     snprintf(take->file, sizeof take->file, "%.180s", r->path);
     snprintf(take->format, sizeof take->format, "recording");
     const char *dot = strrchr(r->path, '.');

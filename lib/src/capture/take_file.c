@@ -5,6 +5,7 @@
 /// is removed.
 #define _POSIX_C_SOURCE 200809L
 #include "base/file.h"
+#include "base/array.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
 
@@ -141,11 +142,9 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
         (options->unit != 0 && !himc_check_range("unit", options->unit, 1e-6, 10, "m", error)) ||
         !himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error))
         return NULL;
-    himc_take *take = calloc(1, sizeof *take);
-    if (!take) {
-        himc_error_set(error, "%s: no memory", name);
+    himc_take *take = himc_new(sizeof *take, name, error);
+    if (!take)
         return NULL;
-    }
     shorten_file(take->file, name);
     if (size == 0)
         himc_error_set(error, "%s: the file is empty", take->file);

@@ -13,6 +13,7 @@
 /// A change may be added to those in use: it is prepared beside them, with all that comes after it,
 /// and put in their place between two blocks.
 #include "drum/drum_state.h"
+#include "base/array.h"
 
 #include <assert.h>
 #include <math.h>
@@ -50,11 +51,9 @@ struct himc_drum_heads {
 
 himc_drum_heads *himc_drum_heads_new(const himc_drum_settings *settings, himc_error *error)
 {
-    himc_drum_heads *heads = calloc(1, sizeof *heads);
-    if (!heads) {
-        himc_error_set(error, "at: out of memory");
+    himc_drum_heads *heads = himc_new(sizeof *heads, "at", error);
+    if (!heads)
         return NULL;
-    }
     heads->settings = himc_drum_settings_copy(settings);
     heads->first = heads->told.base = heads->told.known = settings->head.head;
     heads->now = -2;

@@ -4,6 +4,7 @@
 /// again, the command is carried out in place.
 #include "drum/drum_state.h"
 
+#include "base/array.h"
 #include "base/file.h"
 #include "head/statistical.h"
 
@@ -127,8 +128,8 @@ static bool prepare(himc_job *job, himc_error *error)
         himc_ear_paths paths = himc_ears_trace(&j->listener, &j->after.place);
         himc_membrane_config_set_rays(&j->after.head, paths.ray);
     }
-    if (heard && !j->ears && !(j->ears = calloc(1, sizeof *j->ears)))
-        return himc_error_set(error, "listener: out of memory");
+    if (heard && !j->ears && !(j->ears = himc_new(sizeof *j->ears, "listener", error)))
+        return false;
     if (himc_membrane_config_equal(&j->before.head, &j->after.head))
         return true;
     j->made = himc_model_new(&j->after.head, NULL, error);

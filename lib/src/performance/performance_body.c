@@ -4,6 +4,7 @@
 /// push is a constant force on a point of a segment. It is not given to the controller, so it
 /// disturbs the motion. `ik` has no forces, so pushes have no effect there.
 #include "performance/performance_body.h"
+#include "base/array.h"
 #include "base/format.h"
 
 #include <stddef.h>
@@ -68,10 +69,8 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
 
 performance_body *himc_body_new(const performance_settings *s, himc_error *error)
 {
-    performance_body *b = calloc(1, sizeof *b);
+    performance_body *b = himc_new(sizeof *b, "performance", error);
     body_parts parts;
-    if (!b)
-        himc_error_set(error, "performance: out of memory");
     if (b && himc_body_make_parts(&parts, s, error)) {
         himc_body_adopt(b, &parts);
         return b;

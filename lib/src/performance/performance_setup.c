@@ -5,6 +5,7 @@
 /// changes nothing. `reset` is the default settings and new parts. Time begins at 0 at the first
 /// sample not yet simulated, so every floating point sum equals that of a new performance.
 #include "performance/performance_state.h"
+#include "base/array.h"
 #include "performance/research.h"
 
 #include <stdlib.h>
@@ -106,11 +107,9 @@ himc_performance *himc_performance_make(const himc_performance_config *config, h
         !himc_check_range("task rate", config->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX,
                           "Hz", error))
         return NULL;
-    himc_performance *p = calloc(1, sizeof *p);
-    if (!p) {
-        himc_error_set(error, "performance: out of memory");
+    himc_performance *p = himc_new(sizeof *p, "performance", error);
+    if (!p)
         return NULL;
-    }
     p->host = (performance_host){.config = *config,
                                  .take_options = himc_take_default(),
                                  .usual = himc_settings_default(config)};
