@@ -18,11 +18,6 @@ himc_performance_config himc_performance_default(void)
     return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
 }
 
-static bool check_sample_rate(double hz, himc_error *error)
-{
-    return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
-}
-
 // the stool as these drums need it; none for one who stands
 static void fit_stool(performance_motion *motion, performance_body *body,
                       const performance_drums *drums, const performance_settings *s)
@@ -101,7 +96,7 @@ static void free_written(performance_written *written)
 himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)
 {
     made_parts parts;
-    if (!check_sample_rate(config->sample_rate, error) ||
+    if (!himc_drum_check_rate(config->sample_rate, error) ||
         !himc_check_range("physics rate", config->physics_rate, HIMC_PHYSICS_RATE_MIN,
                           HIMC_PHYSICS_RATE_MAX, "Hz", error) ||
         !himc_check_range("task rate", config->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX,
@@ -223,7 +218,7 @@ const himc_skeleton *himc_performance_plant(const himc_performance *p)
 
 bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_error *error)
 {
-    if (!check_sample_rate(sample_rate, error))
+    if (!himc_drum_check_rate(sample_rate, error))
         return false;
     if (sample_rate == p->clock.sample_rate)
         return true;
