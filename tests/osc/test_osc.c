@@ -144,7 +144,7 @@ static void test_a_push_begins_when_it_arrives_and_ends(void)
         play(0.15);
         TEST_ASSERT_EQUAL_DOUBLE(
             force[i],
-            himc_body_pushed(performance->body, HIMC_LEFT_FOREARM, step_time(performance)).z);
+            himc_body_pushed(performance->body, HIMC_LEFT_FOREARM, step_time(performance)).force.z);
     }
     subscribe("errors");
     say("/himc/push", "nobody 0 0 40 0.2");

@@ -83,7 +83,6 @@ typedef struct himc_alike {
 /// be NULL).
 HIMC_RT void himc_bank_readout(const himc_bank *bank, const double *on_q, const double *on_v,
                                const double *on_force, himc_readout *readout);
-/// Value of the readout now.
 HIMC_RT double himc_bank_read(himc_bank *bank, himc_readout *readout);
 /// Value of the readout one step later if no force acts.
 HIMC_RT double himc_bank_peek(const himc_bank *bank, const himc_readout *readout);
@@ -147,9 +146,7 @@ HIMC_RT double himc_bank_energy(const himc_bank *bank);
 HIMC_RT void himc_bank_state(const himc_bank *bank, int index, double *q, double *v);
 /// Sets them; no effect on a silent one.
 HIMC_RT void himc_bank_excite(himc_bank *bank, int index, double q, double v);
-/// True if all oscillators are at rest.
 HIMC_RT bool himc_bank_at_rest(const himc_bank *bank);
-/// Brings all oscillators to rest.
 HIMC_RT void himc_bank_rest(himc_bank *bank);
 
 #endif

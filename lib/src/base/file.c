@@ -19,16 +19,6 @@
 #include <string.h>
 #include <unistd.h>
 
-// what stands under a name instead of a regular file; NULL for a regular one
-static const char *other_kind(const struct stat *status)
-{
-    return S_ISREG(status->st_mode)    ? NULL
-           : S_ISDIR(status->st_mode)  ? "a folder"
-           : S_ISFIFO(status->st_mode) ? "a FIFO"
-           : S_ISSOCK(status->st_mode) ? "a socket"
-                                       : "a device";
-}
-
 // opens without waiting and looks at what was opened. -1 with one line
 static int open_regular(const char *path, int flags, himc_error *error)
 {
@@ -37,7 +27,12 @@ static int open_regular(const char *path, int flags, himc_error *error)
     int file = himc_system_open(path, flags | O_BINARY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     int why = errno;
     bool known = file < 0 ? stat(path, &status) == 0 : fstat(file, &status) == 0;
-    const char *kind = known ? other_kind(&status) : NULL;
+    // what stands under the name instead of a regular file
+    const char *kind = !known || S_ISREG(status.st_mode) ? NULL
+                       : S_ISDIR(status.st_mode)         ? "a folder"
+                       : S_ISFIFO(status.st_mode)        ? "a FIFO"
+                       : S_ISSOCK(status.st_mode)        ? "a socket"
+                                                         : "a device";
     bool nowhere = flags & O_CREAT && known && S_ISCHR(status.st_mode) &&
                    stat("/dev/null", &null) == 0 && status.st_rdev == null.st_rdev;
     if (file >= 0 && known && (!kind || nowhere))

@@ -4,8 +4,6 @@
 
 #include "himc/base.h"
 
-#include <stdarg.h>
-
 /// Prints into `out` of `size` bytes (1 or more), its final 0 included; what does not fit is cut
 /// off. Returns the length of the text that is there. Conversions: %% %c %s %.Ns %.*s %d %ld %zu %g
 /// %u %.Ng %.Nf, without width; N up to 9. Numbers are those of libc in their first 16 digits; %f

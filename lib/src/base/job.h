@@ -9,7 +9,7 @@
 
 #include "himc/command.h"
 
-#include <stdlib.h>
+#include "base/array.h"
 
 typedef struct himc_drum himc_drum;               ///< himc/drum.h
 typedef struct himc_performance himc_performance; ///< himc/performance.h
@@ -51,11 +51,9 @@ typedef struct himc_runner {
 /// begins with `what`.
 static inline void *himc_job_new(size_t size, const char *what, himc_job functions, himc_error *why)
 {
-    himc_job *job = calloc(1, size);
+    himc_job *job = himc_new(size, what, why);
     if (job)
         *job = functions;
-    else
-        himc_error_set(why, "%s: out of memory", what);
     return job;
 }
 

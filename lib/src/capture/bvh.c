@@ -18,8 +18,6 @@
 #include "capture/take.h"
 #include "capture/take_text.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define MOST_NODES 4096 // chosen: far more than a body has

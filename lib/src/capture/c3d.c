@@ -22,8 +22,6 @@
 #include "capture/take.h"
 #include "capture/take_text.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 // by the format
@@ -609,24 +607,16 @@ static void put_head(bytes *b, int group, const char *name, int type, int size, 
         put_byte(b, other);
 }
 
-static void put_real_parameter(bytes *b, int group, const char *name, double value)
+// a parameter of the points: a text, else a real or a word
+static void put_point(bytes *b, const char *name, const char *text, bool real, double value)
 {
-    put_head(b, group, name, 4, 0, 0);
-    put_real(b, value);
-    put_byte(b, 0);
-}
-
-static void put_word_parameter(bytes *b, int group, const char *name, int value)
-{
-    put_head(b, group, name, 2, 0, 0);
-    put_word(b, (unsigned)value);
-    put_byte(b, 0);
-}
-
-static void put_text_parameter(bytes *b, int group, const char *name, const char *text)
-{
-    put_head(b, group, name, -1, (int)strlen(text), 0);
-    put_text(b, text, (int)strlen(text));
+    put_head(b, 1, name, text ? -1 : real ? 4 : 2, text ? (int)strlen(text) : 0, 0);
+    if (text)
+        put_text(b, text, (int)strlen(text));
+    else if (real)
+        put_real(b, value);
+    else
+        put_word(b, (unsigned)value);
     put_byte(b, 0);
 }
 
@@ -649,14 +639,14 @@ static void put_parameters(bytes *b, const himc_take *take, int blocks)
     put_byte(b, blocks);
     put_byte(b, INTEL);
     put_group(b, 1, "POINT");
-    put_word_parameter(b, 1, "USED", take->points);
-    put_real_parameter(b, 1, "SCALE", -1);
-    put_real_parameter(b, 1, "RATE", take->rate);
-    put_word_parameter(b, 1, "DATA_START", 2 + blocks);
-    put_word_parameter(b, 1, "FRAMES", take->frames < 65535 ? take->frames : 65535);
-    put_text_parameter(b, 1, "UNITS", "mm");
-    put_text_parameter(b, 1, "X_SCREEN", "+X");
-    put_text_parameter(b, 1, "Y_SCREEN", "+Z");
+    put_point(b, "USED", NULL, false, take->points);
+    put_point(b, "SCALE", NULL, true, -1);
+    put_point(b, "RATE", NULL, true, take->rate);
+    put_point(b, "DATA_START", NULL, false, 2 + blocks);
+    put_point(b, "FRAMES", NULL, false, take->frames < 65535 ? take->frames : 65535);
+    put_point(b, "UNITS", "mm", false, 0);
+    put_point(b, "X_SCREEN", "+X", false, 0);
+    put_point(b, "Y_SCREEN", "+Z", false, 0);
     put_head(b, 1, "LABELS", -1, width, take->points);
     for (int i = 0; i < take->points; i++)
         put_text(b, take->names[i], width);

@@ -20,7 +20,6 @@
 #include "base/head_frame.h"
 #include "body/posture.h"
 #include "capture/take.h"
-#include "himc/command.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -19,7 +19,6 @@
 
 #include "capture/take.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,12 +81,6 @@ static const char *const point_names[POINT_BESIDE] = {
     "left toes",      "right toes",     "left toes' end", "right toes' end",
     "top of the head"};
 
-static const char *point_name(int point)
-{
-    const char *segment = point >= POINT_BESIDE ? himc_segment_name(point - POINT_BESIDE) : "";
-    return point >= POINT_BESIDE ? segment : point_names[point];
-}
-
 void himc_player_note(himc_player *player, const char *format, ...)
 {
     int most = sizeof player->notes / sizeof player->notes[0];
@@ -146,10 +139,11 @@ static bool find_centre(player_points *p, int which, int hand, const himc_take_o
         himc_take_gap gap;
         shown = himc_take_fill(p->take, point[i], options->longest_gap, one, &gap) >= 0;
         if (!shown)
-            himc_player_note(player,
-                             "%s: %s is missing in frames %d .. %d, expected gaps up to %g s",
-                             point_name(which), himc_take_point_name(p->take, point[i]),
-                             first + gap.begin, first + gap.end - 1, options->longest_gap);
+            himc_player_note(
+                player, "%s: %s is missing in frames %d .. %d, expected gaps up to %g s",
+                which < POINT_BESIDE ? point_names[which] : himc_segment_name(which - POINT_BESIDE),
+                himc_take_point_name(p->take, point[i]), first + gap.begin, first + gap.end - 1,
+                options->longest_gap);
         for (size_t k = 0; shown && k < frames; k++)
             sum[k] = himc_vec3_madd(sum[k], 1.0 / count, one[k]);
     }

@@ -268,13 +268,16 @@ static void add_point(const himc_arm_levers *a, int joints, himc_vec3 center, do
     }
 }
 
-static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand hand,
-                    const himc_vec3 center[HIMC_ARM_JOINTS + 1], himc_pose *pose)
+static void fit_arm(const reader *r, himc_hand hand, int frame)
 {
+    himc_vec3 center[HIMC_ARM_JOINTS + 1];
+    himc_pose *pose = &r->player->pose[frame];
+    for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
+        center[k] = r->points->x[POINT_SHOULDER + HIMC_HANDS * k + (int)hand][frame];
     // Gauss-Newton, of quadratic convergence from some centimetres
     for (int step = 0; step < 5; step++) {
         double matrix[ANGLES * ANGLES] = {0}, theta[ANGLES] = {0};
-        himc_arm_levers a = himc_arm_levers_of(skeleton, waist, pose, hand);
+        himc_arm_levers a = himc_arm_levers_of(r->skeleton, r->waist, pose, hand);
         // chosen: the tip, which plays, counts more than the centres
         for (int joints = 1; joints <= HIMC_ARM_JOINTS; joints++)
             add_point(&a, joints, center[joints], joints < HIMC_ARM_JOINTS ? 1 : 1e4, matrix,
@@ -289,22 +292,6 @@ static void fit_arm(const himc_skeleton *skeleton, himc_vec3 waist, himc_hand ha
             himc_vec3 rotation = himc_vec3_make(theta[3 * k], theta[3 * k + 1], theta[3 * k + 2]);
             rotation = himc_quat_rotate(himc_quat_conj(a.frame[k]), rotation);
             *joint = himc_quat_unit(himc_quat_mul(himc_quat_exp(rotation), *joint));
-        }
-    }
-}
-
-// fits the arms that are wholly shown
-static void fit_arms(const reader *r)
-{
-    himc_player *player = r->player;
-    for (int i = 0; i < HIMC_HANDS && player->placed && !player->walks; i++) {
-        himc_hand hand = (himc_hand)i;
-        bool shown = himc_player_known_arm(player, hand) == HIMC_ARM_JOINTS;
-        for (int frame = 0; shown && frame < r->points->frames; frame++) {
-            himc_vec3 center[HIMC_ARM_JOINTS + 1];
-            for (int k = 0; k <= HIMC_ARM_JOINTS; k++)
-                center[k] = r->points->x[POINT_SHOULDER + HIMC_HANDS * k + i][frame];
-            fit_arm(r->skeleton, r->waist, hand, center, &player->pose[frame]);
         }
     }
 }
@@ -353,7 +340,11 @@ bool himc_player_read_poses(himc_player *player, const player_points *points,
             prepare_limb(&r, i, hand);
     for (int frame = 0; frame < points->frames; frame++)
         read_frame(&r, frame);
-    fit_arms(&r);
+    for (int i = 0; i < HIMC_HANDS && player->placed && !player->walks; i++) {
+        bool shown = himc_player_known_arm(player, (himc_hand)i) == HIMC_ARM_JOINTS; // wholly
+        for (int frame = 0; shown && frame < points->frames; frame++)
+            fit_arm(&r, (himc_hand)i, frame);
+    }
     int known = 0;
     for (int j = 0; j < HIMC_JOINTS; j++) {
         if (player->known[j])

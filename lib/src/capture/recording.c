@@ -7,12 +7,11 @@
 /// file of markers has no rotations; there each segment has another marker beside its joint, which
 /// with the one at its far end determines the rotation.
 #define _POSIX_C_SOURCE 200809L
-#include "himc/mocap.h"
 
 #include "base/file.h"
+#include "base/array.h"
 #include "capture/take.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -130,11 +129,9 @@ static himc_vec3 on_segment(const himc_body_state *state, int i, himc_vec3 x)
 
 himc_take *himc_recording_take(const himc_recording *r, himc_error *error)
 {
-    himc_take *take = calloc(1, sizeof *take);
-    if (!take) {
-        himc_error_set(error, "%s: no memory", r->path);
+    himc_take *take = himc_new(sizeof *take, r->path, error);
+    if (!take)
         return NULL;
-    }
     snprintf(take->file, sizeof take->file, "%.180s", r->path);
     snprintf(take->format, sizeof take->format, "recording");
     const char *dot = strrchr(r->path, '.');

@@ -17,7 +17,6 @@
 #include "base/random.h"
 #include "capture/take_text.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

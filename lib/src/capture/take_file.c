@@ -5,6 +5,7 @@
 /// is removed.
 #define _POSIX_C_SOURCE 200809L
 #include "base/file.h"
+#include "base/array.h"
 #include "capture/take.h"
 #include "capture/take_text.h"
 
@@ -80,26 +81,19 @@ static const format *format_of(const char *path, himc_error *error)
     return NULL;
 }
 
-// `ways` as in HIMC_TAKE_FORMATS
-static bool begins_with(const unsigned char *bytes, size_t size, const char *ways)
-{
-    for (size_t n; *ways; ways += n + (ways[n] == '|')) {
-        size_t same = 0;
-        n = strcspn(ways, "|");
-        while (same < n && same < size &&
-               (ways[same] == '\a' ? bytes[same] < 8 : bytes[same] == (unsigned char)ways[same]))
-            same++;
-        if (same == n)
-            return true;
-    }
-    return false;
-}
-
 const char *himc_take_suffix_of(const void *bytes, size_t size)
 {
-    for (size_t i = 0; i < FORMATS; i++)
-        if (begins_with(bytes, size, formats[i].begins))
-            return formats[i].suffix;
+    const unsigned char *byte = bytes;
+    for (const format *f = formats; f < formats + FORMATS; f++)
+        for (const char *way = f->begins, *end; *way; way = end + (*end == '|')) {
+            size_t same = 0;
+            end = way + strcspn(way, "|");
+            while (way + same < end && same < size &&
+                   (way[same] == '\a' ? byte[same] < 8 : byte[same] == (unsigned char)way[same]))
+                same++;
+            if (way + same == end)
+                return f->suffix;
+        }
     return NULL;
 }
 
@@ -148,11 +142,9 @@ himc_take *himc_take_read(const void *bytes, size_t size, const char *name,
         (options->unit != 0 && !himc_check_range("unit", options->unit, 1e-6, 10, "m", error)) ||
         !himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error))
         return NULL;
-    himc_take *take = calloc(1, sizeof *take);
-    if (!take) {
-        himc_error_set(error, "%s: no memory", name);
+    himc_take *take = himc_new(sizeof *take, name, error);
+    if (!take)
         return NULL;
-    }
     shorten_file(take->file, name);
     if (size == 0)
         himc_error_set(error, "%s: the file is empty", take->file);

@@ -19,10 +19,8 @@
 ///
 /// In a gap longer than a contact no strike is reported, because the curve that bridges a gap bends
 /// arbitrarily.
-#include "himc/mocap.h"
 
 #include "base/noise.h"
-#include "capture/strike_heads.h"
 #include "capture/take.h"
 
 #include <stdlib.h>

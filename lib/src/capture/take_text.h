@@ -23,7 +23,6 @@ typedef struct himc_text {
 himc_text himc_text_open(const char *bytes, size_t size);
 /// Takes the next line without its end (LF, CR LF or CR); false at the end of the text.
 bool himc_text_line(himc_text *text, himc_span *line);
-/// Takes the next line that is not blank.
 bool himc_text_filled_line(himc_text *text, himc_span *line);
 
 himc_span himc_span_trim(himc_span span);
@@ -42,7 +41,6 @@ static inline bool himc_span_number(himc_span span, double *value)
 {
     return himc_format_read(span.at, span.length, value);
 }
-/// Reads a whole number.
 bool himc_span_integer(himc_span span, long low, long high, long *value);
 
 /// Writes a number with a decimal point.

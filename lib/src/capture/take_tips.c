@@ -1,7 +1,6 @@
 /// take_tips.c: the stick tips: points found by their names, with gaps bridged.
 #include "capture/take.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static int best_tip(const himc_take *take, int side)
@@ -44,21 +43,6 @@ int himc_take_find_tip(const himc_take *take, himc_hand hand, const himc_take_op
     return found >= 0 && other && himc_take_find(take, other) == found ? -1 : found;
 }
 
-// "A, B, C ..." for an error line
-static void list_points(const himc_take *take, char *text, size_t size)
-{
-    size_t used = 0;
-    text[0] = 0;
-    for (int i = 0; i < take->points; i++) {
-        const char *name = take->names[i];
-        if (used + strlen(name) + 6 > size) {
-            snprintf(text + used, size - used, " ...");
-            return;
-        }
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", name);
-    }
-}
-
 bool himc_take_tips(himc_take *take, const himc_take_options *options,
                     himc_take_tip tips[HIMC_HANDS], himc_error *error)
 {
@@ -67,8 +51,18 @@ bool himc_take_tips(himc_take *take, const himc_take_options *options,
     if (!himc_check_range("longest gap", options->longest_gap, 0, 10, "s", error))
         return false;
     int found = 0;
-    char points[96];
-    list_points(take, points, sizeof points);
+    char points[96] = ""; // "A, B, C ..." for an error line
+    size_t used = 0;
+    for (int i = 0; i < take->points; i++) {
+        bool fits = used + strlen(take->names[i]) + 6 <= sizeof points;
+        used += (size_t)snprintf(points + used, sizeof points - used, "%s%s",
+                                 !fits ? " "
+                                 : i   ? ", "
+                                       : "",
+                                 fits ? take->names[i] : "...");
+        if (!fits)
+            break;
+    }
     for (int i = 0; i < HIMC_HANDS; i++) {
         himc_hand hand = (himc_hand)i;
         const char *name = hand == HIMC_LEFT ? options->left_tip : options->right_tip;

@@ -105,18 +105,6 @@ static himc_air_view view_from(const himc_drum *drum, himc_vec3 to)
     return v;
 }
 
-// of all drums, from everywhere; they hang on the places alone, and tunings change more often
-static void find_views(himc_air_between *air)
-{
-    for (int i = 0; i < HIMC_AIR_DIRECTIONS; i++) {
-        double up = himc_shared_sine[i / HIMC_AIR_AZIMUTHS], across = sqrt(1 - up * up);
-        double azimuth = 2 * HIMC_PI * (i % HIMC_AIR_AZIMUTHS) / HIMC_AIR_AZIMUTHS;
-        himc_vec3 to = {across * cos(azimuth), across * sin(azimuth), up};
-        for (int drum = 0; drum < air->count; drum++)
-            air->view[drum][i] = view_from(air->drum[drum], to);
-    }
-}
-
 // adds what all send in a direction to C
 static void add_direction(const himc_air_between *air, const sender *senders, int n, int band,
                           int direction, double c[MODES][MODES])
@@ -205,7 +193,14 @@ void himc_air_between_join(himc_air_between *air, himc_drum *const *drums, int c
         if (near)
             air->drum[air->count++] = drums[i];
     }
-    find_views(air);
+    // views of all drums, from everywhere, hang on the places alone, and tunings change more often
+    for (int i = 0; i < HIMC_AIR_DIRECTIONS; i++) {
+        double up = himc_shared_sine[i / HIMC_AIR_AZIMUTHS], across = sqrt(1 - up * up);
+        double azimuth = 2 * HIMC_PI * (i % HIMC_AIR_AZIMUTHS) / HIMC_AIR_AZIMUTHS;
+        himc_vec3 to = {across * cos(azimuth), across * sin(azimuth), up};
+        for (int drum = 0; drum < air->count; drum++)
+            air->view[drum][i] = view_from(air->drum[drum], to);
+    }
     if (air->count > 0)
         find_change(air);
 }
@@ -225,20 +220,6 @@ int himc_air_between_until(const himc_air_between *air, int64_t now, int n)
         return n;
     int left = interval(air) - (int)(now % interval(air));
     return n < left ? n : left;
-}
-
-// changes a drum's velocities
-static void kick(const himc_air_between *air, int drum, const double *change)
-{
-    himc_membrane *head = head_of(air, drum);
-    const himc_model *model = head->model;
-    double most = 0;
-    for (int i = 0; i < model->shared_count; i++)
-        most = fmax(most, fabs(change[i]));
-    if (himc_membrane_at_rest(head) && most < LEAST)
-        return;
-    for (int i = 0; i < model->shared_count; i++)
-        himc_bank_kick(model->bank, model->shared[i].index, change[i]);
 }
 
 bool himc_air_between_due(const himc_air_between *air, int64_t now)
@@ -270,6 +251,15 @@ void himc_air_between_exchange(himc_air_between *air)
         for (int j = 0; j < n; j++)
             change[i] += air->change[i][j] * v[j];
     }
-    for (int drum = 0; drum < air->count; drum++)
-        kick(air, drum, change + air->first[drum]);
+    for (int drum = 0; drum < air->count; drum++) {
+        const himc_membrane *head = head_of(air, drum);
+        const himc_model *model = head->model;
+        const double *by = change + air->first[drum];
+        double most = 0;
+        for (int i = 0; i < model->shared_count; i++)
+            most = fmax(most, fabs(by[i]));
+        bool changes = !himc_membrane_at_rest(head) || most >= LEAST;
+        for (int i = 0; i < model->shared_count && changes; i++)
+            himc_bank_kick(model->bank, model->shared[i].index, by[i]);
+    }
 }

@@ -36,9 +36,7 @@ HIMC_RT void himc_air_between_leave(himc_air_between *air, himc_drum *drum);
 
 /// Samples from `now` to the next exchange, at most n; all drums are then to be advanced so far.
 HIMC_RT int himc_air_between_until(const himc_air_between *air, int64_t now, int n);
-/// Whether an exchange is due at sample `now`.
 HIMC_RT bool himc_air_between_due(const himc_air_between *air, int64_t now);
-/// The exchange.
 HIMC_RT void himc_air_between_exchange(himc_air_between *air);
 
 #endif

@@ -35,7 +35,7 @@
 ///
 /// Between two samples anything may move head or stick: a change of the head, a step of the body, a
 /// drum put elsewhere. The compression does not grow by it, and a stick in the air gets to the
-/// surface at most (keep_compression). So a change, which gives the head no energy (membrane.c),
+/// surface at most (step). So a change, which gives the head no energy (membrane.c),
 /// gives the contact none either. A blow ends when the stick is clear of the head (is_clear): its
 /// patch and what the patch's oscillator holds are dropped, which only takes energy.
 ///
@@ -437,17 +437,6 @@ static void step_near(himc_membrane *membrane, const near_stick *near, int count
     }
 }
 
-// Moves a stick after head or stick were moved from outside since the last sample; `before` is the
-// head's displacement now. A one-way stick meets the head at rest.
-static void keep_compression(himc_stick *s, double before)
-{
-    if (s->touching && !s->one_way)
-        s->height += before - s->dent; // it stays on a head that was changed
-    double surface = s->one_way ? 0 : before, most = s->touching ? s->compression : 0;
-    if (surface - s->height > most + HEIGHT_ROUNDING)
-        s->height = surface - most;
-}
-
 // The strike point under a stick. Until a blow has begun, its patch is that of a blow as fast as
 // the stick comes down; it is found anew in the last two steps, and kept while it hardly changes: a
 // stick that follows a head on its way down is in its last two steps for a long time, and weighing
@@ -499,7 +488,13 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
         himc_stick *s = near[i].stick;
         strike_point *point = point_under(membrane, s, h);
         double before = displacement(membrane, s, point);
-        keep_compression(s, before);
+        // head or stick may have been moved from outside since the last sample: it stays on a head
+        // that was changed, and no compression grows; a one-way stick meets the head at rest
+        if (s->touching && !s->one_way)
+            s->height += before - s->dent;
+        double surface = s->one_way ? 0 : before, most = s->touching ? s->compression : 0;
+        if (surface - s->height > most + HEIGHT_ROUNDING)
+            s->height = surface - most;
         himc_residual residual = {s->residual_root, s->residual_omega};
         near[i] = (near_stick){s, point, before, himc_residual_in(&residual, h)};
     }

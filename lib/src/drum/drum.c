@@ -10,7 +10,6 @@
 #include "base/head_frame.h"
 #include "base/line.h"
 #include "drum/contact.h"
-#include "drum/membrane_state.h"
 #include "drum/strike_point.h"
 
 #include <math.h>
@@ -29,7 +28,7 @@
 
 static const himc_vec3 FIRST_PLACE = {0.70, 0, 0.85}; // (m) chosen: in front of a seated player
 
-static bool check_rate(double rate, himc_error *error)
+bool himc_drum_check_rate(double rate, himc_error *error)
 {
     return himc_check_range("sample rate", rate, 8000, 192000, "Hz", error);
 }
@@ -59,7 +58,7 @@ himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, hi
         return NULL;
     }
     if (!himc_check_range("inches", inches, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "in", error) ||
-        !check_rate(sample_rate, error))
+        !himc_drum_check_rate(sample_rate, error))
         return NULL;
     himc_head head = himc_head_default();
     head.radius = inches * METRES_PER_INCH / 2;
@@ -237,9 +236,9 @@ bool himc_drum_is_placed(const himc_drum *drum)
     return drum->set.placed;
 }
 
-double himc_drum_usual_radius(const himc_drum *drum)
+double himc_drum_inches(const himc_drum *drum)
 {
-    return drum->set.usual.radius;
+    return 2 * drum->set.usual.radius / METRES_PER_INCH;
 }
 
 void himc_drum_fade(himc_drum *drum, double factor)
@@ -281,7 +280,7 @@ double himc_drum_rate(const himc_drum *drum)
 
 bool himc_drum_set_rate(himc_drum *drum, double sample_rate, himc_error *error)
 {
-    if (!check_rate(sample_rate, error) ||
+    if (!himc_drum_check_rate(sample_rate, error) ||
         !himc_membrane_set_rate(drum->membrane, sample_rate, error))
         return false;
     double ratio = sample_rate / drum->rate;

@@ -9,9 +9,7 @@
 #include "head/air.h"
 #include "head/grid.h"
 #include "head/pickup.h"
-#include "himc/vec.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -13,6 +13,7 @@
 /// A change may be added to those in use: it is prepared beside them, with all that comes after it,
 /// and put in their place between two blocks.
 #include "drum/drum_state.h"
+#include "base/array.h"
 
 #include <assert.h>
 #include <math.h>
@@ -50,11 +51,9 @@ struct himc_drum_heads {
 
 himc_drum_heads *himc_drum_heads_new(const himc_drum_settings *settings, himc_error *error)
 {
-    himc_drum_heads *heads = calloc(1, sizeof *heads);
-    if (!heads) {
-        himc_error_set(error, "at: out of memory");
+    himc_drum_heads *heads = himc_new(sizeof *heads, "at", error);
+    if (!heads)
         return NULL;
-    }
     heads->settings = himc_drum_settings_copy(settings);
     heads->first = heads->told.base = heads->told.known = settings->head.head;
     heads->now = -2;
@@ -118,15 +117,6 @@ bool himc_drum_heads_add(himc_drum_heads *heads, double beat, const himc_command
 static const himc_head *head_of(const himc_drum_heads *heads, int change)
 {
     return change < 0 ? &heads->first : &heads->change[change].head;
-}
-
-// the place of the model of that config, or NULL
-static himc_model **find_spare(himc_drum_heads *heads, const himc_membrane_config *config)
-{
-    for (int i = 0; i < heads->spares; i++)
-        if (himc_membrane_config_equal(&heads->spare[i]->config, config))
-            return &heads->spare[i];
-    return NULL;
 }
 
 static bool add_spare(himc_drum_heads *heads, const himc_membrane_config *config, himc_error *error)
@@ -292,7 +282,10 @@ static bool give(himc_drum_heads *heads, himc_drum *drum, const himc_head *head,
     if (himc_head_equal(&config.head, head) && !(seconds >= 0 && himc_drum_glides(drum)))
         return true;
     config.head = *head;
-    himc_model **spare = find_spare(heads, &config);
+    himc_model **spare = NULL; // of that config
+    for (int i = heads->spares - 1; i >= 0; i--)
+        if (himc_membrane_config_equal(&heads->spare[i]->config, &config))
+            spare = &heads->spare[i];
     bool good = himc_drum_take_head(drum, &config, seconds, spare, error);
     himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);
     if (spare && !*spare)
@@ -432,17 +425,6 @@ himc_head_insertion *himc_head_insertion_new(himc_drum_heads *heads, himc_drum *
     return j;
 }
 
-static bool is_known(const himc_head_insertion *j, const himc_head *head)
-{
-    const himc_drum_heads *made = j->made;
-    bool known = himc_head_equal(head, &made->settings.head.head);
-    for (int i = 0; i < j->known_count; i++)
-        known = known || himc_head_equal(head, &j->known[i]);
-    for (int i = 0; i < made->spares; i++)
-        known = known || himc_head_equal(head, &made->spare[i]->config.head);
-    return known;
-}
-
 bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
 {
     himc_drum_heads *made = j->made;
@@ -453,8 +435,14 @@ bool himc_head_insertion_prepare(himc_head_insertion *j, himc_error *error)
     for (int i = from; i < made->count && good; i++) {
         good = find_head(&after, &made->change[i], error);
         bool room = j->known_count + made->spares < MOST_SPARES;
+        const himc_head *head = &after.head.head;
+        bool known = himc_head_equal(head, &made->settings.head.head);
+        for (int k = 0; k < j->known_count; k++)
+            known = known || himc_head_equal(head, &j->known[k]);
+        for (int k = 0; k < made->spares; k++)
+            known = known || himc_head_equal(head, &made->spare[k]->config.head);
         bool gliss = made->change[i].id == HIMC_COMMAND_GLISS;
-        if (good && room && (gliss || !is_known(j, &after.head.head)))
+        if (good && room && (gliss || !known))
             good = add_spare(made, &after.head, error);
     }
     himc_drum_settings_free(&after);

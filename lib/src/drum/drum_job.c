@@ -4,13 +4,11 @@
 /// again, the command is carried out in place.
 #include "drum/drum_state.h"
 
+#include "base/array.h"
 #include "base/file.h"
-#include "base/head_frame.h"
-#include "base/text.h"
 #include "head/statistical.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,21 +65,7 @@ typedef struct drum_job {
 
 #define LONGEST_PRESET 65536 // chosen: thirty times what a drum tells (bytes)
 
-// a line of a preset: what sets something and names no file but a shape's
-static bool run_line(himc_drum_settings *s, const himc_text_statement *line, himc_error *error)
-{
-    himc_command c;
-    int count = line->count < line->capacity ? line->count : line->capacity;
-    if (line->overflow)
-        return himc_error_set(error, "a line is too long");
-    if (!himc_command_parse(&c, HIMC_DRUM, line->atom[0].symbol, line->atom + 1, count - 1, error))
-        return false;
-    if (c.id == HIMC_COMMAND_DRUM_PRESET || c.id == HIMC_COMMAND_DRUM_DUMP ||
-        c.id == HIMC_COMMAND_DRUM_INFO || c.id == HIMC_COMMAND_STRIKE)
-        return himc_error_set(error, "%s: not allowed in a preset", line->atom[0].symbol);
-    return himc_drum_settings_command(s, &c, error);
-}
-
+// lines of a preset: what sets something and names no file but a shape's
 static bool run_lines(himc_drum_settings *s, const char *rest, const char *name, himc_error *error)
 {
     char storage[2 * HIMC_PATH_SIZE];
@@ -91,11 +75,22 @@ static bool run_lines(himc_drum_settings *s, const char *rest, const char *name,
                                 .storage = storage,
                                 .size = sizeof storage};
     int at = 1;
-    bool good = true;
-    while (good && himc_text_next(&rest, &at, &line))
-        good = line.count == 0 || run_line(s, &line, error) ||
-               himc_error_prefix(error, "%s:%d", name, line.line);
-    return good;
+    while (himc_text_next(&rest, &at, &line)) {
+        himc_command c;
+        int count = line.count < line.capacity ? line.count : line.capacity;
+        if (line.count == 0)
+            continue;
+        const char *word = atoms[0].symbol;
+        bool good = line.overflow
+                        ? himc_error_set(error, "a line is too long")
+                        : himc_command_parse(&c, HIMC_DRUM, word, atoms + 1, count - 1, error);
+        if (good && (c.id == HIMC_COMMAND_DRUM_PRESET || c.id == HIMC_COMMAND_DRUM_DUMP ||
+                     c.id == HIMC_COMMAND_DRUM_INFO || c.id == HIMC_COMMAND_STRIKE))
+            good = himc_error_set(error, "%s: not allowed in a preset", word);
+        if (!good || !himc_drum_settings_command(s, &c, error))
+            return himc_error_prefix(error, "%s:%d", name, line.line);
+    }
+    return true;
 }
 
 bool himc_drum_settings_preset(himc_drum_settings *s, const char *name, himc_error *error)
@@ -133,8 +128,8 @@ static bool prepare(himc_job *job, himc_error *error)
         himc_ear_paths paths = himc_ears_trace(&j->listener, &j->after.place);
         himc_membrane_config_set_rays(&j->after.head, paths.ray);
     }
-    if (heard && !j->ears && !(j->ears = calloc(1, sizeof *j->ears)))
-        return himc_error_set(error, "listener: out of memory");
+    if (heard && !j->ears && !(j->ears = himc_new(sizeof *j->ears, "listener", error)))
+        return false;
     if (himc_membrane_config_equal(&j->before.head, &j->after.head))
         return true;
     j->made = himc_model_new(&j->after.head, NULL, error);

@@ -1,15 +1,14 @@
 /// drum_listen.c: who hears a drum, and the ways of its sound to there.
 #include "drum/drum_state.h"
 
+#include "base/array.h"
 #include "base/head_frame.h"
-
-#include <stdlib.h>
 
 bool himc_drum_open_ears(himc_drum *drum, himc_error *error)
 {
     if (!drum->ears)
-        drum->ears = calloc(1, sizeof *drum->ears);
-    return drum->ears || himc_error_set(error, "listener: out of memory");
+        drum->ears = himc_new(sizeof *drum->ears, "listener", error);
+    return drum->ears;
 }
 
 bool himc_drum_is_heard(const himc_drum *drum)

@@ -38,8 +38,10 @@ HIMC_RT void himc_drum_fade(himc_drum *drum, double factor);
 
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
-/// The radius that it had when it was made (m).
-HIMC_RT double himc_drum_usual_radius(const himc_drum *drum);
+/// The inches with which it was made.
+HIMC_RT double himc_drum_inches(const himc_drum *drum);
+/// 8000 .. 192000 Hz, or false with the reason.
+bool himc_drum_check_rate(double sample_rate, himc_error *error);
 /// Where its pedal stands, or goes to: octaves over the usual pitch. Returns how long it takes, or
 /// the last one took (s).
 HIMC_RT double himc_drum_pedal(const himc_drum *drum, double *octaves);
@@ -108,7 +110,6 @@ himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *erro
 /// without memory.
 bool himc_drum_set(himc_drum *drum, const himc_drum_settings *settings, himc_model **made,
                    himc_error *error);
-/// True if the drum's head is that of the settings.
 HIMC_RT bool himc_drum_has_head(const himc_drum *drum, const himc_drum_settings *settings);
 
 // Heads that a drum gets one after the other while a score plays (drum_heads.c).

@@ -4,7 +4,6 @@
 #define HIMC_DRUM_STATE_H
 
 #include "drum/drum_performer.h"
-#include "drum/ears.h"
 #include "drum/membrane_state.h"
 #include "drum/stroke_noise.h"
 
@@ -104,7 +103,6 @@ bool himc_drum_take_head(himc_drum *drum, const himc_membrane_config *to, double
                          himc_model **made, himc_error *error);
 /// Samples until the pedal's next step, at most `most`.
 HIMC_RT int himc_drum_until_gliss(const himc_drum *drum, int most);
-/// The step of the pedal that is due, if any.
 HIMC_RT void himc_drum_go_gliss(himc_drum *drum);
 
 /// Of a stroke's noise a cloth all over the head takes this part; chosen: 10 dB.
@@ -140,7 +138,6 @@ typedef enum drum_mallet_preset {
     DRUM_MALLET_WOOD
 } drum_mallet_preset;
 
-/// That mallet, with its name.
 void himc_drum_take_mallet(himc_drum_settings *settings, drum_mallet_preset preset);
 
 #endif

@@ -65,14 +65,6 @@ static int queue_push(drum_queue *q)
     return (q->first + q->count++) % DRUM_QUEUE;
 }
 
-static drum_mallet *free_mallet(himc_drum *drum)
-{
-    for (int i = 0; i < HIMC_STICKS; i++)
-        if (!drum->mallets[i].used)
-            return &drum->mallets[i];
-    return NULL;
-}
-
 // index of the strike that begins first, of several the first asked for; -1 if none waits
 static int earliest(const himc_drum *drum)
 {
@@ -86,9 +78,11 @@ static int earliest(const himc_drum *drum)
 void himc_drum_launch(himc_drum *drum)
 {
     for (;;) {
-        int next = earliest(drum);
-        drum_mallet *m = free_mallet(drum);
-        if (next < 0 || !m || drum->waiting[next].at > drum->time)
+        int next = earliest(drum), free = 0;
+        while (free < HIMC_STICKS && drum->mallets[free].used)
+            free++;
+        drum_mallet *m = &drum->mallets[free];
+        if (next < 0 || free == HIMC_STICKS || drum->waiting[next].at > drum->time)
             return;
         drum_waiting w = drum->waiting[next];
         drum->waiting_count--;

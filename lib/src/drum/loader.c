@@ -9,13 +9,11 @@
 /// again. Only himc_loader_finish and himc_loader_free wait.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/loader.h"
+#include "base/array.h"
 #include "drum/drum_performer.h"
-#include "base/job.h"
 #include "system/thread.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define WAITING_LOADS 256 // chosen: a page of a patch, sent at once
@@ -103,11 +101,9 @@ static void hand_over(himc_loader *loader, loader_stage stage)
 
 himc_loader *himc_loader_new(himc_error *error)
 {
-    himc_loader *loader = calloc(1, sizeof *loader);
-    if (!loader) {
-        himc_error_set(error, "loader: out of memory");
+    himc_loader *loader = himc_new(sizeof *loader, "loader", error);
+    if (!loader)
         return NULL;
-    }
     pthread_mutex_init(&loader->lock, NULL);
     pthread_cond_init(&loader->work, NULL);
     pthread_cond_init(&loader->done, NULL);

@@ -8,7 +8,6 @@
 #include "drum/membrane_state.h"
 
 #include "head/pickup.h"
-#include "head/uneven.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -85,34 +84,29 @@ typedef struct sounds {
 
 // A pickup of accelerations has a direct part of each force, which cancels most of what the modes
 // of a bent head contribute. So the forces of the last sample are counted as if they continued.
-static void add_forces(himc_membrane *m, int index, sound_pair *sound)
-{
-    himc_model *c = m->model;
-    const himc_output *o = &c->outputs[index];
-    himc_bank_step_response(c->bank, &o->readout, c->scratch);
-    for (int i = 0; i < himc_bank_padded(c->bank); i++)
-        c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
-    for (int i = 0; i < m->applied_count; i++) {
-        const himc_push *p = &m->applied[i];
-        strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
-        sound->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
-        sound->next += p->force * himc_strike_point_response(m, s, HIMC_STEP_SAMPLE)->sound[index];
-    }
-}
-
 static sounds read_sounds(himc_membrane *m)
 {
-    sounds s = {0};
-    for (int i = 0; i < HIMC_OUTPUTS; i++) {
-        if (!himc_membrane_has(m, i))
+    himc_model *c = m->model;
+    sounds all = {0};
+    for (int k = 0; k < HIMC_OUTPUTS; k++) {
+        if (!himc_membrane_has(m, k))
             continue;
-        himc_readout *readout = &m->model->outputs[i].readout;
-        const declick *d = &m->declicks[i];
-        s.of[i] = (sound_pair){himc_bank_read(m->model->bank, readout) + declick_at(d, d->at - 1),
-                               himc_bank_peek(m->model->bank, readout) + declick_at(d, d->at)};
-        add_forces(m, i, &s.of[i]);
+        himc_output *o = &c->outputs[k];
+        const declick *d = &m->declicks[k];
+        sound_pair *sound = &all.of[k];
+        *sound = (sound_pair){himc_bank_read(c->bank, &o->readout) + declick_at(d, d->at - 1),
+                              himc_bank_peek(c->bank, &o->readout) + declick_at(d, d->at)};
+        himc_bank_step_response(c->bank, &o->readout, c->scratch);
+        for (int i = 0; i < himc_bank_padded(c->bank); i++)
+            c->scratch[i] = o->response[HIMC_STEP_SAMPLE][i] - c->scratch[i];
+        for (int i = 0; i < m->applied_count; i++) {
+            const himc_push *p = &m->applied[i];
+            strike_point *s = himc_membrane_strike_point(m, p->x, p->y, p->b);
+            sound->now += p->force * himc_bank_sum(c->bank, s->shape, c->scratch);
+            sound->next += p->force * himc_strike_point_response(m, s, HIMC_STEP_SAMPLE)->sound[k];
+        }
     }
-    return s;
+    return all;
 }
 
 // continues the sounds of the outputs from `first` to `end` by declicks, from `before`

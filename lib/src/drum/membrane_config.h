@@ -32,7 +32,6 @@ static inline bool himc_membrane_config_has(const himc_membrane_config *c, int k
     return k < HIMC_PICKUPS ? k < c->pickup_count && !(c->muted && k < HIMC_EARS) : c->rays;
 }
 
-/// True if all of both heads is the same.
 HIMC_RT bool himc_head_equal(const himc_head *a, const himc_head *b);
 /// Sets in `head` what differs between `was` and `now`.
 HIMC_RT void himc_head_keep_edits(himc_head *head, const himc_head *was, const himc_head *now);

@@ -64,21 +64,6 @@ static double coordinate(const himc_membrane *membrane, int count, const double 
     return q;
 }
 
-// displacements of the bare shapes of order 0, from those of what a kettle makes of them
-static void unmix(const himc_modes *modes, int count, double *displacement)
-{
-    const himc_mixture *mix = &modes->mixture;
-    double mixed[HIMC_MIXED];
-    for (int n = 0; n < mix->count; n++)
-        mixed[n] = mix->index[n] < count ? displacement[mix->index[n]] : 0;
-    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
-        double sum = 0;
-        for (int n = 0; n < mix->count; n++)
-            sum += mix->part[n][k] * mixed[n];
-        displacement[mix->index[k]] = sum;
-    }
-}
-
 // of the even head's shape `index`, in what the uneven head's modes make of them
 static double even_displacement(const himc_membrane *m, int count, const double *modal, int index)
 {
@@ -97,9 +82,19 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, const doubl
 {
     const himc_modes *modes = membrane->model->modes;
     const himc_head *head = &membrane->model->config.head;
+    const himc_mixture *mix = &modes->mixture;
+    double mixed[HIMC_MIXED];
     for (int i = 0; i < count; i++)
         displacement[i] = even_displacement(membrane, count, modal, i);
-    unmix(modes, count, displacement);
+    // of the bare shapes of order 0, from those of what a kettle makes of them
+    for (int n = 0; n < mix->count; n++)
+        mixed[n] = mix->index[n] < count ? displacement[mix->index[n]] : 0;
+    for (int k = 0; k < mix->count && mix->index[k] < count; k++) {
+        double sum = 0;
+        for (int n = 0; n < mix->count; n++)
+            sum += mix->part[n][k] * mixed[n];
+        displacement[mix->index[k]] = sum;
+    }
     for (int i = 0; i < count && membrane->model->config.shape.kind->air; i++) {
         himc_mode mode = himc_modes_get(modes, head, i);
         if (mode.m <= 0 || mode.sine)

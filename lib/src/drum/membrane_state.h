@@ -56,7 +56,6 @@ static inline bool himc_membrane_has(const himc_membrane *m, int k)
 HIMC_RT const himc_unit_response *himc_strike_point_response(himc_membrane *m, strike_point *s,
                                                              himc_step_length length);
 
-/// Its config, borrowed.
 HIMC_RT const himc_membrane_config *himc_membrane_config_of(const himc_membrane *membrane);
 /// A membrane at rest with that model, which it owns from now on. NULL, and the model freed, with
 /// the reason; a model that is NULL has one.

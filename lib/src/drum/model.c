@@ -9,11 +9,11 @@
 /// All arrays with an entry for each mode are one block of memory.
 #include "drum/model.h"
 
+#include "base/array.h"
 #include "head/pickup.h"
 #include "system/aligned.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // arrays of a model: its own, what rays have in common, those of each output, patch, strike point
@@ -111,11 +111,9 @@ himc_model *himc_model_new(const himc_membrane_config *config, const himc_model 
 {
     if (!himc_membrane_config_check(config, error))
         return NULL;
-    himc_model *c = calloc(1, sizeof *c);
-    if (!c) {
-        himc_error_set(error, "head: out of memory");
+    himc_model *c = himc_new(sizeof *c, "head", error);
+    if (!c)
         return NULL;
-    }
     c->config = *config;
     c->modes = like && himc_model_has_room(like, config)
                    ? himc_modes_copy(like->modes, error)

@@ -8,7 +8,6 @@
 #ifndef HIMC_MODEL_H
 #define HIMC_MODEL_H
 
-#include "bank/bank.h"
 #include "drum/membrane_config.h"
 #include "drum/strike_point.h"
 #include "head/air.h"
@@ -75,7 +74,6 @@ typedef struct himc_model {
 /// share, and whose numbers it copies if they have the same config. NULL with the reason.
 himc_model *himc_model_new(const himc_membrane_config *config, const himc_model *like,
                            himc_error *error);
-/// NULL is allowed.
 void himc_model_free(himc_model *model);
 /// Whether himc_model_make can make a model of that config out of this one.
 HIMC_RT bool himc_model_has_room(const himc_model *model, const himc_membrane_config *config);

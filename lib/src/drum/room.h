@@ -4,8 +4,6 @@
 
 #include "himc/base.h"
 
-#include <stdint.h>
-
 /// A room.
 typedef struct himc_walls {
     double seconds; ///< reverberation time T60 below 1 kHz (s), 0 .. 10; 0: no walls

@@ -196,16 +196,6 @@ static double white(uint64_t bits, int band)
     return sqrt(12) / 65536 * ((int16_t)(bits >> (16 * band) ^ 0x8000) + 0.5);
 }
 
-// white noise for so many bands
-static inline void draw(himc_stroke_noise *noise, int count, both x[HIMC_NOISE_BANDS])
-{
-    uint64_t bits = himc_random_bits(&noise->state), other = himc_random_bits(&noise->state);
-    for (int i = 0; i < count; i++) {
-        double left = white(bits, i);
-        x[i] = (both){left, COHERENCE * left + sqrt(1 - COHERENCE * COHERENCE) * white(other, i)};
-    }
-}
-
 // the levels of the next samples, at most n, until bands end: then fewer are `left`
 static int find_levels(himc_stroke_noise *noise, int n, double force, int *left,
                        double level[CHUNK][HIMC_NOISE_BANDS])
@@ -239,8 +229,14 @@ static int run_chunk(himc_stroke_noise *noise, int n, double force, int rows, do
     both x[CHUNK][HIMC_NOISE_BANDS];
     int left, count = noise->sounds;
     n = find_levels(noise, n < CHUNK ? n : CHUNK, force, &left, level);
-    for (int k = 0; k < n; k++)
-        draw(noise, count, x[k]);
+    for (int k = 0; k < n; k++) {
+        uint64_t bits = himc_random_bits(&noise->state), other = himc_random_bits(&noise->state);
+        for (int i = 0; i < count; i++) {
+            double own = white(bits, i);
+            x[k][i] =
+                (both){own, COHERENCE * own + sqrt(1 - COHERENCE * COHERENCE) * white(other, i)};
+        }
+    }
     for (int i = 0; i < count; i += 2)
         filter(noise->section, i, n, x);
     // the other row begins at rest again: where it ended depends on the host's blocks

@@ -4,8 +4,6 @@
 
 #include "himc/base.h"
 
-#include <stdint.h>
-
 enum { HIMC_NOISE_BANDS = 4, HIMC_NOISE_ROWS = 2 };
 enum { HIMC_NOISE_LANES = HIMC_NOISE_BANDS * HIMC_NOISE_ROWS };
 
@@ -52,7 +50,6 @@ HIMC_RT void himc_stroke_noise_begin(himc_stroke_noise *noise, double x, double 
 /// The next n samples at 1 m, for `rows` (1, 2) places far apart, while `force` (N) acts in each.
 HIMC_RT void himc_stroke_noise_run(himc_stroke_noise *noise, int n, double force, int rows,
                                    double *const row[HIMC_NOISE_ROWS]);
-/// Ends it at once.
 HIMC_RT void himc_stroke_noise_rest(himc_stroke_noise *noise);
 
 #endif

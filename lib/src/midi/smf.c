@@ -13,7 +13,6 @@
 #include "base/array.h"
 
 #include <ctype.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define USUAL_TEMPO 500000 // of a file that says nothing (microseconds per quarter note)

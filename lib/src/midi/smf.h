@@ -34,7 +34,6 @@ typedef struct midi_file {
                     ///< scores do not have
 } midi_file;
 
-/// True if the bytes begin as a MIDI file does.
 bool himc_midi_is_file(const void *bytes, size_t size);
 
 /// Reads a file of format 0, 1 or 2 (whose tracks follow each other). A track that ends in the

@@ -9,7 +9,6 @@
 #include "plan/hand.h"
 #include "plan/sticking.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { OMIT = HIMC_HANDS };

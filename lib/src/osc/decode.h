@@ -17,7 +17,6 @@ typedef enum osc_verdict {
 typedef void osc_sink(void *object, osc_verdict verdict, himc_command *command,
                       const himc_error *error);
 
-/// Gives each message of a packet to `sink`.
 void himc_osc_decode(const char *data, size_t size, osc_sink *sink, void *object);
 
 /// Points of the 1000 a second that a command costs.

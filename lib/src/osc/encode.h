@@ -78,7 +78,6 @@ void himc_osc_encode_sound(osc_packets *p, const osc_sound *sound);
 void himc_osc_encode_drum(osc_packets *p, const osc_drum *drum);
 void himc_osc_encode_status(osc_packets *p, const osc_status *status,
                             const himc_osc_counts *counts);
-/// A line of text: an error or an information.
 void himc_osc_encode_line(osc_packets *p, bool error, const char *text);
 
 /// The same for programs that show avatars (Virtual Motion Capture protocol); `time` of the

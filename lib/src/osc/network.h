@@ -6,8 +6,6 @@
 #include "himc/base.h"
 #include "osc/ring.h"
 
-#include <stdint.h>
-
 /// Address and port of a host, as the network numbers them.
 typedef struct osc_address {
     bool v6;

@@ -8,6 +8,7 @@
 /// counts what does not fit; so a flood costs this thread no more than its share.
 #define _POSIX_C_SOURCE 200809L // clocks
 #include "osc/osc_state.h"
+#include "base/array.h"
 #include "system/files.h"
 #include "system/thread.h"
 
@@ -265,11 +266,9 @@ static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *er
 static himc_osc *make(const himc_osc_config *config, const osc_clock *clock, bool stepped,
                       himc_error *error)
 {
-    himc_osc *osc = calloc(1, sizeof *osc);
-    if (!osc) {
-        himc_error_set(error, "osc: out of memory");
+    himc_osc *osc = himc_new(sizeof *osc, "osc", error);
+    if (!osc)
         return NULL;
-    }
     osc->network = (osc_network){.socket = {-1, -1, -1}};
     osc->clock = *clock;
     osc->stepped = stepped;

@@ -132,27 +132,13 @@ static void put_head(himc_osc *osc, himc_drum *drum, double time)
     end(osc);
 }
 
-// the sum of all drums from sample `first` on
-static void mix(himc_performance *performance, uint64_t first, osc_sound *out)
-{
-    double heard[SOUND_FRAMES];
-    himc_drum *drum;
-    memset(out->sample, 0, sizeof out->sample);
-    out->channels = 1;
-    for (int channel = 0; channel < 2; channel++)
-        for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
-            himc_drum_read_channel(drum, channel, first, SOUND_FRAMES, heard);
-            for (int i = 0; i < SOUND_FRAMES; i++)
-                out->sample[i][channel] += (float)heard[i];
-        }
-    for (int i = 0; i < SOUND_FRAMES; i++)
-        out->channels = out->sample[i][1] != out->sample[i][0] ? 2 : out->channels;
-}
-
+// the sum of all drums
 static void put_sound(himc_osc *osc, himc_performance *performance, const himc_performance_stats *s)
 {
     uint64_t now = himc_performance_time(performance), *heard = &osc->host.heard;
     bool wanted = atomic_load_explicit(&osc->subscriptions.sounds, memory_order_relaxed) > 0;
+    double sample[SOUND_FRAMES];
+    himc_drum *drum;
     // a pause, or time that was counted from 0 again
     if (!wanted || *heard > now || now - *heard > HIMC_DRUM_RING / 2)
         *heard = now;
@@ -161,9 +147,16 @@ static void put_sound(himc_osc *osc, himc_performance *performance, const himc_p
             begin(osc, STATE_SOUND, s->seconds - (double)(now - *heard) / s->sample_rate);
         if (!state)
             continue;
-        state->sound.first = (uint32_t)*heard;
-        state->sound.rate = (int)s->sample_rate;
-        mix(performance, *heard, &state->sound);
+        osc_sound *out = &state->sound;
+        *out = (osc_sound){.first = (uint32_t)*heard, .rate = (int)s->sample_rate, .channels = 1};
+        for (int channel = 0; channel < 2; channel++)
+            for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
+                himc_drum_read_channel(drum, channel, *heard, SOUND_FRAMES, sample);
+                for (int i = 0; i < SOUND_FRAMES; i++)
+                    out->sample[i][channel] += (float)sample[i];
+            }
+        for (int i = 0; i < SOUND_FRAMES; i++)
+            out->channels = out->sample[i][1] != out->sample[i][0] ? 2 : out->channels;
         end(osc);
     }
 }
@@ -278,41 +271,37 @@ static void loaded(void *object, const char *error)
     refuse_to(osc, &h->loading_for, line.text);
 }
 
-static bool carry_out(himc_osc *osc, himc_performance *performance, const osc_order *order,
-                      himc_error *error)
-{
-    osc_host *h = &osc->host;
-    const himc_command *command = &order->command;
-    const himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
-    if (!h->loader)
-        return himc_performance_command(performance, command, 0, error);
-    bool good = himc_loader_command(h->loader, &to, command, error);
-    h->loading = good && himc_loader_busy(h->loader);
-    h->loading_for = order->from;
-    memcpy(h->loading_drum, command->drum, sizeof h->loading_drum);
-    return good;
-}
-
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
 {
     himc_error error = {""};
     osc_sender from = {.osc = osc, .address = &order->from};
-    osc_dump *dump = &osc->host.dump;
-    himc_command_id id = order->command.id;
+    osc_host *h = &osc->host;
+    const himc_load_target to = {.performance = performance, .done = loaded, .user = osc};
+    const himc_command *command = &order->command;
+    himc_command_id id = command->id;
     const himc_runner *runner = (const himc_runner *)(const void *)performance; // its first member
     const himc_drum *drum = NULL;
     if (id == HIMC_COMMAND_DRUM_DUMP || id == HIMC_COMMAND_DRUM_INFO)
-        drum = runner->drum(performance, &order->command, &error);
-    if (id == HIMC_COMMAND_INFO)
+        drum = runner->drum(performance, command, &error);
+    bool good = true;
+    if (id == HIMC_COMMAND_INFO) {
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
-    else if (id == HIMC_COMMAND_DUMP)
-        *dump = (osc_dump){
-            .tells = true, .to = order->from, .from = {.osc = osc, .address = &dump->to}};
-    else if (drum)
+    } else if (id == HIMC_COMMAND_DUMP) {
+        h->dump = (osc_dump){
+            .tells = true, .to = order->from, .from = {.osc = osc, .address = &h->dump.to}};
+    } else if (drum) {
         himc_drum_describe(drum,
                            id == HIMC_COMMAND_DRUM_INFO ? HIMC_DESCRIBE_INFO : HIMC_DESCRIBE_STATE,
                            answer, &from);
-    else if (!carry_out(osc, performance, order, &error))
+    } else if (h->loader) {
+        good = himc_loader_command(h->loader, &to, command, &error);
+        h->loading = good && himc_loader_busy(h->loader);
+        h->loading_for = order->from;
+        memcpy(h->loading_drum, command->drum, sizeof h->loading_drum);
+    } else {
+        good = himc_performance_command(performance, command, 0, &error);
+    }
+    if (!good)
         refuse_to(osc, &order->from, error.text);
 }
 

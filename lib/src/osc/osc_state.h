@@ -5,7 +5,6 @@
 #ifndef HIMC_OSC_STATE_H
 #define HIMC_OSC_STATE_H
 
-#include "himc/osc.h"
 #include "osc/decode.h"
 #include "osc/ring.h"
 #include "osc/stepped.h"

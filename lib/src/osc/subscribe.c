@@ -18,7 +18,6 @@
 #include "base/line.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -360,22 +359,6 @@ static bool due(osc_subscription *one, double now)
     return true;
 }
 
-static const osc_packets *encoded_pose(osc_subscriptions *s, const osc_state *state,
-                                       const osc_subscription *one)
-{
-    bool vmc = one->stream == STREAM_VMC;
-    osc_packets *p = &s->packets[vmc][one->local];
-    if (s->encoded[vmc][one->local])
-        return p;
-    s->encoded[vmc][one->local] = true;
-    himc_osc_encode_begin(p, one->local ? LARGE_PACKET : SMALL_PACKET, true, state->wall);
-    if (vmc)
-        himc_osc_encode_vmc_pose(p, &state->pose, state->time);
-    else
-        himc_osc_encode_pose(p, &state->pose);
-    return p;
-}
-
 static void deliver_pose(osc_subscriptions *s, const osc_state *state, osc_packets *targets,
                          double now)
 {
@@ -384,8 +367,17 @@ static void deliver_pose(osc_subscriptions *s, const osc_state *state, osc_packe
     for (osc_subscription *one = s->subscription; one < s->subscription + SUBSCRIPTIONS; one++) {
         if (!one->used || !sends_poses(one) || !due(one, now))
             continue;
-        bool only_targets = one->stream == STREAM_TARGETS;
-        send_packets(s, &one->to, only_targets ? targets : encoded_pose(s, state, one), now);
+        bool vmc = one->stream == STREAM_VMC, *encoded = &s->encoded[vmc][one->local];
+        osc_packets *p = one->stream == STREAM_TARGETS ? targets : &s->packets[vmc][one->local];
+        if (p != targets && !*encoded) {
+            *encoded = true;
+            himc_osc_encode_begin(p, one->local ? LARGE_PACKET : SMALL_PACKET, true, state->wall);
+            if (vmc)
+                himc_osc_encode_vmc_pose(p, &state->pose, state->time);
+            else
+                himc_osc_encode_pose(p, &state->pose);
+        }
+        send_packets(s, &one->to, p, now);
     }
 }
 

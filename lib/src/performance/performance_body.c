@@ -4,10 +4,10 @@
 /// push is a constant force on a point of a segment. It is not given to the controller, so it
 /// disturbs the motion. `ik` has no forces, so pushes have no effect there.
 #include "performance/performance_body.h"
+#include "base/array.h"
 #include "base/format.h"
 
 #include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,10 +69,8 @@ void himc_body_adopt(performance_body *b, const body_parts *parts)
 
 performance_body *himc_body_new(const performance_settings *s, himc_error *error)
 {
-    performance_body *b = calloc(1, sizeof *b);
+    performance_body *b = himc_new(sizeof *b, "performance", error);
     body_parts parts;
-    if (!b)
-        himc_error_set(error, "performance: out of memory");
     if (b && himc_body_make_parts(&parts, s, error)) {
         himc_body_adopt(b, &parts);
         return b;
@@ -264,14 +262,10 @@ void himc_body_control(performance_body *b, const himc_reference *reference, dou
     himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
 }
 
-himc_vec3 himc_body_pushed(const performance_body *b, int segment, double t)
+body_push himc_body_pushed(const performance_body *b, int segment, double t)
 {
-    return t < b->push[segment].until ? b->push[segment].force : himc_vec3_make(0, 0, 0);
-}
-
-himc_vec3 himc_body_pushed_at(const performance_body *b, int segment, double t)
-{
-    return t < b->push[segment].until ? b->push[segment].at : b->plant.segment[segment].center;
+    return t < b->push[segment].until ? b->push[segment]
+                                      : (body_push){.at = b->plant.segment[segment].center};
 }
 
 bool himc_body_simulate(performance_body *b, double t, double h)

@@ -3,7 +3,6 @@
 #ifndef HIMC_PERFORMANCE_BODY_H
 #define HIMC_PERFORMANCE_BODY_H
 
-#include "body/character.h"
 #include "control/balance.h"
 #include "control/muscle.h"
 #include "control/setpoint.h"
@@ -62,7 +61,6 @@ typedef struct body_parts {
 /// Makes segments for these settings, for himc_body_adopt or himc_character_free.
 bool himc_body_make_parts(body_parts *parts, const performance_settings *settings,
                           himc_error *error);
-/// Replaces the body's segments.
 void himc_body_adopt(performance_body *body, const body_parts *parts);
 /// Puts the body into the posture of a tick: at rest, or back from a state that was not finite.
 HIMC_RT void himc_body_place(performance_body *body, const himc_setpoint *at);
@@ -77,7 +75,6 @@ void himc_body_init_controller(performance_body *body, const performance_setting
 HIMC_RT void himc_body_configure(performance_body *body, const performance_settings *settings);
 /// Joint limits from now on; NULL for none.
 HIMC_RT void himc_body_set_limits(performance_body *body, const himc_limits *limits);
-/// Sets the counts of limits to zero.
 HIMC_RT void himc_body_clear_limit_counts(performance_body *body);
 /// Begins a push at `t` (s); another one of that segment ends.
 HIMC_RT void himc_body_push(performance_body *body, const planned_push *push, double t);
@@ -115,10 +112,8 @@ HIMC_RT void himc_body_control(performance_body *body, const himc_reference *ref
 /// Moves the simulated body by `h` (s) from time `t` (s), under its torques, tip forces and pushes.
 /// False if the engine fails.
 HIMC_RT bool himc_body_simulate(performance_body *body, double t, double h);
-/// The push on a segment at time `t` (N).
-HIMC_RT himc_vec3 himc_body_pushed(const performance_body *body, int segment, double t);
-/// Where it acts, its centre of mass without one; in the segment's frame (m).
-HIMC_RT himc_vec3 himc_body_pushed_at(const performance_body *body, int segment, double t);
+/// The push on a segment at time `t`; without one it is 0, at the centre of mass.
+HIMC_RT body_push himc_body_pushed(const performance_body *body, int segment, double t);
 /// Adds up the work on the body from 0 on, or no longer.
 HIMC_RT void himc_body_account(performance_body *body, bool on);
 /// Moves the body by inverse kinematics, by `h` (s). False if the state is not finite.

@@ -9,7 +9,6 @@
 #include "himc/base.h"
 
 #include <math.h>
-#include <stdint.h>
 
 /// All counts are in samples from time 0: the moment at which the performance was made or reset.
 typedef struct performance_clock {
@@ -75,7 +74,6 @@ static inline int64_t himc_clock_steps_per_tick(const performance_clock *c)
     return ratio < 1 ? 1 : (int64_t)ratio;
 }
 
-/// Whether a task tick falls on the next step.
 static inline bool himc_clock_is_tick(const performance_clock *c)
 {
     return c->step % himc_clock_steps_per_tick(c) == 0;
@@ -88,7 +86,6 @@ static inline double himc_clock_next_tick(const performance_clock *c)
     return (double)himc_clock_step_begin(c, next) / c->sample_rate;
 }
 
-/// Samples of the next step.
 static inline int himc_clock_step_samples(const performance_clock *c)
 {
     return (int)(himc_clock_step_begin(c, c->step + 1) - c->made);

@@ -98,7 +98,7 @@ static himc_job *job_of(himc_performance *p, const himc_command *c, himc_error *
     case HIMC_COMMAND_AT: return himc_performance_change_job(p, c, error);
     case HIMC_COMMAND_SCORE:
     case HIMC_COMMAND_PRESET:
-        return himc_performance_score_job(p, c, error); // as the parser has it
+        return himc_performance_score_job(p, NULL, NULL, c, error); // as the parser has it
     case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
     case HIMC_COMMAND_RECORD: return himc_performance_record_job(p, c, error);
     case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
@@ -208,8 +208,13 @@ static himc_drum *drum_of(himc_performance *p, const himc_command *c, himc_error
     return NULL;
 }
 
+static himc_job *state_job(himc_performance *p, const char *state, himc_error *error)
+{
+    return himc_performance_score_job(p, state, "state", NULL, error);
+}
+
 const himc_runner himc_performance_runner = {takes_long, himc_performance_command, job_of,
-                                             himc_performance_state_job, drum_of};
+                                             state_job, drum_of};
 
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
                               himc_error *error)

@@ -416,28 +416,6 @@ static double note_forces(stick_contact *c, const contact_scene *s, himc_hand ha
     return impulse;
 }
 
-// n samples from sample `done` of the step on
-static void advance_drum(performance_contacts *c, const contact_scene *s, int drum, int done, int n,
-                         const int below[HIMC_HANDS])
-{
-    himc_stick *sticks[HIMC_HANDS];
-    double *forces[HIMC_HANDS];
-    int count = 0;
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (below[hand] == drum) {
-            sticks[count] = &c->hand[hand].stick;
-            forces[count++] = c->force[hand] + done;
-        }
-    if (count == 0) {
-        s->drums->slot[drum].behind += n;
-        return;
-    }
-    himc_drum *of = s->drums->slot[drum].drum;
-    himc_drums_catch_up_one(s->drums, drum);
-    if (himc_drum_advance_sticks(of, n, sticks, count, forces, NULL))
-        c->quiet = 0;
-}
-
 // all drums, together from one exchange through the air between them to the next
 static void advance_drums(performance_contacts *c, const contact_scene *s, int n,
                           const int below[HIMC_HANDS])
@@ -450,8 +428,22 @@ static void advance_drums(performance_contacts *c, const contact_scene *s, int n
             himc_air_between_exchange(air);
         }
         run = air ? himc_air_between_until(air, now, n - done) : n - done;
-        for (int i = 0; i < s->drums->count; i++)
-            advance_drum(c, s, i, done, run, below);
+        for (int i = 0; i < s->drums->count; i++) {
+            himc_stick *sticks[HIMC_HANDS];
+            double *forces[HIMC_HANDS];
+            int count = 0;
+            for (int hand = 0; hand < HIMC_HANDS; hand++)
+                if (below[hand] == i) {
+                    sticks[count] = &c->hand[hand].stick;
+                    forces[count++] = c->force[hand] + done;
+                }
+            s->drums->slot[i].behind += count == 0 ? run : 0;
+            if (count == 0)
+                continue;
+            himc_drums_catch_up_one(s->drums, i);
+            if (himc_drum_advance_sticks(s->drums->slot[i].drum, run, sticks, count, forces, NULL))
+                c->quiet = 0;
+        }
     }
 }
 

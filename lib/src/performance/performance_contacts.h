@@ -6,7 +6,6 @@
 #include "plan/bounce.h"
 #include "performance/performance_body.h"
 #include "performance/performance_clock.h"
-#include "performance/performance_drums.h"
 #include "performance/performance_motion.h"
 #include "performance/performance_statistics.h"
 

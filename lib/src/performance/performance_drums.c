@@ -4,8 +4,8 @@
 /// the one nearest to straight ahead at which its rim is clear of the others, first to the right,
 /// then to the left. So no two drums are at one place, where a stick could not tell them apart.
 #include "performance/performance_drums.h"
+#include "base/array.h"
 #include "base/format.h"
-#include "base/head_frame.h"
 #include "base/text.h"
 
 #include <stdlib.h>
@@ -209,8 +209,8 @@ bool himc_drums_add(performance_drums *d, himc_drum *drum, drum_source source, i
         return himc_drums_full(himc_drum_name(drum), error);
     if (d->listener.on && !himc_drum_open_ears(drum, error))
         return false;
-    if (!d->air && i < 0 && d->count == 1 && !(d->air = calloc(1, sizeof *d->air)))
-        return himc_error_set(error, "drum: out of memory");
+    if (!d->air && i < 0 && d->count == 1 && !(d->air = himc_new(sizeof *d->air, "drum", error)))
+        return false;
     if (i < 0)
         i = d->count++;
     *index = i;

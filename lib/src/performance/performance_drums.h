@@ -4,8 +4,6 @@
 
 #include "base/head_frame.h"
 #include "drum/air_between.h"
-#include "drum/drum_performer.h"
-#include "himc/drum.h"
 #include "performance/performance_events.h"
 
 #define FIRST_DRUM "drum" // name of a drum made for strokes without one
@@ -96,7 +94,6 @@ void himc_drums_release(performance_drums *drums);
 /// Sets the changes of a drum's head in the score (NULL: none). Returns those before, which the
 /// caller frees.
 himc_drum_heads *himc_drums_set_heads(performance_drums *drums, int index, himc_drum_heads *heads);
-/// Drops the changes of all heads.
 void himc_drums_drop_heads(performance_drums *drums);
 /// Gives the drums the heads that they have at that beat of a round; nothing if it is negative. A
 /// loop begins again at beat `end`: what changes there acts with the next round. Notes a change
@@ -104,7 +101,6 @@ void himc_drums_drop_heads(performance_drums *drums);
 HIMC_RT void himc_drums_turn_heads(performance_drums *drums, double beat, long round, double end,
                                    performance_events *events);
 
-/// True if the head of a drum is damped.
 HIMC_RT bool himc_drums_damped(const performance_drums *drums, int index);
 /// True if it is, or will be at that beat.
 HIMC_RT bool himc_drums_will_be_damped(const performance_drums *drums, int index, double beat);

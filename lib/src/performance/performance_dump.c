@@ -11,13 +11,9 @@
 
 #include "base/argument.h"
 #include "base/file.h"
-#include "base/format.h"
-#include "base/text.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#define METRES_PER_INCH 0.0254
 #define LINE_ROOM (2 * HIMC_PATH_SIZE + 2) // of the longest line (bytes)
 #define LINES_AT_ONCE 32                   // of a list; chosen: 0.1 ms at most
 
@@ -157,7 +153,7 @@ static int tell_item(const himc_performance *p, dump_part part, int i, const him
     case NAMES:
         if (named)
             himc_state_tell(to, "drum", himc_drum_name(drum), 1,
-                            (double[]){2 * himc_drum_usual_radius(drum) / METRES_PER_INCH});
+                            (double[]){himc_drum_inches(drum)});
         return d->count;
     case DRUMS:
         if (named)

@@ -5,8 +5,6 @@
 #include "base/format.h"
 #include "base/line.h"
 
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
 static bool has_strike(himc_event_kind kind)

@@ -5,6 +5,7 @@
 /// natural posture or, as null-space target of `himc`, a player's posture regression; from one
 /// source to another they cross-fade (posture_crossfade.h).
 #include "performance/performance_motion.h"
+#include "base/array.h"
 #include "control/law.h"
 
 #include "control/alive.h"
@@ -62,12 +63,10 @@ static void choose_sources(performance_motion *m, bool played)
 
 performance_motion *himc_motion_new(himc_error *error)
 {
-    performance_motion *m = calloc(1, sizeof *m);
+    performance_motion *m = himc_new(sizeof *m, "performance", error);
     himc_planner_config planning = himc_planner_default();
-    if (!m) {
-        himc_error_set(error, "performance: out of memory");
+    if (!m)
         return NULL;
-    }
     planning.mallet_radius = himc_skeleton_default().mallet_radius;
     planning.body = &m->body;
     m->planner = himc_planner_new(&planning, error);

@@ -4,7 +4,6 @@
 #define HIMC_PERFORMANCE_MOTION_H
 
 #include "body/pedal.h"
-#include "plan/planner.h"
 #include "plan/damping.h"
 #include "control/posture_crossfade.h"
 #include "control/posture_regression.h"
@@ -91,13 +90,11 @@ HIMC_RT void himc_motion_replan(performance_motion *motion);
 HIMC_RT void himc_motion_seat(performance_motion *motion, double height);
 /// True if the hands of the planner rest elsewhere at the start than the last setpoints say.
 HIMC_RT bool himc_motion_rests_elsewhere(const performance_motion *motion);
-/// Sets the head frame of drum `index`.
 HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
                                   const himc_head_frame *frame);
 /// Read task: the targets at the tick after `t`, and at this one if the plan has changed.
 HIMC_RT void himc_motion_read_task(performance_motion *motion, const performance_settings *settings,
                                    const performance_drums *drums, double t, double next);
-/// False if a setpoint is not finite.
 HIMC_RT bool himc_motion_is_finite(const performance_motion *motion);
 /// Makes the setpoints finite again at `t`, if they are not: a hand whose plan is not sound rests,
 /// a take that is not finite ends, and trunk and cross-fade begin again.
@@ -109,7 +106,6 @@ HIMC_RT void himc_motion_think(performance_motion *motion, double h, bool busy);
 /// The reference at `t` between the ticks.
 HIMC_RT void himc_motion_interpolate(performance_motion *motion, double t);
 
-/// Planned state of a tip.
 HIMC_RT himc_target himc_motion_planned(const performance_motion *motion, himc_hand hand, double t);
 /// The hand's contact at `t` or after it, but for one that is answered.
 HIMC_RT himc_source_contact himc_motion_next(const performance_motion *motion,
@@ -145,7 +141,6 @@ HIMC_RT void himc_motion_move_tip(performance_motion *motion, const performance_
 /// True if the piece is the planner's score, with its beats and rounds; false for any other source
 /// of motion. What is so for a take of recorded motion alone asks for `track`.
 HIMC_RT bool himc_motion_plays_score(const performance_motion *motion);
-/// True while the take moves that hand.
 HIMC_RT bool himc_motion_tracks(const performance_motion *motion, himc_hand hand);
 /// Time since the first frame of the take that moves hands at `t` (s); -infinity if none does.
 HIMC_RT double himc_motion_take_time(const performance_motion *motion, double t);
@@ -171,7 +166,6 @@ HIMC_RT void himc_motion_set_regression(performance_motion *motion,
 
 /// A stroke was added: after the end the score may play on for it.
 HIMC_RT void himc_motion_go_on(performance_motion *motion, double t);
-/// `play` and `stop`.
 HIMC_RT void himc_motion_play(performance_motion *motion, double t);
 HIMC_RT void himc_motion_stop(performance_motion *motion, double t);
 /// Takes note if a live target is followed: `good` is false if it is refused or out of reach. True

@@ -33,23 +33,6 @@ static double angle_of(const performance_motion *m, int index)
     return himc_pedal_angle(m->pedal[index].octaves);
 }
 
-// a foot on a pedal turns with it, and a `gliss` without a score asks for one
-static void see_pedals(performance_motion *m, const performance_drums *drums, double t)
-{
-    for (int i = 0; i < drums->count; i++) {
-        seen_pedal *p = &m->pedal[i];
-        double octaves, seconds = himc_drum_pedal(drums->slot[i].drum, &octaves);
-        bool moved = p->known && octaves != p->octaves, on = m->foot.away && m->pedalled == i;
-        double takes = fmax(seconds, PEDAL_QUICKEST);
-        p->known = true;
-        p->octaves = octaves;
-        if (seconds > 0 || (moved && on))
-            p->until = t + takes + PEDAL_STAYS;
-        if (moved && on)
-            himc_pedal_press(&m->foot, angle_of(m, i), t, takes);
-    }
-}
-
 static void go(performance_motion *m, const performance_drums *drums, double t, double sways)
 {
     himc_pedal_foot *f = &m->foot;
@@ -80,13 +63,26 @@ static void go(performance_motion *m, const performance_drums *drums, double t, 
 
 void himc_performance_move_foot(himc_performance *p, double t)
 {
-    himc_pedal_foot *f = &p->motion->foot;
+    performance_motion *m = p->motion;
+    himc_pedal_foot *f = &m->foot;
     performance_body *b = p->body;
     if (p->settings.stance != HIMC_STANCE_SEATED)
         return;
     himc_pedal_feel(f, &b->state, b->skeleton.segment[HIMC_PELVIS].origin, t);
-    see_pedals(p->motion, &p->drums, t);
-    go(p->motion, &p->drums, t,
+    // a foot on a pedal turns with it, and a `gliss` without a score asks for one
+    for (int i = 0; i < p->drums.count; i++) {
+        seen_pedal *s = &m->pedal[i];
+        double octaves, seconds = himc_drum_pedal(p->drums.slot[i].drum, &octaves);
+        bool moved = s->known && octaves != s->octaves, on = f->away && m->pedalled == i;
+        double takes = fmax(seconds, PEDAL_QUICKEST);
+        s->known = true;
+        s->octaves = octaves;
+        if (seconds > 0 || (moved && on))
+            s->until = t + takes + PEDAL_STAYS;
+        if (moved && on)
+            himc_pedal_press(f, angle_of(m, i), t, takes);
+    }
+    go(m, &p->drums, t,
        himc_vec3_length(
            himc_vec3_sub(b->state.origin[0], b->skeleton.segment[HIMC_PELVIS].origin)));
     const bool slides[HIMC_HANDS] = {himc_pedal_moves(f, HIMC_LEFT, t),

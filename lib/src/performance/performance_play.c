@@ -131,20 +131,8 @@ static const char *direction_of(himc_vec3 beyond, himc_vec3 center)
     return beyond.x * center.x + beyond.y * center.y < 0 ? "too near" : "too far";
 }
 
-// one line if the score moves a pedal that no foot reaches
-static void tell_pedal(himc_performance *p, drum_slot *slot, const himc_head_frame *head)
-{
-    himc_pedal any;
-    if (p->settings.stance != HIMC_STANCE_SEATED || slot->pedal_told ||
-        !himc_drum_heads_pedal(slot->heads, -1, INFINITY) ||
-        himc_pedal_of(&p->motion->body.posture, head, &any))
-        return;
-    slot->pedal_told = true;
-    himc_events_note(&p->events, "the pedal of drum %s is out of reach of his feet: it moves alone",
-                     himc_drum_name(slot->drum));
-}
-
-// one line for each drum that stands where it was not asked to, or out of reach
+// one line for each drum that stands where it was not asked to, or out of reach, and for each whose
+// pedal the score moves and no foot reaches
 static void tell_places(himc_performance *p)
 {
     himc_performance_notice_drums(p);
@@ -154,7 +142,15 @@ static void tell_places(himc_performance *p)
         const himc_head_frame *head = himc_drums_frame(&p->drums, i);
         himc_vec3 beyond = himc_motion_beyond(p->motion, head);
         double distance = himc_vec3_length(beyond);
-        tell_pedal(p, slot, head);
+        himc_pedal any;
+        if (p->settings.stance == HIMC_STANCE_SEATED && !slot->pedal_told &&
+            himc_drum_heads_pedal(slot->heads, -1, INFINITY) &&
+            !himc_pedal_of(&p->motion->body.posture, head, &any)) {
+            slot->pedal_told = true;
+            himc_events_note(&p->events,
+                             "the pedal of drum %s is out of reach of his feet: it moves alone",
+                             himc_drum_name(slot->drum));
+        }
         if (distance < OUT_OF_REACH || slot->reach_told)
             continue;
         slot->reach_told = true;

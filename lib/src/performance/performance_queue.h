@@ -2,10 +2,8 @@
 #ifndef HIMC_PERFORMANCE_QUEUE_H
 #define HIMC_PERFORMANCE_QUEUE_H
 
-#include "himc/performance.h"
 #include "performance/performance_events.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 #define WAITING_COMMANDS 256 // chosen: one every 32 samples of the longest delay

@@ -6,7 +6,6 @@
 #include "body/dynamics.h"
 #include "control/tracking_error.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,7 +99,7 @@ static himc_vec3 push_point(const performance_body *b, const himc_body_state *st
                             double t)
 {
     return himc_vec3_add(state->origin[i],
-                         himc_mat3_apply(&state->rotation[i], himc_body_pushed_at(b, i, t)));
+                         himc_mat3_apply(&state->rotation[i], himc_body_pushed(b, i, t).at));
 }
 
 // where a force and its moment about the hips press on the plane of the seat, or on the floor
@@ -137,19 +136,6 @@ static void take_root(performance_body *b, himc_motion_row *row)
     row->root_moment = m;
     row->root_center = pressure_center(b, f, m);
     row->root_friction = f.z > 0 ? hypot(f.x, f.y) / f.z : NAN;
-}
-
-// of a pelvis that is free: how seat and floor hold it in the last step
-static himc_support_forces support_forces(const performance_body *b)
-{
-    himc_support_forces all = {{0, 0, 0}, {{0, 0, 0}}, {0, 0, 0}};
-    for (int i = 0; i < HIMC_SUPPORTS; i++) {
-        const himc_support_point *p = &b->support.point[i];
-        himc_vec3 *of = i < HIMC_SEAT_POINTS ? &all.seat : &all.foot[p->segment - HIMC_LEFT_FOOT];
-        *of = himc_vec3_add(*of, p->force);
-    }
-    all.center = pressure_center(b, b->balance.carried.linear, b->balance.carried.angular);
-    return all;
 }
 
 // torques, and the accelerations that they, the tips' forces and the pushes make; a body that is
@@ -236,7 +222,7 @@ static void fill_row(himc_performance *p, double t, himc_motion_row *row)
         row->segment[i] = b->state.origin[i];
         row->orientation[i] = b->state.orientation[i];
         row->center[i] = himc_segment_center(&b->plant, &b->state, i);
-        row->push[i] = himc_body_pushed(b, i, t);
+        row->push[i] = himc_body_pushed(b, i, t).force;
         row->push_at[i] = push_point(b, &b->state, i, t);
     }
     fill_dynamics(b, p->settings.control.mode == HIMC_PIPELINE_IK, row);
@@ -253,15 +239,23 @@ void himc_performance_tell_tick(himc_performance *p, double t)
 {
     himc_motion_row row;
     himc_posture_motion captured;
-    himc_support_forces support;
+    himc_support_forces support = {{0, 0, 0}, {{0, 0, 0}}, {0, 0, 0}};
     performance_recording *r = &p->recording;
+    const performance_body *b = p->body;
     if (p->host.on_motion)
         fill_row(p, t, &row);
     if (p->host.on_tick) {
-        himc_tick tick = {
-            .time = t, .body = &p->body->state, .row = p->host.on_motion ? &row : NULL};
-        if (p->body->controller.balance && p->settings.control.mode != HIMC_PIPELINE_IK) {
-            support = support_forces(p->body);
+        himc_tick tick = {.time = t, .body = &b->state, .row = p->host.on_motion ? &row : NULL};
+        // of a pelvis that is free: how seat and floor hold it in the last step
+        if (b->controller.balance && p->settings.control.mode != HIMC_PIPELINE_IK) {
+            for (int i = 0; i < HIMC_SUPPORTS; i++) {
+                const himc_support_point *s = &b->support.point[i];
+                himc_vec3 *of = i < HIMC_SEAT_POINTS ? &support.seat
+                                                     : &support.foot[s->segment - HIMC_LEFT_FOOT];
+                *of = himc_vec3_add(*of, s->force);
+            }
+            support.center =
+                pressure_center(b, b->balance.carried.linear, b->balance.carried.angular);
             tick.support = &support;
         }
         if (himc_motion_captured_joints(p->motion, t, &captured))
@@ -272,7 +266,7 @@ void himc_performance_tell_tick(himc_performance *p, double t)
     }
     if (p->host.on_motion)
         p->host.on_motion(p->host.motion_user, &row);
-    if (!r->file || himc_recording_add(r->file, &p->body->state) || r->full)
+    if (!r->file || himc_recording_add(r->file, &b->state) || r->full)
         return;
     r->full = true;
     himc_events_note(&p->events, "%s: the recording is full, recorded up to %.3f s",

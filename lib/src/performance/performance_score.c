@@ -14,10 +14,8 @@
 #include "midi/score_file.h"
 #include "performance/confine.h"
 #include "performance/research.h"
-#include "plan/ornament.h"
 #include "plan/score.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -577,9 +575,8 @@ static void free_job(himc_job *job)
     free(j);
 }
 
-// of a text that is borrowed, or, if it is NULL, of the file that the command names
-static himc_job *job_new(himc_performance *p, const char *text, const char *name,
-                         const himc_command *command, himc_error *error)
+himc_job *himc_performance_score_job(himc_performance *p, const char *text, const char *name,
+                                     const himc_command *command, himc_error *error)
 {
     score_job *j = himc_job_new(sizeof *j, "score", (himc_job){prepare, install, free_job}, error);
     if (!j)
@@ -597,21 +594,10 @@ static himc_job *job_new(himc_performance *p, const char *text, const char *name
     return NULL;
 }
 
-himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
-                                     himc_error *error)
-{
-    return job_new(p, NULL, NULL, command, error);
-}
-
-himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error)
-{
-    return job_new(p, state, "state", NULL, error);
-}
-
 bool himc_performance_load_text(himc_performance *p, const char *text, const char *name,
                                 himc_error *error)
 {
-    return himc_job_carry_out(job_new(p, text, name, NULL, error), error);
+    return himc_job_carry_out(himc_performance_score_job(p, text, name, NULL, error), error);
 }
 
 bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *other)

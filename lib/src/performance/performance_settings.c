@@ -21,20 +21,6 @@
 
 // kinds of one row that are more than a line or two
 
-// Height and mass as asked for replace those of a take's player, whether the take comes after or
-// has come before. The usual ones are as if nobody had asked.
-static void read_player(performance_settings *s, const himc_skeleton_config *usual,
-                        const himc_command *c)
-{
-    s->skeleton.height = himc_argument_usual(c->atom[0].number, usual->height);
-    s->skeleton.mass = himc_argument_usual(c->atom[1].number, usual->mass);
-    bool asked = s->skeleton.height != usual->height || s->skeleton.mass != usual->mass;
-    s->asked_height = asked ? s->skeleton.height : 0;
-    s->asked_mass = asked ? s->skeleton.mass : 0;
-    s->skeleton.seat = s->skeleton.shoulders = 0; // not those measured from a take
-    memset(s->skeleton.length, 0, sizeof s->skeleton.length);
-}
-
 // a take has measured the player if it has lengths; then the take's line tells them, and `player`
 // only what has been asked for instead
 static void tell_player(const performance_settings *settings, const himc_line_sink *to)
@@ -114,15 +100,6 @@ static void tell_strength(const performance_settings *s, const himc_line_sink *t
             himc_state_tell(to, "strength", himc_joint_name(j), 1, &c->strength[j]);
 }
 
-static void tell_grip(const performance_settings *s, const himc_line_sink *to)
-{
-    himc_state_line line = himc_state_begin("grip");
-    himc_state_word(&line, himc_command_word(HIMC_COMMAND_GRIP, 0, (int)s->grip).text);
-    if (s->servo)
-        himc_state_word(&line, "servo");
-    himc_state_end(&line, to);
-}
-
 // the table
 
 typedef enum setting_kind {
@@ -184,6 +161,8 @@ bool himc_settings_read(performance_settings *s, const performance_settings *usu
     void *field = (char *)s + row->at;
     const void *field_usual = (const char *)usual + row->at;
     const double first = c->count > 0 ? c->atom[0].number : 0;
+    himc_skeleton_config *body = &s->skeleton;
+    bool asked;
     switch (row->kind) {
     case KIND_switch: *(bool *)field = first != 0; break;
     case KIND_word: memcpy(field, &c->choice[0], sizeof(int)); break;
@@ -198,7 +177,17 @@ bool himc_settings_read(performance_settings *s, const performance_settings *usu
         else
             s->task_rate = himc_argument_usual(c->atom[1].number, usual->task_rate);
         break;
-    case KIND_player: read_player(s, &usual->skeleton, c); break;
+    case KIND_player:
+        // height and mass as asked for replace those of a take's player, whether the take comes
+        // after or has come before; the usual ones are as if nobody had asked
+        body->height = himc_argument_usual(first, usual->skeleton.height);
+        body->mass = himc_argument_usual(c->atom[1].number, usual->skeleton.mass);
+        asked = body->height != usual->skeleton.height || body->mass != usual->skeleton.mass;
+        s->asked_height = asked ? body->height : 0;
+        s->asked_mass = asked ? body->mass : 0;
+        body->seat = body->shoulders = 0; // not those measured from a take
+        memset(body->length, 0, sizeof body->length);
+        break;
     case KIND_gain: return read_gain(s, c, error);
     case KIND_strength: return read_strength(s, c, error);
     case KIND_grip:
@@ -218,6 +207,7 @@ static void tell(const setting *row, const performance_settings *s, const himc_l
 {
     const char *name = himc_command_table((int)row->id)->name;
     const void *field = (const char *)s + row->at;
+    himc_state_line line = himc_state_begin(name);
     int choice;
     switch (row->kind) {
     case KIND_switch: himc_state_tell(to, name, NULL, 1, (double[]){*(const bool *)field}); break;
@@ -235,7 +225,12 @@ static void tell(const setting *row, const performance_settings *s, const himc_l
     case KIND_player: tell_player(s, to); break;
     case KIND_gain: tell_gain(s, to); break;
     case KIND_strength: tell_strength(s, to); break;
-    case KIND_grip: tell_grip(s, to); break;
+    case KIND_grip:
+        himc_state_word(&line, himc_command_word(row->id, 0, (int)s->grip).text);
+        if (s->servo)
+            himc_state_word(&line, "servo");
+        himc_state_end(&line, to);
+        break;
     case KIND_human:
         himc_state_tell(to, name, NULL, 2, (double[]){s->human.amount, s->human.seed});
         break;

@@ -68,7 +68,6 @@ typedef enum setting_effect {
     AFTER_HUMAN   ///< the planner's variation
 } setting_effect;
 
-/// The effect of a setting.
 HIMC_RT setting_effect himc_settings_effect(himc_command_id id);
 /// Sets what a command says, and nothing if it is no setting. `usual` are the default settings: a
 /// number that equals theirs in single precision becomes theirs. False with the reason.

@@ -5,6 +5,7 @@
 /// changes nothing. `reset` is the default settings and new parts. Time begins at 0 at the first
 /// sample not yet simulated, so every floating point sum equals that of a new performance.
 #include "performance/performance_state.h"
+#include "base/array.h"
 #include "performance/research.h"
 
 #include <stdlib.h>
@@ -15,11 +16,6 @@
 himc_performance_config himc_performance_default(void)
 {
     return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
-}
-
-static bool check_sample_rate(double hz, himc_error *error)
-{
-    return himc_check_range("sample rate", hz, 8000, 192000, "Hz", error);
 }
 
 // the stool as these drums need it; none for one who stands
@@ -100,17 +96,15 @@ static void free_written(performance_written *written)
 himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)
 {
     made_parts parts;
-    if (!check_sample_rate(config->sample_rate, error) ||
+    if (!himc_drum_check_rate(config->sample_rate, error) ||
         !himc_check_range("physics rate", config->physics_rate, HIMC_PHYSICS_RATE_MIN,
                           HIMC_PHYSICS_RATE_MAX, "Hz", error) ||
         !himc_check_range("task rate", config->task_rate, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX,
                           "Hz", error))
         return NULL;
-    himc_performance *p = calloc(1, sizeof *p);
-    if (!p) {
-        himc_error_set(error, "performance: out of memory");
+    himc_performance *p = himc_new(sizeof *p, "performance", error);
+    if (!p)
         return NULL;
-    }
     p->host = (performance_host){.config = *config,
                                  .take_options = himc_take_default(),
                                  .usual = himc_settings_default(config)};
@@ -224,7 +218,7 @@ const himc_skeleton *himc_performance_plant(const himc_performance *p)
 
 bool himc_performance_set_rate(himc_performance *p, double sample_rate, himc_error *error)
 {
-    if (!check_sample_rate(sample_rate, error))
+    if (!himc_drum_check_rate(sample_rate, error))
         return false;
     if (sample_rate == p->clock.sample_rate)
         return true;

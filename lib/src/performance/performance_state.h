@@ -21,7 +21,6 @@
 #include "base/job.h"
 #include "base/line.h"
 #include "base/text.h"
-#include "drum/drum_performer.h"
 #include "himc/mocap.h"
 #include "performance/performance_body.h"
 #include "performance/performance_clock.h"
@@ -81,6 +80,8 @@ static inline double step_time(const himc_performance *p)
     return himc_clock_time(&p->clock);
 }
 
+// A function whose name ends with _job makes the job of a command; NULL with the reason.
+
 // performance_report.c
 /// Notes the energies at a task tick, before the step, if rows of motion are asked for.
 HIMC_RT void himc_performance_take_energy(himc_performance *p);
@@ -89,11 +90,9 @@ HIMC_RT void himc_performance_tell_tick(himc_performance *p, double t);
 void himc_performance_drop_recording(himc_performance *p);
 /// True if the command is allowed while recording, or while not: `record` and `rate` may not be.
 bool himc_performance_allows(bool recording, const himc_command *command, himc_error *error);
-/// The command `record` as a job; NULL with the reason.
 himc_job *himc_performance_record_job(himc_performance *p, const himc_command *command,
                                       himc_error *error);
 
-/// The lines of `info`.
 void himc_performance_inform(const himc_performance *p, himc_line_sink to);
 /// Gives each line of a drum's description to `to`, with words before and after it.
 void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
@@ -101,7 +100,6 @@ void himc_performance_describe_drum(const himc_drum *drum, himc_description what
                                     const himc_line_sink *to);
 
 // performance_dump.c
-/// The command `dump FILE` as a job; NULL without memory.
 himc_job *himc_performance_dump_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
 
@@ -151,7 +149,6 @@ bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_sp
 /// Adds a drum and its reference, which is given back if there is no place for it.
 bool himc_performance_adopt_drum(himc_performance *p, himc_drum *drum, drum_source source,
                                  int *index, himc_error *error);
-/// The command `drum` as a job; NULL without memory.
 himc_job *himc_performance_drum_job(himc_performance *p, const himc_command *command,
                                     himc_error *error);
 /// Drops the take with its limits and posture regression; the planner moves the hands. Returns its
@@ -161,7 +158,6 @@ himc_track *himc_performance_drop_track(himc_performance *p);
 // performance_change.c
 /// Tells the planner up to which beat the score has changes of heads and pushes.
 HIMC_RT void himc_performance_find_end(himc_performance *p);
-/// The command `at` as a job; NULL with the reason.
 himc_job *himc_performance_change_job(himc_performance *p, const himc_command *command,
                                       himc_error *error);
 
@@ -175,7 +171,6 @@ HIMC_RT void himc_performance_name_drum(const himc_performance *p, himc_stroke *
 /// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many
 /// are left out.
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum);
-/// The command `units FILE` as a job; NULL without memory.
 himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
 /// How many units it would add; -1 with the reason.
@@ -203,12 +198,9 @@ bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limit
                                    himc_error *error);
 
 // performance_score.c
-/// The command `score` as a job: all of the score, or nothing. NULL without memory.
-himc_job *himc_performance_score_job(himc_performance *p, const himc_command *command,
-                                     himc_error *error);
-
-/// The text of a score, borrowed, as a job. NULL without memory.
-himc_job *himc_performance_state_job(himc_performance *p, const char *state, himc_error *error);
+/// All of the score, or nothing. Without a command it is a text, borrowed; `name` begins errors.
+himc_job *himc_performance_score_job(himc_performance *p, const char *text, const char *name,
+                                     const himc_command *command, himc_error *error);
 
 // performance_command.c
 /// How a performance takes commands.

@@ -4,7 +4,6 @@
 
 #include "himc/body.h"
 #include "himc/performance.h"
-#include "himc/vec.h"
 
 // A pitcher's shoulder, the fastest joint that has been measured of people, turns at some 7000
 // degrees a second (Dillman, Fleisig & Andrews 1993); chosen: a third more is no person's

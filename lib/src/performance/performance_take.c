@@ -89,22 +89,6 @@ bool himc_performance_learn_limits(const himc_pose *pose, int frames, himc_limit
     return true;
 }
 
-// the natural posture of the take's tips at `t`, and the captured one bent to them
-static void postures_at(const himc_posture *posture, const himc_track *track, double t,
-                        himc_pose pose[2])
-{
-    himc_posture_motion motion;
-    himc_target tip[HIMC_HANDS];
-    for (int hand = 0; hand < HIMC_HANDS; hand++) {
-        int seen = himc_track_present(track, (himc_hand)hand) ? hand : !hand;
-        tip[hand] = himc_track_target(track, (himc_hand)seen, t);
-    }
-    himc_posture_moving(posture, tip, &motion);
-    memcpy(pose[0].joint, motion.joint, sizeof motion.joint);
-    himc_track_posture(track, &posture->skeleton, t, tip, &motion);
-    memcpy(pose[1].joint, motion.joint, sizeof motion.joint);
-}
-
 // The limits of the take's player, the sticks striking a head at that place. Those of arms without
 // sticks are learned again, from the postures for the tips.
 static bool learn_limits(const himc_player *player, const himc_track *track,
@@ -131,8 +115,20 @@ static bool learn_limits(const himc_player *player, const himc_track *track,
     himc_pose *pose = malloc(2 * POSTURES_SEEN * sizeof *pose);
     if (!pose)
         return himc_error_set(error, "limits: out of memory");
-    for (int i = 0; i < POSTURES_SEEN; i++)
-        postures_at(&posture, track, himc_track_length(track) * i / POSTURES_SEEN, &pose[2 * i]);
+    for (int i = 0; i < POSTURES_SEEN;
+         i++) { // the natural one, and the captured one bent to the tips
+        himc_posture_motion motion;
+        himc_target tip[HIMC_HANDS];
+        double t = himc_track_length(track) * i / POSTURES_SEEN;
+        for (int hand = 0; hand < HIMC_HANDS; hand++) {
+            int seen = himc_track_present(track, (himc_hand)hand) ? hand : !hand;
+            tip[hand] = himc_track_target(track, (himc_hand)seen, t);
+        }
+        himc_posture_moving(&posture, tip, &motion);
+        memcpy(pose[2 * i].joint, motion.joint, sizeof motion.joint);
+        himc_track_posture(track, &skeleton, t, tip, &motion);
+        memcpy(pose[2 * i + 1].joint, motion.joint, sizeof motion.joint);
+    }
     bool fitted = himc_performance_learn_limits(pose, 2 * POSTURES_SEEN, &bent, error);
     free(pose);
     for (int hand = 0; hand < HIMC_HANDS; hand++)

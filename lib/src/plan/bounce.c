@@ -18,7 +18,7 @@
 /// much the buzz has fewer contacts; none is begun that would come after its time.
 #include "plan/bounce.h"
 
-#include "plan/hand.h"
+#include <math.h>
 
 #define GRAVITY 10.9  // of a stick of 45 g about its fulcrum, at the tip (m/s^2)
 #define FINGERS 169.0 // 1 N m at the fulcrum: 4 N at the tip's 23.7 g (m/s^2)

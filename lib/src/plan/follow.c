@@ -41,26 +41,20 @@
 #define SHORTEST_HALT 0.15         // (s)
 #define FASTEST_STREAM 10.0 // (m/s) as captured sticks; faster targets jump, and are not carried on
 
-/// Corrects the estimate of the noise by one more target. The median length of third differences of
-/// three normal coordinates is 1.5382 sqrt(20) sigma (chi distribution of three degrees of
-/// freedom).
-static void learn_noise(himc_stream *s, double gap, himc_vec3 x)
+/// Takes in one more target. The median length of third differences of three normal coordinates,
+/// which gives the noise, is 1.5382 sqrt(20) sigma (chi distribution of three degrees of freedom).
+static void filter(himc_stream *s, double gap, himc_vec3 x)
 {
+    himc_target *f = &s->filtered;
     himc_vec3 inner = himc_vec3_sub(s->x, s->before[0]), outer = himc_vec3_sub(x, s->before[1]);
-    if (s->heard >= 2) {
+    if (s->heard++ >= 2) {
         double size = himc_vec3_length(himc_vec3_madd(outer, -3, inner)) / (1.5382 * sqrt(20));
         double step = exp(fmin(NOISE_RATE * gap, 1));
         s->noise = fmax(size > s->noise ? s->noise * step : s->noise / step, LEAST_NOISE);
     }
-    s->heard++;
     s->before[1] = s->before[0];
     s->before[0] = s->x;
-}
-
-/// One step of the fading-memory parabola.
-static void filter(himc_stream *s, double gap, himc_vec3 x)
-{
-    himc_target *f = &s->filtered;
+    // one step of the fading-memory parabola
     double least = NOISE_ACCELERATION * NOISE_ACCELERATION;
     s->memory = fmin(pow(0.187 * s->noise * s->noise * gap / least, 0.2), LONGEST_MEMORY);
     double q = exp(-gap / s->memory), p = 1 - q;
@@ -83,7 +77,6 @@ bool himc_stream_add(himc_stream *s, double t, himc_vec3 x)
     if (!on)
         *s = (himc_stream){.noise = LEAST_NOISE, .filtered = {.x = x}};
     if (on && gap > 0) {
-        learn_noise(s, gap, x);
         filter(s, gap, x);
         double least = s->period > 0 ? BURST_SHARE * s->period : FIRST_GAP;
         double share = s->period > 0 ? gap / (gap + VELOCITY_TIME) : 1;

@@ -6,7 +6,6 @@
 /// setup; the motion only moves within it.
 #include "plan/planner_state.h"
 #include "base/format.h"
-#include "base/head_frame.h"
 #include "plan/planner_roll.h"
 #include "plan/score.h"
 

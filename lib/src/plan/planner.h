@@ -8,7 +8,6 @@
 #ifndef HIMC_PLANNER_H
 #define HIMC_PLANNER_H
 
-#include "base/quintic.h"
 #include "body/avoidance.h"
 #include "body/source.h"
 #include "himc/score.h"
@@ -82,7 +81,6 @@ bool himc_planner_add_units(himc_planner *planner, const himc_unit *units, int c
 /// The body has changed: the hands rest where it reaches.
 HIMC_RT void himc_planner_set_body(himc_planner *planner);
 
-/// Back to the built-in strokes.
 HIMC_RT void himc_planner_clear_units(himc_planner *planner);
 /// Units of this grip (himc_grip) are preferred.
 HIMC_RT void himc_planner_set_grip(himc_planner *planner, int grip);
@@ -129,7 +127,6 @@ void himc_planner_clear(himc_planner *planner);
 
 /// Beside its strokes the score has something up to that beat, -1: nothing. It ends after it.
 HIMC_RT void himc_planner_last_until(himc_planner *planner, double beat);
-/// That beat.
 HIMC_RT double himc_planner_until(const himc_planner *planner);
 /// Starts the transport at time `t` (s) from the current beat, or from beat 0 if all has been
 /// played; does nothing while strokes are still to come. The first beat waits until the first
@@ -152,7 +149,6 @@ HIMC_RT double himc_planner_length(const himc_planner *planner);
 HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
 /// The tempo map (*count), borrowed.
 HIMC_RT const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count);
-/// What himc_planner_loop has set.
 HIMC_RT bool himc_planner_is_looped(const himc_planner *planner);
 /// Adds a change to the tempo map, or replaces that on its beat; as himc_planner_set_tempi.
 bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *tempo,
@@ -205,7 +201,6 @@ HIMC_RT void himc_planner_recover(himc_planner *planner, double t);
 /// would meet, for so much `work`, counted in postures of the body, and one moment more. What is
 /// left is done at the next calls. Changes begin at least 12 ms after the last advance.
 HIMC_RT void himc_planner_think(himc_planner *planner, double work);
-/// The work that has been done by himc_planner_think.
 HIMC_RT long himc_planner_work(const himc_planner *planner);
 /// The planned state of a tip at `t` (s), between the last advance and 30 ms after it. Pure.
 HIMC_RT himc_target himc_planner_target(const himc_planner *planner, himc_hand hand, double t);

@@ -25,32 +25,26 @@
 #define REST_ASIDE 0.3      // to the hand's own side, of the radius ...
 #define REST_MOST_ASIDE 0.1 // ... and at most
 
-/// The unit that fits best: of that nuance and hand, if possible of that grip and spot, and near in
-/// speed.
-static const himc_unit *find_unit(const himc_planner *planner, const himc_stroke *stroke)
+/// By the unit that fits best: of that nuance and hand, if possible of that grip and spot, and near
+/// in speed.
+static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *stroke)
 {
-    double speed = himc_gesture_of(stroke->nuance, stroke->dynamic).speed, least = HUGE_VAL;
+    himc_gesture usual = himc_gesture_of(stroke->nuance, stroke->dynamic);
+    double least = HUGE_VAL;
     const himc_unit *best = NULL;
     for (int i = 0; i < planner->unit_count; i++) {
         const himc_unit *unit = &planner->unit[i];
         if (unit->nuance != stroke->nuance || unit->hand != stroke->hand)
             continue;
         bool elsewhere = unit->spot != HIMC_SPOT_XY && unit->spot != stroke->spot;
-        double away = fabs(log(unit->speed / speed)) + OTHER_SPOT * elsewhere +
+        double away = fabs(log(unit->speed / usual.speed)) + OTHER_SPOT * elsewhere +
                       OTHER_GRIP * (unit->grip != planner->grip);
         if (away < least) {
             least = away;
             best = unit;
         }
     }
-    return best;
-}
-
-static himc_gesture gesture_of(const himc_planner *planner, const himc_stroke *stroke)
-{
-    const himc_unit *unit = planner->unit_count > 0 ? find_unit(planner, stroke) : NULL;
-    return unit ? himc_gesture_from(unit, stroke->nuance, stroke->dynamic)
-                : himc_gesture_of(stroke->nuance, stroke->dynamic);
+    return best ? himc_gesture_from(best, stroke->nuance, stroke->dynamic) : usual;
 }
 
 double himc_planner_bounce_most(himc_planner *planner, int bounces, double t,

@@ -37,8 +37,6 @@
 #include "plan/sticking.h"
 
 #include <limits.h>
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define LAST_BUZZ 0.85 // the last buzz, of a stroke; chosen: a swinging head delays contacts

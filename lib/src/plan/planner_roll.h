@@ -27,7 +27,6 @@ int himc_planner_roll_insert(planner_score *score, const himc_stroke *stroke, in
                              himc_error *error);
 /// How many of a roll's strokes are left out, too near to other strokes of their hand.
 int himc_planner_roll_left_out(const planner_score *score, int roll);
-/// True if both have the same rolls.
 bool himc_planner_roll_equal(const planner_score *a, const planner_score *b);
 /// True if the strokes of the same rolls are at the same times in both.
 bool himc_planner_roll_same_places(const planner_score *a, const planner_score *b);

@@ -11,7 +11,6 @@
 #include "plan/score.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define ROUND_ROUNDING 1e-12 // of a time at a round's beginning (rounds)

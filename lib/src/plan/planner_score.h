@@ -105,13 +105,11 @@ typedef struct planner_walk {
 bool himc_planner_score_init(planner_score *score);
 void himc_planner_score_free(planner_score *score);
 
-/// himc_planner_has_room.
 bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *strokes, int count,
                                  himc_error *error);
 /// Checks a stroke and makes room for it: its index in its hand's list, or -1 with the reason.
 int himc_planner_score_place(planner_score *score, const himc_stroke *stroke, int drum,
                              himc_error *error);
-/// Puts a stroke at that index.
 void himc_planner_score_insert(planner_score *score, int index, const himc_stroke *stroke,
                                int drum);
 /// Number of strokes with which both lists begin.
@@ -145,7 +143,6 @@ HIMC_RT void himc_planner_score_anchor(planner_score *score, double t);
 HIMC_RT void himc_planner_score_keep(planner_score *score);
 /// Begins to play at score->beat at `t`.
 HIMC_RT void himc_planner_score_start(planner_score *score, double t);
-/// Stops at that beat.
 HIMC_RT void himc_planner_score_stop(planner_score *score, double beat);
 /// Makes the round of the loop at `t` round 0, before its length changes; returns its number so
 /// far.
@@ -201,7 +198,6 @@ HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool 
 HIMC_RT int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke);
 /// Time from a stroke to the nearest one of its hand (s); infinite without one.
 HIMC_RT double himc_planner_score_room(const planner_score *score, const himc_stroke *stroke);
-/// True if all of two strokes is the same, as written.
 bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b);
 
 // planner_roll.c: on these the rolls of a loop depend

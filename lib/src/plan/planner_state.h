@@ -8,12 +8,8 @@
 #ifndef HIMC_PLANNER_STATE_H
 #define HIMC_PLANNER_STATE_H
 
-#include "base/head_frame.h"
 #include "plan/follow.h"
-#include "plan/human.h"
-#include "plan/planner.h"
 #include "plan/planner_notes.h"
-#include "plan/planner_score.h"
 
 /// Strokes that wait for a hand; chosen: as many as can be planned, so that all can be put back.
 #define PLANNER_WAITING 16
@@ -151,7 +147,6 @@ struct himc_planner {
 // planner_goal.c
 /// How far out of a hand's reach a place is (m).
 HIMC_RT double himc_planner_beyond(const himc_planner *planner, himc_hand hand, himc_vec3 place);
-/// True if the hand reaches it.
 HIMC_RT bool himc_planner_reaches(const himc_planner *planner, himc_hand hand, himc_vec3 place);
 /// A stroke's spot moved to the left on its head, not over the rim (m).
 HIMC_RT himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *stroke,

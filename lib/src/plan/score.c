@@ -13,9 +13,7 @@
 #include "base/text.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 // chosen: more than a day of drumming, and small enough for any machine's memory
@@ -97,23 +95,6 @@ static void copy_line(himc_score_line *to, const himc_score_line *from)
     himc_command_copy(&to->command, &from->command);
 }
 
-/// A command points into itself, so lines are copied one by one and not moved.
-static bool grow_lines(himc_score_line **lines, int count, int *room, himc_error *error)
-{
-    if (count < *room)
-        return true;
-    int wanted = *room ? 2 * *room : 16;
-    himc_score_line *bigger = malloc((size_t)wanted * sizeof *bigger);
-    if (!bigger)
-        return himc_error_set(error, "out of memory for %d lines", wanted);
-    for (int i = 0; i < count; i++)
-        copy_line(&bigger[i], &(*lines)[i]);
-    free(*lines);
-    *lines = bigger;
-    *room = wanted;
-    return true;
-}
-
 static double inches_of(const himc_command *drum)
 {
     return drum->count > 1 ? drum->atom[1].number : HIMC_INCHES_USUAL;
@@ -134,13 +115,23 @@ static bool add_line(reader *r, bool timed)
                                   made->atom[0].symbol, inches_of(made), score->lines[i].line);
     }
     himc_score_line **lines = timed ? &score->changes : &score->lines;
-    int *count = timed ? &score->change_count : &score->line_count;
+    int *count = timed ? &score->change_count : &score->line_count,
+        *room = timed ? &r->change_room : &r->line_room;
     if (score->line_count + score->change_count == SCORE_LINES_MAX)
         return himc_error_set(r->error, "one line too many, expected %d besides strokes",
                               SCORE_LINES_MAX);
-    if ((timed && !add_place(r, -1 - *count)) ||
-        !grow_lines(lines, *count, timed ? &r->change_room : &r->line_room, r->error))
+    if (timed && !add_place(r, -1 - *count))
         return false;
+    if (*count == *room) { // a command points into itself: lines are copied one by one, not moved
+        *room = *room ? 2 * *room : 16;
+        himc_score_line *bigger = malloc((size_t)*room * sizeof *bigger);
+        if (!bigger)
+            return himc_error_set(r->error, "out of memory for %d lines", *room);
+        for (int i = 0; i < *count; i++)
+            copy_line(&bigger[i], &(*lines)[i]);
+        free(*lines);
+        *lines = bigger;
+    }
     copy_line(&(*lines)[(*count)++], &r->now);
     return true;
 }
@@ -164,22 +155,6 @@ static bool may_stand(const himc_command *c, himc_error *error)
            himc_error_set(error, "%s: not allowed in a score", row->name);
 }
 
-/// A line for a drum: "kettle tune 110".
-static bool read_drum_line(reader *r, const himc_atom *atom, int count)
-{
-    const himc_argument *name = himc_argument_find("NAME", "drum");
-    if (!himc_argument_accepts(name, &atom[0]))
-        return himc_error_set(r->error, "%.40s: not a drum's name", atom[0].symbol);
-    if (!himc_command_parse(&r->now.command, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2,
-                            r->error) ||
-        !may_stand(&r->now.command, r->error))
-        return is_known_drum(r->score, atom[0].symbol)
-                   ? himc_error_prefix(r->error, "%s", atom[0].symbol)
-                   : himc_command_doubt_drum(atom[0].symbol, r->error);
-    himc_format(r->now.drum, sizeof r->now.drum, "%s", atom[0].symbol);
-    return add_line(r, false);
-}
-
 bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,
                             himc_error *error)
 {
@@ -200,23 +175,6 @@ bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *o
                row->name);
 }
 
-static bool read_performer_line(reader *r, const himc_atom *atom, int count)
-{
-    if (!himc_command_parse(&r->now.command, HIMC_PERFORMER, atom[0].symbol, atom + 1, count - 1,
-                            r->error) ||
-        !may_stand(&r->now.command, r->error))
-        return false;
-    switch (r->now.command.id) {
-    case HIMC_COMMAND_STROKE:
-    case HIMC_COMMAND_ROLL:
-    case HIMC_COMMAND_FLAM:
-    case HIMC_COMMAND_DRAG:
-    case HIMC_COMMAND_RUFF: return add_stroke(r);
-    case HIMC_COMMAND_TEMPO: return add_tempo(r);
-    default: return add_line(r, false);
-    }
-}
-
 /// True if the line is for a drum: its second word is a drum's command, perhaps a misspelt one, or
 /// its first is a drum's name, which may also be a drum's command, as kettle.
 static bool is_for_drum(const reader *r, const himc_atom *atom)
@@ -235,22 +193,43 @@ static bool read_statement(reader *r, const himc_text_statement *s)
 {
     int count = s->count < s->capacity ? s->count : s->capacity;
     const himc_atom *atom = s->atom;
-    if (count == 0 || strcmp(atom[0].symbol, "comment") == 0)
+    const char *word = count > 0 ? atom[0].symbol : "comment"; // an empty one
+    himc_command *c = &r->now.command;
+    if (strcmp(word, "comment") == 0)
         return true;
     if (s->overflow)
         return himc_error_set(r->error,
                               "more than %zu characters without a ;, expected a score, commands "
                               "that each end with one",
                               s->size);
-    if (strcmp(atom[0].symbol, "at") == 0) { // "at 12 kettle tune 110", "at 12 push ..."
+    if (strcmp(word, "at") == 0) { // "at 12 kettle tune 110", "at 12 push ..."
         himc_command at;
         return himc_command_parse(&at, HIMC_PERFORMER, "at", atom + 1, count - 1, r->error) &&
                himc_score_read_change(at.atom, at.count, &r->now, r->error) && add_line(r, true);
     }
-    bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, atom[0].symbol);
-    if (two_words && is_for_drum(r, atom))
-        return read_drum_line(r, atom, count);
-    return read_performer_line(r, atom, count);
+    bool two_words = count > 1 && !himc_command_find(HIMC_PERFORMER, word);
+    if (two_words && is_for_drum(r, atom)) { // "kettle tune 110"
+        if (!himc_argument_accepts(himc_argument_find("NAME", "drum"), &atom[0]))
+            return himc_error_set(r->error, "%.40s: not a drum's name", word);
+        if (!himc_command_parse(c, HIMC_DRUM, atom[1].symbol, atom + 2, count - 2, r->error) ||
+            !may_stand(c, r->error))
+            return is_known_drum(r->score, word) ? himc_error_prefix(r->error, "%s", word)
+                                                 : himc_command_doubt_drum(word, r->error);
+        himc_format(r->now.drum, sizeof r->now.drum, "%s", word);
+        return add_line(r, false);
+    }
+    if (!himc_command_parse(c, HIMC_PERFORMER, word, atom + 1, count - 1, r->error) ||
+        !may_stand(c, r->error))
+        return false;
+    switch (c->id) {
+    case HIMC_COMMAND_STROKE:
+    case HIMC_COMMAND_ROLL:
+    case HIMC_COMMAND_FLAM:
+    case HIMC_COMMAND_DRAG:
+    case HIMC_COMMAND_RUFF: return add_stroke(r);
+    case HIMC_COMMAND_TEMPO: return add_tempo(r);
+    default: return add_line(r, false);
+    }
 }
 
 // What is wrong with a refused statement is that it has no end, if a line inside it begins with a

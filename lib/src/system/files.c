@@ -195,12 +195,14 @@ void himc_system_binary(void)
             (void)!open("/dev/null", refusing[number]);
 }
 
-// opens "/a/b/c" from the folder down, without following a link
-static int descend(const char *folder, const char *path)
+int himc_system_open_inside(const char *folder, const char *name)
 {
-    char part[NAME_MAX + 1];
-    int at = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
-    while (at >= 0 && *path) {
+    char wanted[PATH_MAX], part[NAME_MAX + 1];
+    int length = snprintf(wanted, sizeof wanted, "%s/%s", folder, name);
+    char *real = (size_t)length < sizeof wanted ? realpath(wanted, NULL) : NULL;
+    const char *path = real ? below(real, folder, '/') : NULL;
+    int at = path ? open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC) : -1;
+    while (at >= 0 && *path) { // "/a/b/c" from the folder down, without following a link
         size_t n = strcspn(++path, "/");
         snprintf(part, sizeof part, "%.*s", (int)n, path);
         path += n;
@@ -209,17 +211,7 @@ static int descend(const char *folder, const char *path)
         close(at);
         at = next;
     }
-    return at;
-}
-
-int himc_system_open_inside(const char *folder, const char *name)
-{
-    char wanted[PATH_MAX];
-    int length = snprintf(wanted, sizeof wanted, "%s/%s", folder, name);
-    char *real = (size_t)length < sizeof wanted ? realpath(wanted, NULL) : NULL;
-    const char *path = real ? below(real, folder, '/') : NULL;
-    int file = path ? descend(folder, path) : -1;
     free(real);
-    return file;
+    return at;
 }
 #endif

@@ -17,7 +17,6 @@ void himc_system_go_first(void)
 }
 
 #elif defined __APPLE__
-#include <pthread.h>
 
 void himc_system_give_way(void)
 {

@@ -252,27 +252,22 @@ static void bump(double t, double before, double after, double out[3])
     out[2] = in ? 60 * s * (1 - s) * (1 - 2 * s) / (side * side) : 0;
 }
 
-static himc_target nudge_at(const himc_nudge *n, double t)
-{
-    double across[3], up[3];
-    bump(t - n->time, n->span, n->span, across);
-    bump(t - n->time, n->rise, n->fall, up);
-    himc_vec3 *part[3], w = n->way;
-    himc_target s;
-    part[0] = &s.x, part[1] = &s.v, part[2] = &s.a;
-    for (int i = 0; i < 3; i++)
-        *part[i] = himc_vec3_make(across[i] * w.x, across[i] * w.y, up[i] * w.z);
-    return s;
-}
-
 // all nudges of a hand at take time `t`
 static himc_target aside_at(const himc_track *track, himc_hand hand, double t)
 {
     himc_target sum = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < track->nudges; i++) {
         const himc_nudge *n = &track->nudge[i];
-        if (n->hand == hand && fabs(t - n->time) < n->span)
-            sum = himc_target_add(sum, nudge_at(n, t));
+        double across[3], up[3];
+        himc_target s;
+        himc_vec3 *part[3] = {&s.x, &s.v, &s.a};
+        if (n->hand != hand || fabs(t - n->time) >= n->span)
+            continue;
+        bump(t - n->time, n->span, n->span, across);
+        bump(t - n->time, n->rise, n->fall, up);
+        for (int k = 0; k < 3; k++)
+            *part[k] = himc_vec3_make(across[k] * n->way.x, across[k] * n->way.y, up[k] * n->way.z);
+        sum = himc_target_add(sum, s);
     }
     return sum;
 }

@@ -8,7 +8,6 @@
 #define HIMC_TRACK_H
 
 #include "himc/mocap.h"
-#include "body/posture.h"
 #include "body/source.h"
 
 /// The command `nudge`: a tip is `way` off its captured path at `time`, and on it again `span`
@@ -50,11 +49,9 @@ HIMC_RT void himc_track_rewind(himc_track *track, double start);
 himc_vec3 himc_track_offset(const himc_track *track);
 /// When its first frame comes (s of the performance), since himc_track_rewind.
 HIMC_RT double himc_track_start(const himc_track *track);
-/// True if the take has that hand's tip.
 bool himc_track_present(const himc_track *track, himc_hand hand);
 /// Length (s), with the halt after the last frame.
 double himc_track_length(const himc_track *track);
-/// Strikes found for that hand.
 int himc_track_strikes(const himc_track *track, himc_hand hand);
 
 /// Leads a tip aside from now on; the nudge's `rise` and `fall` are found here. The height is given
@@ -73,7 +70,6 @@ HIMC_RT himc_target himc_track_target(const himc_track *track, himc_hand hand, d
 /// Place of the tip in the capture itself, with its strikes, at `t` (m); false before the take's
 /// first frame, after its last, after a stop, and for a hand that is not in it.
 HIMC_RT bool himc_track_captured(const himc_track *track, himc_hand hand, double t, himc_vec3 *x);
-/// True if the take moves joints.
 bool himc_track_has_posture(const himc_track *track);
 /// Replaces the joints in `motion` by the captured ones at `t`, as far as the take has them; arms
 /// of hands without tips stay as they are. Then the arms are bent as little as brings the tips to

@@ -61,8 +61,7 @@ struct himc_track {
     joint_track joints;
 };
 
-/// Length of the take (s).
-static inline double himc_track_take_length(const himc_track *track)
+static inline double himc_track_take_length(const himc_track *track) // (s)
 {
     return (track->frames - 1) / track->rate;
 }

@@ -22,7 +22,6 @@
 #define STICKS_OF_TABLE 0.5
 #define FAR 3.0    // chosen: so many times as far from the mean as captured
 #define STRONG 1e4 // chosen: above what any joint has (N m)
-#define METRES_PER_INCH 0.0254
 #define HEAD_SCORE "score tools/research/figures/blows.txt"
 
 static himc_error error;
@@ -229,7 +228,7 @@ static void measure_drum(void)
         !himc_performance_command(p, &c, 0, &error))
         fail();
     himc_drum *drum = himc_performance_drum(p, 0);
-    fact("inches", 2 * himc_drum_usual_radius(drum) / METRES_PER_INCH);
+    fact("inches", himc_drum_inches(drum));
     fact("exponent", himc_drum_mallet(drum, HIMC_RIGHT)->exponent);
     himc_performance_free(p);
 }
