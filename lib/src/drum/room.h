@@ -10,17 +10,17 @@ typedef struct himc_walls {
     double volume;  ///< (m^3), 20 .. 100000; a larger room is softer
 } himc_walls;
 
-/// Walls around a performer as it is made. Chosen: a recital room of 12 by 10 by 5 m with people in
-/// it, where a listener 2 m away hears a little more of the drum than of the room.
+/// Walls around a performer as it is made. Chosen: a stage, where a listener 2 m away hears a
+/// little more of the room than of the drum.
 #define HIMC_WALLS_USUAL \
     (himc_walls)         \
     {                    \
         2.0, 1500        \
     }
 
-#define HIMC_ROOM_LINES 16
+#define HIMC_ROOM_LINES 32
 #define HIMC_ROOM_RUN 32     ///< (samples) at a time; chosen: less than the shortest delay at 8 kHz
-#define HIMC_ROOM_LINE 16384 ///< (samples) more than the longest delay at 192 kHz
+#define HIMC_ROOM_LINE 13696 ///< (samples) more than the longest delay at 192 kHz
 #define HIMC_ROOM_EMPTY INT32_MAX
 
 /// What a change of the room changes.
