@@ -149,6 +149,37 @@ static void test_he_plays_four_drums_and_mirrored_is_mirrored(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.05 * left.moved, left.moved, right.moved);
 }
 
+// five timpani in a half circle of 2 m; at 5.45 and 8.75 an arm is nearly straight
+static void test_arms_at_the_end_of_their_reach_do_not_throw_him(void)
+{
+    static const char *const stroke[] = {
+        "1.7 right staccato ff normal d2", "2 left legato mf normal d2",
+        "2.3 right accent p normal d2",    "3.05 left accent mf normal d1",
+        "3.5 right accent ff normal d2",   "4.25 left legato p normal d1",
+        "4.85 right legato mf normal d2",  "5.45 left tenuto ff normal d2",
+        "5.9 right legato ff normal d1",   "6.5 left legato ff normal d1",
+        "6.95 right accent ff normal d0",  "7.55 left tenuto p normal d0",
+        "8.15 right tenuto mf normal d1",  "8.75 left legato ff normal d2",
+        "9.35 right legato f normal d1"};
+    enum { STROKES = sizeof stroke / sizeof *stroke };
+    himc_performance *p = session_new();
+    for (int i = 0; i < 5; i++) {
+        session_do(p, "drum d%d %d", i, 32 - 3 * i);
+        session_do(p, "d%d place %.17g %.17g 0.85", i, sin(i * HIMC_PI / 4), cos(i * HIMC_PI / 4));
+    }
+    session_do(p, "stance standing");
+    session_do(p, "strength human");
+    session_do(p, "tempo 60");
+    for (int i = 0; i < STROKES; i++)
+        session_do(p, "stroke %s", stroke[i]);
+    play(p, 12, NULL);
+    himc_performance_stats stats = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_INT(0, stats.recoveries);
+    TEST_ASSERT_TRUE(stats.played >= STROKES - 1); // the last far one lands 20 mm off
+    TEST_ASSERT_TRUE(stats.tip_rms < 3e-3);
+    himc_performance_free(p);
+}
+
 static void test_he_is_quiet_after_a_loud_stroke(void)
 {
     himc_performance *p = standing("stroke 0 right accent fff", 0, "f");
@@ -229,6 +260,7 @@ int main(void)
     RUN_TEST(test_he_stands_higher_than_he_sits);
     RUN_TEST(test_he_leans_to_the_middle_of_the_head);
     RUN_TEST(test_he_plays_four_drums_and_mirrored_is_mirrored);
+    RUN_TEST(test_arms_at_the_end_of_their_reach_do_not_throw_him);
     RUN_TEST(test_he_is_quiet_after_a_loud_stroke);
     RUN_TEST(test_a_push_from_any_side_is_answered);
     RUN_TEST(test_tall_and_low_are_played_with_bent_knees);
