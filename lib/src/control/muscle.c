@@ -11,6 +11,9 @@
 /// The torques of an arm go together: where one joint is behind, all are by the same share. Else
 /// what the elbow no longer gives against the shoulder whirls the upper arm about its length, by
 /// 2500 degrees a second.
+///
+/// Muscles on both sides of a joint also resist its speed. They do in a contact, and while an arm
+/// is astray and draws on its reserve.
 #include "control/muscle.h"
 
 #define ACTIVATION 0.040 // to full strength (s); voluntary contractions take 40 to 100 ms
