@@ -5,8 +5,9 @@
 /// force and a contact lasts 7. So from the first force on the active part tau_a follows what the
 /// law asks for by no more than strength / 40 ms, and what is missing then is co-contraction tau_i:
 /// the stiffness of muscles that pull on both sides of a joint, at once, but with a small share of
-/// the strength. After the separation that share grows until the law has its torques back. At all
-/// other times a muscle follows: a lag of the whole torque would make a servo of 20 Hz unstable.
+/// the strength. After the separation that share grows evenly until the law has its torques back:
+/// a slow and then fast return is a blow of its own, which the waist has to bear. At all other
+/// times a muscle follows: a lag of the whole torque would make a servo of 20 Hz unstable.
 ///
 /// The torques of an arm go together: where one joint is behind, all are by the same share. Else
 /// what the elbow no longer gives against the shoulder whirls the upper arm about its length, by
@@ -18,12 +19,12 @@
 
 #define ACTIVATION 0.040 // to full strength (s); voluntary contractions take 40 to 100 ms
 #define RECOVERY 0.020   // after a contact (s); chosen: less is a jerk, more lets the tip go astray
-#define RECOVERED 8.0    // of the strength, which co-contraction then may have: all, and a reserve
+#define RECOVERED 2.0    // of the strength, which co-contraction then may have: any change at all
 // co-contraction over strength from shoulder to grip; chosen: slow heavy joints are soft
 static const double shares[HIMC_ARM_JOINTS] = {0.20, 0.25, 0.25, 0.25};
 // of co-contracted muscles (N m s/rad), likewise; chosen: without it an arm that is nearly straight
 // is whirled about its length, where it is light, by what its joints do not agree about
-static const double viscosity[HIMC_ARM_JOINTS] = {3, 1.5, 0.3, 0.03};
+static const double viscosity[HIMC_ARM_JOINTS] = {6, 3, 0.3, 0.03};
 
 void himc_muscles_rest(himc_muscles *m)
 {
@@ -82,7 +83,7 @@ void himc_muscles_act(himc_muscles *m, const himc_muscle_input *in, himc_vec3 to
         m->since[hand] = in->struck[hand] ? 0 : m->since[hand] + in->h;
         double u = m->since[hand] / RECOVERY;
         if (u < 1)
-            hold(m, hand, RECOVERED * u * u, in, torque);
+            hold(m, hand, RECOVERED * u, in, torque);
         for (int k = 0; u >= 1 && k < HIMC_ARM_JOINTS; k++) {
             int j = himc_arm_joint(hand, k);
             m->active[j] = torque[j];
