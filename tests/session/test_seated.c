@@ -225,8 +225,9 @@ static void test_a_pelvis_that_is_free_can_be_pushed(void)
     TEST_ASSERT_EQUAL_INT(0, fallen);
     himc_performance *p = seated("stance fixed");
     TEST_ASSERT_FALSE(session_try(p, "push pelvis 60 0 0 0.2"));
-    TEST_ASSERT_EQUAL_STRING("push: pelvis: `stance fixed` holds it, expected `stance seated` or `standing`",
-                             error.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "push: pelvis: `stance fixed` holds it, expected `stance seated` or `standing`",
+        error.text);
     TEST_ASSERT_FALSE(session_try(p, "at 1 push pelvis 60 0 0 0.2"));
     static const char *const text =
         "stance fixed; stance seated; at 1 push pelvis 60 0 0 0.2; stroke 2 left legato f;";

@@ -41,9 +41,9 @@
 #define ROLL_PARTS 1.0  // ... grows while it falls by this ...
 #define ELBOW_SHARE 1.2 // ... to this
 // The triangle. Chosen: the limits keep its angles away from 0 and pi, where rates are infinite.
-#define STRAIGHT 0.15       // elbows nearer to the line to the wrist are carried along by it (m)
 #define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
 #define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
+#define STRAIGHT 0.15 // an elbow nearer to the line to the wrist is carried along by it (m); chosen
 // The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach
 // four timpani in an arc.
 #define TRUNK_LEAN 0.09         // (rad)

@@ -13,8 +13,8 @@
 /// what the elbow no longer gives against the shoulder whirls the upper arm about its length, by
 /// 2500 degrees a second.
 ///
-/// Muscles on both sides of a joint also resist its speed. They do in a contact, and while an arm
-/// is astray and draws on its reserve.
+/// Co-contracted muscles also resist the joint's speed: in a contact, and while the tip is astray
+/// and the arm draws on its reserve.
 #include "control/muscle.h"
 
 #define ACTIVATION 0.040 // to full strength (s); voluntary contractions take 40 to 100 ms
@@ -22,8 +22,8 @@
 #define RECOVERED 2.0    // of the strength, which co-contraction then may have: any change at all
 // co-contraction over strength from shoulder to grip; chosen: slow heavy joints are soft
 static const double shares[HIMC_ARM_JOINTS] = {0.20, 0.25, 0.25, 0.25};
-// of co-contracted muscles (N m s/rad), likewise; chosen: without it an arm that is nearly straight
-// is whirled about its length, where it is light, by what its joints do not agree about
+// torque over speed of co-contracted muscles from shoulder to grip (N m s/rad); chosen: without it
+// an arm that is nearly straight is whirled about its length, where it is light
 static const double viscosity[HIMC_ARM_JOINTS] = {6, 3, 0.3, 0.03};
 
 void himc_muscles_rest(himc_muscles *m)

@@ -15,13 +15,13 @@ typedef struct himc_muscles {
 /// No contact has been.
 HIMC_RT void himc_muscles_rest(himc_muscles *muscles);
 
-/// What muscles feel in one step of `h` (s).
+/// What muscles get in one step.
 typedef struct himc_muscle_input {
     const bool *struck;     ///< hands that touch in a stroke
     const double *reserve;  ///< of each arm (strength.h)
     const double *strength; ///< of the joints (N m); 0: no maximum, no muscle
     const himc_vec3 *rate;  ///< what the joints' rates miss (rad/s)
-    double h;
+    double h;               ///< the step (s)
 } himc_muscle_input;
 
 /// From the torques that the law asks for to those that muscles give (N m).

@@ -7,10 +7,10 @@
 /// arm whose shoulder moves as wanted, and inverse dynamics is asked again with them. What the
 /// pelvis then does changes the arms' torques a little: two rounds leave a fiftieth of that.
 ///
-/// Torques that are cut short joint by joint do not agree any more: an arm that is nearly straight,
-/// at the end of its reach, was whirled and threw the player off his feet. So first an arm that is
-/// too weak accelerates less, the same way: its torques go towards those with which its joints keep
-/// their rates. What is missing then is cut (strength.c).
+/// Torques that are cut joint by joint do not fit together: they whirl an arm that is nearly
+/// straight, and it throws the player off his feet. So an arm that is too weak first does the same
+/// slower: all accelerations wanted of its joints get one share. What is too much even then is cut
+/// (strength.c).
 #include "control/settle.h"
 
 #include "body/dynamics.h"

@@ -1,4 +1,5 @@
-/// settle.h: what trunk and legs do while the arms give other torques than were asked of them.
+/// settle.h: what an arm that is too weak does instead, and what trunk and legs do while the arms
+/// give other torques than were asked of them.
 #ifndef HIMC_SETTLE_H
 #define HIMC_SETTLE_H
 
@@ -10,8 +11,9 @@ HIMC_RT void himc_invert(const himc_controller *controller, const himc_skeleton 
                          const himc_body_state *state, const himc_vec3 wanted[HIMC_JOINTS],
                          himc_vec3 torque[HIMC_JOINTS]);
 
-/// Where an arm is too weak for the torques of `asked`, it does what is `wanted` of it slower, all
-/// its joints by one share; `asked` becomes the torques for that.
+/// An arm whose strength times `reserve` (strength.h) is less than the torques of `asked` (N m) does
+/// what is `wanted` of it slower: the accelerations (rad/s^2) of all its joints are multiplied by
+/// one share, and `asked` becomes the torques for them.
 HIMC_RT void himc_slow_weak_arms(const himc_controller *controller, const himc_skeleton *skeleton,
                                  const himc_body_state *state, const double reserve[HIMC_HANDS],
                                  himc_vec3 wanted[HIMC_JOINTS], himc_vec3 asked[HIMC_JOINTS]);

@@ -7,9 +7,9 @@
 /// the room only falls, by 60 dB in T60 below 1 kHz and faster above, whatever the delays. While
 /// the walls change, keep and take are means of two such filters: their gain is below 1, too.
 ///
-/// So many, because the tail of a note rings at the modes next to it. Their sum in seconds, 1.2, is
-/// how many the network has a hertz; with half of it tails are 16 cents RMS beside the pitch, with
-/// this 10, in a hall's 14 a hertz 8 (1500 m3, at 180 Hz).
+/// So many, because the tail of a note rings at the modes next to it. The sum of all delays, 1.2 s,
+/// is the number of modes per hertz. Tails are 9 cents RMS beside their pitch (test_room), with 16
+/// delays 15; in a hall of 1500 m3, which has 14 modes per hertz at 180 Hz, 8.
 ///
 /// Level. A source that sends p at 1 m fills a room of volume V with p^2 16 pi/(D A), D its
 /// directivity and A = 0.161 V/T60 its absorption (Sabine). A timpano sends D = 2 to 6 times its
