@@ -66,7 +66,7 @@ static void test_a_leap_whips_no_elbow(void)
     whip w = leap(HIMC_LEFT, 0.75);
     printf("elbow %.2f m/s, joints %.1f rad/s, tip %.2f m from the axis\n", w.fastest, w.turns,
            w.nearest);
-    TEST_ASSERT_TRUE(w.fastest < 3.3);
+    TEST_ASSERT_TRUE(w.fastest < 3.15); // 3.23 if it goes by where the tip is
     TEST_ASSERT_TRUE(w.turns < 1000 * HIMC_PI / 180);
     TEST_ASSERT_TRUE(w.nearest > 0.5);
 }
@@ -76,7 +76,7 @@ static void test_the_elbow_of_a_fast_leap_swings_ahead_and_no_more_than_it_must(
 {
     whip w = leap(HIMC_LEFT, 0.45);
     printf("elbow %.2f m/s, joints %.1f rad/s\n", w.fastest, w.turns);
-    TEST_ASSERT_TRUE(w.fastest < 3.3);
+    TEST_ASSERT_TRUE(w.fastest < 3.15); // 3.23 if it goes by where the tip is
     TEST_ASSERT_TRUE(w.turns < 900 * HIMC_PI / 180);
 }
 
