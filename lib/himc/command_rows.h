@@ -53,9 +53,16 @@
     LAW(FEEDFORWARD, feedforward, "feedforward", false) \
     LAW(COMPUTED_TORQUE, computed_torque, "computed-torque", true)
 // the kinds of a head (lib/src/head/kind.h) with their forms of `shape`, before that of a file
-#define HIMC_KINDS(KIND)  \
-    KIND(round, "circle") \
-    KIND(rectangle, "rectangle LENGTH WIDTH")
+#define HIMC_KINDS(KIND)                      \
+    KIND(round, "circle")                     \
+    KIND(rectangle, "rectangle LENGTH WIDTH") \
+    KIND(list, "modes FILE")                  \
+    KIND(listed, "listed LISTED")
+// the instruments that the library has as lists of modes (lib/src/head/lists.c)
+#define HIMC_LISTS(LIST) \
+    LIST("claves")       \
+    LIST("wood-block")   \
+    LIST("temple-blocks") LIST("triangle") LIST("agogo") LIST("cowbell") LIST("tubular-bell")
 #define HIMC_ROW_KIND(name, form) form " | "
 #define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
@@ -227,10 +234,13 @@ HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, HIMC_KINDS(HIMC_ROW_KIND) "FILE",
     "makes a head of another outline, or one of up to 800 masses on springs from a file")
-HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0,
-                 "soft|medium|hard|wood | K ALPHA MASS | HAND soft|medium|hard|wood | "
-                 "HAND K ALPHA MASS",
-                 "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both")
+HIMC_COMMAND_ROW(
+    MALLET, mallet, DRUM, NOW, 0,
+    "soft|medium|hard|wood|usual | K ALPHA MASS | "
+    "HAND soft|medium|hard|wood|usual | "
+    "HAND K ALPHA MASS",
+    "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both; usual: "
+    "the one that suits the instrument")
 HIMC_COMMAND_ROW(NOISE, noise, DRUM, NOW, 0, "AMOUNT",
                  "sets how loud felt, shaft, shell and stand answer a blow")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",

@@ -476,10 +476,11 @@ static void test_errors_name_field_value_and_allowed_values(void)
     refused(drum("modes 2.5"), "modes: 2.5, expected 1 .. 2000, whole or auto");
     refused(drum("tune 0"), "tune: 0, expected 1 .. 20000 Hz or a note such as A2 or f#3");
     refused(drum("tune H2"), "tune: H2, expected 1 .. 20000 Hz or a note such as A2 or f#3");
-    refused(drum("mallet 5"), "mallet: 5, expected soft medium hard wood");
-    refused(drum("mallet 1e6 2.5"),
-            "mallet: MASS missing, expected mallet soft|medium|hard|wood | K ALPHA MASS | HAND "
-            "soft|medium|hard|wood | HAND K ALPHA MASS");
+    refused(drum("mallet 5"), "mallet: 5, expected soft medium hard wood usual");
+    refused(
+        drum("mallet 1e6 2.5"),
+        "mallet: MASS missing, expected mallet soft|medium|hard|wood|usual | K ALPHA MASS | HAND "
+        "soft|medium|hard|wood | HAND K ALPHA MASS");
     refused(drum("pickup air 0 0"),
             "pickup: DISTANCE missing, expected pickup air AZIMUTH ELEVATION DISTANCE | X Y");
     refused(drum("kettle"), "kettle: atoms missing, expected kettle usual | VOLUME");

@@ -6,6 +6,7 @@
 #include "base/argument.h"
 
 #include "base/line.h"
+#include "himc/command_rows.h"
 #include "himc/ranges.h"
 
 #include <ctype.h>
@@ -21,12 +22,16 @@ static const char *const nuances[] = {"legato",          "tenuto",   "accent",
 static const char *const spots[] = {"center", "normal", "rim", NULL};
 static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
 
+#define WORD(word) word,
+static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
+
 static const himc_argument arguments[] = {
     {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
     {"HAND", "hit", HIMC_ARGUMENT_WORD, 0, 0, "", hit_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
+    {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"DRUM|NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
@@ -211,7 +216,7 @@ double himc_argument_number(const himc_argument *argument, double number)
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size)
 {
     const char *space = argument->unit[0] ? " " : "";
-    char words[128] = "";
+    char words[256] = "";
     size_t used = 0;
     for (int i = 0; argument->words && argument->words[i] && used < sizeof words; i++)
         used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? " " : "",

@@ -128,18 +128,23 @@ himc_drum_settings himc_drum_settings_of(const himc_drum *drum)
 
 himc_drum_settings himc_drum_settings_copy(const himc_drum_settings *settings)
 {
-    himc_grid_retain(settings->head.shape.grid);
+    himc_shape_retain(&settings->head.shape);
     return *settings;
 }
 
 void himc_drum_settings_free(himc_drum_settings *settings)
 {
-    himc_grid_release(settings->head.shape.grid);
+    himc_shape_release(&settings->head.shape);
     settings->head.shape.grid = NULL;
+    settings->head.shape.body = NULL;
 }
 
 void himc_drum_settings_take_head(himc_drum_settings *settings, const himc_drum_settings *from)
 {
+    if (settings->head.shape.body != from->head.shape.body) { // its own mallet came with it
+        memcpy(settings->mallet, from->mallet, sizeof settings->mallet);
+        memcpy(settings->mallet_name, from->mallet_name, sizeof settings->mallet_name);
+    }
     settings->head = from->head;
     settings->picked = from->picked;
     settings->pedal = from->pedal;

@@ -90,7 +90,8 @@ typedef struct himc_drum_settings {
 HIMC_RT himc_drum_settings himc_drum_settings_of(const himc_drum *drum);
 himc_drum_settings himc_drum_settings_copy(const himc_drum_settings *settings);
 void himc_drum_settings_free(himc_drum_settings *settings);
-/// Takes what commands that change the head have made of `from`: head, pedal, pickups.
+/// Takes what commands that change the head have made of `from`: head, pedal, pickups, and the
+/// mallet of another body.
 HIMC_RT void himc_drum_settings_take_head(himc_drum_settings *settings,
                                           const himc_drum_settings *from);
 /// Carries out a command, but for what it does once: a strike, an answer, a file, a preset. False

@@ -137,7 +137,8 @@ typedef enum drum_mallet_preset {
     DRUM_MALLET_SOFT,
     DRUM_MALLET_MEDIUM,
     DRUM_MALLET_HARD,
-    DRUM_MALLET_WOOD
+    DRUM_MALLET_WOOD,
+    DRUM_MALLET_USUAL ///< that of the instrument's kind
 } drum_mallet_preset;
 
 /// That mallet, with its name.
