@@ -109,7 +109,8 @@ typedef enum himc_command_marks {
     HIMC_WRITES_FILE = 4,   ///< its FILE is written; without this mark it is read
     HIMC_IN_FOLDER = 8,     ///< from the network it may read a FILE in the shared folder (osc.h)
     HIMC_CHANGES_HEAD = 16, ///< of a drum: its head is computed anew, mode by mode
-    HIMC_AT_BEAT = 32       ///< a score may have it at a beat
+    HIMC_AT_BEAT = 32,      ///< a score may have it at a beat
+    HIMC_MAKES_DRUM = 64    ///< it makes a drum, named by its first atom
 } himc_command_marks;
 
 /// One id for each row of command_rows.h: HIMC_COMMAND_STROKE, HIMC_COMMAND_HIT, ...

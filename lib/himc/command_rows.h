@@ -59,10 +59,16 @@
     KIND(list, "modes FILE")                  \
     KIND(listed, "listed LISTED")
 // the instruments that the library has as lists of modes (lib/src/head/lists.c)
-#define HIMC_LISTS(LIST) \
-    LIST("claves")       \
-    LIST("wood-block")   \
-    LIST("temple-blocks") LIST("triangle") LIST("agogo") LIST("cowbell") LIST("tubular-bell")
+#define HIMC_LISTS(LIST)  \
+    LIST("claves")        \
+    LIST("wood-block")    \
+    LIST("temple-blocks") \
+    LIST("triangle")      \
+    LIST("agogo")         \
+    LIST("cowbell")       \
+    LIST("tubular-bell")
+// the words of `instrument`
+#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_LISTS(WORD)
 #define HIMC_ROW_KIND(name, form) form " | "
 #define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
@@ -188,8 +194,11 @@ HIMC_COMMAND_ROW(PRESET, preset, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOL
                  "loads NAME.txt, a score or what `dump NAME.txt` has written")
 HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "",
                  "sets everything as when just made; a [membrane~] keeps its settings")
-HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
+HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, HIMC_MAKES_DRUM, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
+HIMC_COMMAND_ROW(INSTRUMENT, instrument, PERFORMER, NOW, HIMC_MAKES_DRUM,
+                 "NAME INSTRUMENT [SIZE] | NAME INSTRUMENT NOTE | NAME modes FILE",
+                 "makes an instrument with its own mallets, of so many inches, or of that pitch")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
                  "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
                  "sends a stream to an address over OSC, 33 times a second by default; vmc to port "

@@ -480,7 +480,7 @@ static void test_errors_name_field_value_and_allowed_values(void)
     refused(
         drum("mallet 1e6 2.5"),
         "mallet: MASS missing, expected mallet soft|medium|hard|wood|usual | K ALPHA MASS | HAND "
-        "soft|medium|hard|wood | HAND K ALPHA MASS");
+        "soft|medium|hard|wood|usual | HAND K ALPHA MASS");
     refused(drum("pickup air 0 0"),
             "pickup: DISTANCE missing, expected pickup air AZIMUTH ELEVATION DISTANCE | X Y");
     refused(drum("kettle"), "kettle: atoms missing, expected kettle usual | VOLUME");

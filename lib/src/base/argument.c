@@ -24,6 +24,7 @@ static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", 
 
 #define WORD(word) word,
 static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
+static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
     {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
@@ -31,6 +32,7 @@ static const himc_argument arguments[] = {
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
+    {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
     {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
@@ -75,6 +77,7 @@ static const himc_argument arguments[] = {
     {"MASS", "player", HIMC_ARGUMENT_NUMBER, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", NULL},
     {"MASS", NULL, HIMC_ARGUMENT_NUMBER, 0.001, 1, "kg", NULL},
     {"INCHES", NULL, HIMC_ARGUMENT_NUMBER, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "inches", NULL},
+    {"SIZE", NULL, HIMC_ARGUMENT_NUMBER, 1, 20000, "inches of a head, Hz of others", NULL},
     {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", NULL},
     {"TENSION", NULL, HIMC_ARGUMENT_NUMBER, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m", NULL},
     {"DENSITY", NULL, HIMC_ARGUMENT_NUMBER, 0.01, HIMC_DENSITY_MAX, "kg/m^2", NULL},

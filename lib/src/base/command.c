@@ -273,7 +273,8 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
         out->atom[i] = (himc_atom){HIMC_ATOM_NUMBER, read->number[i], NULL};
         if (atoms[i].kind != HIMC_ATOM_SYMBOL)
             continue;
-        bool pitch = out->id == HIMC_COMMAND_TUNE || out->id == HIMC_COMMAND_GLISS;
+        bool pitch = out->id == HIMC_COMMAND_TUNE || out->id == HIMC_COMMAND_GLISS ||
+                     (out->id == HIMC_COMMAND_INSTRUMENT && i > 1);
         if (pitch && himc_note_frequency(atoms[i].symbol, &hz)) {
             out->atom[i].number = hz;
             continue;

@@ -116,14 +116,17 @@ static void copy_performance(score_job *j)
     j->units = himc_planner_units(p->motion->planner);
 }
 
-static bool make_drum(score_job *j, const char *name, double inches, drum_source source,
+// `command` makes it, or NULL: it is for strokes on the first drum
+static bool make_drum(score_job *j, const himc_command *command, drum_source source,
                       himc_error *error)
 {
+    const char *name = command ? command->atom[0].symbol : FIRST_DRUM;
     if (find_drum(j, name))
         return true;
     if (j->drums == HIMC_DRUMS)
         return himc_drums_full(name, error);
-    himc_drum *made = himc_drum_new(name, inches, j->clock.sample_rate, error);
+    himc_drum *made = command ? himc_drum_made(command, j->clock.sample_rate, error)
+                              : himc_drum_new(name, HIMC_INCHES_USUAL, j->clock.sample_rate, error);
     if (!made)
         return false;
     himc_drum_settings was = himc_drum_settings_of(made);
@@ -132,19 +135,17 @@ static bool make_drum(score_job *j, const char *name, double inches, drum_source
     return true;
 }
 
-/// Makes the drums that the performance does not have: those of the command `drum`, or one for
+/// Makes the drums that the performance does not have: those of `drum` and `instrument`, or one for
 /// strokes on the first.
 static bool make_drums(score_job *j, himc_error *error)
 {
     for (int i = 0; i < j->score->line_count; i++) {
         const himc_command *c = &j->score->lines[i].command;
-        if (c->id == HIMC_COMMAND_MAKE_DRUM &&
-            !make_drum(j, c->atom[0].symbol, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
-                       j->host.make_drums ? DRUM_MADE : DRUM_SILENT, error))
+        if (himc_score_makes_drum(&j->score->lines[i]) &&
+            !make_drum(j, c, j->host.make_drums ? DRUM_MADE : DRUM_SILENT, error))
             return himc_error_prefix(error, "%s:%d", j->path, j->score->lines[i].line);
     }
-    return j->drums > 0 || j->score->stroke_count == 0 ||
-           make_drum(j, FIRST_DRUM, HIMC_INCHES_USUAL, DRUM_SILENT, error);
+    return j->drums > 0 || j->score->stroke_count == 0 || make_drum(j, NULL, DRUM_SILENT, error);
 }
 
 /// The first line, change or stroke of the score from `*i` on whose drum the performance does not
@@ -360,7 +361,7 @@ static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_e
     int index;
     if (line->drum[0]) {
         good = run_on_drum(j, line, error);
-    } else if (c->id == HIMC_COMMAND_MAKE_DRUM) {
+    } else if (himc_score_makes_drum(line)) {
         good = installed_drum(j, c->atom[0].symbol, &index, error);
     } else if (j->line) {
         himc_job_state state = j->line->install(j->line, error);

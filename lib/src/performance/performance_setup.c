@@ -327,7 +327,7 @@ bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_sp
     return first && himc_performance_adopt_drum(p, first, DRUM_SILENT, index, error);
 }
 
-// the command `drum`
+// the commands `drum` and `instrument`
 typedef struct make_drum_job {
     himc_job job;
     himc_performance *performance; ///< borrowed
@@ -340,9 +340,8 @@ static bool make_drum(himc_job *job, himc_error *error)
 {
     make_drum_job *j = (make_drum_job *)job;
     const himc_command *c = &j->command;
-    double inches = c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL;
     himc_drum_release(j->drum);
-    j->drum = himc_drum_new(c->atom[0].symbol, inches, j->sample_rate, error);
+    j->drum = himc_drum_made(c, j->sample_rate, error);
     return j->drum;
 }
 
