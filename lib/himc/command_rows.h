@@ -57,7 +57,8 @@
     KIND(round, "circle")                     \
     KIND(rectangle, "rectangle LENGTH WIDTH") \
     KIND(list, "modes FILE")                  \
-    KIND(listed, "listed LISTED")
+    KIND(listed, "listed LISTED")             \
+    KIND(bar, "bar BAR HZ [HZ]")
 // the instruments that the library has as lists of modes (lib/src/head/lists.c)
 #define HIMC_LISTS(LIST)  \
     LIST("claves")        \
@@ -67,8 +68,10 @@
     LIST("agogo")         \
     LIST("cowbell")       \
     LIST("tubular-bell")
+// bars that are computed (lib/src/head/bar.c)
+#define HIMC_BARS(BAR) BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel")
 // the words of `instrument`
-#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_LISTS(WORD)
+#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD)
 #define HIMC_ROW_KIND(name, form) form " | "
 #define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
@@ -197,8 +200,9 @@ HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "",
 HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, HIMC_MAKES_DRUM, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
 HIMC_COMMAND_ROW(INSTRUMENT, instrument, PERFORMER, NOW, HIMC_MAKES_DRUM,
-                 "NAME INSTRUMENT [SIZE] | NAME INSTRUMENT NOTE | NAME modes FILE",
-                 "makes an instrument with its own mallets, of so many inches, or of that pitch")
+                 "NAME INSTRUMENT [SIZE] [SIZE] | NAME INSTRUMENT NOTE [NOTE] | NAME modes FILE",
+                 "makes an instrument with its own mallets, of so many inches, of that pitch, or "
+                 "with bars from that to another pitch")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
                  "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
                  "sends a stream to an address over OSC, 33 times a second by default; vmc to port "
@@ -242,7 +246,8 @@ HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [
                  "split and beat, each seed in its own way")
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, HIMC_KINDS(HIMC_ROW_KIND) "FILE",
-    "makes a head of another outline, or one of up to 800 masses on springs from a file")
+    "makes a head of another outline, or one of up to 800 masses on springs from a file; or "
+    "bars (of one pitch, or to another), or what has no skin, as a list of modes")
 HIMC_COMMAND_ROW(
     MALLET, mallet, DRUM, NOW, 0,
     "soft|medium|hard|wood|usual | K ALPHA MASS | "

@@ -24,6 +24,7 @@ static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", 
 
 #define WORD(word) word,
 static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
+static const char *const bars[] = {HIMC_BARS(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
@@ -33,6 +34,7 @@ static const himc_argument arguments[] = {
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
     {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
+    {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},
     {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
@@ -67,7 +69,7 @@ static const himc_argument arguments[] = {
      NULL},
     {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
     // principal mode; chosen: wider than any head's range, which find_tune tells
-    {"HZ", "tune|gliss", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
+    {"HZ", "tune|gliss|bar", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
     {"PORT", "listen", HIMC_ARGUMENT_COUNT, 0, 65535, "", NULL},

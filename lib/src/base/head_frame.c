@@ -94,7 +94,7 @@ void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *strok
         return;
     *x = -(frame->spots ? frame->spots : drumhead)[stroke->spot] * frame->radius;
     // half a mallet's width (m), so the two mallets do not collide, if there is room; chosen
-    double aside = frame->length > 0 ? fmin(0.015, 0.25 * frame->width) : 0.015;
+    double aside = frame->length > 0 ? fmin(0.015, 0.48 * frame->width) : 0.015;
     *y = stroke->hand == HIMC_LEFT ? aside : -aside;
 }
 

@@ -435,6 +435,8 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
     himc_state_word(&line, shape->kind->name ? shape->kind->name : shape->grid->path);
     if (shape->body)
         himc_state_word(&line, shape->body->name);
+    for (int i = 0; shape->body && i < 2 && shape->body->pitches[i] > 0; i++)
+        himc_state_numbers(&line, 1, &shape->body->pitches[i]);
     himc_state_numbers(&line, shape->length > 0 ? 2 : 0, (double[]){shape->length, shape->width});
     himc_state_end(&line, to);
     himc_state_tell(to, "kettle", "usual", 0, NULL);
