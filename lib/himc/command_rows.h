@@ -40,7 +40,7 @@
     HIMC_COMMAND_ROW(ID, word, PERFORMER, when, 0, atoms, does)
 #endif
 
-#define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]"
+#define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [dead] [PART] [DRUM]"
 #define HIMC_ROW_ROLL "single|double|press"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc|sound|errors"
 
@@ -76,15 +76,17 @@
 #define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
 // to the performer
-HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
-                 "adds one stroke to the score; dead: the mallet stays on the head")
+HIMC_COMMAND_ROW(
+    STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+    "adds one stroke to the score; dead: the mallet stays on the head; PART of an instrument "
+    "that has several: a pitch, or a name")
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
                  "that suits better, on one drum in turns")
 HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
-    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [DRUM] | "
-    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [DRUM]",
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [PART] [DRUM] | "
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [PART] [DRUM]",
     "adds a roll, from one dynamic to another: single strokes of both hands, or, as drummers "
     "play it, strokes that bounce once (double) or until the next (press)")
 HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,

@@ -2,6 +2,8 @@
 #include "osc_ear.h"
 
 #include "inner_state.h"
+#include "drum/membrane_state.h"
+#include "head/idiophone.h"
 #include "performance/performance_state.h"
 
 // a score that is loaded from a file of its own; the error line or ""
@@ -64,6 +66,79 @@ static void test_each_stroke_of_a_score_lands_on_its_instrument(void)
     TEST_ASSERT_TRUE(himc_membrane_energy(himc_drum_membrane(bell)) >= 0);
 }
 
+// where strike k landed, of those heard
+static void landed(int k, double at[2])
+{
+    for (int i = 0; i < heard_count; i++)
+        if (strcmp(heard[i].path, "/himc/strike") == 0 && k-- == 0)
+            for (int j = 0; j < 2; j++)
+                at[j] = number(lo_message_get_argv(heard[i].message)[3 + j]);
+}
+
+// a pitch in any spelling, a name; and near the middle, at the end, or X Y from the part's centre
+static void test_strokes_of_a_score_land_on_the_bars_that_they_name(void)
+{
+    static const char *const written[] = {"C4", "center E4", "rim Bb4", "c5", "0.01 0.005 G4"};
+    static const struct {
+        const char *part;
+        double along, aside; // of half its length, (m)
+    } of[] = {{"C4", -0.1, 0.015},
+              {"E4", 0, -0.015},
+              {"A#4", -0.7, 0.015},
+              {"C5", -0.1, -0.015},
+              {"G4", NAN, 0.005}};
+    char text[700] = "instrument m marimba C4 C5; tempo 60; ";
+    for (int i = 0; i < 5; i++)
+        snprintf(text + strlen(text), 60, "stroke %d %s legato mf %s m; ", i + 1,
+                 i % 2 ? "right" : "left", written[i]);
+    subscribe("strikes");
+    TEST_ASSERT_EQUAL_STRING("", load(text));
+    say("/himc/play", "");
+    play(6);
+    TEST_ASSERT_EQUAL_INT(5, count("/himc/strike"));
+    const himc_idiophone *body = himc_membrane_config_of(himc_drum_membrane(find("m")))->shape.body;
+    for (int i = 0; i < 5; i++) {
+        double at[2] = {0};
+        const himc_part *part = body->part;
+        while (strcmp(part->name, of[i].part) != 0)
+            part++;
+        landed(i, at);
+        double x = isnan(of[i].along) ? 0.01 : 0.5 * part->length * of[i].along;
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.003, part->x + x, at[0], of[i].part);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.003, part->y + of[i].aside, at[1], of[i].part);
+    }
+}
+
+static void test_a_roll_on_a_bar_stays_on_it(void)
+{
+    subscribe("strikes");
+    TEST_ASSERT_EQUAL_STRING("", load("instrument m marimba C4 C5; tempo 60;"
+                                      "roll 2 1 single mf E4 m; flam 5 right legato f E4 m;"));
+    say("/himc/play", "");
+    play(6);
+    const himc_part *part =
+        &himc_membrane_config_of(himc_drum_membrane(find("m")))->shape.body->part[4];
+    TEST_ASSERT_TRUE(count("/himc/strike") > 8);
+    for (int i = 0; i < count("/himc/strike"); i++) {
+        double at[2] = {0};
+        landed(i, at);
+        TEST_ASSERT_TRUE(fabs(at[1] - part->y) < 0.5 * part->width);
+    }
+}
+
+static void test_parts_that_are_not_there_are_refused(void)
+{
+    refuses("instrument m marimba C4 C5; stroke 1 left legato f C6 m;",
+            ":1: C6: no part of m, expected C4 .. C5");
+    refuses("drum a; stroke 1 left legato f C6 a;", ":1: C6: a has no parts");
+    refuses("instrument t temple-blocks; stroke 1 left legato f lowest t;",
+            "lowest: no part of t, expected low .. high");
+    say("/himc/instrument", "t temple-blocks");
+    say("/himc/hit", "left legato f lowest t");
+    play(0.05);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(last_error(), "lowest: no part of t"), last_error());
+}
+
 static void test_an_instrument_comes_over_osc_and_is_there_once(void)
 {
     say("/himc/instrument", "bell tubular-bell D5");
@@ -95,6 +170,8 @@ static void test_what_cannot_be_made_is_refused_in_one_line(void)
 static void test_a_dump_makes_the_instruments_again(void)
 {
     say("/himc/instrument", "bell tubular-bell D5");
+    say("/himc/instrument", "m marimba C4 D4");
+    say("/himc/stroke", "1 left legato f D4 m");
     play(0.05);
     himc_mode was = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
     himc_command command;
@@ -109,6 +186,10 @@ static void test_a_dump_makes_the_instruments_again(void)
                                              "score /tmp/himc-instruments.txt", &error));
     TEST_ASSERT_TRUE_MESSAGE(himc_performance_command(performance, &command, 0, &error),
                              error.text);
+    himc_score *score = himc_score_load("/tmp/himc-instruments.txt", &error);
+    TEST_ASSERT_EQUAL_INT(1, score->stroke_count);
+    TEST_ASSERT_EQUAL_STRING("D4", score->strokes[0].part);
+    himc_score_free(score);
     unlink("/tmp/himc-instruments.txt");
     himc_mode now = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
     TEST_ASSERT_EQUAL_DOUBLE(was.frequency, now.frequency);
@@ -119,6 +200,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_each_stroke_of_a_score_lands_on_its_instrument);
+    RUN_TEST(test_strokes_of_a_score_land_on_the_bars_that_they_name);
+    RUN_TEST(test_a_roll_on_a_bar_stays_on_it);
+    RUN_TEST(test_parts_that_are_not_there_are_refused);
     RUN_TEST(test_an_instrument_comes_over_osc_and_is_there_once);
     RUN_TEST(test_what_cannot_be_made_is_refused_in_one_line);
     RUN_TEST(test_a_dump_makes_the_instruments_again);

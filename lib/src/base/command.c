@@ -125,6 +125,8 @@ static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
         return take_word(w, token, expected);
     const himc_argument *argument = himc_argument_find(token, w->context);
     const himc_atom *atom = &w->atom[w->at];
+    if (strcmp(token, "PART") == 0 && w->at + 1 == w->count)
+        return false; // a last word is a drum's
     himc_argument_describe(argument, expected, EXPECTED_SIZE);
     if (strcmp(token, "SPOT") == 0) {
         const himc_argument *x = himc_argument_find("X", "stroke");
@@ -346,6 +348,8 @@ static himc_stroke read_stroke(const himc_command *c)
         stroke.bounce_time = DEAD_TIME;
         i++;
     }
+    if (i + 1 < c->count)
+        snprintf(stroke.part, sizeof stroke.part, "%s", c->atom[i++].symbol);
     if (i < c->count)
         snprintf(stroke.drum, sizeof stroke.drum, "%s", c->atom[i].symbol);
     return stroke;

@@ -11,6 +11,7 @@
 /// below it takes its part of the bar's decay and makes the mode louder by its gain.
 #include "head/idiophone.h"
 
+#include "base/argument.h"
 #include "head/air.h"
 #include "head/modes.h"
 #include "himc/vec.h"
@@ -20,7 +21,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SMALLEST 0.06 // (m) radius of what is around a small part; chosen: no matter, as z scales
+#define SAME_PITCH 0.02 // chosen: a third of a semitone
+#define SMALLEST 0.06   // (m) radius of what is around a small part; chosen: no matter, as z scales
 
 himc_idiophone *himc_idiophone_new(const char *name, himc_error *error)
 {
@@ -118,16 +120,53 @@ void himc_idiophone_fit(const himc_shape *shape, himc_head *head)
     head->modes = head->modes < body->modes ? head->modes : body->modes;
 }
 
-// the middle of the surface is where a bar is struck: nearer to the performer by a twentieth of its
-// length mode 2 speaks, too, and over its cord, where mode 1 rests, mode 1 is silent
+// A bar is struck in its middle; a twentieth of its length nearer to the performer mode 2 speaks,
+// too; near its end mode 1, which rests at .22 of the length, is weaker. Chosen. Per half length.
+static const double spots[] = {
+    [HIMC_SPOT_CENTER] = 0, [HIMC_SPOT_NORMAL] = 0.1, [HIMC_SPOT_RIM] = 0.7};
+
 void himc_idiophone_surface(const himc_shape *shape, himc_head_frame *surface)
 {
-    static const double spots[] = {
-        [HIMC_SPOT_CENTER] = 0, [HIMC_SPOT_NORMAL] = 0.1, [HIMC_SPOT_RIM] = 0.6};
     double scale = surface->radius / shape->body->radius;
     surface->length = scale * shape->body->length;
     surface->width = scale * shape->body->width;
     surface->spots = surface->length > 0 ? spots : NULL;
+}
+
+// the part of that name, or of the same pitch in another spelling; NULL: none
+static const himc_part *find_part(const himc_idiophone *body, const char *name)
+{
+    double wanted, hz;
+    bool pitch = himc_note_frequency(name, &wanted);
+    for (int i = 0; body && i < body->parts; i++) {
+        const himc_part *p = &body->part[i];
+        if (strcmp(p->name, name) == 0 ||
+            (pitch && himc_note_frequency(p->name, &hz) && fabs(hz / wanted - 1) < SAME_PITCH))
+            return p;
+    }
+    return NULL;
+}
+
+bool himc_idiophone_place(const himc_shape *shape, double radius, himc_stroke *stroke,
+                          himc_error *error)
+{
+    const himc_idiophone *body = shape->body;
+    const himc_part *part = stroke->part[0] ? find_part(body, stroke->part) : NULL;
+    if (!stroke->part[0])
+        return true;
+    if (!part && (!body || body->parts == 1))
+        return himc_error_set(error, "%s: %s has no parts", stroke->part, stroke->drum);
+    if (!part)
+        return himc_error_set(error, "%s: no part of %s, expected %s .. %s", stroke->part,
+                              stroke->drum, body->part[0].name, body->part[body->parts - 1].name);
+    double scale = radius / body->radius, x = stroke->x, y = stroke->y;
+    bool placed = stroke->spot == HIMC_SPOT_XY;
+    if (placed)
+        stroke->part[0] = '\0'; // there, with either hand
+    stroke->x = scale * part->x + (placed ? x : -0.5 * scale * part->length * spots[stroke->spot]);
+    stroke->y = scale * part->y + (placed ? y : 0);
+    stroke->spot = HIMC_SPOT_XY;
+    return true;
 }
 
 // radius times wavenumber, of waves of the speed sqrt(T0/sigma0)

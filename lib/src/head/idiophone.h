@@ -14,7 +14,7 @@
 
 /// A part: a bar or a disc.
 typedef struct himc_part {
-    char name[HIMC_NAME_SIZE]; ///< a pitch, or another word
+    char name[HIMC_PART_SIZE]; ///< a pitch, or another word
     double x, y;               ///< of its centre (m)
     double length;             ///< along x (m); 0 of a disc
     double width;              ///< along y, or the disc's diameter (m)
@@ -56,6 +56,12 @@ bool himc_idiophone_add_mode(himc_idiophone *body, himc_partial mode, const doub
                              int points, himc_error *error);
 /// After the last part: sorts the modes, and moves the parts around their common centre.
 void himc_idiophone_finish(himc_idiophone *body);
+
+/// Puts a stroke for a part of a shape, if it says one, at its place on a surface of that radius
+/// (m): from now on with HIMC_SPOT_XY, each hand on its side of that unless the stroke has said X
+/// and Y on the part. False with the reason if the shape has no such part.
+bool himc_idiophone_place(const himc_shape *shape, double radius, himc_stroke *stroke,
+                          himc_error *error);
 
 /// Of the list of modes `name`, in the library or a file (list.c). NULL with "file:line: ...".
 himc_idiophone *himc_list_load(const char *name, himc_error *error);

@@ -11,6 +11,7 @@
 #include "performance/performance_state.h"
 
 #include "capture/take.h"
+#include "head/idiophone.h"
 #include "midi/score_file.h"
 #include "performance/confine.h"
 #include "performance/research.h"
@@ -244,6 +245,19 @@ static bool read_heads(score_job *j, himc_error *error)
     return true;
 }
 
+/// True if all drums that the trial has left have the parts that strokes are for.
+static bool check_parts(score_job *j, himc_error *error)
+{
+    for (int i = 0; i < j->score->stroke_count; i++) {
+        himc_stroke stroke = j->score->strokes[i];
+        const score_drum *d = stroke.part[0] ? find_drum(j, stroke.drum) : NULL;
+        if (d &&
+            !himc_idiophone_place(&d->trial.head.shape, d->trial.head.head.radius, &stroke, error))
+            return himc_error_prefix(error, "%s:%d", j->path, j->score->stroke_lines[i]);
+    }
+    return true;
+}
+
 /// The pushes of the score (*count, HIMC_PUSHES at most).
 static bool read_pushes(const score_job *j, planned_push *list, int *count, himc_error *error)
 {
@@ -273,7 +287,7 @@ static bool rehearse(score_job *j, himc_error *error)
             !rehearse_line(j, line, error))
             return himc_error_prefix(error, "%s:%d", j->path, line->line);
     }
-    if (!read_pushes(j, pushes, &count, error) || !read_heads(j, error))
+    if (!read_pushes(j, pushes, &count, error) || !read_heads(j, error) || !check_parts(j, error))
         return false;
     for (int i = 0; i < j->drums && good; i++) {
         score_drum *d = &j->drum[i];
@@ -477,7 +491,8 @@ static himc_job_state add_strokes(score_job *j, himc_error *error)
                 himc_written_change(written, &score->changes[-1 - place], j->from);
         } else {
             bool rolls = stroke.ornament >= HIMC_ROLL_SINGLE;
-            good = installed_drum(j, stroke.drum, &drum, error);
+            good = installed_drum(j, stroke.drum, &drum, error) &&
+                   (!ornament || himc_performance_place_stroke(p, &stroke, drum, error));
             if (good && ornament) {
                 himc_performance_add_ornament(p, &stroke, drum);
                 added += rolls ? STROKES_AT_ONCE : 0; // it may be long

@@ -5,6 +5,9 @@
 /// changes nothing. `reset` is the default settings and new parts. Time begins at 0 at the first
 /// sample not yet simulated, so every floating point sum equals that of a new performance.
 #include "performance/performance_state.h"
+
+#include "drum/membrane_state.h"
+#include "head/idiophone.h"
 #include "performance/research.h"
 
 #include <stdlib.h>
@@ -314,6 +317,15 @@ bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spo
     if (name[0])
         *index = himc_performance_find_drum(p, name) ? himc_drums_find(&p->drums, name) : -1;
     return *index >= 0 || himc_drums_refuse(&p->drums, name, spot, error);
+}
+
+bool himc_performance_place_stroke(const himc_performance *p, himc_stroke *stroke, int index,
+                                   himc_error *error)
+{
+    const himc_membrane_config none = {.head.radius = 1}, *head = &none;
+    if (index < p->drums.count)
+        head = himc_membrane_config_of(himc_drum_membrane(p->drums.slot[index].drum));
+    return himc_idiophone_place(&head->shape, head->head.radius, stroke, error);
 }
 
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
