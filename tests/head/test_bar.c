@@ -137,6 +137,16 @@ static void test_a_dump_of_bars_makes_them_again(void)
     check_dump("keyboard", 9);
 }
 
+static void test_info_names_the_bars(void)
+{
+    char lines[4000] = "";
+    done("shape bar marimba 261.6256 523.2511");
+    himc_drum_describe(drum, HIMC_DESCRIBE_INFO, keep_line, lines);
+    TEST_ASSERT_EQUAL_STRING("thing: marimba, pitch 261.63 Hz, parts C4 .. C5, 91 modes (91 "
+                             "audible), mallet usual, at 0.7 0 0.85 m\n",
+                             lines);
+}
+
 static void test_pitches_that_no_bar_has_are_refused(void)
 {
     TEST_ASSERT_FALSE(say("shape bar marimba 30"));
@@ -157,6 +167,7 @@ int main(void)
     RUN_TEST(test_a_blow_on_the_node_leaves_mode_1_at_rest);
     RUN_TEST(test_each_bar_of_a_keyboard_sounds_alone);
     RUN_TEST(test_a_dump_of_bars_makes_them_again);
+    RUN_TEST(test_info_names_the_bars);
     RUN_TEST(test_pitches_that_no_bar_has_are_refused);
     return UNITY_END();
 }

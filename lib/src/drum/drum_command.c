@@ -405,9 +405,17 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
              himc_membrane_audible(drum->membrane), head->uniformity, head->uniformity_seed,
              mallets, himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text,
              p->center.x, p->center.y, p->center.z);
+    const himc_idiophone *body = config.shape.body;
+    if (body)
+        snprintf(text, sizeof text,
+                 "%s: %.200s, pitch %.5g Hz, parts %s .. %s, %d modes (%d audible), mallet %s, at "
+                 "%.4g %.4g %.4g m",
+                 drum->set.name, body->name, principal, body->part[0].name,
+                 body->part[body->parts - 1].name, modes, himc_membrane_audible(drum->membrane),
+                 mallets, p->center.x, p->center.y, p->center.z);
     to->line(to->user, text);
     double highest = himc_membrane_mode(drum->membrane, modes - 1).frequency;
-    if (head->modes == HIMC_MODES_AUTO || highest > FULL_SOUND)
+    if (body || head->modes == HIMC_MODES_AUTO || highest > FULL_SOUND)
         return;
     snprintf(text, sizeof text, "%s: nothing sounds above %.0f Hz: more `modes`, or `modes auto`",
              drum->set.name, highest);
