@@ -220,7 +220,7 @@ static void himc_tilde_save_line(void *saving, const char *line)
     char word[HIMC_NAME_SIZE];
     snprintf(word, sizeof word, "%.*s", (int)strcspn(line, " "), line);
     const himc_command_row *row = himc_command_find(HIMC_PERFORMER, word);
-    if (row && row->id != HIMC_COMMAND_MAKE_DRUM)
+    if (row && !(row->marks & HIMC_MAKES_DRUM))
         saved_line(saving, line);
 }
 

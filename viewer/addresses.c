@@ -9,7 +9,7 @@
 ///     /himc/status    name value ...
 ///     /himc/pose      (allowed before the bodies, without effect)
 ///     /membrane/NAME/head    amplitude ...            (m), in the order of Bessel's zeros
-///     /membrane/NAME/place   x y z tilt radius        (m, rad)
+///     /membrane/NAME/place   x y z tilt radius [length width]  (m, rad)
 ///     /viewer/camera, /viewer/show, ...               for the page: see docs/viewer.md
 ///
 /// A performer that shares its port with others puts a name into its addresses, /himc/NAME/body.
@@ -236,13 +236,18 @@ static bool on_head(received *h)
 static bool on_place(received *h)
 {
     double radius = number(h, 4);
+    bool sides = h->count > 5; // of a rectangle, or 0 of a disc
     if (!in_range(h, 0, 3) || fabs(number(h, 3)) > 2 || radius < 0.02 || radius > 2)
+        return false;
+    if (sides &&
+        !(h->count == 7 && is_number(h->types[5]) && is_number(h->types[6]) && number(h, 5) >= 0 &&
+          number(h, 5) <= 4 && number(h, 6) >= 0 && number(h, 6) <= 4))
         return false;
     scene_drum *d = scene_find_drum(h->s, h->key, h->name, h->time.now);
     if (!d)
         return true;
-    for (int i = 0; i < 5; i++)
-        d->place[i] = (float)number(h, i);
+    for (int i = 0; i < 7; i++)
+        d->place[i] = i < 5 || sides ? (float)number(h, i) : 0;
     d->placed = true;
     d->told = h->time.told;
     d->version++;
@@ -272,11 +277,16 @@ static bool on_sound(received *h)
 }
 
 static const address addresses[] = {
-    {"himc", "body", "snnnnnnn", on_body},    {"himc", "pose", "*", on_pose},
-    {"himc", "targets", "snnn", on_targets},  {"himc", "strike", "nssnnnnns*", on_strike},
-    {"himc", "beat", "n", on_beat},           {"himc", "status", "*", on_status},
-    {"himc", "sound", "*", on_sound},         {"membrane", "head", "*", on_head},
-    {"membrane", "place", "nnnnn", on_place}, {"himc", "support", "nnnnnnnnnnnn", on_support},
+    {"himc", "body", "snnnnnnn", on_body},
+    {"himc", "pose", "*", on_pose},
+    {"himc", "targets", "snnn", on_targets},
+    {"himc", "strike", "nssnnnnns*", on_strike},
+    {"himc", "beat", "n", on_beat},
+    {"himc", "status", "*", on_status},
+    {"himc", "sound", "*", on_sound},
+    {"membrane", "head", "*", on_head},
+    {"membrane", "place", "nnnnn*", on_place},
+    {"himc", "support", "nnnnnnnnnnnn", on_support},
 };
 
 // copies the next "/part" of an address and returns the rest; NULL if there is none or it is too

@@ -54,7 +54,7 @@ typedef struct scene_drum {
     double received;              ///< time of the last message (s, wall clock)
     double told;                  ///< the sender's time of the amplitudes (s)
     bool placed;                  ///< `place` has been received
-    float place[5];               ///< centre x y z (m), tilt (rad), radius (m)
+    float place[7];               ///< centre x y z (m), tilt (rad), radius, length, width (m)
     uint32_t modes;               ///< number of amplitudes
     float amplitude[SCENE_MODES]; ///< (m)
 } scene_drum;

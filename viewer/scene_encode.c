@@ -6,7 +6,7 @@
 ///     u32 kind, u32 bytes that follow the head, f64 time (ms), the sender's, or of an event
 ///     when it came, then
 ///     1 pose   key[80], u32 segments known, u32 targets known, f32[20][7], f32[2][3], f32[12]
-///     2 drum   key[80], name[32], u32 placed, f32[5] place, u32 modes, u32 0, f32[64]
+///     2 drum   key[80], name[32], u32 placed, f32[7] place, u32 modes, u32 0, f32[64]
 ///     3 event  JSON, padded with spaces
 ///     4 sound  key[80], u32 first sample, u32 rate, u32 channels, u32 samples, i16[512]
 #include "scene.h"
@@ -16,7 +16,7 @@
 enum {
     HEAD = 16,
     POSE = SCENE_KEY + 8 + 4 * (SCENE_SEGMENTS * 7 + SCENE_HANDS * 3 + SCENE_SUPPORT),
-    DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 5 + 2 + SCENE_MODES),
+    DRUM = SCENE_KEY + SCENE_NAME + 4 * (1 + 7 + 2 + SCENE_MODES),
     SOUND = SCENE_KEY + 4 * 4 + 2 * SCENE_SAMPLES
 };
 

@@ -47,6 +47,7 @@ typedef enum himc_spot {
 /// The spot's word in commands; "" for HIMC_SPOT_XY. Borrowed, static.
 const char *himc_spot_name(himc_spot spot);
 
+#define HIMC_PART_SIZE 8  ///< of the name of an instrument's part, with its final 0 (bytes)
 #define HIMC_NAME_SIZE 32 ///< of a drum's or a nuance's name, with its final 0 (bytes)
 
 /// What a stroke of a score stands for besides itself. The rolls are in the order of the words of
@@ -74,6 +75,7 @@ typedef struct himc_stroke {
     double x;                  ///< of HIMC_SPOT_XY: from the centre away from the performer (m)
     double y;                  ///< and to the left (m)
     char drum[HIMC_NAME_SIZE]; ///< "" is the performer's first drum
+    char part[HIMC_PART_SIZE]; ///< of its surface: a bar's pitch, a block's name; "": all of it
     double early;              ///< of a grace note: so much before the beat (s), 0 .. 1
     int bounces;        ///< contacts after the first without the arm: 0, 1, HIMC_BUZZ or HIMC_DEAD
     double bounce_time; ///< from the first contact to the bounce, to the last, or to the end of a
@@ -109,7 +111,8 @@ typedef enum himc_command_marks {
     HIMC_WRITES_FILE = 4,   ///< its FILE is written; without this mark it is read
     HIMC_IN_FOLDER = 8,     ///< from the network it may read a FILE in the shared folder (osc.h)
     HIMC_CHANGES_HEAD = 16, ///< of a drum: its head is computed anew, mode by mode
-    HIMC_AT_BEAT = 32       ///< a score may have it at a beat
+    HIMC_AT_BEAT = 32,      ///< a score may have it at a beat
+    HIMC_MAKES_DRUM = 64    ///< it makes a drum, named by its first atom
 } himc_command_marks;
 
 /// One id for each row of command_rows.h: HIMC_COMMAND_STROKE, HIMC_COMMAND_HIT, ...

@@ -40,7 +40,7 @@
     HIMC_COMMAND_ROW(ID, word, PERFORMER, when, 0, atoms, does)
 #endif
 
-#define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]"
+#define HIMC_ROW_STROKE "HAND NUANCE DYNAMIC [SPOT] [dead] [PART] [DRUM]"
 #define HIMC_ROW_ROLL "single|double|press"
 #define HIMC_ROW_STREAM "pose|targets|strikes|head|vmc|sound|errors"
 
@@ -53,22 +53,40 @@
     LAW(FEEDFORWARD, feedforward, "feedforward", false) \
     LAW(COMPUTED_TORQUE, computed_torque, "computed-torque", true)
 // the kinds of a head (lib/src/head/kind.h) with their forms of `shape`, before that of a file
-#define HIMC_KINDS(KIND)  \
-    KIND(round, "circle") \
-    KIND(rectangle, "rectangle LENGTH WIDTH")
+#define HIMC_KINDS(KIND)                      \
+    KIND(round, "circle")                     \
+    KIND(rectangle, "rectangle LENGTH WIDTH") \
+    KIND(list, "modes FILE")                  \
+    KIND(listed, "listed LISTED")             \
+    KIND(bar, "bar BAR HZ [HZ]")
+// the instruments that the library has as lists of modes (lib/src/head/lists.c)
+#define HIMC_LISTS(LIST)  \
+    LIST("claves")        \
+    LIST("wood-block")    \
+    LIST("temple-blocks") \
+    LIST("triangle")      \
+    LIST("agogo")         \
+    LIST("cowbell")       \
+    LIST("tubular-bell")
+// bars that are computed (lib/src/head/bar.c)
+#define HIMC_BARS(BAR) BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel")
+// the words of `instrument`
+#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD)
 #define HIMC_ROW_KIND(name, form) form " | "
 #define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
 // to the performer
-HIMC_COMMAND_ROW(STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
-                 "adds one stroke to the score; dead: the mallet stays on the head")
+HIMC_COMMAND_ROW(
+    STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
+    "adds one stroke to the score; dead: the mallet stays on the head; PART of an instrument "
+    "that has several: a pitch, or a name")
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
                  "that suits better, on one drum in turns")
 HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
-    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [DRUM] | "
-    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [DRUM]",
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [PART] [DRUM] | "
+    "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [PART] [DRUM]",
     "adds a roll, from one dynamic to another: single strokes of both hands, or, as drummers "
     "play it, strokes that bounce once (double) or until the next (press)")
 HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
@@ -181,8 +199,12 @@ HIMC_COMMAND_ROW(PRESET, preset, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOL
                  "loads NAME.txt, a score or what `dump NAME.txt` has written")
 HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "",
                  "sets everything as when just made; a [membrane~] keeps its settings")
-HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, 0, "NAME [INCHES]",
+HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, HIMC_MAKES_DRUM, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
+HIMC_COMMAND_ROW(INSTRUMENT, instrument, PERFORMER, NOW, HIMC_MAKES_DRUM,
+                 "NAME INSTRUMENT [SIZE] [SIZE] | NAME INSTRUMENT NOTE [NOTE] | NAME modes FILE",
+                 "makes an instrument with its own mallets, of so many inches, of that pitch, or "
+                 "with bars from that to another pitch")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
                  "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
                  "sends a stream to an address over OSC, 33 times a second by default; vmc to port "
@@ -226,11 +248,15 @@ HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [
                  "split and beat, each seed in its own way")
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, HIMC_KINDS(HIMC_ROW_KIND) "FILE",
-    "makes a head of another outline, or one of up to 800 masses on springs from a file")
-HIMC_COMMAND_ROW(MALLET, mallet, DRUM, NOW, 0,
-                 "soft|medium|hard|wood | K ALPHA MASS | HAND soft|medium|hard|wood | "
-                 "HAND K ALPHA MASS",
-                 "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both")
+    "makes a head of another outline, or one of up to 800 masses on springs from a file; or "
+    "bars (of one pitch, or to another), or what has no skin, as a list of modes")
+HIMC_COMMAND_ROW(
+    MALLET, mallet, DRUM, NOW, 0,
+    "soft|medium|hard|wood|usual | K ALPHA MASS | "
+    "HAND soft|medium|hard|wood|usual | "
+    "HAND K ALPHA MASS",
+    "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both; usual: "
+    "the one that suits the instrument")
 HIMC_COMMAND_ROW(NOISE, noise, DRUM, NOW, 0, "AMOUNT",
                  "sets how loud felt, shaft, shell and stand answer a blow")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",

@@ -65,7 +65,7 @@ typedef struct example {
 // an atom that the argument accepts
 static himc_atom fitting(const himc_argument *a)
 {
-    static const char *const note = "A2", *const free_word = "some-word";
+    static const char *const note = "A2", *const free_word = "a-word";
     if (a->kind == HIMC_ARGUMENT_NUMBER || a->kind == HIMC_ARGUMENT_COUNT)
         return (himc_atom){HIMC_ATOM_NUMBER, a->high, NULL};
     return (himc_atom){HIMC_ATOM_SYMBOL, 0,
@@ -459,9 +459,9 @@ static void test_errors_name_field_value_and_allowed_values(void)
             "stroke: DYNAMIC: 1.7, expected ppp pp p mp mf f ff fff or 0 .. 1");
     refused(perform("stroke 1 left legatto f"),
             "stroke: NUANCE: legatto, expected legato tenuto accent vertical-accent staccato");
-    refused(
-        perform("stroke 1 left"),
-        "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] [DRUM]");
+    refused(perform("stroke 1 left"),
+            "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] "
+            "[PART] [DRUM]");
     refused(perform("stroke 1 left legato f 0.1"),
             "stroke: SPOT: 0.1, expected center normal rim or X Y, both -1 .. 1 m");
     refused(perform("drum dead"),
@@ -476,10 +476,11 @@ static void test_errors_name_field_value_and_allowed_values(void)
     refused(drum("modes 2.5"), "modes: 2.5, expected 1 .. 2000, whole or auto");
     refused(drum("tune 0"), "tune: 0, expected 1 .. 20000 Hz or a note such as A2 or f#3");
     refused(drum("tune H2"), "tune: H2, expected 1 .. 20000 Hz or a note such as A2 or f#3");
-    refused(drum("mallet 5"), "mallet: 5, expected soft medium hard wood");
-    refused(drum("mallet 1e6 2.5"),
-            "mallet: MASS missing, expected mallet soft|medium|hard|wood | K ALPHA MASS | HAND "
-            "soft|medium|hard|wood | HAND K ALPHA MASS");
+    refused(drum("mallet 5"), "mallet: 5, expected soft medium hard wood usual");
+    refused(
+        drum("mallet 1e6 2.5"),
+        "mallet: MASS missing, expected mallet soft|medium|hard|wood|usual | K ALPHA MASS | HAND "
+        "soft|medium|hard|wood|usual | HAND K ALPHA MASS");
     refused(drum("pickup air 0 0"),
             "pickup: DISTANCE missing, expected pickup air AZIMUTH ELEVATION DISTANCE | X Y");
     refused(drum("kettle"), "kettle: atoms missing, expected kettle usual | VOLUME");

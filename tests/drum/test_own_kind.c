@@ -301,6 +301,10 @@ static void test_the_bar_is_drawn_from_what_is_sent(void)
     play(0.3);
     for (int known = count("/membrane/bar/head"); count("/membrane/bar/head") == known;)
         play(0.004);
+    const lo_arg **place =
+        (const lo_arg **)lo_message_get_argv(last("/membrane/bar/place")->message);
+    TEST_ASSERT_EQUAL_FLOAT(LENGTH, number(place[5]));
+    TEST_ASSERT_EQUAL_FLOAT(WIDTH, number(place[6]));
     const seen *s = last("/membrane/bar/head");
     TEST_ASSERT_EQUAL_INT(MODES, lo_message_get_argc(s->message));
     double shape[MODES], q[MODES];

@@ -248,7 +248,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
         {"take /no/such/take.c3d;", ":5: /no/such/take.c3d"},
         {"kettle shape /no/such/grid.txt;", ":5: kettle: shape: /no/such/grid.txt"},
         {"kettle shape triangle;",
-         ":5: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, or a file"},
+         ":5: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, modes FILE, "},
         {"stroke 1 left legato f centr;",
          ":5: centr: no spot (center normal rim), not dead, no drum"},
         {"stroke 1 left legato f rim secnd;",

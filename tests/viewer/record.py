@@ -101,6 +101,7 @@ def test_drums_have_places_tunings_and_settings():
     assert list(drums) == ["low", "second", "third", "high"]
     place = drums["third"]["place"]
     assert all(abs(a - b) < 1e-6 for a, b in zip(place, (0.763, -0.439, 0.85, 0.1, 0.3302)))
+    assert len(place) == 7 and place[5:] == [0, 0]  # no sides
     assert abs(drums["low"]["hz"] - 73.42) < 0.5 and "mallet hard" in drums["third"]["settings"]
 
 

@@ -10,6 +10,7 @@
 #include "base/line.h"
 #include "base/text.h"
 #include "capture/take.h"
+#include "plan/score.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -240,14 +241,9 @@ bool cli_count(const char *name, const char *text, int low, int high, const char
 const himc_score_line *cli_first_drum(const himc_score *score)
 {
     for (int i = 0; i < score->line_count; i++)
-        if (score->lines[i].command.id == HIMC_COMMAND_MAKE_DRUM)
+        if (himc_score_makes_drum(&score->lines[i]))
             return &score->lines[i];
     return NULL;
-}
-
-double cli_drum_inches(const himc_score_line *line)
-{
-    return line && line->command.count > 1 ? line->command.atom[1].number : CLI_INCHES;
 }
 
 bool cli_take_options(const char *path, const char *const value[CLI_TAKE_VALUES],

@@ -150,10 +150,8 @@ bool cli_is_over(cli_ending *ending, int rate);
 /// Time on the monotonic clock (s).
 double cli_now(void);
 
-/// The first `drum` line of a score, or NULL.
+/// The first line of a score that makes a drum, or NULL.
 const himc_score_line *cli_first_drum(const himc_score *score);
-/// The size in a `drum` line (inches).
-double cli_drum_inches(const himc_score_line *line);
 
 /// The options of all calls that read a take; their values stand one after the other.
 #define CLI_TAKE_OPTIONS                                                                    \

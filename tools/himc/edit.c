@@ -185,7 +185,7 @@ static bool has_drums(const session *s, const himc_score *score, himc_error *err
     int count = !cli_first_drum(score);
     for (int i = 0; i < score->line_count && count < HIMC_DRUMS; i++) {
         const himc_command *c = &score->lines[i].command;
-        if (c->id == HIMC_COMMAND_MAKE_DRUM && !is_among(names, count, c->atom[0].symbol))
+        if (himc_score_makes_drum(&score->lines[i]) && !is_among(names, count, c->atom[0].symbol))
             names[count++] = c->atom[0].symbol;
     }
     for (int i = 0; i < score->stroke_count; i++) {

@@ -4,6 +4,7 @@
 #include "capture/take.h"
 
 #include "himc/drum.h"
+#include "plan/score.h"
 #include "himc/mocap.h"
 
 #include <math.h>
@@ -127,14 +128,23 @@ static void print_tempo(const himc_score *score)
     tell("tempo   %s BPM", text);
 }
 
+static void print_drum(const himc_command *c, int before, char *text)
+{
+    const char *comma = before ? ", " : "", *name = c->atom[0].symbol;
+    if (c->id == HIMC_COMMAND_INSTRUMENT)
+        sprintf(text, "%s%s %.24s", comma, name, c->atom[1].symbol);
+    else
+        sprintf(text, "%s%s %g inches", comma, name,
+                c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL);
+}
+
 static void print_drums(const himc_score *score)
 {
     char text[HIMC_DRUMS * (HIMC_NAME_SIZE + 32)] = "";
     int drums = 0;
     for (int i = 0; i < score->line_count && drums < HIMC_DRUMS; i++)
-        if (score->lines[i].command.id == HIMC_COMMAND_MAKE_DRUM)
-            sprintf(text + strlen(text), "%s%s %g inches", drums++ ? ", " : "",
-                    score->lines[i].command.atom[0].symbol, cli_drum_inches(&score->lines[i]));
+        if (himc_score_makes_drum(&score->lines[i]))
+            print_drum(&score->lines[i].command, drums++, text + strlen(text));
     if (!drums)
         sprintf(text, "%s %g inches (none named)", CLI_DRUM, CLI_INCHES);
     tell("drums   %s", text);

@@ -3,6 +3,7 @@
 ///
 /// The two members of a pair (cosine and sine) are one row if they sound alike, else two. T60 is
 /// the time in which a mode falls by 60 dB: ln(1000) over its decay rate.
+#include "drum/drum_performer.h"
 #include "cli.h"
 #include "himc/drum.h"
 #include "himc/membrane.h"
@@ -36,8 +37,8 @@ static himc_drum *open_drum(const char *path, himc_error *error)
     if (!score)
         return NULL;
     const himc_score_line *line = cli_first_drum(score);
-    himc_drum *drum = himc_drum_new(line ? line->command.atom[0].symbol : CLI_DRUM,
-                                    cli_drum_inches(line), RATE, error);
+    himc_drum *drum = line ? himc_drum_made(&line->command, RATE, error)
+                           : himc_drum_new(CLI_DRUM, CLI_INCHES, RATE, error);
     if (drum && !tune(drum, score, path, error)) {
         himc_drum_release(drum);
         drum = NULL;

@@ -327,9 +327,10 @@ static void tell_drum(scene_record *r, int index, const himc_drum *drum, double 
     himc_drum_describe(drum, HIMC_DESCRIBE_STATE, add_line, r);
     scene_event(r->scene,
                 "\"event\":\"drum\",\"time\":%.6f,\"drum\":%d,\"name\":\"%s\","
-                "\"place\":[%.9g,%.9g,%.9g,%.9g,%.9g],\"hz\":%.6g,\"settings\":[%s]",
+                "\"place\":[%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g],\"hz\":%.6g,\"settings\":[%s]",
                 time, index, scene_text(name, sizeof name, himc_drum_name(drum)), f->center.x,
-                f->center.y, f->center.z, f->tilt, f->radius, himc_drum_pitch(drum), listed(r));
+                f->center.y, f->center.z, f->tilt, f->radius, f->length, f->width,
+                himc_drum_pitch(drum), listed(r));
     tell_modes(r, index, himc_drum_membrane((himc_drum *)drum), time);
     r->told[index] = himc_drum_revision(drum) + 1;
     r->pitch[index] = himc_drum_pitch(drum);

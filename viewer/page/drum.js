@@ -1,4 +1,5 @@
-// A kettledrum at its place; modal amplitudes move its head. Shapes and colours: chosen by eye.
+// A kettledrum at its place, whose head modal amplitudes move; or a slab for bars and blocks. Shapes and
+// colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
@@ -13,6 +14,8 @@ const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     PEDAL = 0.22, // at rest (rad)
     HEEL = [-0.055, 0, -0.075], // in the foot's frame (m)
     TREADS = 0.06, // a heel so near the hinge has its foot on the pedal (m); chosen
+    SLAB = 0.022, // thickness of bars and blocks (m)
+    UNDER_SLAB = 0.12, // radius of their stand (m)
     LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
     AT_REST = 1e-16; // sum of squared amplitudes (m^2): 10 nm, far below a pixel
 const net = new Net(RINGS, SECTORS);
@@ -96,6 +99,7 @@ function materials(envMap) {
             bumpScale: 0.006,
             side: THREE.DoubleSide,
         }),
+        wood: new THREE.MeshStandardMaterial({ color: rgb("#7a3f26"), roughness: 0.45, envMap, envMapIntensity: 0.5 }),
         metal: metal(0xffffff, 0.26, { vertexColors: THREE.VertexColors }),
         head: new THREE.MeshStandardMaterial({
             color: rgb("#d8d4cc"),
@@ -156,6 +160,8 @@ function stand(a, z) {
 
 // below a sole, from its hinge inwards
 const plate = () => metals([new THREE.BoxBufferGeometry(0.19, 0.085, 0.01).translate(-0.12, 0, -0.006)], []);
+
+const slab = (length, width) => new THREE.BoxBufferGeometry(length, width, SLAB).translate(0, 0, -SLAB / 2);
 
 // with its axle across the leg
 const wheel = (r, t, h) =>
@@ -246,10 +252,11 @@ export class Drum {
 
     setPlace(place) {
         if (this.place && this.place.every((v, i) => v === place[i])) return;
-        const build = !this.place || this.place[4] !== place[4] || this.place[2] !== place[2];
+        const build = !this.place || [2, 4, 5, 6].some(i => this.place[i] !== place[i]);
         this.place = Array.from(place);
-        const [x, y, z, tilt, a] = place;
-        if (build) this.build(a, z);
+        const [x, y, z, tilt, a, length, width] = place;
+        if (build) this.build(a, z, length, width);
+        if (this.slab) this.slab.rotation.z = Math.atan2(y, x); // its length leads away from the player
         this.tilted.position.set(x, y, z);
         this.tilted.rotation.y = -tilt;
         this.legs.position.set(x, y, z);
@@ -272,17 +279,20 @@ export class Drum {
         return new THREE.Vector3(x, y, 0).applyMatrix4(this.tilted.matrix);
     }
 
-    build(a, z) {
+    // `length` and `width` of what is no drum: then nothing is seen of head and kettle
+    build(a, z, length, width) {
         const m = materials(this.stage.environment);
         for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
         this.head = new THREE.Mesh(headGeometry(a), m.head);
         this.trim = new THREE.Mesh(fittings(a), m.metal);
-        this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, this.trim);
-        this.legs = new THREE.Mesh(stand(a, z), m.metal);
+        this.slab = length > 0 && new THREE.Mesh(slab(length, width), m.wood);
+        if (this.slab) this.tilted.add(this.slab);
+        else this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, this.trim);
+        this.legs = new THREE.Mesh(stand(this.slab ? Math.min(a, UNDER_SLAB) : a, z), m.metal);
         this.pedal = new THREE.Mesh(plate(), m.metal);
         this.pedal.position.set(a + HINGE, 0, -z);
         this.pedal.rotation.y = PEDAL;
-        this.legs.add(this.pedal);
+        if (!this.slab) this.legs.add(this.pedal);
         this.group.add(this.legs);
         this.group.traverse(o => (o.castShadow = o.receiveShadow = true));
         this.head.castShadow = false;

@@ -208,7 +208,7 @@ function standing(writer, group, head, shapes) {
 function drum(writer, one, amplitudes, times) {
     const nodes = standing(writer, one.group, one.head, one.shapes(SHAPES, UNIT)),
         node = nodes.find(i => writer.json.meshes[writer.json.nodes[i].mesh].weights);
-    writer.json.nodes[node].name = `${one.name} head`;
+    if (node !== undefined) writer.json.nodes[node].name = `${one.name} head`; // a slab has none
     return { nodes, node, weights: time => Array.from(amplitudes(time).subarray(0, SHAPES), q => (times * q) / UNIT) };
 }
 
@@ -224,7 +224,7 @@ export function makeGltf(scene, performer, drums, amplitudes, times) {
         ...standing(writer, performer.stool),
         ...moving.flatMap(d => d.nodes),
     ];
-    animate(writer, scene, nodes, moving);
+    animate(writer, scene, nodes, moving.filter(d => d.node !== undefined));
     for (const node of writer.json.nodes) if (node.children && !node.children.length) delete node.children;
     return writer.glb();
 }

@@ -60,7 +60,7 @@ const wanted = {
         e.segments.every((s, i) => s.name === segments[i].name && finite(...s.origin)) &&
         e.tips.length === HANDS.length &&
         finite(...e.tips.flat()),
-    drum: e => finite(e.drum, ...e.place) && typeof e.name === "string" && e.place.length === 5 && e.place[4] > 0.02 && e.place[4] < 2,
+    drum: e => finite(e.drum, ...e.place) && typeof e.name === "string" && (e.place.length === 5 || e.place.length === 7) && e.place[4] > 0.02 && e.place[4] < 2,
     modes: e =>
         e.modes.every(([hz, decay]) => hz > 0 && decay >= 0 && decay < 7 * hz) &&
         e.shapes.every(([shape, mode, part]) => shape >= 0 && shape < 64 && mode in e.modes && finite(part)),

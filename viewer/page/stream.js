@@ -35,7 +35,7 @@ function readPose(buffer, view, bytes, at, time, on) {
 function readDrum(buffer, view, bytes, at, time, on) {
     const placed = at + KEY + NAME,
         place = placed + 4,
-        modes = place + 20,
+        modes = place + 28,
         amplitude = modes + 8;
     on.drum(
         word(bytes, at, KEY),

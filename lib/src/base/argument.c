@@ -6,6 +6,7 @@
 #include "base/argument.h"
 
 #include "base/line.h"
+#include "himc/command_rows.h"
 #include "himc/ranges.h"
 
 #include <ctype.h>
@@ -21,12 +22,20 @@ static const char *const nuances[] = {"legato",          "tenuto",   "accent",
 static const char *const spots[] = {"center", "normal", "rim", NULL};
 static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
 
+#define WORD(word) word,
+static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
+static const char *const bars[] = {HIMC_BARS(WORD) NULL};
+static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
+
 static const himc_argument arguments[] = {
     {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
     {"HAND", "hit", HIMC_ARGUMENT_WORD, 0, 0, "", hit_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
+    {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
+    {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},
+    {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
     {"DRUM|NAME", NULL, HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
@@ -34,6 +43,7 @@ static const himc_argument arguments[] = {
     {"MS", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_LATENCY_MAX, "ms", NULL},
     {"BPM", NULL, HIMC_ARGUMENT_NUMBER, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute", NULL},
     {"SWITCH", NULL, HIMC_ARGUMENT_COUNT, 0, 1, "", NULL},
+    {"PART", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PART_SIZE - 1, "", NULL},
     {"FILE", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_PATH_SIZE - 1, "", NULL},
     {"JOINT|SEGMENT", NULL, HIMC_ARGUMENT_TEXT, 1, 63, "", NULL},
     {"FACTOR", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 20, "", NULL},
@@ -60,7 +70,7 @@ static const himc_argument arguments[] = {
      NULL},
     {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
     // principal mode; chosen: wider than any head's range, which find_tune tells
-    {"HZ", "tune|gliss", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
+    {"HZ", "tune|gliss|bar", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
     {"PORT", "listen", HIMC_ARGUMENT_COUNT, 0, 65535, "", NULL},
@@ -70,6 +80,7 @@ static const himc_argument arguments[] = {
     {"MASS", "player", HIMC_ARGUMENT_NUMBER, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", NULL},
     {"MASS", NULL, HIMC_ARGUMENT_NUMBER, 0.001, 1, "kg", NULL},
     {"INCHES", NULL, HIMC_ARGUMENT_NUMBER, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "inches", NULL},
+    {"SIZE", NULL, HIMC_ARGUMENT_NUMBER, 1, 20000, "inches of a head, Hz of others", NULL},
     {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", NULL},
     {"TENSION", NULL, HIMC_ARGUMENT_NUMBER, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m", NULL},
     {"DENSITY", NULL, HIMC_ARGUMENT_NUMBER, 0.01, HIMC_DENSITY_MAX, "kg/m^2", NULL},
@@ -211,7 +222,7 @@ double himc_argument_number(const himc_argument *argument, double number)
 void himc_argument_describe(const himc_argument *argument, char *text, size_t size)
 {
     const char *space = argument->unit[0] ? " " : "";
-    char words[128] = "";
+    char words[256] = "";
     size_t used = 0;
     for (int i = 0; argument->words && argument->words[i] && used < sizeof words; i++)
         used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? " " : "",

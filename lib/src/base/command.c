@@ -125,6 +125,8 @@ static bool take(walk *w, const char *token, char expected[EXPECTED_SIZE])
         return take_word(w, token, expected);
     const himc_argument *argument = himc_argument_find(token, w->context);
     const himc_atom *atom = &w->atom[w->at];
+    if (strcmp(token, "PART") == 0 && w->at + 1 == w->count)
+        return false; // a last word is a drum's
     himc_argument_describe(argument, expected, EXPECTED_SIZE);
     if (strcmp(token, "SPOT") == 0) {
         const himc_argument *x = himc_argument_find("X", "stroke");
@@ -273,7 +275,8 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
         out->atom[i] = (himc_atom){HIMC_ATOM_NUMBER, read->number[i], NULL};
         if (atoms[i].kind != HIMC_ATOM_SYMBOL)
             continue;
-        bool pitch = out->id == HIMC_COMMAND_TUNE || out->id == HIMC_COMMAND_GLISS;
+        bool pitch = out->id == HIMC_COMMAND_TUNE || out->id == HIMC_COMMAND_GLISS ||
+                     (out->id == HIMC_COMMAND_INSTRUMENT && i > 1);
         if (pitch && himc_note_frequency(atoms[i].symbol, &hz)) {
             out->atom[i].number = hz;
             continue;
@@ -345,6 +348,8 @@ static himc_stroke read_stroke(const himc_command *c)
         stroke.bounce_time = DEAD_TIME;
         i++;
     }
+    if (i + 1 < c->count)
+        snprintf(stroke.part, sizeof stroke.part, "%s", c->atom[i++].symbol);
     if (i < c->count)
         snprintf(stroke.drum, sizeof stroke.drum, "%s", c->atom[i].symbol);
     return stroke;

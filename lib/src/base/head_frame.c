@@ -88,13 +88,16 @@ void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *strok
     // of the radius, by players and textbooks: normal about 3/4, rim about 9/10
     static const double drumhead[] = {
         [HIMC_SPOT_CENTER] = 0, [HIMC_SPOT_NORMAL] = 0.75, [HIMC_SPOT_RIM] = 0.92};
+    bool placed = stroke->spot == HIMC_SPOT_XY;
     *x = stroke->x;
-    *y = stroke->y;
-    if (stroke->spot == HIMC_SPOT_XY)
+    *y = placed ? stroke->y : 0;
+    if (placed && !stroke->part[0])
         return;
-    *x = -(frame->spots ? frame->spots : drumhead)[stroke->spot] * frame->radius;
-    // half a mallet's width (m), so the two mallets do not collide; chosen
-    *y = stroke->hand == HIMC_LEFT ? 0.015 : -0.015;
+    if (!placed)
+        *x = -(frame->spots ? frame->spots : drumhead)[stroke->spot] * frame->radius;
+    // half a mallet's width (m), so the two mallets do not collide, if there is room; chosen
+    double aside = frame->length > 0 ? fmin(0.015, 0.48 * frame->width) : 0.015;
+    *y += stroke->hand == HIMC_LEFT ? aside : -aside;
 }
 
 void himc_stroke_spot(const himc_stroke *stroke, double radius, double *x, double *y)

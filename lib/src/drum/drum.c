@@ -42,39 +42,43 @@ static int seed_of(const char *name)
     return (int)(hash % ((uint32_t)HIMC_SEED_MAX + 1));
 }
 
-himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error)
+bool himc_drum_settings_new(himc_drum_settings *settings, const char *name, double inches,
+                            double sample_rate, himc_error *error)
 {
-    if (!name) {
-        himc_error_set(error, "drum: a name is missing");
-        return NULL;
-    }
-    if (strlen(name) >= HIMC_NAME_SIZE) {
-        himc_error_set(error, "drum: name %s, expected up to %d characters", name,
-                       HIMC_NAME_SIZE - 1);
-        return NULL;
-    }
-    if (!himc_line_is_clean(name)) {
-        himc_error_set(error, "drum: name %s, expected UTF-8 without control characters", name);
-        return NULL;
-    }
+    if (!name)
+        return himc_error_set(error, "drum: a name is missing");
+    if (strlen(name) >= HIMC_NAME_SIZE)
+        return himc_error_set(error, "drum: name %s, expected up to %d characters", name,
+                              HIMC_NAME_SIZE - 1);
+    if (!himc_line_is_clean(name))
+        return himc_error_set(error, "drum: name %s, expected UTF-8 without control characters",
+                              name);
     if (!himc_check_range("inches", inches, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "in", error) ||
         !himc_drum_check_rate(sample_rate, error))
-        return NULL;
+        return false;
     himc_head head = himc_head_default();
     head.radius = inches * METRES_PER_INCH / 2;
     head.uniformity_seed = seed_of(name);
-    himc_drum_settings settings = {.head = {.shape = {.kind = &himc_kind_round},
-                                            .head = head,
-                                            .pickups = {himc_pickup_default()},
-                                            .pickup_count = 1,
-                                            .rate = sample_rate},
-                                   .usual = head,
-                                   .place = {.center = FIRST_PLACE, .radius = head.radius},
-                                   .noise = himc_stroke_noise_at(sample_rate).amount,
-                                   .gain = 1};
-    snprintf(settings.name, sizeof settings.name, "%s", name);
-    himc_drum_take_mallet(&settings, DRUM_MALLET_MEDIUM);
-    return himc_drum_new_of(&settings, error);
+    *settings = (himc_drum_settings){.head = {.shape = {.kind = &himc_kind_round},
+                                              .head = head,
+                                              .pickups = {himc_pickup_default()},
+                                              .pickup_count = 1,
+                                              .rate = sample_rate},
+                                     .usual = head,
+                                     .place = {.center = FIRST_PLACE, .radius = head.radius},
+                                     .noise = himc_stroke_noise_at(sample_rate).amount,
+                                     .gain = 1};
+    snprintf(settings->name, sizeof settings->name, "%s", name);
+    himc_drum_take_mallet(settings, DRUM_MALLET_MEDIUM);
+    return true;
+}
+
+himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error)
+{
+    himc_drum_settings settings;
+    return himc_drum_settings_new(&settings, name, inches, sample_rate, error)
+               ? himc_drum_new_of(&settings, error)
+               : NULL;
 }
 
 // of a pickup to the noise (1/m): 0 on the head, which hears none
@@ -127,18 +131,23 @@ himc_drum_settings himc_drum_settings_of(const himc_drum *drum)
 
 himc_drum_settings himc_drum_settings_copy(const himc_drum_settings *settings)
 {
-    himc_grid_retain(settings->head.shape.grid);
+    himc_shape_retain(&settings->head.shape);
     return *settings;
 }
 
 void himc_drum_settings_free(himc_drum_settings *settings)
 {
-    himc_grid_release(settings->head.shape.grid);
+    himc_shape_release(&settings->head.shape);
     settings->head.shape.grid = NULL;
+    settings->head.shape.body = NULL;
 }
 
 void himc_drum_settings_take_head(himc_drum_settings *settings, const himc_drum_settings *from)
 {
+    if (settings->head.shape.body != from->head.shape.body) { // its own mallet came with it
+        memcpy(settings->mallet, from->mallet, sizeof settings->mallet);
+        memcpy(settings->mallet_name, from->mallet_name, sizeof settings->mallet_name);
+    }
     settings->head = from->head;
     settings->picked = from->picked;
     settings->pedal = from->pedal;

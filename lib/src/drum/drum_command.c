@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "head/air.h"
 #include "head/grid.h"
+#include "head/idiophone.h"
 #include "head/pickup.h"
 
 #include <stdio.h>
@@ -74,11 +75,20 @@ static void take_mallet(himc_drum_settings *s, int hand, const himc_mallet_head 
     s->mallet_name[hand] = name;
 }
 
+static void take_preset(himc_drum_settings *s, int hand, drum_mallet_preset preset)
+{
+    const himc_shape *shape = &s->head.shape;
+    bool own = preset == DRUM_MALLET_USUAL && shape->kind->mallet;
+    if (preset == DRUM_MALLET_USUAL && !own)
+        preset = DRUM_MALLET_MEDIUM;
+    take_mallet(s, hand, own ? shape->kind->mallet(shape) : &presets[preset],
+                himc_command_word(HIMC_COMMAND_MALLET, 0, (int)preset));
+}
+
 void himc_drum_take_mallet(himc_drum_settings *s, drum_mallet_preset preset)
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++)
-        take_mallet(s, hand, &presets[preset],
-                    himc_command_word(HIMC_COMMAND_MALLET, 0, (int)preset));
+        take_preset(s, hand, preset);
 }
 
 static double number(const himc_command *c, int index)
@@ -167,11 +177,16 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
     case HIMC_COMMAND_GLIDE: head->glide = himc_argument_usual(said, here.glide); break;
     case HIMC_COMMAND_DAMP: head->damp = himc_argument_usual(said, here.damp); break;
     case HIMC_COMMAND_MUFFLE: head->muffle = himc_argument_usual(said, here.muffle); break;
-    case HIMC_COMMAND_SKIN: find_skin(shape, usual, (drum_skin)c->choice[0], head); break;
+    case HIMC_COMMAND_SKIN:
+        if (shape->body)
+            return himc_error_set(error, "skin: %s, expected an instrument that has one",
+                                  c->atom[0].symbol);
+        find_skin(shape, usual, (drum_skin)c->choice[0], head);
+        break;
     case HIMC_COMMAND_DECAY:
         said = c->form == T60 ? as_said("SIGMA0", log(1000) / said) : said;
-        head->decay_constant = himc_argument_usual(said, usual->decay_constant);
-        head->decay_square = himc_argument_usual(square, usual->decay_square);
+        head->decay_constant = himc_argument_usual(said, here.decay_constant);
+        head->decay_square = himc_argument_usual(square, here.decay_square);
         break;
     case HIMC_COMMAND_MODES: head->modes = c->form == AUTO ? HIMC_MODES_AUTO : (int)said; break;
     case HIMC_COMMAND_AIR: head->air = said == 1; break;
@@ -217,13 +232,15 @@ static void change_mallets(himc_drum_settings *s, const himc_command *c)
         mallet.stiffness = number(c, first);
         mallet.exponent = number(c, first + 1);
         mallet.mass = number(c, first + 2);
-    } else {
-        mallet = presets[c->choice[first]];
-        name = himc_command_word(HIMC_COMMAND_MALLET, 0, c->choice[first]);
     }
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
-        if (first == 0 || hand == c->choice[0])
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        if (first == 1 && hand != c->choice[0])
+            continue;
+        if (numbers)
             take_mallet(s, hand, &mallet, name);
+        else
+            take_preset(s, hand, (drum_mallet_preset)c->choice[first]);
+    }
 }
 
 bool himc_drum_check_place(himc_vec3 center, himc_error *error)
@@ -274,8 +291,10 @@ static void set_pickup_count(himc_drum_settings *s, int wanted)
 static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *error)
 {
     himc_membrane_config config = s->head;
-    himc_grid *before = config.shape.grid;
+    himc_shape before = config.shape;
     himc_head *head = &config.head;
+    if (before.body) // nothing of it suits a skin
+        *head = s->usual;
     // those of a file or of a rectangle were not said
     head->radius = himc_argument_usual(as_said("RADIUS", head->radius), s->usual.radius);
     head->tension = himc_argument_usual(as_said("TENSION", head->tension), s->usual.tension);
@@ -285,7 +304,9 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
     head->air = shape.kind->air && (head->air || !s->head.shape.kind->air);
     config.shape = shape;
     bool good = set_config(s, &config, error);
-    himc_grid_release(good ? before : shape.grid);
+    himc_shape_release(good ? &before : &shape);
+    if (good && (before.body || shape.body))
+        himc_drum_take_mallet(s, DRUM_MALLET_USUAL);
     return good;
 }
 
@@ -295,8 +316,8 @@ static bool change_shape(himc_drum_settings *s, const himc_command *c, himc_erro
 #define LISTED(name, form) form ", "
     static const himc_kind *const kinds[] = {HIMC_KINDS(KIND) KIND(grid, "FILE")};
     himc_shape shape = {.kind = kinds[c->form]};
-    if (shape.kind->read)
-        shape.kind->read(c, &shape);
+    if (shape.kind->read && !shape.kind->read(c, &shape, error))
+        return false;
     if (shape.kind->name)
         return replace_shape(s, shape, error);
     const char *file = c->atom[0].symbol;
@@ -382,9 +403,17 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
              himc_membrane_audible(drum->membrane), head->uniformity, head->uniformity_seed,
              mallets, himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text,
              p->center.x, p->center.y, p->center.z);
+    const himc_idiophone *body = config.shape.body;
+    if (body)
+        snprintf(text, sizeof text,
+                 "%s: %.200s, pitch %.5g Hz, parts %s .. %s, %d modes (%d audible), mallet %s, at "
+                 "%.4g %.4g %.4g m",
+                 drum->set.name, body->name, principal, body->part[0].name,
+                 body->part[body->parts - 1].name, modes, himc_membrane_audible(drum->membrane),
+                 mallets, p->center.x, p->center.y, p->center.z);
     to->line(to->user, text);
     double highest = himc_membrane_mode(drum->membrane, modes - 1).frequency;
-    if (head->modes == HIMC_MODES_AUTO || highest > FULL_SOUND)
+    if (body || head->modes == HIMC_MODES_AUTO || highest > FULL_SOUND)
         return;
     snprintf(text, sizeof text, "%s: nothing sounds above %.0f Hz: more `modes`, or `modes auto`",
              drum->set.name, highest);
@@ -408,8 +437,14 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
     const himc_shape *shape = &himc_membrane_config_of(drum->membrane)->shape;
     if (drum->told)
         himc_head_keep_edits(head, &drum->told->known, now);
-    himc_state_tell(to, "shape", shape->kind->name ? shape->kind->name : shape->grid->path,
-                    shape->length > 0 ? 2 : 0, (double[]){shape->length, shape->width});
+    himc_state_line line = himc_state_begin("shape");
+    himc_state_word(&line, shape->kind->name ? shape->kind->name : shape->grid->path);
+    if (shape->body)
+        himc_state_word(&line, shape->body->name);
+    for (int i = 0; shape->body && i < 2 && shape->body->pitches[i] > 0; i++)
+        himc_state_numbers(&line, 1, &shape->body->pitches[i]);
+    himc_state_numbers(&line, shape->length > 0 ? 2 : 0, (double[]){shape->length, shape->width});
+    himc_state_end(&line, to);
     himc_state_tell(to, "kettle", "usual", 0, NULL);
     tell(to, "radius", head->radius);
     tell(to, "density", head->density);

@@ -92,7 +92,8 @@ typedef struct himc_drum_settings {
 HIMC_RT himc_drum_settings himc_drum_settings_of(const himc_drum *drum);
 himc_drum_settings himc_drum_settings_copy(const himc_drum_settings *settings);
 void himc_drum_settings_free(himc_drum_settings *settings);
-/// Takes what commands that change the head have made of `from`: head, pedal, pickups.
+/// Takes what commands that change the head have made of `from`: head, pedal, pickups, and the
+/// mallet of another body.
 HIMC_RT void himc_drum_settings_take_head(himc_drum_settings *settings,
                                           const himc_drum_settings *from);
 /// Carries out a command, but for what it does once: a strike, an answer, a file, a preset. False
@@ -102,6 +103,12 @@ bool himc_drum_settings_command(himc_drum_settings *settings, const himc_command
 
 /// Carries out the lines of a preset, NAME of NAME.txt.
 bool himc_drum_settings_preset(himc_drum_settings *settings, const char *name, himc_error *error);
+
+/// Those of a new drum, as of himc_drum_new. False with the reason.
+bool himc_drum_settings_new(himc_drum_settings *settings, const char *name, double inches,
+                            double sample_rate, himc_error *error);
+/// What a command that is marked HIMC_MAKES_DRUM makes (instrument.c); NULL with the reason.
+himc_drum *himc_drum_made(const himc_command *command, double sample_rate, himc_error *error);
 
 /// A drum with these settings, at rest; NULL with the reason.
 himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error);

@@ -135,7 +135,8 @@ typedef enum drum_mallet_preset {
     DRUM_MALLET_SOFT,
     DRUM_MALLET_MEDIUM,
     DRUM_MALLET_HARD,
-    DRUM_MALLET_WOOD
+    DRUM_MALLET_WOOD,
+    DRUM_MALLET_USUAL ///< that of the instrument's kind
 } drum_mallet_preset;
 
 void himc_drum_take_mallet(himc_drum_settings *settings, drum_mallet_preset preset);

@@ -14,7 +14,8 @@
 
 bool himc_shape_equal(const himc_shape *a, const himc_shape *b)
 {
-    return a->kind == b->kind && a->grid == b->grid && a->length * b->width == b->length * a->width;
+    return a->kind == b->kind && a->grid == b->grid && a->body == b->body &&
+           a->length * b->width == b->length * a->width;
 }
 
 // all fields of a head

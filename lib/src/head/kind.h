@@ -2,7 +2,8 @@
 /// HIMC_KINDS in himc/command_rows.h. Modes, pickups and models ask the kind of their shape.
 ///
 /// Whatever bends is tuned like a membrane: a mode has z, a pure number, and sounds at z/(2 pi
-/// radius) sqrt(T/sigma). Force and displacement use the same shapes, so energy never grows.
+/// radius) sqrt(T/sigma), with the mass sigma pi radius^2 norm and the decay S0 + S1 omega^2 + its
+/// own loss. Force and displacement use the same shapes, so energy never grows.
 #ifndef HIMC_KIND_H
 #define HIMC_KIND_H
 
@@ -12,14 +13,20 @@
 
 typedef struct himc_kind himc_kind;
 typedef struct himc_modes himc_modes;
+typedef struct himc_idiophone himc_idiophone;
 
 /// An outline. Its size is the head's radius, that of the circle around it.
 typedef struct himc_shape {
     const himc_kind *kind;
-    double length;   ///< along x (m); only the ratio to `width` counts; 0 if it has no sides
-    double width;    ///< along y (m)
-    himc_grid *grid; ///< of a head from a file, borrowed; else NULL
+    double length;        ///< along x (m); only the ratio to `width` counts; 0 if it has no sides
+    double width;         ///< along y (m)
+    himc_grid *grid;      ///< of a head from a file, borrowed; else NULL
+    himc_idiophone *body; ///< of an instrument without a skin (idiophone.h), borrowed; else NULL
 } himc_shape;
+
+/// Adds a reference to what a shape has borrowed, or gives it back.
+void himc_shape_retain(const himc_shape *shape);
+void himc_shape_release(const himc_shape *shape);
 
 /// Sound per unit of a mode's state, in the units of himc/membrane.h (HIMC_PICKUP_PRESSURE,
 /// HIMC_PICKUP_VELOCITY).
@@ -37,13 +44,18 @@ struct himc_kind {
     bool air;         ///< it has pairs of modes, which air, kettle and uneven lugs act on
     int usual;        ///< listed modes of HIMC_MODES_AUTO, or as many as there are
 
-    /// Sets the sides from the atoms of `shape`. NULL: it has none.
-    void (*read)(const himc_command *command, himc_shape *shape);
+    /// Sets the sides from the atoms of `shape`, or makes the body of which one reference is the
+    /// caller's; false with the reason. NULL: it has none.
+    bool (*read)(const himc_command *command, himc_shape *shape, himc_error *error);
     /// Sets what the shape itself says of a head: size, material. NULL: nothing.
     void (*fit)(const himc_shape *shape, himc_head *head);
     /// Sets sides and spots of the surface that is struck, of the radius that it has. NULL: a disc
     /// with the spots of a drumhead.
     void (*surface)(const himc_shape *shape, himc_head_frame *surface);
+    /// What a mode that sounds at omega (rad/s) loses beside the head's decay (1/s). NULL: nothing.
+    double (*loss)(const himc_modes *modes, int index, double omega);
+    /// The mallet that suits, borrowed. NULL: a timpanist's.
+    const himc_mallet_head *(*mallet)(const himc_shape *shape);
     /// Of the principal mode: radius times wavenumber.
     double (*principal)(const himc_shape *shape);
     /// Area of the film that the outline holds, per radius^2; 0 without a film.

@@ -7,6 +7,7 @@
 #include "head/modes.h"
 
 #include "head/bessel.h"
+#include "head/idiophone.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -69,7 +70,7 @@ void himc_modes_sort(himc_mode_entry *entries, int count)
 
 static int most_modes(const himc_shape *shape)
 {
-    return shape->grid ? shape->grid->modes : HIMC_MODES_MAX;
+    return shape->grid ? shape->grid->modes : shape->body ? shape->body->modes : HIMC_MODES_MAX;
 }
 
 bool himc_modes_check(const himc_shape *shape, int count, himc_error *error)
@@ -94,7 +95,7 @@ himc_modes *himc_modes_new(const himc_shape *shape, int count, himc_error *error
         modes->uniformity = 1;
         himc_lugs_split(1, 0, modes->pairs);
         modes->shape = *shape;
-        himc_grid_retain(shape->grid);
+        himc_shape_retain(shape);
         if (shape->kind->list(modes, automatic))
             return modes;
     }
@@ -112,7 +113,7 @@ himc_modes *himc_modes_copy(const himc_modes *modes, himc_error *error)
     }
     *copy = *modes;
     ++*copy->users;
-    himc_grid_retain(copy->shape.grid);
+    himc_shape_retain(&copy->shape);
     return copy;
 }
 
@@ -120,7 +121,7 @@ void himc_modes_free(himc_modes *modes)
 {
     if (!modes)
         return;
-    himc_grid_release(modes->shape.grid);
+    himc_shape_release(&modes->shape);
     if (!modes->users || --*modes->users == 0) {
         free(modes->entries);
         free(modes->first);
@@ -205,6 +206,9 @@ himc_mode himc_modes_get(const himc_modes *modes, const himc_head *head, int ind
     omega *= sqrt(mode.sine ? 1 + split : 1 - split);
     mode.frequency = omega / (2 * HIMC_PI);
     mode.decay = himc_head_decay(head, omega, 1);
+    if (modes->shape.kind->loss)
+        mode.decay = fmin(mode.decay + modes->shape.kind->loss(modes, index, omega),
+                          HIMC_LARGEST_DECAY * omega);
     mode.mass = head->density * HIMC_PI * head->radius * head->radius * mode.norm;
     mode.stiffness = mode.mass * omega * omega;
     return mode;
@@ -235,4 +239,24 @@ void himc_grid_release(himc_grid *grid)
     free(grid->norm);
     free(grid->shape);
     free(grid);
+}
+
+void himc_shape_retain(const himc_shape *shape)
+{
+    himc_grid_retain(shape->grid);
+    if (shape->body)
+        shape->body->references++;
+}
+
+void himc_shape_release(const himc_shape *shape)
+{
+    himc_idiophone *body = shape->body;
+    himc_grid_release(shape->grid);
+    if (!body || --body->references > 0)
+        return;
+    free(body->name);
+    free(body->part);
+    free(body->mode);
+    free(body->shape);
+    free(body);
 }

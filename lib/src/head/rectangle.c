@@ -80,10 +80,12 @@ static void shapes(const himc_modes *modes, double radius, double x, double y, d
     }
 }
 
-static void read(const himc_command *command, himc_shape *shape)
+static bool read(const himc_command *command, himc_shape *shape, himc_error *error)
 {
+    (void)error;
     shape->length = command->atom[1].number;
     shape->width = command->atom[2].number;
+    return true;
 }
 
 static void fit(const himc_shape *shape, himc_head *head)

@@ -161,8 +161,8 @@ void himc_osc_encode_drum(osc_packets *p, const osc_drum *drum)
 {
     char path[64];
     snprintf(path, sizeof path, "/membrane/%s/place", drum->name);
-    add(p, path, "fffff", drum->place[0], drum->place[1], drum->place[2], drum->place[3],
-        drum->place[4]);
+    add(p, path, "fffffff", drum->place[0], drum->place[1], drum->place[2], drum->place[3],
+        drum->place[4], drum->place[5], drum->place[6]);
 }
 
 void himc_osc_encode_status(osc_packets *p, const osc_status *status, const himc_osc_counts *c)

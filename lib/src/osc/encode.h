@@ -28,7 +28,7 @@ typedef struct osc_head {
 
 typedef struct osc_drum {
     char name[HIMC_NAME_SIZE];
-    float place[5]; ///< x y z (m), tilt (rad), radius (m)
+    float place[7]; ///< x y z (m), tilt (rad), radius (m), of a rectangle length and width (m)
     double hz;      ///< principal mode (Hz)
 } osc_drum;
 

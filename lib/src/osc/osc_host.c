@@ -172,6 +172,8 @@ static void put_drum(himc_osc *osc, himc_drum *drum, double time)
     put(state->drum.place, place->center);
     state->drum.place[3] = (float)place->tilt;
     state->drum.place[4] = (float)place->radius;
+    state->drum.place[5] = (float)place->length;
+    state->drum.place[6] = (float)place->width;
     state->drum.hz = sqrt(head->tension / himc_head_tension_for(head, 1));
     end(osc);
 }

@@ -84,6 +84,7 @@ static bool takes_long(const himc_performance *p, const himc_command *c)
     case HIMC_COMMAND_UNITS:
     case HIMC_COMMAND_DUMP: return himc_command_file(c, &file) != HIMC_FILE_NONE;
     case HIMC_COMMAND_LISTENER: return himc_drums_listening_takes_long(&p->drums);
+    case HIMC_COMMAND_INSTRUMENT:
     case HIMC_COMMAND_MAKE_DRUM: return himc_drums_find(&p->drums, c->atom[0].symbol) < 0;
     default: return false;
     }
@@ -103,6 +104,7 @@ static himc_job *job_of(himc_performance *p, const himc_command *c, himc_error *
     case HIMC_COMMAND_RECORD: return himc_performance_record_job(p, c, error);
     case HIMC_COMMAND_UNITS: return himc_performance_units_job(p, c, error);
     case HIMC_COMMAND_DUMP: return himc_performance_dump_job(p, c, error);
+    case HIMC_COMMAND_INSTRUMENT:
     case HIMC_COMMAND_MAKE_DRUM: return himc_performance_drum_job(p, c, error);
     case HIMC_COMMAND_LISTENER:
         listener = listener_of(c);
@@ -170,6 +172,7 @@ static bool act(himc_performance *p, const himc_command *c, himc_error *error)
     case HIMC_COMMAND_LISTENER:
         listener = listener_of(c);
         return himc_drums_listen(&p->drums, &listener, error);
+    case HIMC_COMMAND_INSTRUMENT:
     case HIMC_COMMAND_MAKE_DRUM:
         return himc_performance_find_drum(p, c->atom[0].symbol) || carry_out(p, c, error);
     case HIMC_COMMAND_INFO: // the host answers, with himc_performance_describe; also without a file

@@ -60,6 +60,8 @@ void himc_written_stroke(himc_text_lines *lines, const himc_stroke *stroke)
         himc_state_word(&line, himc_spot_name(stroke->spot));
     if (stroke->bounces == HIMC_DEAD)
         himc_state_word(&line, "dead");
+    if (stroke->part[0])
+        himc_state_word(&line, stroke->part);
     if (stroke->drum[0])
         himc_state_word(&line, stroke->drum);
     himc_text_add(lines, line.text);

@@ -56,11 +56,13 @@ void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, 
                     himc_drum_name(p->drums.slot[drum].drum));
 }
 
-bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *written, himc_error *error)
 {
     int drum;
+    himc_stroke placed = *written, *stroke = &placed;
     if (!check_stroke(stroke, false, error) ||
-        !himc_performance_index_drum(p, stroke->drum, stroke->spot, &drum, error))
+        !himc_performance_index_drum(p, stroke->drum, stroke->spot, &drum, error) ||
+        !himc_performance_place_stroke(p, stroke, drum, error))
         return false;
     // the silent drum that it may need, before the planner makes room
     himc_drum *first = NULL;
@@ -191,7 +193,8 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         own.hand = left ? HIMC_LEFT : HIMC_RIGHT;
     if (own.hand != HIMC_HAND_ANY && !(own.hand == HIMC_LEFT ? left : right))
         return himc_error_set(error, "hit: not possible while a take is playing");
-    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
+    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error) ||
+        !himc_performance_place_stroke(p, &own, asked.drum, error))
         return false;
     himc_performance_name_drum(p, &own, asked.drum);
     tell_places(p);

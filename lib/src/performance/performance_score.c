@@ -11,6 +11,7 @@
 #include "performance/performance_state.h"
 
 #include "capture/take.h"
+#include "head/idiophone.h"
 #include "midi/score_file.h"
 #include "performance/confine.h"
 #include "performance/research.h"
@@ -114,14 +115,17 @@ static void copy_performance(score_job *j)
     j->units = himc_planner_units(p->motion->planner);
 }
 
-static bool make_drum(score_job *j, const char *name, double inches, drum_source source,
+// `command` makes it, or NULL: it is for strokes on the first drum
+static bool make_drum(score_job *j, const himc_command *command, drum_source source,
                       himc_error *error)
 {
+    const char *name = command ? command->atom[0].symbol : FIRST_DRUM;
     if (find_drum(j, name))
         return true;
     if (j->drums == HIMC_DRUMS)
         return himc_drums_full(name, error);
-    himc_drum *made = himc_drum_new(name, inches, j->clock.sample_rate, error);
+    himc_drum *made = command ? himc_drum_made(command, j->clock.sample_rate, error)
+                              : himc_drum_new(name, HIMC_INCHES_USUAL, j->clock.sample_rate, error);
     if (!made)
         return false;
     himc_drum_settings was = himc_drum_settings_of(made);
@@ -130,19 +134,17 @@ static bool make_drum(score_job *j, const char *name, double inches, drum_source
     return true;
 }
 
-/// Makes the drums that the performance does not have: those of the command `drum`, or one for
+/// Makes the drums that the performance does not have: those of `drum` and `instrument`, or one for
 /// strokes on the first.
 static bool make_drums(score_job *j, himc_error *error)
 {
     for (int i = 0; i < j->score->line_count; i++) {
         const himc_command *c = &j->score->lines[i].command;
-        if (c->id == HIMC_COMMAND_MAKE_DRUM &&
-            !make_drum(j, c->atom[0].symbol, c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL,
-                       j->host.make_drums ? DRUM_MADE : DRUM_SILENT, error))
+        if (himc_score_makes_drum(&j->score->lines[i]) &&
+            !make_drum(j, c, j->host.make_drums ? DRUM_MADE : DRUM_SILENT, error))
             return himc_error_prefix(error, "%s:%d", j->path, j->score->lines[i].line);
     }
-    return j->drums > 0 || j->score->stroke_count == 0 ||
-           make_drum(j, FIRST_DRUM, HIMC_INCHES_USUAL, DRUM_SILENT, error);
+    return j->drums > 0 || j->score->stroke_count == 0 || make_drum(j, NULL, DRUM_SILENT, error);
 }
 
 /// The first line, change or stroke of the score from `*i` on whose drum the performance does not
@@ -241,6 +243,19 @@ static bool read_heads(score_job *j, himc_error *error)
     return true;
 }
 
+/// True if all drums that the trial has left have the parts that strokes are for.
+static bool check_parts(score_job *j, himc_error *error)
+{
+    for (int i = 0; i < j->score->stroke_count; i++) {
+        himc_stroke stroke = j->score->strokes[i];
+        const score_drum *d = stroke.part[0] ? find_drum(j, stroke.drum) : NULL;
+        if (d &&
+            !himc_idiophone_place(&d->trial.head.shape, d->trial.head.head.radius, &stroke, error))
+            return himc_error_prefix(error, "%s:%d", j->path, j->score->stroke_lines[i]);
+    }
+    return true;
+}
+
 /// The pushes of the score (*count, HIMC_PUSHES at most).
 static bool read_pushes(const score_job *j, planned_push *list, int *count, himc_error *error)
 {
@@ -270,7 +285,7 @@ static bool rehearse(score_job *j, himc_error *error)
             !rehearse_line(j, line, error))
             return himc_error_prefix(error, "%s:%d", j->path, line->line);
     }
-    if (!read_pushes(j, pushes, &count, error) || !read_heads(j, error))
+    if (!read_pushes(j, pushes, &count, error) || !read_heads(j, error) || !check_parts(j, error))
         return false;
     for (int i = 0; i < j->drums && good; i++) {
         score_drum *d = &j->drum[i];
@@ -358,7 +373,7 @@ static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_e
     int index;
     if (line->drum[0]) {
         good = run_on_drum(j, line, error);
-    } else if (c->id == HIMC_COMMAND_MAKE_DRUM) {
+    } else if (himc_score_makes_drum(line)) {
         good = installed_drum(j, c->atom[0].symbol, &index, error);
     } else if (j->line) {
         himc_job_state state = j->line->install(j->line, error);
@@ -474,7 +489,8 @@ static himc_job_state add_strokes(score_job *j, himc_error *error)
                 himc_written_change(written, &score->changes[-1 - place], j->from);
         } else {
             bool rolls = stroke.ornament >= HIMC_ROLL_SINGLE;
-            good = installed_drum(j, stroke.drum, &drum, error);
+            good = installed_drum(j, stroke.drum, &drum, error) &&
+                   (!ornament || himc_performance_place_stroke(p, &stroke, drum, error));
             if (good && ornament) {
                 himc_performance_add_ornament(p, &stroke, drum);
                 added += rolls ? STROKES_AT_ONCE : 0; // it may be long

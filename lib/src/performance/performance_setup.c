@@ -5,7 +5,10 @@
 /// changes nothing. `reset` is the default settings and new parts. Time begins at 0 at the first
 /// sample not yet simulated, so every floating point sum equals that of a new performance.
 #include "performance/performance_state.h"
+
 #include "base/array.h"
+#include "drum/membrane_state.h"
+#include "head/idiophone.h"
 #include "performance/research.h"
 
 #include <stdlib.h>
@@ -310,6 +313,15 @@ bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spo
     return *index >= 0 || himc_drums_refuse(&p->drums, name, spot, error);
 }
 
+bool himc_performance_place_stroke(const himc_performance *p, himc_stroke *stroke, int index,
+                                   himc_error *error)
+{
+    const himc_membrane_config none = {.head.radius = 1}, *head = &none;
+    if (index < p->drums.count)
+        head = himc_membrane_config_of(himc_drum_membrane(p->drums.slot[index].drum));
+    return himc_idiophone_place(&head->shape, head->head.radius, stroke, error);
+}
+
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error)
 {
@@ -321,7 +333,7 @@ bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_sp
     return first && himc_performance_adopt_drum(p, first, DRUM_SILENT, index, error);
 }
 
-// the command `drum`
+// the commands `drum` and `instrument`
 typedef struct make_drum_job {
     himc_job job;
     himc_performance *performance; ///< borrowed
@@ -334,9 +346,8 @@ static bool make_drum(himc_job *job, himc_error *error)
 {
     make_drum_job *j = (make_drum_job *)job;
     const himc_command *c = &j->command;
-    double inches = c->count > 1 ? c->atom[1].number : HIMC_INCHES_USUAL;
     himc_drum_release(j->drum);
-    j->drum = himc_drum_new(c->atom[0].symbol, inches, j->sample_rate, error);
+    j->drum = himc_drum_made(c, j->sample_rate, error);
     return j->drum;
 }
 

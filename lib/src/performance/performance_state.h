@@ -146,6 +146,9 @@ bool himc_performance_index_drum(himc_performance *p, const char *name, himc_spo
 /// The same; without any drum a silent one is made for "".
 bool himc_performance_ensure_drum(himc_performance *p, const char *name, himc_spot spot, int *index,
                                   himc_error *error);
+/// Puts a stroke for a part of that drum (no drum: one without parts) at its place.
+bool himc_performance_place_stroke(const himc_performance *p, himc_stroke *stroke, int drum,
+                                   himc_error *error);
 /// Adds a drum and its reference, which is given back if there is no place for it.
 bool himc_performance_adopt_drum(himc_performance *p, himc_drum *drum, drum_source source,
                                  int *index, himc_error *error);

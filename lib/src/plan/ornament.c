@@ -69,7 +69,8 @@ static int add_grace(himc_planner *planner, int drum, const himc_stroke *stroke,
     grace.hand = himc_other_hand(stroke->hand);
     // a written point is moved to the hand's own side of it, unless that leads off the head
     double y = grace.y + (grace.hand == HIMC_LEFT ? BESIDE : -BESIDE);
-    if (grace.spot == HIMC_SPOT_XY && hypot(grace.x, y) <= OUTERMOST * planner->drum[drum].radius)
+    if (grace.spot == HIMC_SPOT_XY && !grace.part[0] &&
+        hypot(grace.x, y) <= OUTERMOST * planner->drum[drum].radius)
         grace.y = y;
     if (stroke->nuance != HIMC_STACCATO)
         grace.nuance = HIMC_LEGATO;

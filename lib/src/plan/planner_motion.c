@@ -781,6 +781,7 @@ bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
     if (s && s->varied) {
         himc_vec3 at = himc_head_frame_from_world(&planner->drum[s->drum], s->goal.spot);
         stroke->spot = HIMC_SPOT_XY;
+        stroke->part[0] = '\0';
         stroke->x = at.x;
         stroke->y = at.y;
     }

@@ -100,19 +100,37 @@ static double inches_of(const himc_command *drum)
     return drum->count > 1 ? drum->atom[1].number : HIMC_INCHES_USUAL;
 }
 
+// whether two commands make the same instrument
+static bool make_the_same(const himc_command *a, const himc_command *b)
+{
+    bool same = a->id == b->id && a->count == b->count;
+    if (a->id == HIMC_COMMAND_MAKE_DRUM && b->id == a->id)
+        return inches_of(a) == inches_of(b);
+    for (int i = 1; same && i < a->count; i++)
+        same = a->atom[i].kind == b->atom[i].kind && a->atom[i].number == b->atom[i].number &&
+               (a->atom[i].kind != HIMC_ATOM_SYMBOL ||
+                strcmp(a->atom[i].symbol, b->atom[i].symbol) == 0);
+    return same;
+}
+
 /// The current statement, in the lines that act at once or at their beats.
 static bool add_line(reader *r, bool timed)
 {
     himc_score *score = r->score;
-    bool makes = r->now.command.id == HIMC_COMMAND_MAKE_DRUM && !r->now.drum[0];
+    bool makes = himc_score_makes_drum(&r->now);
     // a drum is made once; the same line again is allowed
     for (int i = 0; makes && i < score->line_count; i++) {
         const himc_command *made = &score->lines[i].command;
-        if (made->id == HIMC_COMMAND_MAKE_DRUM &&
-            strcmp(made->atom[0].symbol, r->now.command.atom[0].symbol) == 0 &&
-            inches_of(made) != inches_of(&r->now.command))
-            return himc_error_set(r->error, "drum: %s is made with %g inches on line %d already",
-                                  made->atom[0].symbol, inches_of(made), score->lines[i].line);
+        if (!himc_score_makes_drum(&score->lines[i]) ||
+            strcmp(made->atom[0].symbol, r->now.command.atom[0].symbol) != 0 ||
+            make_the_same(made, &r->now.command))
+            continue;
+        if (made->id == HIMC_COMMAND_INSTRUMENT)
+            return himc_error_set(r->error, "%s: %s is a %s since line %d already",
+                                  himc_command_table((int)r->now.command.id)->name,
+                                  made->atom[0].symbol, made->atom[1].symbol, score->lines[i].line);
+        return himc_error_set(r->error, "drum: %s is made with %g inches on line %d already",
+                              made->atom[0].symbol, inches_of(made), score->lines[i].line);
     }
     himc_score_line **lines = timed ? &score->changes : &score->lines;
     int *count = timed ? &score->change_count : &score->line_count,
@@ -141,8 +159,8 @@ static bool is_known_drum(const himc_score *score, const char *word)
 {
     for (int i = 0; i < score->line_count; i++) {
         const himc_score_line *line = &score->lines[i];
-        if (strcmp(line->drum, word) == 0 || (line->command.id == HIMC_COMMAND_MAKE_DRUM &&
-                                              strcmp(line->command.atom[0].symbol, word) == 0))
+        if (strcmp(line->drum, word) == 0 ||
+            (himc_score_makes_drum(line) && strcmp(line->command.atom[0].symbol, word) == 0))
             return true;
     }
     return false;

@@ -24,4 +24,10 @@ bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *o
 bool himc_score_accepts_roll(const himc_tempo_change *tempi, int count, const himc_stroke *roll,
                              himc_error *error);
 
+/// True if the line makes a drum: `drum`, `instrument`.
+static inline bool himc_score_makes_drum(const himc_score_line *line)
+{
+    return !line->drum[0] && himc_command_table((int)line->command.id)->marks & HIMC_MAKES_DRUM;
+}
+
 #endif

@@ -1,0 +1,58 @@
+/// instrument.c: what the commands `drum` and `instrument` make: a drum's settings, and then those
+/// of its kind, by the commands that a user would give.
+#include "drum/drum_performer.h"
+
+#include "himc/command_rows.h"
+#include "himc/ranges.h"
+
+#include <stdio.h>
+
+enum { OF_SIZE, OF_PITCH, OF_FILE }; // forms of `instrument`
+#define COUNT(word) +1
+enum { BARS = HIMC_BARS(COUNT), TIMPANO = 0 }; // words: the timpano, then the bars
+
+// a bar, if no pitch is given, sounds that (Hz), in the order of HIMC_BARS; chosen: mid range
+static const double usual[BARS] = {261.6256, 523.2511, 261.6256, 1046.502};
+
+static bool carry_out(himc_drum_settings *s, const char *name, const himc_atom *atoms, int count,
+                      himc_error *error)
+{
+    himc_command command;
+    return himc_command_parse(&command, HIMC_DRUM, name, atoms, count, error) &&
+           himc_drum_settings_command(s, &command, error);
+}
+
+// makes of a new drum the instrument that the command names
+static bool change(himc_drum_settings *s, const himc_command *c, himc_error *error)
+{
+    bool bar = c->form != OF_FILE && c->choice[1] <= BARS;
+    himc_atom atoms[4] = {{HIMC_ATOM_SYMBOL, 0, bar ? "bar" : "listed"}, c->atom[1]};
+    if (c->form == OF_FILE)
+        return carry_out(s, "shape", c->atom + 1, 2, error);
+    if (!bar)
+        return carry_out(s, "shape", atoms, 2, error) &&
+               (c->count == 2 || carry_out(s, "tune", c->atom + 2, c->count - 2, error));
+    atoms[2] = (himc_atom){HIMC_ATOM_NUMBER, usual[c->choice[1] - 1], NULL};
+    for (int i = 2; i < c->count; i++)
+        atoms[i] = c->atom[i];
+    return carry_out(s, "shape", atoms, c->count > 2 ? c->count : 3, error);
+}
+
+himc_drum *himc_drum_made(const himc_command *c, double sample_rate, himc_error *error)
+{
+    himc_drum_settings s;
+    himc_drum *drum = NULL;
+    const char *name = c->atom[0].symbol;
+    bool instrument = c->id == HIMC_COMMAND_INSTRUMENT;
+    bool skin = !instrument || (c->form != OF_FILE && c->choice[1] == TIMPANO);
+    int size = instrument ? 2 : 1;
+    double inches = skin && c->count > size ? c->atom[size].number : HIMC_INCHES_USUAL;
+    if (!himc_drum_settings_new(&s, name, inches, sample_rate, error))
+        return NULL;
+    if (skin || change(&s, c, error))
+        drum = himc_drum_new_of(&s, error);
+    else
+        himc_error_prefix(error, "instrument %s", name);
+    himc_drum_settings_free(&s);
+    return drum;
+}

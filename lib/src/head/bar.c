@@ -1,0 +1,336 @@
+/// bar.c: bars of marimba, xylophone, vibraphone, glockenspiel; one, or a row of naturals with one
+/// of accidentals behind it.
+///
+/// A bar is a beam that bends, shears and turns (Timoshenko 1921), free at its ends, of thickness
+///     h(x) = h0 (1 - d (1 - |2 x/(c L)|^3)),  |2 x| < c L,
+/// and h0 elsewhere: the undercut of depth d tunes mode 2 to a given ratio, the length L mode 1. It
+/// is symmetric, so half of it, of elements whose shear does not lock (Przemieniecki 1968), gives
+/// the even modes (no rotation in the middle) and the odd ones (no displacement there). Of a steel
+/// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; a thin one would have 2.756 : 5.404.
+/// Torsion is left out: a blow on the axis does not excite it.
+///
+/// Losses are S0 + b omega + S1 omega^2, found on recorded T60: of a marimba's lowest modes, 131,
+/// 370 and 739 Hz, 2.07, 1.35 and 0.99 s. Sizes, mallets and the gain of resonators: chosen.
+#include "head/idiophone.h"
+
+#include "base/argument.h"
+#include "base/linear.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define HALF 35 // elements of half a bar; chosen: mode 7 is exact to 0.1 %
+#define POINTS (2 * HALF + 1)
+#define FREE (2 * HALF + 1) // unknowns of a half: displacement and rotation at each node, less one
+#define MODES 7             // of a bar; chosen: the seventh of C4 is at 9 kHz
+#define HIGHEST 20000.0     // (Hz) no mode above is kept
+#define SHEAR (5.0 / 6)     // of a rectangular section
+#define CUT 0.62            // c; chosen: as bars look
+#define DEEPEST 0.92        // of h0; chosen: no bar is thinner
+#define STEPS 40            // most of a search; it takes eight
+#define LENGTH 0.3          // at which it begins (m)
+#define EXACT 1e-6          // of a ratio; chosen: 0.002 cent
+#define GAP 0.008           // between two bars (m)
+#define SEMITONE 1.0594630943592953
+
+// A kind of bar. Size at f: at `from`, times (from/f)^exponent.
+typedef struct bar_row {
+    double young, density, shear;        // (Pa, kg/m^3, Pa)
+    double from;                         // (Hz)
+    double thickness, thinner;           // h0 there (m), and the exponent
+    double width, narrower;              // (m)
+    double ratio;                        // of mode 2; 0: not undercut
+    double constant, hysteresis, square; // of the decay
+    double gain;                         // of mode 1 by its resonator (dB)
+    double low, high;                    // pitches that are made (Hz)
+    himc_mallet_head mallet;
+} bar_row;
+
+#define ROSEWOOD 2.0e10, 1080, 1.35e9
+#define ALUMINIUM 7.0e10, 2700, 2.6e10
+#define STEEL 2.0e11, 7850, 7.7e10
+
+// In the order of HIMC_BARS (himc/command_rows.h). Mallets: yarn, plastic, cord, brass.
+static const bar_row rows[] = {
+    {ROSEWOOD,
+     131,
+     0.022,
+     0.12,
+     0.060,
+     0.22,
+     4,
+     2.4,
+     8e-4,
+     9e-8,
+     14,
+     65,
+     2100,
+     {.stiffness = 9e7, .exponent = 2.2, .mass = 0.028, .relaxation = 80e-6}},
+    {ROSEWOOD,
+     440,
+     0.021,
+     0,
+     0.038,
+     0,
+     3,
+     3,
+     6.5e-3,
+     2e-7,
+     8,
+     174,
+     4200,
+     {.stiffness = 4e9, .exponent = 2, .mass = 0.020, .relaxation = 20e-6}},
+    {ALUMINIUM,
+     262,
+     0.0127,
+     0,
+     0.045,
+     0.25,
+     4,
+     0.5,
+     4e-5,
+     6e-9,
+     12,
+     130,
+     1400,
+     {.stiffness = 8e7, .exponent = 2.2, .mass = 0.026, .relaxation = 80e-6}},
+    {STEEL,
+     880,
+     0.0085,
+     0,
+     0.026,
+     0,
+     0,
+     0.3,
+     6e-5,
+     4.5e-9,
+     0,
+     390,
+     4200,
+     {.stiffness = 6e9, .exponent = 1.6, .mass = 0.018, .relaxation = 10e-6}},
+};
+
+// a bar as it is being tuned
+typedef struct bar {
+    const bar_row *row;
+    double length, thickness, width, depth;
+    double k[FREE * FREE], m[FREE * FREE];         // of a half
+    double lambda[2][FREE], shape[2][FREE * FREE]; // of the even, of the odd modes
+} bar;
+
+// adds an element of length l at node i of the half; unknown -1 does not move
+static void add_element(bar *b, bool odd, int i)
+{
+    const bar_row *r = b->row;
+    double l = 0.5 * b->length / HALF, out = 2 * (i + 0.5) * l / (CUT * b->length);
+    double h = b->thickness * (out < 1 ? 1 - b->depth * (1 - out * out * out) : 1);
+    double area = b->width * h, bending = r->young * area * h * h / 12;
+    double phi = 12 * bending / (SHEAR * r->shear * area * l * l),
+           s = bending / (l * l * l * (1 + phi));
+    double mass = r->density * area * l / 420, turn = r->density * area * h * h / 12 / (30 * l);
+    const double k[4][4] = {{12, 6 * l, -12, 6 * l},
+                            {6 * l, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l},
+                            {-12, -6 * l, 12, -6 * l},
+                            {6 * l, (2 - phi) * l * l, -6 * l, (4 + phi) * l * l}};
+    const double m[4][4] = {{156, 22 * l, 54, -13 * l},
+                            {22 * l, 4 * l * l, 13 * l, -3 * l * l},
+                            {54, 13 * l, 156, -22 * l},
+                            {-13 * l, -3 * l * l, -22 * l, 4 * l * l}};
+    const double t[4][4] = {{36, 3 * l, -36, 3 * l},
+                            {3 * l, 4 * l * l, -3 * l, -l * l},
+                            {-36, -3 * l, 36, -3 * l},
+                            {3 * l, -l * l, -3 * l, 4 * l * l}};
+    for (int p = 0; p < 4; p++)
+        for (int q = 0; q < 4; q++) {
+            // in the middle an even mode has no rotation (1), an odd one no displacement (0)
+            int at = 2 * i + p - 1, to = 2 * i + q - 1;
+            bool held = i == 0 && (p == !odd || q == !odd);
+            if (i == 0 && p == 0)
+                at = 0;
+            if (i == 0 && q == 0)
+                to = 0;
+            if (held)
+                continue;
+            b->k[at * FREE + to] += s * k[p][q];
+            b->m[at * FREE + to] += mass * m[p][q] + turn * t[p][q];
+        }
+}
+
+static bool solve(bar *b, himc_error *error)
+{
+    for (int odd = 0; odd < 2; odd++) {
+        memset(b->k, 0, sizeof b->k);
+        memset(b->m, 0, sizeof b->m);
+        for (int i = 0; i < HALF; i++)
+            add_element(b, odd, i);
+        if (himc_linear_vibrations(FREE, b->k, b->m, b->lambda[odd], b->shape[odd]) !=
+            HIMC_LINEAR_SOLVED)
+            return himc_error_set(error, "bar: no modes found");
+    }
+    return true;
+}
+
+// Of mode i, 0 .. : the first of the even ones and of the odd ones move without bending.
+static double frequency(const bar *b, int i)
+{
+    return sqrt(fmax(b->lambda[i % 2][i / 2 + 1], 0)) / (2 * HIMC_PI);
+}
+
+// Finds the length at which mode 1 sounds there, about as 1/L^2; `ratio`: of mode 2 then.
+static bool find_length(bar *b, double hz, double *ratio, himc_error *error)
+{
+    for (int i = 0; i < STEPS; i++) {
+        if (!solve(b, error))
+            return false;
+        double off = frequency(b, 0) / hz;
+        *ratio = frequency(b, 1) / frequency(b, 0);
+        if (fabs(off - 1) < EXACT)
+            return true;
+        b->length *= sqrt(off);
+    }
+    return himc_error_set(error, "bar: %g Hz cannot be tuned", hz);
+}
+
+// Finds the depth by false position (Illinois): a deeper cut has a higher ratio.
+static bool tune(bar *b, double hz, himc_error *error)
+{
+    double goal = b->row->ratio, low = 0, high = DEEPEST, below, above, ratio;
+    b->length = LENGTH;
+    b->depth = high;
+    if (goal > 0 && !find_length(b, hz, &above, error))
+        return false;
+    b->depth = low;
+    if (!find_length(b, hz, &below, error))
+        return false;
+    for (int i = 0, side = 0; goal > 0 && i < STEPS; i++) {
+        b->depth = low + (high - low) * (goal - below) / (above - below);
+        if (!(b->depth > 0 && b->depth < DEEPEST))
+            break;
+        if (!find_length(b, hz, &ratio, error))
+            return false;
+        if (fabs(ratio / goal - 1) < EXACT)
+            return true;
+        bool over = ratio > goal;
+        *(over ? &high : &low) = b->depth;
+        *(over ? &above : &below) = ratio;
+        if (side == (over ? 1 : -1)) // the other end has stayed twice
+            *(over ? &below : &above) = 0.5 * (goal + (over ? below : above));
+        side = over ? 1 : -1;
+    }
+    return goal == 0 || himc_error_set(error, "bar: %g Hz cannot be tuned", hz);
+}
+
+// of the mode at the points from end to end
+static void find_shape(const bar *b, int i, double *shape)
+{
+    bool odd = i % 2;
+    const double *v = b->shape[odd] + (size_t)(i / 2 + 1) * FREE;
+    for (int node = 0; node <= HALF; node++) {
+        double w = node > 0 ? v[2 * node - 1] : odd ? 0 : v[0];
+        shape[HALF + node] = w / sqrt(2); // v is of half the mass
+        shape[HALF - node] = odd ? -shape[HALF + node] : shape[HALF + node];
+    }
+}
+
+// the note that is nearest
+static void name_part(himc_part *part, double hz)
+{
+    char note[HIMC_NOTE_SIZE] = "";
+    int key = (int)lround(12 * log2(hz / 440)) + 12 * 4 + 9; // from C0
+    himc_note_name(440 * pow(2, (key % 12 - 9) / 12.0 + (key / 12 - 4)), note);
+    snprintf(part->name, sizeof part->name, "%s", note);
+}
+
+static bool add_bar(himc_idiophone *body, bar *b, double hz, himc_error *error)
+{
+    const bar_row *r = b->row;
+    himc_part part;
+    double shape[POINTS];
+    b->thickness = r->thickness * pow(r->from / hz, r->thinner);
+    b->width = r->width * pow(r->from / hz, r->narrower);
+    if (!tune(b, hz, error))
+        return false;
+    part = (himc_part){.length = b->length, .width = b->width};
+    name_part(&part, hz);
+    if (!himc_idiophone_add_part(body, &part, error))
+        return false;
+    for (int i = 0; i < MODES && frequency(b, i) < HIGHEST; i++) {
+        himc_partial mode = {
+            .frequency = frequency(b, i), .mass = 1, .gain = i == 0 ? pow(10, r->gain / 20) : 1};
+        find_shape(b, i, shape);
+        if (!himc_idiophone_add_mode(body, mode, shape, POINTS, error))
+            return false;
+    }
+    return true;
+}
+
+static bool is_natural(const himc_part *part)
+{
+    return part->name[1] != '#';
+}
+
+// The low bars are on the left; an accidental is behind the gap that it belongs to. In each row the
+// middles of the bars are in a line.
+static void lay_out(himc_idiophone *body)
+{
+    double y = 0, reach[2] = {0};
+    for (int i = 0; i < body->parts; i++) {
+        himc_part *p = &body->part[i];
+        double *of_row = &reach[is_natural(p)];
+        *of_row = fmax(*of_row, p->length / 2);
+        if (is_natural(p)) {
+            p->y = y - p->width / 2;
+            y -= p->width + GAP;
+        } else {
+            p->y = y + GAP / 2;
+        }
+    }
+    for (int i = 0; i < body->parts; i++)
+        body->part[i].x = is_natural(&body->part[i]) ? 0 : reach[0] + reach[1] + GAP;
+}
+
+// of bars from a pitch to another in semitones
+static himc_idiophone *make(const bar_row *row, const char *name, double low, double high,
+                            himc_error *error)
+{
+    himc_idiophone *body = himc_idiophone_new(name, error);
+    bar *b = calloc(1, sizeof *b);
+    bool good = body && b;
+    if (body && !b)
+        himc_error_set(error, "bar: out of memory");
+    int bars = 1 + (int)lround(log(high / low) / log(SEMITONE));
+    for (int i = 0; good && i < bars; i++) {
+        b->row = row;
+        good = add_bar(body, b, low * pow(SEMITONE, i), error);
+    }
+    free(b);
+    if (!good) {
+        himc_shape_release(&(himc_shape){.body = body});
+        return NULL;
+    }
+    body->pitches[0] = low;
+    body->pitches[1] = high > low ? high : 0;
+    body->constant = row->constant;
+    body->hysteresis = row->hysteresis;
+    body->square = row->square;
+    body->mallet = row->mallet;
+    lay_out(body);
+    himc_idiophone_finish(body);
+    return body;
+}
+
+static bool read(const himc_command *c, himc_shape *shape, himc_error *error)
+{
+    const bar_row *row = &rows[c->choice[1]];
+    double low = c->atom[2].number, high = c->count > 3 ? c->atom[3].number : low;
+    const char *name = c->atom[1].symbol;
+    if (!himc_check_range(name, low, row->low, row->high, "Hz", error) ||
+        !himc_check_range(name, high, low, row->high, "Hz", error))
+        return false;
+    shape->body = make(row, name, low, high, error);
+    return shape->body;
+}
+
+const himc_kind himc_kind_bar = {.name = "bar", .read = read, HIMC_IDIOPHONE_KIND};

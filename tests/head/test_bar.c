@@ -1,0 +1,173 @@
+/// test_bar.c: bars that are computed: ratios, losses, contacts, keyboards.
+#define _DEFAULT_SOURCE // strsep
+#include "head/idiophone.h"
+#include "say_drum.h"
+
+static const char *const kinds[] = {"marimba", "xylophone", "vibraphone", "glockenspiel"};
+
+static void bar(const char *kind, double hz)
+{
+    char text[80];
+    snprintf(text, sizeof text, "shape bar %s %.9g", kind, hz);
+    done(text);
+}
+
+static double ratio(int index)
+{
+    return mode(index).frequency / mode(0).frequency;
+}
+
+static double t60(int index)
+{
+    return log(1000) / mode(index).decay;
+}
+
+// the ratios of Timoshenko's beam; a thin one has 2.756 and 5.404
+static void test_a_steel_bar_of_180_by_8_5_mm_has_1_2_716_5_21(void)
+{
+    bar("glockenspiel", 1344);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0005, 0.18, himc_drum_head_frame(drum)->length);
+    TEST_ASSERT_DOUBLE_WITHIN(0.005 * 2.716, 2.716, ratio(1));
+    TEST_ASSERT_DOUBLE_WITHIN(0.005 * 5.21, 5.21, ratio(2));
+}
+
+static void test_bars_are_tuned_within_2_cents(void)
+{
+    static const struct {
+        const char *kind;
+        double low, high, second, third[2];
+    } of[] = {{"marimba", 110, 1200, 4, {9, 10.1}},
+              {"vibraphone", 175, 1397, 4, {9.6, 10.1}},
+              {"xylophone", 349, 2093, 3, {5.4, 6}}};
+    for (int i = 0; i < 3; i++)
+        for (double hz = of[i].low; hz < of[i].high; hz *= 1.5) {
+            bar(of[i].kind, hz);
+            TEST_ASSERT_DOUBLE_WITHIN(2, 0, 1200 * log2(mode(0).frequency / hz));
+            TEST_ASSERT_DOUBLE_WITHIN(2, 0, 1200 * log2(ratio(1) / of[i].second));
+            TEST_ASSERT_TRUE(ratio(2) > of[i].third[0] && ratio(2) < of[i].third[1]);
+        }
+}
+
+static void test_a_marimba_rings_as_recorded(void)
+{
+    static const double hz[] = {131, 370, 739}, seconds[] = {2.2, 1.5, 0.9},
+                        recorded[] = {2.07, 1.35, 0.99};
+    for (int i = 0; i < 3; i++) {
+        bar("marimba", hz[i]);
+        TEST_ASSERT_DOUBLE_WITHIN(0.06, seconds[i], t60(0));
+        TEST_ASSERT_TRUE(fabs(log(t60(0) / recorded[i])) < log(1.5));
+    }
+}
+
+static void test_contacts_last_as_those_of_their_mallets(void)
+{
+    static const double hz[] = {262, 523, 262, 1047}, least[] = {2e-3, 0.3e-3, 1.5e-3, 0.08e-3},
+                        most[] = {4e-3, 0.6e-3, 4e-3, 0.15e-3};
+    for (int i = 0; i < 4; i++) {
+        bar(kinds[i], hz[i]);
+        himc_contact_report blow =
+            check_blows(kinds[i], -0.05 * himc_drum_head_frame(drum)->length, 0);
+        printf("%s: %.3g ms\n", kinds[i], 1000 * blow.duration);
+        TEST_ASSERT_TRUE_MESSAGE(blow.duration > least[i] && blow.duration < most[i], kinds[i]);
+    }
+}
+
+static void test_the_energy_of_bars_never_grows(void)
+{
+    for (int i = 0; i < 4; i++) {
+        bar(kinds[i], 523.25);
+        check_energy(kinds[i]);
+    }
+}
+
+// mode 1 rests .224 of a free bar's length from its end
+static void test_a_blow_on_the_node_leaves_mode_1_at_rest(void)
+{
+    double q, v, most[2] = {0};
+    bar("glockenspiel", 523.25);
+    for (int k = 0; k < 2; k++) {
+        strike((k == 0 ? -0.276 : 0) * himc_drum_head_frame(drum)->length, 0, 2);
+        for (int i = 0; i < 200; i++) {
+            advance(0.0005);
+            himc_membrane_state(himc_drum_membrane(drum), 0, &q, &v);
+            most[k] = fmax(most[k], fabs(q));
+        }
+        himc_drum_rest(drum);
+        advance(0.1);
+    }
+    TEST_ASSERT_TRUE(most[0] < 0.05 * most[1] && most[1] > 0);
+}
+
+static void test_each_bar_of_a_keyboard_sounds_alone(void)
+{
+    done("shape bar marimba 261.6256 523.2511");
+    const himc_idiophone *body = himc_membrane_config_of(himc_drum_membrane(drum))->shape.body;
+    TEST_ASSERT_EQUAL_INT(13, body->parts);
+    TEST_ASSERT_EQUAL_STRING("C4", body->part[0].name);
+    TEST_ASSERT_EQUAL_STRING("C#4", body->part[1].name);
+    TEST_ASSERT_EQUAL_STRING("C5", body->part[12].name);
+    for (int i = 0; i < body->parts; i++) {
+        const himc_part *p = &body->part[i];
+        double q, v, own = 0, others = 0;
+        strike(p->x, p->y, 2);
+        advance(0.004);
+        for (int k = 0; k < body->modes; k++) {
+            himc_membrane_state(himc_drum_membrane(drum), k, &q, &v);
+            *(body->mode[k].part == i ? &own : &others) += fabs(q);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(own > 1e-7 && others == 0, p->name);
+        for (int k = 0; k < i; k++) { // and no bar lies in another
+            double x = fabs(p->x - body->part[k].x) - 0.5 * (p->length + body->part[k].length);
+            double y = fabs(p->y - body->part[k].y) - 0.5 * (p->width + body->part[k].width);
+            TEST_ASSERT_TRUE_MESSAGE(x > 0 || y > 0, p->name);
+        }
+        TEST_ASSERT_TRUE(i == 0 || p->y < body->part[i - 1].y); // from left to right
+        himc_drum_rest(drum);
+        advance(0.1);
+    }
+    check_energy("keyboard");
+}
+
+static void test_a_dump_of_bars_makes_them_again(void)
+{
+    bar("vibraphone", 300);
+    done("tune 310");
+    check_dump("bar", 2);
+    done("shape bar xylophone 523 700");
+    check_dump("keyboard", 9);
+}
+
+static void test_info_names_the_bars(void)
+{
+    char lines[4000] = "";
+    done("shape bar marimba 261.6256 523.2511");
+    himc_drum_describe(drum, HIMC_DESCRIBE_INFO, keep_line, lines);
+    TEST_ASSERT_EQUAL_STRING("thing: marimba, pitch 261.63 Hz, parts C4 .. C5, 91 modes (91 "
+                             "audible), mallet usual, at 0.7 0 0.85 m\n",
+                             lines);
+}
+
+static void test_pitches_that_no_bar_has_are_refused(void)
+{
+    TEST_ASSERT_FALSE(say("shape bar marimba 30"));
+    TEST_ASSERT_EQUAL_STRING("marimba: 30 Hz, expected 65 .. 2100 Hz", error.text);
+    TEST_ASSERT_FALSE(say("shape bar marimba 300 200"));
+    TEST_ASSERT_EQUAL_STRING("marimba: 200 Hz, expected 300 .. 2100 Hz", error.text);
+    TEST_ASSERT_FALSE(say("shape bar lyre 300"));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_steel_bar_of_180_by_8_5_mm_has_1_2_716_5_21);
+    RUN_TEST(test_bars_are_tuned_within_2_cents);
+    RUN_TEST(test_a_marimba_rings_as_recorded);
+    RUN_TEST(test_contacts_last_as_those_of_their_mallets);
+    RUN_TEST(test_the_energy_of_bars_never_grows);
+    RUN_TEST(test_a_blow_on_the_node_leaves_mode_1_at_rest);
+    RUN_TEST(test_each_bar_of_a_keyboard_sounds_alone);
+    RUN_TEST(test_a_dump_of_bars_makes_them_again);
+    RUN_TEST(test_info_names_the_bars);
+    RUN_TEST(test_pitches_that_no_bar_has_are_refused);
+    return UNITY_END();
+}
