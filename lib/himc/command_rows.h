@@ -70,6 +70,8 @@
     LIST("tubular-bell")
 // bars that are computed (lib/src/head/bar.c)
 #define HIMC_BARS(BAR) BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel")
+// the set-ups that the library has (lib/src/base/setups.c)
+#define HIMC_SETUPS(SETUP) SETUP("timpani") SETUP("xylophone") SETUP("marimba")
 // the words of `instrument`
 #define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD)
 #define HIMC_ROW_KIND(name, form) form " | "
@@ -205,6 +207,8 @@ HIMC_COMMAND_ROW(INSTRUMENT, instrument, PERFORMER, NOW, HIMC_MAKES_DRUM,
                  "NAME INSTRUMENT [SIZE] [SIZE] | NAME INSTRUMENT NOTE [NOTE] | NAME modes FILE",
                  "makes an instrument with its own mallets, of so many inches, of that pitch, or "
                  "with bars from that to another pitch")
+HIMC_COMMAND_ROW(SETUP, setup, PERFORMER, NOW, HIMC_IN_FOLDER, "SETUP | FILE",
+                 "makes instruments and puts them where players have them, as commands in a FILE")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
                  "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
                  "sends a stream to an address over OSC, 33 times a second by default; vmc to port "

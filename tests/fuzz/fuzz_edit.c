@@ -112,7 +112,7 @@ static void check_played(const edit_text *t, const himc_score *score)
     himc_error error = {""};
     int atom;
     char *text = edit_text_played(t);
-    himc_score *played = himc_score_parse(text, "fuzz.txt", &error);
+    himc_score *played = himc_score_parse(text, "fuzz.txt", NULL, &error);
     require(played != NULL, error.text);
     for (int i = 0; i < played->line_count; i++)
         require(himc_command_file(&played->lines[i].command, &atom) != HIMC_FILE_WRITE,
@@ -130,7 +130,7 @@ static bool check_text(const edit_text *t, bool first)
     himc_error error = {""};
     int line;
     char *text = edit_text_join(t);
-    himc_score *score = himc_score_parse(text, "fuzz.txt", &error);
+    himc_score *score = himc_score_parse(text, "fuzz.txt", NULL, &error);
     if (score) {
         check_told(t, score);
         check_played(t, score);

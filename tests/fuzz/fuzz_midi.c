@@ -60,7 +60,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         require_line(&error);
         return 0;
     }
-    himc_score *score = himc_score_parse(made.text, "made.txt", &error);
+    himc_score *score = himc_score_parse(made.text, "made.txt", NULL, &error);
     require(score != NULL, error.text);
     check_report(made.report, score);
     himc_score_free(score);

@@ -35,7 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     himc_error error = {""};
     char *text = fuzz_text(data, size);
-    himc_score *score = himc_score_parse(text, "fuzz.txt", &error);
+    himc_score *score = himc_score_parse(text, "fuzz.txt", NULL, &error);
     if (score) {
         check_strokes(score);
         check_tempi(score);

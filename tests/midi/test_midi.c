@@ -95,7 +95,7 @@ static void import(const builder *b, const midi_options *options)
 {
     TEST_ASSERT_TRUE_MESSAGE(
         himc_midi_import(&made, b->bytes, b->size, "test.mid", options, &error), error.text);
-    score = himc_score_parse(made.text, "made.txt", &error);
+    score = himc_score_parse(made.text, "made.txt", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
 }
 
@@ -301,7 +301,7 @@ static void test_strokes_keep_the_times_of_their_notes_through_a_tempo_map(void)
     TEST_ASSERT_TRUE(himc_midi_file_read(&file, bytes, size, &error));
     TEST_ASSERT_TRUE(himc_midi_import(&made, bytes, size, "scherzo.mid", NULL, &error));
     free(bytes);
-    score = himc_score_parse(made.text, "made.txt", &error);
+    score = himc_score_parse(made.text, "made.txt", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
     TEST_ASSERT_EQUAL_INT(3, score->tempo_count);
     TEST_ASSERT_EQUAL_INT(file.note_count, score->stroke_count);

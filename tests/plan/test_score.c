@@ -20,7 +20,7 @@ void tearDown(void)
 
 static himc_score *parse(const char *text)
 {
-    return himc_score_parse(text, "s.txt", &error);
+    return himc_score_parse(text, "s.txt", NULL, &error);
 }
 
 static void refused(const char *text, const char *expected)

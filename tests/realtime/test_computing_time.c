@@ -48,7 +48,7 @@ static void test_a_score_of_4000_strokes_is_parsed_in_50_ms(void)
 {
     char *text = long_score(4000);
     double begun = cpu_ms();
-    himc_score *score = himc_score_parse(text, "s.txt", &error);
+    himc_score *score = himc_score_parse(text, "s.txt", NULL, &error);
     double ms = cpu_ms() - begun;
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
     printf("4000 strokes parsed in %.1f ms\n", ms);

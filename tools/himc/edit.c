@@ -219,7 +219,7 @@ static himc_score *parse(const session *s, const edit_text *t, himc_error *error
 {
     int line;
     char *text = edit_text_join(t);
-    himc_score *score = text ? himc_score_parse(text, s->name, error) : NULL;
+    himc_score *score = text ? himc_score_parse(text, s->name, NULL, error) : NULL;
     free(text);
     if (!score || !s->confined || !edit_text_names_file(score, &line))
         return score;

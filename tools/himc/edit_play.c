@@ -152,7 +152,7 @@ typedef struct order {
 static bool load(player *p, const char *text, const char *record, himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
-    himc_score *score = himc_score_parse(text, p->of->name, error);
+    himc_score *score = himc_score_parse(text, p->of->name, NULL, error);
     bool drums = score && cli_first_drum(score);
     himc_score_free(score);
     p->performance = score ? himc_performance_new(&config, error) : NULL;
@@ -450,7 +450,7 @@ static bool dismiss_after(edit_play *play, int copy, himc_error *error)
 static double length_of(const char *text)
 {
     himc_error unused;
-    himc_score *score = himc_score_parse(text, "", &unused);
+    himc_score *score = himc_score_parse(text, "", NULL, &unused);
     double seconds = 0;
     if (score && score->stroke_count)
         seconds = himc_score_seconds(score->tempi, score->tempo_count,

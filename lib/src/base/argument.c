@@ -24,6 +24,7 @@ static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", 
 
 #define WORD(word) word,
 static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
+static const char *const setups[] = {HIMC_SETUPS(WORD) NULL};
 static const char *const bars[] = {HIMC_BARS(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
@@ -34,6 +35,7 @@ static const himc_argument arguments[] = {
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
     {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
+    {"SETUP", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", setups},
     {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},
     {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},

@@ -56,14 +56,14 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
     char *bytes = himc_file_load_in(folder, path, most, &size, error);
     if (bytes && !himc_midi_is_file(bytes, size)) {
         if (himc_score_is_text(bytes, size, path, error))
-            score = himc_score_parse(bytes, path, error);
+            score = himc_score_parse(bytes, path, folder, error);
     } else if (bytes && size > HIMC_MIDI_BYTES_MAX) {
         himc_error_set(error, "%s: too long, expected %zu MiB of MIDI", path,
                        HIMC_MIDI_BYTES_MAX >> 20);
     } else if (bytes && !himc_midi_import(&made, bytes, size, path, NULL, error)) {
         himc_error_prefix(error, "%s", path);
     } else if (bytes) {
-        score = himc_score_parse(made.text, path, error);
+        score = himc_score_parse(made.text, path, folder, error);
     }
     if (score && made.text) {
         free(score->report);

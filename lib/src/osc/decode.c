@@ -123,6 +123,7 @@ double himc_osc_command_cost(const himc_command *command)
     case HIMC_COMMAND_DRUM_INFO:
     case HIMC_COMMAND_DUMP:
     case HIMC_COMMAND_SUBSCRIBE:
+    case HIMC_COMMAND_SETUP:
     case HIMC_COMMAND_INSTRUMENT:
     case HIMC_COMMAND_MAKE_DRUM: return 15;
     default: return 4;

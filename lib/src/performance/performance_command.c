@@ -79,6 +79,7 @@ static bool takes_long(const himc_performance *p, const himc_command *c)
     case HIMC_COMMAND_AT:
     case HIMC_COMMAND_SCORE:
     case HIMC_COMMAND_PRESET:
+    case HIMC_COMMAND_SETUP:
     case HIMC_COMMAND_TAKE:
     case HIMC_COMMAND_RECORD: return true;
     case HIMC_COMMAND_UNITS:
@@ -99,6 +100,7 @@ static himc_job *job_of(himc_performance *p, const himc_command *c, himc_error *
     case HIMC_COMMAND_AT: return himc_performance_change_job(p, c, error);
     case HIMC_COMMAND_SCORE:
     case HIMC_COMMAND_PRESET:
+    case HIMC_COMMAND_SETUP:
         return himc_performance_score_job(p, NULL, NULL, c, error); // as the parser has it
     case HIMC_COMMAND_TAKE: return himc_performance_take_job(p, c, error);
     case HIMC_COMMAND_RECORD: return himc_performance_record_job(p, c, error);

@@ -76,6 +76,12 @@ typedef struct score_job {
     himc_drum_heads *over[HIMC_DRUMS]; ///< owned; what they replaced
 } score_job;
 
+// instruments alone: what is played goes on
+static bool is_setup(const score_job *j)
+{
+    return j->command.id == HIMC_COMMAND_SETUP;
+}
+
 // the drums of the score
 
 static score_drum *find_drum(score_job *j, const char *name)
@@ -319,8 +325,9 @@ static bool prepare(himc_job *job, himc_error *error)
         return good;
     }
     himc_score_free(j->score);
-    j->score = j->text ? himc_score_parse(j->text, j->path, error)
-                       : himc_score_load_in(j->command.folder, j->path, error);
+    j->score = is_setup(j) ? himc_score_of_setup(&j->command, error)
+               : j->text   ? himc_score_parse(j->text, j->path, j->command.folder, error)
+                           : himc_score_load_in(j->command.folder, j->path, error);
     if (!j->score || !make_drums(j, error))
         return false;
     // the host is asked later, in its own thread
@@ -535,6 +542,8 @@ static himc_job_state begin(score_job *j, himc_error *error)
         copy_performance(j);
         return HIMC_JOB_AGAIN;
     }
+    if (is_setup(j))
+        return HIMC_JOB_DONE;
     // while a score is played the next one waits for its end, if it finds room behind it
     j->queued = p->motion->playing && himc_motion_plays_score(p->motion);
     for (int i = 0; i < score->change_count; i++)
@@ -564,7 +573,8 @@ static himc_job_state install(himc_job *job, himc_error *error)
     if (state != HIMC_JOB_DONE)
         return state;
     j->at = 0;
-    if (j->part++ < AFTER_STROKES)
+    j->part = is_setup(j) && j->part == BEFORE_STROKES ? AFTER_STROKES : j->part + 1;
+    if (j->part <= AFTER_STROKES)
         return HIMC_JOB_MORE;
     // what is played of a MIDI file, and what not; what of a text stands in a comment
     const char *line = j->score->report ? j->score->report : "", *end;
@@ -601,7 +611,7 @@ himc_job *himc_performance_score_job(himc_performance *p, const char *text, cons
     j->text = text;
     if (command)
         himc_command_copy(&j->command, command);
-    j->path = command ? j->command.atom[0].symbol : name;
+    j->path = is_setup(j) ? "setup" : command ? j->command.atom[0].symbol : name;
     copy_performance(j);
     j->take = himc_performance_take_job(p, NULL, error);
     if (j->take)

@@ -9,7 +9,9 @@
 
 #include "base/argument.h"
 #include "base/array.h"
+#include "base/file.h"
 #include "base/format.h"
+#include "base/setups.h"
 #include "base/text.h"
 
 #include <ctype.h>
@@ -27,6 +29,8 @@ typedef struct reader {
     int stroke_room, tempo_room, line_room, change_room, order_room;
     himc_score_line now; ///< the current statement
     const char *name;    ///< of the file
+    const char *folder;  ///< of the files that it names; NULL: any
+    bool setup;          ///< it is a set-up, which may not name another
     himc_error *error;
 } reader;
 
@@ -207,6 +211,37 @@ static bool is_for_drum(const reader *r, const himc_atom *atom)
             himc_command_find(HIMC_PERFORMER, atom[1].symbol));
 }
 
+static bool read_all(reader *r, const char *text);
+
+// what stands in a set-up, as if it stood here
+static bool add_setup(reader *r, const himc_command *setup)
+{
+    const size_t most = 1 << 20; // (bytes) chosen: more than all instruments with all settings
+    bool own = setup->form == 0;
+    const himc_setup *of = own ? &himc_setups[setup->choice[0]] : NULL;
+    char name[HIMC_PATH_SIZE];
+    himc_format(name, sizeof name, "%s", own ? of->name : setup->atom[0].symbol);
+    himc_score *score = r->score;
+    int line = r->now.line, from = score->line_count, strokes = score->stroke_count,
+        changes = score->change_count, tempi = score->tempo_count;
+    char *text = own ? NULL : himc_file_load_in(r->folder, name, most, &(size_t){0}, r->error);
+    if (!own && !text)
+        return himc_error_prefix(r->error, "setup");
+    r->setup = true;
+    bool good = read_all(r, own ? of->text : text);
+    if (good && (score->stroke_count > strokes || score->change_count > changes ||
+                 score->tempo_count > tempi))
+        good = himc_error_set(r->error, "a stroke, a tempo or `at`, expected instruments");
+    if (!good)
+        himc_error_prefix(r->error, "setup: %s:%d", name, r->now.line);
+    free(text);
+    r->setup = false;
+    r->now.line = line;
+    for (; from < score->line_count; from++)
+        score->lines[from].line = line;
+    return good;
+}
+
 static bool read_statement(reader *r, const himc_text_statement *s)
 {
     int count = s->count < s->capacity ? s->count : s->capacity;
@@ -246,6 +281,9 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
+    case HIMC_COMMAND_SETUP:
+        return r->setup ? himc_error_set(r->error, "setup: one in another, expected instruments")
+                        : add_setup(r, c);
     default: return add_line(r, false);
     }
 }
@@ -430,24 +468,37 @@ static bool check_playable(reader *r)
     return true;
 }
 
-himc_score *himc_score_parse(const char *text, const char *name, himc_error *error)
+static himc_score *read_score(reader *r, const char *text, const himc_command *setup)
 {
-    reader r = {.name = name, .error = error};
-    r.score = calloc(1, sizeof *r.score);
-    bool good = r.score &&
-                himc_array_grow(&r.score->tempi, 0, &r.tempo_room, sizeof *r.score->tempi, error);
+    r->score = calloc(1, sizeof *r->score);
+    bool good = r->score && himc_array_grow(&r->score->tempi, 0, &r->tempo_room,
+                                            sizeof *r->score->tempi, r->error);
     if (!good) {
-        free(r.score);
-        himc_error_set(error, "%s: out of memory", name);
+        free(r->score);
+        himc_error_set(r->error, "%s: out of memory", r->name);
         return NULL;
     }
-    r.score->tempi[r.score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
-    good = read_all(&r, text) && sort_by_beat(&r) && check_playable(&r);
+    r->score->tempi[r->score->tempo_count++] = (himc_tempo_change){0, HIMC_TEMPO};
+    good = setup ? add_setup(r, setup)
+                 : (read_all(r, text) && sort_by_beat(r) && check_playable(r)) ||
+                       himc_error_prefix(r->error, "%s:%d", r->name, r->now.line);
     if (good)
-        return r.score;
-    himc_error_prefix(error, "%s:%d", name, r.now.line);
-    himc_score_free(r.score);
+        return r->score;
+    himc_score_free(r->score);
     return NULL;
+}
+
+himc_score *himc_score_parse(const char *text, const char *name, const char *folder,
+                             himc_error *error)
+{
+    reader r = {.name = name, .folder = folder, .error = error};
+    return read_score(&r, text, NULL);
+}
+
+himc_score *himc_score_of_setup(const himc_command *setup, himc_error *error)
+{
+    reader r = {.name = "setup", .folder = setup->folder, .error = error};
+    return read_score(&r, NULL, setup);
 }
 
 void himc_score_free(himc_score *score)

@@ -11,7 +11,11 @@
 
 /// The score in a string, as himc_score_load reads it from a file; `name` stands for the file in
 /// errors. Free with himc_score_free.
-himc_score *himc_score_parse(const char *text, const char *name, himc_error *error);
+/// Files that it names are read in `folder` (NULL: anywhere).
+himc_score *himc_score_parse(const char *text, const char *name, const char *folder,
+                             himc_error *error);
+/// The score that `setup` stands for.
+himc_score *himc_score_of_setup(const himc_command *setup, himc_error *error);
 
 /// Puts a change into a tempo map of *count that has room for it, or in place of that on its beat.
 void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_change change);
