@@ -153,7 +153,7 @@ static bool on_support(received *h)
 static bool on_strike(received *h)
 {
     char drum[SCENE_NAME], nuance[SCENE_NAME];
-    if (find_hand(text(h, 1)) < 0 || !in_range(h, 3, 2))
+    if ((find_hand(text(h, 1)) < 0 && strcmp(text(h, 1), "foot") != 0) || !in_range(h, 3, 2))
         return false;
     scene_word(drum, sizeof drum, text(h, 2));
     scene_word(nuance, sizeof nuance, text(h, 8));

@@ -75,10 +75,11 @@ typedef enum himc_hand {
     HIMC_LEFT,    ///< "left"
     HIMC_RIGHT,   ///< "right"
     HIMC_HANDS,   ///< number of hands, the length of arrays indexed by a hand
-    HIMC_HAND_ANY ///< "any", of a hit only: the performer chooses
+    HIMC_HAND_ANY, ///< "any", of a hit only: the performer chooses
+    HIMC_FOOT      ///< "foot", of a stroke or hit only: with a beater on a pedal
 } himc_hand;
 
-/// "left" or "right", the words of commands. Borrowed, static.
+/// "left", "right" or "foot", the words of commands. Borrowed, static.
 const char *himc_hand_name(himc_hand hand);
 
 /// A vector or a point; the unit is that of its use.

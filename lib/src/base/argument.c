@@ -16,7 +16,8 @@
 
 // in the order of himc_hand, himc_nuance, himc_spot
 static const char *const hands[] = {"left", "right", NULL};
-static const char *const hit_hands[] = {"left", "right", "any", NULL}; // any: HIMC_HAND_ANY
+static const char *const stroke_hands[] = {"left", "right", "foot", NULL};
+static const char *const hit_hands[] = {"left", "right", "any", "foot", NULL};
 static const char *const nuances[] = {"legato",          "tenuto",   "accent",
                                       "vertical-accent", "staccato", NULL};
 static const char *const spots[] = {"center", "normal", "rim", NULL};
@@ -31,6 +32,7 @@ static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 static const himc_argument arguments[] = {
     {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
     {"HAND", "hit", HIMC_ARGUMENT_WORD, 0, 0, "", hit_hands},
+    {"HAND", "stroke", HIMC_ARGUMENT_WORD, 0, 0, "", stroke_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
@@ -146,7 +148,13 @@ int himc_argument_choice(const himc_argument *argument, const himc_atom *atom)
 
 const char *himc_hand_name(himc_hand hand)
 {
-    return hands[hand == HIMC_LEFT ? HIMC_LEFT : HIMC_RIGHT];
+    return hand == HIMC_FOOT ? "foot" : hands[hand == HIMC_LEFT ? HIMC_LEFT : HIMC_RIGHT];
+}
+
+himc_hand himc_argument_hand(const himc_atom *atom)
+{
+    static const himc_hand extra[] = {HIMC_LEFT, HIMC_RIGHT, HIMC_HAND_ANY, HIMC_FOOT};
+    return extra[find_word(hit_hands, atom->symbol)];
 }
 
 const char *himc_nuance_name(himc_nuance nuance)

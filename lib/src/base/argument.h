@@ -29,6 +29,9 @@ const himc_argument *himc_argument_find(const char *name, const char *context);
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom);
 
 /// Index of the atom among the argument's words, or -1.
+/// The hand that a checked word names.
+himc_hand himc_argument_hand(const himc_atom *atom);
+
 int himc_argument_choice(const himc_argument *argument, const himc_atom *atom);
 
 /// The number of an accepted atom in single precision, as all hosts have it. The ends of the range

@@ -330,9 +330,7 @@ static himc_stroke read_stroke(const himc_command *c)
         stroke.dynamic = read_dynamic(c, i++);
         stroke.last_dynamic = c->form == TWO_DYNAMICS ? read_dynamic(c, i++) : stroke.dynamic;
     } else {
-        stroke.hand = (himc_hand)c->choice[i++];
-        if (stroke.hand == HIMC_HANDS) // of a hit, the word after the hands
-            stroke.hand = HIMC_HAND_ANY;
+        stroke.hand = himc_argument_hand(&c->atom[i++]);
         stroke.nuance = (himc_nuance)c->choice[i++];
         stroke.dynamic = read_dynamic(c, i++);
     }

@@ -93,6 +93,10 @@ void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *strok
     *y = placed ? stroke->y : 0;
     if (placed && !stroke->part[0])
         return;
+    if (stroke->hand == HIMC_FOOT) { // a pedal's beater meets the centre
+        *x = placed ? *x : 0;
+        return;
+    }
     if (!placed)
         *x = -(frame->spots ? frame->spots : drumhead)[stroke->spot] * frame->radius;
     // half a mallet's width (m), so the two mallets do not collide, if there is room; chosen

@@ -65,6 +65,14 @@ HIMC_RT double himc_drum_pitch(const himc_drum *drum);
 HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, const double *modal,
                                    double *displacement);
 
+/// Strikes the drum as himc_drum_strike_at does, by its performer's foot; `kick` (> 0) is told by
+/// himc_drum_kicked when the contact is over.
+HIMC_RT bool himc_drum_kick(himc_drum *drum, int delay, double x, double y, double velocity,
+                            int kick, himc_error *error);
+/// Takes the oldest of a foot's strokes that are over, and how long ago it began (s); its `kick`,
+/// or 0 if there is none.
+HIMC_RT int himc_drum_kicked(himc_drum *drum, himc_contact_report *report, double *ago);
+
 /// True if a force acted on the head in its last sample.
 HIMC_RT bool himc_drum_is_touched(const himc_drum *drum);
 

@@ -14,6 +14,7 @@
 typedef struct drum_waiting {
     uint64_t at;
     double x, y, velocity;
+    int kick; ///< as of himc_drum_kick; 0: not by a foot
 } drum_waiting;
 
 /// A mallet in the air or on the head, without a hand.
@@ -24,7 +25,15 @@ typedef struct drum_mallet {
     uint64_t end;               ///< sample after the last force
     int age;                    ///< samples since it was launched
     himc_contact_report report; ///< its force is 0 until it has felt one
+    int kick;                   ///< as of drum_waiting
 } drum_mallet;
+
+/// A foot's stroke that is over.
+typedef struct drum_kick {
+    himc_contact_report report;
+    uint64_t first; ///< sample of the first force
+    int kick;
+} drum_kick;
 
 /// Entries of a ring, oldest first.
 typedef struct drum_queue {
@@ -65,6 +74,8 @@ struct himc_drum {
     drum_mallet mallets[HIMC_STICKS];
     himc_contact_report reports[DRUM_QUEUE];
     drum_queue report_queue;
+    drum_kick kicks[DRUM_QUEUE];
+    drum_queue kick_queue;
     himc_contact_onset onsets[DRUM_QUEUE]; ///< `at` is in samples of `time`
     drum_queue onset_queue;
     double fader; ///< of all drums of its performer (factor)

@@ -34,6 +34,12 @@ bool himc_drum_may_strike(const himc_head_frame *surface, double x, double y, do
 bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double velocity,
                          himc_error *error)
 {
+    return himc_drum_kick(drum, delay, x, y, velocity, 0, error);
+}
+
+bool himc_drum_kick(himc_drum *drum, int delay, double x, double y, double velocity, int kick,
+                    himc_error *error)
+{
     if (!himc_drum_may_strike(&drum->set.place, x, y, velocity, error))
         return false;
     if (delay == HIMC_STRIKE_NEVER)
@@ -44,7 +50,7 @@ bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y, double 
         return himc_error_set(error, "strike: %d wait already, expected up to %d", DRUM_QUEUE,
                               DRUM_QUEUE);
     drum->waiting[drum->waiting_count++] =
-        (drum_waiting){drum->time + (uint64_t)delay, x, y, velocity};
+        (drum_waiting){drum->time + (uint64_t)delay, x, y, velocity, kick};
     return true;
 }
 
@@ -94,6 +100,7 @@ void himc_drum_launch(himc_drum *drum)
                                      .x = w.x,
                                      .y = w.y,
                                      .velocity = -w.velocity},
+                           .kick = w.kick,
                            .report = {.x = w.x, .y = w.y, .velocity = w.velocity}};
         himc_stick_put(drum->membrane, &m->stick);
     }
@@ -134,6 +141,8 @@ static void follow(himc_drum *drum, drum_mallet *m)
     m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
     m->report.duration = (double)(m->end - m->first) / drum->rate;
     drum->reports[queue_push(&drum->report_queue)] = m->report;
+    if (m->kick)
+        drum->kicks[queue_push(&drum->kick_queue)] = (drum_kick){m->report, m->first, m->kick};
 }
 
 void himc_drum_follow_mallets(himc_drum *drum)
@@ -149,6 +158,16 @@ bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
         return false;
     *report = drum->reports[queue_pop(&drum->report_queue)];
     return true;
+}
+
+int himc_drum_kicked(himc_drum *drum, himc_contact_report *report, double *ago)
+{
+    if (drum->kick_queue.count == 0)
+        return 0;
+    const drum_kick *kick = &drum->kicks[queue_pop(&drum->kick_queue)];
+    *report = kick->report;
+    *ago = (double)(drum->time - kick->first) / drum->rate;
+    return kick->kick;
 }
 
 double himc_drum_pitch(const himc_drum *drum)

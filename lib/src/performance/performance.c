@@ -141,8 +141,11 @@ static void performance_step(himc_performance *p)
                               himc_motion_plays_score(p->motion) ? himc_planner_round(planner, t)
                                                                  : 0,
                               himc_planner_length(planner), &p->events);
-        himc_body_begin_pushes(
-            p->body, beat, himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock)), t);
+        double next = himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock));
+        himc_body_begin_pushes(p->body, beat, next, t);
+        himc_feet_play(&p->motion->feet, &p->drums, planner, beat, next);
+        int told = himc_feet_tell(&p->drums, &p->events, t);
+        himc_statistics_strokes(&p->statistics, told, told);
     }
     himc_motion_think(p->motion, h, himc_contacts_busy(&p->contacts));
     himc_motion_interpolate(p->motion, t);

@@ -20,7 +20,7 @@ typedef struct change_job {
 
 void himc_performance_find_end(himc_performance *p)
 {
-    double end = -1;
+    double end = himc_feet_last(&p->motion->feet);
     for (int i = 0; i < p->drums.count; i++)
         end = fmax(end, himc_drum_heads_last(p->drums.slot[i].heads));
     for (int i = 0; i < p->body->planned_count; i++)

@@ -149,6 +149,7 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
     case HIMC_COMMAND_SEEK: himc_planner_seek(planner, step_time(p), atom[0].number); break;
     case HIMC_COMMAND_CLEAR:
         himc_planner_clear(planner);
+        himc_feet_clear(&p->motion->feet);
         himc_text_clear(&p->written.score);
         himc_drums_drop_heads(&p->drums);
         himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);

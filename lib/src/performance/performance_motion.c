@@ -76,7 +76,7 @@ performance_motion *himc_motion_new(himc_error *error)
     }
     m->body.posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
     choose_sources(m, false);
-    m->last_beat = -1;
+    m->last_beat = m->feet.played_to = -1;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         m->answered[hand] = -INFINITY;
     return m;
@@ -87,6 +87,7 @@ void himc_motion_free(performance_motion *m)
     if (!m)
         return;
     himc_planner_free(m->planner);
+    himc_feet_free(&m->feet);
     himc_track_free(m->track);
     free(m);
 }

@@ -9,6 +9,7 @@
 #include "control/posture_regression.h"
 #include "control/setpoint.h"
 #include "performance/performance_drums.h"
+#include "performance/performance_feet.h"
 #include "performance/performance_settings.h"
 #include "track/track.h"
 
@@ -34,6 +35,7 @@ typedef struct seen_pedal {
 
 typedef struct performance_motion {
     himc_planner *planner;          ///< owned
+    performance_feet feet;
     himc_track *track;              ///< owned; of the take that is loaded, NULL: none
     hand_source piece;              ///< what is played: the track, or else the planner
     hand_source source[HIMC_HANDS]; ///< the planner, or the track while it plays that hand

@@ -28,7 +28,8 @@
 
 static bool check_stroke(const himc_stroke *s, bool any_hand, himc_error *error)
 {
-    bool hand = (unsigned)s->hand < HIMC_HANDS || (any_hand && s->hand == HIMC_HAND_ANY);
+    bool hand = (unsigned)s->hand < HIMC_HANDS || s->hand == HIMC_FOOT ||
+                (any_hand && s->hand == HIMC_HAND_ANY);
     bool placed = s->spot == HIMC_SPOT_XY;
     if (!hand || (unsigned)s->nuance >= HIMC_NUANCES || (unsigned)s->spot > HIMC_SPOT_XY ||
         !memchr(s->drum, 0, sizeof s->drum))
@@ -56,6 +57,17 @@ void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, 
                     himc_drum_name(p->drums.slot[drum].drum));
 }
 
+static bool put_foot_stroke(himc_performance *p, const himc_stroke *stroke, int drum,
+                            himc_error *error)
+{
+    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &drum, error) ||
+        !himc_feet_add(&p->motion->feet, stroke, drum, himc_drums_frame(&p->drums, drum), error))
+        return false;
+    himc_performance_find_end(p);
+    himc_motion_stir(p->motion);
+    return true;
+}
+
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *written, himc_error *error)
 {
     int drum;
@@ -71,6 +83,8 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *written
         if (!first)
             return false;
     }
+    if (stroke->hand == HIMC_FOOT)
+        return put_foot_stroke(p, stroke, drum, error);
     bool rolls = stroke->ornament >= HIMC_ROLL_SINGLE;
     int tempo_count;
     const himc_tempo_change *tempi = himc_planner_tempi(p->motion->planner, &tempo_count);
@@ -191,13 +205,15 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     asked.alone = !left || !right;
     if (asked.alone && own.hand == HIMC_HAND_ANY)
         own.hand = left ? HIMC_LEFT : HIMC_RIGHT;
-    if (own.hand != HIMC_HAND_ANY && !(own.hand == HIMC_LEFT ? left : right))
+    if (own.hand < HIMC_HANDS && !(own.hand == HIMC_LEFT ? left : right))
         return himc_error_set(error, "hit: not possible while a take is playing");
     if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error) ||
         !himc_performance_place_stroke(p, &own, asked.drum, error))
         return false;
     himc_performance_name_drum(p, &own, asked.drum);
     tell_places(p);
+    if (own.hand == HIMC_FOOT)
+        return himc_feet_hit(&own, &p->drums, asked.drum, p->settings.latency, error);
     // a command that acts in this step was meant for its sample, up to a step before
     int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
     double from = (double)sample / p->clock.sample_rate;

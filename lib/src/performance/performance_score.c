@@ -439,6 +439,7 @@ static himc_job_state install_changes(score_job *j, himc_error *error)
         himc_performance_notice_drums(p);
         if (!j->queued) {
             himc_planner_clear(planner);
+            himc_feet_clear(&p->motion->feet);
             himc_text_clear(&p->written.score);
         }
         j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
@@ -507,7 +508,7 @@ static himc_job_state add_strokes(score_job *j, himc_error *error)
             }
         }
         if (!good) {
-            himc_error_prefix(error, "%s", j->path);
+            himc_error_prefix(error, "%s:%d", j->path, score->stroke_lines[place < 0 ? 0 : place]);
             return HIMC_JOB_FAILED;
         }
     }
@@ -634,6 +635,12 @@ bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *ot
                 (track ? himc_track_exchange(track, other->motion->track,
                                              himc_motion_take_time(p->motion, step_time(p)))
                        : himc_planner_exchange(p->motion->planner, other->motion->planner));
+    if (good && !track) {
+        performance_feet own = p->motion->feet;
+        p->motion->feet = other->motion->feet;
+        p->motion->feet.played_to = own.played_to;
+        other->motion->feet = own;
+    }
     if (good)
         himc_body_plan_pushes(p->body, with->planned, with->planned_count, PUSHES_INSTEAD, NULL);
     himc_performance_find_end(p);

@@ -51,7 +51,8 @@ bool himc_planner_score_has_room(const planner_score *score, const himc_stroke *
 {
     int all[HIMC_HANDS] = {score->part[HIMC_LEFT].count, score->part[HIMC_RIGHT].count};
     for (int i = 0; i < count; i++)
-        if (strokes[i].ornament < HIMC_ROLL_SINGLE && !check_count(all[strokes[i].hand]++, error))
+        if (strokes[i].hand < HIMC_HANDS && strokes[i].ornament < HIMC_ROLL_SINGLE &&
+            !check_count(all[strokes[i].hand]++, error))
             return false;
     return true;
 }

@@ -456,6 +456,8 @@ static bool check_playable(reader *r)
                 return false;
             continue;
         }
+        if (stroke->hand == HIMC_FOOT)
+            continue;
         if (seconds - last[stroke->hand] < HIMC_CLOSEST_STROKES)
             return himc_error_set(
                 r->error,

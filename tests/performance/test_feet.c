@@ -1,0 +1,95 @@
+/// test_feet.c: strokes that a foot plays.
+#include "osc_ear.h"
+
+#include "performance/performance_state.h"
+#include "performance/research.h"
+
+static void load(const char *text)
+{
+    himc_error error = {.text = ""};
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_load_text(performance, text, "s.txt", &error),
+                             error.text);
+}
+
+typedef struct heard_stroke {
+    double time;
+    const char *hand, *drum;
+    double velocity, force;
+} heard_stroke;
+
+// stroke k of those heard
+static heard_stroke stroke(int k)
+{
+    for (int i = 0; i < heard_count; i++)
+        if (strcmp(heard[i].path, "/himc/strike") == 0 && k-- == 0) {
+            lo_arg **a = lo_message_get_argv(heard[i].message);
+            return (heard_stroke){number(a[0]), word(a[1]), word(a[2]), number(a[5]), number(a[6])};
+        }
+    TEST_FAIL_MESSAGE("no such stroke");
+    return (heard_stroke){0};
+}
+
+static void test_a_foot_plays_on_its_beat_beside_the_hands(void)
+{
+    static const double beat[] = {0, 1, 1.75, 2, 2.5};
+    subscribe("strikes");
+    load("drum kick 22; kick place .7 -.4 .5; drum s 14; s place .5 .1 .85; tempo 90;"
+         "stroke 1 right legato f s; stroke 0 foot legato f kick; stroke 1.75 foot legato p kick;"
+         "tempo 45 2; stroke 2 foot legato f kick; stroke 2.5 left legato f s;");
+    say("/himc/play", "");
+    play(4);
+    TEST_ASSERT_EQUAL_STRING("", last_error());
+    TEST_ASSERT_EQUAL_INT(5, count("/himc/strike"));
+    for (int i = 0; i < 5; i++) {
+        bool foot = i != 1 && i != 4;
+        double due = fmin(beat[i], 2) / 1.5 + fmax(beat[i] - 2, 0) / .75;
+        TEST_ASSERT_EQUAL_STRING(foot ? "foot" : i == 1 ? "right" : "left", stroke(i).hand);
+        TEST_ASSERT_EQUAL_STRING(foot ? "kick" : "s", stroke(i).drum);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-4, due, stroke(i).time - stroke(0).time);
+    }
+    TEST_ASSERT_TRUE(stroke(2).force < .6 * stroke(0).force);
+    TEST_ASSERT_DOUBLE_WITHIN(.03 * stroke(0).force, stroke(0).force, stroke(3).force);
+}
+
+static void test_feet_alone_play_a_loop_and_stop_when_cleared(void)
+{
+    subscribe("strikes");
+    load("drum kick 22; tempo 120; stroke 0 foot legato f kick; stroke 1.5 foot legato f kick;"
+         "loop 1;");
+    say("/himc/play", "");
+    play(2.1); // two rounds of a second, and the first stroke of the third
+    TEST_ASSERT_EQUAL_INT(5, count("/himc/strike"));
+    for (int i = 1; i < 5; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(2e-4, i % 2 ? .75 : .25, stroke(i).time - stroke(i - 1).time);
+    say("/himc/clear", "");
+    play(2);
+    TEST_ASSERT_EQUAL_INT(5, count("/himc/strike"));
+}
+
+static void test_a_foot_follows_a_message_and_a_seek(void)
+{
+    subscribe("strikes");
+    load("drum kick 22; tempo 60;");
+    say("/himc/hit", "foot legato f kick");
+    play(.5);
+    TEST_ASSERT_EQUAL_INT(1, count("/himc/strike"));
+    say("/himc/stroke", "1 foot legato f kick");
+    say("/himc/stroke", "3 foot legato f kick");
+    say("/himc/seek", "2");
+    say("/himc/play", "");
+    play(1.5);
+    TEST_ASSERT_EQUAL_INT(2, count("/himc/strike"));
+    say("/himc/stroke", "6 foot legato f dead kick");
+    play(.1);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(last_error(), "foot: expected plain strokes only"),
+                                 last_error());
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_foot_plays_on_its_beat_beside_the_hands);
+    RUN_TEST(test_feet_alone_play_a_loop_and_stop_when_cleared);
+    RUN_TEST(test_a_foot_follows_a_message_and_a_seek);
+    return UNITY_END();
+}
