@@ -71,7 +71,7 @@
 // bars that are computed (lib/src/head/bar.c)
 #define HIMC_BARS(BAR) BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel")
 // the set-ups that the library has (lib/src/base/setups.c)
-#define HIMC_SETUPS(SETUP) SETUP("timpani") SETUP("xylophone") SETUP("marimba")
+#define HIMC_SETUPS(SETUP) SETUP("kit") SETUP("timpani") SETUP("xylophone") SETUP("marimba")
 // the words of `instrument`
 #define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD)
 #define HIMC_ROW_KIND(name, form) form " | "

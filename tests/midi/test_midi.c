@@ -399,7 +399,7 @@ static void test_pitches_outside_the_timpani_are_moved_by_octaves(void)
     builder b;
     timpani(&b, (int[]){30, 84}, 2, QUARTER, 40);
     import(&b, NULL);
-    reported("2 notes are moved by octaves to C2 .. B3");
+    reported("2 notes are moved by octaves to what is built");
     TEST_ASSERT_EQUAL_INT(2, score->stroke_count);
 }
 
@@ -493,10 +493,84 @@ static void test_what_two_hands_cannot_play_is_reported(void)
     char *bytes = load("groove", &size);
     TEST_ASSERT_TRUE(himc_midi_import(&made, bytes, size, "groove.mid", NULL, &error));
     free(bytes);
-    reported("34 of 73 notes for drums are played");
-    reported("36 notes are not played: they are of cymbals or of wood or metal");
+    reported("71 of 73 notes for drums are played");
     reported("1 note is one stroke with another at the same time on its head"); // 35 and 36
-    reported("2 notes are not played: both hands are busy");                    // of five at once
+    reported("1 note is not played: both hands are busy");                      // of five at once
+    reported("4 of side stick: played on snare");
+}
+
+static int lines_with(const char *text, const char *what)
+{
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, what)); at += strlen(what))
+        count++;
+    return count;
+}
+
+// feet play the bass drum, and open and close the hi-hat before its stroke
+static void test_feet_play_their_pedals(void)
+{
+    static const int keys[] = {36, 42, 46, 46, 42, 44};
+    builder b;
+    begin(&b);
+    for (int i = 0; i < 6; i++)
+        event(&b, i ? QUARTER : 0, 0x99, keys[i], 90);
+    end(&b);
+    import(&b, NULL);
+    reported("6 of 6 notes for drums are played");
+    TEST_ASSERT_EQUAL_INT(HIMC_FOOT, score->strokes[0].hand);
+    TEST_ASSERT_EQUAL_STRING("kick", score->strokes[0].drum);
+    TEST_ASSERT_EQUAL_INT(HIMC_FOOT, score->strokes[5].hand);
+    TEST_ASSERT_EQUAL_STRING("hats", score->strokes[5].drum);
+    TEST_ASSERT_EQUAL_INT(2, lines_with(made.text, "hats open 0;"));
+    TEST_ASSERT_EQUAL_INT(1, lines_with(made.text, "hats open 1;"));
+    TEST_ASSERT_EQUAL_INT(3, score->change_count);
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(0.07, score->strokes[i < 2 ? i + 1 : 4].beat,
+                                  score->changes[i].beat);
+}
+
+// each key of General MIDI's map is played, or told by its name
+static void test_every_key_is_played_or_told(void)
+{
+    builder b;
+    begin(&b);
+    for (int key = 34; key <= 82; key++)
+        event(&b, key > 34 ? QUARTER : 0, 0x99, key, 90);
+    end(&b);
+    TEST_ASSERT_TRUE(himc_midi_import(&made, b.bytes, b.size, "test.mid", NULL, &error));
+    reported("1 of hand clap: no such instrument here");
+    reported("1 of open cuica: no such instrument here");
+    reported("1 of key 34: no sound in General MIDI");
+    reported("1 of ride cymbal 2: played on ride");
+    int told = lines_with(made.report, ": no such instrument here") +
+               lines_with(made.report, ": no sound in General MIDI") +
+               lines_with(made.report, ": no room for one more");
+    TEST_ASSERT_EQUAL_INT(49, lines_with(made.text, "\nstroke ") + told);
+    TEST_ASSERT_EQUAL_INT(HIMC_DRUMS, lines_with(made.text, "\ninstrument "));
+}
+
+static void test_keyboards_are_played_on_their_bars(void)
+{
+    static const int keys[] = {60, 64, 67, 72, 61, 30};
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xc0, 12);
+    for (int i = 0; i < 6; i++)
+        event(&b, i ? QUARTER : 0, 0x90, keys[i], 90);
+    event(&b, 0, 0x90, 79, 90); // with the last
+    end(&b);
+    import(&b, NULL);
+    reported("7 of 7 notes for marimba are played");
+    reported("1 note is moved by octaves to what is built");
+    TEST_ASSERT_NOT_NULL(strstr(made.text, "instrument marimba marimba F#3 G5;"));
+    static const char *const part[] = {"C4", "E4", "G4", "C5", "C#4"};
+    for (int i = 0; i < 5; i++)
+        TEST_ASSERT_EQUAL_STRING(part[i], score->strokes[i].part);
+    // of two at once the left hand has the lower one
+    int low = strcmp(score->strokes[5].part, "F#3") ? 6 : 5;
+    TEST_ASSERT_EQUAL_INT(HIMC_LEFT, score->strokes[low].hand);
+    TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, score->strokes[11 - low].hand);
 }
 
 // of a chord of three the softest is left out
@@ -526,11 +600,11 @@ static void test_the_part_is_chosen(void)
     end(&b);
     import(&b, NULL);
     reported("1 of 1 notes for timpani are played");
-    reported("2 notes for drums not asked for");
+    reported("2 notes for other percussion are not asked for");
     tearDown();
     import(&b, &(midi_options){.choice = MIDI_DRUMS});
     reported("2 of 2 notes for drums are played");
-    reported("1 note for timpani not asked for");
+    reported("1 note for other percussion is not asked for");
 }
 
 // a file's name and tracks come from strangers
@@ -605,6 +679,9 @@ int main(void)
     RUN_TEST(test_two_drums_in_the_middle_are_played_by_sides);
     RUN_TEST(test_outer_drums_are_played_by_the_hand_of_their_side);
     RUN_TEST(test_what_two_hands_cannot_play_is_reported);
+    RUN_TEST(test_feet_play_their_pedals);
+    RUN_TEST(test_every_key_is_played_or_told);
+    RUN_TEST(test_keyboards_are_played_on_their_bars);
     RUN_TEST(test_the_loud_notes_of_a_chord_are_played);
     RUN_TEST(test_the_part_is_chosen);
     RUN_TEST(test_a_name_stays_one_comment);

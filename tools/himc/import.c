@@ -16,7 +16,7 @@ enum { OUT, PART, CURVE };
 
 static const cli_option options[] = {
     {"output", 'o', "SCORE", "the score; - is the standard output"},
-    {"part", 0, "PART", "timpani or drums (timpani if the file has any)"},
+    {"part", 0, "PART", "the first of these of which the file has any"},
     {"curve", 0, "CURVE", "how velocities become dynamics (notation)"},
     {0},
 };
@@ -40,9 +40,15 @@ static bool read_curve(const char *word, double *range, himc_error *error)
 
 static bool read_part(const char *word, midi_choice *part, himc_error *error)
 {
-    *part = !word ? MIDI_ANY : !strcmp(word, "timpani") ? MIDI_TIMPANI : MIDI_DRUMS;
-    return !word || *part == MIDI_TIMPANI || !strcmp(word, "drums") ||
-           himc_error_set(error, "--part: \"%s\", expected timpani or drums", word);
+    *part = MIDI_ANY;
+    for (int i = 1; i < MIDI_CHOICES && word; i++)
+        if (strcmp(word, himc_midi_choice_name((midi_choice)i)) == 0)
+            *part = (midi_choice)i;
+    return !word || *part != MIDI_ANY ||
+           himc_error_set(error,
+                          "--part: \"%s\", expected timpani drums marimba xylophone vibraphone "
+                          "glockenspiel",
+                          word);
 }
 
 static bool import(const char *path, const char *name, const midi_options *wanted, midi_score *made,
@@ -102,13 +108,15 @@ const cli_call cli_import = {
     "import",
     "FILE.mid",
     " -o SCORE",
-    "makes a score of a MIDI file's timpani or drums",
+    "makes a score of a MIDI file's percussion",
     "Notes of timpani are played on up to four drums, with pedals that move between them;\n"
-    "those of the drum channel of General MIDI on five heads of several sizes. One player\n"
-    "has two hands: what cannot be played is said on stderr, a line for each reason.\n"
+    "those of the drum channel of General MIDI on a kit and what stands around it; those of\n"
+    "keyboards on their bars. One player has two hands and feet: what cannot be played is\n"
+    "said on stderr, a line for each reason.\n"
     "render, info and the command `score` read a MIDI file in the same way by themselves.\n"
     "\n"
-    "PART: timpani are program 48 of General MIDI and tracks of that name; drums channel 10.\n"
+    "PART: timpani (program 48 of General MIDI and tracks of that name), drums (channel 10),\n"
+    "marimba, xylophone, vibraphone, glockenspiel (programs 13, 14, 12, 10).\n"
     "CURVE: `notation`, as notation programs write them, 16 ppp .. 112 ff in equal steps; or\n"
     "`square:DB`, the square law of synthesisers over a range of 1 .. 80 dB; `square` is 22.",
     options,

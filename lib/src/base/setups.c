@@ -2,7 +2,39 @@
 /// places are chosen so that one player reaches every instrument from one place.
 #include "base/setups.h"
 
+#include <stdio.h>
+#include <string.h>
+
+const char himc_setup_kit[] = "instrument snare snare 14; snare place .52 .02 .72;"
+                              "instrument hats hi-hat 14; hats place .42 .46 .88;"
+                              "instrument high-tom tom 10; high-tom place .78 .3 .88 -.2;"
+                              "instrument tom tom 12; tom place .84 0 .88 -.2;"
+                              "instrument floor tom 16; floor place .42 -.42 .7;"
+                              "instrument crash crash 18; crash place .78 -.52 1.05 -.3;"
+                              "instrument ride ride 20; ride place .3 -.86 .9 -.2;"
+                              "instrument kick kick 22; kick place .8 .1 .4 -.8;";
+
+const char himc_setup_around[] =
+    "instrument low-floor tom 18; low-floor place .12 -.66 .7;"
+    "instrument mid-tom tom 14; mid-tom place .82 -.32 .86;"
+    "instrument china china 18; china place .5 -.86 1.05 -.3;"
+    "instrument splash splash 10; splash place .95 .12 1.1 -.3;"
+    "instrument crash-16 crash 16; crash-16 place .7 .64 1.1 -.3;"
+    "instrument cowbell cowbell; cowbell place .9 .36 1.05;"
+    "instrument high-bongo bongo 7; high-bongo place .2 .6 .9;"
+    "instrument low-bongo bongo 8.5; low-bongo place .2 .84 .9;"
+    "instrument high-conga conga 11; high-conga place .1 .7 .75;"
+    "instrument low-conga conga 12.5; low-conga place -.1 .9 .75;"
+    "instrument high-timbale timbale 13; high-timbale place .3 -.8 .9;"
+    "instrument low-timbale timbale 14; low-timbale place 0 -.85 .9;"
+    "instrument agogo agogo; agogo place .72 .86 1;"
+    "instrument claves claves; claves place .25 .3 1;"
+    "instrument high-block wood-block 900; high-block place .98 .3 .95;"
+    "instrument low-block wood-block 640; low-block place .98 .44 .95;"
+    "instrument triangle triangle; triangle place .5 .2 1.2;";
+
 const himc_setup himc_setups[] = {
+    {"kit", himc_setup_kit},
     // four timpani around a player, the lowest at the left, tuned in the middle of their ranges
     {"timpani", "drum low 32; low place .251 .843 .85; low tune E2;"
                 "drum second 29; second place .832 .287 .85; second tune A2;"
@@ -11,3 +43,20 @@ const himc_setup himc_setups[] = {
     {"xylophone", "instrument xylophone xylophone F4 C7; xylophone place .45 0 .87;"},
     {"marimba", "instrument marimba marimba C3 C6; marimba place .5 0 .87;"},
 };
+
+bool himc_setup_find(const char *text, const char *name, const char **made, int *length,
+                     double place[4])
+{
+    char line[64];
+    int head = snprintf(line, sizeof line, "instrument %s ", name);
+    const char *at = strstr(text, line);
+    if (!at)
+        return false;
+    *made = at + head;
+    *length = (int)strcspn(*made, ";");
+    head = snprintf(line, sizeof line, "; %s place ", name);
+    at = strstr(text, line);
+    place[3] = 0;
+    return at &&
+           sscanf(at + head, "%lf %lf %lf %lf", &place[0], &place[1], &place[2], &place[3]) >= 3;
+}

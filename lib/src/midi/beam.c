@@ -50,7 +50,7 @@ bool himc_midi_search(const midi_part *part, const midi_state *first, int choice
     if (good)
         now[0].state = *first;
     for (int k = 0; good && k < part->count; k++) {
-        if (part->stroke[k].fate != MIDI_PLAYED)
+        if (part->stroke[k].fate != MIDI_PLAYED || part->stroke[k].foot)
             continue;
         int kept = 0;
         for (int i = 0; i < count * choices; i++) {
@@ -68,7 +68,7 @@ bool himc_midi_search(const midi_part *part, const midi_state *first, int choice
     for (int i = 1; good && i < count; i++)
         best = now[i].state.cost < now[best].state.cost ? i : best;
     for (int k = part->count - 1; good && k >= 0; k--) {
-        if (part->stroke[k].fate != MIDI_PLAYED)
+        if (part->stroke[k].fate != MIDI_PLAYED || part->stroke[k].foot)
             continue;
         step at = steps[(size_t)k * WIDTH + (size_t)best];
         chosen[k] = at.choice;

@@ -1,6 +1,6 @@
 /// import.c: from a MIDI file to the text of a score.
 ///
-/// The notes of one part, timpani or drums, get heads (timpani.c, kit.c) and hands (sticking.c);
+/// The notes of one part get instruments (timpani.c, kit.c, keyboard.c) and hands (sticking.c);
 /// here velocities become dynamics, and all becomes text. Beats are the file's quarter notes and
 /// its tempo map is written as it is, so both can be edited; nothing is quantised. A piece that
 /// begins sooner than a player can raise the sticks is preceded by whole beats. Invariant: each
@@ -55,32 +55,61 @@ double himc_midi_dynamic(int velocity, double range)
 
 // which notes
 
-static bool is_drum(const midi_note *note)
+static const char *const names[MIDI_CHOICES] = {"",          "timpani",    "drums",       "marimba",
+                                                "xylophone", "vibraphone", "glockenspiel"};
+
+const char *himc_midi_choice_name(midi_choice choice)
 {
-    return note->channel == MIDI_DRUM_CHANNEL;
+    return names[choice];
 }
 
-static bool is_timpani(const midi_note *note)
+static midi_choice choice_of(const midi_note *note)
 {
     const int program = 47; // "48 Timpani" of General MIDI, which counts from 1
-    return !is_drum(note) && (note->program == program || note->timpani);
+    if (note->channel == MIDI_DRUM_CHANNEL)
+        return MIDI_DRUMS;
+    if (note->program == program || note->timpani)
+        return MIDI_TIMPANI;
+    for (int i = 0; i < MIDI_CHOICES; i++)
+        if (himc_midi_is_keyboard((midi_choice)i, note->program))
+            return (midi_choice)i;
+    return MIDI_ANY;
+}
+
+static midi_choice first_choice(const midi_file *file)
+{
+    midi_choice first = MIDI_CHOICES;
+    for (int i = 0; i < file->note_count; i++) {
+        midi_choice c = choice_of(&file->notes[i]);
+        first = c != MIDI_ANY && c < first ? c : first;
+    }
+    return first == MIDI_CHOICES ? MIDI_DRUMS : first;
+}
+
+static bool give_instruments(midi_part *part, himc_error *error)
+{
+    if (part->choice == MIDI_TIMPANI)
+        return himc_midi_tune(part, error);
+    if (part->choice == MIDI_DRUMS)
+        himc_midi_kit(part);
+    else if (part->count > 0)
+        himc_midi_keyboard(part);
+    return true;
 }
 
 // the notes of the part as strokes with heads and hands
 static bool make_part(midi_part *part, const midi_file *file, const midi_options *options,
                       himc_error *error)
 {
-    part->timpani = options->choice == MIDI_TIMPANI;
-    for (int i = 0; i < file->note_count && options->choice == MIDI_ANY; i++)
-        part->timpani |= is_timpani(&file->notes[i]);
+    part->choice = options->choice == MIDI_ANY ? first_choice(file) : options->choice;
     part->stroke = calloc((size_t)file->note_count + 1, sizeof *part->stroke);
     if (!part->stroke)
         return himc_error_set(error, "out of memory for %d notes", file->note_count);
     for (int i = 0; i < file->note_count; i++) {
         const midi_note *note = &file->notes[i];
-        bool timpani = is_timpani(note), drum = is_drum(note);
+        midi_choice choice = choice_of(note);
         double damped = note->seconds + 0.15; // by a hand at the earliest (s); chosen
-        if (part->timpani ? timpani : drum)
+        if (choice == part->choice)
             part->stroke[part->count++] =
                 (midi_stroke){.note = note,
                               .key = note->key,
@@ -88,15 +117,11 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
                               .dynamic = himc_midi_dynamic(note->velocity, options->range),
                               .end = fmax(note->off, damped)};
         else
-            part->fate[timpani || drum ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT]++;
+            part->fate[choice != MIDI_ANY ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT]++;
     }
     if (part->count > MOST_STROKES)
         return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
-    if (part->timpani && !himc_midi_tune(part, error))
-        return false;
-    if (!part->timpani)
-        himc_midi_kit(part);
-    if (!himc_midi_stick(part, error))
+    if (!give_instruments(part, error) || !himc_midi_stick(part, error))
         return false;
     // a score has lines for so many damped strokes
     int most_damped = (MOST_CHANGES - PEDAL_STEPS * part->pedals) / 2;
@@ -106,7 +131,7 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
         s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most_damped;
         part->damped += s->damped;
     }
-    if (part->timpani)
+    if (part->choice == MIDI_TIMPANI)
         himc_midi_find_rolls(part);
     return true;
 }
@@ -128,13 +153,13 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                           "notes are not played: no drum could be tuned to them in time"},
         [MIDI_NO_HAND] = {"note is not played: both hands are busy",
                           "notes are not played: both hands are busy"},
-        [MIDI_NOT_A_HEAD] = {"note is not played: it is of a cymbal or of wood or metal",
-                             "notes are not played: they are of cymbals or of wood or metal"},
+        [MIDI_NO_INSTRUMENT] = {"note is not played: no stick strikes its instrument",
+                                "notes are not played: no stick strikes their instruments"},
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
                                    "notes are of other instruments"},
     };
     put(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->count,
-        part->timpani ? "timpani" : "drums");
+        himc_midi_choice_name(part->choice));
     if (file->cut > 0)
         put(t, "the file is cut short: %d of its tracks can be read up to %.3g s only\n", file->cut,
             file->cut_at);
@@ -143,12 +168,14 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
     for (int i = 0; i < MIDI_FATES; i++)
         if (why[i][0])
             report_kind(t, part->fate[i], why[i][0], why[i][1]);
-    int other = part->fate[MIDI_OTHER_PART];
-    if (other > 0)
-        put(t, "%d note%s for %s not asked for\n", other, other == 1 ? "" : "s",
-            part->timpani ? "drums" : "timpani");
-    report_kind(t, part->moved, "note is moved by octaves to C2 .. B3",
-                "notes are moved by octaves to C2 .. B3");
+    report_kind(t, part->fate[MIDI_OTHER_PART], "note for other percussion is not asked for",
+                "notes for other percussion are not asked for");
+    char line[100];
+    for (int key = 0; key < 128 && part->choice == MIDI_DRUMS; key++)
+        if (himc_midi_tell_key(part, key, line, sizeof line) > 0 && line[0])
+            put(t, "%s\n", line);
+    report_kind(t, part->moved, "note is moved by octaves to what is built",
+                "notes are moved by octaves to what is built");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");
     if (part->rolls > 0)
         put(t, "%d notes are played as %d roll%s\n", part->rolled, part->rolls,
@@ -169,8 +196,8 @@ static double frequency(int key)
 typedef struct change {
     double seconds;
     int head;
-    int key;  ///< tuned to it; -1: damped, or let go
-    int damp; ///< 0 or 1
+    int key;          ///< tuned to it; -1: the command
+    const char *does; ///< command and number
 } change;
 
 static int by_time(const void *a, const void *b)
@@ -201,16 +228,26 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         for (int k = pedal; k < part->pedals && part->pedal[k].seconds < until; k++)
             if (part->pedal[k].head == s->head && part->pedal[k].seconds > s->end)
                 until = part->pedal[k].seconds;
-        list[count++] = (change){s->end, s->head, -1, 1};
-        list[count++] = (change){until, s->head, -1, 0};
+        list[count++] = (change){s->end, s->head, -1, "damp 1"};
+        list[count++] = (change){until, s->head, -1, "damp 0"};
     }
     // a pedal goes through semitones between, as an undamped drum lets hear
     for (int k = 0; k < part->pedals; k++) {
         const midi_pedal *p = &part->pedal[k];
         int way = p->to - p->from, steps = abs(way) < PEDAL_STEPS ? abs(way) : PEDAL_STEPS;
         for (int i = 1; i <= steps; i++)
-            list[count++] =
-                (change){p->seconds + p->length * i / steps, p->head, p->from + way * i / steps, 0};
+            list[count++] = (change){p->seconds + p->length * i / steps, p->head,
+                                     p->from + way * i / steps, NULL};
+    }
+    // a hi-hat's foot moves just before the stroke (s), chosen
+    midi_opening last = MIDI_AS_IT_IS;
+    for (int i = 0; i < part->count && count < MOST_CHANGES; i++) {
+        const midi_stroke *s = &part->stroke[i];
+        if (s->fate != MIDI_PLAYED || s->pedal == MIDI_AS_IT_IS || s->pedal == last)
+            continue;
+        last = s->pedal;
+        list[count++] = (change){fmax(s->note->seconds - 0.03, 0), s->head, -1,
+                                 last == MIDI_OPEN ? "open 1" : "open 0"};
     }
     qsort(list, (size_t)count, sizeof *list, by_time);
     for (int i = 0; i < count; i++) {
@@ -218,7 +255,7 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         double beat = himc_score_beat(file->tempi, file->tempo_count, c->seconds) + lead;
         const char *name = part->head[c->head].name;
         if (c->key < 0)
-            put(t, "at %.9g %s damp %d;\n", beat, name, c->damp);
+            put(t, "at %.9g %s %s;\n", beat, name, c->does);
         else
             put(t, "at %.9g %s tune %.6g;\n", beat, name, frequency(c->key));
     }
@@ -251,11 +288,16 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
         put(&score, "comment %.*s;\n", (int)(end - line), line);
     put(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
     for (int i = 0; i < part->heads; i++) {
-        const midi_head *head = &part->head[i];
-        if (head->key >= 0)
-            put(&score, "drum %s %g;\n%s place %g %g %g;\n%s tune %.6g;\n", head->name,
-                head->inches, head->name, head->x, head->y, head->z, head->name,
-                frequency(head->key));
+        const midi_head *h = &part->head[i];
+        if (h->key == -1)
+            continue;
+        if (h->made[0])
+            put(&score, "instrument %s %s;\n", h->name, h->made);
+        else
+            put(&score, "drum %s %g;\n", h->name, h->inches);
+        put(&score, "%s place %g %g %g %g;\n", h->name, h->x, h->y, h->z, h->tilt);
+        if (h->key >= 0)
+            put(&score, "%s tune %.6g;\n", h->name, frequency(h->key));
     }
     put(&score, "gain %g;\n", GAIN);
     for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
@@ -272,8 +314,8 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
             put(&score, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length,
                 s->dynamic, s->roll.last_dynamic, spot, drum);
         else
-            put(&score, "stroke %.9g %s legato %.3g %s %s;\n", beat, himc_hand_name(s->hand),
-                s->dynamic, spot, drum);
+            put(&score, "stroke %.9g %s legato %.3g %s %s%s%s;\n", beat, himc_hand_name(s->hand),
+                s->dynamic, spot, s->part, s->part[0] ? " " : "", drum);
     }
     score.failed |= !put_changes(&score, file, part, lead);
     *made = (midi_score){score.bytes, said.bytes,
@@ -299,8 +341,10 @@ bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const ch
     if (good && part.fate[MIDI_PLAYED] == 0)
         good = himc_error_set(error, "nothing to play: %d note%s, none %s", file.note_count,
                               file.note_count == 1 ? "" : "s",
-                              part.timpani ? "of timpani (program 48 or a track of that name)"
-                                           : "of a drum (channel 10)");
+                              part.choice == MIDI_TIMPANI
+                                  ? "of timpani (program 48 or a track of that name)"
+                              : part.choice == MIDI_DRUMS ? "of a drum (channel 10)"
+                                                          : "of that keyboard");
     good = good && write_score(made, &file, &part, name, error);
     free(part.stroke);
     free(part.pedal);

@@ -6,9 +6,14 @@
 
 /// Whose notes are played.
 typedef enum midi_choice {
-    MIDI_ANY,     ///< the timpani's if there are any, else the drums'
-    MIDI_TIMPANI, ///< program 48 of General MIDI, or a track of that name
-    MIDI_DRUMS    ///< channel 10
+    MIDI_ANY,          ///< the first of these of which there are any
+    MIDI_TIMPANI,      ///< program 48 of General MIDI, or a track of that name
+    MIDI_DRUMS,        ///< channel 10
+    MIDI_MARIMBA,      ///< program 13
+    MIDI_XYLOPHONE,    ///< program 14
+    MIDI_VIBRAPHONE,   ///< program 12
+    MIDI_GLOCKENSPIEL, ///< program 10
+    MIDI_CHOICES
 } midi_choice;
 
 typedef struct midi_options {
@@ -16,6 +21,9 @@ typedef struct midi_options {
     double range; ///< dynamic range of velocities by a square law (dB), 1 .. 80; 0: as notation
                   ///< programs write dynamics
 } midi_options;
+
+/// "timpani" and so on; "" of MIDI_ANY. Borrowed, static.
+const char *himc_midi_choice_name(midi_choice choice);
 
 /// The dynamic (0 .. 1) of a velocity (1 .. 127); `range` as in midi_options.
 double himc_midi_dynamic(int velocity, double range);

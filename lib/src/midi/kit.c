@@ -1,22 +1,85 @@
-/// kit.c: the drum channel of General MIDI on five heads: what is a drum there, and which.
+/// kit.c: the drum channel of General MIDI: which instrument a key is, where it is struck, by hand
+/// or foot, and what stands in for what a percussionist here does not have.
 ///
-/// A kit stands so that its two usual drums are each before a hand. The sizes are those of usual
-/// drums; places, tuning and the sharing of the keys are chosen: low toms on one head, high ones on
-/// another, bongos, congas and timbales on the smallest.
+/// The instruments stand as in the set-ups (setups.c). A hi-hat is opened and closed by its pedal
+/// before the stroke.
 #include "midi/part.h"
 
+#include "base/setups.h"
+
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-enum { BASS = 1, FLOOR, TOM, SNARE, BONGO }; // 0: no head
+enum how { BY_HAND, BY_FOOT, CLOSED, OPENED, PEDALLED };
 
-static const midi_head heads[MIDI_HEADS] = {
-    [BASS - 1] = {"bass", 28, .70, .36, .85, .356, 38},
-    [FLOOR - 1] = {"floor", 22, .30, -.66, .85, .279, 45},
-    [TOM - 1] = {"tom", 16, .86, -.40, .85, .203, 52},
-    [SNARE - 1] = {"snare", 14, .52, -.16, .85, .178, 57},
-    [BONGO - 1] = {"bongo", 12, .30, .78, .85, .152, 64},
+/// A key of General MIDI's percussion map.
+typedef struct gm_key {
+    const char *sound;
+    const char *instrument; ///< NULL: none here
+    enum how how;
+    himc_spot spot;
+    bool instead;     ///< it is another sound: that is told
+    const char *part; ///< of the instrument; NULL: all of it
+} gm_key;
+
+#define FIRST_KEY 35
+
+static const gm_key keys[] = {
+    {"acoustic bass drum", "kick", BY_FOOT, HIMC_SPOT_NORMAL, false, NULL},
+    {"bass drum 1", "kick", BY_FOOT, HIMC_SPOT_NORMAL, false, NULL},
+    {"side stick", "snare", BY_HAND, HIMC_SPOT_RIM, true, NULL},
+    {"acoustic snare", "snare", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"hand clap", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"electric snare", "snare", BY_HAND, HIMC_SPOT_NORMAL, true, NULL},
+    {"low floor tom", "low-floor", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"closed hi-hat", "hats", CLOSED, HIMC_SPOT_RIM, false, NULL},
+    {"high floor tom", "floor", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"pedal hi-hat", "hats", PEDALLED, HIMC_SPOT_NORMAL, true, NULL},
+    {"low tom", "mid-tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"open hi-hat", "hats", OPENED, HIMC_SPOT_RIM, false, NULL},
+    {"low-mid tom", "tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"high-mid tom", "tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"crash cymbal 1", "crash", BY_HAND, HIMC_SPOT_RIM, false, NULL},
+    {"high tom", "high-tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"ride cymbal 1", "ride", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"chinese cymbal", "china", BY_HAND, HIMC_SPOT_RIM, false, NULL},
+    {"ride bell", "ride", BY_HAND, HIMC_SPOT_CENTER, false, NULL},
+    {"tambourine", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"splash cymbal", "splash", BY_HAND, HIMC_SPOT_RIM, false, NULL},
+    {"cowbell", "cowbell", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"crash cymbal 2", "crash-16", BY_HAND, HIMC_SPOT_RIM, false, NULL},
+    {"vibraslap", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"ride cymbal 2", "ride", BY_HAND, HIMC_SPOT_NORMAL, true, NULL},
+    {"high bongo", "high-bongo", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"low bongo", "low-bongo", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"mute high conga", "high-conga", BY_HAND, HIMC_SPOT_CENTER, true, NULL},
+    {"open high conga", "high-conga", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"low conga", "low-conga", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"high timbale", "high-timbale", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"low timbale", "low-timbale", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"high agogo", "agogo", BY_HAND, HIMC_SPOT_NORMAL, false, "high"},
+    {"low agogo", "agogo", BY_HAND, HIMC_SPOT_NORMAL, false, "low"},
+    {"cabasa", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"maracas", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"short whistle", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"long whistle", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"short guiro", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"long guiro", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"claves", "claves", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"high wood block", "high-block", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"low wood block", "low-block", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"mute cuica", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"open cuica", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"mute triangle", "triangle", BY_HAND, HIMC_SPOT_NORMAL, true, NULL},
+    {"open triangle", "triangle", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
 };
+
+static const gm_key *find_key(int key)
+{
+    bool known = key >= FIRST_KEY && key < FIRST_KEY + (int)(sizeof keys / sizeof keys[0]);
+    return known ? &keys[key - FIRST_KEY] : NULL;
+}
 
 void himc_midi_join(midi_part *part)
 {
@@ -24,7 +87,7 @@ void himc_midi_join(midi_part *part)
     memset(last, -1, sizeof last);
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
-        int *before = &last[part->timpani || s->head < 0 ? s->key : s->head];
+        int *before = &last[part->choice != MIDI_DRUMS || s->head < 0 ? s->key : s->head];
         if (s->fate != MIDI_PLAYED)
             continue;
         midi_stroke *first = *before >= 0 ? &part->stroke[*before] : NULL;
@@ -38,26 +101,72 @@ void himc_midi_join(midi_part *part)
     }
 }
 
+// what a set-up makes of that name, and where; false if it has none
+static bool find(const char *setup, midi_head *head)
+{
+    const char *made;
+    int length;
+    double place[4];
+    if (!himc_setup_find(setup, head->name, &made, &length, place))
+        return false;
+    snprintf(head->made, sizeof head->made, "%.*s", length, made);
+    head->x = place[0];
+    head->y = place[1];
+    head->z = place[2];
+    head->tilt = place[3];
+    return true;
+}
+
+// the index of an instrument of the part, which gets it if it is new; -1: there are too many
+static int head_of(midi_part *part, const char *name)
+{
+    for (int i = 0; i < part->heads; i++)
+        if (strcmp(part->head[i].name, name) == 0)
+            return i;
+    if (part->heads == MIDI_HEADS)
+        return -1;
+    midi_head *head = &part->head[part->heads];
+    *head = (midi_head){.name = name, .key = MIDI_UNTUNED};
+    if (!find(himc_setup_kit, head) && !find(himc_setup_around, head))
+        return -1;
+    head->radius = 0.15; // (m) chosen: only the way to the next one depends on it
+    return part->heads++;
+}
+
 void himc_midi_kit(midi_part *part)
 {
-    enum { SIDE_STICK = 37 };
-    // of the keys of General MIDI's percussion map
-    static const int8_t head[] = {
-        [35] = BASS,  [36] = BASS,  [37] = SNARE, [38] = SNARE, [40] = SNARE, [41] = FLOOR,
-        [43] = FLOOR, [45] = FLOOR, [47] = TOM,   [48] = TOM,   [50] = TOM,   [60] = BONGO,
-        [61] = BONGO, [62] = BONGO, [63] = BONGO, [64] = BONGO, [65] = BONGO, [66] = BONGO};
-    for (part->heads = 0; part->heads < MIDI_HEADS; part->heads++) {
-        part->head[part->heads] = heads[part->heads];
-        part->head[part->heads].key = -1;
-    }
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
-        s->head = s->key < (int)sizeof head ? head[s->key] - 1 : -1;
-        s->spot = s->key == SIDE_STICK ? HIMC_SPOT_RIM : HIMC_SPOT_NORMAL;
-        if (s->head < 0)
-            s->fate = MIDI_NOT_A_HEAD;
-        else
-            part->head[s->head].key = heads[s->head].key;
+        const gm_key *key = find_key(s->key);
+        s->head = key && key->instrument ? head_of(part, key->instrument) : -1;
+        if (s->head < 0) {
+            s->fate = MIDI_NO_INSTRUMENT;
+            continue;
+        }
+        s->spot = key->spot;
+        s->foot = key->how == BY_FOOT || key->how == PEDALLED;
+        s->pedal = key->how == OPENED ? MIDI_OPEN : key->how >= CLOSED ? MIDI_CLOSE : MIDI_AS_IT_IS;
+        snprintf(s->part, sizeof s->part, "%s", key->part ? key->part : "");
     }
     himc_midi_join(part);
+}
+
+int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size)
+{
+    const gm_key *of = find_key(key);
+    int missing = 0, played = 0;
+    for (int i = 0; i < part->count; i++) {
+        missing += part->stroke[i].key == key && part->stroke[i].fate == MIDI_NO_INSTRUMENT;
+        played += part->stroke[i].key == key && part->stroke[i].fate == MIDI_PLAYED;
+    }
+    *line = '\0';
+    if (missing > 0 && of && of->instrument)
+        snprintf(line, size, "%d of %s: no room for one more instrument", missing, of->sound);
+    else if (missing > 0 && of)
+        snprintf(line, size, "%d of %s: no such instrument here", missing, of->sound);
+    else if (missing > 0)
+        snprintf(line, size, "%d of key %d: no sound in General MIDI", missing, key);
+    else if (played > 0 && of->instead)
+        snprintf(line, size, "%d of %s: played on %s", played, of->sound, of->instrument);
+    return missing + played;
 }

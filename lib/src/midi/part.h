@@ -5,16 +5,18 @@
 #ifndef HIMC_MIDI_PART_H
 #define HIMC_MIDI_PART_H
 
+#include "midi/import.h"
 #include "midi/smf.h"
 
-#define MIDI_HEADS 5 ///< most of a part
+#define MIDI_HEADS HIMC_DRUMS ///< most of a part
+#define MIDI_UNTUNED (-2)     ///< of midi_head.key: it is used as it is made
 
 /// What became of a note.
 typedef enum midi_fate {
     MIDI_PLAYED,
-    MIDI_OTHER_INSTRUMENT, ///< neither timpani nor drums
-    MIDI_OTHER_PART,       ///< of the drums, while the timpani are played, or the other way round
-    MIDI_NOT_A_HEAD,       ///< of the drum channel: cymbals, shakers, metal
+    MIDI_OTHER_INSTRUMENT, ///< no percussion
+    MIDI_OTHER_PART,       ///< of percussion that is not asked for
+    MIDI_NO_INSTRUMENT,    ///< of the drum channel: what no stick strikes
     MIDI_TOGETHER,         ///< with another one on the same head: they are one stroke
     MIDI_NO_DRUM,          ///< no drum could be tuned in time
     MIDI_NO_HAND,          ///< both hands are busy
@@ -24,10 +26,12 @@ typedef enum midi_fate {
 /// Where a head stands, and its pitch.
 typedef struct midi_head {
     const char *name; ///< static
-    double inches;    ///< diameter
+    char made[40];    ///< the words of `instrument` after its name; "": a drum ...
+    double inches;    ///< ... of this diameter
     double x, y, z;   ///< of its centre (m)
+    double tilt;      ///< (rad)
     double radius;    ///< (m)
-    int key;          ///< tuned so at first (MIDI key); -1: the head is not used
+    int key;          ///< tuned so at first (MIDI key), MIDI_UNTUNED; -1: the head is not used
 } midi_head;
 
 /// A roll that a stroke begins.
@@ -36,6 +40,9 @@ typedef struct midi_roll {
     double last_dynamic; ///< 0 .. 1
 } midi_roll;
 
+/// What a pedal does before a stroke.
+typedef enum midi_opening { MIDI_AS_IT_IS, MIDI_CLOSE, MIDI_OPEN } midi_opening;
+
 /// A stroke of the part.
 typedef struct midi_stroke {
     const midi_note *note; ///< borrowed from the file
@@ -43,6 +50,10 @@ typedef struct midi_stroke {
     midi_fate fate;
     int head; ///< its index
     himc_spot spot;
+    char part[HIMC_PART_SIZE]; ///< of the instrument; "": all of it
+    double x, y;               ///< of that part, from the instrument's centre (m)
+    midi_opening pedal;
+    bool foot; ///< a foot plays it
     himc_hand hand;
     double dynamic; ///< 0 .. 1
     double end;     ///< of the note: a hand is not back on the head sooner than 0.15 s (s)
@@ -59,7 +70,7 @@ typedef struct midi_pedal {
 } midi_pedal;
 
 typedef struct midi_part {
-    bool timpani; ///< else the drum channel
+    midi_choice choice; ///< not MIDI_ANY
     midi_head head[MIDI_HEADS];
     int heads;
     midi_stroke *stroke; ///< in the order of time (count), owned
@@ -72,7 +83,7 @@ typedef struct midi_part {
     int rolls, rolled;    ///< rolls, and the strokes in them
 } midi_part;
 
-/// Of two strokes on one head (of timpani: of one pitch) at the same time one is played, the
+/// Of two strokes on one head (but for drums: of one pitch) at the same time one is played, the
 /// louder.
 void himc_midi_join(midi_part *part);
 
@@ -98,8 +109,16 @@ bool himc_midi_search(const midi_part *part, const midi_state *first, int choice
 /// without memory.
 bool himc_midi_tune(midi_part *part, himc_error *error);
 
-/// kit.c: gives each stroke of the drum channel its head.
+/// kit.c: gives each stroke of the drum channel its instrument.
 void himc_midi_kit(midi_part *part);
+/// What the report says of a key of the drum channel, "" if it is played as written; returns its
+/// notes.
+int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);
+
+/// keyboard.c: true if a program of General MIDI is that keyboard.
+bool himc_midi_is_keyboard(midi_choice choice, int program);
+/// Gives each stroke its bar.
+void himc_midi_keyboard(midi_part *part);
 
 /// sticking.c: gives each stroke a hand. False without memory.
 bool himc_midi_stick(midi_part *part, himc_error *error);

@@ -26,7 +26,8 @@ static place place_of(const midi_part *part, int stroke, int hand)
     if (stroke < 0)
         return (place){-1e3, 0.5, hand == HIMC_LEFT ? 0.2 : -0.2};
     const midi_head *head = &part->head[part->stroke[stroke].head];
-    return (place){part->stroke[stroke].note->seconds, head->x - 0.75 * head->radius, head->y};
+    const midi_stroke *s = &part->stroke[stroke];
+    return (place){s->note->seconds, head->x - 0.75 * head->radius + s->x, head->y + s->y};
 }
 
 // the state's key is the index of each hand's last stroke
@@ -60,7 +61,9 @@ bool himc_midi_stick(midi_part *part, himc_error *error)
     bool good = hand && himc_midi_search(part, &first, HIMC_HANDS + 1, choose, hand);
     for (int i = 0; good && i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
-        if (s->fate != MIDI_PLAYED)
+        if (s->foot)
+            s->hand = HIMC_FOOT;
+        if (s->fate != MIDI_PLAYED || s->foot)
             continue;
         if (hand[i] == OMIT)
             s->fate = MIDI_NO_HAND;

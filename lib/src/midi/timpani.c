@@ -21,10 +21,18 @@ static const struct {
     midi_head head;
     int low, high;
 } timpano[DRUMS] = {
-    {{"low", 32, .251, .843, .85, .406, -1}, 36, 45},
-    {{"second", 29, .832, .287, .85, .368, -1}, 41, 50},
-    {{"third", 26, .763, -.439, .85, .330, -1}, 45, 54},
-    {{"high", 23, .251, -.843, .85, .292, -1}, 50, 59},
+    {{.name = "low", .inches = 32, .x = .251, .y = .843, .z = .85, .radius = .406, .key = -1},
+     36,
+     45},
+    {{.name = "second", .inches = 29, .x = .832, .y = .287, .z = .85, .radius = .368, .key = -1},
+     41,
+     50},
+    {{.name = "third", .inches = 26, .x = .763, .y = -.439, .z = .85, .radius = .330, .key = -1},
+     45,
+     54},
+    {{.name = "high", .inches = 23, .x = .251, .y = -.843, .z = .85, .radius = .292, .key = -1},
+     50,
+     59},
 };
 
 enum { OMIT = DRUMS };
