@@ -242,6 +242,8 @@ static void find_oscillators(himc_model *m)
             mode = himc_air_loaded(&load, &m->config.head, &mode);
         m->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
     }
+    if (kind->sounds)
+        kind->sounds(m->modes, &m->config.head, m->oscillators);
     const himc_mixture *mix = &m->modes->mixture;
     for (int n = 0; n < mix->count; n++)
         for (int k = 0; k < mix->count; k++)
