@@ -34,11 +34,11 @@
 
 #define SEED 1 // chosen: any
 
-// z below which `n` modes of a list are that begins at z_0 = `from`
-static double zero_at(double from, double n)
+// z below which `n` modes of a list are
+static double zero_at(double from, double to, int count, double n)
 {
-    double density = from * from * (from - 1) / 2; // A
-    return 1 / (1 / from - n / density);
+    double density = from * from * (from - 1) / 2; // A, with z_0 = `from`
+    return to > 0 ? from * pow(to / from, n / count) : 1 / (1 / from - n / density);
 }
 
 static double modes_below(double z)
@@ -52,17 +52,19 @@ static double uniform(uint64_t *state)
     return ldexp((double)(himc_random_bits(state) >> 11), -53);
 }
 
-void himc_statistical_list(himc_statistical *list, double from, int count)
+void himc_statistical_list(himc_statistical *list, double from, double to, int count)
 {
     uint64_t state = SEED;
     list->count = count;
     for (int i = 0; i < count; i++)
         list->mode[i] = (himc_statistical_mode){
-            .zero = zero_at(from, i + uniform(&state)),
-            .count = modes_below(zero_at(from, i + 1)) - modes_below(zero_at(from, i)),
+            .zero = zero_at(from, to, count, i + uniform(&state)),
+            .count = modes_below(zero_at(from, to, count, i + 1)) -
+                     modes_below(zero_at(from, to, count, i)),
         };
     for (int k = 0; k < count / 4; k++) {
-        double zero = zero_at(from, 4 * k + 2), direction = 2 * HIMC_PI * uniform(&state);
+        double zero = zero_at(from, to, count, 4 * k + 2),
+               direction = 2 * HIMC_PI * uniform(&state);
         list->wave[k] = (himc_statistical_wave){
             .zero = zero,
             .x = zero * cos(direction),

@@ -36,9 +36,9 @@ typedef struct himc_statistical {
     himc_statistical_wave wave[HIMC_STATISTICAL_MODES / 4]; ///< of modes 4 k .. 4 k + 3
 } himc_statistical;
 
-/// Fills the list with `count` modes (up to HIMC_STATISTICAL_MODES) from that radius times wavenumber
-/// on.
-void himc_statistical_list(himc_statistical *list, double from, int count);
+/// Fills the list with `count` modes (up to HIMC_STATISTICAL_MODES) above that radius times
+/// wavenumber: up to another, by equal ratios; or, if that is 0, as many to a bandwidth.
+void himc_statistical_list(himc_statistical *list, double from, double to, int count);
 
 /// All shapes at (x, y) (per radius, inside the head) into `shapes` (count); the
 /// mean of their squares over the head is 1.
