@@ -58,7 +58,8 @@
     KIND(rectangle, "rectangle LENGTH WIDTH") \
     KIND(list, "modes FILE")                  \
     KIND(listed, "listed LISTED")             \
-    KIND(bar, "bar BAR HZ [HZ]")
+    KIND(bar, "bar BAR HZ [HZ]")              \
+    KIND(two_heads, "shell SHELL [INCHES]")
 // the instruments that the library has as lists of modes (lib/src/head/lists.c)
 #define HIMC_LISTS(LIST)  \
     LIST("claves")        \
@@ -70,10 +71,20 @@
     LIST("tubular-bell")
 // bars that are computed (lib/src/head/bar.c)
 #define HIMC_BARS(BAR) BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel")
+// drums with a shell (lib/src/head/two_heads.c)
+#define HIMC_SHELLS(SHELL) \
+    SHELL("snare")         \
+    SHELL("tom")           \
+    SHELL("concert-tom")   \
+    SHELL("bass-drum")     \
+    SHELL("kick")          \
+    SHELL("conga")         \
+    SHELL("bongo")         \
+    SHELL("timbale")
 // the set-ups that the library has (lib/src/base/setups.c)
 #define HIMC_SETUPS(SETUP) SETUP("kit") SETUP("timpani") SETUP("xylophone") SETUP("marimba")
 // the words of `instrument`
-#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD)
+#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD) HIMC_SHELLS(WORD)
 #define HIMC_ROW_KIND(name, form) form " | "
 #define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
@@ -247,13 +258,16 @@ HIMC_COMMAND_ROW(MUFFLE, muffle, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "A
                  "lays a cloth on the head, 1: coperto, a dry thud with a pitch")
 HIMC_COMMAND_ROW(SKIN, skin, DRUM, NOW, HIMC_CHANGES_HEAD, "plastic|calf",
                  "sets density and losses of a head of that skin, tuned as it was")
+HIMC_COMMAND_ROW(WIRES, wires, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "on|off | PULL",
+                 "puts wires to the lower head of a drum with two, drawn to it as the strainer "
+                 "says, or takes them off it")
 HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",
                  "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes "
                  "split and beat, each seed in its own way")
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, HIMC_KINDS(HIMC_ROW_KIND) "FILE",
-    "makes a head of another outline, or one of up to 800 masses on springs from a file; or "
-    "bars (of one pitch, or to another), or what has no skin, as a list of modes")
+    "makes a head of another outline, or one of up to 800 masses on springs from a file; a drum "
+    "with a shell; or bars (of one pitch, or to another), or what has no skin, as a list of modes")
 HIMC_COMMAND_ROW(
     MALLET, mallet, DRUM, NOW, 0,
     "soft|medium|hard|wood|usual | K ALPHA MASS | "

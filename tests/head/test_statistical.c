@@ -268,7 +268,7 @@ static void test_the_pressure_far_away_carries_what_the_modes_lose_by_radiation(
 {
     enum { DIRECTIONS = 8000 };
     himc_statistical *list = malloc(sizeof *list);
-    himc_statistical_list(list);
+    himc_statistical_list(list, HIMC_STATISTICAL_FROM, 0, HIMC_STATISTICAL_MODES);
     for (int first = 0; first < HIMC_STATISTICAL_MODES; first += 96)
         for (double square = 0.05; square < 0.75; square += 0.1) {
             double through = 0, lost = 0;

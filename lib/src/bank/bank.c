@@ -119,7 +119,8 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
     }
 }
 
-void himc_bank_push(himc_bank *bank, const double *shape, double force)
+// before a force acts
+static void begin_push(himc_bank *bank)
 {
     bank_arrive(bank);
     bank->live = bank_round_up(bank->count);
@@ -128,6 +129,24 @@ void himc_bank_push(himc_bank *bank, const double *shape, double force)
     if (!bank->film.on)
         himc_bank_slacken(bank);
     bank->film.on = bank->film.moved = bank->film.set;
+}
+
+void himc_bank_read_rows(himc_bank *bank, const double *rows, double *displacement)
+{
+    bank_arrive(bank);
+    bank->loops->read_rows(rows, bank->capacity, bank->q_per_p, bank->p, bank->live, displacement);
+}
+
+void himc_bank_push_rows(himc_bank *bank, const double *rows, const double *force)
+{
+    begin_push(bank);
+    bank->loops->push_rows(bank->p, bank->s, bank->push.p, bank->push.s, rows, bank->capacity,
+                           force, bank->live);
+}
+
+void himc_bank_push(himc_bank *bank, const double *shape, double force)
+{
+    begin_push(bank);
     bank->loops->push(bank->p, bank->s, bank->push.p, bank->push.s, shape, force, bank->live);
 }
 

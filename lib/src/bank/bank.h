@@ -119,6 +119,10 @@ HIMC_RT double himc_bank_film(const himc_bank *bank);
 /// After a step was run: adds the effect of `force` (N) during that step, spread over the
 /// oscillators by the weights `shape` (padded).
 HIMC_RT void himc_bank_push(himc_bank *bank, const double *shape, double force);
+/// HIMC_BANK_ROWS points together, a row of weights (padded) for each, one row behind the other:
+/// their displacements now, and pushes of them all, as by himc_bank_push.
+HIMC_RT void himc_bank_read_rows(himc_bank *bank, const double *rows, double *displacement);
+HIMC_RT void himc_bank_push_rows(himc_bank *bank, const double *rows, const double *force);
 /// Length of a pass that no force ends: 8, 16, 32 or HIMC_BANK_PASS samples, as at first. Kicks in
 /// such intervals cost least.
 HIMC_RT void himc_bank_set_pass(himc_bank *bank, int samples);

@@ -8,12 +8,12 @@
 #include <stddef.h>
 #include <string.h>
 
-#define ALL_OF(x)                                                                           \
-    {                                                                                       \
-        .name = #x, .rotate = rotate_##x, .weigh = weigh_##x, .weigh_more = weigh_more_##x, \
-        .stretch = stretch_##x, .turn = turn_##x, .add = add_##x, .push = push_##x,         \
-        .dot = dot_##x, .read = read_##x, .read_alike = read_alike_##x, .ahead = ahead_##x, \
-        .ahead_alike = ahead_alike_##x,                                                     \
+#define ALL_OF(x)                                                                                 \
+    {                                                                                             \
+        .name = #x, .rotate = rotate_##x, .weigh = weigh_##x, .weigh_more = weigh_more_##x,       \
+        .stretch = stretch_##x, .turn = turn_##x, .add = add_##x, .push = push_##x,               \
+        .dot = dot_##x, .read_rows = read_rows_##x, .push_rows = push_rows_##x, .read = read_##x, \
+        .read_alike = read_alike_##x, .ahead = ahead_##x, .ahead_alike = ahead_alike_##x,         \
     }
 
 #define WIDTH 2

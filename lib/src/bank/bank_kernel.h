@@ -10,6 +10,7 @@
 #define HIMC_BANK_LANES 8  ///< oscillators at once, samples at once
 #define HIMC_BANK_PASS 64  ///< samples that are computed ahead from one state
 #define HIMC_BANK_ALIKE 3  ///< readouts that share their waves
+#define HIMC_BANK_ROWS 8   ///< points that are read and pushed together
 #define HIMC_BANK_TABLE 32 ///< numbers of an oscillator's table
 
 /// What turns two weights and the state at the start of a pass into samples.
@@ -45,6 +46,12 @@ typedef struct himc_bank_kernel {
                  double force, int length);
     /// sum x y
     double (*dot)(const double *x, const double *y, int length);
+    /// sum[k] = sum row[k] (per p) for HIMC_BANK_ROWS rows, `stride` apart
+    void (*read_rows)(const double *rows, int stride, const double *per, const double *p,
+                      int length, double *sum);
+    /// push with the shape sum force[k] row[k]
+    void (*push_rows)(double *p, double *s, const double *on_p, const double *on_s,
+                      const double *rows, int stride, const double *force, int length);
     /// sum (rp p + rs s)
     double (*read)(const double *rp, const double *rs, const double *p, const double *s,
                    int length);

@@ -115,6 +115,33 @@ TARGET static double NAMED(dot)(const double *x, const double *y, int length)
     return NAMED(total)(sum);
 }
 
+TARGET static void NAMED(read_rows)(const double *rows, int stride, const double *per,
+                                    const double *p, int length, double *sum)
+{
+    VEC part[HIMC_BANK_ROWS][PARTS] = {{{0}}};
+    for (int i = 0; i < length; i += HIMC_BANK_LANES)
+        for (int k = 0; k < PARTS; k++) {
+            int at = i + k * WIDTH;
+            VEC q = *(const VEC *)(per + at) * *(const VEC *)(p + at);
+            for (int r = 0; r < HIMC_BANK_ROWS; r++)
+                part[r][k] += *(const VEC *)(rows + r * stride + at) * q;
+        }
+    for (int r = 0; r < HIMC_BANK_ROWS; r++)
+        sum[r] = NAMED(total)(part[r]);
+}
+
+TARGET static void NAMED(push_rows)(double *p, double *s, const double *on_p, const double *on_s,
+                                    const double *rows, int stride, const double *force, int length)
+{
+    for (int i = 0; i < length; i += WIDTH) {
+        VEC f = {0};
+        for (int r = 0; r < HIMC_BANK_ROWS; r++)
+            f += *(const VEC *)(rows + r * stride + i) * force[r];
+        *(VEC *)(p + i) += *(const VEC *)(on_p + i) * f;
+        *(VEC *)(s + i) += *(const VEC *)(on_s + i) * f;
+    }
+}
+
 TARGET static double NAMED(read)(const double *rp, const double *rs, const double *p,
                                  const double *s, int length)
 {

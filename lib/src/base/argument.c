@@ -27,6 +27,7 @@ static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", 
 static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
 static const char *const setups[] = {HIMC_SETUPS(WORD) NULL};
 static const char *const bars[] = {HIMC_BARS(WORD) NULL};
+static const char *const shells[] = {HIMC_SHELLS(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
@@ -39,6 +40,7 @@ static const himc_argument arguments[] = {
     {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
     {"SETUP", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", setups},
     {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},
+    {"SHELL", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", shells},
     {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
@@ -83,6 +85,8 @@ static const himc_argument arguments[] = {
     {"HEIGHT", NULL, HIMC_ARGUMENT_NUMBER, 1.2, 2.2, "m", NULL},
     {"MASS", "player", HIMC_ARGUMENT_NUMBER, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", NULL},
     {"MASS", NULL, HIMC_ARGUMENT_NUMBER, 0.001, 1, "kg", NULL},
+    {"INCHES", "shell", HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN * 2 / 0.0254, HIMC_INCHES_MAX,
+     "inches", NULL},
     {"INCHES", NULL, HIMC_ARGUMENT_NUMBER, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "inches", NULL},
     {"SIZE", NULL, HIMC_ARGUMENT_NUMBER, 1, 20000, "inches of a head, Hz of others", NULL},
     {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", NULL},
@@ -98,6 +102,8 @@ static const himc_argument arguments[] = {
     // chosen: wider than any head's range, half to twice its usual volume (himc_air_check)
     {"VOLUME", NULL, HIMC_ARGUMENT_NUMBER, 1e-4, 10,
      "m^3, half to twice the usual one of the head's size", NULL},
+    // chosen: from a loose strainer, 50, to five times a tight one
+    {"PULL", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_WIRES_MAX, "m/s^2", NULL},
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
     {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},
     {"SEED", NULL, HIMC_ARGUMENT_COUNT, 0, HIMC_SEED_MAX, "", NULL},

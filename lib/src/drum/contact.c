@@ -45,6 +45,7 @@
 /// 6). When the stick has left, F_m = 0 and F_s with it.
 #include "drum/contact.h"
 #include "drum/felt.h"
+#include "drum/membrane_state.h"
 #include "drum/strike_point.h"
 
 #include <math.h>
@@ -55,6 +56,7 @@
 #define LINE_STEPS 30         // halvings of a line search; chosen
 #define NEAR_ROOT 1e-9        // relative; a step of Newton's so short ends within the square of it
 #define PUSH_ROUNDING 1.6e-15 // relative, a pair; chosen: with less the search ends in rounding
+#define WIRE_TURNS 8          // most of sticks and wires in a step; chosen: 2 are usual
 #define CHATTER 0.0015        // (s) forces less than this apart are one contact; chosen
 #define STIFF_POINT 100.0     // (N) at 1 mm, from which substeps are needed; medium has 4, hard 240
 #define STIFF_PATCH 5e3       // the same for a mallet that has a patch; wood has 9487
@@ -316,6 +318,8 @@ static bool is_clear(himc_membrane *membrane, himc_stick *s, int n, double h, bo
 int himc_contact_clear(himc_membrane *membrane, himc_stick *const *sticks, int count, int n)
 {
     double h = 1 / himc_membrane_rate(membrane);
+    if (membrane->wires.awake)
+        return 0;
     for (int i = 0; i < count; i++)
         if (sticks[i]->touching)
             return 0;
@@ -391,6 +395,44 @@ static contact_pair make_pair(const himc_membrane *m, const near_stick *n, doubl
                           .guess = s->one_way ? 0 : s->force};
 }
 
+// Solves the sticks near together with the wires on the lower head, if they rattle: in turn, each
+// with the forces of the others, until those of the wires stay. One sees the other across the air
+// between the heads, so little in a step that few rounds are needed.
+static void solve_with_wires(himc_membrane *m, const near_stick *near, contact_pair *pairs,
+                             int count, double (*g)[MAX_PAIRS], double h)
+{
+    double free[MAX_PAIRS], under[HIMC_WIRES], b[HIMC_WIRES], pull = m->model->config.head.wires;
+    const double *across[MAX_PAIRS];
+    himc_membrane_begin_wires(m, h, under);
+    for (int i = 0; i < count; i++) {
+        himc_strike_point_response(m, near[i].point, m->step);
+        across[i] = near[i].point->under[m->step];
+        free[i] = pairs[i].b;
+    }
+    for (int turn = 0; turn < WIRE_TURNS; turn++) {
+        double change = 0, size = 0;
+        for (int i = 0; i < count; i++) {
+            pairs[i].b = free[i];
+            for (int k = 0; k < HIMC_WIRES; k++)
+                pairs[i].b += across[i][k] * m->wires.force[k];
+            pairs[i].guess = turn > 0 ? pairs[i].force : pairs[i].guess;
+            size += pairs[i].guess;
+        }
+        solve_pairs(pairs, count, g, h);
+        for (int i = 0; i < count; i++)
+            change += fabs(pairs[i].force - pairs[i].guess);
+        if (turn > 0 && change <= NEAR_ROOT * size)
+            break;
+        for (int k = 0; k < HIMC_WIRES; k++) {
+            b[k] = under[k];
+            for (int i = 0; i < count; i++)
+                b[k] += across[i][k] * pairs[i].force;
+        }
+        himc_wires_solve(&m->wires, pull, h, m->model->under.compliance[m->step], b);
+    }
+    himc_membrane_end_wires(m, h, b);
+}
+
 // G of all sticks near
 static void find_compliances(himc_membrane *m, const near_stick *near, int count,
                              double (*g)[MAX_PAIRS], double h)
@@ -421,9 +463,12 @@ static void step_near(himc_membrane *membrane, const near_stick *near, int count
         pairs[i] = make_pair(membrane, &near[i], from[i], h);
         apart = apart && pairs[i].c0 <= 0 && pairs[i].c0 + pairs[i].b <= 0;
     }
-    if (!apart)
+    if (!apart || membrane->wires.awake)
         find_compliances(membrane, near, count, g, h);
-    solve_pairs(pairs, count, g, h);
+    if (membrane->wires.awake)
+        solve_with_wires(membrane, near, pairs, count, g, h);
+    else
+        solve_pairs(pairs, count, g, h);
     for (int i = 0; i < count; i++) {
         himc_stick *s = near[i].stick;
         const himc_residual_step *r = &near[i].residual;
@@ -501,6 +546,8 @@ static void step(himc_membrane *membrane, himc_stick *const *sticks, int count, 
     himc_membrane_free_step(membrane);
     if (near_count > 0)
         step_near(membrane, near, near_count, h);
+    else
+        himc_membrane_rattle(membrane, h);
     for (int i = 0; i < near_count; i++) {
         himc_stick *s = near[i].stick;
         s->dent = displacement(membrane, s, near[i].point);

@@ -144,7 +144,8 @@ void himc_drum_settings_free(himc_drum_settings *settings)
 
 void himc_drum_settings_take_head(himc_drum_settings *settings, const himc_drum_settings *from)
 {
-    if (settings->head.shape.body != from->head.shape.body) { // its own mallet came with it
+    const himc_shape *own = &settings->head.shape, *its = &from->head.shape;
+    if (own->body != its->body || own->shell != its->shell) { // its own mallet came with it
         memcpy(settings->mallet, from->mallet, sizeof settings->mallet);
         memcpy(settings->mallet_name, from->mallet_name, sizeof settings->mallet_name);
     }

@@ -10,6 +10,7 @@
 #include "head/grid.h"
 #include "head/idiophone.h"
 #include "head/pickup.h"
+#include "head/two_heads.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -167,7 +168,7 @@ static void find_skin(const himc_shape *shape, const himc_head *usual, drum_skin
 bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const himc_command *c,
                          himc_head *head, himc_error *error)
 {
-    enum { T60, BOTH, AUTO = 1, VOLUME = 1 }; // forms of decay, modes and kettle
+    enum { T60, BOTH, AUTO = 1, VOLUME = 1, PULL = 1 }; // forms
     himc_head here = usual_head(shape, usual);
     double said = number(c, 0), square = c->form == BOTH ? number(c, 1) : 0;
     switch (c->id) {
@@ -178,8 +179,10 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
     case HIMC_COMMAND_DAMP: head->damp = himc_argument_usual(said, here.damp); break;
     case HIMC_COMMAND_MUFFLE: head->muffle = himc_argument_usual(said, here.muffle); break;
     case HIMC_COMMAND_SKIN:
-        if (shape->body)
-            return himc_error_set(error, "skin: %s, expected an instrument that has one",
+        if (shape->body || shape->shell)
+            return himc_error_set(error,
+                                  shape->body ? "skin: %s, expected an instrument that has one"
+                                              : "skin: %s, expected a drum without a shell",
                                   c->atom[0].symbol);
         find_skin(shape, usual, (drum_skin)c->choice[0], head);
         break;
@@ -194,6 +197,14 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
         if (c->form == VOLUME && !himc_air_check(said, head->radius, error))
             return false;
         head->kettle = c->form == VOLUME ? said : 0;
+        break;
+    case HIMC_COMMAND_WIRES:
+        head->wires = c->form == PULL  ? said
+                      : c->choice[0]   ? 0
+                      : here.wires > 0 ? here.wires
+                                       : HIMC_WIRES_USUAL;
+        if (head->wires > 0 && !himc_shell_takes_wires(shape->shell))
+            return himc_error_set(error, "wires: expected a drum with two heads");
         break;
     case HIMC_COMMAND_UNIFORMITY:
         head->uniformity = himc_argument_usual(said, usual->uniformity);
@@ -293,7 +304,7 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
     himc_membrane_config config = s->head;
     himc_shape before = config.shape;
     himc_head *head = &config.head;
-    if (before.body) // nothing of it suits a skin
+    if (before.kind->mallet) // nothing of it suits another
         *head = s->usual;
     // those of a file or of a rectangle were not said
     head->radius = himc_argument_usual(as_said("RADIUS", head->radius), s->usual.radius);
@@ -305,7 +316,7 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
     config.shape = shape;
     bool good = set_config(s, &config, error);
     himc_shape_release(good ? &before : &shape);
-    if (good && (before.body || shape.body))
+    if (good && (before.kind->mallet || shape.kind->mallet))
         himc_drum_take_mallet(s, DRUM_MALLET_USUAL);
     return good;
 }
@@ -441,6 +452,8 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
     himc_state_word(&line, shape->kind->name ? shape->kind->name : shape->grid->path);
     if (shape->body)
         himc_state_word(&line, shape->body->name);
+    if (shape->shell)
+        himc_state_word(&line, shape->shell->name);
     for (int i = 0; shape->body && i < 2 && shape->body->pitches[i] > 0; i++)
         himc_state_numbers(&line, 1, &shape->body->pitches[i]);
     himc_state_numbers(&line, shape->length > 0 ? 2 : 0, (double[]){shape->length, shape->width});
@@ -461,6 +474,8 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
     tell(to, "glide", head->glide);
     tell(to, "damp", head->damp);
     tell(to, "muffle", head->muffle);
+    if (himc_shell_takes_wires(shape->shell))
+        tell(to, "wires", head->wires);
     // its usual seed is of the drum's name, which another may not have
     if (shape->kind->air)
         himc_state_tell(to, "uniformity", NULL, head->uniformity < 1 ? 2 : 1,

@@ -211,6 +211,7 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
     bool bends = outline && !himc_head_equal(&was->config.head, &config->head);
     memcpy(pairs, was->modes->pairs, sizeof pairs);
     int count = was->modes->count;
+    double pull = was->config.head.wires;
     himc_uneven_block mixed[2] = {was->modes->block[0], was->modes->block[1]};
     if (bends)
         bend(m, -1);
@@ -242,6 +243,7 @@ static void change(himc_membrane *m, const himc_membrane_config *config, himc_mo
         bend(m, 1);
     }
     keep_energy(m, energy);
+    himc_membrane_keep_wires(m, pull);
     for (int i = 0; i < HIMC_OUTPUTS && samples != 1; i++) {
         sound_pair *s = &before.of[i];
         s->next = s->now + (s->next - s->now) * samples;
@@ -345,5 +347,6 @@ void himc_membrane_rest(himc_membrane *membrane)
 {
     sounds before = read_sounds(membrane);
     himc_bank_rest(membrane->model->bank);
+    membrane->wires = (himc_wires){.awake = false};
     declick_from(membrane, &before, 0, HIMC_OUTPUTS);
 }

@@ -14,14 +14,15 @@
 
 bool himc_shape_equal(const himc_shape *a, const himc_shape *b)
 {
-    return a->kind == b->kind && a->grid == b->grid && a->body == b->body &&
+    return a->kind == b->kind && a->grid == b->grid && a->body == b->body && a->shell == b->shell &&
            a->length * b->width == b->length * a->width;
 }
 
 // all fields of a head
 #define FIELDS(OF)                                                                         \
     OF(radius), OF(tension), OF(density), OF(decay_constant), OF(decay_square), OF(modes), \
-        OF(air), OF(kettle), OF(glide), OF(damp), OF(muffle), OF(uniformity), OF(uniformity_seed)
+        OF(air), OF(kettle), OF(glide), OF(damp), OF(muffle), OF(wires), OF(uniformity),   \
+        OF(uniformity_seed)
 
 bool himc_head_equal(const himc_head *a, const himc_head *b)
 {
@@ -97,8 +98,11 @@ void himc_membrane_config_keep_pickups(himc_membrane_config *config)
     }
 }
 
-static double principal_of(const himc_head *head, double zero)
+double himc_head_principal(const himc_head *head, const himc_shape *shape)
 {
+    double zero = shape->kind->principal(shape);
+    if (shape->kind->pitch)
+        return shape->kind->pitch(shape, head);
     double bare = zero / (2 * HIMC_PI * head->radius) * sqrt(head->tension / head->density);
     if (!head->air)
         return bare;
@@ -106,19 +110,13 @@ static double principal_of(const himc_head *head, double zero)
     return bare * himc_air_on(&air, 1, 1, zero).frequency;
 }
 
-double himc_head_principal(const himc_head *head, const himc_shape *shape)
-{
-    return principal_of(head, shape->kind->principal(shape));
-}
-
 double himc_head_tension(const himc_head *head, const himc_shape *shape, double frequency)
 {
     himc_head trial = *head;
     double low = log(HIMC_TENSION_MIN), high = log(HIMC_TENSION_MAX);
-    double zero = shape->kind->principal(shape);
     for (int i = 0; i < BISECTIONS; i++) {
         trial.tension = exp(0.5 * (low + high));
-        if (principal_of(&trial, zero) < frequency)
+        if (himc_head_principal(&trial, shape) < frequency)
             low = log(trial.tension);
         else
             high = log(trial.tension);

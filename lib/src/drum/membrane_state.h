@@ -35,6 +35,7 @@ static inline double declick_at(const declick *d, int at)
 struct himc_membrane {
     himc_model *model;     ///< owned; with the state of its modes
     unsigned revision;     ///< grows with every change of head or rate
+    himc_wires wires;      ///< on the lower head, if it has one
     himc_step_length step; ///< of the next step
     bool ends_sample;      ///< the next step is the last one of a sample
     double watch_x, watch_y;
@@ -55,6 +56,15 @@ static inline bool himc_membrane_has(const himc_membrane *m, int k)
 /// What a newton at the point does in a step of that length, found when first asked for.
 HIMC_RT const himc_unit_response *himc_strike_point_response(himc_membrane *m, strike_point *s,
                                                              himc_step_length length);
+
+/// The wires after a step of the head: how they would come nearer (HIMC_WIRES), and their end with
+/// the forces that they have now. Asleep they do nothing.
+HIMC_RT void himc_membrane_begin_wires(himc_membrane *m, double h, double *b);
+HIMC_RT void himc_membrane_end_wires(himc_membrane *m, double h, const double *b);
+/// Both, without sticks.
+HIMC_RT void himc_membrane_rattle(himc_membrane *m, double h);
+/// After the head was changed: the wires lie on what they have now.
+HIMC_RT void himc_membrane_keep_wires(himc_membrane *m, double pull_before);
 
 HIMC_RT const himc_membrane_config *himc_membrane_config_of(const himc_membrane *membrane);
 /// A membrane at rest with that model, which it owns from now on. NULL, and the model freed, with

@@ -73,6 +73,9 @@ const himc_unit_response *himc_strike_point_response(himc_membrane *m, strike_po
     for (int i = 0; i < HIMC_OUTPUTS; i++)
         if (himc_membrane_has(m, i))
             e->sound[i] = himc_bank_sum(c->bank, s->shape, c->outputs[i].response[k]);
+    for (int i = 0; c->under.shape && i < HIMC_WIRES; i++)
+        s->under[k][i] = himc_bank_response(c->bank, c->under.shape + i * himc_bank_padded(c->bank),
+                                            &s->readout);
     himc_bank_set_step(c->bank, m->step);
     return e;
 }
@@ -127,6 +130,57 @@ double himc_strike_point_compliance(himc_membrane *membrane, strike_point *a, st
                   : himc_bank_response(membrane->model->bank, b->shape, &a->readout);
 }
 
+static bool has_wires(const himc_membrane *m)
+{
+    return m->model->under.shape && m->model->config.head.wires > 0;
+}
+
+static void read_under(const himc_membrane *m, double *displacement)
+{
+    himc_bank_read_rows(m->model->bank, m->model->under.shape, displacement);
+}
+
+void himc_membrane_begin_wires(himc_membrane *m, double h, double *b)
+{
+    double under[HIMC_WIRES];
+    read_under(m, under);
+    himc_wires_begin(&m->wires, under, h, b);
+}
+
+void himc_membrane_end_wires(himc_membrane *m, double h, const double *b)
+{
+    himc_under *u = &m->model->under;
+    himc_bank_push_rows(m->model->bank, u->shape, m->wires.force);
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        for (int i = 0; i < HIMC_WIRES && himc_membrane_has(m, k); i++)
+            m->sound[k] += u->sound[m->step][k][i] * m->wires.force[i];
+    himc_wires_end(&m->wires, m->model->config.head.wires, h, u->compliance[m->step], b);
+}
+
+void himc_membrane_rattle(himc_membrane *m, double h)
+{
+    double b[HIMC_WIRES], pull = m->model->config.head.wires;
+    if (!m->wires.awake)
+        return;
+    himc_membrane_begin_wires(m, h, b);
+    himc_wires_solve(&m->wires, pull, h, m->model->under.compliance[m->step], b);
+    himc_membrane_end_wires(m, h, b);
+}
+
+void himc_membrane_keep_wires(himc_membrane *m, double pull_before)
+{
+    double under[HIMC_WIRES];
+    if (!m->wires.awake)
+        return;
+    if (!has_wires(m) || m->model->config.head.wires != pull_before) {
+        m->wires = (himc_wires){.awake = has_wires(m)};
+        if (!has_wires(m))
+            return;
+    }
+    read_under(m, under);
+    himc_wires_follow(&m->wires, under);
+}
+
 void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double force)
 {
     if (force == 0)
@@ -138,6 +192,11 @@ void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double fo
             membrane->sound[i] += e->sound[i] * force;
     if (membrane->applied_count < HIMC_STRIKE_POINTS)
         membrane->applied[membrane->applied_count++] = (himc_push){s->x, s->y, s->b, force};
+    if (has_wires(membrane) && !membrane->wires.awake) {
+        double under[HIMC_WIRES];
+        read_under(membrane, under);
+        himc_wires_rest(&membrane->wires, under);
+    }
 }
 
 // runs n steps without forces; adds the declicks to the sound
@@ -190,9 +249,11 @@ void himc_membrane_free_step(himc_membrane *membrane)
 void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound, double *watched)
 {
     double *rest[HIMC_OUTPUTS];
-    int i = n > 0 && membrane->push_count > 0;
-    if (i > 0)
+    int i = n > 0 && (membrane->push_count > 0 || membrane->wires.awake);
+    if (i > 0) {
         himc_membrane_free_step(membrane);
+        himc_membrane_rattle(membrane, 1 / membrane->model->config.rate);
+    }
     for (int k = 0; k < HIMC_OUTPUTS; k++) {
         if (!himc_membrane_has(membrane, k))
             continue;
@@ -202,7 +263,9 @@ void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound,
     }
     if (watched && i > 0)
         watched[0] = himc_membrane_watched(membrane);
-    if (i < n)
+    if (i < n && membrane->wires.awake)
+        himc_membrane_run_all(membrane, n - i, rest, watched ? watched + i : NULL);
+    else if (i < n)
         run_free(membrane, n - i, rest, watched ? watched + i : NULL);
 }
 
@@ -234,7 +297,8 @@ double himc_membrane_watched(const himc_membrane *membrane)
 double himc_membrane_energy(const himc_membrane *membrane)
 {
     double s = himc_bank_film(membrane->model->bank);
-    return himc_bank_energy(membrane->model->bank) + 0.5 * s * s;
+    return himc_bank_energy(membrane->model->bank) + 0.5 * s * s +
+           himc_wires_energy(&membrane->wires, membrane->model->config.head.wires);
 }
 
 himc_bank_bounds himc_membrane_bounds(himc_membrane *membrane)
@@ -246,7 +310,8 @@ himc_bank_bounds himc_membrane_bounds(himc_membrane *membrane)
 
 bool himc_membrane_at_rest(const himc_membrane *membrane)
 {
-    bool rest = membrane->push_count == 0 && himc_bank_at_rest(membrane->model->bank);
+    bool rest = membrane->push_count == 0 && !membrane->wires.awake &&
+                himc_bank_at_rest(membrane->model->bank);
     for (int k = 0; k < HIMC_OUTPUTS; k++)
         if (himc_membrane_has(membrane, k))
             rest = rest && membrane->declicks[k].at >= membrane->declicks[k].length;

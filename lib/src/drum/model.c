@@ -21,6 +21,7 @@
     (9 + 2 + 3 + HIMC_RAYS + HIMC_PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + \
      HIMC_STRIKE_POINTS * 3)
 _Static_assert(HIMC_BANK_ALIKE == HIMC_RAYS, "the rays are alike");
+_Static_assert(HIMC_BANK_ROWS == HIMC_WIRES, "the wires' points are read together");
 #define SLACK 1e-6            // rise per tension; chosen: 0.001 cent
 #define SUBSTEP_RATE 192000.0 // (Hz) least rate of substeps; chosen: contact.c
 // Exchanges with other heads (air_between.c) take and give velocity at intervals. A mode decays as
@@ -44,6 +45,12 @@ void himc_model_free(himc_model *model)
     free(model->oscillators);
     himc_aligned_free(model->memory);
     free(model);
+}
+
+// arrays of a model of that outline
+static size_t array_count(const himc_model *c)
+{
+    return ARRAYS + (himc_shell_takes_wires(c->config.shape.shell) ? HIMC_WIRES : 0);
 }
 
 // takes the next array from the block; its length keeps the alignment that the bank requires
@@ -88,6 +95,7 @@ static void share_memory(himc_model *c)
     for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
         c->points[i] = (strike_point){.shape = take(&memory, padded),
                                       .readout = take_readout(&memory, padded)};
+    c->under.shape = array_count(c) > ARRAYS ? memory : NULL;
 }
 
 // the numbers of a model of the same config, without its state
@@ -95,7 +103,9 @@ static void copy(himc_model *c, const himc_model *from)
 {
     size_t row = sizeof(double) * (size_t)himc_bank_padded(c->bank);
     himc_bank_copy(c->bank, from->bank);
-    memcpy(c->memory, from->memory, row * ARRAYS);
+    memcpy(c->memory, from->memory, row * array_count(c));
+    memcpy(c->under.compliance, from->under.compliance, sizeof c->under.compliance);
+    memcpy(c->under.sound, from->under.sound, sizeof c->under.sound);
     memcpy(c->oscillators, from->oscillators, sizeof *c->oscillators * (size_t)c->modes->count);
     memcpy(c->shared, from->shared, sizeof c->shared);
     c->shared_count = from->shared_count;
@@ -121,7 +131,8 @@ himc_model *himc_model_new(const himc_membrane_config *config, const himc_model 
     int count = c->modes ? c->modes->count : 0;
     c->bank = c->modes ? himc_bank_new(count, error) : NULL;
     c->oscillators = malloc(sizeof *c->oscillators * (size_t)count);
-    size_t bytes = sizeof(double) * (size_t)(c->bank ? himc_bank_padded(c->bank) : 0) * ARRAYS;
+    size_t bytes =
+        sizeof(double) * (size_t)(c->bank ? himc_bank_padded(c->bank) : 0) * array_count(c);
     c->memory = himc_aligned_new(bytes);
     if (!c->bank || !c->oscillators || !c->memory) {
         himc_error_set(error, "modes: no memory for %d modes", count);
@@ -242,6 +253,8 @@ static void find_oscillators(himc_model *m)
             mode = himc_air_loaded(&load, &m->config.head, &mode);
         m->oscillators[i] = (himc_oscillator){2 * HIMC_PI * mode.frequency, mode.decay, mode.mass};
     }
+    if (kind->sounds)
+        kind->sounds(m->modes, &m->config.head, m->oscillators);
     const himc_mixture *mix = &m->modes->mixture;
     for (int n = 0; n < mix->count; n++)
         for (int k = 0; k < mix->count; k++)
@@ -325,6 +338,28 @@ static void find_form(himc_model *m)
     himc_bank_readout(m->bank, m->on_q, m->on_v, m->on_force, &m->rays.form);
 }
 
+// what forces at the wires' points do
+static void find_under(himc_model *m)
+{
+    himc_under *u = &m->under;
+    int padded = himc_bank_padded(m->bank);
+    for (int k = 0; u->shape && k < HIMC_STEP_LENGTHS; k++) {
+        himc_bank_set_step(m->bank, (himc_step_length)k);
+        for (int i = 0; i < HIMC_WIRES; i++) {
+            const double *shape = u->shape + i * padded;
+            himc_bank_readout(m->bank, shape, NULL, NULL, &m->watched);
+            for (int j = 0; j <= i; j++)
+                u->compliance[k][i][j] = u->compliance[k][j][i] =
+                    himc_bank_response(m->bank, u->shape + j * padded, &m->watched);
+            for (int o = 0; o < HIMC_OUTPUTS; o++)
+                u->sound[k][o][i] = himc_membrane_config_has(&m->config, o)
+                                        ? himc_bank_sum(m->bank, shape, m->outputs[o].response[k])
+                                        : 0;
+        }
+    }
+    himc_bank_set_step(m->bank, HIMC_STEP_SAMPLE);
+}
+
 void himc_model_find_outputs(himc_model *m, int first, int end)
 {
     for (int i = 0; i < HIMC_STRIKE_POINTS; i++)
@@ -334,6 +369,7 @@ void himc_model_find_outputs(himc_model *m, int first, int end)
             find_output(m, i);
     if (end > HIMC_PICKUPS)
         find_form(m);
+    find_under(m);
 }
 
 void himc_model_watch(himc_model *m, double x, double y)
@@ -368,6 +404,11 @@ void himc_model_make(himc_model *m, const himc_membrane_config *config)
     find_shared(m);
     himc_bank_set_substeps(m->bank, himc_membrane_substeps(m->config.rate));
     set_bank(m);
+    for (int i = 0; m->under.shape && i < HIMC_WIRES; i++) {
+        double *shape = m->under.shape + i * himc_bank_padded(m->bank);
+        himc_two_heads_under(m->modes, i, shape);
+        himc_modes_mix(m->modes, shape);
+    }
     himc_model_find_outputs(m, 0, HIMC_OUTPUTS);
 }
 
@@ -451,4 +492,5 @@ void himc_model_approach(himc_model *m, himc_model *goal, double share)
         if (himc_membrane_config_has(&m->config, k))
             weigh_pressures(m, k);
     find_form(m);
+    find_under(m);
 }

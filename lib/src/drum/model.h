@@ -11,6 +11,7 @@
 #include "drum/membrane_config.h"
 #include "drum/strike_point.h"
 #include "head/air.h"
+#include "head/two_heads.h"
 
 #define HIMC_STRIKE_POINTS 24 ///< all sticks and mallets of a drum (16) and all pushes (8)
 #define HIMC_PATCHES 4        ///< of different radii, kept; chosen: two hands and two mallets
@@ -43,8 +44,16 @@ struct strike_point {
     himc_readout readout; ///< of the displacement there
     himc_residual residual;
     himc_unit_response response[HIMC_STEP_LENGTHS]; ///< see himc_strike_point_response
+    double under[HIMC_STEP_LENGTHS][HIMC_WIRES];    ///< displacement of the wires' points (m/N)
     bool responds[HIMC_STEP_LENGTHS];               ///< that is known
 };
+
+/// The wires' points of a lower head, and what a newton at one of them does in a step.
+typedef struct himc_under {
+    double *shape; ///< HIMC_WIRES rows (padded); NULL: there is no such head
+    himc_wires_matrix compliance[HIMC_STEP_LENGTHS];           ///< (m/N)
+    double sound[HIMC_STEP_LENGTHS][HIMC_OUTPUTS][HIMC_WIRES]; ///< (1/N)
+} himc_under;
 
 typedef struct himc_model {
     himc_membrane_config config;
@@ -59,6 +68,7 @@ typedef struct himc_model {
     double *wave;                     ///< wave numbers of the bare modes (1/m)
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     himc_output outputs[HIMC_OUTPUTS];
+    himc_under under;
     himc_alike rays; ///< of a kind whose rays have a form
     // room for what a membrane has of so many modes: its state, and what it keeps of pure functions
     // of the model

@@ -51,8 +51,6 @@
 // smooth.
 #define TENSION_MARGIN 1.3862943611
 #define LOADING_MARGIN 0.6931471806
-// added mass of a mode by that of an infinite membrane; chosen: the table's higher modes
-#define RIM 1.07
 // modes of order 0 that the kettle's spring couples; chosen: twice those in the table
 #define COUPLED_MODES 8
 #define BELOW_SOUND 0.99      // largest first guess of an iteration with a root below 1
@@ -132,7 +130,7 @@ static double radiated(int m, double z)
 static double added(int m, int n, double zero, double depth)
 {
     if (m >= HIMC_AIR_ORDERS || n > HIMC_AIR_RANKS)
-        return 2 * RIM / zero;
+        return 2 * HIMC_AIR_RIM / zero;
     // in a kettle of another depth only the lowest mode, which reaches its bottom, changes
     double b = himc_air_slosh[m], z2 = zero * zero - b * b;
     double change = 1 / tanh(b * depth) - 1 / tanh(b * USUAL_DEPTH);
@@ -352,7 +350,7 @@ static double flow_along(mode_id s, double x)
 // a mode of statistical.c, which changes no volume and has no table
 static himc_air_load on_statistical(const himc_air *air, double zero)
 {
-    double b = air->loading * 2 * RIM / zero, y = below_sound(b, air->tension);
+    double b = air->loading * 2 * HIMC_AIR_RIM / zero, y = below_sound(b, air->tension);
     double mass = air->tension / y;
     return (himc_air_load){
         .frequency = sqrt(y / air->tension),

@@ -17,6 +17,8 @@
 
 #define HIMC_AIR_SPEED 344.0  ///< c (m/s)
 #define HIMC_AIR_DENSITY 1.21 ///< rho (kg/m^3); both as in Christian et al. 1984
+/// Added mass of a mode by that of an infinite membrane; chosen: the table's higher modes.
+#define HIMC_AIR_RIM 1.07
 
 /// A head over its kettle: constant while neither changes.
 typedef struct himc_air {

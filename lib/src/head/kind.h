@@ -7,6 +7,7 @@
 #ifndef HIMC_KIND_H
 #define HIMC_KIND_H
 
+#include "bank/bank.h"
 #include "head/grid.h"
 #include "himc/command.h"
 #include "himc/membrane.h"
@@ -14,6 +15,7 @@
 typedef struct himc_kind himc_kind;
 typedef struct himc_modes himc_modes;
 typedef struct himc_idiophone himc_idiophone;
+typedef struct himc_shell himc_shell;
 
 /// An outline. Its size is the head's radius, that of the circle around it.
 typedef struct himc_shape {
@@ -22,6 +24,7 @@ typedef struct himc_shape {
     double width;         ///< along y (m)
     himc_grid *grid;      ///< of a head from a file, borrowed; else NULL
     himc_idiophone *body; ///< of an instrument without a skin (idiophone.h), borrowed; else NULL
+    const himc_shell *shell; ///< of a drum with one (two_heads.h), and its width; else NULL
 } himc_shape;
 
 /// Adds a reference to what a shape has borrowed, or gives it back.
@@ -58,12 +61,16 @@ struct himc_kind {
     const himc_mallet_head *(*mallet)(const himc_shape *shape);
     /// Of the principal mode: radius times wavenumber.
     double (*principal)(const himc_shape *shape);
+    /// Frequency of it (Hz). NULL: as bare, or in the air of a timpano.
+    double (*pitch)(const himc_shape *shape, const himc_head *head);
     /// Area of the film that the outline holds, per radius^2; 0 without a film.
     double (*film)(const himc_shape *shape);
 
     /// Lists `modes->exact` modes (modes.h), if `automatic` also what stands for those above.
     /// False without memory.
     bool (*list)(himc_modes *modes, bool automatic);
+    /// What the list's modes sound like in that head, and what mixes their shapes. NULL: as listed.
+    void (*sounds)(himc_modes *modes, const himc_head *head, himc_oscillator *oscillators);
     /// himc_modes_shapes
     void (*shapes)(const himc_modes *modes, double radius, double x, double y, double *shapes);
     /// No value of that mode's shape is larger. NULL: not known.

@@ -37,6 +37,7 @@ bool himc_head_check(const himc_head *head, himc_error *error)
             himc_check_range("modes", head->modes, 1, HIMC_MODES_MAX, "", error)) &&
            himc_check_range("kettle", head->kettle, 0, 10, "m3", error) &&
            himc_check_range("glide", head->glide, 0, 1, "", error) &&
+           himc_check_range("wires", head->wires, 0, HIMC_WIRES_MAX, "m/s2", error) &&
            himc_check_range("uniformity", head->uniformity, 0, 1, "", error) &&
            himc_check_range("uniformity seed", head->uniformity_seed, 0, HIMC_SEED_MAX, "",
                             error) &&
@@ -129,6 +130,8 @@ void himc_modes_free(himc_modes *modes)
         free(modes->table);
         free(modes->statistical);
         free(modes->uneven);
+        himc_modes_free(modes->disc);
+        free(modes->source);
         free((void *)modes->users);
     }
     free(modes);

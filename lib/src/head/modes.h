@@ -45,6 +45,8 @@ struct himc_modes {
     himc_statistical *statistical; ///< if any mode is
     himc_uneven_pair *uneven; ///< (uneven_count) entries that an uneven tension couples; or NULL
     int uneven_count;
+    himc_modes *disc; ///< of two heads: the list of each alone, statistical modes too; else NULL
+    int *source;      ///< (count) of two heads: place there, those of the lower one behind
     // for pairs only
     double uniformity; ///< of the lugs, and `seed`: what `pairs` were made for
     int seed;

@@ -174,8 +174,7 @@ pickup_weights himc_pickup_of_outline(const himc_pickup *pickup, const himc_head
                             .force = weight * even / mode->mass};
 }
 
-// those of a mode that is so loud
-static pickup_weights of_gain(const himc_mode *mode, double gain)
+pickup_weights himc_pickup_of_gain(const himc_mode *mode, double gain)
 {
     double omega = 2 * HIMC_PI * mode->frequency;
     double sign = mode->m % 4 == 1 || mode->m % 4 == 2 ? -1 : 1;
@@ -189,7 +188,7 @@ static pickup_weights of_gain(const himc_mode *mode, double gain)
 
 pickup_weights himc_pickup_form(const himc_mode *mode)
 {
-    return of_gain(mode, 1);
+    return himc_pickup_of_gain(mode, 1);
 }
 
 pickup_weights himc_pickup_of_round(const himc_pickup *pickup, const himc_head *head,
@@ -206,7 +205,7 @@ pickup_weights himc_pickup_of_round(const himc_pickup *pickup, const himc_head *
     if (!mixed)
         pressure = (mode->m > 0 ? nearer[mode->m] : 1) *
                    himc_pickup_pressure(pickup, head, modes, index, mode);
-    return of_gain(mode, pressure * per_pascal(head));
+    return himc_pickup_of_gain(mode, pressure * per_pascal(head));
 }
 
 pickup_weights himc_pickup_weights(const himc_pickup *pickup, const himc_head *head,

@@ -5,6 +5,8 @@
 #include "head/modes.h"
 #include "head/uneven.h"
 
+/// Weights of a mode whose pressure per acceleration is `gain`, but for (-i)^m.
+HIMC_RT pickup_weights himc_pickup_of_gain(const himc_mode *mode, double gain);
 /// `form` and `far` of a round head (kind.h).
 HIMC_RT pickup_weights himc_pickup_form(const himc_mode *mode);
 HIMC_RT pickup_weights himc_pickup_of_round(const himc_pickup *pickup, const himc_head *head,

@@ -106,7 +106,7 @@ static bool list(himc_modes *modes, bool automatic)
     modes->statistical = malloc(sizeof *modes->statistical);
     if (!modes->statistical)
         return false;
-    himc_statistical_list(modes->statistical);
+    himc_statistical_list(modes->statistical, HIMC_STATISTICAL_FROM, 0, HIMC_STATISTICAL_MODES);
     modes->count += HIMC_STATISTICAL_MODES;
     return true;
 }

@@ -32,14 +32,13 @@
 
 #include <math.h>
 
-#define SEED 1                                    // chosen: any
-#define START HIMC_STATISTICAL_FROM               // z_0
-#define DENSITY (START * START * (START - 1) / 2) // A
+#define SEED 1 // chosen: any
 
-// z below which `n` modes of the list are
-static double zero_at(double n)
+// z below which `n` modes of a list are
+static double zero_at(double from, double to, int count, double n)
 {
-    return 1 / (1 / START - n / DENSITY);
+    double density = from * from * (from - 1) / 2; // A, with z_0 = `from`
+    return to > 0 ? from * pow(to / from, n / count) : 1 / (1 / from - n / density);
 }
 
 static double modes_below(double z)
@@ -53,16 +52,19 @@ static double uniform(uint64_t *state)
     return ldexp((double)(himc_random_bits(state) >> 11), -53);
 }
 
-void himc_statistical_list(himc_statistical *list)
+void himc_statistical_list(himc_statistical *list, double from, double to, int count)
 {
     uint64_t state = SEED;
-    for (int i = 0; i < HIMC_STATISTICAL_MODES; i++)
+    list->count = count;
+    for (int i = 0; i < count; i++)
         list->mode[i] = (himc_statistical_mode){
-            .zero = zero_at(i + uniform(&state)),
-            .count = modes_below(zero_at(i + 1)) - modes_below(zero_at(i)),
+            .zero = zero_at(from, to, count, i + uniform(&state)),
+            .count = modes_below(zero_at(from, to, count, i + 1)) -
+                     modes_below(zero_at(from, to, count, i)),
         };
-    for (int k = 0; k < HIMC_STATISTICAL_MODES / 4; k++) {
-        double zero = zero_at(4 * k + 2), direction = 2 * HIMC_PI * uniform(&state);
+    for (int k = 0; k < count / 4; k++) {
+        double zero = zero_at(from, to, count, 4 * k + 2),
+               direction = 2 * HIMC_PI * uniform(&state);
         list->wave[k] = (himc_statistical_wave){
             .zero = zero,
             .x = zero * cos(direction),
@@ -77,7 +79,7 @@ void himc_statistical_list(himc_statistical *list)
 void himc_statistical_shapes(const himc_statistical *list, double x, double y, double *shapes)
 {
     double from_rim = 1 - sqrt(x * x + y * y);
-    for (int k = 0; k < HIMC_STATISTICAL_MODES / 4; k++) {
+    for (int k = 0; k < list->count / 4; k++) {
         const himc_statistical_wave *w = &list->wave[k];
         double near_rim = himc_bessel_j0(2 * w->zero * from_rim);
         double size = sqrt(2 * fmax(1 - near_rim, 0)), angle = w->x * x + w->y * y + w->phase;

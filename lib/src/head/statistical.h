@@ -31,14 +31,16 @@ typedef struct himc_statistical_wave {
 } himc_statistical_wave;
 
 typedef struct himc_statistical {
+    int count;                                              ///< of the modes, a multiple of 4
     himc_statistical_mode mode[HIMC_STATISTICAL_MODES];     ///< by increasing zero
     himc_statistical_wave wave[HIMC_STATISTICAL_MODES / 4]; ///< of modes 4 k .. 4 k + 3
 } himc_statistical;
 
-/// Fills the list.
-void himc_statistical_list(himc_statistical *list);
+/// Fills the list with `count` modes (up to HIMC_STATISTICAL_MODES) above that radius times
+/// wavenumber: up to another, by equal ratios; or, if that is 0, as many to a bandwidth.
+void himc_statistical_list(himc_statistical *list, double from, double to, int count);
 
-/// All shapes at (x, y) (per radius, inside the head) into `shapes` (HIMC_STATISTICAL_MODES); the
+/// All shapes at (x, y) (per radius, inside the head) into `shapes` (count); the
 /// mean of their squares over the head is 1.
 HIMC_RT void himc_statistical_shapes(const himc_statistical *list, double x, double y,
                                      double *shapes);
