@@ -579,6 +579,8 @@ static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv
 typedef struct t_wish {
     const char *w_name;
     double w_inches, w_channels;
+    int w_count; /* of arguments, if they name a kind; else 0 */
+    t_atom *w_atoms;
 } t_wish;
 
 /* Argument `index` (from 1), a number, if it is there. */
@@ -595,7 +597,7 @@ static bool membrane_number_argument(int argc, const t_atom *argv, int index, co
     return true;
 }
 
-static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_error *error)
+static bool membrane_arguments(int argc, t_atom *argv, t_wish *wish, himc_error *error)
 {
     char text[80] = "";
     if (argc > 0)
@@ -607,6 +609,12 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
         return false;
     if (argc > 0)
         wish->w_name = argv[0].a_w.w_symbol->s_name;
+    if (argc > 1 && argv[1].a_type == A_SYMBOL) {
+        wish->w_count = argc;
+        wish->w_atoms = argv;
+        wish->w_channels = 2;
+        return true;
+    }
     if (!membrane_number_argument(argc, argv, 2, "a diameter in inches", &wish->w_inches, error) ||
         !membrane_number_argument(argc, argv, 3, "a number of channels", &wish->w_channels,
                                   error) ||
@@ -618,16 +626,29 @@ static bool membrane_arguments(int argc, const t_atom *argv, t_wish *wish, himc_
            himc_error_set(error, "%d arguments, expected [-save] NAME [INCHES [CHANNELS]]", argc);
 }
 
+/* The drum, or the instrument of the kind that the arguments name. */
+static himc_drum *membrane_drum(const t_wish *wish, const char *name, double rate,
+                                himc_error *error)
+{
+    himc_command made;
+    if (wish->w_count == 0)
+        return himc_drum_new(name, wish->w_inches, rate, error);
+    if (!command_from_pd(&made, HIMC_PERFORMER, gensym("instrument"), wish->w_count, wish->w_atoms,
+                         error))
+        return NULL;
+    return himc_drum_made(&made, rate, error);
+}
+
 /* A drum with as many pickups as the object has outlets, and the head beside it. */
 static himc_drum *membrane_make(const t_wish *wish, double rate, t_layer *layer, himc_error *error)
 {
     const char *name = wish->w_name ? wish->w_name : "nameless";
     himc_atom channels = {HIMC_ATOM_NUMBER, wish->w_channels, NULL};
     himc_command pickups;
-    himc_drum *drum = himc_drum_new(name, wish->w_inches, rate, error);
+    himc_drum *drum = membrane_drum(wish, name, rate, error);
     if (drum && himc_command_parse(&pickups, HIMC_DRUM, "pickups", &channels, 1, error) &&
         himc_drum_command(drum, &pickups, error) && himc_drum_set_usual_listener(drum, error))
-        layer->l_drum = himc_drum_new(name, wish->w_inches, rate, error);
+        layer->l_drum = membrane_drum(wish, name, rate, error);
     if (layer->l_drum) {
         himc_drum_set_external_sound(drum, true);
         return drum;
@@ -690,7 +711,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
 {
     (void)s;
     himc_error error;
-    t_wish wish = {NULL, HIMC_INCHES_USUAL, 1};
+    t_wish wish = {NULL, HIMC_INCHES_USUAL, 1, 0, NULL};
     double rate = sys_getsr();
     t_layer layer = {.l_level = 1};
     himc_drum *drum = NULL;

@@ -264,7 +264,7 @@ play_pd objects.pd
 report objects_with_nonsense_arguments_are_refused_with_a_line \
     "$(lines "membrane~: kettle: inches: 5000 in, expected 12 .. 60 in
 membrane~: argument 1: 3, expected a name, as in [membrane~ kettle 26]
-membrane~: kettle: argument 2: large, expected a diameter in inches
+membrane~: kettle: instrument: INSTRUMENT: large, expected timpano
 membrane~: kettle: 4 arguments, expected [-save] NAME [INCHES [CHANNELS]]
 membrane~: kettle: argument 3: loud, expected a number of channels
 membrane~: kettle: channels: 9, expected 1 .. 8
@@ -292,7 +292,7 @@ play_pd messages.pd
 said=$(grep -c '^error: ' "$work/log")
 report messages_that_mean_nothing_answer_with_one_line_each \
     "$([ "$said" = 38 ] || echo "$said lines for 38 messages: ")$(lines "himc~: nonsense: unknown command
-himc~: stroke: HAND: middle, expected left right
+himc~: stroke: HAND: middle, expected left right foot
 himc~: rmi: no spot (center normal rim), not dead, no drum (kettle), did you mean rim?
 himc~: stroke: NUANCE missing
 himc~: tempo: BPM: 0, expected

@@ -115,9 +115,6 @@ bool himc_drum_settings_preset(himc_drum_settings *settings, const char *name, h
 /// Those of a new drum, as of himc_drum_new. False with the reason.
 bool himc_drum_settings_new(himc_drum_settings *settings, const char *name, double inches,
                             double sample_rate, himc_error *error);
-/// What a command that is marked HIMC_MAKES_DRUM makes (instrument.c); NULL with the reason.
-himc_drum *himc_drum_made(const himc_command *command, double sample_rate, himc_error *error);
-
 /// A drum with these settings, at rest; NULL with the reason.
 himc_drum *himc_drum_new_of(const himc_drum_settings *settings, himc_error *error);
 /// Gives the drum these settings. *made, or NULL, is a model of their head, and then the one that
