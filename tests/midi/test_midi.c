@@ -522,8 +522,8 @@ static void test_feet_play_their_pedals(void)
     TEST_ASSERT_EQUAL_STRING("kick", score->strokes[0].drum);
     TEST_ASSERT_EQUAL_INT(HIMC_FOOT, score->strokes[5].hand);
     TEST_ASSERT_EQUAL_STRING("hats", score->strokes[5].drum);
-    TEST_ASSERT_EQUAL_INT(2, lines_with(made.text, "hats open 0;"));
-    TEST_ASSERT_EQUAL_INT(1, lines_with(made.text, "hats open 1;"));
+    TEST_ASSERT_EQUAL_INT(2, lines_with(made.text, "hats pedal 1;"));
+    TEST_ASSERT_EQUAL_INT(1, lines_with(made.text, "hats pedal 0;"));
     TEST_ASSERT_EQUAL_INT(3, score->change_count);
     for (int i = 0; i < 3; i++)
         TEST_ASSERT_DOUBLE_WITHIN(0.07, score->strokes[i < 2 ? i + 1 : 4].beat,

@@ -14,6 +14,7 @@
         .stretch = stretch_##x, .turn = turn_##x, .add = add_##x, .push = push_##x,               \
         .dot = dot_##x, .read_rows = read_rows_##x, .push_rows = push_rows_##x, .read = read_##x, \
         .read_alike = read_alike_##x, .ahead = ahead_##x, .ahead_alike = ahead_alike_##x,         \
+        .square = square_##x, .scatter = scatter_##x,                                             \
     }
 
 #define WIDTH 2

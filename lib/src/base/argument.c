@@ -28,6 +28,7 @@ static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
 static const char *const setups[] = {HIMC_SETUPS(WORD) NULL};
 static const char *const bars[] = {HIMC_BARS(WORD) NULL};
 static const char *const shells[] = {HIMC_SHELLS(WORD) NULL};
+static const char *const plates[] = {HIMC_PLATES(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
@@ -41,6 +42,7 @@ static const himc_argument arguments[] = {
     {"SETUP", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", setups},
     {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},
     {"SHELL", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", shells},
+    {"PLATE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", plates},
     {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
@@ -85,10 +87,13 @@ static const himc_argument arguments[] = {
     {"HEIGHT", NULL, HIMC_ARGUMENT_NUMBER, 1.2, 2.2, "m", NULL},
     {"MASS", "player", HIMC_ARGUMENT_NUMBER, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", NULL},
     {"MASS", NULL, HIMC_ARGUMENT_NUMBER, 0.001, 1, "kg", NULL},
-    {"INCHES", "shell", HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN * 2 / 0.0254, HIMC_INCHES_MAX,
+    // of shells and plates; chosen: from the smallest bongo and splash, and the thinnest foil
+    {"INCHES", "shell|plate", HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN * 2 / 0.0254, HIMC_INCHES_MAX,
      "inches", NULL},
+    {"MM", NULL, HIMC_ARGUMENT_NUMBER, 0.3, 10, "mm", NULL},
     {"INCHES", NULL, HIMC_ARGUMENT_NUMBER, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "inches", NULL},
-    {"SIZE", NULL, HIMC_ARGUMENT_NUMBER, 1, 20000, "inches of a head, Hz of others", NULL},
+    {"SIZE", NULL, HIMC_ARGUMENT_NUMBER, 0.3, 20000,
+     "inches of a head or a cymbal, mm of its thickness, Hz of others", NULL},
     {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", NULL},
     {"TENSION", NULL, HIMC_ARGUMENT_NUMBER, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m", NULL},
     {"DENSITY", NULL, HIMC_ARGUMENT_NUMBER, 0.01, HIMC_DENSITY_MAX, "kg/m^2", NULL},

@@ -177,6 +177,11 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
     case HIMC_COMMAND_DENSITY: head->density = himc_argument_usual(said, here.density); break;
     case HIMC_COMMAND_GLIDE: head->glide = himc_argument_usual(said, here.glide); break;
     case HIMC_COMMAND_DAMP: head->damp = himc_argument_usual(said, here.damp); break;
+    case HIMC_COMMAND_PEDAL:
+        if (!shape->body || !shape->body->dampers)
+            return himc_error_set(error, "pedal: expected a hi-hat or a vibraphone");
+        head->dampers = shape->body->dampers * (shape->body->pedal_lifts ? 1 - said : said);
+        break;
     case HIMC_COMMAND_MUFFLE: head->muffle = himc_argument_usual(said, here.muffle); break;
     case HIMC_COMMAND_SKIN:
         if (shape->body || shape->shell)
@@ -473,6 +478,10 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
         tell(to, "kettle", head->kettle);
     tell(to, "glide", head->glide);
     tell(to, "damp", head->damp);
+    if (shape->body && shape->body->dampers > 0) {
+        double laid = head->dampers / shape->body->dampers;
+        tell(to, "pedal", shape->body->pedal_lifts ? 1 - laid : laid);
+    }
     tell(to, "muffle", head->muffle);
     if (himc_shell_takes_wires(shape->shell))
         tell(to, "wires", head->wires);

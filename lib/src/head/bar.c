@@ -52,6 +52,9 @@ typedef struct bar_row {
 #define ALUMINIUM 7.0e10, 2700, 2.6e10
 #define STEEL 2.0e11, 7850, 7.7e10
 
+#define VIBRAPHONE 2 // of the rows: ...
+#define FELT 40.0    // ... what its dampers take (1/s); chosen: T60 = .17 s
+
 // In the order of HIMC_BARS (himc/command_rows.h). Mallets: yarn, plastic, cord, brass.
 static const bar_row rows[] = {
     {ROSEWOOD,
@@ -316,6 +319,8 @@ static himc_idiophone *make(const bar_row *row, const char *name, double low, do
     body->hysteresis = row->hysteresis;
     body->square = row->square;
     body->mallet = row->mallet;
+    body->dampers = row == &rows[VIBRAPHONE] ? FELT : 0;
+    body->pedal_lifts = true;
     lay_out(body);
     himc_idiophone_finish(body);
     return body;

@@ -247,7 +247,7 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
             continue;
         last = s->pedal;
         list[count++] = (change){fmax(s->note->seconds - 0.03, 0), s->head, -1,
-                                 last == MIDI_OPEN ? "open 1" : "open 0"};
+                                 last == MIDI_OPEN ? "pedal 0" : "pedal 1"};
     }
     qsort(list, (size_t)count, sizeof *list, by_time);
     for (int i = 0; i < count; i++) {
