@@ -578,7 +578,7 @@ static void test_the_loud_notes_of_a_chord_are_played(void)
 {
     builder b;
     begin(&b);
-    event(&b, 0, 0x99, 36, 100);
+    event(&b, 0, 0x99, 41, 100);
     event(&b, 0, 0x99, 38, 40);
     event(&b, 0, 0x99, 50, 110);
     end(&b);

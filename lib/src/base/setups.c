@@ -10,8 +10,8 @@ const char himc_setup_kit[] = "instrument snare snare 14; snare place .52 .02 .7
                               "instrument high-tom tom 10; high-tom place .78 .3 .88 -.2;"
                               "instrument tom tom 12; tom place .84 0 .88 -.2;"
                               "instrument floor tom 16; floor place .42 -.42 .7;"
-                              "instrument crash crash 18; crash place .78 -.52 1.05 -.3;"
-                              "instrument ride ride 20; ride place .3 -.86 .9 -.2;"
+                              "instrument crash crash 18; crash place .6 -.66 .98 -.25;"
+                              "instrument ride ride 20; ride place .14 -.9 .88 -.2;"
                               "instrument kick kick 22; kick place .8 .1 .4 -.8;";
 
 const char himc_setup_around[] =
