@@ -8,8 +8,8 @@
 /// does the rest. Where captured legs rest otherwise, that difference goes away on the way.
 ///
 /// Balance: without that foot the cushion gives way, and he tips towards it. So his trunk leans
-/// away before, and the foot is aimed at the floor and not at his pelvis, which tilts. On the floor
-/// the leg goes with the pelvis again: a foot that kept its place would push him up.
+/// away until it is back, and the foot is aimed at the floor and not at his pelvis, which tilts. On
+/// the floor the leg goes with the pelvis again: a foot that kept its place would push him up.
 #include "body/pedal.h"
 
 #include "body/support.h"
@@ -185,7 +185,6 @@ void himc_pedal_go(himc_pedal_foot *f, const himc_posture *posture, const himc_p
     bool moving = f->away || !is_over(&f->heel, t);
     himc_target heel = heel_at(f, t), turn = course_at(&f->turn, t);
     himc_vec3 at = rest.heel, turned = {rest.heading, 0, 0};
-    f->back = f->aside = 0;
     f->away = pedal != NULL;
     f->foot = side;
     if (pedal) {
@@ -227,6 +226,8 @@ void himc_pedal_feel(himc_pedal_foot *f, const himc_body_state *s, himc_vec3 hom
     f->sway = after(&f->sway, f->sway_jerk, dt);
     f->tilt = after(&f->tilt, f->tilt_jerk, dt);
     f->felt = t;
+    if (!f->away && is_over(&f->heel, t)) // before, he would tip
+        f->back = f->aside = 0;
     if (!himc_pedal_moves(f, f->foot, t)) {
         f->sway = f->tilt = himc_target_at_rest(sway);
     } else if (t >= f->heel.begun && !is_over(&f->heel, t)) { // and the filter's delay, 3 / w

@@ -57,8 +57,11 @@ static void go(performance_motion *m, const performance_drums *drums, double t, 
             f, angle_of(m, drum), t,
             fmax(m->pedal[drum].until - PEDAL_STAYS - t, HIMC_PEDAL_LEAN + HIMC_PEDAL_WAY));
         m->pedalled = drum;
-    } else if (f->away) // the other foot waits
+    } else if (f->away) { // the other foot waits
         himc_pedal_go(f, &m->body.posture, NULL, t);
+        if (!may) // against what throws him about he sits upright
+            f->back = f->aside = 0;
+    }
 }
 
 void himc_performance_move_foot(himc_performance *p, double t)
