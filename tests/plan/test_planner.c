@@ -290,6 +290,22 @@ static double hardest(const himc_hand_plan *plan, double t0, double t1)
     return most;
 }
 
+// between places a little behind the player, on both sides
+static void test_a_way_past_the_body_leads_before_it(void)
+{
+    himc_hand_plan plan;
+    himc_gesture gesture = himc_gesture_of(HIMC_LEGATO, 0.5);
+    himc_goal first = {1, {-0.05, 0.5, PLANE}, {0, 0, 1}, {0, -1, 0}, gesture, 0, false},
+              second = {2, {-0.05, -0.5, PLANE}, {0, 0, 1}, {0, 1, 0}, gesture, 0, false};
+    himc_hand_place(&plan, 0, himc_vec3_make(-0.05, 0.5, 1));
+    TEST_ASSERT_TRUE(himc_hand_strike(&plan, &first) && himc_hand_strike(&plan, &second));
+    for (double t = 1; t < 2; t += 0.01) {
+        himc_vec3 x = himc_hand_at(&plan, t).x;
+        TEST_ASSERT_TRUE(hypot(x.x, x.y) > 0.3);
+        TEST_ASSERT_TRUE(x.x > -0.08);
+    }
+}
+
 /// A leap of 0.66 m in so much time; after this share of it, if not 0, to a spot 5 cm aside.
 static void leap(double time, double share)
 {
@@ -393,6 +409,7 @@ int main(void)
     RUN_TEST(test_tip_lands_on_the_other_drum_along_its_normal);
     RUN_TEST(test_a_long_way_goes_round_the_body_and_a_short_one_straight);
     RUN_TEST(test_a_tip_that_has_time_does_not_dart_on_its_way_behind_the_spot);
+    RUN_TEST(test_a_way_past_the_body_leads_before_it);
     RUN_TEST(test_a_leap_in_a_hurry_takes_all_its_time_and_is_not_halted_on_the_way);
     RUN_TEST(test_lift_without_a_dwell_is_finite_and_ends_where_it_began);
     return UNITY_END();

@@ -183,6 +183,26 @@ static void test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it(
     }
 }
 
+// an accent on another drum just before the written end: the last strokes of the roll make room
+static void test_an_accent_before_the_end_of_a_roll_is_played(void)
+{
+    static const char *const kind[] = {"single", "double", "press"};
+    for (int k = 0; k < 3; k++) {
+        char roll[64];
+        snprintf(roll, sizeof roll, "roll 1 4 %s pp ff normal a", kind[k]);
+        heard h = play_new(6, (const char *[]){NEIGHBOURS, "tempo 90", roll,
+                                               "stroke 4.9 right legato fff normal b", NULL});
+        const himc_strike *accented = NULL;
+        for (int i = 0; i < h.strikes; i++)
+            if (strcmp(h.strike[i].drum, "b") == 0)
+                accented = &h.strike[i];
+        printf("%s: %.2f m/s\n", roll, accented ? accented->velocity : 0);
+        TEST_ASSERT_NOT_NULL(accented);
+        TEST_ASSERT_TRUE(accented->velocity > 3);
+        heard_free(&h);
+    }
+}
+
 // a tempo that comes within a roll, at many moments of it
 static void test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it(void)
 {
@@ -527,6 +547,7 @@ int main(void)
     RUN_TEST(test_a_roll_ends_in_grace_notes_as_they_are_without_it);
     RUN_TEST(test_a_double_roll_is_even_up_to_a_drag);
     RUN_TEST(test_a_double_roll_leaves_no_hole_before_a_flam);
+    RUN_TEST(test_an_accent_before_the_end_of_a_roll_is_played);
     RUN_TEST(test_a_roll_leaves_an_ornament_on_the_next_drum_as_it_is_without_it);
     RUN_TEST(test_an_accent_after_a_roll_is_as_strong_when_the_tempo_has_changed_in_it);
     RUN_TEST(test_a_stroke_after_a_roll_is_as_strong_when_the_tempo_changes_just_before_it);

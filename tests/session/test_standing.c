@@ -180,6 +180,29 @@ static void test_arms_at_the_end_of_their_reach_do_not_throw_him(void)
     himc_performance_free(p);
 }
 
+// a large drum near him: behind its spot is his face
+static void test_a_loud_stroke_near_his_body_lands(void)
+{
+    heard h = {0};
+    himc_performance *p = session_new();
+    session_do(p, "drum low 29");
+    session_do(p, "low place 0.3 0.55 0.85");
+    session_do(p, "drum mid 26");
+    session_do(p, "mid place 0.5 -0.1 0.85");
+    session_do(p, "stance standing");
+    session_do(p, "strength human");
+    session_do(p, "tempo 112");
+    session_do(p, "stroke 0 left vertical-accent fff mid");
+    session_do(p, "stroke 4 left legato mf mid");
+    play(p, 5, &h);
+    himc_performance_stats stats = himc_performance_measure(p);
+    TEST_ASSERT_EQUAL_STRING("", h.all);
+    TEST_ASSERT_EQUAL_INT(2, stats.played);
+    TEST_ASSERT_TRUE(stats.tip_rms < 5e-3);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 static void test_he_is_quiet_after_a_loud_stroke(void)
 {
     himc_performance *p = standing("stroke 0 right accent fff", 0, "f");
@@ -261,6 +284,7 @@ int main(void)
     RUN_TEST(test_he_leans_to_the_middle_of_the_head);
     RUN_TEST(test_he_plays_four_drums_and_mirrored_is_mirrored);
     RUN_TEST(test_arms_at_the_end_of_their_reach_do_not_throw_him);
+    RUN_TEST(test_a_loud_stroke_near_his_body_lands);
     RUN_TEST(test_he_is_quiet_after_a_loud_stroke);
     RUN_TEST(test_a_push_from_any_side_is_answered);
     RUN_TEST(test_tall_and_low_are_played_with_bent_knees);

@@ -80,9 +80,59 @@ static void test_the_elbow_of_a_fast_leap_swings_ahead_and_no_more_than_it_must(
     TEST_ASSERT_TRUE(w.turns < 900 * HIMC_PI / 180);
 }
 
+// strokes on four large drums that stand close about a player on his feet, so that he strikes
+// near his body; the words of their notes are to be `said`
+static whip stand_near(himc_hand hand, int count, const char *const stroke[], const char *said)
+{
+    static const double near[][2] = {{0.05, 0.78}, {0.45, 0.3}, {0.45, -0.37}, {0, -0.75}};
+    whip w = {.p = session_new(), .hand = hand, .nearest = INFINITY};
+    heard h = {0};
+    session_do(w.p, "stance standing");
+    session_do(w.p, "strength human");
+    for (int i = 0; i < 4; i++) {
+        session_do(w.p, "drum %c %d", 'a' + i, 32 - 3 * i);
+        session_do(w.p, "%c place %g %g 0.85", 'a' + i, near[i][0], near[i][1]);
+    }
+    session_do(w.p, "tempo 100");
+    for (int i = 0; i < count; i++)
+        session_do(w.p, "stroke %s", stroke[i]);
+    himc_performance_on_motion(w.p, see, &w);
+    session_do(w.p, "play");
+    session_play(w.p, 3, &h);
+    himc_performance_stats stats = himc_performance_measure(w.p);
+    printf("elbow %.2f m/s, joints %.1f rad/s, off by %.2f mm\n", w.fastest, w.turns,
+           1e3 * stats.tip_rms);
+    TEST_ASSERT_EQUAL_STRING(said, h.all);
+    TEST_ASSERT_EQUAL_INT(count, stats.played);
+    TEST_ASSERT_TRUE(stats.tip_rms < 1e-3);
+    heard_free(&h);
+    himc_performance_free(w.p);
+    return w;
+}
+
+// the way from the drum beside him to a near one leads past his own shoulder
+static void test_an_arm_that_comes_to_a_near_drum_does_not_turn_over(void)
+{
+    static const char *const stroke[] = {"0 right legato mf d", "0.5 left legato mf a",
+                                         "1.5 left legato mf b", "2 right legato mf b"};
+    whip w = stand_near(HIMC_RIGHT, 4, stroke, "");
+    TEST_ASSERT_TRUE(w.turns < 25); // 220 if it does
+}
+
+// he does not lean over drums that his arms reach
+static void test_hands_on_near_drums_have_room(void)
+{
+    static const char *const stroke[] = {"0 left legato mf a", "0.8 right legato mf c",
+                                         "1.6 left legato mf b"};
+    whip w = stand_near(HIMC_LEFT, 3, stroke, "");
+    TEST_ASSERT_TRUE(w.turns < 25);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_an_arm_that_comes_to_a_near_drum_does_not_turn_over);
+    RUN_TEST(test_hands_on_near_drums_have_room);
     RUN_TEST(test_the_elbow_of_a_fast_leap_swings_ahead_and_no_more_than_it_must);
     RUN_TEST(test_a_leap_whips_no_elbow);
     return UNITY_END();

@@ -66,8 +66,9 @@
 #define HIGHEST_IMPACT 0.14 // over the seat, of the body's height
 #define LOWEST_IMPACT 0.03  // (m)
 // Who stands. Chosen: knees bent by 20 degrees, and the middle of the soles under the centre of
-// mass; his shoulders are higher, so he leans to places that one who sits reaches upright. Shares
-// of the height.
+// mass; his shoulders are higher, so he leans to places that one who sits reaches upright, but not
+// to those beside him: arms have no room under shoulders that are over a drum. Shares of the
+// height.
 #define STANDING_SHARE 0.53
 #define CROUCHING_SHARE 0.40
 #define STANDING_OVER 0.06       // hips over the lowest impact, else the knees bend more (m)
@@ -92,6 +93,7 @@ void himc_posture_init(himc_posture *posture, const himc_skeleton *skeleton, dou
     posture->rest.joint[HIMC_HEAD - 1] = himc_quat_exp(himc_vec3_make(0, 0.5 * LOOK_DOWN, 0));
     posture->level = level;
     posture->leans_beyond = LEAN_BEGINS;
+    posture->leans_beside = 0;
     memset(posture->hand, 0, sizeof posture->hand);
     // thighs lowered until the lower legs stand upright on the floor, knees apart; straight legs if
     // the seat is high
@@ -131,6 +133,7 @@ void himc_posture_stand(himc_posture *posture)
             himc_quat_mul(himc_quat_exp(himc_vec3_make(0, raise - knee, 0)), in);
     }
     posture->leans_beyond = STANDING_LEANS_BEYOND * skeleton->height;
+    posture->leans_beside = skeleton->segment[HIMC_LEFT_UPPER_ARM].origin.y;
 }
 
 double himc_posture_standing(const himc_skeleton_config *body, double lowest)
@@ -164,10 +167,12 @@ himc_trunk_posture himc_posture_trunk(const himc_posture *posture,
     double azimuths = both.x * both.x + both.y * both.y > 1e-6 ? atan2(both.y, both.x) : 0;
     if (l.x * r.x + l.y * r.y < BOTH_SIDES * hypot(l.x, l.y) * hypot(r.x, r.y))
         azimuths = 0.5 * (azimuth(l) + azimuth(r));
-    double turn = TURN_SHARE * azimuths, far = fmax(hypot(l.x, l.y), hypot(r.x, r.y));
+    double turn = fmin(fmax(TURN_SHARE * azimuths, -TURN_LIMIT), TURN_LIMIT);
+    double side = posture->leans_beside, x = -side * sin(turn), y = side * cos(turn);
+    double far = fmax(hypot(l.x - x, l.y - y), hypot(r.x + x, r.y + y));
     double more = fmin(LEAN_SLOPE * fmax(far - posture->leans_beyond, 0), LEAN_LIMIT - TRUNK_LEAN);
     himc_trunk_posture b = {{0}, {0}, {0}};
-    b.value[HIMC_TRUNK_POSTURE_TURN] = fmin(fmax(turn, -TURN_LIMIT), TURN_LIMIT);
+    b.value[HIMC_TRUNK_POSTURE_TURN] = turn;
     b.value[HIMC_TRUNK_POSTURE_LEAN] = TRUNK_LEAN + more;
     b.value[HIMC_TRUNK_POSTURE_FRENCH_GRIP] = grip == HIMC_GRIP_FRENCH;
     return b;

@@ -78,7 +78,8 @@ typedef struct himc_posture {
     himc_skeleton skeleton;
     himc_pose rest;                   ///< constant pose of neck, head and legs
     himc_trunk_posture trunk_posture; ///< updated by the caller whenever it moves
-    double leans_beyond;              ///< the trunk leans to strike points farther off (m)
+    double leans_beyond;              ///< the trunk leans to strike points farther off (m) ...
+    double leans_beside;              ///< ... from so far beside its middle, on the hand's side (m)
     double level;                     ///< tip height at impact, where the sticks are horizontal (m)
     himc_hand_path hand[HIMC_HANDS];  ///< of hands that move; others rest as the tip has them
 } himc_posture;

@@ -45,6 +45,7 @@
 #define FORWARD_TIME 0.2      // the way forward takes as long as the fall, at least this (s) ...
 #define FORWARD_SHARE 0.55    // ... but no more than this share of the time there is
 #define SWING_PEAK 60.0       // peak acceleration of the swing behind the spot (m/s^2)
+#define NEAREST_SWING 0.24    // ... which comes no nearer to the body's axis than a face (m)
 #define STRAIGHT_TIME 0.2     // with less time a tip off its spot goes straight there (s)
 #define IDLE_TIME 1.4         // with more time the tip first waits behind the spot (s) ...
 #define IDLE_ARRIVAL 0.65     // ... coming there in this time (s) ...
@@ -148,9 +149,13 @@ static void go_round_body(stroke_plan *s, double t, himc_vec3 x)
     if (!(share > 0 && share < 1 && away < round && far > 0))
         return;
     far = fmin(far, 1);
-    double bow = far * far * (3 - 2 * far) * (round - away) * 4 * share * (1 - share);
     if (away > 0)
         out = himc_vec3_make(beside.x / away, beside.y / away, 0);
+    if (out.x < 0) { // before him, not behind his back
+        out = himc_vec3_scale(out, -1);
+        away = -away;
+    }
+    double bow = far * far * (3 - 2 * far) * (round - away) * 4 * share * (1 - share);
     himc_target to = himc_target_at_rest(x);
     himc_spline_segment straight = himc_spline_segment_make(s->path_end, &s->path, t, &to);
     himc_target middle = himc_spline_segment_at(&straight, s->path_end + 0.5 * T);
@@ -201,6 +206,7 @@ static void swing(stroke_plan *s, const himc_goal *goal, const himc_gesture *g, 
     himc_vec3 spot = goal->spot;
     double shorter = fmin(forward - still, back_at - s->path_end);
     double depth = fmin(g->depth, SWING_PEAK / HIMC_MOVE_PEAK * shorter * shorter);
+    depth = fmin(depth, fmax(hypot(spot.x, spot.y) - NEAREST_SWING, 0));
     himc_vec3 behind = himc_vec3_madd(spot, depth, goal->back);
     double off = himc_vec3_length(himc_vec3_sub(s->path.x, spot));
     bool hurries = himc_move_time(off, HIMC_QUICK_MOVE) > back_at - s->path_end;

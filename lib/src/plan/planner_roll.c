@@ -471,23 +471,34 @@ static himc_stroke stroke_at(const planner_score *score, int i, const roll_grid 
     return s;
 }
 
-static bool is_left_out(const planner_score *score, int in_round, const himc_stroke *stroke)
+/// Whether a stroke of a roll at `own` leaves its hand too little time (s) to one of its list, or
+/// that one to it: the written one is played.
+static bool is_too_near(const planner_score *score, const planner_roll *r, double own,
+                        const planner_stroke *listed, double turned)
+{
+    const himc_stroke *s = &listed->stroke;
+    double leap = leap_time(r, way_to(score, r, s, listed->drum));
+    double time = turned + himc_planner_score_seconds(score, s->beat) - s->early;
+    return fabs(time - own) < fmax(PLANNER_LEAST_ROOM, leap);
+}
+
+static bool is_left_out(const planner_score *score, int i, int in_round, const himc_stroke *stroke)
 {
     const planner_part *part = &score->part[stroke->hand];
-    double room = himc_planner_score_room(score, stroke);
-    if (part->count > 0 && (goes_on(score, in_round) || has_begun(score, in_round))) {
-        const himc_stroke *first = &part->list[0].stroke,
-                          *last = &part->list[part->count - 1].stroke;
-        double own = himc_planner_score_seconds(score, stroke->beat),
-               turned = himc_planner_score_round_length(score);
-        if (goes_on(score, in_round))
-            room = fmin(room, turned + himc_planner_score_seconds(score, first->beat) -
-                                  first->early - own);
-        if (has_begun(score, in_round))
-            room = fmin(room,
-                        turned + own - himc_planner_score_seconds(score, last->beat) + last->early);
-    }
-    return room < PLANNER_LEAST_ROOM;
+    const planner_roll *r = roll_of(score, i, stroke->hand);
+    int after = himc_planner_part_place(part, stroke), count = part->count;
+    bool begun = has_begun(score, in_round), more = goes_on(score, in_round);
+    double own = himc_planner_score_seconds(score, stroke->beat), turned = 0;
+    if (count == 0)
+        return false;
+    if (begun || more)
+        turned = himc_planner_score_round_length(score);
+    bool wraps = after == 0, over = after == count; // the one before or after is of another round
+    return ((!wraps || begun) &&
+            is_too_near(score, r, own, &part->list[(wraps ? count : after) - 1],
+                        wraps ? -turned : 0)) ||
+           ((!over || more) &&
+            is_too_near(score, r, own, &part->list[over ? 0 : after], over ? turned : 0));
 }
 
 int himc_planner_roll_left_out(const planner_score *score, int i)
@@ -496,7 +507,7 @@ int himc_planner_roll_left_out(const planner_score *score, int i)
     int out = 0;
     for (int k = 0; k < g.count; k++) {
         himc_stroke s = stroke_at(score, i, &g, k);
-        out += is_left_out(score, NO_ROUND, &s);
+        out += is_left_out(score, i, NO_ROUND, &s);
     }
     return out;
 }
@@ -548,7 +559,7 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_p
             at->number = own_number(&g, hand, at->number);
             for (; at->number < g.count; at->number += 2) {
                 due->stroke = stroke_at(score, at->roll, &g, at->number);
-                if (is_left_out(score, at->round, &due->stroke))
+                if (is_left_out(score, at->roll, at->round, &due->stroke))
                     continue;
                 due->drum = himc_planner_roll_drum(score, at->roll, due->stroke.hand);
                 due->place = *at;
