@@ -79,11 +79,6 @@ static double reserve_of(int j, const double reserve[HIMC_HANDS])
     return j < legs ? reserve[(j - trunk) % HIMC_HANDS] : 1;
 }
 
-static himc_symmetric plus(const himc_symmetric *a, double l)
-{
-    return (himc_symmetric){a->xx + l, a->xy, a->xz, a->yy + l, a->yz, a->zz + l};
-}
-
 // (a + l)^-1 a t of length `most`; l by Newton's steps for 1/length, which rise to it
 static himc_vec3 shorten(himc_vec3 asked, double most, const himc_symmetric *a)
 {
@@ -91,10 +86,10 @@ static himc_vec3 shorten(himc_vec3 asked, double most, const himc_symmetric *a)
     double l = 0;
     for (int i = 0; most > 0 && i < STEPS; i++) {
         double length = himc_vec3_length(t);
-        himc_symmetric sum = plus(a, l), inverse = himc_symmetric_inverse(&sum);
+        himc_symmetric sum = himc_symmetric_plus(a, l), inverse = himc_symmetric_inverse(&sum);
         double slope = himc_vec3_dot(t, himc_symmetric_apply(&inverse, t));
         l += length * length * (length - most) / (most * slope);
-        sum = plus(a, l);
+        sum = himc_symmetric_plus(a, l);
         inverse = himc_symmetric_inverse(&sum);
         t = himc_symmetric_apply(&inverse, accelerates);
     }
