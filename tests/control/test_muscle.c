@@ -13,6 +13,7 @@ static const bool none[HIMC_HANDS], left[HIMC_HANDS] = {[HIMC_LEFT] = true};
 static double strength[HIMC_JOINTS];
 static himc_vec3 rate[HIMC_JOINTS];
 static himc_muscles muscles;
+static himc_articulation art; // of limbs that nothing accelerates
 
 void setUp(void)
 {
@@ -29,7 +30,8 @@ static const double own[HIMC_HANDS] = {1, 1};
 
 static void act_on(const bool struck[HIMC_HANDS], himc_vec3 torque[HIMC_JOINTS])
 {
-    himc_muscles_act(&muscles, &(himc_muscle_input){struck, own, strength, rate, STEP}, torque);
+    himc_muscles_act(&muscles, &(himc_muscle_input){struck, own, strength, rate, &art, STEP},
+                     torque);
 }
 
 static void act(const bool struck[HIMC_HANDS], double asked, himc_vec3 torque[HIMC_JOINTS])
@@ -70,7 +72,7 @@ static void test_muscles_that_pull_on_both_sides_resist(void)
 {
     himc_vec3 torque[HIMC_JOINTS];
     double astray[HIMC_HANDS] = {1.5, 1};
-    himc_muscle_input in = {none, astray, strength, rate, STEP};
+    himc_muscle_input in = {none, astray, strength, rate, &art, STEP};
     int j = himc_arm_joint(HIMC_LEFT, 1), other = himc_arm_joint(HIMC_RIGHT, 1);
     rate[j] = rate[other] = himc_vec3_make(0, 0, -8);
     memset(torque, 0, sizeof torque);
@@ -85,6 +87,26 @@ static void test_muscles_that_pull_on_both_sides_resist(void)
     rate[other].z = -1000; // within its strength
     act_on((bool[HIMC_HANDS]){false, true}, torque);
     TEST_ASSERT_TRUE(torque[other].z > -2 * 40 && torque[other].z < -40);
+}
+
+// at any step: a stick about its length has 2e-6 kg m^2, and a torque of the rate before the step
+// would turn it back faster than it came
+static void test_what_resists_a_light_stick_does_not_turn_it_back(void)
+{
+    himc_vec3 torque[HIMC_JOINTS] = {{0, 0, 0}};
+    int j = himc_arm_joint(HIMC_LEFT, 3);
+    double inertia = 2e-6;
+    rate[j].z = -5;
+    art.inverse[j + 1].zz = 1 / inertia;
+    for (double h = 2e-3; h > 2e-5; h /= 10) {
+        memset(torque, 0, sizeof torque);
+        himc_muscle_input in = {left, own, strength, rate, &art, h};
+        himc_muscles_rest(&muscles);
+        himc_muscles_act(&muscles, &in, torque);
+        double turned = h * torque[j].z / inertia;
+        TEST_ASSERT_TRUE(turned < -1 && turned > rate[j].z);
+    }
+    art.inverse[j + 1].zz = 0;
 }
 
 // what an elbow no longer gives against a shoulder would whirl the upper arm
@@ -139,6 +161,7 @@ int main(void)
     RUN_TEST(test_without_a_contact_torques_are_those_of_the_law);
     RUN_TEST(test_in_a_contact_torques_hold_but_for_a_share_of_the_strength);
     RUN_TEST(test_muscles_that_pull_on_both_sides_resist);
+    RUN_TEST(test_what_resists_a_light_stick_does_not_turn_it_back);
     RUN_TEST(test_the_torques_of_an_arm_stay_together);
     RUN_TEST(test_after_a_contact_the_law_has_its_torques_back_evenly);
     RUN_TEST(test_a_joint_without_a_strength_has_no_muscle);

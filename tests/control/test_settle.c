@@ -4,8 +4,10 @@
 #include "body/dynamics.h"
 #include "body/posture.h"
 #include "control/balance.h"
+#include "control/ik.h"
 #include "control/settle.h"
 #include "control/strength.h"
+#include "control/tracking_error.h"
 
 #include "bodies.h"
 #include "unity.h"
@@ -78,6 +80,7 @@ static void test_an_arm_that_is_too_weak_does_the_same_slower(void)
         himc_vec3 before[HIMC_JOINTS], torque[HIMC_JOINTS];
         prepare(n % 2);
         controller.config.human_strength = true;
+        controller.config.mode = HIMC_PIPELINE_ID; // the posture is the task
         int weak = himc_arm_joint(HIMC_LEFT, n % 2);
         memset(controller.config.strength, 0, sizeof controller.config.strength);
         controller.config.strength[weak] = 0.8 * himc_vec3_length(asked[weak]);
@@ -100,6 +103,33 @@ static void test_an_arm_that_is_too_weak_does_the_same_slower(void)
         }
     }
     TEST_ASSERT_TRUE(slower > 20);
+}
+
+// what moves the tip stays as long as the strength is there for it
+static void test_a_weak_arm_leaves_out_posture_before_it_is_slower(void)
+{
+    int whole = 0;
+    for (int n = 0; n < 100; n++) {
+        himc_vec3 arm[HIMC_ARM_JOINTS], before, after;
+        himc_arm_jacobian jacobian;
+        prepare(false);
+        controller.config.human_strength = true;
+        himc_arm_jacobian_at(&state, HIMC_LEFT, &jacobian);
+        int weak = himc_arm_joint(HIMC_LEFT, n % 2);
+        memset(controller.config.strength, 0, sizeof controller.config.strength);
+        controller.config.strength[weak] = 0.9 * himc_vec3_length(asked[weak]);
+        himc_arm_gather(wanted, HIMC_LEFT, arm);
+        before = himc_ik_forward(&jacobian, arm);
+        himc_slow_weak_arms(&controller, &skeleton, &state, reserve, wanted, asked);
+        himc_arm_gather(wanted, HIMC_LEFT, arm);
+        after = himc_ik_forward(&jacobian, arm);
+        double share = himc_vec3_dot(after, before) / himc_vec3_dot(before, before);
+        TEST_ASSERT_TRUE(share >= 0.3 - 1e-6 && share <= 1 + 1e-6);
+        double aside = himc_vec3_length(himc_vec3_madd(after, -share, before));
+        TEST_ASSERT_TRUE(aside < 1e-4 * himc_vec3_length(before));
+        whole += share > 1 - 1e-6;
+    }
+    TEST_ASSERT_TRUE(whole > 20);
 }
 
 static void test_trunk_and_legs_move_as_wanted_whatever_the_arms_give(void)
@@ -156,6 +186,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_an_arm_that_is_too_weak_does_the_same_slower);
+    RUN_TEST(test_a_weak_arm_leaves_out_posture_before_it_is_slower);
     RUN_TEST(test_trunk_and_legs_move_as_wanted_whatever_the_arms_give);
     RUN_TEST(test_the_arms_accelerations_become_those_of_their_torques);
     RUN_TEST(test_arms_that_give_what_was_asked_change_nothing);

@@ -188,6 +188,21 @@ static void test_human_strength_plays_accents_and_grows_with_the_players_mass(vo
     himc_performance_free(p);
 }
 
+// fingers turn a stick by 40 rad/s then, faster than an elbow
+static void test_human_strength_plays_strong_vertical_accents_in_place(void)
+{
+    himc_performance *p = session_new();
+    session_do(p, "strength human");
+    session_do(p, "drum kettle");
+    session_do(p, "tempo 60");
+    for (int i = 0; i < 4; i++)
+        session_do(p, "stroke %d %s vertical-accent ff", i + 1, i % 2 ? "left" : "right");
+    session_do(p, "play");
+    session_play(p, 5.3, NULL);
+    TEST_ASSERT_EQUAL_INT(4, himc_performance_measure(p).played);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -198,5 +213,6 @@ int main(void)
     RUN_TEST(test_a_kinematic_joint_at_its_bounds_stops);
     RUN_TEST(test_too_little_strength_of_a_joint_is_counted);
     RUN_TEST(test_human_strength_plays_accents_and_grows_with_the_players_mass);
+    RUN_TEST(test_human_strength_plays_strong_vertical_accents_in_place);
     return UNITY_END();
 }

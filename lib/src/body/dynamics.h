@@ -53,6 +53,12 @@ static inline himc_vec3 himc_symmetric_apply(const himc_symmetric *a, himc_vec3 
                           a->xz * v.x + a->yz * v.y + a->zz * v.z);
 }
 
+/// a + l times the unit matrix.
+static inline himc_symmetric himc_symmetric_plus(const himc_symmetric *a, double l)
+{
+    return (himc_symmetric){a->xx + l, a->xy, a->xz, a->yy + l, a->yz, a->zz + l};
+}
+
 /// The inverse of a positive definite matrix, by cofactors.
 static inline himc_symmetric himc_symmetric_inverse(const himc_symmetric *a)
 {

@@ -28,6 +28,7 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
     tracking_error e;
     himc_arm_jacobian jacobian[HIMC_HANDS];
     double reserve[HIMC_HANDS] = {1, 1};
+    himc_articulation own;
     himc_tracking_error_joints(skeleton, s, &reference->posture, &e);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian[hand]);
@@ -48,9 +49,12 @@ void himc_controller_torques(const himc_controller *c, const himc_skeleton *skel
         himc_slow_weak_arms(c, skeleton, s, reserve, wanted, asked);
     memcpy(torque, asked, sizeof asked);
     himc_strength_apply(c, skeleton, s, reserve, torque);
-    himc_muscle_input muscles = {reference->struck, reserve, c->config.strength, e.rate, c->step};
     if (c->muscles && c->config.human_strength)
-        himc_muscles_act(c->muscles, &muscles, torque);
+        himc_muscles_act(
+            c->muscles,
+            &(himc_muscle_input){reference->struck, reserve, c->config.strength, e.rate,
+                                 himc_strength_articulation(c, skeleton, s, &own), c->step},
+            torque);
     if (law->accelerates)
         himc_settle(c, skeleton, s, reserve, wanted, asked, torque);
 }

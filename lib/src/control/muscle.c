@@ -17,6 +17,8 @@
 /// and the arm draws on its reserve.
 #include "control/muscle.h"
 
+#include "body/dynamics.h"
+
 #define ACTIVATION 0.040 // to full strength (s); voluntary contractions take 40 to 100 ms
 #define RECOVERY 0.020   // after a contact (s); chosen: less is a jerk, more lets the tip go astray
 #define RECOVERED 2.0    // of the strength, which co-contraction then may have: any change at all
@@ -61,15 +63,20 @@ static void hold(himc_muscles *m, himc_hand hand, double more, const himc_muscle
     }
 }
 
-// muscles that pull on both sides of a joint resist its speed, whatever is asked of them
+// Muscles that pull on both sides of a joint resist its speed, whatever is asked of them: c times
+// what the rate misses at the end of the step, for a stick about its length is light.
 static void resist(himc_muscles *m, himc_hand hand, double tense, const himc_muscle_input *in,
                    himc_vec3 torque[HIMC_JOINTS])
 {
     for (int k = 0; tense > 0 && k < HIMC_ARM_JOINTS; k++) {
         int j = himc_arm_joint(hand, k);
-        himc_vec3 brakes = himc_vec3_scale(in->rate[j], tense * viscosity[k]);
         if (in->strength[j] <= 0)
             continue;
+        // (h A + 1/c)^-1 rate, with the acceleration A t of a limb under a torque t
+        double l = 1 / (in->h * tense * viscosity[k]);
+        himc_symmetric sum = himc_symmetric_plus(&in->art->inverse[j + 1], l);
+        sum = himc_symmetric_inverse(&sum);
+        himc_vec3 brakes = himc_vec3_scale(himc_symmetric_apply(&sum, in->rate[j]), 1 / in->h);
         brakes = himc_vec3_scale(brakes, fmin(over(in->strength[j], 1, brakes), 1));
         torque[j] = himc_vec3_add(torque[j], brakes);
         m->co_contraction[j] += himc_vec3_length(brakes) / in->strength[j];

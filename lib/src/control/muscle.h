@@ -17,11 +17,12 @@ HIMC_RT void himc_muscles_rest(himc_muscles *muscles);
 
 /// What muscles get in one step.
 typedef struct himc_muscle_input {
-    const bool *struck;     ///< hands that touch in a stroke
-    const double *reserve;  ///< of each arm (strength.h)
-    const double *strength; ///< of the joints (N m); 0: no maximum, no muscle
-    const himc_vec3 *rate;  ///< what the joints' rates miss (rad/s)
-    double h;               ///< the step (s)
+    const bool *struck;           ///< hands that touch in a stroke
+    const double *reserve;        ///< of each arm (strength.h)
+    const double *strength;       ///< of the joints (N m); 0: no maximum, no muscle
+    const himc_vec3 *rate;        ///< what the joints' rates miss (rad/s)
+    const himc_articulation *art; ///< of the arms at least
+    double h;                     ///< the step (s)
 } himc_muscle_input;
 
 /// From the torques that the law asks for to those that muscles give (N m).

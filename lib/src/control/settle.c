@@ -8,13 +8,15 @@
 /// pelvis then does changes the arms' torques a little: two rounds leave a fiftieth of that.
 ///
 /// Torques that are cut joint by joint do not fit together: they whirl an arm that is nearly
-/// straight, and it throws the player off his feet. So an arm that is too weak first does the same
+/// straight, and it throws the player off his feet. So an arm that is too weak first leaves out of
+/// its posture what it cannot do, the part that does not move the tip, and then does the same
 /// slower: all accelerations wanted of its joints get one share. What is too much even then is cut
 /// (strength.c).
 #include "control/settle.h"
 
 #include "body/dynamics.h"
 #include "control/balance.h"
+#include "control/ik.h"
 #include "control/strength.h"
 
 #include <string.h>
@@ -44,6 +46,46 @@ static double share_within(himc_vec3 a, himc_vec3 b, double most)
     return left > 0 ? (sqrt(along * along + square * left) - along) / square : 0;
 }
 
+// the largest share of the way from a to b that all joints of a hand's arm have the strength for
+static double share_of_arm(himc_hand hand, const himc_vec3 a[HIMC_JOINTS],
+                           const himc_vec3 b[HIMC_JOINTS], const double most[HIMC_JOINTS])
+{
+    double share = 1;
+    for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+        int j = himc_arm_joint(hand, k);
+        share = fmin(share, share_within(a[j], b[j], most[j]));
+    }
+    return share;
+}
+
+// leaves out of the accelerations wanted of weak arms as much as needed of what does not move a tip
+static void yield_posture(const himc_controller *c, const himc_skeleton *skeleton,
+                          const himc_body_state *s, const double most[HIMC_JOINTS],
+                          himc_vec3 wanted[HIMC_JOINTS], himc_vec3 asked[HIMC_JOINTS])
+{
+    himc_vec3 bare[HIMC_JOINTS], needed[HIMC_JOINTS], arm[HIMC_ARM_JOINTS];
+    memcpy(bare, wanted, sizeof bare);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_vec3 null[HIMC_ARM_JOINTS] = {{0, 0, 0}};
+        himc_arm_jacobian jacobian;
+        himc_arm_jacobian_weighted(s, (himc_hand)hand, c->config.weight, &jacobian);
+        himc_arm_gather(wanted, (himc_hand)hand, arm);
+        himc_ik_add_null(&jacobian, arm, null);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++)
+            arm[k] = himc_vec3_sub(arm[k], null[k]);
+        himc_arm_scatter(arm, (himc_hand)hand, bare);
+    }
+    himc_invert(c, skeleton, s, bare, needed);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        double share = fmax(share_of_arm((himc_hand)hand, needed, asked, most), LEAST_SHARE);
+        for (int k = 0; k < HIMC_ARM_JOINTS; k++) {
+            int j = himc_arm_joint((himc_hand)hand, k);
+            wanted[j] = himc_vec3_madd(bare[j], share, himc_vec3_sub(wanted[j], bare[j]));
+        }
+    }
+    himc_invert(c, skeleton, s, wanted, asked);
+}
+
 void himc_slow_weak_arms(const himc_controller *c, const himc_skeleton *skeleton,
                          const himc_body_state *s, const double reserve[HIMC_HANDS],
                          himc_vec3 wanted[HIMC_JOINTS], himc_vec3 asked[HIMC_JOINTS])
@@ -59,13 +101,16 @@ void himc_slow_weak_arms(const himc_controller *c, const himc_skeleton *skeleton
     }
     if (!weak)
         return;
+    if (c->config.mode == HIMC_PIPELINE_HIMC) { // else the posture is the task
+        yield_posture(c, skeleton, s, most, wanted, asked);
+        for (int j = ARMS; j < ARMS_END; j++)
+            most[j] = himc_strength_most(c, skeleton, s, j, reserve, asked[j]);
+    }
     himc_invert(c, skeleton, s, steady, keeps);
     for (int i = 0; i < HIMC_HANDS; i++) {
-        double share = 1;
+        double share = fmax(share_of_arm((himc_hand)i, keeps, asked, most), LEAST_SHARE);
         for (int j = ARMS + i; j < ARMS_END; j += HIMC_HANDS)
-            share = fmin(share, share_within(keeps[j], asked[j], most[j]));
-        for (int j = ARMS + i; j < ARMS_END; j += HIMC_HANDS)
-            wanted[j] = himc_vec3_scale(wanted[j], fmax(share, LEAST_SHARE));
+            wanted[j] = himc_vec3_scale(wanted[j], share);
     }
     himc_invert(c, skeleton, s, wanted, asked);
 }

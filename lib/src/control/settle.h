@@ -11,9 +11,9 @@ HIMC_RT void himc_invert(const himc_controller *controller, const himc_skeleton 
                          const himc_body_state *state, const himc_vec3 wanted[HIMC_JOINTS],
                          himc_vec3 torque[HIMC_JOINTS]);
 
-/// An arm whose strength times `reserve` (strength.h) is below its torques in `asked` (N m) does
-/// what is `wanted` of it slower: the accelerations (rad/s^2) of all its joints get one share, and
-/// `asked` becomes the torques for them.
+/// An arm whose strength times `reserve` (strength.h) is below its torques in `asked` (N m) leaves
+/// out posture and then does what is `wanted` of it slower: the accelerations (rad/s^2) of all its
+/// joints get one share, and `asked` becomes the torques for them.
 HIMC_RT void himc_slow_weak_arms(const himc_controller *controller, const himc_skeleton *skeleton,
                                  const himc_body_state *state, const double reserve[HIMC_HANDS],
                                  himc_vec3 wanted[HIMC_JOINTS], himc_vec3 asked[HIMC_JOINTS]);
