@@ -374,6 +374,12 @@ static const himc_mallet_head *mallet(const himc_shape *shape)
     return shape->shell->mallet;
 }
 
+static void surface(const himc_shape *shape, himc_head_frame *surface)
+{
+    surface->length = 0;
+    surface->width = depth_of(shape->shell, surface->radius);
+}
+
 static double principal(const himc_shape *shape)
 {
     return himc_kind_round.principal(shape);
@@ -399,6 +405,7 @@ const himc_kind himc_kind_two_heads = {.name = "shell",
                                        .usual = 2 * DISC,
                                        .read = read,
                                        .fit = fit,
+                                       .surface = surface,
                                        .mallet = mallet,
                                        .principal = principal,
                                        .pitch = pitch,
