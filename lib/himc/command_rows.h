@@ -267,7 +267,7 @@ HIMC_COMMAND_ROW(MUFFLE, muffle, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "A
                  "lays a cloth on the head, 1: coperto, a dry thud with a pitch")
 HIMC_COMMAND_ROW(SKIN, skin, DRUM, NOW, HIMC_CHANGES_HEAD, "plastic|calf",
                  "sets density and losses of a head of that skin, tuned as it was")
-HIMC_COMMAND_ROW(WIRES, wires, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "on|off | PULL",
+HIMC_COMMAND_ROW(WIRES, wires, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "SWITCH | PULL",
                  "puts wires to the lower head of a drum with two, drawn to it as the strainer "
                  "says, or takes them off it")
 HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",

@@ -436,7 +436,7 @@ static void test_blocks_of_any_size_give_the_same_bits(void)
 
 static void test_other_outlines_have_200_modes_and_none_is_statistical(void)
 {
-    himc_shape rectangle = {&himc_kind_rectangle, 0.4, 0.3, NULL, NULL};
+    himc_shape rectangle = {.kind = &himc_kind_rectangle, .length = 0.4, .width = 0.3};
     himc_modes *modes = himc_modes_new(&rectangle, HIMC_MODES_AUTO, NULL);
     himc_modes *same = himc_modes_new(&rectangle, 200, NULL);
     himc_head head = d3(HIMC_MODES_AUTO);

@@ -171,8 +171,11 @@ static void test_a_dump_makes_the_instruments_again(void)
 {
     say("/himc/instrument", "bell tubular-bell D5");
     say("/himc/instrument", "m marimba C4 D4");
+    say("/himc/instrument", "s snare 13");
+    say("/membrane/s/wires", "120");
     say("/himc/stroke", "1 left legato f D4 m");
     play(0.05);
+    himc_mode drum = himc_membrane_mode(himc_drum_membrane(find("s")), 5);
     himc_mode was = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
     himc_command command;
     himc_error error = {0};
@@ -194,6 +197,33 @@ static void test_a_dump_makes_the_instruments_again(void)
     himc_mode now = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
     TEST_ASSERT_EQUAL_DOUBLE(was.frequency, now.frequency);
     TEST_ASSERT_EQUAL_DOUBLE(was.decay, now.decay);
+    now = himc_membrane_mode(himc_drum_membrane(find("s")), 5);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, drum.frequency, now.frequency);
+    TEST_ASSERT_EQUAL_DOUBLE(120, himc_membrane_head(himc_drum_membrane(find("s")))->wires);
+    TEST_ASSERT_TRUE(himc_drum_mallet(find("s"), HIMC_LEFT)->mass == 0.008);
+}
+
+// a drum with wires, which are taken off at a beat; its sizes and wires are dumped
+static void test_a_score_plays_drums_with_shells_and_takes_wires_off(void)
+{
+    subscribe("strikes");
+    TEST_ASSERT_EQUAL_STRING("", load("instrument s snare; instrument t tom 14; tempo 60;"
+                                      "stroke 1 right legato f s; stroke 1.5 left legato f t;"
+                                      "at 1.8 s wires 0; at 3 s wires 300;"));
+    TEST_ASSERT_EQUAL_DOUBLE(250, himc_membrane_head(himc_drum_membrane(find("s")))->wires);
+    say("/himc/play", "");
+    play(2.2);
+    TEST_ASSERT_EQUAL_INT(2, count("/himc/strike"));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 0.1778, himc_drum_head_frame(find("t"))->radius);
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_membrane_head(himc_drum_membrane(find("s")))->wires);
+    play(1.2);
+    TEST_ASSERT_EQUAL_DOUBLE(300, himc_membrane_head(himc_drum_membrane(find("s")))->wires);
+    say("/membrane/s/wires", "120");
+    say("/membrane/t/tune", "100");
+    play(0.1);
+    TEST_ASSERT_EQUAL_STRING("", last_error());
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 100, pitch("t"));
+    refuses("instrument z snare 80;", "INCHES: 80");
 }
 
 int main(void)
@@ -206,5 +236,6 @@ int main(void)
     RUN_TEST(test_an_instrument_comes_over_osc_and_is_there_once);
     RUN_TEST(test_what_cannot_be_made_is_refused_in_one_line);
     RUN_TEST(test_a_dump_makes_the_instruments_again);
+    RUN_TEST(test_a_score_plays_drums_with_shells_and_takes_wires_off);
     return UNITY_END();
 }

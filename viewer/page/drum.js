@@ -1,5 +1,5 @@
-// A kettledrum at its place, whose head modal amplitudes move; or a slab for bars and blocks. Shapes and
-// colours: chosen by eye.
+// A kettledrum or a drum with a shell at its place, whose head modal amplitudes move; or a slab for bars and
+// blocks. Shapes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
@@ -121,6 +121,10 @@ function bowl(a) {
     }
     return lathe([...points, [1.03 * a, -0.022], [1.03 * a, -0.03]], 64);
 }
+
+// a shell with its lower hoop
+const shell = (a, depth) =>
+    lathe([[0, -depth], [1.03 * a, -depth], [1.03 * a, 0.02 - depth], [a, 0.02 - depth], [a, -0.02], [1.03 * a, -0.03]], 64);
 
 const STEEL = rgb("#c9ccd0"),
     DARK = rgb("#3c3f44"),
@@ -279,7 +283,8 @@ export class Drum {
         return new THREE.Vector3(x, y, 0).applyMatrix4(this.tilted.matrix);
     }
 
-    // `length` and `width` of what is no drum: then nothing is seen of head and kettle
+    // `length` and `width` of what is no drum: then nothing is seen of head and kettle; without a length the
+    // width is the depth of a shell
     build(a, z, length, width) {
         const m = materials(this.stage.environment);
         for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
@@ -287,12 +292,12 @@ export class Drum {
         this.trim = new THREE.Mesh(fittings(a), m.metal);
         this.slab = length > 0 && new THREE.Mesh(slab(length, width), m.wood);
         if (this.slab) this.tilted.add(this.slab);
-        else this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, this.trim);
+        else this.tilted.add(new THREE.Mesh(width > 0 ? shell(a, width) : bowl(a), width > 0 ? m.wood : m.copper), this.head, this.trim);
         this.legs = new THREE.Mesh(stand(this.slab ? Math.min(a, UNDER_SLAB) : a, z), m.metal);
         this.pedal = new THREE.Mesh(plate(), m.metal);
         this.pedal.position.set(a + HINGE, 0, -z);
         this.pedal.rotation.y = PEDAL;
-        if (!this.slab) this.legs.add(this.pedal);
+        if (!this.slab && !(width > 0)) this.legs.add(this.pedal);
         this.group.add(this.legs);
         this.group.traverse(o => (o.castShadow = o.receiveShadow = true));
         this.head.castShadow = false;

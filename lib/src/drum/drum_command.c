@@ -205,7 +205,7 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
         break;
     case HIMC_COMMAND_WIRES:
         head->wires = c->form == PULL  ? said
-                      : c->choice[0]   ? 0
+                      : said == 0      ? 0
                       : here.wires > 0 ? here.wires
                                        : HIMC_WIRES_USUAL;
         if (head->wires > 0 && !himc_shell_takes_wires(shape->shell))
@@ -427,6 +427,14 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
                  drum->set.name, body->name, principal, body->part[0].name,
                  body->part[body->parts - 1].name, modes, himc_membrane_audible(drum->membrane),
                  mallets, p->center.x, p->center.y, p->center.z);
+    const himc_shell *shell = config.shape.shell;
+    if (shell)
+        snprintf(
+            text, sizeof text,
+            "%s: %s, radius %.4g m, tension %.5g N/m, pitch %.5g Hz, wires %.4g m/s2, %d modes "
+            "(%d audible), mallet %s, at %.4g %.4g %.4g m",
+            drum->set.name, shell->name, head->radius, head->tension, principal, head->wires, modes,
+            himc_membrane_audible(drum->membrane), mallets, p->center.x, p->center.y, p->center.z);
     to->line(to->user, text);
     double highest = himc_membrane_mode(drum->membrane, modes - 1).frequency;
     if (body || head->modes == HIMC_MODES_AUTO || highest > FULL_SOUND)

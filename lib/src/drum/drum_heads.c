@@ -15,6 +15,8 @@
 #include "drum/drum_state.h"
 #include "base/array.h"
 
+#include "head/two_heads.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -65,8 +67,10 @@ static void keep_command(head_change *change, const himc_command *command)
     change->id = command->id;
     change->count = command->count;
     for (int i = 0; i < command->count; i++) {
-        assert(command->atom[i].kind == HIMC_ATOM_NUMBER);
-        change->number[i] = command->atom[i].number;
+        bool word = command->atom[i].kind == HIMC_ATOM_SYMBOL; // `wires on|off`, first word on
+        assert(!word || command->id == HIMC_COMMAND_WIRES);
+        double pull = command->choice[i] == 0 ? HIMC_WIRES_USUAL : 0;
+        change->number[i] = word ? pull : command->atom[i].number;
     }
 }
 

@@ -84,8 +84,10 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, const doubl
     const himc_head *head = &membrane->model->config.head;
     const himc_mixture *mix = &modes->mixture;
     double mixed[HIMC_MIXED];
-    for (int i = 0; i < count; i++)
-        displacement[i] = even_displacement(membrane, count, modal, i);
+    for (int i = 0; i < count; i++) {
+        int own = modes->disc ? himc_two_heads_upper(modes, i) : i;
+        displacement[i] = own < 0 ? 0 : even_displacement(membrane, count, modal, own);
+    }
     // of the bare shapes of order 0, from those of what a kettle makes of them
     for (int n = 0; n < mix->count; n++)
         mixed[n] = mix->index[n] < count ? displacement[mix->index[n]] : 0;

@@ -11,14 +11,14 @@
 ///
 /// A step. Without change of force point i would come r = b_i nearer; forces make of it
 ///     r_i = b_i - sum_j G_ij P_j,   G = that of the head + (i = j) h^2/(2 m),
-/// sticks on the other head among them (contact.c). That is the minimum of the same convex Psi, so
-/// the same proof holds: head, points and springs together gain -P r - (U1 - U0) <= 0 in a step. It
-/// is found line by line: with all other forces given, one line is linear while the point stays
-/// pressed, and a quadratic equation where it lands or leaves. Few rounds are needed, as a point
-/// hardly feels another one in the same step. (Bilbao 2012 and Torin, Hamilton & Bilbao 2014 have
-/// strings instead of points, and take longer than they sound.)
+/// those of sticks on the other head among them (contact.c). That is the minimum of the same convex
+/// Psi, so the same proof holds: head, points and springs together gain -P r - (U1 - U0) <= 0 in a
+/// step. It is found line by line: with all other forces given, one line is linear while the point
+/// stays pressed, and a quadratic equation where it lands or leaves. Few rounds are needed, as a
+/// point hardly feels another one in the same step. (Bilbao 2012 and Torin, Hamilton & Bilbao 2014
+/// have strings instead of points, and take longer than they sound.)
 ///
-/// Wires that have lain still for a while stick to the head, which takes their energy, until a blow.
+/// Wires that have lain still for a while stick to the head until a blow; their energy is lost.
 #include "head/two_heads.h"
 
 #include <math.h>
@@ -29,8 +29,8 @@
 #define STIFFNESS 1.5e5            // k (N/m); chosen, as eta
 #define LOSS 1.0                   // eta (N s/m)
 #define ROUNDS 30                  // most of a step; chosen: 3 to 5 are usual
-#define ENOUGH 1e-7
-#define STILL 1e-4         // of F0: less is 80 dB softer than the rattle; chosen
+#define ENOUGH 1e-6        // of F0, a change of forces that ends it; chosen: losses are larger
+#define STILL 1e-3         // of F0: less is 60 dB softer than the rattle; chosen
 #define STILL_SAMPLES 1024 // chosen: longer than a period of any head
 
 // along the wires, which lie across the head as the performer sees it, and across them, per radius
