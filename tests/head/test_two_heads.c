@@ -319,6 +319,24 @@ static void test_a_kick_is_short_and_a_large_tom_low(void)
     TEST_ASSERT_NOT_NULL(strstr(say("skin calf"), "without a shell"));
 }
 
+// two seconds at once, with the same bits as sample by sample by the narrowest vectors
+static void test_a_head_without_sticks_runs_with_its_wires(void)
+{
+    static double once[LONG], single[LONG];
+    for (int k = 0; k < 2; k++) {
+        himc_membrane *head = himc_drum_membrane(make("snare"));
+        double *row = k ? single : once;
+        if (k == 1)
+            himc_bank_use(head->model->bank, himc_bank_kernel_version(0));
+        himc_membrane_push(head, 0.03, 0.02, 50);
+        for (int i = 0, step = k ? 1 : LONG; i < LONG; i += step, row += step)
+            himc_membrane_run(head, step, &row, NULL);
+        TEST_ASSERT_FALSE(head->wires.awake);
+    }
+    TEST_ASSERT_EQUAL_MEMORY(once, single, sizeof once);
+    TEST_ASSERT_TRUE(fabs(once[300]) > 0);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -329,6 +347,7 @@ int main(void)
     RUN_TEST(test_wires_that_are_off_are_none);
     RUN_TEST(test_wires_may_change_while_they_rattle);
     RUN_TEST(test_rest_is_rest);
+    RUN_TEST(test_a_head_without_sticks_runs_with_its_wires);
     RUN_TEST(test_a_louder_stroke_is_brighter_and_the_rim_thinner);
     RUN_TEST(test_a_kick_is_short_and_a_large_tom_low);
     return UNITY_END();

@@ -249,23 +249,19 @@ void himc_membrane_free_step(himc_membrane *membrane)
 void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound, double *watched)
 {
     double *rest[HIMC_OUTPUTS];
-    int i = n > 0 && (membrane->push_count > 0 || membrane->wires.awake);
-    if (i > 0) {
+    int i = 0;
+    for (; i < n && (membrane->push_count > 0 || membrane->wires.awake); i++) {
         himc_membrane_free_step(membrane);
         himc_membrane_rattle(membrane, 1 / membrane->model->config.rate);
+        for (int k = 0; k < HIMC_OUTPUTS; k++)
+            if (himc_membrane_has(membrane, k) && sound[k])
+                sound[k][i] = membrane->sound[k];
+        if (watched)
+            watched[i] = himc_membrane_watched(membrane);
     }
-    for (int k = 0; k < HIMC_OUTPUTS; k++) {
-        if (!himc_membrane_has(membrane, k))
-            continue;
-        if (sound[k] && i > 0)
-            sound[k][0] = membrane->sound[k];
-        rest[k] = sound[k] ? sound[k] + i : NULL;
-    }
-    if (watched && i > 0)
-        watched[0] = himc_membrane_watched(membrane);
-    if (i < n && membrane->wires.awake)
-        himc_membrane_run_all(membrane, n - i, rest, watched ? watched + i : NULL);
-    else if (i < n)
+    for (int k = 0; k < HIMC_OUTPUTS; k++)
+        rest[k] = himc_membrane_has(membrane, k) && sound[k] ? sound[k] + i : NULL;
+    if (i < n)
         run_free(membrane, n - i, rest, watched ? watched + i : NULL);
 }
 
