@@ -160,6 +160,10 @@ static void test_what_cannot_be_made_is_refused_in_one_line(void)
     refuses("instrument a;", "INSTRUMENT missing");
     refuses("instrument a timpano 5;", "inches: 5 in, expected 12 .. 60 in");
     refuses("instrument a claves 5;", "instrument a: tune: 5 Hz, expected");
+    refuses("instrument a crash 80;", "INCHES: 80");
+    refuses("instrument a crash 18 20;", "MM: 20");
+    refuses("instrument a gong;", "INSTRUMENT: gong, expected");
+    refuses("instrument a snare; a pedal 1;", "pedal: expected a hi-hat or a vibraphone");
     refuses("instrument a modes nowhere.txt;", "instrument a: shape: nowhere.txt");
     refuses("instrument a claves; instrument a cowbell;", "instrument: a is a claves since line 1");
     refuses("instrument a claves; drum a;", "drum: a is a claves since line 1");
@@ -172,11 +176,14 @@ static void test_a_dump_makes_the_instruments_again(void)
     say("/himc/instrument", "bell tubular-bell D5");
     say("/himc/instrument", "m marimba C4 D4");
     say("/himc/instrument", "s snare 13");
+    say("/himc/instrument", "h hi-hat 15 1.5");
     say("/membrane/s/wires", "120");
+    say("/membrane/h/pedal", "0.25");
     say("/himc/stroke", "1 left legato f D4 m");
     play(0.05);
     himc_mode drum = himc_membrane_mode(himc_drum_membrane(find("s")), 5);
     himc_mode was = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
+    himc_mode hat = himc_membrane_mode(himc_drum_membrane(find("h")), 9);
     himc_command command;
     himc_error error = {0};
     TEST_ASSERT_TRUE(himc_command_parse_text(&command, HIMC_PERFORMER,
@@ -197,6 +204,9 @@ static void test_a_dump_makes_the_instruments_again(void)
     himc_mode now = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
     TEST_ASSERT_EQUAL_DOUBLE(was.frequency, now.frequency);
     TEST_ASSERT_EQUAL_DOUBLE(was.decay, now.decay);
+    now = himc_membrane_mode(himc_drum_membrane(find("h")), 9);
+    TEST_ASSERT_EQUAL_DOUBLE(hat.frequency, now.frequency);
+    TEST_ASSERT_EQUAL_DOUBLE(hat.decay, now.decay);
     now = himc_membrane_mode(himc_drum_membrane(find("s")), 5);
     TEST_ASSERT_DOUBLE_WITHIN(1e-4, drum.frequency, now.frequency);
     TEST_ASSERT_EQUAL_DOUBLE(120, himc_membrane_head(himc_drum_membrane(find("s")))->wires);

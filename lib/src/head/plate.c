@@ -12,9 +12,9 @@
 /// log-normal level: lines stand out. Below 150 Hz the air flows around the edge.
 ///
 /// What is guessed: everything about the modes but their density, sigma, the bell, the spreads; E_0
-/// of a splash, from its mass. Fitted on recordings of unknown mallets and rooms: the rates of the
-/// cascade (bank_cascade.c) and T60 of crash, china, ride and hi-hat, which is one plate here, whose
-/// pedal only damps it. The tam-tam's are from what is known of its bloom, .3 to 1 s.
+/// of a splash, from its mass. Fitted on recordings of unknown mallets and rooms: rates of the
+/// cascade (bank_cascade.c) and T60 of crash, china, ride and hi-hat, which is one plate here and
+/// which its pedal only damps. The tam-tam's are from what is known of its bloom, .3 to 1 s.
 #include "head/idiophone.h"
 
 #include "bank/bank.h"
@@ -73,7 +73,7 @@ typedef struct plate_row {
     }
 
 static const plate_row rows[] = {
-    {18, 1.2, 10.5, 3000, 0.95, 18000, AT_THE_EDGE, {18, 240, 0.05}, STICK},
+    {18, 1.2, 10.5, 3000, 0.95, 18000, AT_THE_EDGE, {8, 240, 0.03}, STICK},
     {20, 2.1, 10.5, 3000, 0.95, 18000, ON_THE_BOW, {18, 240, 0.05}, STICK},
     {18, 1.0, 16, 400, 0.95, 18000, AT_THE_EDGE, {180, 240, 0.03}, STICK},
     {10, 0.8, 5, 3000, 0.95, 18000, AT_THE_EDGE, {18, 240, 0.01}, STICK},
@@ -145,7 +145,7 @@ static bool add_parts(himc_idiophone *body, himc_error *error)
 static himc_idiophone *make(int index, const char *name, double inches, double mm,
                             himc_error *error)
 {
-    himc_part disc = {.name = "plate", .width = INCH * inches};
+    himc_part disc = {.name = "plate", .width = (float)(INCH * inches)}; // as a dump says it
     himc_idiophone *body = himc_idiophone_new(name, error);
     if (!body)
         return NULL;
@@ -169,7 +169,7 @@ static bool read(const himc_command *c, himc_shape *shape, himc_error *error)
 {
     const plate_row *row = &rows[c->choice[1]];
     double inches = c->count > 2 ? c->atom[2].number : row->inches;
-    double mm = c->count > 3 ? c->atom[3].number : row->thickness;
+    double mm = c->count > 3 ? c->atom[3].number : (float)row->thickness;
     shape->body = make(c->choice[1], c->atom[1].symbol, inches, mm, error);
     return shape->body;
 }
