@@ -86,7 +86,8 @@
 #define HIMC_PLATES(PLATE) \
     PLATE("crash") PLATE("ride") PLATE("china") PLATE("splash") PLATE("hi-hat") PLATE("tam-tam")
 // the set-ups that the library has (lib/src/base/setups.c)
-#define HIMC_SETUPS(SETUP) SETUP("kit") SETUP("timpani") SETUP("xylophone") SETUP("marimba")
+#define HIMC_SETUPS(SETUP) \
+    SETUP("kit") SETUP("timpani") SETUP("multi") SETUP("xylophone") SETUP("marimba")
 // the words of `instrument`
 #define HIMC_INSTRUMENTS(WORD) \
     WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD) HIMC_SHELLS(WORD) HIMC_PLATES(WORD)
@@ -113,9 +114,10 @@ HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes by the other hand, which bounces")
 HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes as `drag`, a little slower")
-HIMC_COMMAND_ROW(AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
-                 "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, pedal, "
-                 "damp, muffle, decay or glide; or pushes the performer")
+HIMC_COMMAND_ROW(
+    AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
+    "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, pedal, "
+    "damp, muffle, decay or glide; or pushes the performer")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, 100 by default, from that beat or from now on")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
@@ -255,14 +257,16 @@ HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",
                  "1: air and kettle load the head")
 HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, HIMC_CHANGES_HEAD, "usual | VOLUME",
                  "sets the volume under the head, or the usual one for its radius")
-HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
-                 "sets how much the tension rises as the head bows out, or how much energy goes to a "
-                 "cymbal's high modes as it bends")
+HIMC_COMMAND_ROW(
+    GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+    "sets how much the tension rises as the head bows out, or how much energy goes to a "
+    "cymbal's high modes as it bends")
 HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a hand on the head")
-HIMC_COMMAND_ROW(PEDAL, pedal, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
-                 "presses the pedal of a hi-hat, which closes it, or of a vibraphone, which lets its "
-                 "bars ring")
+HIMC_COMMAND_ROW(
+    PEDAL, pedal, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+    "presses the pedal of a hi-hat, which closes it, or of a vibraphone, which lets its "
+    "bars ring")
 HIMC_COMMAND_ROW(MUFFLE, muffle, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a cloth on the head, 1: coperto, a dry thud with a pitch")
 HIMC_COMMAND_ROW(SKIN, skin, DRUM, NOW, HIMC_CHANGES_HEAD, "plastic|calf",

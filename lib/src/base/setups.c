@@ -40,6 +40,14 @@ const himc_setup himc_setups[] = {
                 "drum second 29; second place .832 .287 .85; second tune A2;"
                 "drum third 26; third place .763 -.439 .85; third tune D3;"
                 "drum high 23; high place .251 -.843 .85; high tune G3;"},
+    // skins in the middle, wood behind them, metal at the sides
+    {"multi", "instrument snare snare 14; snare place .46 .06 .82;"
+              "instrument timpano timpano 29; timpano place .66 -.56 .85; timpano tune A2;"
+              "instrument tom tom 12; tom place .58 .46 .86;"
+              "instrument blocks temple-blocks; blocks place .7 .02 .94;"
+              "instrument crash crash 18; crash place .22 .86 .92 -.2;"
+              "instrument triangle triangle; triangle place .8 .32 1.15;"
+              "instrument tam-tam tam-tam 32; tam-tam place .08 -.94 .85;"},
     {"xylophone", "instrument xylophone xylophone F4 C7; xylophone place .45 0 .87;"},
     {"marimba", "instrument marimba marimba C3 C6; marimba place .5 0 .87;"},
 };
