@@ -104,7 +104,7 @@ typedef struct himc_head_frame {
     double tilt;         ///< positive lifts the side away from the performer (rad)
     double radius;       ///< of the disc, or of the circle around a rectangle (m)
     double length;       ///< of a rectangle along x (m); 0: a disc
-    double width;        ///< of a rectangle along y (m); 0: a disc
+    double width;        ///< of a rectangle along y; of a disc its depth: of a shell, a plate (m)
     const double *spots; ///< places of HIMC_SPOT_CENTER, _NORMAL and _RIM, from the centre towards
                          ///< the performer, per radius (3); borrowed; NULL: those of a drumhead
 } himc_head_frame;

@@ -1,5 +1,5 @@
 // A kettledrum or a drum with a shell at its place, whose head modal amplitudes move; or a slab for bars and
-// blocks. Shapes and colours: chosen by eye.
+// blocks, a disc of bronze for a plate, two for hats. Shapes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
@@ -14,6 +14,9 @@ const RINGS = 22, // of the head's net: fine enough for the 64 modes drawn
     PEDAL = 0.22, // at rest (rad)
     HEEL = [-0.055, 0, -0.075], // in the foot's frame (m)
     TREADS = 0.06, // a heel so near the hinge has its foot on the pedal (m); chosen
+    SHALLOW = 0.05, // what is less deep is no shell but a plate ...
+    FLAT = 0.01, // ... and one less deep than this no pair of them (m)
+    BOW = [[0, 0.07], [0.1, 0.06], [0.2, 0.01], [0.6, 0], [1, -0.03]], // of a plate: out, up (radii)
     SLAB = 0.022, // thickness of bars and blocks (m)
     UNDER_SLAB = 0.12, // radius of their stand (m)
     LARGEST_HEIGHT = 0.22, // as drawn, fraction of the radius; chosen: clear of the sticks
@@ -126,7 +129,8 @@ function bowl(a) {
 const shell = (a, depth) =>
     lathe([[0, -depth], [1.03 * a, -depth], [1.03 * a, 0.02 - depth], [a, 0.02 - depth], [a, -0.02], [1.03 * a, -0.03]], 64);
 
-const STEEL = rgb("#c9ccd0"),
+const BRONZE = rgb("#c29a4b"),
+    STEEL = rgb("#c9ccd0"),
     DARK = rgb("#3c3f44"),
     PALE = rgb("#f6f2e6");
 
@@ -166,6 +170,23 @@ function stand(a, z) {
 const plate = () => metals([new THREE.BoxBufferGeometry(0.19, 0.085, 0.01).translate(-0.12, 0, -0.006)], []);
 
 const slab = (length, width) => new THREE.BoxBufferGeometry(length, width, SLAB).translate(0, 0, -SLAB / 2);
+
+// one plate, or a second one upside down so far below
+function plates(a, depth) {
+    const one = (z, up) => {
+            const side = t => BOW.map(([r, h]) => [r * a, z + up * h * a + t]);
+            return lathe([...side(-0.001), ...side(0.001).reverse()], 64);
+        },
+        all = depth < FLAT ? [one(0, 1)] : [one(0, 1), one(-depth, -1)];
+    return joined(all, all.map(() => BRONZE));
+}
+
+// a rod through a plate so high above the floor, on three feet
+const tripod = z =>
+    metals(
+        [rod([0, 0, 0.05 - z], [0, 0, 0.04], 0.009)],
+        [0, 2, 4].map(i => rod(around(0.24, (i * Math.PI) / 3, 0.008 - z), [0, 0, 0.35 - z], 0.008)),
+    );
 
 // with its axle across the leg
 const wheel = (r, t, h) =>
@@ -284,16 +305,18 @@ export class Drum {
     }
 
     // `length` and `width` of what is no drum: then nothing is seen of head and kettle; without a length the
-    // width is the depth of a shell
+    // width is the depth of a shell or plates
     build(a, z, length, width) {
         const m = materials(this.stage.environment);
         for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
         this.head = new THREE.Mesh(headGeometry(a), m.head);
         this.trim = new THREE.Mesh(fittings(a), m.metal);
         this.slab = length > 0 && new THREE.Mesh(slab(length, width), m.wood);
+        const thin = !this.slab && width > 0 && width < SHALLOW;
         if (this.slab) this.tilted.add(this.slab);
+        else if (thin) this.tilted.add(new THREE.Mesh(plates(a, width), m.metal));
         else this.tilted.add(new THREE.Mesh(width > 0 ? shell(a, width) : bowl(a), width > 0 ? m.wood : m.copper), this.head, this.trim);
-        this.legs = new THREE.Mesh(stand(this.slab ? Math.min(a, UNDER_SLAB) : a, z), m.metal);
+        this.legs = new THREE.Mesh(thin ? tripod(z) : stand(this.slab ? Math.min(a, UNDER_SLAB) : a, z), m.metal);
         this.pedal = new THREE.Mesh(plate(), m.metal);
         this.pedal.position.set(a + HINGE, 0, -z);
         this.pedal.rotation.y = PEDAL;

@@ -82,6 +82,7 @@ static const plate_row rows[] = {
 };
 
 #define HAT 4       // of these
+#define APART 0.03  // (m) of two, as drawn; chosen
 #define CLOSED 16.4 // (1/s) of two plates that lie on each other; recorded: T60 = .42 s
 
 // of a mode, in the body's list of shapes
@@ -184,6 +185,7 @@ static void fit(const himc_shape *shape, himc_head *head)
 static void surface(const himc_shape *shape, himc_head_frame *surface)
 {
     himc_idiophone_surface(shape, surface);
+    surface->width = shape->body->row == HAT ? APART : 1e-3 * shape->body->pitches[1];
     surface->spots = rows[shape->body->row].spots;
 }
 
