@@ -251,6 +251,16 @@ static void test_a_plate_has_the_modes_of_its_size_and_mass(void)
     TEST_ASSERT_NULL(strchr(error.text, '\n'));
 }
 
+static void test_info_tells_size_and_parts(void)
+{
+    char lines[4000] = "";
+    plate("splash 10 0.8");
+    himc_drum_describe(drum, HIMC_DESCRIBE_INFO, keep_line, lines);
+    TEST_ASSERT_EQUAL_STRING("thing: splash, 10 inches, 0.8 mm, parts bell .. edge, 521 modes (521 "
+                             "audible), mallet usual, at 0.7 0 0.85 m\n",
+                             lines);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -262,5 +272,6 @@ int main(void)
     RUN_TEST(test_a_tam_tam_blooms);
     RUN_TEST(test_a_hand_chokes_and_a_pedal_closes);
     RUN_TEST(test_a_plate_has_the_modes_of_its_size_and_mass);
+    RUN_TEST(test_info_tells_size_and_parts);
     return UNITY_END();
 }

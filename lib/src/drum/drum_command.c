@@ -398,6 +398,16 @@ static bool has_one_mallet(const himc_drum_settings *s)
     return memcmp(&s->mallet[HIMC_LEFT], &s->mallet[HIMC_RIGHT], sizeof *s->mallet) == 0;
 }
 
+// what a thing without a skin is by: a plate's modes have no pitch
+static void size_of(const himc_shape *shape, double principal, char *text, size_t room)
+{
+    const double *size = shape->body->pitches;
+    if (shape->kind->cascade)
+        snprintf(text, room, "%.4g inches, %.3g mm", size[0], size[1]);
+    else
+        snprintf(text, room, "pitch %.5g Hz", principal);
+}
+
 static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
 {
     char text[512];
@@ -420,13 +430,16 @@ static void describe_for_person(const himc_drum *drum, const himc_line_sink *to)
              mallets, himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)drum->set.technique).text,
              p->center.x, p->center.y, p->center.z);
     const himc_idiophone *body = config.shape.body;
-    if (body)
+    if (body) {
+        char size[40];
+        size_of(&config.shape, principal, size, sizeof size);
         snprintf(text, sizeof text,
-                 "%s: %.200s, pitch %.5g Hz, parts %s .. %s, %d modes (%d audible), mallet %s, at "
+                 "%s: %.200s, %s, parts %s .. %s, %d modes (%d audible), mallet %s, at "
                  "%.4g %.4g %.4g m",
-                 drum->set.name, body->name, principal, body->part[0].name,
+                 drum->set.name, body->name, size, body->part[0].name,
                  body->part[body->parts - 1].name, modes, himc_membrane_audible(drum->membrane),
                  mallets, p->center.x, p->center.y, p->center.z);
+    }
     const himc_shell *shell = config.shape.shell;
     if (shell)
         snprintf(
