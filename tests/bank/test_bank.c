@@ -145,7 +145,7 @@ static void test_bank_runs_give_the_same_bits_in_any_blocks(void)
 }
 
 // what is more about a bank than its oscillators
-enum { FILM = 1, KICKS = 2, KINDS = 4 };
+enum { FILM = 1, KICKS = 2, CASCADE = 4, KINDS = 8 };
 
 // a bank of 200 oscillators that is pushed now and then, run in blocks of these sizes in turn; with
 // kicks, one is kicked every 32 samples
@@ -168,6 +168,8 @@ static void play(const himc_bank_kernel *kernel, int kind, const int *sizes, int
     himc_bank_set(large, many, MANY, RATE);
     himc_bank_set_film(large, film ? stretch : NULL, 0);
     himc_bank_readout(large, weight[2], weight[2], film ? weight[2] : NULL, &heard);
+    if (kind & CASCADE)
+        himc_bank_set_cascade(large, &(himc_cascade){50, 60, 1});
     if (kicks)
         himc_bank_set_pass(large, INTERVAL);
     for (int at = 0, n, k = 0; at < LENGTH; at += n, k++) {
@@ -198,6 +200,7 @@ static void test_bank_gives_the_same_bits_on_every_vector_unit_and_in_any_blocks
     TEST_ASSERT_TRUE(expected[0][3000] > 0);
     TEST_ASSERT_TRUE(fabs(expected[FILM][2999] / expected[0][2999] - 1) > 0.01);
     TEST_ASSERT_TRUE(fabs(expected[KICKS][2999] / expected[0][2999] - 1) > 0.01);
+    TEST_ASSERT_TRUE(fabs(expected[CASCADE][2999] / expected[0][2999] - 1) > 0.01);
     for (; himc_bank_kernel_version(count); count++)
         for (int kind = 0; kind < KINDS; kind++) {
             play(himc_bank_kernel_version(count), kind, short_blocks, 6, got);

@@ -243,6 +243,10 @@ static void test_a_plate_has_the_modes_of_its_size_and_mass(void)
     TEST_ASSERT_INT_WITHIN(40, 546, himc_membrane_audible(himc_drum_membrane(drum)));
     check_dump("crash", 100);
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.2286, himc_drum_head_frame(drum)->radius);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.4e-3, himc_drum_head_frame(drum)->width); // drawn as a disc
+    plate("hi-hat");
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_drum_head_frame(drum)->length);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.03, himc_drum_head_frame(drum)->width); // as two
     TEST_ASSERT_FALSE(say("shape plate crash 4000"));
     TEST_ASSERT_NULL(strchr(error.text, '\n'));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "4000, expected"), error.text);
