@@ -231,6 +231,8 @@ static void test_a_hand_chokes_and_a_pedal_closes(void)
     done("pedal 0.5");
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5 * (closed - open), mode(40).decay - open);
     check_dump("hi-hat", 40);
+    done("shape circle");
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_membrane_head(himc_drum_membrane(drum))->dampers);
 }
 
 // modes per Hz times 18 kHz, and the mass of bronze of that size

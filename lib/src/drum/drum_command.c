@@ -315,6 +315,7 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
     head->radius = himc_argument_usual(as_said("RADIUS", head->radius), s->usual.radius);
     head->tension = himc_argument_usual(as_said("TENSION", head->tension), s->usual.tension);
     head->density = himc_argument_usual(as_said("DENSITY", head->density), s->usual.density);
+    head->dampers = 0; // the pedal was the other outline's
     *head = usual_head(&shape, head);
     // one that may be in air again is in air again
     head->air = shape.kind->air && (head->air || !s->head.shape.kind->air);
