@@ -58,7 +58,8 @@
     KIND(rectangle, "rectangle LENGTH WIDTH") \
     KIND(list, "modes FILE")                  \
     KIND(listed, "listed LISTED")             \
-    KIND(bar, "bar BAR HZ [HZ]")
+    KIND(bar, "bar BAR HZ [HZ]")              \
+    KIND(plate, "plate PLATE [INCHES] [MM]")
 // the instruments that the library has as lists of modes (lib/src/head/lists.c)
 #define HIMC_LISTS(LIST)  \
     LIST("claves")        \
@@ -70,8 +71,11 @@
     LIST("tubular-bell")
 // bars that are computed (lib/src/head/bar.c)
 #define HIMC_BARS(BAR) BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel")
+// cymbals and gongs (lib/src/head/plate.c)
+#define HIMC_PLATES(PLATE) \
+    PLATE("crash") PLATE("ride") PLATE("china") PLATE("splash") PLATE("hi-hat") PLATE("tam-tam")
 // the words of `instrument`
-#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD)
+#define HIMC_INSTRUMENTS(WORD) WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD) HIMC_PLATES(WORD)
 #define HIMC_ROW_KIND(name, form) form " | "
 #define HIMC_ROW_LAW(ID, name, word, accelerates) "|" word
 
@@ -96,8 +100,8 @@ HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
 HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes as `drag`, a little slower")
 HIMC_COMMAND_ROW(AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
-                 "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, damp, "
-                 "muffle, decay or glide; or pushes the performer")
+                 "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, open, "
+                 "damp, muffle, decay or glide; or pushes the performer")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
                  "sets the tempo, 100 by default, from that beat or from now on")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
@@ -203,8 +207,8 @@ HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, HIMC_MAKES_DRUM, "NAME [INCHES
                  "makes a drum, 26 inches by default")
 HIMC_COMMAND_ROW(INSTRUMENT, instrument, PERFORMER, NOW, HIMC_MAKES_DRUM,
                  "NAME INSTRUMENT [SIZE] [SIZE] | NAME INSTRUMENT NOTE [NOTE] | NAME modes FILE",
-                 "makes an instrument with its own mallets, of so many inches, of that pitch, or "
-                 "with bars from that to another pitch")
+                 "makes an instrument with its own mallets, of so many inches (a cymbal also mm "
+                 "thick), of that pitch, or with bars from that to another pitch")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
                  "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
                  "sends a stream to an address over OSC, 33 times a second by default; vmc to port "
@@ -235,10 +239,14 @@ HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",
                  "1: air and kettle load the head")
 HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, HIMC_CHANGES_HEAD, "usual | VOLUME",
                  "sets the volume under the head, or the usual one for its radius")
-HIMC_COMMAND_ROW(GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
-                 "sets how much the tension rises as the head bows out")
+HIMC_COMMAND_ROW(
+    GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+    "sets how much the tension rises as the head bows out, or how much energy goes to a "
+    "cymbal's high modes as it bends")
 HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a hand on the head")
+HIMC_COMMAND_ROW(OPEN, open, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+                 "opens a hi-hat by its pedal, 0: closed")
 HIMC_COMMAND_ROW(MUFFLE, muffle, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a cloth on the head, 1: coperto, a dry thud with a pitch")
 HIMC_COMMAND_ROW(SKIN, skin, DRUM, NOW, HIMC_CHANGES_HEAD, "plastic|calf",
@@ -249,7 +257,7 @@ HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, HIMC_KINDS(HIMC_ROW_KIND) "FILE",
     "makes a head of another outline, or one of up to 800 masses on springs from a file; or "
-    "bars (of one pitch, or to another), or what has no skin, as a list of modes")
+    "bars (of one pitch, or to another), cymbals, or what has no skin, as a list of modes")
 HIMC_COMMAND_ROW(
     MALLET, mallet, DRUM, NOW, 0,
     "soft|medium|hard|wood|usual | K ALPHA MASS | "

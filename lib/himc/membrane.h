@@ -23,8 +23,9 @@ typedef struct himc_head {
     int modes;             ///< 1 .. HIMC_MODES_MAX, members of a pair counted; or HIMC_MODES_AUTO
     bool air;              ///< true if air and kettle load it; for round heads only
     double kettle;         ///< volume under it (m^3), half to twice the usual; 0 is the usual
-    double glide;          ///< tension modulation, 0 none .. 1 a Mylar film's
+    double glide;          ///< tension modulation, 0 none .. 1 a Mylar film's; of a cymbal: cascade
     double damp;           ///< a hand on the head: 0 none .. 1 dead at once
+    double closed;         ///< a hi-hat by its pedal: 0 open .. 1 closed
     double muffle;         ///< a cloth on the head: 0 none .. 1 all over it
     double uniformity;     ///< of the lugs' tension, 0 (2 % off) .. 1 even; of round heads only
     int uniformity_seed;   ///< which lugs are off, 0 .. HIMC_SEED_MAX
@@ -55,6 +56,8 @@ typedef struct himc_mode {
 
 /// Added to the decay of a bare head by `damp` 1 (1/s); chosen: T60 = 0.1 s.
 #define HIMC_DAMP 69.0
+/// Added by `closed` 1 (1/s): two plates that lie on each other; recorded: T60 = 0.42 s.
+#define HIMC_CLOSED 16.4
 /// Added by `muffle` 1 (1/s), and per omega (1); chosen: at D3 (1,1) has T60 = 0.3 s, what is
 /// higher less.
 #define HIMC_MUFFLE 30.0

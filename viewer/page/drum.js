@@ -1,5 +1,5 @@
-// A kettledrum at its place, whose head modal amplitudes move; or a slab for bars and blocks. Shapes and
-// colours: chosen by eye.
+// A kettledrum at its place, whose head modal amplitudes move; or a slab for bars and blocks, or a cymbal's
+// disc. Shapes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
@@ -163,6 +163,18 @@ const plate = () => metals([new THREE.BoxBufferGeometry(0.19, 0.085, 0.01).trans
 
 const slab = (length, width) => new THREE.BoxBufferGeometry(length, width, SLAB).translate(0, 0, -SLAB / 2);
 
+// a cymbal, its bell in the middle
+const disc = a =>
+    lathe(
+        [
+            [a, 0],
+            [0.2 * a, 0.012],
+            [0.15 * a, 0.03],
+            [0, 0.04],
+        ],
+        64,
+    );
+
 // with its axle across the leg
 const wheel = (r, t, h) =>
     new THREE.CylinderBufferGeometry(0.034, 0.034, 0.022, 20).rotateZ(t).translate(...around(r, t, h));
@@ -279,13 +291,16 @@ export class Drum {
         return new THREE.Vector3(x, y, 0).applyMatrix4(this.tilted.matrix);
     }
 
-    // `length` and `width` of what is no drum: then nothing is seen of head and kettle
+    // `length` and `width` of what is no drum, a disc without length: nothing is seen of head and kettle
     build(a, z, length, width) {
         const m = materials(this.stage.environment);
         for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
         this.head = new THREE.Mesh(headGeometry(a), m.head);
         this.trim = new THREE.Mesh(fittings(a), m.metal);
-        this.slab = length > 0 && new THREE.Mesh(slab(length, width), m.wood);
+        this.slab =
+            length > 0
+                ? new THREE.Mesh(slab(length, width), m.wood)
+                : width > 0 && new THREE.Mesh(disc(a), m.copper);
         if (this.slab) this.tilted.add(this.slab);
         else this.tilted.add(new THREE.Mesh(bowl(a), m.copper), this.head, this.trim);
         this.legs = new THREE.Mesh(stand(this.slab ? Math.min(a, UNDER_SLAB) : a, z), m.metal);

@@ -41,6 +41,7 @@ static void single_step(himc_bank *bank)
     himc_bank_exchange(bank, samples / 2);
     bank->loops->rotate(bank->p, bank->s, bank->present.c, bank->present.s, bank->live);
     bank->film.lead -= samples;
+    bank->cascade.since += samples;
     bank->age++;
     bank->forced = false;
     bank->bounds_left = 0;
@@ -48,7 +49,11 @@ static void single_step(himc_bank *bank)
 
 void himc_bank_ready(himc_bank *bank)
 {
-    if (bank->at < bank->length || bank->forced || bank->kind == HIMC_STEP_SUBSTEP)
+    if (bank->at < bank->length)
+        return;
+    if (himc_bank_cascade_due(bank))
+        himc_bank_scatter(bank);
+    if (bank->forced || bank->kind == HIMC_STEP_SUBSTEP)
         return;
     bank_arrive(bank);
     himc_bank_turn(bank);
@@ -58,7 +63,7 @@ void himc_bank_ready(himc_bank *bank)
 static void begin_pass(himc_bank *bank)
 {
     bank_film *f = &bank->film;
-    bool tidies = bank->age >= TIDY_INTERVAL;
+    bool tidies = bank->age >= TIDY_INTERVAL && !bank->cascade.acts;
     if (tidies) {
         int live = bank->live;
         while (live > 0 && fabs(bank->p[live - 1]) < QUIET && fabs(bank->s[live - 1]) < QUIET) {
@@ -100,8 +105,10 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
     for (int done = 0, run; done < n; done += run) {
         bool single = bank->forced || bank->kind == HIMC_STEP_SUBSTEP;
         run = single ? 1 : go_on(bank, n - done);
-        if (single)
+        if (single) {
+            himc_bank_ready(bank);
             single_step(bank);
+        }
         for (int k = 0; k < count; k++) {
             if (!out[k])
                 continue;
@@ -113,15 +120,27 @@ void himc_bank_run(himc_bank *bank, int n, himc_readout *const *readouts, int co
                 himc_bank_read_ahead(bank, readouts[k], run, out[k] + done);
         }
         bank->at += single ? 0 : run;
+        bank->cascade.since += single ? 0 : run;
         bank->step_at += single ? 0 : run;
         bank->age += single ? 0 : run;
         bank->bounds_left -= run;
     }
 }
 
+// for how long the bank has been at rest, some of it not run, makes no difference
+static void begin_anew(himc_bank *bank)
+{
+    if (bank->live > 0)
+        return;
+    bank->age = bank->bounds_left = 0;
+    bank->cascade.since = bank->cascade.turn = 0;
+    bank->cascade.acts = false;
+}
+
 void himc_bank_push(himc_bank *bank, const double *shape, double force)
 {
     bank_arrive(bank);
+    begin_anew(bank);
     bank->live = bank_round_up(bank->count);
     bank->age = 0;
     bank->forced = true;
@@ -131,12 +150,10 @@ void himc_bank_push(himc_bank *bank, const double *shape, double force)
     bank->loops->push(bank->p, bank->s, bank->push.p, bank->push.s, shape, force, bank->live);
 }
 
-// an oscillator moves; for how long the bank has been at rest, some of it not run, makes no
-// difference
+// an oscillator moves
 static void stir(himc_bank *bank, int index)
 {
-    if (bank->live == 0)
-        bank->age = bank->bounds_left = 0;
+    begin_anew(bank);
     if (index >= bank->live)
         bank->live = bank_round_up(index + 1);
 }

@@ -116,6 +116,17 @@ HIMC_RT void himc_bank_find_film(himc_bank *bank);
 /// s now (J^1/2), 0 while it is off.
 HIMC_RT double himc_bank_film(const himc_bank *bank);
 
+/// An exchange of energy between the modes of a plate (bank_cascade.c).
+typedef struct himc_cascade {
+    double rate;   ///< kappa (1/s)
+    int span;      ///< of the pairs (modes)
+    double energy; ///< E_0 of all oscillators, at which half of that rate is reached (J)
+} himc_cascade;
+
+/// After himc_bank_set: has the oscillators, which are of one mass, exchange energy after each
+/// pass, or NULL: not.
+HIMC_RT void himc_bank_set_cascade(himc_bank *bank, const himc_cascade *cascade);
+
 /// After a step was run: adds the effect of `force` (N) during that step, spread over the
 /// oscillators by the weights `shape` (padded).
 HIMC_RT void himc_bank_push(himc_bank *bank, const double *shape, double force);

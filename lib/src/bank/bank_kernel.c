@@ -13,7 +13,7 @@
         .name = #x, .rotate = rotate_##x, .weigh = weigh_##x, .weigh_more = weigh_more_##x, \
         .stretch = stretch_##x, .turn = turn_##x, .add = add_##x, .push = push_##x,         \
         .dot = dot_##x, .read = read_##x, .read_alike = read_alike_##x, .ahead = ahead_##x, \
-        .ahead_alike = ahead_alike_##x,                                                     \
+        .ahead_alike = ahead_alike_##x, .square = square_##x, .scatter = scatter_##x,       \
     }
 
 #define WIDTH 2

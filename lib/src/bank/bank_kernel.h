@@ -52,6 +52,14 @@ typedef struct himc_bank_kernel {
     void (*read_alike)(const double *rp, const double *rs, const double *more, double by,
                        const double *const *gain, const double *p, const double *s, int length,
                        double *sum);
+    /// sum (s - damp p)^2 + (tight p)^2
+    double (*square)(const double *p, const double *s, const double *damp, const double *tight,
+                     int length);
+    /// v, u = c v - w u, w v + c u with v and u = s - damp p of i and i + distance, c and w of b =
+    /// root sign by as in bank_cascade.c, for i = 0 .. distance - 1, 2 distance .. 3 distance - 1,
+    /// ... as far as i + distance < length, which need not be a multiple of 8.
+    void (*scatter)(double *s, const double *p, const double *damp, const double *root,
+                    const double *sign, double by, int distance, int length);
     /// adds samples 1 .. n to `out`, n being 8, 16, 32 or HIMC_BANK_PASS
     void (*ahead)(const himc_bank_waves *waves, int length, int n, double *out);
     /// The same to each of several, times its gain of each oscillator.

@@ -8,6 +8,10 @@
 // one vector of the unit
 typedef double NAMED(vec) __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
 #define VEC NAMED(vec)
+// one at any place
+typedef double NAMED(loose)
+    __attribute__((vector_size(WIDTH * sizeof(double)), may_alias, aligned(sizeof(double))));
+#define LOOSE NAMED(loose)
 #define PARTS (HIMC_BANK_LANES / WIDTH) // vectors of eight lanes
 #define TOGETHER (WIDTH == 8 ? 4 : 2)   // oscillators that the unit has registers for
 
@@ -145,6 +149,46 @@ TARGET static void NAMED(read_alike)(const double *rp, const double *rs, const d
         sum[r] = NAMED(total)(part[r]);
 }
 
+TARGET static double NAMED(square)(const double *p, const double *s, const double *damp,
+                                   const double *tight, int length)
+{
+    VEC sum[PARTS] = {{0}};
+    for (int i = 0; i < length; i += HIMC_BANK_LANES)
+        for (int k = 0; k < PARTS; k++) {
+            int at = i + k * WIDTH;
+            VEC vp = *(const VEC *)(p + at), u = *(const VEC *)(tight + at) * vp;
+            VEC v = *(const VEC *)(s + at) - *(const VEC *)(damp + at) * vp;
+            sum[k] += v * v + u * u;
+        }
+    return NAMED(total)(sum);
+}
+
+// pairs of one stretch, i from `first` to `end`
+#define EXCHANGE(real, i, j)                                                               \
+    do {                                                                                   \
+        real lost_i = *(const real *)(damp + (i)) * *(const real *)(p + (i));              \
+        real lost_j = *(const real *)(damp + (j)) * *(const real *)(p + (j));              \
+        real v = *(const real *)(s + (i)) - lost_i, u = *(const real *)(s + (j)) - lost_j; \
+        real b = *(const real *)(root + (i)) * *(const real *)(sign + (i)) * by;           \
+        real size = 1 / (1 + b * b), c = (1 - b * b) * size, w = 2 * b * size;             \
+        *(real *)(s + (i)) = c * v - w * u + lost_i;                                       \
+        *(real *)(s + (j)) = w * v + c * u + lost_j;                                       \
+    } while (0)
+
+TARGET static void NAMED(scatter)(double *s, const double *p, const double *damp,
+                                  const double *root, const double *sign, double by, int distance,
+                                  int length)
+{
+    for (int first = 0; first + distance < length; first += 2 * distance) {
+        int most = length - distance, end = first + distance < most ? first + distance : most;
+        int i = first;
+        for (; i + WIDTH <= end; i += WIDTH)
+            EXCHANGE(LOOSE, i, i + distance);
+        for (; i < end; i++)
+            EXCHANGE(double, i, i + distance);
+    }
+}
+
 // A few oscillators at a time, which do not wait for each other, one part of the eight samples
 // after the other: so the sums of a whole pass stay in registers. They are added in pairs. `eights`
 // is a constant in each of the four calls.
@@ -254,6 +298,8 @@ TARGET static void NAMED(ahead_alike)(const himc_bank_waves *waves, const double
         NAMED(look_alike)(waves, gain, length, HIMC_BANK_PASS / HIMC_BANK_LANES, out);
 }
 
+#undef EXCHANGE
+#undef LOOSE
 #undef VEC
 #undef PARTS
 #undef TOGETHER

@@ -9,7 +9,7 @@
 #define ACCURACY 1e-3 // rise of stiffness times the square of that; chosen: 0.1 cent
 #define HIGHEST 0.49  // of the sample rate; chosen: just below half, where aliasing begins
 
-#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + HIMC_BANK_TABLE)
+#define ARRAYS (7 + 2 * POWERS + 2 + 4 + 2 + 7 + 3 + HIMC_BANK_TABLE)
 #define STATE_ARRAYS 2 // of these, the first: p and s
 
 // takes the next array from the block
@@ -34,6 +34,9 @@ static void share_memory(himc_bank *bank)
         *single[i] = take(bank, &rest);
     for (int k = 0; k < POWERS; k++)
         bank->power[k] = (bank_rotation){take(bank, &rest), take(bank, &rest)};
+    bank->cascade.root = take(bank, &rest);
+    bank->cascade.sign = take(bank, &rest);
+    take(bank, &rest); // its second half
     bank->table = rest;
 }
 
@@ -160,7 +163,8 @@ void himc_bank_continue(himc_bank *bank, himc_bank *from, int count)
         memcmp(bank->omega, from->omega, bytes) == 0 &&
         memcmp(bank->decay, from->decay, bytes) == 0 &&
         memcmp(bank->mass, from->mass, bytes) == 0 &&
-        memcmp(bank->film.on_p, from->film.on_p, bytes) == 0) {
+        memcmp(bank->film.on_p, from->film.on_p, bytes) == 0 &&
+        bank->cascade.set.rate == from->cascade.set.rate) {
         become(bank, from, STATE_ARRAYS); // in the middle of its pass, to the last bit
         return;
     }
@@ -173,6 +177,8 @@ void himc_bank_continue(himc_bank *bank, himc_bank *from, int count)
         inherit(bank, i, q, v, from->mass[i], from->omega[i]);
     }
     bank->age = from->age;
+    bank->cascade.since = from->cascade.since;
+    bank->cascade.turn = from->cascade.turn;
     himc_bank_find_film(bank);
 }
 

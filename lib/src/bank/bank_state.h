@@ -43,6 +43,18 @@ typedef struct bank_film {
     double *tight, *slack;          ///< w/w_d, w_d/w
 } bank_film;
 
+#define TURNS 16 ///< distances of pairs, one after the other; chosen
+
+/// The cascade: see the head of bank_cascade.c.
+typedef struct bank_cascade {
+    himc_cascade set; ///< rate 0: none
+    double *root;     ///< (f/1 kHz)^1/2
+    double *sign;     ///< 1 or -1, twice as many: the second half as the first
+    int turn;         ///< of the next exchange
+    double since;     ///< samples since the last one
+    bool acts;        ///< that changed something: no oscillator is at rest for long
+} bank_cascade;
+
 struct himc_bank {
     const himc_bank_kernel *loops;
     int capacity;   ///< a multiple of LANES
@@ -71,6 +83,7 @@ struct himc_bank {
     himc_bank_bounds bounds; ///< without the film's part, found ...
     int bounds_left;         ///< ... so that they hold for this number of samples
     bank_film film;
+    bank_cascade cascade;
     double *omega, *decay, *mass, *damped;              ///< w, d, m, w_d
     double *q_per_p;                                    ///< 1/w_d
     double *table, *twice, *fall;                       ///< of himc_bank_waves
@@ -101,6 +114,13 @@ double himc_bank_audible(const bank_film *film);
 /// What it adds to a readout between exchanges, per sample of its lead, `sum` being the readout's
 /// weights `film` on the state. The rate of s counts at most so that s doubles in a step.
 double himc_bank_film_slope(const himc_bank *bank, const himc_readout *readout, double sum);
+
+// the cascade (bank_cascade.c)
+
+/// It is time for an exchange.
+bool himc_bank_cascade_due(const himc_bank *bank);
+/// Makes it, in the present sample, which begins another pass.
+void himc_bank_scatter(himc_bank *bank);
 
 // readouts (bank_read.c)
 

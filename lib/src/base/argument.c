@@ -25,6 +25,7 @@ static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", 
 #define WORD(word) word,
 static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
 static const char *const bars[] = {HIMC_BARS(WORD) NULL};
+static const char *const plates[] = {HIMC_PLATES(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
@@ -35,6 +36,7 @@ static const himc_argument arguments[] = {
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
     {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
     {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},
+    {"PLATE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", plates},
     {"LISTED", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", listed},
     {"SPOT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", spots},
     {"NAME", "preset", HIMC_ARGUMENT_NAME, 0, 0, "", NULL},
@@ -79,8 +81,12 @@ static const himc_argument arguments[] = {
     {"HEIGHT", NULL, HIMC_ARGUMENT_NUMBER, 1.2, 2.2, "m", NULL},
     {"MASS", "player", HIMC_ARGUMENT_NUMBER, HIMC_BODY_MASS_MIN, HIMC_BODY_MASS_MAX, "kg", NULL},
     {"MASS", NULL, HIMC_ARGUMENT_NUMBER, 0.001, 1, "kg", NULL},
+    // of plates; chosen: from the smallest splash and the thinnest foil to the largest gong
+    {"INCHES", "shape", HIMC_ARGUMENT_NUMBER, 5, HIMC_INCHES_MAX, "inches", NULL},
+    {"MM", NULL, HIMC_ARGUMENT_NUMBER, 0.3, 10, "mm", NULL},
     {"INCHES", NULL, HIMC_ARGUMENT_NUMBER, HIMC_INCHES_MIN, HIMC_INCHES_MAX, "inches", NULL},
-    {"SIZE", NULL, HIMC_ARGUMENT_NUMBER, 1, 20000, "inches of a head, Hz of others", NULL},
+    {"SIZE", NULL, HIMC_ARGUMENT_NUMBER, 0.3, 20000,
+     "inches of a head or a cymbal, mm of its thickness, Hz of others", NULL},
     {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", NULL},
     {"TENSION", NULL, HIMC_ARGUMENT_NUMBER, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m", NULL},
     {"DENSITY", NULL, HIMC_ARGUMENT_NUMBER, 0.01, HIMC_DENSITY_MAX, "kg/m^2", NULL},

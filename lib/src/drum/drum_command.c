@@ -176,6 +176,11 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
     case HIMC_COMMAND_DENSITY: head->density = himc_argument_usual(said, here.density); break;
     case HIMC_COMMAND_GLIDE: head->glide = himc_argument_usual(said, here.glide); break;
     case HIMC_COMMAND_DAMP: head->damp = himc_argument_usual(said, here.damp); break;
+    case HIMC_COMMAND_OPEN:
+        if (!here.closed)
+            return himc_error_set(error, "open: expected a hi-hat");
+        head->closed = 1 - said;
+        break;
     case HIMC_COMMAND_MUFFLE: head->muffle = himc_argument_usual(said, here.muffle); break;
     case HIMC_COMMAND_SKIN:
         if (shape->body)
@@ -460,6 +465,8 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
         tell(to, "kettle", head->kettle);
     tell(to, "glide", head->glide);
     tell(to, "damp", head->damp);
+    if (usual_head(shape, &drum->set.usual).closed)
+        tell(to, "open", 1 - head->closed);
     tell(to, "muffle", head->muffle);
     // its usual seed is of the drum's name, which another may not have
     if (shape->kind->air)

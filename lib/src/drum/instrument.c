@@ -9,7 +9,8 @@
 
 enum { OF_SIZE, OF_PITCH, OF_FILE }; // forms of `instrument`
 #define COUNT(word) +1
-enum { BARS = HIMC_BARS(COUNT), TIMPANO = 0 }; // words: the timpano, then the bars
+// words: the timpano, then the bars, the lists, the plates
+enum { TIMPANO = 0, BARS = HIMC_BARS(COUNT), LISTS = BARS HIMC_LISTS(COUNT) };
 
 // a bar, if no pitch is given, sounds that (Hz), in the order of HIMC_BARS; chosen: mid range
 static const double usual[BARS] = {261.6256, 523.2511, 261.6256, 1046.502};
@@ -25,17 +26,19 @@ static bool carry_out(himc_drum_settings *s, const char *name, const himc_atom *
 // makes of a new drum the instrument that the command names
 static bool change(himc_drum_settings *s, const himc_command *c, himc_error *error)
 {
-    bool bar = c->form != OF_FILE && c->choice[1] <= BARS;
-    himc_atom atoms[4] = {{HIMC_ATOM_SYMBOL, 0, bar ? "bar" : "listed"}, c->atom[1]};
+    bool bar = c->choice[1] <= BARS, listed = !bar && c->choice[1] <= LISTS;
+    const char *shape = bar ? "bar" : listed ? "listed" : "plate";
+    himc_atom atoms[4] = {{HIMC_ATOM_SYMBOL, 0, shape}, c->atom[1]};
     if (c->form == OF_FILE)
         return carry_out(s, "shape", c->atom + 1, 2, error);
-    if (!bar)
+    if (listed)
         return carry_out(s, "shape", atoms, 2, error) &&
                (c->count == 2 || carry_out(s, "tune", c->atom + 2, c->count - 2, error));
-    atoms[2] = (himc_atom){HIMC_ATOM_NUMBER, usual[c->choice[1] - 1], NULL};
+    if (bar)
+        atoms[2] = (himc_atom){HIMC_ATOM_NUMBER, usual[c->choice[1] - 1], NULL};
     for (int i = 2; i < c->count; i++)
         atoms[i] = c->atom[i];
-    return carry_out(s, "shape", atoms, c->count > 2 ? c->count : 3, error);
+    return carry_out(s, "shape", atoms, bar && c->count == 2 ? 3 : c->count, error);
 }
 
 himc_drum *himc_drum_made(const himc_command *c, double sample_rate, himc_error *error)

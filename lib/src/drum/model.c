@@ -261,7 +261,8 @@ static void find_shared(himc_model *m)
         himc_oscillator *o = &m->oscillators[m->shared[i].index];
         o->decay = fmax(o->decay - m->shared[i].decay, 0);
     }
-    himc_bank_set_pass(m->bank, shares ? interval : HIMC_BANK_PASS);
+    bool often = shares || m->config.shape.kind->cascade;
+    himc_bank_set_pass(m->bank, often ? interval : HIMC_BANK_PASS);
 }
 
 int himc_membrane_interval(double rate)
@@ -350,6 +351,12 @@ static void set_bank(himc_model *m)
     double stiffness = himc_model_film_stiffness(m), tension = m->config.head.tension;
     himc_bank_set_film(m->bank, stiffness > 0 ? m->stretch : NULL,
                        SLACK * tension * tension / (2 * stiffness));
+    const himc_shape *shape = &m->config.shape;
+    if (!shape->kind->cascade)
+        return;
+    himc_cascade cascade = *shape->kind->cascade(shape);
+    cascade.rate *= m->config.head.glide;
+    himc_bank_set_cascade(m->bank, &cascade);
 }
 
 void himc_model_make(himc_model *m, const himc_membrane_config *config)

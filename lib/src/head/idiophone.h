@@ -1,6 +1,6 @@
-/// idiophone.h: an instrument without a skin: bars, blocks, bells. Each of its parts is struck in a
-/// place of its own and has modes of its own, which are numbers: frequency, loss, mass, shape. They
-/// are read from a list (list.c) or computed (bar.c).
+/// idiophone.h: an instrument without a skin: bars, blocks, bells, cymbals. Each of its parts is
+/// struck in a place of its own and has modes of its own, which are numbers: frequency, loss, mass,
+/// shape. They are read from a list (list.c) or computed (bar.c, plate.c).
 #ifndef HIMC_IDIOPHONE_H
 #define HIMC_IDIOPHONE_H
 
@@ -35,7 +35,7 @@ typedef struct himc_partial {
 struct himc_idiophone {
     _Atomic int references;
     char *name;           ///< what its kind made it of (owned) ...
-    double pitches[2];    ///< ... and the numbers after that; 0: none (Hz)
+    double pitches[2];    ///< ... and the numbers after that; 0: none (Hz, or inches and mm)
     int parts, modes;     ///< modes in order of frequency
     himc_part *part;      ///< (parts) (owned)
     himc_partial *mode;   ///< (modes) (owned)
@@ -46,6 +46,7 @@ struct himc_idiophone {
     double radius;        ///< of the circle around (m)
     double constant, hysteresis, square; ///< of the decay, per omega, per omega^2 (1/s, 1, s)
     himc_mallet_head mallet;
+    int row; ///< in the table of its kind, if that asks
 };
 
 /// One without parts; NULL with the reason. One reference belongs to the caller.

@@ -14,6 +14,7 @@
 typedef struct himc_kind himc_kind;
 typedef struct himc_modes himc_modes;
 typedef struct himc_idiophone himc_idiophone;
+typedef struct himc_cascade himc_cascade;
 
 /// An outline. Its size is the head's radius, that of the circle around it.
 typedef struct himc_shape {
@@ -60,6 +61,10 @@ struct himc_kind {
     double (*principal)(const himc_shape *shape);
     /// Area of the film that the outline holds, per radius^2; 0 without a film.
     double (*film)(const himc_shape *shape);
+
+    /// How its modes, which are then of one mass, exchange energy at a head's `glide` 1, borrowed
+    /// (bank.h). NULL: they do not.
+    const himc_cascade *(*cascade)(const himc_shape *shape);
 
     /// Lists `modes->exact` modes (modes.h), if `automatic` also what stands for those above.
     /// False without memory.

@@ -41,6 +41,7 @@ bool himc_head_check(const himc_head *head, himc_error *error)
            himc_check_range("uniformity seed", head->uniformity_seed, 0, HIMC_SEED_MAX, "",
                             error) &&
            himc_check_range("damp", head->damp, 0, 1, "", error) &&
+           himc_check_range("closed", head->closed, 0, 1, "", error) &&
            himc_check_range("muffle", head->muffle, 0, 1, "", error);
 }
 
@@ -53,7 +54,8 @@ double himc_head_tension_for(const himc_head *head, double frequency)
 double himc_head_decay(const himc_head *head, double omega, double loading)
 {
     double decay = head->decay_constant + head->decay_square * omega * omega;
-    double laid = head->damp * HIMC_DAMP + head->muffle * (HIMC_MUFFLE + HIMC_MUFFLE_HIGH * omega);
+    double laid = head->damp * HIMC_DAMP + head->closed * HIMC_CLOSED +
+                  head->muffle * (HIMC_MUFFLE + HIMC_MUFFLE_HIGH * omega);
     return fmin(decay + laid / loading, HIMC_LARGEST_DECAY * omega);
 }
 

@@ -1,0 +1,246 @@
+/// plate.c: cymbals, gongs: a thin plate of bronze, whose modes are dense and exchange energy.
+///
+/// A free plate of area A has (A/2) sqrt(rho h/B) modes per Hz, B = E h^3/(12 (1 - nu^2)), .061 of
+/// an 18 inch crash; bow and hammering put them anywhere, so each is at random in its part of the
+/// frequencies. A diffuse field has waves k^2 = omega sqrt(rho h/B) of all directions: a mode's
+/// shape is sqrt(2 g) cos(k . x + psi), direction and psi at random, fixed, smooth in place, of the
+/// plate's mass. g is 1 on the bow, 3 at the free edge; the bell, thick and bent, moves with the
+/// high ones.
+///
+/// Sound. A mode of mean square speed v^2 radiates rho c A sigma v^2; far away its pressure is that
+/// of a random direction, sqrt(2) cos(k_air a cos(elevation) cos(az - az_i) + phase), times a
+/// log-normal level: lines stand out. Below 150 Hz the air flows around the edge.
+///
+/// What is guessed: everything about the modes but their density, sigma, the bell, the spreads,
+/// what a splash has in common with a crash. Fitted on figures of recordings whose mallets and
+/// rooms are unknown: rate and E_0 of a crash, its T60 (9, 6.5, 5.2, 3 s at 1, 2, 4, 8 kHz); T60 of
+/// china and hi-hat, which is one plate here, whose pedal only damps it. The tam-tam's are from
+/// what is known of its bloom, .3 to 1 s. A stick's click and the sway on the stand are left out.
+#include "head/idiophone.h"
+
+#include "bank/bank.h"
+#include "base/argument.h"
+#include "base/random.h"
+#include "head/air.h"
+#include "head/modes.h"
+#include "head/pickup.h"
+
+#include <math.h>
+#include <string.h>
+
+#define INCH 0.0254
+#define YOUNG 1.1e11 // bronze (Pa); and Poisson's ratio, and (kg/m^3)
+#define POISSON 0.34
+#define BRONZE 8700.0
+#define FIRST 1.8  // mean distances of two modes below the lowest; chosen
+#define MIDDLE 0.8 // of its part of the frequencies that a mode may have; chosen
+
+#define AT_EDGE 3.0     // g there
+#define EDGE_FROM 0.8   // it grows to that from here ...
+#define EDGE_TO 0.92    // ... to here, per radius: where a shaft meets it; chosen
+#define BELL 0.2        // per radius; chosen
+#define STIFF 1000.0    // (Hz) below which a bell hardly moves; chosen
+#define ROUND 150.0     // (Hz) below which air flows around the edge; chosen
+#define EFFICIENCY 0.02 // sigma; chosen: at 2 kHz half of what a crash loses is heard
+#define LEVELS 1.0      // spread of sound (neper) ...
+#define LOSSES 0.4      // ... and of decay, ln 1/s; chosen: as many lines as recorded
+
+// In the order of HIMC_PLATES (himc/command_rows.h).
+typedef struct plate_row {
+    double inches, thickness;   // usual ones (inches, mm)
+    double t60, corner, slope;  // of a mode at f: t60 (1 + f/corner)^-slope (s, Hz)
+    double highest;             // (Hz) no mode is above
+    double spots[HIMC_SPOT_XY]; // per radius
+    himc_cascade cascade;
+    himc_mallet_head mallet;
+} plate_row;
+
+#define STICK                                                                                 \
+    {                                                                                         \
+        .stiffness = 4e9, .exponent = 1.5, .mass = 0.018, .radius = 0.008, .relaxation = 2e-6 \
+    }
+#define BEATER                                                           \
+    {                                                                    \
+        .stiffness = 3e7, .exponent = 2.3, .mass = 0.35, .radius = 0.035 \
+    }
+#define AT_THE_EDGE     \
+    {                   \
+        0.1, 0.93, 0.93 \
+    } // spots center, normal, rim
+#define ON_THE_BOW     \
+    {                  \
+        0.1, 0.6, 0.93 \
+    }
+
+static const plate_row rows[] = {
+    {18, 1.2, 10.5, 3000, 0.95, 18000, AT_THE_EDGE, {8, 240, 0.03}, STICK},
+    {20, 2.1, 10.5, 3000, 0.95, 18000, ON_THE_BOW, {8, 240, 0.03}, STICK},
+    {18, 1.0, 16, 400, 0.95, 18000, AT_THE_EDGE, {80, 240, 0.015}, STICK},
+    {10, 0.8, 5, 3000, 0.95, 18000, AT_THE_EDGE, {8, 240, 0.006}, STICK},
+    {14, 1.3, 12, 400, 0.75, 18000, ON_THE_BOW, {50, 240, 0.01}, STICK},
+    {38, 2.8, 38, 250, 0.95, 14000, AT_THE_EDGE, {20, 300, 0.15}, BEATER},
+};
+
+#define HAT 4 // of these
+
+// of a mode, in the body's list of shapes
+enum { WAVE_X, WAVE_Y, PHASE, LEVEL, AZIMUTH, PHASE_IN_AIR, NUMBERS };
+
+static double uniform(uint64_t *state)
+{
+    return ldexp((double)(himc_random_bits(state) >> 11), -53);
+}
+
+static double normal(uint64_t *state)
+{
+    double size = sqrt(-2 * log(1 - uniform(state)));
+    return size * cos(2 * HIMC_PI * uniform(state));
+}
+
+static bool add_modes(himc_idiophone *body, const plate_row *row, double thickness, uint64_t seed,
+                      himc_error *error)
+{
+    double bending = YOUNG * pow(thickness, 3) / (12 * (1 - POISSON * POISSON));
+    double slow = sqrt(BRONZE * thickness / bending), numbers[NUMBERS] = {0};
+    double area = HIMC_PI * body->radius * body->radius, apart = 2 / (area * slow);
+    for (int i = 0; i < HIMC_MODES_MAX; i++) {
+        double at = i + FIRST + 0.5 + MIDDLE * (uniform(&seed) - 0.5), f = at * apart;
+        double t60 = row->t60 * pow(1 + f / row->corner, -row->slope);
+        double wave = body->radius * sqrt(2 * HIMC_PI * f * slow);
+        double direction = 2 * HIMC_PI * uniform(&seed), phase = 2 * HIMC_PI * uniform(&seed);
+        if (i % 2 == 0) { // two share a wave
+            numbers[WAVE_X] = wave * cos(direction);
+            numbers[WAVE_Y] = wave * sin(direction);
+            numbers[PHASE] = phase;
+        }
+        numbers[LEVEL] = exp(LEVELS * normal(&seed) - LEVELS * LEVELS); // its mean square is 1
+        numbers[AZIMUTH] = 2 * HIMC_PI * uniform(&seed);
+        numbers[PHASE_IN_AIR] = 2 * HIMC_PI * uniform(&seed);
+        himc_partial mode = {.frequency = f,
+                             .loss = log(1000) / t60 * exp(-LOSSES * normal(&seed)),
+                             .mass = BRONZE * thickness * area};
+        if (i > 0 && f > row->highest)
+            break;
+        if (!himc_idiophone_add_mode(body, mode, numbers, NUMBERS, error))
+            return false;
+    }
+    return true;
+}
+
+static bool add_parts(himc_idiophone *body, himc_error *error)
+{
+    static const char *const names[] = {"bell", "bow", "edge"};
+    static const double out[] = {0.1, 0.6, 0.93}; // towards the performer, per radius
+    for (int i = 0; i < 3; i++) {
+        himc_part part = {.x = -out[i] * body->radius, .width = 2 * body->radius};
+        strcpy(part.name, names[i]);
+        if (i > 0 && !himc_idiophone_add_part(body, &part, error))
+            return false;
+        body->part[i] = part;
+    }
+    return true;
+}
+
+static himc_idiophone *make(int index, const char *name, double inches, double mm,
+                            himc_error *error)
+{
+    himc_part disc = {.name = "plate", .width = INCH * inches};
+    himc_idiophone *body = himc_idiophone_new(name, error);
+    if (!body)
+        return NULL;
+    body->radius = 0.5 * disc.width;
+    if (himc_idiophone_add_part(body, &disc, error) &&
+        add_modes(body, &rows[index], 1e-3 * mm, (uint64_t)(1000 * index + 10 * inches), error)) {
+        himc_idiophone_finish(body);
+        body->row = index;
+        body->pitches[0] = inches;
+        body->pitches[1] = mm;
+        body->mallet = rows[index].mallet;
+        if (add_parts(body, error))
+            return body;
+    }
+    himc_shape_release(&(himc_shape){.body = body});
+    return NULL;
+}
+
+static bool read(const himc_command *c, himc_shape *shape, himc_error *error)
+{
+    const plate_row *row = &rows[c->choice[1]];
+    double inches = c->count > 2 ? c->atom[2].number : row->inches;
+    double mm = c->count > 3 ? c->atom[3].number : row->thickness;
+    // as another command can say it
+    shape->body = make(c->choice[1], c->atom[1].symbol, inches, himc_argument_single(mm), error);
+    return shape->body;
+}
+
+static void fit(const himc_shape *shape, himc_head *head)
+{
+    himc_idiophone_fit(shape, head);
+    head->closed = shape->body->row == HAT;
+}
+
+static void surface(const himc_shape *shape, himc_head_frame *surface)
+{
+    himc_idiophone_surface(shape, surface);
+    surface->spots = rows[shape->body->row].spots;
+}
+
+static void shapes(const himc_modes *modes, double radius, double x, double y, double *out)
+{
+    const himc_idiophone *body = modes->shape.body;
+    double r = hypot(x, y) / radius, size = 0;
+    if (r < 1) {
+        double edge = fmin(fmax((r - EDGE_FROM) / (EDGE_TO - EDGE_FROM), 0), 1);
+        size = sqrt(2 * (1 + (AT_EDGE - 1) * edge));
+    }
+    for (int i = 0; i < modes->count; i++) {
+        const double *n = body->shape + body->mode[i].first;
+        if (i % 2 == 0) {
+            double angle = (n[WAVE_X] * x + n[WAVE_Y] * y) / radius + n[PHASE];
+            double f = body->mode[i].frequency / STIFF, at = size;
+            if (r < BELL)
+                at *= f * f / (1 + f * f);
+            out[i] = at * cos(angle);
+            if (i + 1 < modes->count)
+                out[i + 1] = at * sin(angle);
+        }
+    }
+}
+
+static pickup_weights far(const himc_pickup *pickup, const himc_head *head, const himc_modes *modes,
+                          int index, const himc_mode *mode)
+{
+    const double *n = modes->shape.body->shape + modes->shape.body->mode[index].first;
+    double f = mode->frequency / ROUND, omega = 2 * HIMC_PI * mode->frequency;
+    double across = omega / HIMC_AIR_SPEED * head->radius * cos(pickup->elevation);
+    double angle = across * cos(pickup->azimuth - n[AZIMUTH]) + n[PHASE_IN_AIR];
+    // per speed: the root of rho c A sigma v^2 rho c/(4 pi R^2)
+    double loud = HIMC_AIR_DENSITY * HIMC_AIR_SPEED * 0.5 * head->radius * sqrt(EFFICIENCY) *
+                  n[LEVEL] * sqrt(2) * cos(angle) * f / sqrt(1 + f * f);
+    double gain = loud / (omega * HIMC_PICKUP_PRESSURE * pickup->distance);
+    pickup_weights w = himc_pickup_form(mode);
+    return (pickup_weights){.displacement = gain * w.displacement,
+                            .velocity = gain * w.velocity,
+                            .force = gain * w.force,
+                            .gain = gain};
+}
+
+static const himc_cascade *cascade(const himc_shape *shape)
+{
+    return &rows[shape->body->row].cascade;
+}
+
+const himc_kind himc_kind_plate = {.name = "plate",
+                                   .usual = HIMC_MODES_MAX,
+                                   .read = read,
+                                   .fit = fit,
+                                   .surface = surface,
+                                   .loss = himc_idiophone_loss,
+                                   .mallet = himc_idiophone_mallet,
+                                   .principal = himc_idiophone_principal,
+                                   .film = himc_idiophone_film,
+                                   .list = himc_idiophone_list,
+                                   .shapes = shapes,
+                                   .far = far,
+                                   .form = himc_pickup_form,
+                                   .cascade = cascade};
