@@ -109,6 +109,25 @@ static void test_strokes_of_a_score_land_on_the_bars_that_they_name(void)
     }
 }
 
+static void test_strokes_land_on_a_cymbal_where_it_is_struck_or_on_its_bell(void)
+{
+    static const double out[] = {0.93, 0.1};
+    subscribe("strikes");
+    TEST_ASSERT_EQUAL_STRING("",
+                             load("instrument c crash 18; tempo 60;"
+                                  "stroke 1 right legato f c; stroke 2 left legato mf bell c;"));
+    say("/himc/play", "");
+    play(3);
+    TEST_ASSERT_EQUAL_INT(2, count("/himc/strike"));
+    for (int i = 0; i < 2; i++) {
+        double at[2] = {0};
+        landed(i, at);
+        TEST_ASSERT_DOUBLE_WITHIN(0.004, -out[i] * 0.2286, at[0]);
+        TEST_ASSERT_DOUBLE_WITHIN(0.004, i ? 0.015 : -0.015, at[1]);
+    }
+    TEST_ASSERT_TRUE(himc_membrane_energy(himc_drum_membrane(find("c"))) > 0.001);
+}
+
 static void test_a_roll_on_a_bar_stays_on_it(void)
 {
     subscribe("strikes");
@@ -173,9 +192,11 @@ static void test_a_dump_makes_the_instruments_again(void)
     say("/himc/instrument", "m marimba C4 D4");
     say("/himc/instrument", "s snare 13");
     say("/membrane/s/wires", "120");
+    say("/himc/instrument", "c crash 16 0.9");
     say("/himc/stroke", "1 left legato f D4 m");
     play(0.05);
     himc_mode drum = himc_membrane_mode(himc_drum_membrane(find("s")), 5);
+    himc_mode plate = himc_membrane_mode(himc_drum_membrane(find("c")), 300);
     himc_mode was = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
     himc_command command;
     himc_error error = {0};
@@ -195,6 +216,8 @@ static void test_a_dump_makes_the_instruments_again(void)
     himc_score_free(score);
     unlink("/tmp/himc-instruments.txt");
     himc_mode now = himc_membrane_mode(himc_drum_membrane(find("bell")), 3);
+    TEST_ASSERT_EQUAL_DOUBLE(plate.frequency,
+                             himc_membrane_mode(himc_drum_membrane(find("c")), 300).frequency);
     TEST_ASSERT_EQUAL_DOUBLE(was.frequency, now.frequency);
     TEST_ASSERT_EQUAL_DOUBLE(was.decay, now.decay);
     now = himc_membrane_mode(himc_drum_membrane(find("s")), 5);
@@ -231,6 +254,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_each_stroke_of_a_score_lands_on_its_instrument);
     RUN_TEST(test_strokes_of_a_score_land_on_the_bars_that_they_name);
+    RUN_TEST(test_strokes_land_on_a_cymbal_where_it_is_struck_or_on_its_bell);
     RUN_TEST(test_a_roll_on_a_bar_stays_on_it);
     RUN_TEST(test_parts_that_are_not_there_are_refused);
     RUN_TEST(test_an_instrument_comes_over_osc_and_is_there_once);

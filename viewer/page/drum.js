@@ -1,5 +1,5 @@
 // A kettledrum or a drum with a shell at its place, whose head modal amplitudes move; or a slab for bars and
-// blocks. Shapes and colours: chosen by eye.
+// blocks, or a cymbal's disc. Shapes and colours: chosen by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 import { Net } from "./modes.js";
@@ -167,6 +167,18 @@ const plate = () => metals([new THREE.BoxBufferGeometry(0.19, 0.085, 0.01).trans
 
 const slab = (length, width) => new THREE.BoxBufferGeometry(length, width, SLAB).translate(0, 0, -SLAB / 2);
 
+// a cymbal, its bell in the middle
+const disc = a =>
+    lathe(
+        [
+            [a, 0],
+            [0.2 * a, 0.012],
+            [0.15 * a, 0.03],
+            [0, 0.04],
+        ],
+        64,
+    );
+
 // with its axle across the leg
 const wheel = (r, t, h) =>
     new THREE.CylinderBufferGeometry(0.034, 0.034, 0.022, 20).rotateZ(t).translate(...around(r, t, h));
@@ -284,13 +296,16 @@ export class Drum {
     }
 
     // `length` and `width` of what is no drum: then nothing is seen of head and kettle; without a length the
-    // width is the depth of a shell
+    // width is a cymbal's, twice its radius, or the depth of a shell
     build(a, z, length, width) {
         const m = materials(this.stage.environment);
         for (const old of [...this.tilted.children, this.legs]) if (old) discard(old);
         this.head = new THREE.Mesh(headGeometry(a), m.head);
         this.trim = new THREE.Mesh(fittings(a), m.metal);
-        this.slab = length > 0 && new THREE.Mesh(slab(length, width), m.wood);
+        this.slab =
+            length > 0
+                ? new THREE.Mesh(slab(length, width), m.wood)
+                : Math.abs(width - 2 * a) < 1e-3 * a && new THREE.Mesh(disc(a), m.copper);
         if (this.slab) this.tilted.add(this.slab);
         else this.tilted.add(new THREE.Mesh(width > 0 ? shell(a, width) : bowl(a), width > 0 ? m.wood : m.copper), this.head, this.trim);
         this.legs = new THREE.Mesh(stand(this.slab ? Math.min(a, UNDER_SLAB) : a, z), m.metal);

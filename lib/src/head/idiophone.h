@@ -1,6 +1,6 @@
-/// idiophone.h: an instrument without a skin: bars, blocks, bells, cymbals. Each of its parts is struck in a
-/// place of its own and has modes of its own, which are numbers: frequency, loss, mass, shape. They
-/// are read from a list (list.c) or computed (bar.c, plate.c).
+/// idiophone.h: an instrument without a skin: bars, blocks, bells, cymbals. Each of its parts is
+/// struck in a place of its own and has modes of its own, which are numbers: frequency, loss, mass,
+/// shape. They are read from a list (list.c) or computed (bar.c, plate.c).
 #ifndef HIMC_IDIOPHONE_H
 #define HIMC_IDIOPHONE_H
 
