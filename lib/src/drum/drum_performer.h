@@ -73,6 +73,8 @@ HIMC_RT bool himc_drum_kick(himc_drum *drum, int delay, double x, double y, doub
 /// or 0 if there is none.
 HIMC_RT int himc_drum_kicked(himc_drum *drum, himc_contact_report *report, double *ago);
 
+#define METRES_PER_INCH 0.0254
+
 /// True if a force acted on the head in its last sample.
 HIMC_RT bool himc_drum_is_touched(const himc_drum *drum);
 

@@ -5,6 +5,7 @@
 #include "himc/command_rows.h"
 #include "himc/ranges.h"
 
+#include <math.h>
 #include <stdio.h>
 
 enum { OF_SIZE, OF_PITCH, OF_FILE }; // forms of `instrument`
@@ -58,9 +59,12 @@ himc_drum *himc_drum_made(const himc_command *c, double sample_rate, himc_error 
     double inches = skin && c->count > size ? c->atom[size].number : HIMC_INCHES_USUAL;
     if (!himc_drum_settings_new(&s, name, inches, sample_rate, error))
         return NULL;
-    if (skin || change(&s, c, error))
+    if (skin || change(&s, c, error)) {
+        if (!skin) // a dump tells the size as that of a drum, within the sizes of drums
+            s.usual.radius = fmin(fmax(s.head.head.radius, 0.5 * HIMC_INCHES_MIN * METRES_PER_INCH),
+                                  0.5 * HIMC_INCHES_MAX * METRES_PER_INCH);
         drum = himc_drum_new_of(&s, error);
-    else
+    } else
         himc_error_prefix(error, "instrument %s", name);
     himc_drum_settings_free(&s);
     return drum;

@@ -53,11 +53,13 @@ himc_vec3 himc_drums_local(performance_drums *d, int index, himc_vec3 point)
 
 static bool is_clear(const performance_drums *d, int index, himc_vec3 center)
 {
-    double radius = himc_drums_frame(d, index)->radius;
+    // of the sizes as they were made, which a dump tells before anything else
+    double radius = 0.5 * METRES_PER_INCH * himc_drum_inches(d->slot[index].drum);
     for (int i = 0; i < d->count; i++) {
         const himc_head_frame *other = himc_drums_frame(d, i);
+        double its = 0.5 * METRES_PER_INCH * himc_drum_inches(d->slot[i].drum);
         double apart = hypot(center.x - other->center.x, center.y - other->center.y);
-        if (i != index && apart < radius + other->radius + RIM_GAP)
+        if (i != index && apart < radius + its + RIM_GAP)
             return false;
     }
     return true;
