@@ -57,8 +57,6 @@ typedef struct himc_mode {
 
 /// Added to the decay of a bare head by `damp` 1 (1/s); chosen: T60 = 0.1 s.
 #define HIMC_DAMP 69.0
-/// Added by `closed` 1 (1/s): two plates that lie on each other; recorded: T60 = 0.42 s.
-#define HIMC_CLOSED 16.4
 /// Added by `muffle` 1 (1/s), and per omega (1); chosen: at D3 (1,1) has T60 = 0.3 s, what is
 /// higher less.
 #define HIMC_MUFFLE 30.0
