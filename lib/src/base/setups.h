@@ -14,8 +14,8 @@ extern const himc_setup himc_setups[];
 /// A seated player's kit, also for General MIDI, and what stands around it for the rest of that.
 extern const char himc_setup_kit[], himc_setup_around[];
 
-/// Where an instrument stands (m; its tilt, rad), and `made`, the words of `instrument` after its name, borrowed;
-/// false if the text does not make it.
+/// Where an instrument stands (m; its tilt, rad), and `made`, the words of `instrument` after its
+/// name, borrowed; false if the text does not make it.
 bool himc_setup_find(const char *text, const char *name, const char **made, int *length,
                      double place[4]);
 
