@@ -21,8 +21,6 @@ typedef struct himc_membrane himc_membrane; ///< membrane.h
 /// `sample_rate` (Hz, 8000 .. 192000). The name has less than HIMC_NAME_SIZE characters. One
 /// reference belongs to the caller.
 himc_drum *himc_drum_new(const char *name, double inches, double sample_rate, himc_error *error);
-/// The drum or instrument that a checked command `drum` or `instrument` makes.
-himc_drum *himc_drum_made(const himc_command *command, double sample_rate, himc_error *error);
 /// Adds a reference; returns `drum`.
 himc_drum *himc_drum_retain(himc_drum *drum);
 /// Gives a reference back; the last one frees the drum. NULL is allowed.

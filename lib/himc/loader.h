@@ -57,6 +57,10 @@ HIMC_RT bool himc_loader_busy(const himc_loader *loader);
 /// Carries out all that waits, at once.
 void himc_loader_finish(himc_loader *loader);
 
+/// What a checked command `drum` or `instrument` makes; one reference belongs to the caller. NULL
+/// with the reason.
+himc_drum *himc_drum_made(const himc_command *command, double sample_rate, himc_error *error);
+
 HIMC_END
 
 #endif

@@ -393,7 +393,7 @@ static void test_rectangle_has_the_modes_of_a_string_in_both_directions(void)
 // the transform against a sum over a fine raster
 static void test_rectangle_transform_agrees_with_a_sum_over_a_raster(void)
 {
-    himc_shape shape = {&himc_kind_rectangle, 0.6, 0.4, NULL, NULL};
+    himc_shape shape = {&himc_kind_rectangle, 0.6, 0.4, NULL, NULL, NULL};
     himc_modes *modes = himc_modes_new(&shape, 30, &error);
     double radius = 0.5 * hypot(0.6, 0.4), kx = 7, ky = -5;
     double even[30] = {0}, odd[30] = {0}, w[30], e, o;

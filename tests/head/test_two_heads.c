@@ -4,6 +4,7 @@
 #include "drum/contact.h"
 #include "drum/drum_state.h"
 #include "head/two_heads.h"
+#include "himc/loader.h"
 
 #include <math.h>
 #include <stdlib.h>

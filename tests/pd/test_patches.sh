@@ -59,6 +59,8 @@ done <<'LIST'
 08-midi-file 10 10 low third
 09-rolls-and-grace-notes 9 40 kettle
 10-two-at-one-drum 4 8 kettle
+11-a-kit 6 20 kick hats snare
+12-marimba 6 8 marimba
 pieces/tide 14 7 low second third
 LIST
 

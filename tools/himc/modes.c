@@ -7,6 +7,7 @@
 #include "cli.h"
 #include "himc/drum.h"
 #include "himc/membrane.h"
+#include "himc/loader.h"
 
 #include <math.h>
 #include <string.h>

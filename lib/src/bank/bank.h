@@ -123,8 +123,8 @@ typedef struct himc_cascade {
     double energy; ///< E_0 of all oscillators, at which half of that rate is reached (J)
 } himc_cascade;
 
-/// After himc_bank_set: the oscillators, which are of one mass, exchange energy after each pass;
-/// NULL: not.
+/// After himc_bank_set: has the oscillators, which are of one mass, exchange energy after each
+/// pass, or NULL: not.
 HIMC_RT void himc_bank_set_cascade(himc_bank *bank, const himc_cascade *cascade);
 
 /// After a step was run: adds the effect of `force` (N) during that step, spread over the

@@ -4,6 +4,7 @@
 
 #include "himc/command_rows.h"
 #include "himc/ranges.h"
+#include "himc/loader.h"
 
 #include <math.h>
 #include <stdio.h>

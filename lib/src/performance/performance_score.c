@@ -16,6 +16,7 @@
 #include "performance/confine.h"
 #include "performance/research.h"
 #include "plan/score.h"
+#include "himc/loader.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -10,6 +10,7 @@
 #include "drum/membrane_state.h"
 #include "head/idiophone.h"
 #include "performance/research.h"
+#include "himc/loader.h"
 
 #include <stdlib.h>
 
