@@ -117,7 +117,7 @@ wrong test_a_command_in_capitals_is_named 'PLAY;' '1: PLAY: unknown command, did
 wrong test_a_comment_of_another_language_is_named 'tempo 90;\n# loud;' '2: #: a comment is written comment ...;'
 wrong test_a_line_without_its_end_is_named 'tempo 90\nstroke 1 right accent f;' '1: tempo 90: a ; is missing, before "stroke"'
 wrong test_a_shape_that_is_none_is_named 'kettle shape triangle;' \
-    '1: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, or a file'
+    '1: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, modes FILE, '
 wrong test_the_range_of_this_head_is_told 'kettle tune 900;' '1: kettle: tune: 900 Hz, expected 7.75676 .. 581.205 Hz'
 printf 'stroke 1 right accent f centre;\n' >british.txt
 printf 'stroke 1 right accent f center;\n' >american.txt
@@ -352,7 +352,7 @@ check test_render_says_its_figures_in_prose_on_stderr [ "$?$(grep -c '^strokes  
 echo 'strength human; stroke 1 left legato f; at 4 push left-stick 0 0 -200 0.3;' >pushed.txt
 "$himc" render pushed.txt -o pushed.wav 2>pushed.err >out2
 check test_render_tells_of_unplanned_contacts_and_of_the_reserve [ \
-    "$(grep -cx -e 'contacts  [0-9]* that no stroke asked for' -e 'reserve   left-grip up to [2-8]\.[0-9] times its strength' pushed.err)" = 2 ]
+    "$(grep -cx -e 'contacts  [0-9]* that no stroke asked for' -e 'reserve   left-[a-z]* up to [2-8]\.[0-9] times its strength' pushed.err)" = 2 ]
 keys=$(tail -n 1 out | grep -o '"[a-z0-9_]*":' | tr -d '":' | tr '\n' ' ')
 check test_last_line_has_the_keys_of_the_contract [ "$keys" = \
     "seconds strokes played missed tip_rms_mm tip_rms_percent peak_force_n realtime_factor \
@@ -523,15 +523,15 @@ near() {
         { for (i = 1; i <= notes; i++) if (($1 - note[i]) ^ 2 <= 1e-4) { near++; break } } END { print near + 0 }' notes.csv struck.csv
 }
 "$himc" import "$root/tests/midi/groove.mid" -o made.txt >out 2>err
-check test_import_reports_on_stderr [ "$?$(wc -l <out)$(head -n 1 err)" = "0034 of 73 notes for drums are played" ]
-check test_import_comments_the_report [ "$(grep -c '^comment 36 notes are not played: ' made.txt)" = 1 ]
+check test_import_reports_on_stderr [ "$?$(wc -l <out)$(head -n 1 err)" = "0071 of 73 notes for drums are played" ]
+check test_import_comments_the_report [ "$(grep -c '^comment 1 note is not played: ' made.txt)" = 1 ]
 "$himc" import "$root/tests/midi/groove.mid" -o - 2>/dev/null | cmp -s - made.txt
 check test_import_writes_to_stdout [ $? = 0 ]
 "$himc" import "$root/tests/midi/groove.mid" --curve square:22 -o square.txt 2>/dev/null
-check test_import_has_two_curves [ "$(grep -c '^stroke' square.txt) $(cmp -s made.txt square.txt && echo same)" = "34 " ]
+check test_import_has_two_curves [ "$(grep -c '^stroke' square.txt) $(cmp -s made.txt square.txt && echo same)" = "71 " ]
 "$himc" render made.txt -o made.wav --strokes struck.csv >/dev/null
 cp "$root/tests/midi/groove.csv" notes.csv
-check test_imported_strokes_are_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1.0714)" = "34 34" ]
+check test_imported_strokes_are_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(near 1.0714)" = "71 71" ]
 cp "$root/tests/midi/scherzo.mid" "$root/tests/midi/roll.mid" .
 "$himc" render scherzo.mid -o scherzo.wav --strokes struck.csv >out 2>err
 cp "$root/tests/midi/scherzo.csv" notes.csv
@@ -549,7 +549,7 @@ refuses test_import_does_not_write_over_its_source "named twice" import roll.mid
 refuses test_import_of_text_is_refused "not a MIDI file" import piece.txt -o x.txt
 refuses test_unknown_curve_is_refused "expected notation, square, square:DB" import roll.mid --curve cube -o x.txt
 refuses test_curve_out_of_range_is_refused "expected 1 .. 80 dB" import roll.mid --curve square:99 -o x.txt
-refuses test_unknown_part_is_refused "expected timpani or drums" import roll.mid --part bass -o x.txt
+refuses test_unknown_part_is_refused "expected timpani drums marimba" import roll.mid --part bass -o x.txt
 refuses test_part_that_is_not_there_is_refused "none of a drum (channel 10)" import roll.mid --part drums -o x.txt
 printf 'MThd junk' >junk.mid
 refuses test_bad_midi_file_is_refused_by_render "junk.mid: not a MIDI file" render junk.mid -o x.wav
