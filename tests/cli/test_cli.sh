@@ -117,7 +117,7 @@ wrong test_a_command_in_capitals_is_named 'PLAY;' '1: PLAY: unknown command, did
 wrong test_a_comment_of_another_language_is_named 'tempo 90;\n# loud;' '2: #: a comment is written comment ...;'
 wrong test_a_line_without_its_end_is_named 'tempo 90\nstroke 1 right accent f;' '1: tempo 90: a ; is missing, before "stroke"'
 wrong test_a_shape_that_is_none_is_named 'kettle shape triangle;' \
-    '1: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, modes FILE, '
+    '1: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, modes FILE, listed LISTED, bar BAR HZ [HZ], shell SHELL [INCHES], plate PLATE [INCHES] [MM], or a file'
 wrong test_the_range_of_this_head_is_told 'kettle tune 900;' '1: kettle: tune: 900 Hz, expected 7.75676 .. 581.205 Hz'
 printf 'stroke 1 right accent f centre;\n' >british.txt
 printf 'stroke 1 right accent f center;\n' >american.txt
