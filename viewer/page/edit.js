@@ -742,7 +742,7 @@ export class Editor {
             mesh.strike = s;
             mesh.position.set(s.x, s.y, 0.006);
             head.localToWorld(mesh.position);
-            mesh.material.color = rgb(s.why ? MISSED : handColor[HANDS.indexOf(s.hand)]);
+            mesh.material.color = rgb(s.why ? MISSED : handColor[s.hand === HANDS[0] ? 0 : 1]);
         });
     }
 }

@@ -64,7 +64,7 @@ const wanted = {
     modes: e =>
         e.modes.every(([hz, decay]) => hz > 0 && decay >= 0 && decay < 7 * hz) &&
         e.shapes.every(([shape, mode, part]) => shape >= 0 && shape < 64 && mode in e.modes && finite(part)),
-    strike: e => HANDS.includes(e.hand) && finite(e.x, e.y, e.force),
+    strike: e => (HANDS.includes(e.hand) || e.hand === "foot") && finite(e.x, e.y, e.force),
     missed: e => HANDS.includes(e.hand) && finite(e.x, e.y, e.due) && typeof e.why === "string",
     beat: e => finite(e.beat),
 };
