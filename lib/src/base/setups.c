@@ -7,19 +7,19 @@
 
 const char himc_setup_kit[] = "instrument snare snare 14; snare place .52 .02 .72;"
                               "instrument hats hi-hat 14; hats place .42 .46 .88;"
-                              "instrument high-tom tom 10; high-tom place .78 .3 .88 -.2;"
-                              "instrument tom tom 12; tom place .84 0 .88 -.2;"
+                              "instrument high-tom tom 10; high-tom place .78 .3 .88 .2;"
+                              "instrument tom tom 12; tom place .84 0 .88 .2;"
                               "instrument floor tom 16; floor place .42 -.42 .7;"
-                              "instrument crash crash 18; crash place .6 -.66 .98 -.25;"
-                              "instrument ride ride 20; ride place .14 -.9 .88 -.2;"
-                              "instrument kick kick 22; kick place .8 .1 .4 -.8;";
+                              "instrument crash crash 18; crash place .6 -.66 .98 .25;"
+                              "instrument ride ride 20; ride place .14 -.9 .88 .2;"
+                              "instrument kick kick 22; kick place .8 .1 .4 .8;";
 
 const char himc_setup_around[] =
     "instrument low-floor tom 18; low-floor place .12 -.66 .7;"
     "instrument mid-tom tom 14; mid-tom place .82 -.32 .86;"
-    "instrument china china 18; china place .5 -.86 1.05 -.3;"
-    "instrument splash splash 10; splash place .95 .12 1.1 -.3;"
-    "instrument crash-16 crash 16; crash-16 place .7 .64 1.1 -.3;"
+    "instrument china china 18; china place .5 -.86 1.05 .3;"
+    "instrument splash splash 10; splash place .95 .12 1.1 .3;"
+    "instrument crash-16 crash 16; crash-16 place .7 .64 1.1 .3;"
     "instrument cowbell cowbell; cowbell place .9 .36 1.05;"
     "instrument high-bongo bongo 7; high-bongo place .2 .6 .9;"
     "instrument low-bongo bongo 8.5; low-bongo place .2 .84 .9;"
@@ -45,7 +45,7 @@ const himc_setup himc_setups[] = {
               "instrument timpano timpano 29; timpano place .66 -.56 .85; timpano tune A2;"
               "instrument tom tom 12; tom place .58 .46 .86;"
               "instrument blocks temple-blocks; blocks place .7 .02 .94;"
-              "instrument crash crash 18; crash place .22 .86 .92 -.2;"
+              "instrument crash crash 18; crash place .22 .86 .92 .2;"
               "instrument triangle triangle; triangle place .8 .32 1.15;"
               "instrument tam-tam tam-tam 32; tam-tam place .08 -.94 .85;"},
     {"xylophone", "instrument xylophone xylophone F4 C7; xylophone place .45 0 .87;"},
