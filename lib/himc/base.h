@@ -72,9 +72,9 @@ bool himc_check_range(const char *name, double value, double low, double high, c
 
 /// A hand of the performer, with its arm and stick. In the order of the argument HAND.
 typedef enum himc_hand {
-    HIMC_LEFT,    ///< "left"
-    HIMC_RIGHT,   ///< "right"
-    HIMC_HANDS,   ///< number of hands, the length of arrays indexed by a hand
+    HIMC_LEFT,     ///< "left"
+    HIMC_RIGHT,    ///< "right"
+    HIMC_HANDS,    ///< number of hands, the length of arrays indexed by a hand
     HIMC_HAND_ANY, ///< "any", of a hit only: the performer chooses
     HIMC_FOOT      ///< "foot", of a stroke or hit only: with a beater on a pedal
 } himc_hand;

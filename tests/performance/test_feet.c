@@ -83,6 +83,9 @@ static void test_a_foot_follows_a_message_and_a_seek(void)
     play(.1);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(last_error(), "foot: expected plain strokes only"),
                                  last_error());
+    say("/himc/stroke", "6 foot legato f 0.9 0 kick");
+    play(.1);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(last_error(), "foot: strike: X: 0.9 m"), last_error());
 }
 
 int main(void)

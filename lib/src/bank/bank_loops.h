@@ -191,15 +191,15 @@ TARGET static double NAMED(square)(const double *p, const double *s, const doubl
 }
 
 // pairs of one stretch, i from `first` to `end`
-#define EXCHANGE(real, i, j)                                                              \
-    do {                                                                                  \
-        real lost_i = *(const real *)(damp + (i)) * *(const real *)(p + (i));             \
-        real lost_j = *(const real *)(damp + (j)) * *(const real *)(p + (j));             \
+#define EXCHANGE(real, i, j)                                                               \
+    do {                                                                                   \
+        real lost_i = *(const real *)(damp + (i)) * *(const real *)(p + (i));              \
+        real lost_j = *(const real *)(damp + (j)) * *(const real *)(p + (j));              \
         real v = *(const real *)(s + (i)) - lost_i, u = *(const real *)(s + (j)) - lost_j; \
-        real b = *(const real *)(root + (i)) * *(const real *)(sign + (i)) * by;          \
-        real size = 1 / (1 + b * b), c = (1 - b * b) * size, w = 2 * b * size;            \
-        *(real *)(s + (i)) = c * v - w * u + lost_i;                                      \
-        *(real *)(s + (j)) = w * v + c * u + lost_j;                                      \
+        real b = *(const real *)(root + (i)) * *(const real *)(sign + (i)) * by;           \
+        real size = 1 / (1 + b * b), c = (1 - b * b) * size, w = 2 * b * size;             \
+        *(real *)(s + (i)) = c * v - w * u + lost_i;                                       \
+        *(real *)(s + (j)) = w * v + c * u + lost_j;                                       \
     } while (0)
 
 TARGET static void NAMED(scatter)(double *s, const double *p, const double *damp,

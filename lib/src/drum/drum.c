@@ -20,9 +20,9 @@
 #define RUN_BLOCK 64         // samples of a pass of the free head; chosen: bank.c's
 #define WATCHED HIMC_PICKUPS // index of the ring of displacements
 #define NOISE_UNIT (100 / HIMC_PICKUP_PRESSURE) // the noise was fitted where 1.0 was 100 Pa
-#define LEVEL_RAMP 0.010  // (s) of the head's own sound from on to off; chosen: no click
-#define MUFFLED_DAMP 0.5  // a cloth ends noise as such a hand does; chosen: in 0.2 s
-#define NOISE_MOVES 400.0 // of a pickup's nearness to noise (1/m in a second); chosen: no click
+#define LEVEL_RAMP 0.010      // (s) of the head's own sound from on to off; chosen: no click
+#define MUFFLED_DAMP 0.5      // a cloth ends noise as such a hand does; chosen: in 0.2 s
+#define NOISE_MOVES 400.0     // of a pickup's nearness to noise (1/m in a second); chosen: no click
 #define FIRST_WATCHED (-0.75) // x per radius: where strokes `normal` land
 
 static const himc_vec3 FIRST_PLACE = {0.70, 0, 0.85}; // (m) chosen: in front of a seated player

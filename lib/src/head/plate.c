@@ -170,8 +170,7 @@ static bool read(const himc_command *c, himc_shape *shape, himc_error *error)
 {
     const plate_row *row = &rows[c->choice[1]];
     double inches = c->count > 2 ? c->atom[2].number : row->inches;
-    // as precise as a dump tells it
-    double mm = c->count > 3 ? c->atom[3].number : (float)row->thickness;
+    double mm = c->count > 3 ? c->atom[3].number : row->thickness;
     // as another command can say it
     shape->body = make(c->choice[1], c->atom[1].symbol, inches, himc_argument_single(mm), error);
     return shape->body;

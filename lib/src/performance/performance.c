@@ -143,7 +143,7 @@ static void performance_step(himc_performance *p)
                               himc_planner_length(planner), &p->events);
         double next = himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock));
         himc_body_begin_pushes(p->body, beat, next, t);
-        himc_feet_play(&p->motion->feet, &p->drums, planner, beat, next);
+        himc_feet_play(&p->motion->feet, &p->drums, planner, beat, next, &p->events);
         int told = himc_feet_tell(&p->drums, &p->events, t);
         himc_statistics_strokes(&p->statistics, told, told);
     }

@@ -36,17 +36,21 @@ static foot_stroke read_stroke(const himc_stroke *stroke, int drum, const himc_h
     return own;
 }
 
-bool himc_feet_add(performance_feet *feet, const himc_stroke *stroke, int drum,
-                   const himc_head_frame *surface, himc_error *error)
+bool himc_feet_add(performance_feet *feet, const himc_stroke *stroke, performance_drums *drums,
+                   int drum, himc_error *error)
 {
+    foot_stroke own = read_stroke(stroke, drum, himc_drums_frame(drums, drum));
     int at = feet->count;
     if (stroke->ornament != HIMC_PLAIN || stroke->bounces != 0)
         return himc_error_set(error, "foot: expected plain strokes only");
+    if (!himc_drum_strike_at(drums->slot[drum].drum, HIMC_STRIKE_NEVER, own.x, own.y, own.velocity,
+                             error))
+        return himc_error_prefix(error, "foot");
     if (!himc_array_grow(&feet->stroke, feet->count, &feet->room, sizeof *feet->stroke, error))
         return false;
     for (; at > 0 && feet->stroke[at - 1].beat > stroke->beat; at--)
         feet->stroke[at] = feet->stroke[at - 1];
-    feet->stroke[at] = read_stroke(stroke, drum, surface);
+    feet->stroke[at] = own;
     feet->count++;
     return true;
 }
@@ -71,7 +75,7 @@ bool himc_feet_hit(const himc_stroke *stroke, performance_drums *drums, int drum
 }
 
 void himc_feet_play(performance_feet *feet, performance_drums *drums, const himc_planner *planner,
-                    double now, double next)
+                    double now, double next, performance_events *events)
 {
     int count;
     const himc_tempo_change *tempi = himc_planner_tempi(planner, &count);
@@ -83,10 +87,13 @@ void himc_feet_play(performance_feet *feet, performance_drums *drums, const himc
     double t_end = himc_score_seconds(tempi, count, end);
     for (int i = 0; i < feet->count; i++) {
         const foot_stroke *s = &feet->stroke[i];
-        if (s->beat >= from && s->beat < to)
-            launch(s, drums, fmax(himc_score_seconds(tempi, count, s->beat) - t, 0), NULL);
-        else if (round && s->beat < next)
-            launch(s, drums, t_end - t + himc_score_seconds(tempi, count, s->beat), NULL);
+        bool again = round && s->beat < next;
+        himc_error error;
+        if (!again && !(s->beat >= from && s->beat < to))
+            continue;
+        double at = himc_score_seconds(tempi, count, s->beat) + (again ? t_end : 0);
+        if (!launch(s, drums, fmax(at - t, 0), &error))
+            himc_events_note(events, "foot at beat %g: %s", s->beat, error.text);
     }
     feet->played_to = next;
 }

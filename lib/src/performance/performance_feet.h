@@ -23,17 +23,20 @@ typedef struct performance_feet {
 
 void himc_feet_free(performance_feet *feet);
 HIMC_RT void himc_feet_clear(performance_feet *feet);
-/// Adds a stroke on a surface. False with the reason if there is no memory, or it is an ornament.
-bool himc_feet_add(performance_feet *feet, const himc_stroke *stroke, int drum,
-                   const himc_head_frame *surface, himc_error *error);
+/// Adds a stroke on a drum. False with the reason if there is no memory, or no foot plays it: an
+/// ornament, a place off the head.
+bool himc_feet_add(performance_feet *feet, const himc_stroke *stroke, performance_drums *drums,
+                   int drum, himc_error *error);
 /// Beat of the last stroke, -1 without one.
 HIMC_RT double himc_feet_last(const performance_feet *feet);
 /// Plays a stroke on a drum `delay` (s) from now.
 HIMC_RT bool himc_feet_hit(const himc_stroke *stroke, performance_drums *drums, int drum,
                            double delay, himc_error *error);
-/// Plays the strokes of a tick: from beat `now` of the planner's score to that of the next tick.
+/// Plays the strokes of a tick: from beat `now` of the planner's score to that of the next tick. One
+/// that a drum refuses, as after a change of its size, is told.
 HIMC_RT void himc_feet_play(performance_feet *feet, performance_drums *drums,
-                            const himc_planner *planner, double now, double next);
+                            const himc_planner *planner, double now, double next,
+                            performance_events *events);
 /// At time `t` (s), tells the strokes whose contact has ended; returns their number.
 HIMC_RT int himc_feet_tell(const performance_drums *drums, performance_events *events, double t);
 

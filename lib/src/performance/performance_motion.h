@@ -34,7 +34,7 @@ typedef struct seen_pedal {
 } seen_pedal;
 
 typedef struct performance_motion {
-    himc_planner *planner;          ///< owned
+    himc_planner *planner; ///< owned
     performance_feet feet;
     himc_track *track;              ///< owned; of the take that is loaded, NULL: none
     hand_source piece;              ///< what is played: the track, or else the planner

@@ -61,7 +61,7 @@ static bool put_foot_stroke(himc_performance *p, const himc_stroke *stroke, int 
                             himc_error *error)
 {
     if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &drum, error) ||
-        !himc_feet_add(&p->motion->feet, stroke, drum, himc_drums_frame(&p->drums, drum), error))
+        !himc_feet_add(&p->motion->feet, stroke, &p->drums, drum, error))
         return false;
     himc_performance_find_end(p);
     himc_motion_stir(p->motion);

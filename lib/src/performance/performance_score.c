@@ -509,7 +509,9 @@ static himc_job_state add_strokes(score_job *j, himc_error *error)
             }
         }
         if (!good) {
-            himc_error_prefix(error, "%s:%d", j->path, score->stroke_lines[place < 0 ? 0 : place]);
+            himc_error_prefix(error, "%s:%d", j->path,
+                              place < 0 ? score->changes[-1 - place].line
+                                        : score->stroke_lines[place]);
             return HIMC_JOB_FAILED;
         }
     }

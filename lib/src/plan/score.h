@@ -10,11 +10,10 @@
 #define HIMC_CLOSEST_STROKES 0.04
 
 /// The score in a string, as himc_score_load reads it from a file; `name` stands for the file in
-/// errors. Free with himc_score_free.
-/// Files that it names are read in `folder` (NULL: anywhere).
+/// errors. A FILE of `setup` is read in `folder` (NULL: anywhere). Free with himc_score_free.
 himc_score *himc_score_parse(const char *text, const char *name, const char *folder,
                              himc_error *error);
-/// The score that `setup` stands for.
+/// The lines that a checked `setup` stands for, as a score without strokes; NULL with the reason.
 himc_score *himc_score_of_setup(const himc_command *setup, himc_error *error);
 
 /// Puts a change into a tempo map of *count that has room for it, or in place of that on its beat.
