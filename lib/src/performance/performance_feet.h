@@ -32,8 +32,8 @@ HIMC_RT double himc_feet_last(const performance_feet *feet);
 /// Plays a stroke on a drum `delay` (s) from now.
 HIMC_RT bool himc_feet_hit(const himc_stroke *stroke, performance_drums *drums, int drum,
                            double delay, himc_error *error);
-/// Plays the strokes of a tick: from beat `now` of the planner's score to that of the next tick. One
-/// that a drum refuses, as after a change of its size, is told.
+/// Plays the strokes of a tick: from beat `now` of the planner's score to that of the next tick.
+/// One that a drum refuses, as after a change of its size, is told.
 HIMC_RT void himc_feet_play(performance_feet *feet, performance_drums *drums,
                             const himc_planner *planner, double now, double next,
                             performance_events *events);
