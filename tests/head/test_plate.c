@@ -3,7 +3,9 @@
 #include "say_drum.h"
 
 #include "bank/bank.h"
+#include "drum/membrane_state.h"
 #include "head/idiophone.h"
+#include "head/modes.h"
 
 #include <time.h>
 
@@ -255,6 +257,29 @@ static void test_a_plate_has_the_modes_of_its_size_and_mass(void)
     TEST_ASSERT_FALSE(say("shape plate gong"));
 }
 
+static double mean_square(const himc_modes *modes, double radius, double x)
+{
+    static double shape[HIMC_MODES_MAX];
+    double sum = 0;
+    himc_modes_shapes(modes, radius, x, 0, shape);
+    for (int i = 0; i < modes->count; i++)
+        sum += shape[i] * shape[i] / modes->count;
+    return sum;
+}
+
+static void test_the_free_edge_moves_more_than_the_bow(void)
+{
+    done("shape plate crash");
+    const himc_shape *shape = &himc_membrane_config_of(himc_drum_membrane(drum))->shape;
+    double radius = himc_drum_head_frame(drum)->radius;
+    himc_modes *modes = himc_modes_new(shape, shape->body->modes, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(modes, error.text);
+    double bow = mean_square(modes, radius, 0.6 * radius);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 1, bow);
+    TEST_ASSERT_DOUBLE_WITHIN(0.3, 3, mean_square(modes, radius, 0.95 * radius) / bow);
+    himc_modes_free(modes);
+}
+
 static double cost(const char *shape)
 {
     done(shape);
@@ -303,5 +328,6 @@ int main(void)
     RUN_TEST(test_a_plate_has_the_modes_of_its_size_and_mass);
     RUN_TEST(test_a_plate_tells_its_depth_and_size);
     RUN_TEST(test_a_crash_costs_little_more_than_its_modes_do);
+    RUN_TEST(test_the_free_edge_moves_more_than_the_bow);
     return UNITY_END();
 }

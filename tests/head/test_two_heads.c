@@ -199,6 +199,28 @@ static void test_sticks_head_and_wires_never_gain_energy(void)
     never_gains("wires 2000");
 }
 
+// points alone, thrown off a head that does not move
+static void test_wires_on_a_rigid_head_lose_energy_at_each_landing(void)
+{
+    const double rigid[HIMC_WIRES] = {0}, pull = 250, h = 1.0 / RATE;
+    himc_wires_matrix none = {{0}};
+    himc_wires w;
+    double b[HIMC_WIRES];
+    himc_wires_rest(&w, rigid);
+    for (int i = 0; i < HIMC_WIRES; i++)
+        w.velocity[i] = -0.1 * (i + 1);
+    double first = himc_wires_energy(&w, pull), last = first;
+    for (int i = 0; i < RATE / 5 && w.awake; i++) {
+        himc_wires_begin(&w, rigid, h, b);
+        himc_wires_solve(&w, pull, h, none, b);
+        himc_wires_end(&w, pull, h, none, b);
+        double now = himc_wires_energy(&w, pull);
+        TEST_ASSERT_TRUE(now <= last + 1e-14 * first);
+        last = now;
+    }
+    TEST_ASSERT_TRUE(last >= 0 && last < 1e-2 * first);
+}
+
 static void test_wires_fade_sooner_the_tighter_they_are(void)
 {
     double loose, usual, off;
@@ -344,6 +366,7 @@ int main(void)
     RUN_TEST(test_the_air_between_parts_the_lowest_modes_of_a_bass_drum);
     RUN_TEST(test_blows_last_as_long_as_on_such_drums);
     RUN_TEST(test_sticks_head_and_wires_never_gain_energy);
+    RUN_TEST(test_wires_on_a_rigid_head_lose_energy_at_each_landing);
     RUN_TEST(test_wires_fade_sooner_the_tighter_they_are);
     RUN_TEST(test_wires_that_are_off_are_none);
     RUN_TEST(test_wires_may_change_while_they_rattle);

@@ -525,9 +525,10 @@ static void test_feet_play_their_pedals(void)
     TEST_ASSERT_EQUAL_INT(2, lines_with(made.text, "hats pedal 1;"));
     TEST_ASSERT_EQUAL_INT(1, lines_with(made.text, "hats pedal 0;"));
     TEST_ASSERT_EQUAL_INT(3, score->change_count);
-    for (int i = 0; i < 3; i++)
-        TEST_ASSERT_DOUBLE_WITHIN(0.07, score->strokes[i < 2 ? i + 1 : 4].beat,
-                                  score->changes[i].beat);
+    for (int i = 0; i < 3; i++) {
+        double ahead = score->strokes[i < 2 ? i + 1 : 4].beat - score->changes[i].beat;
+        TEST_ASSERT_TRUE(ahead > 0 && ahead < 0.07);
+    }
 }
 
 // each key of General MIDI's map is played, or told by its name

@@ -239,6 +239,16 @@ static void test_player_that_is_refused_leaves_the_drum_under_the_take(void)
     himc_performance_free(p);
 }
 
+static void test_a_set_up_leaves_the_take(void)
+{
+    playing(1.5);
+    session_do(p, "setup timpani");
+    session_play(p, 0.2, NULL);
+    TEST_ASSERT_NOT_NULL(p->motion->track);
+    TEST_ASSERT_TRUE(p->motion->playing);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -252,5 +262,6 @@ int main(void)
     RUN_TEST(test_gain_reset_changes_nothing_in_a_new_performance);
     RUN_TEST(test_player_before_and_after_a_take_is_the_same_body);
     RUN_TEST(test_player_that_is_refused_leaves_the_drum_under_the_take);
+    RUN_TEST(test_a_set_up_leaves_the_take);
     return UNITY_END();
 }
