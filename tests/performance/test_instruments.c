@@ -221,7 +221,8 @@ static void test_a_dump_makes_the_instruments_again(void)
     TEST_ASSERT_EQUAL_DOUBLE(was.frequency, now.frequency);
     TEST_ASSERT_EQUAL_DOUBLE(was.decay, now.decay);
     now = himc_membrane_mode(himc_drum_membrane(find("s")), 5);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-4, drum.frequency, now.frequency);
+    TEST_ASSERT_EQUAL_DOUBLE(drum.frequency, now.frequency);
+    TEST_ASSERT_EQUAL_DOUBLE(drum.decay, now.decay);
     TEST_ASSERT_EQUAL_DOUBLE(120, himc_membrane_head(himc_drum_membrane(find("s")))->wires);
     TEST_ASSERT_TRUE(himc_drum_mallet(find("s"), HIMC_LEFT)->mass == 0.008);
 }

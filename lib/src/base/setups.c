@@ -27,10 +27,10 @@ const char himc_setup_around[] =
     "instrument low-conga conga 12.5; low-conga place -.1 .9 .75;"
     "instrument high-timbale timbale 13; high-timbale place .3 -.8 .9;"
     "instrument low-timbale timbale 14; low-timbale place 0 -.85 .9;"
-    "instrument agogo agogo; agogo place .72 .86 1;"
+    "instrument agogo agogo; agogo place .64 .76 1;"
     "instrument claves claves; claves place .25 .3 1;"
-    "instrument high-block wood-block 900; high-block place .98 .3 .95;"
-    "instrument low-block wood-block 640; low-block place .98 .44 .95;"
+    "instrument high-block wood-block 900; high-block place .92 .3 .95;"
+    "instrument low-block wood-block 640; low-block place .88 .44 .95;"
     "instrument triangle triangle; triangle place .5 .2 1.2;";
 
 const himc_setup himc_setups[] = {

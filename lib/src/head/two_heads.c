@@ -19,6 +19,7 @@
 /// they shake, are not modelled.
 #include "head/two_heads.h"
 
+#include "base/argument.h"
 #include "base/jacobi.h"
 #include "head/air.h"
 #include "head/bessel.h"
@@ -262,12 +263,14 @@ static himc_modes *new_disc(void)
 static void fit(const himc_shape *shape, himc_head *head)
 {
     const himc_shell *shell = shape->shell;
-    head->radius = shape->width > 0 ? shape->width / 2 : shell->radius;
-    double larger = head->radius / shell->radius;
-    head->tension = shell->tension * pow(larger, -shell->slacker);
-    head->density = shell->density;
-    head->decay_constant = shell->constant * pow(larger, -LONGER);
-    head->decay_square = shell->square * pow(larger, -LONGEST);
+    double radius = shape->width > 0 ? shape->width / 2 : shell->radius;
+    double larger = radius / shell->radius;
+    // as commands can say it again
+    head->radius = himc_argument_single(radius);
+    head->tension = himc_argument_single(shell->tension * pow(larger, -shell->slacker));
+    head->density = himc_argument_single(shell->density);
+    head->decay_constant = himc_argument_single(shell->constant * pow(larger, -LONGER));
+    head->decay_square = himc_argument_single(shell->square * pow(larger, -LONGEST));
     head->wires = shell->wires;
 }
 

@@ -153,8 +153,8 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                           "notes are not played: no drum could be tuned to them in time"},
         [MIDI_NO_HAND] = {"note is not played: both hands are busy",
                           "notes are not played: both hands are busy"},
-        [MIDI_NO_INSTRUMENT] = {"note is not played: no stick strikes its instrument",
-                                "notes are not played: no stick strikes their instruments"},
+        [MIDI_NO_INSTRUMENT] = {"note is not played: there is no instrument for it",
+                                "notes are not played: there is no instrument for them"},
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
                                    "notes are of other instruments"},
     };
