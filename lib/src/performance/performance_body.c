@@ -19,6 +19,7 @@
 // the beat has jumped if it is farther from that foreseen at the last tick (beats); chosen: more
 // than a change of tempo between two ticks makes
 #define SAME_COURSE 0.25
+#define UNIT 1e-6 // a unit quaternion's squared length is so near 1; chosen: rounding of floats
 
 void himc_body_free(performance_body *b)
 {
@@ -251,15 +252,54 @@ bool himc_body_has_fallen(const performance_body *b)
             b->state.rotation[0].m[2][2] < LEANING);
 }
 
+bool himc_body_drive(performance_body *b, const himc_drive *drive, himc_error *error)
+{
+    static const himc_drive none;
+    for (int j = 0; drive && j < HIMC_JOINTS; j++) {
+        const himc_quat *q = &drive->rotation[j];
+        double length = q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z;
+        if (drive->aimed[j] && !(fabs(length - 1) < UNIT))
+            return himc_error_set(error, "drive: %s: a rotation of length %g, expected 1",
+                                  himc_joint_name(j), sqrt(length));
+        if (drive->turned[j] && !himc_vec3_finite(drive->torque[j]))
+            return himc_error_set(error, "drive: %s: expected a finite torque", himc_joint_name(j));
+    }
+    b->drive = drive ? *drive : none;
+    b->aimed = false;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        b->aimed = b->aimed || b->drive.aimed[j];
+    return true;
+}
+
+// the reference with the joints that are aimed from outside
+static const himc_reference *aim(const performance_body *b, const himc_reference *reference,
+                                 himc_reference *aimed)
+{
+    if (!b->aimed)
+        return reference;
+    *aimed = *reference;
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (b->drive.aimed[j]) {
+            aimed->posture.joint[j] = b->drive.rotation[j];
+            aimed->posture.rate[j] = aimed->posture.acceleration[j] = himc_vec3_make(0, 0, 0);
+        }
+    return aimed;
+}
+
 void himc_body_control(performance_body *b, const himc_reference *reference, double h)
 {
+    himc_reference aimed;
     b->controller.step = h;
     b->controller.articulation = b->shares ? himc_character_articulation(b->character) : NULL;
     if (b->controller.balance) {
         himc_support_press(&b->support, &b->plant, &b->state);
         himc_balance_feel(&b->balance, &b->support, &b->plant, &b->state);
     }
-    himc_controller_torques(&b->controller, &b->skeleton, &b->state, reference, b->torque);
+    himc_controller_torques(&b->controller, &b->skeleton, &b->state, aim(b, reference, &aimed),
+                            b->torque);
+    for (int j = 0; j < HIMC_JOINTS; j++)
+        if (b->drive.turned[j])
+            b->torque[j] = himc_mat3_apply(&b->state.rotation[j + 1], b->drive.torque[j]);
 }
 
 body_push himc_body_pushed(const performance_body *b, int segment, double t)

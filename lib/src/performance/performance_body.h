@@ -42,6 +42,8 @@ typedef struct performance_body {
     himc_muscles muscles;
     himc_support support; ///< of a pelvis that is free
     himc_balance balance;
+    himc_drive drive; ///< of joints, from outside ...
+    bool aimed;       ///< ... any of them to a rotation
     body_push push[HIMC_SEGMENTS];
     double push_end;                   ///< of all pushes (s)
     planned_push planned[HIMC_PUSHES]; ///< by beat
@@ -107,6 +109,8 @@ HIMC_RT bool himc_body_has_fallen(const performance_body *body);
 
 /// Reads the simulated body's state. With `check`, false if joints have come apart.
 HIMC_RT bool himc_body_observe(performance_body *body, bool check);
+/// Drives joints from outside; NULL: none. False with the reason.
+HIMC_RT bool himc_body_drive(performance_body *body, const himc_drive *drive, himc_error *error);
 /// The torques for this state, in a step of `h` (s).
 HIMC_RT void himc_body_control(performance_body *body, const himc_reference *reference, double h);
 /// Moves the simulated body by `h` (s) from time `t` (s), under its torques, tip forces and pushes.

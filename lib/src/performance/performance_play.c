@@ -294,6 +294,11 @@ void himc_performance_target(himc_performance *p, himc_hand hand, himc_vec3 aske
     himc_motion_replan(p->motion);
 }
 
+bool himc_performance_drive(himc_performance *p, const himc_drive *drive, himc_error *error)
+{
+    return himc_body_drive(p->body, drive, error);
+}
+
 // the command `units`: a take is cut into units of a nuance
 typedef struct units_job {
     himc_job job;
