@@ -203,6 +203,24 @@ class Performance:
             raise Error(f"target: {xyz!r}, expected three numbers x, y, z (m)")
         lib.himc_performance_target(self._session.performance, _hand(hand), [_finite("target", c) for c in xyz])
 
+    def drive(self, rotations: Optional[NDArray] = None, torques: Optional[NDArray] = None, rates: Optional[NDArray] = None) -> None:
+        """Drives joints from outside, until the next call: ``rotations`` (19, 4), unit quaternions w x y z in the parent's frame, are the
+        joints' targets in ``mode id``, with ``rates`` (19, 3) rad/s; ``torques`` (19, 3) N m, on the child about its own axes, take the
+        place of the controller's. A row of NaN leaves its joint to the performer; without rotations and torques all are."""
+        drive, error = ffi.new("himc_drive *"), ffi.new("himc_error *")
+        for rows, width, chosen, field in ((rotations, 4, drive.aimed, drive.rotation), (torques, 3, drive.turned, drive.torque),
+                                           (rates, 3, None, drive.rate)):
+            if rows is None:
+                continue
+            rows = np.ascontiguousarray(rows, np.float64)
+            if rows.shape != (19, width):
+                raise Error(f"drive: an array of shape {rows.shape}, expected (19, {width})")
+            given = ~np.isnan(rows).all(axis=1)
+            if chosen:
+                ffi.memmove(chosen, given, given.nbytes)
+            ffi.memmove(field, rows, rows.nbytes)
+        _check(lib.himc_performance_drive(self._session.performance, drive, error), error)
+
     def process(self, seconds: float, out: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:
         """Plays on; the sound, (samples, channels) float32. `out` is filled instead, as long as it is (no copy)."""
         if out is None:
@@ -280,12 +298,20 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
 
     `score` is a path, or the text of a score: it has a ``;`` or begins with a command, and no file has that name. `settings` are commands: before a take, after a score.
     """
+    p = _loaded(score, rate, channels, motion, settings, left_tip, right_tip, up)
+    p.command("play")
+    return _play_to_the_end(p)
+
+
+def _loaded(score: Union[str, Path], rate: float, channels: int, motion: bool, settings: Iterable[str], left_tip: Optional[str] = None,
+            right_tip: Optional[str] = None, up: Optional[str] = None) -> Performance:
+    """A performance that is about to play it, once."""
     if _is_text(str(score)):
         with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
             file.write(str(score))
             file.flush()
             try:
-                return render(file.name, rate, channels, motion, settings, left_tip, right_tip, up)
+                return _loaded(file.name, rate, channels, motion, settings, left_tip, right_tip, up)
             except Error as error:  # the name of the file says nothing
                 raise Error(str(error).replace(file.name, "score")) from None
     path, take, error = str(score), _is_take(str(score)), ffi.new("himc_error *")
@@ -303,8 +329,7 @@ def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, moti
         p.command(text, word)
     if not take:
         p.command("loop 0")  # one round
-    p.command("play")
-    return _play_to_the_end(p)
+    return p
 
 
 def _play_to_the_end(p: Performance) -> Rendering:

@@ -86,6 +86,13 @@ himc_drum *himc_performance_drum(himc_performance *performance, int index);
 void himc_drum_read(const himc_drum *drum, uint64_t start, int n, double *sound,
                     double *displacement);
 void himc_performance_target(himc_performance *performance, int hand, himc_vec3 tip);
+typedef struct {
+    bool aimed[19], turned[19];
+    himc_quat rotation[19];
+    himc_vec3 rate[19];
+    himc_vec3 torque[19];
+} himc_drive;
+bool himc_performance_drive(himc_performance *performance, const himc_drive *drive, himc_error *error);
 const char *himc_joint_name(int joint);
 const char *himc_segment_name(int segment);
 const char *himc_version(void);

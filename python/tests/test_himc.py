@@ -53,6 +53,19 @@ class Package(unittest.TestCase):
         np.testing.assert_array_equal(r.sound, samples(self.at / "a.wav", 1))
         self.assertEqual(len(r.motion), 0)
 
+    def test_opensim_reads_the_same_rows(self):
+        try:
+            import opensim
+        except ImportError:
+            self.skipTest("no opensim")
+        for name in ("a.mot", "a.csv"):
+            self.program("render", "piece.txt", "-o", "a.wav", "--motion", name, "--columns", "torques,root", "--quiet")
+        table = opensim.TimeSeriesTable(str(self.at / "a.mot"))
+        rows = np.genfromtxt(self.at / "a.csv", delimiter=",", names=True, deletechars="")
+        self.assertEqual(list(table.getColumnLabels()), list(rows.dtype.names[1:]))
+        np.testing.assert_array_equal(np.array(table.getIndependentColumn()), rows["time_s"])
+        np.testing.assert_array_equal(table.getMatrix().to_numpy(), np.array(rows.tolist())[:, 1:])
+
     def test_one_command_is_a_score(self):
         r = himc.render("stroke 1 right accent f")
         self.assertEqual(r.stats["played"], 1)

@@ -58,6 +58,14 @@ check test_info_is_json [ "$("$himc" info - --json <piece.txt | sed -n 2p)" = ' 
 "$himc" render piece.txt -o d.wav --mode ik --law printed --solver pinv --player 1.6,55 --set "limits ellipsoid" \
     --set "tempo 90" --motion d.npz --columns all --quiet >/dev/null 2>err
 check test_settings_of_the_command_line_are_taken [ "$?$(cat err)" = 0 ]
+"$himc" render piece.txt -o a.wav --motion a.sto --columns work,energy,torques,rates,powers --quiet >/dev/null
+{ sed -n '/^endheader/,$p' a.sto | sed 1d | tr '\t' ,; } >sto.csv
+check test_a_storage_file_has_the_rows_of_the_csv [ "$(sed 1s/^time,/time_s,/ sto.csv | awk -F, '
+    NR == FNR { for (i = 1; i <= NF; i++) csv[FNR, i] = $i; rows = FNR; columns = NF; next }
+    FNR == 1 { for (i = 1; i <= NF; i++) bad += $i != csv[1, i]; next }
+    { for (i = 1; i <= NF; i++) bad += ($i - csv[FNR, i]) ^ 2 > 1e-18 * ($i ^ 2 + 1); bad += NF != columns }
+    END { print bad + 0, FNR - rows, (rows > 100) }' a.csv -)" = "0 0 1" ]
+check test_its_header_counts_them [ "$(sed -n 's/^n[RC].*=//p' a.sto | tr '\n' ' ')" = "$(sed 1d sto.csv | awk -F, 'END { print NR, NF " " }')" ]
 check test_a_numpy_file_is_a_zip [ "$(head -c 2 d.npz)$(tail -c 22 d.npz | head -c 2)" = PKPK ]
 refuses test_a_wrong_player_is_refused "--player: player: MASS" render piece.txt -o x.wav --player 1.8,8000
 refuses test_a_wrong_setting_is_refused "--set: lims: unknown command" render piece.txt -o x.wav --set "lims off"

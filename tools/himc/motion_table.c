@@ -1,13 +1,15 @@
 /// motion_table.c: a list of arrays, each a field of himc_motion_row with its shape, unit and name.
 ///
 /// In a CSV an array is a column for each item (hand, joint, segment) and component, named
-/// item_what_component_unit; in a NumPy file it is one array, rows first, named group_unit.
+/// item_what_component_unit; in a NumPy file it is one array, rows first, named group_unit. A
+/// storage file of OpenSim has the CSV's columns.
 #define _POSIX_C_SOURCE 200809L // strtok_r
 #include "motion_table.h"
 #include "npz.h"
 
 #include "himc/body.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -122,9 +124,10 @@ static const array arrays[] = {
 
 struct motion_table {
     FILE *stream;
-    bool numpy, failed;
+    motion_table_format format;
+    bool failed;
     bool has[ARRAYS];
-    double *data; ///< of a NumPy file: row after row
+    double *data; ///< row after row, but of a CSV
     size_t rows, room, width;
 };
 
@@ -153,10 +156,13 @@ static const double *values(const array *a, const himc_motion_row *row)
     return field;
 }
 
-bool motion_table_is_numpy(const char *path)
+motion_table_format motion_table_format_of(const char *path)
 {
     const char *dot = path ? strrchr(path, '.') : NULL;
-    return dot && !strcasecmp(dot, ".npz");
+    return !dot                                                   ? MOTION_TABLE_CSV
+           : !strcasecmp(dot, ".npz")                             ? MOTION_TABLE_NUMPY
+           : !strcasecmp(dot, ".sto") || !strcasecmp(dot, ".mot") ? MOTION_TABLE_STORAGE
+                                                                  : MOTION_TABLE_CSV;
 }
 
 // the groups of a list; false if one is unknown
@@ -184,14 +190,14 @@ static bool choose(motion_table *t, const char *columns, himc_error *error)
     return any || himc_error_set(error, "--columns: no group (himc render --columns help)");
 }
 
-static void write_header(const motion_table *t)
+static void write_header(const motion_table *t, const char *time, char between)
 {
-    fputs("time_s", t->stream);
+    fputs(time, t->stream);
     for (size_t i = 0; i < ARRAYS; i++)
         for (int item = 0; t->has[i] && item < items(&arrays[i]); item++)
             for (int k = 0; k < arrays[i].components; k++) {
                 const array *a = &arrays[i];
-                fprintf(t->stream, ",%s%s", item_name(a->per, item), a->what);
+                fprintf(t->stream, "%c%s%s", between, item_name(a->per, item), a->what);
                 if (a->components > 1)
                     fprintf(t->stream, a->components == 4 ? "%c" : "_%c",
                             (a->components == 4 ? "wxyz" : "xyz")[k]);
@@ -201,7 +207,8 @@ static void write_header(const motion_table *t)
     fputc('\n', t->stream);
 }
 
-motion_table *motion_table_new(FILE *stream, bool numpy, const char *columns, himc_error *error)
+motion_table *motion_table_new(FILE *stream, motion_table_format format, const char *columns,
+                               himc_error *error)
 {
     motion_table *t = calloc(1, sizeof *t);
     if (!t) {
@@ -209,7 +216,7 @@ motion_table *motion_table_new(FILE *stream, bool numpy, const char *columns, hi
         return NULL;
     }
     t->stream = stream;
-    t->numpy = numpy;
+    t->format = format;
     if (!choose(t, columns, error)) {
         free(t);
         return NULL;
@@ -217,8 +224,8 @@ motion_table *motion_table_new(FILE *stream, bool numpy, const char *columns, hi
     t->width = 1;
     for (size_t i = 0; i < ARRAYS; i++)
         t->width += t->has[i] ? size_of(&arrays[i]) : 0;
-    if (!numpy)
-        write_header(t);
+    if (format == MOTION_TABLE_CSV)
+        write_header(t, "time_s", ',');
     return t;
 }
 
@@ -259,10 +266,10 @@ static void keep_row(motion_table *t, const himc_motion_row *row)
 
 void motion_table_row(motion_table *t, const himc_motion_row *row)
 {
-    if (t->numpy)
-        keep_row(t, row);
-    else
+    if (t->format == MOTION_TABLE_CSV)
         print_row(t, row);
+    else
+        keep_row(t, row);
 }
 
 // `width` columns from `from` on, gathered into `out`, as an array with that shape in each row
@@ -292,10 +299,31 @@ static void add_names(npz *file, const char *name, per p, size_t count)
     npz_add(file, name, texts, NAME_WIDTH, &count, 1);
 }
 
+// OpenSim's header says how many rows and columns follow
+static bool write_storage(const motion_table *t, himc_error *error)
+{
+    if (t->failed)
+        return himc_error_set(error, "out of memory for the rows of a storage file");
+    fprintf(t->stream, "himc motion\nversion=1\nnRows=%zu\nnColumns=%zu\ninDegrees=no\nendheader\n",
+            t->rows, t->width);
+    write_header(t, "time", '\t');
+    for (size_t i = 0; i < t->rows * t->width; i++) {
+        double value = t->data[i];
+        if (isnan(value))
+            fputs("NaN", t->stream); // printf may give it a sign
+        else
+            fprintf(t->stream, "%.12g", value);
+        fputc((i + 1) % t->width ? '\t' : '\n', t->stream);
+    }
+    return true;
+}
+
 bool motion_table_end(motion_table *t, himc_error *error)
 {
-    if (!t->numpy)
+    if (t->format == MOTION_TABLE_CSV)
         return true;
+    if (t->format == MOTION_TABLE_STORAGE)
+        return write_storage(t, error);
     size_t widest = 1, from = 1;
     for (size_t i = 0; i < ARRAYS; i++)
         widest = t->has[i] && size_of(&arrays[i]) > widest ? size_of(&arrays[i]) : widest;

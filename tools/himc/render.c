@@ -52,7 +52,7 @@ static const cli_option options[] = {
     {"channels", 0, "N",
      "2: two ears in front of the drums, or where the score has them; 1: both in one (2)"},
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
-    {"motion", 0, "F", "a row every 4 ms, as CSV, or for NumPy if F ends with .npz"},
+    {"motion", 0, "F", "a row every 4 ms: .csv, .npz for NumPy, .sto or .mot for OpenSim"},
     {"columns", 0, "LIST",
      "what is in it: groups like tips,torques,energy, or all; help lists them"},
     {"scene", 0, "F.himc", "a recording for himc-viewer --play: motion, drums, strikes, sound"},
@@ -126,14 +126,14 @@ static bool check_compare(const char *list, const char *scene, const char *sourc
 }
 
 // The ending of a table's name says its format; a name without one is a CSV.
-static bool check_table(const char *option, const char *path, bool npz, himc_error *error)
+static bool check_table(const char *option, const char *path, bool motion, himc_error *error)
 {
     const char *slash = path ? strrchr(path, '/') : NULL;
     const char *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
     return !dot || !strcasecmp(dot, ".csv") || !strcasecmp(dot, ".txt") ||
-           (npz && !strcasecmp(dot, ".npz")) ||
+           (motion && motion_table_format_of(path) != MOTION_TABLE_CSV) ||
            himc_error_set(error, "--%s: %s, expected endings are .csv%s", option, path,
-                          npz ? " and .npz" : "");
+                          motion ? " .npz .sto .mot" : "");
 }
 
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)
@@ -518,7 +518,7 @@ static bool open_all(rendering *r, job *wanted, const char *const *value, himc_e
                                         compare && lists(compare, others[CAPTURED]), error))
         return false;
     if (r->motion.stream) {
-        r->rows = motion_table_new(r->motion.stream, motion_table_is_numpy(value[MOTION]),
+        r->rows = motion_table_new(r->motion.stream, motion_table_format_of(value[MOTION]),
                                    value[COLUMNS], error);
         if (!r->rows)
             return false;

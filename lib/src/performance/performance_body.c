@@ -261,6 +261,8 @@ bool himc_body_drive(performance_body *b, const himc_drive *drive, himc_error *e
         if (drive->aimed[j] && !(fabs(length - 1) < UNIT))
             return himc_error_set(error, "drive: %s: a rotation of length %g, expected 1",
                                   himc_joint_name(j), sqrt(length));
+        if (drive->aimed[j] && !himc_vec3_finite(drive->rate[j]))
+            return himc_error_set(error, "drive: %s: expected a finite rate", himc_joint_name(j));
         if (drive->turned[j] && !himc_vec3_finite(drive->torque[j]))
             return himc_error_set(error, "drive: %s: expected a finite torque", himc_joint_name(j));
     }
@@ -281,7 +283,8 @@ static const himc_reference *aim(const performance_body *b, const himc_reference
     for (int j = 0; j < HIMC_JOINTS; j++)
         if (b->drive.aimed[j]) {
             aimed->posture.joint[j] = b->drive.rotation[j];
-            aimed->posture.rate[j] = aimed->posture.acceleration[j] = himc_vec3_make(0, 0, 0);
+            aimed->posture.rate[j] = b->drive.rate[j];
+            aimed->posture.acceleration[j] = himc_vec3_make(0, 0, 0);
         }
     return aimed;
 }
