@@ -18,6 +18,7 @@
 ///     himc/body.h       skeleton, pose, joint limits, inverse kinematics, dynamics
 ///     himc/mocap.h      takes (BVH, C3D, TRC), the player in them, recordings
 ///     himc/membrane.h   drumhead, pickups, contact
+///     himc/drive.h      joints driven from outside: rotations or torques
 ///     himc/loader.h     commands that take long, without holding up the sound
 ///     himc/osc.h        commands in and poses, strikes, states out over the network
 ///

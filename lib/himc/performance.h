@@ -91,23 +91,6 @@ HIMC_RT void himc_performance_stop(himc_performance *performance);
 /// task rate. A target that is not finite, or of no hand, is ignored.
 HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand hand, himc_vec3 tip);
 
-/// What drives joints from outside, for controllers of one's own and for learners. Where `aimed`,
-/// a joint of mode `id` is to have `rotation` and `rate` (in its parent's frame); in `himc` that is
-/// the posture of the null space. Where `turned`, `torque` (on the child, about its own axes) takes
-/// the place of the controller's; neither strength nor limits act on it. Without effect in `ik`.
-typedef struct himc_drive {
-    bool aimed[HIMC_JOINTS], turned[HIMC_JOINTS];
-    himc_quat rotation[HIMC_JOINTS]; ///< unit
-    himc_vec3 rate[HIMC_JOINTS];     ///< (rad/s)
-    himc_vec3 torque[HIMC_JOINTS];   ///< (N m)
-} himc_drive;
-
-/// Drives joints so from now to the next call, or to a reset; NULL: the performer alone does.
-/// False, and nothing changed, with the reason: a rotation of no unit length, a number that is not
-/// finite.
-HIMC_RT bool himc_performance_drive(himc_performance *performance, const himc_drive *drive,
-                                    himc_error *error);
-
 /// Plays `n` samples. The force of each stick (N) goes to `force[hand]` (n); `force` and each of
 /// its entries may be NULL. The sound is in the drums (himc_drum_read).
 HIMC_RT void himc_performance_process(himc_performance *performance, int n,

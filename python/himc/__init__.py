@@ -219,7 +219,7 @@ class Performance:
             if chosen:
                 ffi.memmove(chosen, given, given.nbytes)
             ffi.memmove(field, rows, rows.nbytes)
-        _check(lib.himc_performance_drive(self._session.performance, drive, error), error)
+        _check(lib.session_drive(self._session, drive, error), error)
 
     def process(self, seconds: float, out: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:
         """Plays on; the sound, (samples, channels) float32. `out` is filled instead, as long as it is (no copy)."""

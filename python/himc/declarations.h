@@ -92,7 +92,6 @@ typedef struct {
     himc_vec3 rate[19];
     himc_vec3 torque[19];
 } himc_drive;
-bool himc_performance_drive(himc_performance *performance, const himc_drive *drive, himc_error *error);
 const char *himc_joint_name(int joint);
 const char *himc_segment_name(int segment);
 const char *himc_version(void);
@@ -128,6 +127,7 @@ void session_free(session *s);
 bool session_command(session *s, const char *text, const char *word, himc_error *error);
 bool session_drum_command(session *s, const char *drum, const char *text, himc_error *error);
 bool session_add_drum(session *s, const char *name, double inches, himc_error *error);
+bool session_drive(session *s, const himc_drive *drive, himc_error *error);
 bool session_end_recording(session *s, himc_error *error);
 bool himc_take_is_capture(const char *path);
 bool session_is_command(const char *word);

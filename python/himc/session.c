@@ -1,5 +1,6 @@
 // session.c: what of a performance Python would be too slow for: adds up the drums' sound, keeps rows and strikes.
 #include "capture/take.h"
+#include "himc/drive.h"
 #include "himc/drum.h"
 #include "himc/himc.h"
 #include "himc/membrane.h"
@@ -127,6 +128,11 @@ static bool session_command(session *s, const char *text, const char *word, himc
     if (good && command.id == HIMC_COMMAND_DUMP && command.count == 0)
         himc_performance_describe(s->performance, HIMC_DESCRIBE_STATE, answer, s);
     return good;
+}
+
+static bool session_drive(session *s, const himc_drive *drive, himc_error *error)
+{
+    return himc_performance_drive(s->performance, drive, error);
 }
 
 // writes what `record` has begun and `record stop` has not ended

@@ -1,7 +1,7 @@
 /// test_drive.c: joints driven from outside: the torques of one performer move another likewise, an
 /// aimed joint comes to its rotation, and without a drive the performer has its body again.
 #include "session.h"
-#include "himc/body.h"
+#include "himc/drive.h"
 #include "himc/vec.h"
 
 #define STEPS 600 // of 1 ms: a stroke's way up and down, its contact and what follows

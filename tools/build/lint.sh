@@ -29,7 +29,7 @@ rooms() {
 }
 door() {
     awk -f tools/build/door.awk lib/himc/*.h lib/src/*/*.[ch] tools/himc/*.[ch] tools/research/*/*.[ch] mocap/*.[ch] viewer/*.[ch] \
-        pd-externals/*.[ch] docs/examples/*.c
+        pd-externals/*.[ch] docs/examples/*.c python/himc/*.c
 }
 one_opener() {
     none git grep --untracked -nE '\<(fopen|open|openat|creat|sf_open|canvas_open|sys_open)\(' -- 'lib/*.c' 'tools/*.c' 'viewer/*.c' 'pd-externals/*.c' \

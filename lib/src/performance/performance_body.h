@@ -6,6 +6,7 @@
 #include "control/balance.h"
 #include "control/muscle.h"
 #include "control/setpoint.h"
+#include "himc/drive.h"
 #include "performance/performance_settings.h"
 
 /// A push of a score.
