@@ -88,11 +88,43 @@ static void test_a_foot_follows_a_message_and_a_seek(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(last_error(), "foot: strike: X: 0.9 m"), last_error());
 }
 
+static void test_no_hand_is_sent_to_a_kick_on_the_floor(void)
+{
+    static const char line[] = "stroke on kick: no hand reaches it, expected foot";
+    himc_error error = {.text = ""};
+    subscribe("strikes");
+    load("setup kit;");
+    TEST_ASSERT_FALSE(
+        himc_performance_load_text(performance, "stroke 1 right legato mf kick;", "s.txt", &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, line), error.text);
+    say("/himc/hit", "left legato mf kick");
+    play(.5);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(last_error(), line), last_error());
+    TEST_ASSERT_EQUAL_INT(0, count("/himc/strike"));
+    say("/himc/hit", "any legato mf kick");
+    play(.5);
+    TEST_ASSERT_EQUAL_INT(1, count("/himc/strike"));
+    TEST_ASSERT_EQUAL_STRING("foot", stroke(0).hand);
+}
+
+static void test_hands_play_a_kick_that_is_at_their_height(void)
+{
+    subscribe("strikes");
+    load("instrument high kick 22; high place .75 0 .8; tempo 60; stroke 2 right legato f high;");
+    say("/himc/play", "");
+    play(3);
+    TEST_ASSERT_EQUAL_STRING("", last_error());
+    TEST_ASSERT_EQUAL_INT(1, count("/himc/strike"));
+    TEST_ASSERT_EQUAL_STRING("right", stroke(0).hand);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_foot_plays_on_its_beat_beside_the_hands);
     RUN_TEST(test_feet_alone_play_a_loop_and_stop_when_cleared);
     RUN_TEST(test_a_foot_follows_a_message_and_a_seek);
+    RUN_TEST(test_no_hand_is_sent_to_a_kick_on_the_floor);
+    RUN_TEST(test_hands_play_a_kick_that_is_at_their_height);
     return UNITY_END();
 }

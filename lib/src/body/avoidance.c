@@ -133,6 +133,7 @@ static void push_pairs(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
             f->clear.body = fmin(f->clear.body, near.gap);
         else if (near.gap < f->clear.sticks) {
             f->clear.sticks = near.gap;
+            f->clear.across = near.n;
             f->clear.order = fabs(near.n.z) > LEVEL ? (near.n.z > 0 ? 1 : -1) : 0;
         }
         if (arms && is_stick(pair.part) && is_stick(pair.other))

@@ -59,6 +59,7 @@ extern const himc_capsule_pair himc_capsule_pairs[HIMC_CAPSULE_PAIRS];
 /// Least gaps of a posture (m); far parts are not counted.
 typedef struct himc_clearance {
     double sticks;             ///< between a stick and the other arm or its stick
+    himc_vec3 across;          ///< unit vector along that gap
     double body;               ///< of all other pairs
     double beyond;             ///< distance of a tip out of reach
     double folded[HIMC_HANDS]; ///< horizontal distance of each tip from its shoulder

@@ -267,6 +267,13 @@ const himc_head_frame *himc_drum_head_frame(const himc_drum *drum)
     return &drum->set.place;
 }
 
+bool himc_drum_is_footed(const himc_drum *drum)
+{
+    const himc_head_frame *place = &drum->set.place;
+    const himc_shell *shell = himc_membrane_config_of(drum->membrane)->shape.shell;
+    return shell && shell->mallet == &himc_shell_beater && place->center.z < 2 * place->radius;
+}
+
 himc_membrane *himc_drum_membrane(himc_drum *drum)
 {
     return drum->membrane;

@@ -51,7 +51,7 @@ static const himc_mallet_head stick = {
     .stiffness = 1.5e8, .exponent = 1.5, .mass = 0.008, .radius = 0.008, .relaxation = 5e-6};
 static const himc_mallet_head felt = {
     .stiffness = 4e7, .exponent = 2.4, .mass = 0.2, .radius = 0.04, .relaxation = 2e-4};
-static const himc_mallet_head beater = {
+const himc_mallet_head himc_shell_beater = {
     .stiffness = 1e7, .exponent = 2.2, .mass = 0.1, .radius = 0.025, .relaxation = 2e-4};
 static const himc_mallet_head rubber = {
     .stiffness = 1e8, .exponent = 2, .mass = 0.04, .radius = 0.015, .relaxation = 2e-5};
@@ -63,7 +63,7 @@ const himc_shell himc_shell_rows[] = {
     {"tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 1.18, 0.75, 1, 1, 0, &stick},
     {"concert-tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 0, 0, 0, 0, 0, &stick},
     {"bass-drum", 0.457, 0.45, 2600, 0.42, 2, 4e-7, 1, 0, 0.77, 0.857, 1, 1, 0, &felt},
-    {"kick", 0.279, 0.45, 500, 0.45, 14, 6e-6, 0, 0, 1.2, 0.8, 1, 1, 0, &beater},
+    {"kick", 0.279, 0.45, 500, 0.45, 14, 6e-6, 0, 0, 1.2, 0.8, 1, 1, 0, &himc_shell_beater},
     {"conga", 0.14, 0.7, 8500, 0.8, 5, 6e-7, 0, 0, 0, 0, 0, 0, 0, &rubber},
     {"bongo", 0.1, 0.17, 8000, 0.8, 6, 6e-7, 0, 0, 0, 0, 0, 0, 0, &rubber},
     {"timbale", 0.178, 0.17, 3000, 0.36, 4, 8e-7, 0, 0, 0, 0, 0, 0, 0, &stick},

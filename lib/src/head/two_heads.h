@@ -24,6 +24,8 @@ struct himc_shell {
 
 /// The drum of that name, in the order of HIMC_SHELLS (himc/command_rows.h).
 extern const himc_shell himc_shell_rows[];
+/// The mallet of a kick: the beater of a pedal.
+extern const himc_mallet_head himc_shell_beater;
 
 #define HIMC_WIRES_USUAL 250.0 ///< pull (m/s^2); chosen: they rattle for 50 ms
 

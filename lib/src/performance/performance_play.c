@@ -167,7 +167,7 @@ static void tell_places(himc_performance *p)
                              "the pedal of drum %s is out of reach of his feet: it moves alone",
                              himc_drum_name(slot->drum));
         }
-        if (distance < OUT_OF_REACH || slot->reach_told)
+        if (distance < OUT_OF_REACH || slot->reach_told || himc_drum_is_footed(slot->drum))
             continue;
         slot->reach_told = true;
         himc_events_note(&p->events, "drum %s is %s by %.2f m: strokes on it are given up",
@@ -207,8 +207,11 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         own.hand = left ? HIMC_LEFT : HIMC_RIGHT;
     if (own.hand < HIMC_HANDS && !(own.hand == HIMC_LEFT ? left : right))
         return himc_error_set(error, "hit: not possible while a take is playing");
-    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error) ||
-        !himc_performance_place_stroke(p, &own, asked.drum, error))
+    if (!himc_performance_ensure_drum(p, stroke->drum, stroke->spot, &asked.drum, error))
+        return false;
+    if (stroke->hand == HIMC_HAND_ANY && himc_drum_is_footed(p->drums.slot[asked.drum].drum))
+        own.hand = HIMC_FOOT;
+    if (!himc_performance_place_stroke(p, &own, asked.drum, error))
         return false;
     himc_performance_name_drum(p, &own, asked.drum);
     tell_places(p);

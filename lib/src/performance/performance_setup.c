@@ -22,13 +22,15 @@ himc_performance_config himc_performance_default(void)
     return (himc_performance_config){.sample_rate = 48000, .physics_rate = 10000, .task_rate = 250};
 }
 
-// the stool as these drums need it; none for one who stands
+// the stool as the drums of the hands need it; none for one who stands
 static void fit_stool(performance_motion *motion, performance_body *body,
                       const performance_drums *drums, const performance_settings *s)
 {
     double lowest = INFINITY, highest = -INFINITY;
     for (int i = 0; i < drums->count; i++) {
         double level = himc_drums_frame(drums, i)->center.z + s->skeleton.mallet_radius;
+        if (himc_drum_is_footed(drums->slot[i].drum))
+            continue;
         lowest = fmin(lowest, level);
         highest = fmax(highest, level);
     }
@@ -318,8 +320,13 @@ bool himc_performance_place_stroke(const himc_performance *p, himc_stroke *strok
                                    himc_error *error)
 {
     const himc_membrane_config none = {.head.radius = 1}, *head = &none;
-    if (index < p->drums.count)
-        head = himc_membrane_config_of(himc_drum_membrane(p->drums.slot[index].drum));
+    if (index < p->drums.count) {
+        himc_drum *drum = p->drums.slot[index].drum;
+        head = himc_membrane_config_of(himc_drum_membrane(drum));
+        if (stroke->hand != HIMC_FOOT && himc_drum_is_footed(drum))
+            return himc_error_set(error, "stroke on %s: no hand reaches it, expected foot",
+                                  himc_drum_name(drum));
+    }
     return himc_idiophone_place(&head->shape, head->head.radius, stroke, error);
 }
 

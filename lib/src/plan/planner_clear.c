@@ -199,12 +199,13 @@ double himc_planner_least_gap(himc_clearance *clear, double speed_past)
     return fmin(fmin(clear->body, clear->sticks), UNREACHED - clear->beyond);
 }
 
-/// Of the tips past each other, from above (m/s).
-static double speed_past(const planner_hand *hand, double t)
+/// Of the tips past each other, from above (m/s): all of it where one stick is over the other; of
+/// sticks side by side the part that brings them nearer.
+static double speed_past(const planner_hand *hand, double t, himc_vec3 across)
 {
     himc_vec3 v = himc_vec3_sub(himc_hand_at(&hand[HIMC_LEFT].plan, t).v,
                                 himc_hand_at(&hand[HIMC_RIGHT].plan, t).v);
-    return hypot(v.x, v.y);
+    return hypot(v.x * across.x + v.y * across.y, across.z * hypot(v.x, v.y));
 }
 
 /// One moment of the walk through the plans of both hands and a lift; what is near before `ignored`
@@ -221,7 +222,7 @@ static int walk_step(const himc_planner *planner, planner_rehearsal *walk, const
         at.place[i] = soon ? s->goal.spot : at.tip[i];
     }
     himc_clearance clear = look(planner->config.body, &at, walk);
-    double gap = himc_planner_least_gap(&clear, speed_past(hand, at.time));
+    double gap = himc_planner_least_gap(&clear, speed_past(hand, at.time, clear.across));
     double lack = lack_of(&clear, &at, &order);
     walk->after = fmin(clear.sticks < PASSING_GAP ? PASSING_STEP : STEP,
                        fmin(himc_planner_touch_after(&hand[HIMC_LEFT], walk->t),

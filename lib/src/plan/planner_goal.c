@@ -1,6 +1,6 @@
 /// planner_goal.c: where the tips go: strokes become goals, with a place, a time and a gesture, and
-/// without a stroke a tip rests over the drum it has struck last, at first over the one that it
-/// will strike first, not crossed.
+/// without a stroke a tip rests over the drum it has struck last, not crossed, at first over the
+/// one that it will strike first, crossed or not: the arms that begin crossed are in order.
 ///
 /// The gesture is that of the nuance and dynamic, in the shape of the motion unit that fits best,
 /// no faster than fingers can turn the stick for its bounces, and varied as a player's.
@@ -168,9 +168,10 @@ static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_
 himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand)
 {
     himc_vec3 place;
-    // over its own drum, but the hands do not rest crossed
+    // over its own drum, but hands that have played do not rest crossed
     int left = own_drum(planner, HIMC_LEFT), right = own_drum(planner, HIMC_RIGHT);
-    bool crossed = azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
+    bool struck = planner->hand[HIMC_LEFT].struck || planner->hand[HIMC_RIGHT].struck;
+    bool crossed = struck && azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
     if (is_rest(planner, hand, (hand == HIMC_LEFT) != crossed ? left : right, &place))
         return place;
     for (int drum = 0; drum < HIMC_DRUMS; drum++)
