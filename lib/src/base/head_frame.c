@@ -49,6 +49,14 @@ double himc_head_frame_out(const himc_head_frame *frame, double x, double y)
                              : hypot(x, y) / frame->radius;
 }
 
+double himc_head_frame_struck(const himc_head_frame *frame)
+{
+    // chosen: on a disc a mallet that does not touch the rim of a usual head; on bars nearly up to
+    // the edge (m), as the last one of a keyboard is narrow
+    double edge = 0.003;
+    return frame->length > 0 ? 1 - 2 * edge / fmax(frame->length, frame->width) : 0.97;
+}
+
 bool himc_head_frame_keep_inside(const himc_head_frame *frame, double share, double *x, double *y)
 {
     double out = himc_head_frame_out(frame, *x, *y);
@@ -99,8 +107,10 @@ void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *strok
     }
     if (!placed)
         *x = -(frame->spots ? frame->spots : drumhead)[stroke->spot] * frame->radius;
-    // half a mallet's width (m), so the two mallets do not collide, if there is room; chosen
-    double aside = frame->length > 0 ? fmin(0.015, 0.48 * frame->width) : 0.015;
+    // half a mallet's width (m), so the two mallets do not collide, if there is room, which a bar
+    // of a keyboard, 26 mm or more, has not; chosen
+    double aside = stroke->part[0] ? 0.008 : 0.015;
+    aside = frame->length > 0 ? fmin(aside, 0.48 * frame->width) : aside;
     *y += stroke->hand == HIMC_LEFT ? aside : -aside;
 }
 

@@ -20,6 +20,8 @@ static inline bool himc_head_frame_contains(const himc_head_frame *frame, double
 }
 /// How far out (x, y) is: 0 in the centre, 1 on the edge.
 HIMC_RT double himc_head_frame_out(const himc_head_frame *frame, double x, double y);
+/// Share of the surface out to which it is struck.
+HIMC_RT double himc_head_frame_struck(const himc_head_frame *frame);
 /// Moves (x, y) towards the centre into the surface's inner part, out to that share; true if it was
 /// beyond.
 HIMC_RT bool himc_head_frame_keep_inside(const himc_head_frame *frame, double share, double *x,
