@@ -168,6 +168,11 @@ himc_hand himc_argument_hand(const himc_atom *atom)
     return extra[find_word(hit_hands, atom->symbol)];
 }
 
+bool himc_is_hand(const char *word)
+{
+    return find_word(stroke_hands, word) >= 0;
+}
+
 const char *himc_nuance_name(himc_nuance nuance)
 {
     return nuance >= 0 && nuance < HIMC_NUANCES ? nuances[nuance] : "none";

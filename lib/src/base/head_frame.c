@@ -107,10 +107,8 @@ void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *strok
     }
     if (!placed)
         *x = -(frame->spots ? frame->spots : drumhead)[stroke->spot] * frame->radius;
-    // half a mallet's width (m), so the two mallets do not collide, if there is room, which a bar
-    // of a keyboard, 26 mm or more, has not; chosen
-    double aside = stroke->part[0] ? 0.008 : 0.015;
-    aside = frame->length > 0 ? fmin(aside, 0.48 * frame->width) : aside;
+    // half a mallet's width (m), so the two mallets do not collide, if there is room; chosen
+    double aside = frame->length > 0 ? fmin(0.015, 0.48 * frame->width) : 0.015;
     *y += stroke->hand == HIMC_LEFT ? aside : -aside;
 }
 

@@ -69,6 +69,9 @@ HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, con
 /// himc_drum_kicked when the contact is over.
 HIMC_RT bool himc_drum_kick(himc_drum *drum, int delay, double x, double y, double velocity,
                             int kick, himc_error *error);
+/// Whether a pedal has its own beater, as a bass drum of a kit; or closes it, as a hi-hat.
+HIMC_RT bool himc_drum_has_beater(const himc_drum *drum);
+HIMC_RT bool himc_drum_hats(const himc_drum *drum);
 /// Takes the oldest of a foot's strokes that are over, and how long ago it began (s); its `kick`,
 /// or 0 if there is none.
 HIMC_RT int himc_drum_kicked(himc_drum *drum, himc_contact_report *report, double *ago);

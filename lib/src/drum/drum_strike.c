@@ -12,6 +12,7 @@
 /// own sound goes off in 10 ms, and comes back, as far as the head still vibrates, with `modal`.
 #include "drum/contact.h"
 #include "drum/drum_state.h"
+#include "head/idiophone.h"
 
 #include <math.h>
 
@@ -158,6 +159,18 @@ bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
         return false;
     *report = drum->reports[queue_pop(&drum->report_queue)];
     return true;
+}
+
+bool himc_drum_has_beater(const himc_drum *drum)
+{
+    const himc_shell *shell = himc_membrane_config_of(drum->membrane)->shape.shell;
+    return shell && himc_shell_has_beater(shell);
+}
+
+bool himc_drum_hats(const himc_drum *drum)
+{
+    const himc_idiophone *body = himc_membrane_config_of(drum->membrane)->shape.body;
+    return body && body->dampers > 0 && !body->pedal_lifts;
 }
 
 int himc_drum_kicked(himc_drum *drum, himc_contact_report *report, double *ago)

@@ -154,6 +154,9 @@ bool himc_idiophone_place(const himc_shape *shape, double radius, himc_stroke *s
     const himc_part *part = stroke->part[0] ? find_part(body, stroke->part) : NULL;
     if (!stroke->part[0])
         return true;
+    if (!part && stroke->ornament >= HIMC_ROLL_SINGLE && himc_is_hand(stroke->part))
+        return himc_error_set(error, "roll: %s: both hands play it, expected no HAND",
+                              stroke->part);
     if (!part && (!body || body->parts == 1))
         return himc_error_set(error, "%s: %s has no parts", stroke->part, stroke->drum);
     if (!part)

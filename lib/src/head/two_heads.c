@@ -69,6 +69,11 @@ const himc_shell himc_shell_rows[] = {
     {"timbale", 0.178, 0.17, 3000, 0.36, 4, 8e-7, 0, 0, 0, 0, 0, 0, 0, &stick},
 };
 
+bool himc_shell_has_beater(const himc_shell *shell)
+{
+    return shell->mallet == &beater;
+}
+
 // Frequencies of (0, n) in a drum, and what they were made of.
 typedef struct coupled {
     int count;

@@ -25,6 +25,9 @@ struct himc_shell {
 /// The drum of that name, in the order of HIMC_SHELLS (himc/command_rows.h).
 extern const himc_shell himc_shell_rows[];
 
+/// Whether its mallet is a beater on a pedal.
+bool himc_shell_has_beater(const himc_shell *shell);
+
 #define HIMC_WIRES_USUAL 250.0 ///< pull (m/s^2); chosen: they rattle for 50 ms
 
 static inline bool himc_shell_takes_wires(const himc_shell *shell)

@@ -639,10 +639,7 @@ bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *ot
                                              himc_motion_take_time(p->motion, step_time(p)))
                        : himc_planner_exchange(p->motion->planner, other->motion->planner));
     if (good && !track) {
-        performance_feet own = p->motion->feet;
-        p->motion->feet = other->motion->feet;
-        p->motion->feet.played_to = own.played_to;
-        other->motion->feet = own;
+        himc_feet_exchange(&p->motion->feet, &other->motion->feet);
     }
     if (good)
         himc_body_plan_pushes(p->body, with->planned, with->planned_count, PUSHES_INSTEAD, NULL);

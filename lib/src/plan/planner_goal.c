@@ -102,7 +102,8 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
     double x, y;
     himc_head_frame_spot(head, stroke, &x, &y);
     double asked_x = x, asked_y = y;
-    if (himc_head_frame_keep_inside(head, himc_head_frame_struck(head), &x, &y))
+    // a hand's side of the last bar of a keyboard may be beside it
+    if (himc_head_frame_keep_inside(head, himc_head_frame_struck(head), &x, &y) && !stroke->part[0])
         himc_planner_say(planner, PLANNER_OUTSIDE,
                          "%.3g %.3g is beyond the rim: struck at %.3g %.3g", asked_x, asked_y, x,
                          y);
