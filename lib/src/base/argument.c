@@ -20,7 +20,8 @@ static const char *const stroke_hands[] = {"left", "right", "foot", NULL};
 static const char *const hit_hands[] = {"left", "right", "any", "foot", NULL};
 static const char *const nuances[] = {"legato",          "tenuto",   "accent",
                                       "vertical-accent", "staccato", NULL};
-static const char *const spots[] = {"center", "normal", "rim", NULL};
+static const char *const spots[] = {"center",  "normal", "rim",   "crossstick",
+                                    "rimshot", "click",  "shell", NULL};
 static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
 
 #define WORD(word) word,

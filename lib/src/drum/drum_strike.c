@@ -10,13 +10,15 @@
 /// contact is over and its force known. So an onset has the position, the velocity, and the pitch
 /// to which the head is tuned. Contact, head and body are the same with every technique; the head's
 /// own sound goes off in 10 ms, and comes back, as far as the head still vibrates, with `modal`.
+#include "base/head_frame.h"
 #include "drum/contact.h"
 #include "drum/drum_state.h"
 #include "head/idiophone.h"
 
 #include <math.h>
 
-#define GONE 0.005       // (m) above the head at rest and rising: the contact is over; chosen
+#define GONE 0.005 // (m) above the head at rest and rising: the contact is over; chosen
+#define LEVER 0.5  // of the tip's speed the shaft has on the hoop; chosen: halfway to the fulcrum
 #define LONGEST_LIFE 1.0 // (s) of a mallet, whatever it does; chosen
 
 bool himc_drum_may_strike(const himc_head_frame *surface, double x, double y, double velocity,
@@ -137,7 +139,7 @@ static void follow(himc_drum *drum, drum_mallet *m)
     m->age++;
     bool gone = !s->touching && s->height > GONE && s->velocity > 0;
     m->used = !gone && m->age <= LONGEST_LIFE * drum->rate;
-    if (m->used || m->report.force == 0)
+    if (m->used || m->report.force == 0 || m->kick == DRUM_NOT_TOLD)
         return;
     m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
     m->report.duration = (double)(m->end - m->first) / drum->rate;
@@ -159,6 +161,40 @@ bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
         return false;
     *report = drum->reports[queue_pop(&drum->report_queue)];
     return true;
+}
+
+void himc_drum_meet(const himc_drum *drum, himc_spot spot, himc_stick *stick)
+{
+    const himc_shell *shell = himc_membrane_config_of(drum->membrane)->shape.shell;
+    double out, own = stick->head.mass, far = hypot(stick->x, stick->y);
+    bool beyond = himc_spot_is_beyond(spot) && shell && himc_shell_has_hoop(shell) && far > 0;
+    stick->shaft = beyond && spot == HIMC_SPOT_RIMSHOT ? LEVER : 0;
+    if (!beyond || spot == HIMC_SPOT_RIMSHOT)
+        return;
+    stick->head = *himc_fittings_meet(spot, &out);
+    stick->head.mass = own;
+    double scale = out * himc_membrane_head(drum->membrane)->radius / far;
+    stick->x *= scale;
+    stick->y *= scale;
+}
+
+void himc_drum_launch_shaft(himc_drum *drum, himc_stick *stick)
+{
+    double out;
+    const himc_mallet_head *head = himc_fittings_meet(HIMC_SPOT_RIMSHOT, &out);
+    for (int i = 0; i < HIMC_STICKS && stick->shaft > 0; i++) {
+        drum_mallet *m = &drum->mallets[i];
+        if (m->used)
+            continue;
+        *m = (drum_mallet){.used = true,
+                           .stick = {.head = *head,
+                                     .mass = head->mass,
+                                     .x = -out * himc_membrane_head(drum->membrane)->radius,
+                                     .velocity = -stick->shaft * stick->impact},
+                           .kick = DRUM_NOT_TOLD};
+        himc_stick_put(drum->membrane, &m->stick);
+        stick->shaft = 0;
+    }
 }
 
 bool himc_drum_has_beater(const himc_drum *drum)

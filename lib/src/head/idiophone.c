@@ -12,8 +12,10 @@
 #include "head/idiophone.h"
 
 #include "base/argument.h"
+#include "base/head_frame.h"
 #include "head/air.h"
 #include "head/modes.h"
+#include "head/two_heads.h"
 #include "himc/vec.h"
 
 #include <math.h>
@@ -152,6 +154,11 @@ bool himc_idiophone_place(const himc_shape *shape, double radius, himc_stroke *s
 {
     const himc_idiophone *body = shape->body;
     const himc_part *part = stroke->part[0] ? find_part(body, stroke->part) : NULL;
+    if (himc_spot_is_beyond(stroke->spot) && !(shape->shell && himc_shell_has_hoop(shape->shell)))
+        return himc_error_set(error,
+                              "%s: %s has no hoop and shell for a stick, expected a snare, "
+                              "a tom, a timbale",
+                              himc_spot_name(stroke->spot), stroke->drum);
     if (!stroke->part[0])
         return true;
     if (!part && stroke->ornament >= HIMC_ROLL_SINGLE && himc_is_hand(stroke->part))

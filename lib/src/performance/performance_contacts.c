@@ -311,6 +311,15 @@ static double bounded(double x, double most)
     return x > most ? most : x < -most ? -most : x;
 }
 
+// the spot of the stroke that is due on this drum
+static himc_spot spot_of(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    double t = himc_clock_time(s->clock);
+    himc_source_stroke due = himc_motion_stroke(s->motion, s->drums, hand, t);
+    bool is = due.any && due.drum == c->drum && fabs(t - due.time) < SAME_STROKE;
+    return is ? due.spot : HIMC_SPOT_NORMAL;
+}
+
 // the stick as a point on the head's normal, at the beginning of the step
 static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
                        const himc_articulation *art, const himc_vec3 *relative,
@@ -331,6 +340,8 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->stick.one_way = s->settings->coupling == HIMC_COUPLING_ONE_WAY;
     c->stick.x = local.x;
     c->stick.y = local.y;
+    if (!c->stick.touching)
+        himc_drum_meet(s->drums->slot[c->drum].drum, spot_of(c, s, hand), &c->stick);
     double a = s->motion->reference.yield[hand];
     if (!is_kinematic(s))
         a = bounded(
