@@ -30,7 +30,7 @@ static const struct {
     {HOOP, 620, 0.1, 1.2, 3e-3},     {HOOP, 1150, 0.08, 1.2, 4e-3},
     {HOOP, 1750, 0.07, 1.2, 5e-3},   {HOOP, 2450, 0.06, 1.2, 6e-3},
     {HOOP, 3300, 0.05, 1.2, 5e-3},   {HOOP, 4300, 0.04, 1.2, 4e-3},
-    {HOOP, 5600, 0.03, 1.2, 2.5e-3}, {STICK, 1200, 0.05, 0.03, 1e-3},
+    {HOOP, 5600, 0.03, 1.2, 2.5e-3}, {STICK, 1200, 0.06, 0.03, 6e-4},
     {STICK, 3090, 0.03, 0.03, 3e-4}, {STICK, 5600, 0.02, 0.03, 1e-4},
     {SHELL, 340, 0.12, 2, 3e-3},     {SHELL, 520, 0.12, 2, 4e-3},
     {SHELL, 790, 0.1, 2, 4e-3},      {SHELL, 1150, 0.08, 2, 3e-3},
@@ -53,7 +53,7 @@ static const himc_mallet_head
 
 // Shapes in each ring, from the rim outwards. A hoop under the hand of a cross-stick moves less;
 // chosen.
-static const double moves[][KINDS] = {{0.3 * LEVER, LEVER, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}};
+static const double moves[][KINDS] = {{0.15 * LEVER, LEVER, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}};
 static const himc_mallet_head *const met[] = {&laid, &on_hoop, &on_stick, &on_shell};
 
 const himc_mallet_head *himc_fittings_meet(himc_spot spot, double *out)

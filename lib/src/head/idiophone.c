@@ -158,7 +158,8 @@ bool himc_idiophone_place(const himc_shape *shape, double radius, himc_stroke *s
         return himc_error_set(error,
                               "%s: %s has no hoop and shell for a stick, expected a snare, "
                               "a tom, a timbale",
-                              himc_spot_name(stroke->spot), stroke->drum);
+                              himc_spot_name(stroke->spot),
+                              stroke->drum[0] ? stroke->drum : "the first drum");
     if (!stroke->part[0])
         return true;
     if (!part && stroke->ornament >= HIMC_ROLL_SINGLE && himc_is_hand(stroke->part))

@@ -23,19 +23,23 @@ typedef struct gm_key {
     const char *part; ///< of the instrument; NULL: all of it
 } gm_key;
 
-#define FIRST_KEY 35
+#define FIRST_KEY 31
 
 static const gm_key keys[] = {
+    {"sticks", "snare", BY_HAND, HIMC_SPOT_CLICK, false, NULL},
+    {"square click", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"metronome click", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"metronome bell", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"acoustic bass drum", "kick", BY_FOOT, HIMC_SPOT_NORMAL, false, NULL},
     {"bass drum 1", "kick", BY_FOOT, HIMC_SPOT_NORMAL, false, NULL},
-    {"side stick", "snare", BY_HAND, HIMC_SPOT_RIM, true, NULL},
+    {"side stick", "snare", BY_HAND, HIMC_SPOT_CROSSSTICK, false, NULL},
     {"acoustic snare", "snare", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"hand clap", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
-    {"electric snare", "snare", BY_HAND, HIMC_SPOT_NORMAL, true, NULL},
+    {"electric snare", "snare", BY_HAND, HIMC_SPOT_RIMSHOT, true, NULL},
     {"low floor tom", "low-floor", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"closed hi-hat", "hats", CLOSED, HIMC_SPOT_RIM, false, NULL},
     {"high floor tom", "floor", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
-    {"pedal hi-hat", "hats", PEDALLED, HIMC_SPOT_NORMAL, true, NULL},
+    {"pedal hi-hat", "hats", PEDALLED, HIMC_SPOT_NORMAL, false, NULL},
     {"low tom", "mid-tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"open hi-hat", "hats", OPENED, HIMC_SPOT_RIM, false, NULL},
     {"low-mid tom", "tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
