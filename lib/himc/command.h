@@ -38,10 +38,14 @@ const char *himc_nuance_name(himc_nuance nuance);
 
 /// Where on the head a stroke lands. In the order of the argument SPOT.
 typedef enum himc_spot {
-    HIMC_SPOT_CENTER, ///< the centre
-    HIMC_SPOT_NORMAL, ///< 0.75 of the radius towards the performer
-    HIMC_SPOT_RIM,    ///< 0.92 of the radius towards the performer
-    HIMC_SPOT_XY      ///< given by two numbers
+    HIMC_SPOT_CENTER,     ///< the centre
+    HIMC_SPOT_NORMAL,     ///< 0.75 of the radius towards the performer
+    HIMC_SPOT_RIM,        ///< 0.92 of the radius towards the performer
+    HIMC_SPOT_CROSSSTICK, ///< the shaft on the hoop, the tip lies on the head
+    HIMC_SPOT_RIMSHOT,    ///< the tip on the head and the shaft on the hoop at once
+    HIMC_SPOT_CLICK,      ///< on the other stick, which lies there
+    HIMC_SPOT_SHELL,      ///< on the drum's shell
+    HIMC_SPOT_XY          ///< given by two numbers
 } himc_spot;
 
 /// The spot's word in commands; "" for HIMC_SPOT_XY. Borrowed, static.

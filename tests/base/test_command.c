@@ -462,8 +462,9 @@ static void test_errors_name_field_value_and_allowed_values(void)
     refused(perform("stroke 1 left"),
             "stroke: NUANCE missing, expected stroke BEAT HAND NUANCE DYNAMIC [SPOT] [dead] "
             "[PART] [DRUM]");
-    refused(perform("stroke 1 left legato f 0.1"),
-            "stroke: SPOT: 0.1, expected center normal rim or X Y, both -1 .. 1 m");
+    refused(
+        perform("stroke 1 left legato f 0.1"),
+        "stroke: SPOT: 0.1, expected center normal rim crossstick rimshot click shell or X Y, both -1 .. 1 m");
     refused(perform("drum dead"),
             "drum: NAME: dead, expected a drum's name: up to 31 letters and digits, no number, no "
             "spot, not `dead` of strokes, no command of the performer");

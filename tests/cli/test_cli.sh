@@ -105,10 +105,10 @@ wrong() { # wrong NAME SCORE ERROR
     fi
 }
 wrong test_a_misspelt_spot_is_named 'tempo 90;\nstroke 1 right accent f rmi;' \
-    '2: rmi: no spot (center normal rim), not dead, no drum (kettle), did you mean rim?'
+    '2: rmi: no spot (center normal rim crossstick rimshot click shell), not dead, no drum (kettle), did you mean rim?'
 wrong test_a_spot_in_capitals_is_named 'stroke 1 right accent f Rim;' \
-    '1: Rim: no spot (center normal rim), not dead, no drum (kettle), did you mean rim?'
-wrong test_a_spot_of_another_instrument_is_named 'roll 1 2 press f edge;' '1: edge: no spot (center normal rim), not dead, no drum (kettle)'
+    '1: Rim: no spot (center normal rim crossstick rimshot click shell), not dead, no drum (kettle), did you mean rim?'
+wrong test_a_spot_of_another_instrument_is_named 'roll 1 2 press f edge;' '1: edge: no spot (center normal rim crossstick rimshot click shell), not dead, no drum (kettle)'
 wrong test_a_misspelt_drum_is_named 'drum low;\ndrum high;\nstroke 1 right accent f rim hihg;' \
     '3: hihg: not dead, no drum (low high), did you mean high?'
 wrong test_a_line_for_no_drum_is_named 'drum low;\nlwo tune A2;' '2: lwo: no drum (low), did you mean low?'

@@ -1,6 +1,8 @@
 /// test_bar.c: bars that are computed: ratios, losses, contacts, keyboards.
 #define _DEFAULT_SOURCE // strsep
+#include "base/head_frame.h"
 #include "head/idiophone.h"
+#include "head/modes.h"
 #include "say_drum.h"
 
 static const char *const kinds[] = {"marimba", "xylophone", "vibraphone", "glockenspiel"};
@@ -128,6 +130,39 @@ static void test_each_bar_of_a_keyboard_sounds_alone(void)
     check_energy("keyboard");
 }
 
+static void test_each_note_of_each_keyboard_is_struck_on_its_bar(void)
+{
+    static const char *const made[] = {"marimba 110 2093.005", "xylophone 349.228 4186.009",
+                                       "vibraphone 174.614 1396.913",
+                                       "glockenspiel 523.3 4186.009"};
+    for (int k = 0; k < 4; k++) {
+        char text[80];
+        snprintf(text, sizeof text, "shape bar %s", made[k]);
+        done(text);
+        const himc_membrane_config *config = himc_membrane_config_of(himc_drum_membrane(drum));
+        const himc_head_frame *frame = himc_drum_head_frame(drum);
+        const himc_idiophone *body = config->shape.body;
+        const himc_modes *modes = himc_drum_membrane(drum)->model->modes;
+        double shape[HIMC_MODES_MAX];
+        TEST_ASSERT_TRUE_MESSAGE(body->parts >= 37, made[k]);
+        for (int i = 0; i < 6 * body->parts; i++) {
+            const himc_part *p = &body->part[i / 6];
+            himc_stroke stroke = {.hand = (himc_hand)(i % 2), .spot = (himc_spot)(i % 3)};
+            double x, y;
+            memcpy(stroke.part, p->name, sizeof p->name);
+            TEST_ASSERT_TRUE(himc_idiophone_place(&config->shape, frame->radius, &stroke, &error));
+            himc_head_frame_spot(frame, &stroke, &x, &y);
+            double asked = y;
+            himc_head_frame_keep_inside(frame, himc_head_frame_struck(frame), &x, &y);
+            TEST_ASSERT_TRUE_MESSAGE(fabs(x - p->x) < p->length / 2, p->name);
+            TEST_ASSERT_TRUE_MESSAGE(fabs(asked - y) < 0.006, p->name);
+            himc_modes_shapes(modes, frame->radius, x, y, shape);
+            for (int m = 0; m < modes->count; m++) // of the nearest bar
+                TEST_ASSERT_TRUE_MESSAGE(shape[m] == 0 || body->mode[m].part == i / 6, p->name);
+        }
+    }
+}
+
 static void test_a_dump_of_bars_makes_them_again(void)
 {
     bar("vibraphone", 300);
@@ -178,6 +213,7 @@ int main(void)
     RUN_TEST(test_the_energy_of_bars_never_grows);
     RUN_TEST(test_a_blow_on_the_node_leaves_mode_1_at_rest);
     RUN_TEST(test_each_bar_of_a_keyboard_sounds_alone);
+    RUN_TEST(test_each_note_of_each_keyboard_is_struck_on_its_bar);
     RUN_TEST(test_a_dump_of_bars_makes_them_again);
     RUN_TEST(test_info_names_the_bars);
     RUN_TEST(test_pitches_that_no_bar_has_are_refused);

@@ -487,6 +487,14 @@ static void test_outer_drums_are_played_by_the_hand_of_their_side(void)
     TEST_ASSERT_EQUAL_STRING("LRLR", hands());
 }
 
+static int lines_with(const char *text, const char *what)
+{
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, what)); at += strlen(what))
+        count++;
+    return count;
+}
+
 static void test_what_two_hands_cannot_play_is_reported(void)
 {
     size_t size;
@@ -496,15 +504,7 @@ static void test_what_two_hands_cannot_play_is_reported(void)
     reported("71 of 73 notes for drums are played");
     reported("1 note is one stroke with another at the same time on its head"); // 35 and 36
     reported("1 note is not played: both hands are busy");                      // of five at once
-    reported("4 of side stick: played on snare");
-}
-
-static int lines_with(const char *text, const char *what)
-{
-    int count = 0;
-    for (const char *at = text; (at = strstr(at, what)); at += strlen(what))
-        count++;
-    return count;
+    TEST_ASSERT_EQUAL_INT(4, lines_with(made.text, " crossstick snare;"));      // side sticks
 }
 
 // feet play the bass drum, and open and close the hi-hat before its stroke
@@ -536,19 +536,63 @@ static void test_every_key_is_played_or_told(void)
 {
     builder b;
     begin(&b);
-    for (int key = 34; key <= 82; key++)
-        event(&b, key > 34 ? QUARTER : 0, 0x99, key, 90);
+    for (int key = 30; key <= 82; key++)
+        event(&b, key > 30 ? QUARTER : 0, 0x99, key, 90);
     end(&b);
     TEST_ASSERT_TRUE(himc_midi_import(&made, b.bytes, b.size, "test.mid", NULL, &error));
     reported("1 of hand clap: no such instrument here");
     reported("1 of open cuica: no such instrument here");
-    reported("1 of key 34: no sound in General MIDI");
+    reported("1 of key 30: no sound in General MIDI");
     reported("1 of ride cymbal 2: played on ride");
+    TEST_ASSERT_NOT_NULL(strstr(made.text, " click snare;"));
+    TEST_ASSERT_NOT_NULL(strstr(made.text, " crossstick snare;"));
+    TEST_ASSERT_NOT_NULL(strstr(made.text, " rimshot snare;"));
     int told = lines_with(made.report, ": no such instrument here") +
                lines_with(made.report, ": no sound in General MIDI") +
                lines_with(made.report, ": no room for one more");
-    TEST_ASSERT_EQUAL_INT(49, lines_with(made.text, "\nstroke ") + told);
+    TEST_ASSERT_EQUAL_INT(53, lines_with(made.text, "\nstroke ") + told);
     TEST_ASSERT_EQUAL_INT(HIMC_DRUMS, lines_with(made.text, "\ninstrument "));
+}
+
+// a set-up's instruments play what they can, found by their name or their kind
+static void test_drums_are_played_on_a_set_up(void)
+{
+    static const int keys[] = {38, 48, 49, 36, 81, 42};
+    const char *path = "/tmp/himc-midi-setup.txt";
+    builder b;
+    begin(&b);
+    for (int i = 0; i < 6; i++)
+        event(&b, i ? QUARTER : 0, 0x99, keys[i], 90);
+    end(&b);
+    import(&b, &(midi_options){MIDI_ANY, 0, "multi"});
+    reported("4 of 6 notes for drums are played");
+    reported("1 of bass drum 1: no kick in the set-up");
+    reported("1 of closed hi-hat: no hats in the set-up");
+    TEST_ASSERT_NOT_NULL(strstr(made.text, "\nsetup multi;\n"));
+    TEST_ASSERT_NULL(strstr(made.text, "\ninstrument "));
+    TEST_ASSERT_EQUAL_STRING("tom", score->strokes[1].drum);
+    FILE *file = fopen(path, "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs("instrument mine snare 13; mine place .5 .1 .8; instrument boom kick 20;", file);
+    fclose(file);
+    begin(&b);
+    for (int i = 0; i < 6; i++)
+        event(&b, i ? QUARTER : 0, 0x99, keys[i], 90);
+    end(&b);
+    import(&b, &(midi_options){MIDI_ANY, 0, path});
+    reported("2 of 6 notes for drums are played");
+    TEST_ASSERT_EQUAL_STRING("mine", score->strokes[0].drum);
+    TEST_ASSERT_EQUAL_STRING("boom", score->strokes[1].drum);
+    remove(path);
+    begin(&b);
+    event(&b, 0, 0x99, 38, 90);
+    end(&b);
+    TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size, "t.mid",
+                                       &(midi_options){MIDI_ANY, 0, "attic"}, &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "setup: attic"), error.text);
+    TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size, "t.mid",
+                                       &(midi_options){MIDI_MARIMBA, 0, "kit"}, &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "a set-up is for drums"), error.text);
 }
 
 static void test_keyboards_are_played_on_their_bars(void)
@@ -682,6 +726,7 @@ int main(void)
     RUN_TEST(test_what_two_hands_cannot_play_is_reported);
     RUN_TEST(test_feet_play_their_pedals);
     RUN_TEST(test_every_key_is_played_or_told);
+    RUN_TEST(test_drums_are_played_on_a_set_up);
     RUN_TEST(test_keyboards_are_played_on_their_bars);
     RUN_TEST(test_the_loud_notes_of_a_chord_are_played);
     RUN_TEST(test_the_part_is_chosen);

@@ -293,7 +293,7 @@ said=$(grep -c '^error: ' "$work/log")
 report messages_that_mean_nothing_answer_with_one_line_each \
     "$([ "$said" = 38 ] || echo "$said lines for 38 messages: ")$(lines "himc~: nonsense: unknown command
 himc~: stroke: HAND: middle, expected left right foot
-himc~: rmi: no spot (center normal rim), not dead, no drum (kettle), did you mean rim?
+himc~: rmi: no spot (center normal rim crossstick rimshot click shell), not dead, no drum (kettle), did you mean rim?
 himc~: stroke: NUANCE missing
 himc~: tempo: BPM: 0, expected
 himc~: score: missing.txt: no such file
@@ -330,7 +330,7 @@ report bang_plays_and_a_drum_beside_the_arguments_is_found \
 report a_drum_that_comes_later_takes_the_place_of_a_silent_one \
     "$(lines "no drum later: playing on a silent one")$([ "$(strikes left later)" = 1 ] || echo "$(strikes left later) strikes")"
 report a_drum_that_is_nowhere_is_an_error \
-    "$(lines "himc~: othr: no spot (center normal rim), not dead, no drum (kettle other), did you mean other?")"
+    "$(lines "himc~: othr: no spot (center normal rim crossstick rimshot click shell), not dead, no drum (kettle other), did you mean other?")"
 report a_push_refused_on_its_sample_is_an_error "$(lines "error: himc~: push: SEGMENT: nose, expected pelvis trunk neck")"
 report info_of_a_drum_is_answered_by_the_performer "$(lines "himc: info kettle: radius
 himc: info other: radius")"

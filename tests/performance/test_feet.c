@@ -118,11 +118,83 @@ static void test_hands_play_a_kick_that_is_at_their_height(void)
     TEST_ASSERT_EQUAL_STRING("right", stroke(0).hand);
 }
 
+static void refuses(const char *stroke, const char *reason)
+{
+    himc_error error = {.text = ""};
+    char text[160];
+    snprintf(text, sizeof text, "instrument kick kick 22; %s", stroke);
+    TEST_ASSERT_FALSE_MESSAGE(himc_performance_load_text(performance, text, "s.txt", &error), text);
+    TEST_ASSERT_EQUAL_STRING(reason, error.text);
+}
+
+static void test_what_no_foot_plays_is_refused_in_one_line(void)
+{
+    refuses("stroke 1 foot legato f rim kick;",
+            "s.txt:1: foot: rim: the beater meets one place, expected no SPOT");
+    refuses("roll 1 1 single f foot kick;",
+            "s.txt:1: roll: foot: both hands play it, expected no HAND");
+}
+
+static void test_a_foot_s_strokes_are_as_far_apart_as_one_plays_them(void)
+{
+    himc_event event;
+    int strikes = 0, missed = 0;
+    load("setup kit; tempo 60; stroke 0 foot legato f kick; stroke 0 foot legato f hats;"
+         "stroke 0.02 foot legato f kick; stroke 0.04 foot legato f kick;"
+         "stroke 0.12 foot legato f kick; stroke 1 foot legato f kick;");
+    himc_performance_play(performance, NULL);
+    for (int i = 0; i < 400; i++) {
+        himc_performance_process(performance, 480, NULL);
+        while (himc_performance_event(performance, &event)) {
+            strikes += event.kind == HIMC_EVENT_STRIKE;
+            if (event.kind == HIMC_EVENT_MISSED && missed++ > 0)
+                TEST_ASSERT_EQUAL_STRING(
+                    "0.04 s after the foot's last stroke, expected 0.08 s or more", event.text);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(4, strikes); // the hats are the other foot's
+    TEST_ASSERT_EQUAL_INT(2, missed);
+    himc_performance_stats stats = himc_performance_measure(performance);
+    TEST_ASSERT_EQUAL_INT(6, stats.strokes);
+    TEST_ASSERT_EQUAL_INT(2, stats.missed);
+}
+
+static void test_the_largest_force_is_also_a_foot_s(void)
+{
+    subscribe("strikes");
+    load("instrument kick kick 22; kick place .8 .1 .1 .8; tempo 60; stroke 3 foot legato f kick;");
+    say("/himc/play", "");
+    play(5);
+    TEST_ASSERT_EQUAL_STRING("", last_error()); // out of the hands' reach is no matter
+    TEST_ASSERT_TRUE(stroke(0).force > 20);
+    TEST_ASSERT_FLOAT_WITHIN(0.01, stroke(0).force,
+                             himc_performance_measure(performance).peak_force);
+}
+
+static void test_a_foot_s_strike_has_its_beat(void)
+{
+    himc_event event;
+    double beat = NAN;
+    load("instrument kick kick 22; tempo 60; stroke 0 foot legato f kick;"
+         "stroke 1.5 foot legato f kick;");
+    himc_performance_play(performance, NULL);
+    for (int i = 0; i < 300; i++) {
+        himc_performance_process(performance, 480, NULL);
+        while (himc_performance_event(performance, &event))
+            beat = event.kind == HIMC_EVENT_STRIKE ? event.strike.beat : beat;
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, beat);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_foot_plays_on_its_beat_beside_the_hands);
     RUN_TEST(test_feet_alone_play_a_loop_and_stop_when_cleared);
+    RUN_TEST(test_what_no_foot_plays_is_refused_in_one_line);
+    RUN_TEST(test_a_foot_s_strokes_are_as_far_apart_as_one_plays_them);
+    RUN_TEST(test_the_largest_force_is_also_a_foot_s);
+    RUN_TEST(test_a_foot_s_strike_has_its_beat);
     RUN_TEST(test_a_foot_follows_a_message_and_a_seek);
     RUN_TEST(test_no_hand_is_sent_to_a_kick_on_the_floor);
     RUN_TEST(test_hands_play_a_kick_that_is_at_their_height);

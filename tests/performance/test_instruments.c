@@ -173,10 +173,64 @@ static void test_an_instrument_comes_over_osc_and_is_there_once(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(last_error(), "over the network"), last_error());
 }
 
+// largest force of strike k, of those heard
+static double force(int k)
+{
+    for (int i = 0; i < heard_count; i++)
+        if (strcmp(heard[i].path, "/himc/strike") == 0 && k-- == 0)
+            return number(lo_message_get_argv(heard[i].message)[6]);
+    TEST_FAIL_MESSAGE("no such strike");
+    return 0;
+}
+
+static void test_sticks_meet_hoop_stick_and_shell_and_then_the_head_again(void)
+{
+    static const char *const spots[] = {"normal", "crossstick", "rimshot", "click",
+                                        "shell",  "normal",     "center"};
+    char text[800] = "instrument snare snare; snare place .6 0 .85; human 1 2; tempo 100; ";
+    for (int i = 0; i < 14; i++)
+        snprintf(text + strlen(text), 60, "stroke %g %s legato f %s snare; ", 2 + 0.5 * i,
+                 i % 2 ? "left" : "right", spots[i / 2]);
+    subscribe("strikes");
+    TEST_ASSERT_EQUAL_STRING("", load(text));
+    say("/himc/play", "");
+    play(7);
+    TEST_ASSERT_EQUAL_STRING("", last_error());
+    TEST_ASSERT_EQUAL_INT(14, count("/himc/strike"));
+    for (int i = 0; i < 2; i++) {
+        TEST_ASSERT_TRUE(force(2 + i) > 5 * force(i)); // wood on steel
+        TEST_ASSERT_TRUE(force(6 + i) > 3 * force(i));
+        TEST_ASSERT_TRUE(force(8 + i) > 3 * force(i));
+        TEST_ASSERT_DOUBLE_WITHIN(0.4 * force(12 + i), force(12 + i), force(4 + i));
+        TEST_ASSERT_DOUBLE_WITHIN(0.4 * force(i), force(i), force(10 + i));
+    }
+    refuses("instrument b bongo; stroke 1 left legato f rimshot b;",
+            ":1: rimshot: b has no hoop and shell for a stick, expected a snare, a tom, a timbale");
+    refuses("drum d; stroke 1 left legato f click;", "click: the first drum has no hoop and shell");
+}
+
+static void test_a_timpano_takes_a_note_and_is_the_drum_for_it(void)
+{
+    static const char *const notes[] = {"C2", "A2", "D3", "G3"};
+    static const double inches[] = {32, 29, 26, 23}, hz[] = {65.41, 110, 146.83, 196};
+    for (int i = 0; i < 4; i++) {
+        char line[40], name[8];
+        snprintf(name, sizeof name, "x%d", i);
+        snprintf(line, sizeof line, "%s timpano %s", name, notes[i]);
+        say("/himc/instrument", line);
+        play(0.05);
+        TEST_ASSERT_EQUAL_STRING("", last_error());
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * hz[i], hz[i], pitch(name));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.0127 * inches[i],
+                                  himc_drum_head_frame(find(name))->radius);
+    }
+}
+
 static void test_what_cannot_be_made_is_refused_in_one_line(void)
 {
     refuses("instrument a banjo;", "instrument: INSTRUMENT: banjo, expected timpano marimba");
     refuses("instrument a;", "INSTRUMENT missing");
+    refuses("instrument a timpano D3 E3;", "timpano: a second note, expected one");
     refuses("instrument a timpano 5;", "inches: 5 in, expected 12 .. 60 in");
     refuses("instrument a claves 5;", "instrument a: tune: 5 Hz, expected");
     refuses("instrument a modes nowhere.txt;", "instrument a: shape: nowhere.txt");
@@ -259,6 +313,8 @@ int main(void)
     RUN_TEST(test_a_roll_on_a_bar_stays_on_it);
     RUN_TEST(test_parts_that_are_not_there_are_refused);
     RUN_TEST(test_an_instrument_comes_over_osc_and_is_there_once);
+    RUN_TEST(test_sticks_meet_hoop_stick_and_shell_and_then_the_head_again);
+    RUN_TEST(test_a_timpano_takes_a_note_and_is_the_drum_for_it);
     RUN_TEST(test_what_cannot_be_made_is_refused_in_one_line);
     RUN_TEST(test_a_dump_makes_the_instruments_again);
     RUN_TEST(test_a_score_plays_drums_with_shells_and_takes_wires_off);

@@ -370,8 +370,9 @@ static void test_a_word_that_is_neither_spot_nor_drum_is_refused_with_both_lists
         snprintf(text, sizeof text, form[i], "rmi");
         TEST_ASSERT_FALSE_MESSAGE(try_command(p, text), text);
         TEST_ASSERT_EQUAL_STRING(
-            i < 6   ? "rmi: no spot (center normal rim), not dead, no drum (low high), did "
-                      "you mean rim?"
+            i < 6
+                ? "rmi: no spot (center normal rim crossstick rimshot click shell), not dead, no drum (low high), did "
+                  "you mean rim?"
             : i < 7 ? "rmi: not dead, no drum (low high)"
                     : "rmi: no drum (low high)",
             error.text);

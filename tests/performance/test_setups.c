@@ -109,6 +109,8 @@ static void test_a_file_is_a_set_up_of_ones_own(void)
     write_file("drum c 23;\nstroke 1 left legato f;");
     refuses("setup " FILE_NAME ";", "s.txt:1: setup: " FILE_NAME ":2: a stroke, a tempo or `at`, "
                                     "expected instruments");
+    refuses("setup kit;\nsetup marimba;", "s.txt:2: setup: a second one, the first is in line 1; "
+                                          "expected one, and `instrument` for others");
     write_file("setup timpani;");
     refuses("setup " FILE_NAME ";",
             "s.txt:1: setup: " FILE_NAME ":1: setup: one in another, expected instruments");

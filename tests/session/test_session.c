@@ -250,7 +250,7 @@ static void test_score_with_an_error_anywhere_changes_nothing(void)
         {"kettle shape triangle;",
          ":5: kettle: shape: triangle, expected circle, rectangle LENGTH WIDTH, modes FILE, "},
         {"stroke 1 left legato f centr;",
-         ":5: centr: no spot (center normal rim), not dead, no drum"},
+         ":5: centr: no spot (center normal rim crossstick rimshot click shell), not dead, no drum"},
         {"stroke 1 left legato f rim secnd;",
          ":5: secnd: not dead, no drum (kettle second), did you"},
         {"at 1 secnd tune A2;", ":5: secnd: no drum (kettle second), did you mean second?"},

@@ -12,12 +12,13 @@
 
 #define USUAL_RANGE 22.0 // of `--curve square` (dB): from ppp to fff of this instrument
 
-enum { OUT, PART, CURVE };
+enum { OUT, PART, CURVE, SETUP };
 
 static const cli_option options[] = {
     {"output", 'o', "SCORE", "the score; - is the standard output"},
     {"part", 0, "PART", "the first of these of which the file has any"},
     {"curve", 0, "CURVE", "how velocities become dynamics (notation)"},
+    {"setup", 0, "NAME|FILE", "drums: a set-up, whose instruments play them"},
     {0},
 };
 
@@ -78,7 +79,7 @@ static bool write_text(const char *path, const char *text, himc_error *error)
 static bool make(const cli_arguments *arguments, midi_score *made, himc_error *error)
 {
     const char *path, *out = arguments->value[OUT];
-    midi_options wanted = {MIDI_ANY, 0};
+    midi_options wanted = {MIDI_ANY, 0, arguments->value[SETUP]};
     if (!out)
         return himc_error_set(error, "no -o SCORE given (himc import --help)");
     if (!(path = cli_input(arguments->operand, error)) || !cli_apart(out, &path, 1, error))

@@ -20,7 +20,8 @@ static const char *const stroke_hands[] = {"left", "right", "foot", NULL};
 static const char *const hit_hands[] = {"left", "right", "any", "foot", NULL};
 static const char *const nuances[] = {"legato",          "tenuto",   "accent",
                                       "vertical-accent", "staccato", NULL};
-static const char *const spots[] = {"center", "normal", "rim", NULL};
+static const char *const spots[] = {"center",  "normal", "rim",   "crossstick",
+                                    "rimshot", "click",  "shell", NULL};
 static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
 
 #define WORD(word) word,
@@ -166,6 +167,11 @@ himc_hand himc_argument_hand(const himc_atom *atom)
 {
     static const himc_hand extra[] = {HIMC_LEFT, HIMC_RIGHT, HIMC_HAND_ANY, HIMC_FOOT};
     return extra[find_word(hit_hands, atom->symbol)];
+}
+
+bool himc_is_hand(const char *word)
+{
+    return find_word(stroke_hands, word) >= 0;
 }
 
 const char *himc_nuance_name(himc_nuance nuance)

@@ -49,6 +49,14 @@ double himc_head_frame_out(const himc_head_frame *frame, double x, double y)
                              : hypot(x, y) / frame->radius;
 }
 
+double himc_head_frame_struck(const himc_head_frame *frame)
+{
+    // chosen: on a disc a mallet that does not touch the rim of a usual head; on bars nearly up to
+    // the edge (m), as the last one of a keyboard is narrow
+    double edge = 0.003;
+    return frame->length > 0 ? 1 - 2 * edge / fmax(frame->length, frame->width) : 0.97;
+}
+
 bool himc_head_frame_keep_inside(const himc_head_frame *frame, double share, double *x, double *y)
 {
     double out = himc_head_frame_out(frame, *x, *y);
@@ -86,8 +94,11 @@ void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *strok
                           double *y)
 {
     // of the radius, by players and textbooks: normal about 3/4, rim about 9/10
+    // sticks that meet the hoop or what is beyond it land where the tip can (drum_strike.c)
     static const double drumhead[] = {
-        [HIMC_SPOT_CENTER] = 0, [HIMC_SPOT_NORMAL] = 0.75, [HIMC_SPOT_RIM] = 0.92};
+        [HIMC_SPOT_CENTER] = 0,        [HIMC_SPOT_NORMAL] = 0.75, [HIMC_SPOT_RIM] = 0.92,
+        [HIMC_SPOT_CROSSSTICK] = 0.95, [HIMC_SPOT_RIMSHOT] = 0.2, [HIMC_SPOT_CLICK] = 0.95,
+        [HIMC_SPOT_SHELL] = 0.95};
     bool placed = stroke->spot == HIMC_SPOT_XY;
     *x = stroke->x;
     *y = placed ? stroke->y : 0;
@@ -98,7 +109,9 @@ void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *strok
         return;
     }
     if (!placed)
-        *x = -(frame->spots ? frame->spots : drumhead)[stroke->spot] * frame->radius;
+        *x = -(frame->spots && stroke->spot <= HIMC_SPOT_RIM ? frame->spots
+                                                             : drumhead)[stroke->spot] *
+             frame->radius;
     // half a mallet's width (m), so the two mallets do not collide, if there is room; chosen
     double aside = frame->length > 0 ? fmin(0.015, 0.48 * frame->width) : 0.015;
     *y += stroke->hand == HIMC_LEFT ? aside : -aside;

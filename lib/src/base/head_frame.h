@@ -20,6 +20,8 @@ static inline bool himc_head_frame_contains(const himc_head_frame *frame, double
 }
 /// How far out (x, y) is: 0 in the centre, 1 on the edge.
 HIMC_RT double himc_head_frame_out(const himc_head_frame *frame, double x, double y);
+/// Share of the surface out to which it is struck.
+HIMC_RT double himc_head_frame_struck(const himc_head_frame *frame);
 /// Moves (x, y) towards the centre into the surface's inner part, out to that share; true if it was
 /// beyond.
 HIMC_RT bool himc_head_frame_keep_inside(const himc_head_frame *frame, double share, double *x,
@@ -30,6 +32,11 @@ HIMC_RT double himc_head_frame_half_width(const himc_head_frame *frame, double s
 /// from the centre in the world, `away` gets the unit vector along which the distance grows.
 HIMC_RT double himc_head_frame_beside(const himc_head_frame *frame, himc_vec3 from,
                                       himc_vec3 *away);
+/// Whether a stick meets there what is beyond the head.
+static inline bool himc_spot_is_beyond(himc_spot spot)
+{
+    return spot >= HIMC_SPOT_CROSSSTICK && spot < HIMC_SPOT_XY;
+}
 /// Where a stroke with that spot lands.
 HIMC_RT void himc_head_frame_spot(const himc_head_frame *frame, const himc_stroke *stroke,
                                   double *x, double *y);

@@ -16,13 +16,14 @@ typedef struct himc_source_contact {
 
 /// The stroke of that contact.
 typedef struct himc_source_stroke {
-    bool any;      ///< as of the contact
-    double time;   ///< of contact (s)
-    int drum;      ///< slot
-    double x, y;   ///< on the head (m)
-    double yields; ///< so far from where it was asked for, as the hands would have met (m)
-    double beat;   ///< in the score, NaN of a take
-    double speed;  ///< captured, NaN of a score (m/s)
+    bool any;       ///< as of the contact
+    double time;    ///< of contact (s)
+    int drum;       ///< slot
+    double x, y;    ///< on the head (m)
+    himc_spot spot; ///< of a score
+    double yields;  ///< so far from where it was asked for, as the hands would have met (m)
+    double beat;    ///< in the score, NaN of a take
+    double speed;   ///< captured, NaN of a score (m/s)
     char nuance[HIMC_NAME_SIZE]; ///< or "none"
     int bounces;                 ///< of a stroke that bounces (himc_stroke)
     double bounce_time;          ///< (s)

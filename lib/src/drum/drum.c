@@ -477,6 +477,7 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
                 himc_drum_find_noise(drum, &all[k]->head);
             himc_stroke_noise_begin(&drum->noise, all[k]->x, all[k]->y);
             himc_drum_keep_onset(drum, all[k]);
+            himc_drum_launch_shaft(drum, all[k]);
         }
         pressing += all[k]->force;
         drum->hold = fmax(drum->hold, all[k]->force > 0 ? all[k]->hold : 0);

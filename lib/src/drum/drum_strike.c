@@ -10,13 +10,30 @@
 /// contact is over and its force known. So an onset has the position, the velocity, and the pitch
 /// to which the head is tuned. Contact, head and body are the same with every technique; the head's
 /// own sound goes off in 10 ms, and comes back, as far as the head still vibrates, with `modal`.
+#include "base/head_frame.h"
 #include "drum/contact.h"
 #include "drum/drum_state.h"
+#include "head/idiophone.h"
 
 #include <math.h>
 
-#define GONE 0.005       // (m) above the head at rest and rising: the contact is over; chosen
+#define GONE 0.005 // (m) above the head at rest and rising: the contact is over; chosen
+#define LEVER 0.5  // of the tip's speed the shaft has on the hoop; chosen: halfway to the fulcrum
 #define LONGEST_LIFE 1.0 // (s) of a mallet, whatever it does; chosen
+
+// The pedal of a hi-hat throws one plate against the other, at .5 to 1 m/s. That one, a part of it
+// at each place, meets the edge and is pressed on it for a while, which chokes both. Chosen.
+static const himc_mallet_head plate = {
+    .stiffness = 1e8, .exponent = 1.5, .loss = 3, .mass = 0.1, .radius = 0.01, .relaxation = 5e-6};
+#define PLATE_PLACES 4
+#define PLATE_ASLANT 3e-4 // (m) from one place to the next
+#define PLATE_SPEED 0.2   // of a hand's
+#define PLATE_EDGE 0.95   // per radius
+#define PRESS 25.0        // of the foot on each place, of its speed (N s/m) ...
+#define PRESS_EASES 0.03  // ... falling in this time (s) ...
+#define PRESS_TIME 0.15   // ... until it lets go (s) ...
+#define PRESS_LIFT 20.0   // ... and lifts the plate (m/s^2)
+#define PRESS_HOLD 0.75   // of `damp`: 50 1/s
 
 bool himc_drum_may_strike(const himc_head_frame *surface, double x, double y, double velocity,
                           himc_error *error)
@@ -81,28 +98,61 @@ static int earliest(const himc_drum *drum)
     return best;
 }
 
+// a mallet on its way down, over the head where that is now; NULL: all are in use
+static drum_mallet *add_mallet(himc_drum *drum, const himc_mallet_head *head, double x, double y,
+                               double velocity, int kick)
+{
+    for (int i = 0; i < HIMC_STICKS; i++) {
+        drum_mallet *m = &drum->mallets[i];
+        if (m->used)
+            continue;
+        *m = (drum_mallet){
+            .used = true,
+            .stick = {.head = *head, .mass = head->mass, .x = x, .y = y, .velocity = -velocity},
+            .kick = kick,
+            .report = {.x = x, .y = y, .velocity = velocity}};
+        himc_stick_put(drum->membrane, &m->stick);
+        return m;
+    }
+    return NULL;
+}
+
+// plates are never quite parallel: they meet at one place after the other
+static bool close_hats(himc_drum *drum, double velocity, int kick)
+{
+    double speed = PLATE_SPEED * velocity;
+    double out = PLATE_EDGE * himc_membrane_head(drum->membrane)->radius;
+    drum_mallet *first = NULL, *m;
+    for (int i = 0; i < PLATE_PLACES; i++) {
+        double angle = 2 * HIMC_PI * i / PLATE_PLACES;
+        m = add_mallet(drum, &plate, -out * cos(angle), out * sin(angle), speed,
+                       first ? DRUM_NOT_TOLD : kick);
+        if (!m)
+            break;
+        m->stick.height += i * PLATE_ASLANT;
+        m->stick.acceleration = -PRESS * speed / plate.mass;
+        m->stick.hold = PRESS_HOLD;
+        first = first ? first : m;
+    }
+    return first;
+}
+
 void himc_drum_launch(himc_drum *drum)
 {
     for (;;) {
-        int next = earliest(drum), free = 0;
-        while (free < HIMC_STICKS && drum->mallets[free].used)
-            free++;
-        drum_mallet *m = &drum->mallets[free];
-        if (next < 0 || free == HIMC_STICKS || drum->waiting[next].at > drum->time)
+        int next = earliest(drum);
+        if (next < 0 || drum->waiting[next].at > drum->time)
             return;
         drum_waiting w = drum->waiting[next];
+        bool free = w.kick > 0 && himc_drum_hats(drum)
+                        ? close_hats(drum, w.velocity, w.kick)
+                        : add_mallet(drum, &drum->set.mallet[HIMC_RIGHT], w.x, w.y, w.velocity,
+                                     w.kick) != NULL;
+        if (!free)
+            return;
         drum->waiting_count--;
         for (int i = next; i < drum->waiting_count; i++)
             drum->waiting[i] = drum->waiting[i + 1];
-        *m = (drum_mallet){.used = true,
-                           .stick = {.head = drum->set.mallet[HIMC_RIGHT],
-                                     .mass = drum->set.mallet[HIMC_RIGHT].mass,
-                                     .x = w.x,
-                                     .y = w.y,
-                                     .velocity = -w.velocity},
-                           .kick = w.kick,
-                           .report = {.x = w.x, .y = w.y, .velocity = w.velocity}};
-        himc_stick_put(drum->membrane, &m->stick);
     }
 }
 
@@ -133,10 +183,13 @@ static void follow(himc_drum *drum, drum_mallet *m)
         m->report.force = fmax(m->report.force, fmax(s->force, s->peak));
         m->report.impulse += s->force / drum->rate;
     }
-    m->age++;
+    // a foot presses less and less, and lets go
+    m->stick.acceleration *= 1 - 1 / (PRESS_EASES * drum->rate);
+    if (++m->age == (int)(PRESS_TIME * drum->rate) && s->hold > 0)
+        m->stick.acceleration = PRESS_LIFT;
     bool gone = !s->touching && s->height > GONE && s->velocity > 0;
     m->used = !gone && m->age <= LONGEST_LIFE * drum->rate;
-    if (m->used || m->report.force == 0)
+    if (m->used || m->report.force == 0 || m->kick == DRUM_NOT_TOLD)
         return;
     m->report.time = ((double)m->first - (double)drum->zero) / drum->rate;
     m->report.duration = (double)(m->end - m->first) / drum->rate;
@@ -158,6 +211,37 @@ bool himc_drum_strike_next(himc_drum *drum, himc_contact_report *report)
         return false;
     *report = drum->reports[queue_pop(&drum->report_queue)];
     return true;
+}
+
+void himc_drum_meet(const himc_drum *drum, himc_spot spot, himc_stick *stick)
+{
+    const himc_shell *shell = himc_membrane_config_of(drum->membrane)->shape.shell;
+    double out, own = stick->head.mass, far = hypot(stick->x, stick->y);
+    bool beyond = himc_spot_is_beyond(spot) && shell && himc_shell_has_hoop(shell) && far > 0;
+    stick->shaft = beyond && spot == HIMC_SPOT_RIMSHOT ? LEVER : 0;
+    if (!beyond || spot == HIMC_SPOT_RIMSHOT)
+        return;
+    stick->head = *himc_fittings_meet(spot, &out);
+    stick->head.mass = own;
+    double scale = out * himc_membrane_head(drum->membrane)->radius / far;
+    stick->x *= scale;
+    stick->y *= scale;
+}
+
+void himc_drum_launch_shaft(himc_drum *drum, himc_stick *stick)
+{
+    double out;
+    const himc_mallet_head *head = himc_fittings_meet(HIMC_SPOT_RIMSHOT, &out);
+    if (stick->shaft > 0)
+        add_mallet(drum, head, -out * himc_membrane_head(drum->membrane)->radius, 0,
+                   stick->shaft * stick->impact, DRUM_NOT_TOLD);
+    stick->shaft = 0;
+}
+
+bool himc_drum_hats(const himc_drum *drum)
+{
+    const himc_idiophone *body = himc_membrane_config_of(drum->membrane)->shape.body;
+    return body && body->dampers > 0 && !body->pedal_lifts;
 }
 
 int himc_drum_kicked(himc_drum *drum, himc_contact_report *report, double *ago)

@@ -22,6 +22,18 @@ enum {
 // a bar, if no pitch is given, sounds that (Hz), in the order of HIMC_BARS; chosen: mid range
 static const double usual[BARS] = {261.6256, 523.2511, 261.6256, 1046.502};
 
+// of the timpani that an orchestra has, that in the middle of whose range a pitch (Hz) is
+static double inches_for(double hz)
+{
+    static const struct {
+        double inches, below; // (Hz) between the middles of two ranges
+    } size[] = {{32, 98}, {29, 127}, {26, 165}, {23, 235}, {20, INFINITY}};
+    int i = 0;
+    while (hz >= size[i].below)
+        i++;
+    return size[i].inches;
+}
+
 static bool carry_out(himc_drum_settings *s, const char *name, const himc_atom *atoms, int count,
                       himc_error *error)
 {
@@ -57,10 +69,16 @@ himc_drum *himc_drum_made(const himc_command *c, double sample_rate, himc_error 
     bool instrument = c->id == HIMC_COMMAND_INSTRUMENT;
     bool skin = !instrument || (c->form != OF_FILE && c->choice[1] == TIMPANO);
     int size = instrument ? 2 : 1;
+    bool tuned = instrument && skin && c->form == OF_PITCH;
     double inches = skin && c->count > size ? c->atom[size].number : HIMC_INCHES_USUAL;
+    if (tuned)
+        inches = inches_for(c->atom[size].number);
     if (!himc_drum_settings_new(&s, name, inches, sample_rate, error))
         return NULL;
-    if (skin || change(&s, c, error)) {
+    if (tuned && c->count > size + 1)
+        himc_error_set(error, "timpano: a second note, expected one");
+    else if (tuned ? carry_out(&s, "tune", c->atom + size, 1, error)
+                   : skin || change(&s, c, error)) {
         if (!skin) // a dump tells the size as that of a drum, within the sizes of drums
             s.usual.radius = fmin(fmax(s.head.head.radius, 0.5 * HIMC_INCHES_MIN * METRES_PER_INCH),
                                   0.5 * HIMC_INCHES_MAX * METRES_PER_INCH);

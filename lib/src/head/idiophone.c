@@ -12,8 +12,10 @@
 #include "head/idiophone.h"
 
 #include "base/argument.h"
+#include "base/head_frame.h"
 #include "head/air.h"
 #include "head/modes.h"
+#include "head/two_heads.h"
 #include "himc/vec.h"
 
 #include <math.h>
@@ -152,8 +154,17 @@ bool himc_idiophone_place(const himc_shape *shape, double radius, himc_stroke *s
 {
     const himc_idiophone *body = shape->body;
     const himc_part *part = stroke->part[0] ? find_part(body, stroke->part) : NULL;
+    if (himc_spot_is_beyond(stroke->spot) && !(shape->shell && himc_shell_has_hoop(shape->shell)))
+        return himc_error_set(error,
+                              "%s: %s has no hoop and shell for a stick, expected a snare, "
+                              "a tom, a timbale",
+                              himc_spot_name(stroke->spot),
+                              stroke->drum[0] ? stroke->drum : "the first drum");
     if (!stroke->part[0])
         return true;
+    if (!part && stroke->ornament >= HIMC_ROLL_SINGLE && himc_is_hand(stroke->part))
+        return himc_error_set(error, "roll: %s: both hands play it, expected no HAND",
+                              stroke->part);
     if (!part && (!body || body->parts == 1))
         return himc_error_set(error, "%s: %s has no parts", stroke->part, stroke->drum);
     if (!part)

@@ -47,10 +47,10 @@
 
 // In the order of HIMC_PLATES (himc/command_rows.h).
 typedef struct plate_row {
-    double inches, thickness;   // usual ones (inches, mm)
-    double t60, corner, slope;  // of a mode at f: t60 (1 + f/corner)^-slope (s, Hz)
-    double highest;             // (Hz) no mode is above
-    double spots[HIMC_SPOT_XY]; // per radius
+    double inches, thickness;        // usual ones (inches, mm)
+    double t60, corner, slope;       // of a mode at f: t60 (1 + f/corner)^-slope (s, Hz)
+    double highest;                  // (Hz) no mode is above
+    double spots[HIMC_SPOT_RIM + 1]; // per radius
     himc_cascade cascade;
     himc_mallet_head mallet;
 } plate_row;

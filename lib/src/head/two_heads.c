@@ -34,7 +34,8 @@
 #define EXACT 73  // so many are below
 #define STATISTICAL 104 // above; chosen: with wires, each costs time
 #define DISC (EXACT + STATISTICAL)
-#define RANKS 5 // modes (0, n) of a head among the exact ones
+#define FITTING (-2) // order of modes that are of no head
+#define RANKS 5      // modes (0, n) of a head among the exact ones
 #define MOST (2 * RANKS)
 #define LOADINGS 20 // iterations of a mode's mass in air; chosen: all digits
 #define LONGER 0.8  // power of 1/S0 in the radius, ...
@@ -68,6 +69,17 @@ const himc_shell himc_shell_rows[] = {
     {"bongo", 0.1, 0.17, 8000, 0.8, 6, 6e-7, 0, 0, 0, 0, 0, 0, 0, &rubber},
     {"timbale", 0.178, 0.17, 3000, 0.36, 4, 8e-7, 0, 0, 0, 0, 0, 0, 0, &stick},
 };
+
+bool himc_shell_has_hoop(const himc_shell *shell)
+{
+    return shell->mallet == &stick;
+}
+
+// of a mode in the list, the number of the fitting; negative: of a head
+static int fitting_of(int source)
+{
+    return source - 2 * DISC;
+}
 
 // Frequencies of (0, n) in a drum, and what they were made of.
 typedef struct coupled {
@@ -195,6 +207,10 @@ static void sounds(himc_modes *modes, const himc_head *head, himc_oscillator *ou
     coupled c = {0};
     for (int i = 0; i < modes->count; i++) {
         bool lower = modes->source[i] / DISC;
+        if (fitting_of(modes->source[i]) >= 0) {
+            out[i] = himc_fittings_oscillator(fitting_of(modes->source[i]), head->radius);
+            continue;
+        }
         himc_head of = head_of(shell, head, lower);
         himc_mode mode = himc_modes_get(modes->disc, &of, modes->source[i] % DISC);
         double mass, omega = load(&of, mode.zero / head->radius, &mass);
@@ -278,7 +294,7 @@ static void fit(const himc_shape *shape, himc_head *head)
 static bool list(himc_modes *modes, bool automatic)
 {
     const himc_shell *shell = modes->shape.shell;
-    candidate all[2 * DISC];
+    candidate all[2 * DISC + HIMC_FITTINGS];
     himc_head head = {0};
     int found = 0;
     modes->disc = new_disc();
@@ -290,6 +306,8 @@ static bool list(himc_modes *modes, bool automatic)
         double mass, zero = himc_modes_get(modes->disc, &of, i % DISC).zero;
         all[found++] = (candidate){load(&of, zero / head.radius, &mass), i};
     }
+    for (int i = 0; i < HIMC_FITTINGS && himc_shell_has_hoop(shell); i++)
+        all[found++] = (candidate){himc_fittings_oscillator(i, head.radius).omega, 2 * DISC + i};
     qsort(all, (size_t)found, sizeof *all, by_frequency);
     if (automatic || modes->count > found)
         modes->count = found;
@@ -298,10 +316,15 @@ static bool list(himc_modes *modes, bool automatic)
     modes->source = malloc(sizeof *modes->source * (size_t)found);
     for (int i = 0; modes->entries && modes->source && i < found; i++) {
         int lower = all[i].source / DISC;
+        modes->source[i] = all[i].source;
+        if (fitting_of(all[i].source) >= 0) {
+            double z = all[i].omega * head.radius / sqrt(head.tension / head.density);
+            modes->entries[i] = (himc_mode_entry){FITTING, 1 + fitting_of(all[i].source), z, 1};
+            continue;
+        }
         himc_mode mode = himc_modes_get(modes->disc, &head, all[i].source % DISC);
         double stiffer = lower ? shell->lower_tension / shell->lower_density : 1;
         double heavier = lower ? shell->lower_density : 1;
-        modes->source[i] = all[i].source;
         modes->entries[i] =
             (himc_mode_entry){mode.m, mode.n, mode.zero * sqrt(stiffer), mode.norm * heavier};
     }
@@ -310,10 +333,14 @@ static bool list(himc_modes *modes, bool automatic)
 
 static void shapes(const himc_modes *modes, double radius, double x, double y, double *out)
 {
-    double on[DISC];
+    double on[DISC], far = hypot(x, y) / radius;
     himc_modes_shapes(modes->disc, radius, x, y, on);
-    for (int i = 0; i < modes->count; i++)
+    for (int i = 0; i < modes->count; i++) {
+        int of = fitting_of(modes->source[i]);
         out[i] = modes->source[i] < DISC ? on[modes->source[i]] : 0;
+        if (of >= 0)
+            out[i] = himc_fittings_shape(of, far);
+    }
 }
 
 // In a step no wave comes from one wire to another. So neighbours of the statistical modes have
@@ -327,7 +354,7 @@ void himc_two_heads_under(const himc_modes *modes, int wire, double *out)
         on[i] = (both ^ both >> 1 ^ both >> 2) & 1 ? -1 : 1;
     }
     for (int i = 0; i < modes->count; i++)
-        out[i] = modes->source[i] < DISC ? 0 : on[modes->source[i] - DISC];
+        out[i] = modes->source[i] / DISC == 1 ? on[modes->source[i] - DISC] : 0;
 }
 
 int himc_two_heads_upper(const himc_modes *modes, int index)
@@ -343,6 +370,8 @@ static double pressure_of(const himc_pickup *pickup, const himc_head *head, cons
                           int index, const himc_mode *mode)
 {
     int lower = modes->source[index] / DISC, i = modes->source[index] % DISC;
+    if (fitting_of(modes->source[index]) >= 0)
+        return himc_fittings_pressure(fitting_of(modes->source[index])) / pickup->distance;
     himc_mode bare = himc_modes_get(modes->disc, head, i);
     bare.frequency = mode->frequency;
     double part = lower ? LOWER : 1;
@@ -405,7 +434,7 @@ static double compliance(const himc_head *head, double x, double y, double b)
 }
 
 const himc_kind himc_kind_two_heads = {.name = "shell",
-                                       .usual = 2 * DISC,
+                                       .usual = 2 * DISC + HIMC_FITTINGS,
                                        .read = read,
                                        .fit = fit,
                                        .surface = surface,

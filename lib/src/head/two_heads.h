@@ -27,6 +27,9 @@ extern const himc_shell himc_shell_rows[];
 /// The mallet of a kick: the beater of a pedal.
 extern const himc_mallet_head himc_shell_beater;
 
+/// Whether sticks play it, which also meet its hoop and its shell (fittings.c).
+HIMC_RT bool himc_shell_has_hoop(const himc_shell *shell);
+
 #define HIMC_WIRES_USUAL 250.0 ///< pull (m/s^2); chosen: they rattle for 50 ms
 
 static inline bool himc_shell_takes_wires(const himc_shell *shell)
@@ -39,6 +42,21 @@ static inline bool himc_shell_takes_wires(const himc_shell *shell)
 HIMC_RT void himc_two_heads_under(const himc_modes *modes, int wire, double *shapes);
 /// Mode of the list that has the shape `index` of a round head alone, on the upper one; -1: none.
 HIMC_RT int himc_two_heads_upper(const himc_modes *modes, int index);
+
+// Hoop, shell, another stick (fittings.c).
+
+#define HIMC_FITTINGS 16        ///< modes of all of them
+#define HIMC_FITTINGS_RING 0.01 ///< width of the ring beyond the rim where each is met, per radius
+
+/// What meets what at a spot beyond the rim, borrowed, and how far out, per radius. Of a rim shot
+/// the shaft, as of a cross-stick.
+HIMC_RT const himc_mallet_head *himc_fittings_meet(himc_spot spot, double *out);
+/// A mode of theirs on a drum of that radius (m).
+HIMC_RT himc_oscillator himc_fittings_oscillator(int index, double radius);
+/// Its shape so far out, per radius.
+HIMC_RT double himc_fittings_shape(int index, double out);
+/// Its sound at 1 m per acceleration (Pa s^2/m).
+HIMC_RT double himc_fittings_pressure(int index);
 
 // Wires (wires.c). Arrays have an entry for each of them; displacements are the lower head's.
 

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "midi/part.h"
 #include "plan/gesture.h"
+#include "plan/score.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -119,6 +120,11 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
         else
             part->fate[choice != MIDI_ANY ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT]++;
     }
+    if (part->setup && part->choice != MIDI_DRUMS)
+        return himc_error_set(error,
+                              "a set-up is for drums, expected none: %s has instruments of "
+                              "its own",
+                              himc_midi_choice_name(part->choice));
     if (part->count > MOST_STROKES)
         return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
     if (!give_instruments(part, error) || !himc_midi_stick(part, error))
@@ -264,7 +270,7 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
 }
 
 static bool write_score(midi_score *made, const midi_file *file, const midi_part *part,
-                        const char *name, himc_error *error)
+                        const char *name, const char *setup, himc_error *error)
 {
     himc_text_lines score = {0}, said = {0};
     // whole beats before the file's first, so that the first stroke comes 1 s later at the earliest
@@ -287,7 +293,9 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
     for (const char *end; (end = strchr(line, '\n')); line = end + 1)
         put(&score, "comment %.*s;\n", (int)(end - line), line);
     put(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
-    for (int i = 0; i < part->heads; i++) {
+    if (setup)
+        put(&score, "setup %s;\n", setup);
+    for (int i = 0; i < part->heads && !setup; i++) {
         const midi_head *h = &part->head[i];
         if (h->key == -1)
             continue;
@@ -327,17 +335,30 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
     return himc_error_set(error, "out of memory for the score");
 }
 
+// the instruments of a set-up that is asked for; true without one
+static bool read_setup(midi_part *part, const midi_options *options, himc_error *error)
+{
+    himc_command setup;
+    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, options->setup};
+    if (!options->setup)
+        return true;
+    if (!himc_command_parse(&setup, HIMC_PERFORMER, "setup", &atom, 1, error))
+        return false;
+    part->setup = himc_score_of_setup(&setup, error);
+    return part->setup;
+}
+
 bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const char *name,
                       const midi_options *options, himc_error *error)
 {
-    static const midi_options usual = {MIDI_ANY, 0};
+    static const midi_options usual = {MIDI_ANY, 0, NULL};
     midi_file file;
     midi_part part = {0};
     *made = (midi_score){0};
     options = options ? options : &usual;
     if (!himc_midi_file_read(&file, bytes, size, error))
         return false;
-    bool good = make_part(&part, &file, options, error);
+    bool good = read_setup(&part, options, error) && make_part(&part, &file, options, error);
     if (good && part.fate[MIDI_PLAYED] == 0)
         good = himc_error_set(error, "nothing to play: %d note%s, none %s", file.note_count,
                               file.note_count == 1 ? "" : "s",
@@ -345,7 +366,8 @@ bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const ch
                                   ? "of timpani (program 48 or a track of that name)"
                               : part.choice == MIDI_DRUMS ? "of a drum (channel 10)"
                                                           : "of that keyboard");
-    good = good && write_score(made, &file, &part, name, error);
+    good = good && write_score(made, &file, &part, name, options->setup, error);
+    himc_score_free(part.setup);
     free(part.stroke);
     free(part.pedal);
     himc_midi_file_free(&file);

@@ -20,6 +20,8 @@ typedef struct midi_options {
     midi_choice choice;
     double range; ///< dynamic range of velocities by a square law (dB), 1 .. 80; 0: as notation
                   ///< programs write dynamics
+    const char
+        *setup; ///< of drums: a set-up's name or file, whose instruments play; NULL: as needed
 } midi_options;
 
 /// "timpani" and so on; "" of MIDI_ANY. Borrowed, static.

@@ -23,19 +23,23 @@ typedef struct gm_key {
     const char *part; ///< of the instrument; NULL: all of it
 } gm_key;
 
-#define FIRST_KEY 35
+#define FIRST_KEY 31
 
 static const gm_key keys[] = {
+    {"sticks", "snare", BY_HAND, HIMC_SPOT_CLICK, false, NULL},
+    {"square click", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"metronome click", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"metronome bell", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"acoustic bass drum", "kick", BY_FOOT, HIMC_SPOT_NORMAL, false, NULL},
     {"bass drum 1", "kick", BY_FOOT, HIMC_SPOT_NORMAL, false, NULL},
-    {"side stick", "snare", BY_HAND, HIMC_SPOT_RIM, true, NULL},
+    {"side stick", "snare", BY_HAND, HIMC_SPOT_CROSSSTICK, false, NULL},
     {"acoustic snare", "snare", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"hand clap", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
-    {"electric snare", "snare", BY_HAND, HIMC_SPOT_NORMAL, true, NULL},
+    {"electric snare", "snare", BY_HAND, HIMC_SPOT_RIMSHOT, true, NULL},
     {"low floor tom", "low-floor", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"closed hi-hat", "hats", CLOSED, HIMC_SPOT_RIM, false, NULL},
     {"high floor tom", "floor", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
-    {"pedal hi-hat", "hats", PEDALLED, HIMC_SPOT_NORMAL, true, NULL},
+    {"pedal hi-hat", "hats", PEDALLED, HIMC_SPOT_NORMAL, false, NULL},
     {"low tom", "mid-tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"open hi-hat", "hats", OPENED, HIMC_SPOT_RIM, false, NULL},
     {"low-mid tom", "tom", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
@@ -117,17 +121,51 @@ static bool find(const char *setup, midi_head *head)
     return true;
 }
 
-// the index of an instrument of the part, which gets it if it is new; -1: there are too many
+// the instrument of a set-up with that name, or else the first of the same kind, and its place
+static bool find_own(const himc_score *setup, midi_head *head)
+{
+    midi_head usual = *head;
+    const char *own = NULL;
+    double *place[] = {&head->x, &head->y, &head->z, &head->tilt};
+    if (!find(himc_setup_kit, &usual) && !find(himc_setup_around, &usual))
+        return false;
+    usual.made[strcspn(usual.made, " ")] = '\0'; // without a size
+    for (int named = 1; named >= 0 && !own; named--)
+        for (int i = 0; i < setup->line_count && !own; i++) {
+            const himc_command *c = &setup->lines[i].command;
+            int word = named ? 0 : 1;
+            if (c->id == HIMC_COMMAND_INSTRUMENT && !setup->lines[i].drum[0] &&
+                strcmp(c->atom[word].symbol, named ? head->name : usual.made) == 0)
+                own = c->atom[0].symbol;
+        }
+    if (!own)
+        return false;
+    head->name = own;
+    for (int i = 0; i < setup->line_count; i++) {
+        const himc_command *c = &setup->lines[i].command;
+        for (int k = 0; c->id == HIMC_COMMAND_PLACE && k < c->count && k < 4; k++)
+            if (strcmp(setup->lines[i].drum, own) == 0)
+                *place[k] = c->atom[k].number;
+    }
+    return true;
+}
+
+// the index of an instrument of the part, which gets it if it is new; -1: there is none, or too
+// many
 static int head_of(midi_part *part, const char *name)
 {
+    midi_head own = {.name = name, .key = MIDI_UNTUNED};
+    if (part->setup && !find_own(part->setup, &own))
+        return -1;
+    name = own.name;
     for (int i = 0; i < part->heads; i++)
         if (strcmp(part->head[i].name, name) == 0)
             return i;
     if (part->heads == MIDI_HEADS)
         return -1;
     midi_head *head = &part->head[part->heads];
-    *head = (midi_head){.name = name, .key = MIDI_UNTUNED};
-    if (!find(himc_setup_kit, head) && !find(himc_setup_around, head))
+    *head = own;
+    if (!part->setup && !find(himc_setup_kit, head) && !find(himc_setup_around, head))
         return -1;
     head->radius = 0.15; // (m) chosen: only the way to the next one depends on it
     return part->heads++;
@@ -160,7 +198,9 @@ int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size)
         played += part->stroke[i].key == key && part->stroke[i].fate == MIDI_PLAYED;
     }
     *line = '\0';
-    if (missing > 0 && of && of->instrument)
+    if (missing > 0 && of && of->instrument && part->setup && part->heads < MIDI_HEADS)
+        snprintf(line, size, "%d of %s: no %s in the set-up", missing, of->sound, of->instrument);
+    else if (missing > 0 && of && of->instrument)
         snprintf(line, size, "%d of %s: no room for one more instrument", missing, of->sound);
     else if (missing > 0 && of)
         snprintf(line, size, "%d of %s: no such instrument here", missing, of->sound);

@@ -71,6 +71,7 @@ typedef struct midi_pedal {
 
 typedef struct midi_part {
     midi_choice choice; ///< not MIDI_ANY
+    himc_score *setup;  ///< owned; its instruments are all that there are; or NULL
     midi_head head[MIDI_HEADS];
     int heads;
     midi_stroke *stroke; ///< in the order of time (count), owned

@@ -143,9 +143,12 @@ static void performance_step(himc_performance *p)
                               himc_planner_length(planner), &p->events);
         double next = himc_motion_score_beat(p->motion, himc_clock_next_tick(&p->clock));
         himc_body_begin_pushes(p->body, beat, next, t);
-        himc_feet_play(&p->motion->feet, &p->drums, planner, beat, next, &p->events);
-        int told = himc_feet_tell(&p->drums, &p->events, t);
-        himc_statistics_strokes(&p->statistics, told, told);
+        performance_feet *feet = &p->motion->feet;
+        double force = 0;
+        int missed = himc_feet_play(feet, &p->drums, planner, t, beat, next, &p->events);
+        int told = himc_feet_tell(feet, &p->drums, &p->events, t, &force);
+        himc_statistics_strokes(&p->statistics, told + missed, told);
+        himc_statistics_contact(&p->statistics, force, 0);
     }
     himc_motion_think(p->motion, h, himc_contacts_busy(&p->contacts));
     himc_motion_interpolate(p->motion, t);

@@ -311,6 +311,15 @@ static double bounded(double x, double most)
     return x > most ? most : x < -most ? -most : x;
 }
 
+// the spot of the stroke that is due on this drum
+static himc_spot spot_of(const stick_contact *c, const contact_scene *s, himc_hand hand)
+{
+    double t = himc_clock_time(s->clock);
+    himc_source_stroke due = himc_motion_stroke(s->motion, s->drums, hand, t);
+    bool is = due.any && due.drum == c->drum && fabs(t - due.time) < SAME_STROKE;
+    return is ? due.spot : HIMC_SPOT_NORMAL;
+}
+
 // the stick as a point on the head's normal, at the beginning of the step
 static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand, himc_vec3 local,
                        const himc_articulation *art, const himc_vec3 *relative,
@@ -329,8 +338,10 @@ static void load_stick(stick_contact *c, const contact_scene *s, himc_hand hand,
     c->share = body / c->stick.mass;
     c->stick.hold = is_dead(c) ? DEAD_DAMP : 0;
     c->stick.one_way = s->settings->coupling == HIMC_COUPLING_ONE_WAY;
-    c->stick.x = local.x;
-    c->stick.y = local.y;
+    c->stick.x = c->x = local.x;
+    c->stick.y = c->y = local.y;
+    if (!c->stick.touching)
+        himc_drum_meet(s->drums->slot[c->drum].drum, spot_of(c, s, hand), &c->stick);
     double a = s->motion->reference.yield[hand];
     if (!is_kinematic(s))
         a = bounded(
@@ -360,8 +371,8 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
     c->pressed = !bounced && (!planned || rests_after(s, hand, next.drum, next.time));
     c->strike = (himc_strike){.time = time,
                               .hand = hand,
-                              .x = c->stick.x,
-                              .y = c->stick.y,
+                              .x = c->x,
+                              .y = c->y,
                               .velocity = -velocity,
                               .planned_time = planned ? next.time : NAN,
                               .planned_x = next.x,
@@ -375,7 +386,7 @@ static void begin_strike(stick_contact *c, const contact_scene *s, himc_hand han
         return;
     if (next.bounces && !s->settings->servo)
         c->bounce = himc_bounce_begin(next.bounces, next.bounce_time, time);
-    double off = hypot(c->stick.x - next.x, c->stick.y - next.y);
+    double off = hypot(c->x - next.x, c->y - next.y);
     bool played =
         fabs(time - next.time) <= PLAYED_TIME && next.drum == c->drum && off <= PLAYED_PLACE;
     himc_motion_answer(s->motion, hand, next.time);

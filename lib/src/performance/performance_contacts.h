@@ -21,6 +21,7 @@ typedef struct stick_contact {
     double left;        ///< when the last contact ended (s)
     int drum;           ///< slot
     himc_stick stick;   ///< in micro-contact
+    double x, y;        ///< of the tip over the head (m)
     double share;       ///< of the force that the body feels; the rest moves the mallet's mass
     double offset;      ///< of the stick's height from the body's tip (m); decays after contact
     double last_force;  ///< time of the last force (s)

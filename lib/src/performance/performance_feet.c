@@ -1,5 +1,7 @@
 /// performance_feet.c: a foot plays with a beater on a pedal: a mallet that is launched onto the
 /// head (drum_strike.c), as fast as a hand's, on its sample. The leg's own motion is not simulated.
+/// The left foot plays the hi-hat, the right one all the rest. A stroke too soon after the foot's
+/// last one is not played, as a hand's.
 #include "performance/performance_feet.h"
 
 #include "base/argument.h"
@@ -13,6 +15,11 @@
 #include <stdlib.h>
 
 #define SAME_COURSE 1e-6 // (beats) chosen: what rounding makes of a beat
+// between two strokes of a foot (s); chosen: few play 10 a second with one beater, and the way to
+// another pedal takes as long as a step
+#define SAME_PEDAL 0.08
+#define OTHER_PEDAL 0.25
+#define ROUNDING 1e-6 // (s) of a stroke's time
 
 void himc_feet_free(performance_feet *feet)
 {
@@ -24,6 +31,21 @@ void himc_feet_clear(performance_feet *feet)
 {
     feet->count = 0;
     feet->played_to = -1;
+}
+
+void himc_feet_exchange(performance_feet *a, performance_feet *b)
+{
+    performance_feet own = *a;
+    a->stroke = b->stroke, a->count = b->count, a->room = b->room;
+    b->stroke = own.stroke, b->count = own.count, b->room = own.room;
+}
+
+bool himc_feet_plays(const performance_feet *feet, int drum)
+{
+    for (int i = 0; i < feet->count; i++)
+        if (feet->stroke[i].drum == drum)
+            return true;
+    return false;
 }
 
 static foot_stroke read_stroke(const himc_stroke *stroke, int drum, const himc_head_frame *surface)
@@ -43,6 +65,9 @@ bool himc_feet_add(performance_feet *feet, const himc_stroke *stroke, performanc
     int at = feet->count;
     if (stroke->ornament != HIMC_PLAIN || stroke->bounces != 0)
         return himc_error_set(error, "foot: expected plain strokes only");
+    if (stroke->spot != HIMC_SPOT_NORMAL && stroke->spot != HIMC_SPOT_XY)
+        return himc_error_set(error, "foot: %s: the beater meets one place, expected no SPOT",
+                              himc_spot_name(stroke->spot));
     if (!himc_drum_strike_at(drums->slot[drum].drum, HIMC_STRIKE_NEVER, own.x, own.y, own.velocity,
                              error))
         return himc_error_prefix(error, "foot");
@@ -60,24 +85,50 @@ double himc_feet_last(const performance_feet *feet)
     return feet->count > 0 ? feet->stroke[feet->count - 1].beat : -1;
 }
 
-static bool launch(const foot_stroke *s, performance_drums *drums, double delay, himc_error *error)
+// Plays a stroke `delay` (s) after `t`; false if it is not played, which is told.
+static bool launch(performance_feet *feet, const foot_stroke *s, performance_drums *drums, double t,
+                   double delay, performance_events *events)
 {
     himc_drum *drum = drums->slot[s->drum].drum;
-    return himc_drum_kick(drum, (int)lround(delay * himc_drum_rate(drum)), s->x, s->y, s->velocity,
-                          1 + (int)s->nuance, error);
+    foot_last *last = &feet->last[himc_drum_hats(drum) ? HIMC_LEFT : HIMC_RIGHT];
+    double at = t + delay, since = at - last->time;
+    bool same = last->drum == s->drum + 1;
+    int kick = feet->launched % HIMC_FEET_TOLD;
+    himc_error error;
+    if (last->drum > 0 && since >= 0 && since < (same ? SAME_PEDAL : OTHER_PEDAL) - ROUNDING) {
+        himc_format(error.text, sizeof error.text,
+                    "%.3g s after the foot's last stroke%s, expected %g s or more", since,
+                    same ? "" : " on another pedal", same ? SAME_PEDAL : OTHER_PEDAL);
+    } else if (himc_drum_kick(drum, (int)lround(delay * himc_drum_rate(drum)), s->x, s->y,
+                              s->velocity, 1 + kick, &error)) {
+        feet->told[kick] = *s;
+        feet->launched++;
+        *last = (foot_last){at, s->drum + 1};
+        return true;
+    }
+    himc_strike missed = {
+        .time = at, .hand = HIMC_FOOT, .x = s->x, .y = s->y, .planned_time = at, .beat = s->beat};
+    himc_format(missed.nuance, sizeof missed.nuance, "%s", himc_nuance_name(s->nuance));
+    himc_events_missed(events, &missed, himc_drum_name(drum), error.text);
+    if (isnan(s->beat))
+        himc_events_note(events, "foot: %s", error.text);
+    else
+        himc_events_note(events, "foot at beat %g: %s", s->beat, error.text);
+    return false;
 }
 
-bool himc_feet_hit(const himc_stroke *stroke, performance_drums *drums, int drum, double delay,
-                   himc_error *error)
+bool himc_feet_hit(performance_feet *feet, const himc_stroke *stroke, performance_drums *drums,
+                   int drum, double t, double delay, performance_events *events)
 {
     foot_stroke own = read_stroke(stroke, drum, himc_drums_frame(drums, drum));
-    return launch(&own, drums, delay, error);
+    own.beat = NAN;
+    return launch(feet, &own, drums, t, delay, events);
 }
 
-void himc_feet_play(performance_feet *feet, performance_drums *drums, const himc_planner *planner,
-                    double now, double next, performance_events *events)
+int himc_feet_play(performance_feet *feet, performance_drums *drums, const himc_planner *planner,
+                   double time, double now, double next, performance_events *events)
 {
-    int count;
+    int count, missed = 0;
     const himc_tempo_change *tempi = himc_planner_tempi(planner, &count);
     double t = himc_score_seconds(tempi, count, now);
     // after a jump from the beat of this tick on
@@ -88,17 +139,17 @@ void himc_feet_play(performance_feet *feet, performance_drums *drums, const himc
     for (int i = 0; i < feet->count; i++) {
         const foot_stroke *s = &feet->stroke[i];
         bool again = round && s->beat < next;
-        himc_error error;
         if (!again && !(s->beat >= from && s->beat < to))
             continue;
         double at = himc_score_seconds(tempi, count, s->beat) + (again ? t_end : 0);
-        if (!launch(s, drums, fmax(at - t, 0), &error))
-            himc_events_note(events, "foot at beat %g: %s", s->beat, error.text);
+        missed += !launch(feet, s, drums, time, fmax(at - t, 0), events);
     }
     feet->played_to = next;
+    return missed;
 }
 
-int himc_feet_tell(const performance_drums *drums, performance_events *events, double t)
+int himc_feet_tell(const performance_feet *feet, const performance_drums *drums,
+                   performance_events *events, double t, double *force)
 {
     himc_contact_report report;
     double ago;
@@ -107,6 +158,7 @@ int himc_feet_tell(const performance_drums *drums, performance_events *events, d
         himc_drum *drum = drums->slot[i].drum;
         for (int kick; (kick = himc_drum_kicked(drum, &report, &ago)); told++) {
             double at = t - ago;
+            const foot_stroke *own = &feet->told[kick - 1];
             himc_event event = {.kind = HIMC_EVENT_STRIKE,
                                 .strike = {.time = at,
                                            .hand = HIMC_FOOT,
@@ -119,10 +171,10 @@ int himc_feet_tell(const performance_drums *drums, performance_events *events, d
                                            .planned_time = at,
                                            .planned_x = report.x,
                                            .planned_y = report.y,
-                                           .beat = NAN}};
+                                           .beat = own->beat}};
+            *force = fmax(*force, report.force);
             himc_format(event.strike.drum, HIMC_NAME_SIZE, "%s", himc_drum_name(drum));
-            himc_format(event.strike.nuance, HIMC_NAME_SIZE, "%s",
-                        himc_nuance_name((himc_nuance)(kick - 1)));
+            himc_format(event.strike.nuance, HIMC_NAME_SIZE, "%s", himc_nuance_name(own->nuance));
             himc_events_add(events, &event);
         }
     }

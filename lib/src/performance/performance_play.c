@@ -167,7 +167,8 @@ static void tell_places(himc_performance *p)
                              "the pedal of drum %s is out of reach of his feet: it moves alone",
                              himc_drum_name(slot->drum));
         }
-        if (distance < OUT_OF_REACH || slot->reach_told || himc_drum_is_footed(slot->drum))
+        if (distance < OUT_OF_REACH || slot->reach_told || himc_drum_is_footed(slot->drum) ||
+            himc_feet_plays(&p->motion->feet, i))
             continue;
         slot->reach_told = true;
         himc_events_note(&p->events, "drum %s is %s by %.2f m: strokes on it are given up",
@@ -214,9 +215,12 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     if (!himc_performance_place_stroke(p, &own, asked.drum, error))
         return false;
     himc_performance_name_drum(p, &own, asked.drum);
+    if (own.hand == HIMC_FOOT) {
+        himc_feet_hit(&p->motion->feet, &own, &p->drums, asked.drum, now, p->settings.latency,
+                      &p->events);
+        return true;
+    }
     tell_places(p);
-    if (own.hand == HIMC_FOOT)
-        return himc_feet_hit(&own, &p->drums, asked.drum, p->settings.latency, error);
     // a command that acts in this step was meant for its sample, up to a step before
     int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
     double from = (double)sample / p->clock.sample_rate;

@@ -10,6 +10,7 @@
 /// refuse a score: a note tells why it is left out.
 #include "performance/performance_state.h"
 
+#include "base/head_frame.h"
 #include "capture/take.h"
 #include "head/idiophone.h"
 #include "midi/score_file.h"
@@ -255,7 +256,11 @@ static bool check_parts(score_job *j, himc_error *error)
 {
     for (int i = 0; i < j->score->stroke_count; i++) {
         himc_stroke stroke = j->score->strokes[i];
-        const score_drum *d = stroke.part[0] ? find_drum(j, stroke.drum) : NULL;
+        bool asks = stroke.part[0] || himc_spot_is_beyond(stroke.spot);
+        const score_drum *d = !asks            ? NULL
+                              : stroke.drum[0] ? find_drum(j, stroke.drum)
+                              : j->drums > 0   ? &j->drum[0]
+                                               : NULL;
         if (d &&
             !himc_idiophone_place(&d->trial.head.shape, d->trial.head.head.radius, &stroke, error))
             return himc_error_prefix(error, "%s:%d", j->path, j->score->stroke_lines[i]);
@@ -639,10 +644,7 @@ bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *ot
                                              himc_motion_take_time(p->motion, step_time(p)))
                        : himc_planner_exchange(p->motion->planner, other->motion->planner));
     if (good && !track) {
-        performance_feet own = p->motion->feet;
-        p->motion->feet = other->motion->feet;
-        p->motion->feet.played_to = own.played_to;
-        other->motion->feet = own;
+        himc_feet_exchange(&p->motion->feet, &other->motion->feet);
     }
     if (good)
         himc_body_plan_pushes(p->body, with->planned, with->planned_count, PUSHES_INSTEAD, NULL);

@@ -91,7 +91,7 @@ himc_vec3 himc_planner_aside(const himc_planner *planner, const timed_stroke *s,
 {
     const himc_head_frame *head = &planner->drum[s->drum];
     himc_vec3 at = himc_head_frame_from_world(head, s->goal.spot);
-    double most = himc_head_frame_half_width(head, PLANNER_STRUCK, at.x);
+    double most = himc_head_frame_half_width(head, himc_head_frame_struck(head), at.x);
     at.y = by > 0 ? fmin(at.y + by, fmax(most, at.y)) : fmax(at.y + by, fmin(-most, at.y));
     return tip_at(planner, head, at.x, at.y);
 }
@@ -102,7 +102,8 @@ himc_goal himc_planner_goal(himc_planner *planner, const himc_stroke *stroke, in
     double x, y;
     himc_head_frame_spot(head, stroke, &x, &y);
     double asked_x = x, asked_y = y;
-    if (himc_head_frame_keep_inside(head, PLANNER_STRUCK, &x, &y))
+    // a hand's side of the last bar of a keyboard may be beside it
+    if (himc_head_frame_keep_inside(head, himc_head_frame_struck(head), &x, &y) && !stroke->part[0])
         himc_planner_say(planner, PLANNER_OUTSIDE,
                          "%.3g %.3g is beyond the rim: struck at %.3g %.3g", asked_x, asked_y, x,
                          y);
@@ -131,7 +132,7 @@ void himc_planner_vary(const himc_planner *planner, timed_stroke *s)
     const himc_variation *v = &s->variation;
     himc_vec3 at = himc_head_frame_from_world(head, s->written.spot);
     himc_variation_place(v, s->stroke.hand, &at.x, &at.y);
-    himc_head_frame_keep_inside(head, PLANNER_STRUCK, &at.x, &at.y);
+    himc_head_frame_keep_inside(head, himc_head_frame_struck(head), &at.x, &at.y);
     s->varied = true;
     s->goal.spot = tip_at(planner, head, at.x, at.y);
     if (s->goal.gesture.speed > HIMC_SLOWEST_GESTURE)
@@ -159,7 +160,7 @@ static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_
     const himc_head_frame *head = &planner->drum[drum];
     double x = -REST_BACK * head->radius, aside = fmin(REST_ASIDE * head->radius, REST_MOST_ASIDE);
     double y = hand == HIMC_LEFT ? aside : -aside;
-    himc_head_frame_keep_inside(head, PLANNER_STRUCK, &x, &y);
+    himc_head_frame_keep_inside(head, himc_head_frame_struck(head), &x, &y);
     himc_vec3 at = tip_at(planner, head, x, y);
     *place = himc_vec3_madd(at, REST_OVER, himc_head_frame_normal(head));
     return planner->known[drum] && himc_planner_reaches(planner, hand, *place);

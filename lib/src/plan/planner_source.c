@@ -28,6 +28,7 @@ static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
         return next;
     next.any = true;
     himc_head_frame_spot(&planner->drum[next.drum], &current, &next.x, &next.y);
+    next.spot = himc_planner_spot(planner, hand, t);
     strcpy(next.nuance, himc_nuance_name(current.nuance));
     next.yields = himc_planner_yields(planner, hand, t);
     next.beat = current.beat;

@@ -24,9 +24,6 @@
 /// than 0.1 s apart.
 #define PLANNER_CURRENT 0.05
 
-/// Nothing is struck outside this share of a head's radius; chosen: a mallet that does not touch
-/// the rim of a usual head.
-#define PLANNER_STRUCK 0.97
 /// A stroke with so much of the speed asked for is as strong. Chosen: 0.5 dB, the spread that equal
 /// strokes may have.
 #define PLANNER_AS_STRONG 0.944

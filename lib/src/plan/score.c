@@ -31,6 +31,7 @@ typedef struct reader {
     const char *name;    ///< of the file
     const char *folder;  ///< of the files that it names; NULL: any
     bool setup;          ///< it is a set-up, which may not name another
+    int setup_line;      ///< of the score's only one; 0: it has none yet
     himc_error *error;
 } reader;
 
@@ -282,8 +283,15 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     case HIMC_COMMAND_RUFF: return add_stroke(r);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
     case HIMC_COMMAND_SETUP:
-        return r->setup ? himc_error_set(r->error, "setup: one in another, expected instruments")
-                        : add_setup(r, c);
+        if (r->setup)
+            return himc_error_set(r->error, "setup: one in another, expected instruments");
+        if (r->setup_line > 0)
+            return himc_error_set(r->error,
+                                  "setup: a second one, the first is in line %d; "
+                                  "expected one, and `instrument` for others",
+                                  r->setup_line);
+        r->setup_line = r->now.line;
+        return add_setup(r, c);
     default: return add_line(r, false);
     }
 }
