@@ -11,11 +11,12 @@
 /// those above statistical (statistical.c), on each head. Fletcher & Bassett (1978) measured a bass
 /// drum whose modes this gives: (0,1) at 50 and 118 Hz.
 ///
-/// Decay. A mode loses S0 + S1 w^2 in the film of its head. (0, n) send out their volume U per unit
+/// Decay. A mode loses S0 + S1 w^2/(1 + S1 w^2/L) in the film of its head: as in any solid that
+/// relaxes (Zener 1948), the loss does not grow for ever. (0, n) send out their volume U per unit
 /// of velocity as a point does, rho w^2 U^2/(8 pi c m), and as a dipole what does not change the
 /// volume; others a part of a wide head's rho c per mass and area. How much that is, is chosen,
 /// as are the parts of the two heads in what is heard, by the distance to recorded strokes. So is
-/// what statistical modes send: in a baffle they would be 13 to 20 dB softer; hoop and shell, which
+/// what statistical modes send: in a baffle they would be 10 to 25 dB softer; hoop and shell, which
 /// they shake, are not modelled.
 #include "head/two_heads.h"
 
@@ -37,12 +38,13 @@
 #define RANKS 5 // modes (0, n) of a head among the exact ones
 #define MOST (2 * RANKS)
 #define LOADINGS 20    // iterations of a mode's mass in air; chosen: all digits
-#define MOST_LOST 40.0 // (1/s)
+#define MOST_LOST 40.0 // L (1/s); chosen: 2 to 5 kHz of recorded toms and kicks fade in .15 s
 #define LONGER 0.8     // power of 1/S0 in the radius, ...
 #define LONGEST 1.8    // ... of 1/S1; chosen: toms of 12 and 16 inches
 #define HIGHER 0.15    // of rho c per mass, by m > 0; chosen
 #define DIPOLE 0.5  // of a point's, by what does not change the volume, while depth < 1/k; chosen
 #define LOWER 0.7   // of the lower head's sound; chosen: the drum is in its way
+#define WIRED 1.25  // of its statistical modes, which only wires shake; chosen: they are the snare
 #define UNEQUAL 0.3 // of the sound of (0, n) as a dipole; chosen
 
 // A stick's tip, chosen so light as it turns about its fulcrum: a heavier one sounds too low. The
@@ -63,7 +65,7 @@ static const double spots[] = {
 // Chosen, by the distance to single strokes of free collections of samples, whose makers, mallets
 // and rooms are not known; hand drums by their usual pitch.
 const himc_shell himc_shell_rows[] = {
-    {"snare", 0.178, 0.14, 3000, 0.36, 8, 8e-7, 0, 0, 0.83, 0.306, 1.25, 0.31, 0.6, 250, &stick},
+    {"snare", 0.178, 0.14, 3000, 0.36, 8, 8e-7, 0, 0, 0.83, 0.306, 1.25, 0.31, 0.35, 250, &stick},
     {"tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 1.18, 0.75, 1, 1, 2, 0, &stick},
     {"concert-tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 0, 0, 0, 0, 2, 0, &stick},
     {"bass-drum", 0.457, 0.45, 2600, 0.42, 2, 4e-7, 1, 0, 0.77, 0.857, 1, 1, 0.7, 0, &felt},
@@ -356,7 +358,7 @@ static double pressure_of(const himc_pickup *pickup, const himc_head *head, cons
     int lower = modes->source[index] / DISC, i = modes->source[index] % DISC;
     himc_mode bare = himc_modes_get(modes->disc, head, i);
     bare.frequency = mode->frequency;
-    double part = lower ? LOWER : 1;
+    double part = !lower ? 1 : bare.m < 0 ? WIRED : LOWER;
     if (bare.m == 0 && heads(modes->shape.shell) == 2)
         part = UNEQUAL + (lower ? -1 : 1);
     if (bare.m < 0)

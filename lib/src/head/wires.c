@@ -8,9 +8,11 @@
 /// with r. All is counted from rest, where F = F0 and c = F0/k, so a head at rest has wires at
 /// rest: head and point feel P = F - F0, and what is stored is
 ///     U(r) = V(F0/k + r) - V(F0/k) - F0 r >= 0,   P r >= U(r1) - U(r0).
+/// Its wire is under tension: alone, a point swings about its rest with u, so far flights are as
+/// short as near ones, and loud strokes rattle no longer than soft ones.
 ///
 /// A step. Without change of force point i would come r = b_i nearer; forces make of it
-///     r_i = b_i - sum_j G_ij P_j,   G = that of the head + (i = j) h^2/(2 m),
+///     r_i = b_i - sum_j G_ij P_j,   G = that of the head + (i = j) (1 - cos u h)/(m u^2),
 /// those of sticks on the other head among them (contact.c). That is the minimum of the same convex
 /// Psi, so the same proof holds: head, points and springs together gain -P r - (U1 - U0) <= 0 in a
 /// step. It is found line by line: with all other forces given, one line is linear while the point
