@@ -10,8 +10,8 @@
 /// Sound. A mode of mean square speed v^2 radiates rho c A sigma v^2; far away its pressure is that
 /// of a random direction, sqrt(2) cos(k_air a cos(elevation) cos(az - az_i) + phase), times a
 /// log-normal level: lines stand out. While the radius a is less than 1/k_air, the air flows around
-/// the edge: times k_air a/sqrt(1 + (k_air a)^2). A flat crash in a wall has sigma .008 at 2 kHz and
-/// .016 at 8 (Maidanik 1962); a bowed one sends more, at most what it loses.
+/// the edge: times k_air a/sqrt(1 + (k_air a)^2). A flat crash in a wall has sigma .008 at 2 kHz
+/// and .016 at 8 (Maidanik 1962, remembered); a bowed one sends more, at most what it loses.
 ///
 /// What is guessed: everything about the modes but their density, sigma, the bell, the spreads,
 /// what a splash has in common with a crash. Fitted on figures of recordings whose mallets and

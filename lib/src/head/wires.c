@@ -101,6 +101,8 @@ void himc_wires_solve(himc_wires *w, double pull, double h, himc_wires_matrix g,
             double gi = g[i][i] + own, alone = free[i] + g[i][i] * w->force[i] + gi * rest;
             double force = solve(rest / STIFFNESS + w->pressed[i], alone, gi, h) - rest;
             double more = force - w->force[i];
+            if (more == 0) // it flies
+                continue;
             w->force[i] = force;
             for (int j = 0; j < HIMC_WIRES; j++)
                 free[j] -= g[i][j] * more;
