@@ -248,6 +248,47 @@ static void test_wires_fade_sooner_the_tighter_they_are(void)
     TEST_ASSERT_TRUE(usual > off + 6);
 }
 
+// (dB) of a snare's sound, wires at 250
+static double bright(double speed)
+{
+    make("snare");
+    strike(0.3, speed, 0.5);
+    return band(2000, 12000);
+}
+
+static void test_a_louder_snare_is_brighter_and_no_longer(void)
+{
+    double soft = bright(0.6), pianissimo = bright(0.9);
+    for (int v = 2; v <= 4; v++) {
+        TEST_ASSERT_TRUE(bright(v) > pianissimo + 1 && bright(v) > soft + 6);
+        double seconds = faded(0.5);
+        TEST_ASSERT_TRUE(seconds > 0.035 && seconds < 0.065);
+    }
+}
+
+// without them it is a tom
+static void test_wires_are_most_of_what_a_snare_has_above_2_khz(void)
+{
+    for (int v = 2; v <= 8; v *= 2) {
+        double with = bright(v);
+        make("snare");
+        TEST_ASSERT_EQUAL_STRING("", say("wires 0"));
+        strike(0.3, v, 0.5);
+        TEST_ASSERT_TRUE(with > band(2000, 12000) + 6);
+    }
+}
+
+// the click of a beater, and a tom's attack, per all (recorded -21 and -13)
+static void test_kicks_and_toms_have_an_attack(void)
+{
+    make("kick");
+    strike(0, 4, 0.2);
+    TEST_ASSERT_TRUE(band(2000, 12000) > -30);
+    make("tom 12");
+    strike(0.3, 4, 0.2);
+    TEST_ASSERT_TRUE(band(2000, 12000) > -24);
+}
+
 // bit for bit, as long as none are on
 static void test_wires_that_are_off_are_none(void)
 {
@@ -368,6 +409,9 @@ int main(void)
     RUN_TEST(test_sticks_head_and_wires_never_gain_energy);
     RUN_TEST(test_wires_on_a_rigid_head_lose_energy_at_each_landing);
     RUN_TEST(test_wires_fade_sooner_the_tighter_they_are);
+    RUN_TEST(test_a_louder_snare_is_brighter_and_no_longer);
+    RUN_TEST(test_wires_are_most_of_what_a_snare_has_above_2_khz);
+    RUN_TEST(test_kicks_and_toms_have_an_attack);
     RUN_TEST(test_wires_that_are_off_are_none);
     RUN_TEST(test_wires_may_change_while_they_rattle);
     RUN_TEST(test_rest_is_rest);

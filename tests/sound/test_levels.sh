@@ -55,8 +55,10 @@ report a_sine_of_minus_23_db_in_both_channels_measures_minus_23_lufs \
 
 render patches/improvisation.txt improvisation
 piece improvisation
-render patches/pieces/tide.txt tide
-piece tide
+for name in tide kit grain stations; do
+    render "patches/pieces/$name.txt" "$name"
+    piece "$name"
+done
 score_of patches/05-four-timpani.pd >"$work/four.txt"
 render "$work/four.txt" four_timpani
 piece four_timpani

@@ -10,7 +10,8 @@
 /// Torsion is left out: a blow on the axis does not excite it.
 ///
 /// Losses are S0 + b omega + S1 omega^2, found on recorded T60: of a marimba's lowest modes, 131,
-/// 370 and 739 Hz, 2.07, 1.35 and 0.99 s. Sizes, mallets and the gain of resonators: chosen.
+/// 370 and 739 Hz, 2.07, 1.35 and 0.99 s. Sizes, mallets, and that resonators send
+/// 0.3 of what a bar of wood loses and 0.6 of one of metal, which loses little itself: chosen.
 #include "head/idiophone.h"
 
 #include "base/argument.h"
@@ -43,7 +44,7 @@ typedef struct bar_row {
     double width, narrower;              // (m)
     double ratio;                        // of mode 2; 0: not undercut
     double constant, hysteresis, square; // of the decay
-    double gain;                         // of mode 1 by its resonator (dB)
+    double share;                        // of what mode 1 loses, sent by its resonator
     double low, high;                    // pitches that are made (Hz)
     himc_mallet_head mallet;
 } bar_row;
@@ -59,18 +60,18 @@ typedef struct bar_row {
 static const bar_row rows[] = {
     {ROSEWOOD,
      131,
-     0.022,
-     0.12,
+     0.024,
+     0,
      0.060,
      0.22,
      4,
      2.4,
      8e-4,
      9e-8,
-     14,
+     0.3,
      65,
      2100,
-     {.stiffness = 9e7, .exponent = 2.2, .mass = 0.028, .relaxation = 80e-6}},
+     {.stiffness = 1e9, .exponent = 2.2, .mass = 0.022, .relaxation = 2e-4}},
     {ROSEWOOD,
      440,
      0.021,
@@ -81,7 +82,7 @@ static const bar_row rows[] = {
      3,
      6.5e-3,
      2e-7,
-     8,
+     0.3,
      174,
      4200,
      {.stiffness = 4e9, .exponent = 2, .mass = 0.020, .relaxation = 20e-6}},
@@ -95,10 +96,10 @@ static const bar_row rows[] = {
      0.5,
      4e-5,
      6e-9,
-     12,
+     0.6,
      130,
      1400,
-     {.stiffness = 8e7, .exponent = 2.2, .mass = 0.026, .relaxation = 80e-6}},
+     {.stiffness = 1e9, .exponent = 2.2, .mass = 0.022, .relaxation = 2e-4}},
     {STEEL,
      880,
      0.0085,
@@ -261,7 +262,7 @@ static bool add_bar(himc_idiophone *body, bar *b, double hz, himc_error *error)
         return false;
     for (int i = 0; i < MODES && frequency(b, i) < HIGHEST; i++) {
         himc_partial mode = {
-            .frequency = frequency(b, i), .mass = 1, .gain = i == 0 ? pow(10, r->gain / 20) : 1};
+            .frequency = frequency(b, i), .mass = 1, .share = i == 0 ? r->share : 0};
         find_shape(b, i, shape);
         if (!himc_idiophone_add_mode(body, mode, shape, POINTS, error))
             return false;

@@ -6,9 +6,13 @@
 ///
 /// Sound. A strip of width b that no baffle surrounds is a dipole while k b is small: far away, in
 /// the direction th from its normal,
-///     p = rho b/(2 pi R) |int phi exp(i k x sin th) dx| min(1, pi k b/4) q'',
-/// the ratio chosen so that a strip of b = .2 wavelengths sounds as one in a wall. A resonator
-/// below it takes its part of the bar's decay and makes the mode louder by its gain.
+///     p = rho b/(2 pi R) |int phi exp(i k x sin th) dx| min(1, pi k b/8) q'',
+/// by the air that it carries along, rho pi b^2/4 per length; wider, it sounds as in a wall. Of the
+/// lowest mode, whose ends move against its middle, that is nearly nothing. It is heard by its
+/// resonator, a tube tuned to it, which takes part of the mode's loss d and sends a share s of all
+/// that is lost, s 2 d E = 4 pi R^2 <p^2>/(rho c), as a point does,
+///     p = sqrt(s d m rho c/(2 pi)) q'/R,
+/// a quarter of a period from what drives it. So bars that have one energy are equally loud.
 #include "head/idiophone.h"
 
 #include "base/argument.h"
@@ -265,10 +269,16 @@ static void strip(const himc_idiophone *body, const himc_partial *m, double scal
         *even += part * cos(phase);
         *odd += part * sin(phase);
     }
-    double loud =
-        m->gain * HIMC_AIR_DENSITY * width / (2 * HIMC_PI) * fmin(1, HIMC_PI / 4 * wave * width);
+    double loud = HIMC_AIR_DENSITY * width / (2 * HIMC_PI) * fmin(1, HIMC_PI / 8 * wave * width);
     *even *= loud;
     *odd *= loud;
+}
+
+// the same of the resonator of a mode of that mass (kg)
+static double tube(const himc_idiophone *body, const himc_partial *m, double omega, double mass)
+{
+    double loss = body->constant + body->hysteresis * omega + body->square * omega * omega;
+    return sqrt(m->share * loss * mass * HIMC_AIR_DENSITY * HIMC_AIR_SPEED / (2 * HIMC_PI)) / omega;
 }
 
 pickup_weights himc_idiophone_far(const himc_pickup *pickup, const himc_head *head,
@@ -279,6 +289,7 @@ pickup_weights himc_idiophone_far(const himc_pickup *pickup, const himc_head *he
     double omega = 2 * HIMC_PI * mode->frequency, even = m->pressure, odd = 0;
     if (!(even > 0))
         strip(body, m, head->radius / body->radius, omega / HIMC_AIR_SPEED, pickup, &even, &odd);
+    odd += tube(body, m, omega, mode->mass);
     even /= HIMC_PICKUP_PRESSURE * pickup->distance;
     odd /= HIMC_PICKUP_PRESSURE * pickup->distance;
     return (pickup_weights){.displacement = -even * omega * omega,

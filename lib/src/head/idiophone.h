@@ -27,7 +27,7 @@ typedef struct himc_partial {
     double loss;       ///< beside what the head's fields say (1/s)
     double mass;       ///< where its shape is 1 (kg)
     double pressure;   ///< at 1 m, any way, per acceleration where it is 1 (Pa s^2/m); 0: a strip's
-    double gain;       ///< of a strip's sound, by a resonator (factor)
+    double share;      ///< of what it loses, sent by its resonator
     int first, points; ///< of its shape: even steps from end to end of a bar, from centre to edge
 } himc_partial;
 

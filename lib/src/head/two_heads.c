@@ -11,11 +11,12 @@
 /// those above statistical (statistical.c), on each head. Fletcher & Bassett (1978) measured a bass
 /// drum whose modes this gives: (0,1) at 50 and 118 Hz.
 ///
-/// Decay. A mode loses S0 + S1 w^2 in the film of its head. (0, n) send out their volume U per unit
+/// Decay. A mode loses S0 + S1 w^2/(1 + S1 w^2/L) in the film of its head: as in any solid that
+/// relaxes (Zener 1948), the loss does not grow for ever. (0, n) send out their volume U per unit
 /// of velocity as a point does, rho w^2 U^2/(8 pi c m), and as a dipole what does not change the
 /// volume; others a part of a wide head's rho c per mass and area. How much that is, is chosen,
 /// as are the parts of the two heads in what is heard, by the distance to recorded strokes. So is
-/// what statistical modes send: in a baffle they would be 13 to 20 dB softer; hoop and shell, which
+/// what statistical modes send: in a baffle they would be 10 to 25 dB softer; hoop and shell, which
 /// they shake, are not modelled.
 #include "head/two_heads.h"
 
@@ -37,13 +38,14 @@
 #define FITTING (-2) // order of modes that are of no head
 #define RANKS 5      // modes (0, n) of a head among the exact ones
 #define MOST (2 * RANKS)
-#define LOADINGS 20 // iterations of a mode's mass in air; chosen: all digits
-#define LONGER 0.8  // power of 1/S0 in the radius, ...
-#define LONGEST 1.8 // ... of 1/S1; chosen: toms of 12 and 16 inches
-#define HIGHER 0.15 // of rho c per mass, by m > 0; chosen
+#define LOADINGS 20    // iterations of a mode's mass in air; chosen: all digits
+#define MOST_LOST 40.0 // L (1/s); chosen: 2 to 5 kHz of recorded toms and kicks fade in .15 s
+#define LONGER 0.8     // power of 1/S0 in the radius, ...
+#define LONGEST 1.8    // ... of 1/S1; chosen: toms of 12 and 16 inches
+#define HIGHER 0.15    // of rho c per mass, by m > 0; chosen
 #define DIPOLE 0.5  // of a point's, by what does not change the volume, while depth < 1/k; chosen
 #define LOWER 0.7   // of the lower head's sound; chosen: the drum is in its way
-#define RIM 0.7     // of statistical modes by hoop and shell, per root of z; chosen
+#define WIRED 1.25  // of its statistical modes, which only wires shake; chosen: they are the snare
 #define UNEQUAL 0.3 // of the sound of (0, n) as a dipole; chosen
 
 // A stick's tip, chosen so light as it turns about its fulcrum: a heavier one sounds too low. The
@@ -53,21 +55,25 @@ static const himc_mallet_head stick = {
 static const himc_mallet_head felt = {
     .stiffness = 4e7, .exponent = 2.4, .mass = 0.2, .radius = 0.04, .relaxation = 2e-4};
 const himc_mallet_head himc_shell_beater = {
-    .stiffness = 1e7, .exponent = 2.2, .mass = 0.1, .radius = 0.025, .relaxation = 2e-4};
+    .stiffness = 1e9, .exponent = 2.2, .mass = 0.06, .radius = 0.025, .relaxation = 2e-4};
 static const himc_mallet_head rubber = {
     .stiffness = 1e8, .exponent = 2, .mass = 0.04, .radius = 0.015, .relaxation = 2e-5};
+
+// Drummers aim at the middle third; a little beside the centre modes of all orders speak. Chosen.
+static const double spots[] = {
+    [HIMC_SPOT_CENTER] = 0, [HIMC_SPOT_NORMAL] = 0.3, [HIMC_SPOT_RIM] = 0.92};
 
 // Chosen, by the distance to single strokes of free collections of samples, whose makers, mallets
 // and rooms are not known; hand drums by their usual pitch.
 const himc_shell himc_shell_rows[] = {
-    {"snare", 0.178, 0.14, 3000, 0.36, 8, 8e-7, 0, 0, 0.83, 0.306, 1.25, 0.31, 250, &stick},
-    {"tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 1.18, 0.75, 1, 1, 0, &stick},
-    {"concert-tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 0, 0, 0, 0, 0, &stick},
-    {"bass-drum", 0.457, 0.45, 2600, 0.42, 2, 4e-7, 1, 0, 0.77, 0.857, 1, 1, 0, &felt},
-    {"kick", 0.279, 0.45, 500, 0.45, 14, 6e-6, 0, 0, 1.2, 0.8, 1, 1, 0, &himc_shell_beater},
-    {"conga", 0.14, 0.7, 8500, 0.8, 5, 6e-7, 0, 0, 0, 0, 0, 0, 0, &rubber},
-    {"bongo", 0.1, 0.17, 8000, 0.8, 6, 6e-7, 0, 0, 0, 0, 0, 0, 0, &rubber},
-    {"timbale", 0.178, 0.17, 3000, 0.36, 4, 8e-7, 0, 0, 0, 0, 0, 0, 0, &stick},
+    {"snare", 0.178, 0.14, 3000, 0.36, 8, 8e-7, 0, 0, 0.83, 0.306, 1.25, 0.31, 0.35, 250, &stick},
+    {"tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 1.18, 0.75, 1, 1, 2, 0, &stick},
+    {"concert-tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 0, 0, 0, 0, 2, 0, &stick},
+    {"bass-drum", 0.457, 0.45, 2600, 0.42, 2, 4e-7, 1, 0, 0.77, 0.857, 1, 1, 0.7, 0, &felt},
+    {"kick", 0.279, 0.45, 700, 0.45, 16, 3e-5, 0, 0, 1.2, 0.8, 1, 1, 1, 0, &himc_shell_beater},
+    {"conga", 0.14, 0.7, 8500, 0.8, 5, 6e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, &rubber},
+    {"bongo", 0.1, 0.17, 8000, 0.8, 6, 6e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, &rubber},
+    {"timbale", 0.178, 0.17, 3000, 0.36, 4, 8e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, &stick},
 };
 
 bool himc_shell_has_hoop(const himc_shell *shell)
@@ -127,6 +133,13 @@ static double load(const himc_head *head, double k, double *mass)
     return omega;
 }
 
+// what a mode loses in the film and to hand and cloth (1/s)
+static double film_loss(himc_head head, double omega, double loading)
+{
+    head.decay_square /= 1 + head.decay_square * omega * omega / MOST_LOST;
+    return himc_head_decay(&head, omega, loading);
+}
+
 // integral of a shape of order 0 over the head
 static double volume_of(const himc_mode *mode, double radius)
 {
@@ -173,7 +186,7 @@ static void add(coupled *c, const himc_shell *shell, const himc_head *head, bool
     c->mass[k] = mass * HIMC_PI * head->radius * head->radius * mode->norm;
     c->volume[k] = (lower ? -1 : 1) * volume_of(mode, head->radius);
     c->square[k] = omega * omega;
-    c->film[k] = himc_head_decay(&of, omega, mass / of.density);
+    c->film[k] = film_loss(of, omega, mass / of.density);
 }
 
 // what a mode of order 0 loses: in the films by its parts, and what it sends out
@@ -214,7 +227,7 @@ static void sounds(himc_modes *modes, const himc_head *head, himc_oscillator *ou
         himc_head of = head_of(shell, head, lower);
         himc_mode mode = himc_modes_get(modes->disc, &of, modes->source[i] % DISC);
         double mass, omega = load(&of, mode.zero / head->radius, &mass);
-        double decay = himc_head_decay(&of, omega, mass / of.density);
+        double decay = film_loss(of, omega, mass / of.density);
         if (mode.m > 0)
             decay += sent(mode.m, omega * head->radius / HIMC_AIR_SPEED, mass);
         out[i] = (himc_oscillator){omega, decay, mass * area * mode.norm};
@@ -374,11 +387,11 @@ static double pressure_of(const himc_pickup *pickup, const himc_head *head, cons
         return himc_fittings_pressure(fitting_of(modes->source[index])) / pickup->distance;
     himc_mode bare = himc_modes_get(modes->disc, head, i);
     bare.frequency = mode->frequency;
-    double part = lower ? LOWER : 1;
+    double part = !lower ? 1 : bare.m < 0 ? WIRED : LOWER;
     if (bare.m == 0 && heads(modes->shape.shell) == 2)
         part = UNEQUAL + (lower ? -1 : 1);
     if (bare.m < 0)
-        part *= RIM * sqrt(bare.zero);
+        part *= modes->shape.shell->rim * sqrt(bare.zero);
     return part * himc_pickup_pressure(pickup, head, modes->disc, i, &bare);
 }
 
@@ -409,6 +422,7 @@ static const himc_mallet_head *mallet(const himc_shape *shape)
 static void surface(const himc_shape *shape, himc_head_frame *surface)
 {
     surface->length = 0;
+    surface->spots = shape->shell->mallet == &rubber ? NULL : spots; // hands play near the rim
     surface->width = depth_of(shape->shell, surface->radius);
 }
 
