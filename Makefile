@@ -153,6 +153,11 @@ test-windows: all ## the same, run by wine: its strikes are those of Linux, in t
 	@tools/build/windows.sh $(BUILD)/windows/parts pd
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/cross/test_windows.sh
 
+# the library compiled to WebAssembly, without threads, sockets and ODE, and what a page asks of it
+page: deps ## the performer in a web page, build/himc.html: nothing to install, no server, no network
+	@tools/build/deps.sh tools/build/deps-page.txt
+	@$(MAKE) $(BUILD)/himc.html
+
 MACOS = $(abspath $(BUILD)/macos/parts)
 check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/macos; none of it has been run
 	@tools/build/deps.sh tools/build/deps-macos.txt
@@ -445,7 +450,7 @@ $(BUILD)/lib/%.o: lib/src/%.cpp
 # the flags of a folder
 IN_tools  = -I.
 IN_tests  = -I. -Itests/support $(UNITY)
-IN_viewer = -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer
+IN_viewer = -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer $(if $(findstring /engine/,$<),-I. -Iviewer)
 $(BUILD)/%.o: %.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) $(IN_$(firstword $(subst /, ,$<))) -c $< -o $@
@@ -484,13 +489,34 @@ $(BUILD)/viewer/skeleton.js: $(TABLE)
 	$(call say,make)
 	$(Q)$< js >$@
 
-$(VIEWER_O): $(BUILD)/viewer/skeleton.h
+$(VIEWER_O) $(BUILD)/viewer/engine/engine.o: $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
 $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lz -lm -o $@
+
+# the pieces that the page brings
+PAGE_PIECES := $(wildcard patches/improvisation.txt patches/pieces/*.txt patches/pieces/*.mid)
+PAGE_MAKER  := $(BUILD)/viewer/engine/page
+$(BUILD)/himc.html: $(PAGE_MAKER) $(BUILD)/page/engine.wasm $(PAGE_PIECES)
+	$(call say,make)
+	$(Q)$< $@ $(filter-out $<,$^)
+
+# clang-16 runs Debian's wasm-opt, if that is installed, without SIMD, and fails: hence -O0
+$(BUILD)/page/engine.wasm: $(TABLE) FORCE
+	+$(Q)$(MAKE) page-here BUILD=$(BUILD)/page CC="clang-16 --target=wasm32-wasi" CXX="clang++-16 --target=wasm32-wasi -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1" \
+	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -D_WASI_EMULATED_GETPID" CFLAGS="-msimd128 -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument $(CFLAGS)" \
+	    LDFLAGS="-O0 -Wl,-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table
+PAGE_LEFT_OUT := $(addprefix $(BUILD)/lib/,drum/loader.o system/thread.o system/udp.o)
+page-here: $(BUILD)/viewer/engine/engine.o $(BUILD)/tools/himc/live.o $(BUILD)/tools/himc/cli.o $(BUILD)/viewer/scene.o $(BUILD)/viewer/scene_encode.o $(filter-out $(PAGE_LEFT_OUT),$(LIB_O))
+	$(Q)$(CXX) $(LDFLAGS) $^ -lwasi-emulated-getpid -o $(BUILD)/engine.new
+	$(Q)cmp -s $(BUILD)/engine.new $(BUILD)/engine.wasm || cp $(BUILD)/engine.new $(BUILD)/engine.wasm
+
+$(PAGE_MAKER): $(BUILD)/viewer/engine/page.o $(SHARE_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
+	$(call say,link)
+	$(Q)$(LINK) $^ -lz -lm -o $@
 
 $(UNIT_C:%.c=$(BUILD)/%.o) $(addsuffix .o,$(LONG) $(REALTIME)): | $(UNITY_DIR)/unity.c
 
