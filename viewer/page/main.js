@@ -310,7 +310,8 @@ function countFrames(now) {
 
 let previous = clock(),
     written = 0,
-    virtual = 0;
+    virtual = 0,
+    held = false; // nothing is drawn while the sound is being opened, which needs this thread, too
 function frame(_, now = clock(), draw = true) {
     const dt = now - previous,
         begin = performance.now();
@@ -330,7 +331,7 @@ function frame(_, now = clock(), draw = true) {
     editor?.update();
     stage.haze(view.now.distance);
     const drawn = performance.now();
-    if (draw) stage.renderer.render(stage.scene, view.camera);
+    if (draw && !held) stage.renderer.render(stage.scene, view.camera);
     recorder.drawn();
     const end = performance.now();
     for (const event of waiting.splice(0)) {
@@ -351,7 +352,7 @@ function frame(_, now = clock(), draw = true) {
         studio?.drums(shownDrums());
         panel.filming(recorder.filming);
     }
-    if (!virtual) stage.adapt(dt, view);
+    if (!virtual && !held) stage.adapt(dt, view);
     const script = drawn - begin + performance.now() - end; // all but the drawing
     numbers.script += 0.05 * (script - numbers.script);
     scripts.push(script);
@@ -605,8 +606,9 @@ const shownDrums = () => [...drums.values()].filter(d => d.group.visible);
 if (window.himcFiles)
     studio = new Studio(window.himcFiles, sound, liveSound, {
         frame: live,
-        fresh: () => (forget(), panel.hearBeat(null, clock())),
+        fresh: () => (forget(), panel.forget()),
         drums: shownDrums,
+        hold: yes => (held = yes),
         ray: e => view.ray(e),
         scene: async file => play(new Uint8Array(await file.arrayBuffer()), file.name),
     });

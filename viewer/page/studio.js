@@ -32,8 +32,8 @@ export async function textOf(hash) {
     return new TextDecoder().decode(await squeeze(bytes, new DecompressionStream(DEFLATE)));
 }
 
-// `on` is told: frame(handlers) as a Stream does, fresh(): another piece; and asked: drums(): those that
-// are seen; ray of a press; scene(file): to show one
+// `on` has: frame, the handlers of a Stream; fresh(): another piece begins; drums(): those that are seen;
+// ray(press); scene(file): to show one; hold(yes): to draw nothing
 export class Studio {
     constructor(files, sound, liveSound, on) {
         ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.files = files));
@@ -66,7 +66,9 @@ export class Studio {
     async listen() {
         if (this.listens) return;
         this.listens = true;
+        this.on.hold(true);
         const port = await this.liveSound.feed("page").catch(error => this.tell(`no sound: ${error.message}`, true));
+        this.on.hold(false);
         if (port) this.worker.postMessage({ port }, [port]);
     }
 
