@@ -74,7 +74,7 @@ UNIT      := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(UNIT_C)))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh,$(foreach folder,cli docs pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
+SCRIPTS   := $(filter-out tests/pd/test_package.sh,$(foreach folder,cli docs page pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
@@ -230,16 +230,19 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 
 units: $(UNIT) $(FUZZ)
 
+# the page that plays by itself, for its tests, where its compiler is
+PAGE := $(if $(wildcard /usr/bin/clang-16),$(if $(wildcard /usr/lib/wasm32-wasi/libc++.a),$(BUILD)/himc.html))
+
 # what docs/results/papers.md asks of the library
 MEASURE := $(BUILD)/tools/research/papers/measure
 
-check: all units $(MEASURE) $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
+check: all units $(MEASURE) $(WATCH) $(PAGE) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
-check-long: all units $(MEASURE) $(WATCH) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
+check-long: all units $(MEASURE) $(WATCH) $(PAGE) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
 test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers

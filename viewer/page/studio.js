@@ -96,7 +96,8 @@ export class Studio {
     }
 
     fresh(name) {
-        ((this.name = name), (this.ready = true), (this.beats = null));
+        ((this.name = name), (this.ready = true), (this.names = ""));
+        $("p-drum").replaceChildren();
         this.on.fresh();
         this.playing(!!this.wanted);
         $("p-piece").value = this.pieces.includes(name) ? name : "";
@@ -228,9 +229,9 @@ export class Studio {
             link = text && !/\0/.test(text) ? await linkOf(text) : null;
         if (!link || link.length > LONGEST) return this.tell("only a short score fits into a link", true);
         const address = location.href.replace(/#.*/, "") + link;
-        await navigator.clipboard?.writeText(address);
         history.replaceState(null, "", link);
-        this.tell("the link is copied");
+        const copied = await navigator.clipboard?.writeText(address).then(() => true, () => false);
+        this.tell(copied ? "the link is copied" : "the link is in the address line");
     }
 
     controls() {
