@@ -365,6 +365,10 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 check-bench: all
 	@$(PROGRAM) bench
 
+bench-page: page ## what the page needs on this machine, in a browser without a window
+	@tools/build/deps.sh tools/build/deps-browser.txt
+	@python3 tests/page/bench.py $(abspath $(BUILD))/himc.html
+
 bench-peers: deps ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
 	@tools/build/deps.sh tools/build/deps-peers.txt
 	@test -d build/peers || { python3 -m venv build/peers && build/peers/bin/pip -q install mujoco==4.0.0 dm_control==1.0.50; }

@@ -250,6 +250,51 @@ def test_a_link_carries_a_short_score():
         assert not browser.log(), browser.log()
 
 
+def test_a_text_that_is_changed_is_heard_and_a_reload_loses_nothing():
+    open_page()
+    browser.run("document.getElementById('p-piece').value = 'rudiments.txt'")
+    browser.run("document.getElementById('p-piece').dispatchEvent(new Event('change'))")
+    assert browser.wait("return viewer.studio.name === 'rudiments.txt'")
+    text = "drum mine 28;\nstroke 0 left legato f;\nstroke 8 left legato f;\n"
+    write = """
+    const area = document.getElementById("p-text");
+    area.value = arguments[0];
+    area.dispatchEvent(new Event("input"));
+    heard.strikes.length = 0;
+    """
+    browser.run(write, text)
+    click("p-use")
+    assert strikes(1)[0]["drum"] == "mine"
+    browser.run(write, text + "stroke 1 right legto f;\n")
+    click("p-use")
+    assert "legto" in refused()
+    open_page()  # with a text that cannot be played: it waits, and something plays
+    assert browser.run("return document.getElementById('p-text').value").endswith("legto f;\n")
+    assert "legto" in " ".join(one["text"] for one in browser.run("return viewer.studio.said"))
+    browser.run(write, text)
+    click("p-use")
+    assert strikes(1)[0]["drum"] == "mine"
+    open_page()
+    assert browser.run("return document.getElementById('p-text').value") == text
+    browser.run("localStorage.clear()")
+
+
+def test_a_page_around_it_gives_commands_and_hears_the_answers():
+    frame = os.path.join(MADE, "around.html")
+    with open(frame, "w") as file:
+        file.write(
+            f"""<iframe id=f src="file://{PAGE}?embed" width=400 height=300></iframe>
+            <script>said = []; onmessage = e => said.push(e.data.himc); tell = what =>
+            document.getElementById("f").contentWindow.postMessage({{ himc: what }}, "*");</script>"""
+        )
+    browser.open(f"file://{os.path.abspath(frame)}")
+    assert browser.wait("return said.length", 60)
+    browser.run("tell({ name: 'one.txt', score: 'drum solo 26; stroke 0 left legato f;' })")
+    assert browser.wait("return said.some(one => one.text.startsWith('one.txt'))", 60)
+    browser.run("tell('solo tune nonsense')")
+    assert browser.wait("return said.some(one => one.wrong && one.text.includes('tune'))", 60)
+
+
 if __name__ == "__main__":
     browser = Browser(800, 600)
     try:

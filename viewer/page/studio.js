@@ -9,10 +9,11 @@ const RATE = 48000, // (Hz), on every device: the same bits everywhere
     SAID = 60, // lines that are kept; chosen
     LONGEST = 20000, // of a link (letters); chosen: what chats and mails keep whole
     LOWEST = 38, // the note at the left of the tuning, D2 ...
+    JOURNAL = "himc-journal", // in the browser's storage: the scores whose text was changed, by name
     NOTES = ["C", "C#", "D", "Eb", "E", "F", "F#", "G", "Ab", "A", "Bb", "B"],
-    HITS = { z: "left", x: "right" }, // keys
-    SCORE = /\.(txt|himc|mid|midi|musicxml|xml|mxl|bvh|c3d|trc)$/i;
-const DEFLATE = "deflate-raw";
+    HITS = { z: "left", x: "right" }; // keys
+const DEFLATE = "deflate-raw",
+    bytesOf = new TextEncoder();
 
 const noteName = key => `${NOTES[key % 12]}${Math.floor(key / 12) - 1}`;
 
@@ -22,7 +23,7 @@ async function squeeze(bytes, stream) {
 
 // a score as the part of an address after the #
 export async function linkOf(text) {
-    const bytes = await squeeze(new TextEncoder().encode(text), new CompressionStream(DEFLATE));
+    const bytes = await squeeze(bytesOf.encode(text), new CompressionStream(DEFLATE));
     return `#s=${btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "")}`;
 }
 
@@ -40,7 +41,8 @@ export class Studio {
         ((this.connections = 1), (this.plays = false), (this.said = []), (this.past = []), (this.names = ""));
         const [[, wasm], ...pieces] = files;
         ((this.pieces = pieces.map(([name]) => name)), (this.name = ""), (this.ready = false));
-        this.texts = new Map(pieces);
+        this.texts = new Map(pieces); // as they are in the files
+        this.journal = this.remembered();
         const source = window.himcScripts.get("worker.js"),
             address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
         this.worker = new Worker(address);
@@ -56,10 +58,68 @@ export class Studio {
         this.worker.postMessage({ runs: true });
         if (location.hash.startsWith("#s=")) {
             const text = await textOf(location.hash).catch(() => null);
-            if (text !== null) return this.load("link.txt", new TextEncoder().encode(text));
+            if (text !== null) return this.load("link.txt", bytesOf.encode(text));
             this.tell("this link holds no score", true);
         }
+        if (await this.restore()) return;
         this.load(this.pieces[0] ?? "");
+    }
+
+    // --- the text of a score, which no end of the page loses
+
+    remembered() {
+        try {
+            const all = JSON.parse(localStorage.getItem(JOURNAL) ?? "{}");
+            return { name: String(all.name ?? ""), text: all.text && typeof all.text === "object" ? all.text : {} };
+        } catch {
+            return { name: "", text: {} };
+        }
+    }
+
+    remember() {
+        try {
+            localStorage.setItem(JOURNAL, JSON.stringify(this.journal));
+        } catch {
+            if (!this.unkept) this.tell("this browser keeps no changes: save the score as a file", true);
+            this.unkept = true;
+        }
+    }
+
+    // the score that was on the stand when the page ended, as it was changed
+    async restore() {
+        const { name, text } = this.journal;
+        if (typeof text[name] !== "string") return false;
+        this.draft = text[name];
+        this.load(name, bytesOf.encode(text[name]));
+        this.tell(`${name} is here again as you left it; "file's text" takes your changes back`);
+        return true;
+    }
+
+    // what is typed is kept at once
+    typed() {
+        ((this.journal.name = this.name || "score.txt"), (this.journal.text[this.journal.name] = $("p-text").value));
+        this.remember();
+    }
+
+    // plays the text; from the beat that was heard last, if `on`
+    use(on = false) {
+        const beat = on && this.beat > 0 ? [`seek ${this.beat}`] : [];
+        this.typed();
+        this.load(this.journal.name, bytesOf.encode($("p-text").value), true, beat);
+    }
+
+    forgetChanges() {
+        const text = this.texts.get(this.name);
+        delete this.journal.text[this.name];
+        this.remember();
+        if (text) this.load(this.name, text);
+    }
+
+    // the text of what is on the stand; "" of what is no text
+    write(bytes) {
+        const text = bytes && !bytes.includes(0) ? new TextDecoder().decode(bytes) : "";
+        $("p-text").value = text;
+        $("p-sheet").hidden = !!bytes && !text;
     }
 
     // the device is open: sound goes from the Worker to the audio thread, past this page
@@ -79,7 +139,7 @@ export class Studio {
         else if (saved) this.save(saved, bytes);
         else if (loaded !== undefined) this.fresh(loaded);
         else if (line !== undefined) this.answered(line, failed);
-        else if (failed) this.tell(name && !failed.startsWith(name) ? `${name}: ${failed}` : failed, true);
+        else if (failed) this.failed(name && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
     }
 
     get handlers() {
@@ -87,6 +147,7 @@ export class Studio {
         return {
             ...on,
             event: (event, time) => {
+                if (event.event === "beat") this.beat = event.beat;
                 if (event.event === "done") this.playing(false);
                 else if (event.event === "line" || event.event === "note") this.tell(event.text);
                 else if (event.event === "missed" || event.event === "refused") this.tell(event.text, true);
@@ -95,10 +156,19 @@ export class Studio {
         };
     }
 
+    // what was there goes on; at first there is nothing yet, and a text that cannot be played waits to be mended
+    failed(why) {
+        this.tell(why, true);
+        if (!this.ready && this.draft !== undefined) this.load(this.pieces[0] ?? "");
+    }
+
     fresh(name) {
-        ((this.name = name), (this.ready = true), (this.names = ""));
+        ((this.name = name), (this.ready = true), (this.names = ""), (this.bytes = this.coming), (this.beat = 0));
         $("p-drum").replaceChildren();
         this.on.fresh();
+        this.write(this.draft === undefined ? this.bytes : bytesOf.encode(this.draft));
+        this.draft = undefined;
+        if (!this.pieces.includes(name) && $("p-text").value) this.typed();
         this.playing(!!this.wanted);
         $("p-piece").value = this.pieces.includes(name) ? name : "";
         $("p-piece").options[0].text = this.pieces.includes(name) || !name ? "a piece" : name;
@@ -118,6 +188,7 @@ export class Studio {
         row.classList.toggle("wrong", wrong);
         log.append(row);
         this.said.push({ text, wrong });
+        this.outside?.({ text, wrong });
         while (log.children.length > SAID) log.firstChild.remove();
         log.scrollTop = log.scrollHeight;
     }
@@ -143,17 +214,26 @@ export class Studio {
         this.worker.postMessage({ say: line.trim().replace(/;$/, "") });
     }
 
-    // a piece of the page, or a file; `play`: at once
-    load(name, bytes = null, play = false) {
-        if (bytes) this.texts.set(name, bytes);
-        this.wanted = play;
-        this.worker.postMessage({ load: { name, bytes, then: play ? ["play"] : [] } });
+    // a piece of the page, or a file; `play`: at once, after these commands
+    load(name, bytes = null, play = false, first = []) {
+        if (bytes && !this.texts.has(name)) this.texts.set(name, bytes);
+        ((this.wanted = play), (this.coming = bytes ?? this.texts.get(name)));
+        this.worker.postMessage({ load: { name, bytes: this.coming, then: play ? [...first, "play"] : [] } });
+    }
+
+    // as it was changed here, if it was
+    choose(name) {
+        const changed = this.journal.text[name];
+        ((this.journal.name = name), this.remember());
+        this.load(name, typeof changed === "string" ? bytesOf.encode(changed) : null, true);
     }
 
     async open(file) {
         if (/\.himc$/i.test(file.name)) return this.on.scene(file);
-        const bytes = new Uint8Array(await file.arrayBuffer());
-        this.load(file.name.split("/").pop(), bytes, true);
+        const bytes = new Uint8Array(await file.arrayBuffer()),
+            name = file.name.split("/").pop();
+        this.texts.delete(name);
+        this.load(name, bytes, true);
     }
 
     toggle() {
@@ -197,7 +277,7 @@ export class Studio {
             text = e.clipboardData?.getData("text");
         if (/^(INPUT|TEXTAREA)$/.test(e.target.tagName)) return;
         if (files.length) files.forEach(file => this.open(file));
-        else if (text) this.load("pasted.txt", new TextEncoder().encode(text), true);
+        else if (text) this.load("pasted.txt", bytesOf.encode(text), true);
     }
 
     async midi() {
@@ -224,7 +304,7 @@ export class Studio {
     }
 
     async copyLink() {
-        const bytes = this.texts.get(this.name),
+        const { bytes } = this,
             text = bytes && new TextDecoder().decode(bytes),
             link = text && !/\0/.test(text) ? await linkOf(text) : null;
         if (!link || link.length > LONGEST) return this.tell("only a short score fits into a link", true);
@@ -238,7 +318,7 @@ export class Studio {
         const click = (id, f) => ($(id).onclick = f);
         $("perform").hidden = false;
         $("p-piece").append(new Option("a piece", ""), ...this.pieces.map(name => new Option(name, name)));
-        $("p-piece").onchange = e => this.load(e.target.value, null, true);
+        $("p-piece").onchange = e => e.target.value && this.choose(e.target.value);
         click("p-play", () => this.toggle());
         click("p-open", () => $("p-file").click());
         click("p-link", () => this.copyLink().catch(error => this.tell(error.message, true)));
@@ -254,12 +334,30 @@ export class Studio {
         told("p-dynamic", d => ["ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"][Math.round(7 * d)]);
         told("p-tune", k => noteName(LOWEST + k), k => `${$("p-drum").value} tune ${noteName(LOWEST + k)}`);
         $("p-mallet").onchange = e => this.say(`${$("p-drum").value} mallet ${e.target.value}`);
+        $("p-text").oninput = () => this.typed();
+        $("p-text").onkeydown = e => e.key === "Enter" && (e.ctrlKey || e.metaKey) && (e.preventDefault(), this.use());
+        click("p-use", () => this.use());
+        click("p-here", () => this.use(true));
+        click("p-undo", () => this.forgetChanges());
         $("p-form").onsubmit = e => (e.preventDefault(), this.send());
         $("p-line").onkeydown = e => this.recall(e);
         click("p-copy", () => navigator.clipboard?.writeText($("p-line").value.replace(/([,;$])/g, "\\$1")));
         $("stage").addEventListener("pointerdown", e => !e.button && this.press(e), true);
         addEventListener("keydown", e => this.key(e), true);
         addEventListener("paste", e => this.paste(e));
+        if (new URLSearchParams(location.search).has("embed")) this.embed();
+    }
+
+    // in another page, which sends { himc: "a command" } or { himc: { name, score } } and hears what is told here
+    embed() {
+        document.body.classList.add("bare");
+        if (parent === window) return;
+        addEventListener("message", e => {
+            const what = e.source === parent ? e.data?.himc : null;
+            if (typeof what === "string") this.say(what);
+            else if (typeof what?.score === "string") this.load(String(what.name ?? "score.txt"), bytesOf.encode(what.score));
+        });
+        this.outside = text => parent.postMessage({ himc: text }, "*");
     }
 
     send() {
@@ -280,5 +378,3 @@ export class Studio {
         $("p-line").value = this.past[this.back] ?? "";
     }
 }
-
-export const plays = name => SCORE.test(name);
