@@ -1,9 +1,9 @@
 /// share.c: the page of viewer/page with everything inside.
 ///
 /// Scripts are packed into one text, each after a line "NAME SIZE", deflated, and written as
-/// base64; so are other files; so is a scene, which is packed already. boot.js unpacks all. It needs modules that
-/// import each other by name, so "./NAME.js" becomes "himc/NAME.js" there and an import map says
-/// where that is.
+/// base64; so are other files, and so is a scene, which is packed already. boot.js unpacks them. It
+/// needs modules that import each other by name, so "./NAME.js" becomes "himc/NAME.js" there and an
+/// import map says where that is.
 #include "share.h"
 #include "pages.h"
 #include "scene.h"
