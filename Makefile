@@ -74,7 +74,7 @@ UNIT      := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(UNIT_C)))
 LONG      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/long/test_*.c))
 FUZZ      := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 REALTIME  := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/realtime/test_*.c))
-SCRIPTS   := $(filter-out tests/pd/test_package.sh,$(foreach folder,cli docs pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
+SCRIPTS   := $(filter-out tests/pd/test_package.sh,$(foreach folder,cli docs page pd viewer,$(wildcard tests/$(folder)/test_*.sh)))
 CLIPS     := $(BUILD)/clips/clips.txt
 UNITY_O   := $(BUILD)/tests/unity.o
 WEBSOCKETS := $(firstword $(wildcard /usr/include/libwebsockets.h /usr/local/include/libwebsockets.h))
@@ -153,6 +153,11 @@ test-windows: all ## the same, run by wine: its strikes are those of Linux, in t
 	@tools/build/windows.sh $(BUILD)/windows/parts pd
 	@HIMC_BUILD=$(BUILD) TEST_TIMEOUT=900 tests/run.sh tests/cross/test_windows.sh
 
+# the library compiled to WebAssembly, without threads, sockets and ODE, and what a page asks of it
+page: deps ## the performer in a web page, build/himc.html: nothing to install, no server, no network
+	@tools/build/deps.sh tools/build/deps-page.txt
+	@$(MAKE) $(BUILD)/himc.html
+
 MACOS = $(abspath $(BUILD)/macos/parts)
 check-macos: deps ## all of it crossed to macOS on arm64 and linked, in build/macos; none of it has been run
 	@tools/build/deps.sh tools/build/deps-macos.txt
@@ -225,16 +230,19 @@ test: deps ## install, build, run all tests; the last line is `N passed, N faile
 
 units: $(UNIT) $(FUZZ)
 
+# the page that plays by itself, for its tests, where its compiler is
+PAGE := $(if $(wildcard /usr/bin/clang-16),$(if $(wildcard /usr/lib/wasm32-wasi/libc++.a),$(BUILD)/himc.html))
+
 # what docs/results/papers.md asks of the library
 MEASURE := $(BUILD)/tools/research/papers/measure
 
-check: all units $(MEASURE) $(WATCH) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
+check: all units $(MEASURE) $(WATCH) $(PAGE) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
 	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
-check-long: all units $(MEASURE) $(WATCH) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
+check-long: all units $(MEASURE) $(WATCH) $(PAGE) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
 test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
@@ -359,6 +367,10 @@ bench: deps ## what a step, a mode and a performer cost on this machine
 check-bench: all
 	@$(PROGRAM) bench
 
+bench-page: page ## what the page needs on this machine, in a browser without a window
+	@tools/build/deps.sh tools/build/deps-browser.txt
+	@python3 tests/page/bench.py $(abspath $(BUILD))/himc.html
+
 bench-peers: deps ## the same, then other programs: MuJoCo, Faust, STK, Csound, SuperCollider, pmpd~
 	@tools/build/deps.sh tools/build/deps-peers.txt
 	@test -d build/peers || { python3 -m venv build/peers && build/peers/bin/pip -q install mujoco==4.0.0 dm_control==1.0.50; }
@@ -447,7 +459,7 @@ $(BUILD)/lib/%.o: lib/src/%.cpp
 # the flags of a folder
 IN_tools  = -I.
 IN_tests  = -I. -Itests/support $(UNITY)
-IN_viewer = -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer
+IN_viewer = -DMADE='"$(BUILD)/viewer"' -I$(BUILD)/viewer $(if $(findstring /engine/,$<),-I. -Iviewer)
 $(BUILD)/%.o: %.c
 	$(call say,cc  )
 	$(Q)$(COMPILE) $(IN_$(firstword $(subst /, ,$<))) -c $< -o $@
@@ -486,13 +498,34 @@ $(BUILD)/viewer/skeleton.js: $(TABLE)
 	$(call say,make)
 	$(Q)$< js >$@
 
-$(VIEWER_O): $(BUILD)/viewer/skeleton.h
+$(VIEWER_O) $(BUILD)/viewer/engine/engine.o: $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
 -include $(VIEWER_O:.o=.d)
 
 $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
 	$(Q)$(LINK) $^ -Wl,--as-needed -llo -lwebsockets -lz -lm -o $@
+
+# the pieces that the page brings
+PAGE_PIECES := $(wildcard patches/improvisation.txt patches/pieces/*.txt patches/pieces/*.mid)
+PAGE_MAKER  := $(BUILD)/viewer/engine/page
+$(BUILD)/himc.html: $(PAGE_MAKER) $(BUILD)/page/engine.wasm $(PAGE_PIECES)
+	$(call say,make)
+	$(Q)$< $@ $(filter-out $<,$^)
+
+# clang-16 runs Debian's wasm-opt, if that is installed, without SIMD, and fails: hence -O0
+$(BUILD)/page/engine.wasm: $(TABLE) FORCE
+	+$(Q)$(MAKE) page-here BUILD=$(BUILD)/page CC="clang-16 --target=wasm32-wasi" CXX="clang++-16 --target=wasm32-wasi -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1" \
+	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -D_WASI_EMULATED_GETPID" CFLAGS="-msimd128 -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument $(CFLAGS)" \
+	    LDFLAGS="-O0 -Wl,-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table
+PAGE_LEFT_OUT := $(addprefix $(BUILD)/lib/,drum/loader.o system/thread.o system/udp.o)
+page-here: $(BUILD)/viewer/engine/engine.o $(BUILD)/tools/himc/live.o $(BUILD)/tools/himc/cli.o $(BUILD)/viewer/scene.o $(BUILD)/viewer/scene_encode.o $(filter-out $(PAGE_LEFT_OUT),$(LIB_O))
+	$(Q)$(CXX) $(LDFLAGS) $^ -lwasi-emulated-getpid -o $(BUILD)/engine.new
+	$(Q)cmp -s $(BUILD)/engine.new $(BUILD)/engine.wasm || cp $(BUILD)/engine.new $(BUILD)/engine.wasm
+
+$(PAGE_MAKER): $(BUILD)/viewer/engine/page.o $(SHARE_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
+	$(call say,link)
+	$(Q)$(LINK) $^ -lz -lm -o $@
 
 $(UNIT_C:%.c=$(BUILD)/%.o) $(addsuffix .o,$(LONG) $(REALTIME)): | $(UNITY_DIR)/unity.c
 

@@ -40,6 +40,8 @@
     SCRIPT(FILE, playback)                                                 \
     SCRIPT(FILE, sound)                                                    \
     SCRIPT(FILE, worklet)                                                  \
+    SCRIPT(FILE, worker)                                                   \
+    SCRIPT(FILE, studio)                                                   \
     SCRIPT(FILE, spectrum)                                                 \
     SCRIPT(FILE, piece)                                                    \
     SCRIPT(FILE, edit)                                                     \

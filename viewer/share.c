@@ -1,9 +1,9 @@
 /// share.c: the page of viewer/page with everything inside.
 ///
 /// Scripts are packed into one text, each after a line "NAME SIZE", deflated, and written as
-/// base64; so is the scene, which is packed already. boot.js unpacks both. It needs modules that
-/// import each other by name, so "./NAME.js" becomes "himc/NAME.js" there and an import map says
-/// where that is.
+/// base64; so are other files, and so is a scene, which is packed already. boot.js unpacks them. It
+/// needs modules that import each other by name, so "./NAME.js" becomes "himc/NAME.js" there and an
+/// import map says where that is.
 #include "share.h"
 #include "pages.h"
 #include "scene.h"
@@ -12,7 +12,9 @@
 #include <string.h>
 #include <zlib.h>
 
-/// The scripts, packed.
+enum { SCRIPTS = 64 }; // more than viewer/page has
+
+/// Files, packed.
 typedef struct pack {
     unsigned char *data;
     size_t size;
@@ -42,29 +44,26 @@ static bool is_script(const page *p)
     return !strcmp(p->type, "text/javascript") && strcmp(p->path, "/boot.js") != 0;
 }
 
-// all scripts, one after the other; NULL without memory
-static char *join_scripts(size_t *size)
+// all files, one after the other; NULL without memory
+static char *join(const share_file *file, int count, size_t *size)
 {
-    size_t room = 0, at = 0;
-    for (int i = 0; pages_at(i); i++)
-        room += length(pages_at(i)) + 128;
+    size_t room = 1, at = 0;
+    for (int i = 0; i < count; i++)
+        room += file[i].size + strlen(file[i].name) + 32;
     char *text = malloc(room);
-    for (int i = 0; text && pages_at(i); i++) {
-        const page *p = pages_at(i);
-        if (!is_script(p))
-            continue;
-        at += (size_t)snprintf(text + at, room - at, "%s %zu\n", p->path + 1, length(p));
-        memcpy(text + at, p->begin, length(p));
-        at += length(p);
+    for (int i = 0; text && i < count; i++) {
+        at += (size_t)snprintf(text + at, room - at, "%s %zu\n", file[i].name, file[i].size);
+        memcpy(text + at, file[i].bytes, file[i].size);
+        at += file[i].size;
     }
     *size = at;
     return text;
 }
 
-static bool pack_scripts(pack *out)
+static bool pack_files(pack *out, const share_file *file, int count)
 {
     size_t size;
-    char *text = join_scripts(&size);
+    char *text = join(file, count, &size);
     uLongf packed = text ? compressBound((uLong)size) : 0;
     out->data = text ? malloc(packed) : NULL;
     bool good = out->data && compress2(out->data, &packed, (const unsigned char *)text, (uLong)size,
@@ -72,6 +71,17 @@ static bool pack_scripts(pack *out)
     out->size = packed;
     free(text);
     return good;
+}
+
+static bool pack_scripts(pack *out)
+{
+    share_file script[SCRIPTS];
+    int count = 0;
+    for (int i = 0; pages_at(i) && count < SCRIPTS; i++)
+        if (is_script(pages_at(i)))
+            script[count++] =
+                (share_file){pages_at(i)->path + 1, pages_at(i)->begin, length(pages_at(i))};
+    return pack_files(out, script, count);
 }
 
 static void put_file(FILE *out, const char *path, const char *before, const char *after)
@@ -90,8 +100,8 @@ static void put_data(FILE *out, const char *id, const char *name, const void *fr
 }
 
 // the page's lines, those that name another file replaced by the file
-static void put_page(FILE *out, const pack *scripts, const char *bytes, size_t size,
-                     const char *name)
+static void put_page(FILE *out, const pack *scripts, const char *id, const char *name,
+                     const pack *what)
 {
     const page *index = pages_find("/");
     for (const char *line = index->begin, *end; line < index->end; line = end) {
@@ -103,14 +113,15 @@ static void put_page(FILE *out, const pack *scripts, const char *bytes, size_t s
             put_file(out, "/style.css", "<style>\n", "</style>\n");
         else if (!strncmp(line, "<script type=\"module\"", 21)) {
             put_data(out, "himc-scripts", "", scripts->data, scripts->size);
-            put_data(out, "himc-scene", name, bytes, size);
+            put_data(out, id, name, what->data, what->size);
             put_file(out, "/boot.js", "<script>\n", "</script>\n");
         } else
             fwrite(line, 1, (size_t)(end - line), out);
     }
 }
 
-bool share_write(FILE *out, const char *bytes, size_t size, const char *name, himc_error *error)
+static bool write_page(FILE *out, const char *id, const char *name, const pack *what,
+                       himc_error *error)
 {
     pack scripts;
     char title[256];
@@ -118,11 +129,25 @@ bool share_write(FILE *out, const char *bytes, size_t size, const char *name, hi
     scene_word(title, sizeof title, slash ? slash + 1 : name);
     for (char *c = title; (c = strpbrk(c, "<>&\"")); c++)
         *c = '?';
-    bool good = pack_scripts(&scripts);
-    if (good)
-        put_page(out, &scripts, bytes, size, title);
-    else
-        himc_error_set(error, "out of memory");
-    free(scripts.data);
+    bool good = what->data && pack_scripts(&scripts);
+    if (good) {
+        put_page(out, &scripts, id, title, what);
+        free(scripts.data);
+    }
+    return good || himc_error_set(error, "out of memory");
+}
+
+bool share_write(FILE *out, const char *bytes, size_t size, const char *name, himc_error *error)
+{
+    const pack what = {(unsigned char *)bytes, size};
+    return write_page(out, "himc-scene", name, &what, error);
+}
+
+bool share_write_files(FILE *out, const share_file *file, int count, himc_error *error)
+{
+    pack files = {0};
+    pack_files(&files, file, count);
+    bool good = write_page(out, "himc-files", "", &files, error);
+    free(files.data);
     return good;
 }

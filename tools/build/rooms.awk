@@ -65,7 +65,7 @@ BEGIN {
     for (i = 1; i in header; i += 2)
         room_of[header[i]] = header[i + 1]
     # which outside library is known to which files
-    only["^d(World|Body|Joint|Mass|Geom|Init|Close|AllocateODE|SetAlloc|SetFree|SetRealloc)"] = "^body/character$"
+    only["^d(World|Body|Joint|Mass|Geom|Init|Close|AllocateODE|SetAlloc|SetFree|SetRealloc)"] = "^body/engine_ode$"
     only["^lo_"] = "^$"
     only["^_Z"] = "^base/linear$"
     only["^(socket|bind|sendto|recvmsg|recvfrom)$"] = "^system/udp$"

@@ -120,6 +120,16 @@ export class View {
         return Math.hypot(e.clientX - this.pressed[0], e.clientY - this.pressed[1]) < 4;
     }
 
+    // what is under the pointer, near and far
+    ray(e) {
+        const caster = new THREE.Raycaster();
+        caster.setFromCamera(
+            { x: (2 * e.clientX) / innerWidth - 1, y: 1 - (2 * e.clientY) / innerHeight },
+            this.camera,
+        );
+        return caster.ray;
+    }
+
     // which of the points is under the pointer; -1: none
     nearest(points, e) {
         const [x, y] = this.screen(e),

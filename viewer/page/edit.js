@@ -496,12 +496,7 @@ export class Editor {
     }
 
     ray(e) {
-        const caster = new THREE.Raycaster();
-        caster.setFromCamera(
-            { x: (2 * e.clientX) / innerWidth - 1, y: 1 - (2 * e.clientY) / innerHeight },
-            this.view.camera,
-        );
-        return caster.ray;
+        return this.view.ray(e);
     }
 
     // the one of these that a press takes

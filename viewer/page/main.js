@@ -14,6 +14,7 @@ import { Panel } from "./panel.js";
 import { Recorder } from "./record.js";
 import { Editor } from "./edit.js";
 import { Exporter } from "./export.js";
+import { Studio } from "./studio.js";
 import { HANDS, bone } from "./body.js";
 import { segments } from "./skeleton.js";
 
@@ -44,6 +45,7 @@ let exaggeration = 8, // of a head's motion; chosen: seen from the stage, and no
     readings = 0, // of scenes, begun
     stream = null,
     editor = null, // on a page that knows the key
+    studio = null, // in a page with a performer inside
     waiting = [];
 
 const actions = {
@@ -118,7 +120,7 @@ const actions = {
     },
     mute: () => (sound.setVolume(sound.volume ? 0 : 1), sound.wake() && playback?.resound()),
     live() {
-        if (!playback || !stream) return;
+        if (!playback || !(stream || studio)) return;
         playback = null;
         close();
         setLift(0);
@@ -308,7 +310,8 @@ function countFrames(now) {
 
 let previous = clock(),
     written = 0,
-    virtual = 0;
+    virtual = 0,
+    held = false; // nothing is drawn while the sound is being opened, which needs this thread, too
 function frame(_, now = clock(), draw = true) {
     const dt = now - previous,
         begin = performance.now();
@@ -328,7 +331,7 @@ function frame(_, now = clock(), draw = true) {
     editor?.update();
     stage.haze(view.now.distance);
     const drawn = performance.now();
-    if (draw) stage.renderer.render(stage.scene, view.camera);
+    if (draw && !held) stage.renderer.render(stage.scene, view.camera);
     recorder.drawn();
     const end = performance.now();
     for (const event of waiting.splice(0)) {
@@ -345,10 +348,11 @@ function frame(_, now = clock(), draw = true) {
     if (now - written > 250) {
         written = now;
         panel.write([...performers.values()], numbers, now, playback);
-        panel.silent(playback ? !!playback.sound.buffer : now - liveSound.heard < 1000, sound);
+        panel.silent(playback ? !!playback.sound.buffer : !!studio || now - liveSound.heard < 1000, sound);
+        studio?.drums(shownDrums());
         panel.filming(recorder.filming);
     }
-    if (!virtual) stage.adapt(dt, view);
+    if (!virtual && !held) stage.adapt(dt, view);
     const script = drawn - begin + performance.now() - end; // all but the drawing
     numbers.script += 0.05 * (script - numbers.script);
     scripts.push(script);
@@ -448,6 +452,10 @@ async function drop(files) {
     const [first, ...more] = files,
         capture = files.find(file => /\.(bvh|c3d|trc|txt|mid)$/i.test(file.name)),
         bytes = async file => new Uint8Array(await file.arrayBuffer());
+    if (studio && !/\.himc$/i.test(first.name)) {
+        if (playback) actions.live();
+        return files.forEach(file => studio.open(file));
+    }
     if (capture && !editor)
         throw new Error(
             `${capture.name}: open the page by the address that himc-viewer prints, or make a scene of it with "himc render ${capture.name} -o sound.wav --scene scene.himc", and drop scene.himc`,
@@ -492,7 +500,7 @@ addEventListener("drop", e => {
     if (files.length) drop(files).catch(tell(files[0].name));
 });
 for (const gesture of ["pointerdown", "keydown"])
-    addEventListener(gesture, () => sound.wake() && playback?.resound(), true);
+    addEventListener(gesture, () => (sound.wake() && playback?.resound(), studio?.listen()), true);
 
 // where an object is, also before it is drawn
 function placeOf(object) {
@@ -544,6 +552,9 @@ const exporter = new Exporter((window.viewer = {
     get stream() {
         return stream;
     },
+    get studio() {
+        return studio;
+    },
     panel,
     actions,
     view,
@@ -588,8 +599,20 @@ function edit(key) {
     });
 }
 
-// a page of `himc share` brings its scene; any other asks the program that serves it
-if (window.himcScene) {
+const shownDrums = () => [...drums.values()].filter(d => d.group.visible);
+
+// a page of `himc share` brings its scene, that of `make page` a performer; any other asks the program that
+// serves it
+if (window.himcFiles)
+    studio = new Studio(window.himcFiles, sound, liveSound, {
+        frame: live,
+        fresh: () => (forget(), panel.forget()),
+        drums: shownDrums,
+        hold: yes => (held = yes),
+        ray: e => view.ray(e),
+        scene: async file => play(new Uint8Array(await file.arrayBuffer()), file.name),
+    });
+else if (window.himcScene) {
     document.body.classList.add("shared");
     play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
 } else {

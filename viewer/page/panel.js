@@ -201,6 +201,11 @@ export class Panel {
         this.peak = strike.force;
     }
 
+    // another piece begins
+    forget() {
+        ((this.strikes = []), (this.beats = []), (this.beat = null), (this.count = 0), (this.peak = 0));
+    }
+
     hearBeat(beat, now) {
         this.beat = beat;
         this.beats.push({ beat, now });

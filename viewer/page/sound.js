@@ -31,7 +31,9 @@ export class Sound {
     // after a gesture of the user; true if the device has just been opened
     wake() {
         if (this.context) return false;
-        this.context = new AudioContext({ latencyHint: "interactive" });
+        // a performer inside the page has one rate on every device
+        const rate = window.himcFiles ? { sampleRate: 48000 } : {};
+        this.context = new AudioContext({ latencyHint: "interactive", ...rate });
         this.gain = this.context.createGain();
         this.gain.connect(this.context.destination);
         this.setVolume(this.volume);
@@ -113,6 +115,17 @@ export class Sound {
     }
 }
 
+// The module of the audio thread. In a page that is one file it is a text: Chromium refuses a Blob's address
+// where the page is a file, and takes a data: address.
+function addWorklet({ audioWorklet }) {
+    const source = window.himcScripts?.get("worklet.js");
+    if (!source) return audioWorklet.addModule("/worklet.js");
+    const blob = () => URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+    return audioWorklet
+        .addModule(`data:text/javascript,${encodeURIComponent(source)}`)
+        .catch(() => audioWorklet.addModule(blob()));
+}
+
 // The sound of live performers, each in its order, once the device is open. What is heard sets the
 // moment of the picture (clock.js).
 export class LiveSound {
@@ -126,9 +139,21 @@ export class LiveSound {
         this.heard = now;
         const { context } = this.sound;
         if (!context || context.state !== "running") return;
-        this.module ??= context.audioWorklet.addModule("/worklet.js").then(() => (this.loaded = true));
+        this.load();
         const behind = Math.max(SHORTEST, delay / 1000 - (context.outputLatency || 0));
         if (this.loaded) this.node(key).port.postMessage({ time, first, rate, channels, samples, behind });
+    }
+
+    load() {
+        return (this.module ??= addWorklet(this.sound.context).then(() => (this.loaded = true)));
+    }
+
+    // a port over which the audio thread asks for what it plays, and gets it
+    async feed(key) {
+        await this.load();
+        const { port1, port2 } = new MessageChannel();
+        this.node(key).port.postMessage({ feed: port1 }, [port1]);
+        return port2;
     }
 
     node(key) {

@@ -24,11 +24,15 @@ himc_linear outcome(Eigen::ComputationInfo info, himc_linear otherwise)
 // what `solve` returns, or that there was no memory for it
 template <class work> himc_linear attempt(work solve)
 {
+#ifdef __cpp_exceptions
     try {
         return solve();
     } catch (const std::bad_alloc &) {
         return HIMC_LINEAR_NO_MEMORY;
     }
+#else
+    return solve(); // memory that is short ends a program without exceptions, as in a page
+#endif
 }
 
 } // namespace

@@ -1,23 +1,17 @@
 /// character.c: the state of the simulated body, moved by one of two engines: the tree (tree.c), or
-/// ODE's dWorldStep with 19 bodies and 19 ball joints, one loop over the table.
+/// ODE (engine_ode.c).
 ///
 /// The state here is the body's only one. ODE's bodies receive it when ODE is to step and have not
 /// made it themselves. ODE aborts the process for a quaternion without direction and accepts NaN
 /// silently, so the state is checked where it is set and after each step; it aborts for an invalid
-/// mass, so the skeleton is checked before. The frame of an ODE body is its segment's, moved to the
-/// centre of mass, as ODE requires. A fixed pelvis is ODE's world (body 0), so the trunk and each
-/// leg are separate islands and ODE solves three small systems; one that is free is one body more.
-/// dWorldStep is deterministic to the bit (QuickStep draws random numbers). Legs at rest,
-/// under a fixed pelvis, keep their state to the bit until a force on them changes: nothing else
-/// moves them.
+/// mass, so the skeleton is checked before. Legs at rest, under a fixed pelvis, keep their state to
+/// the bit until a force on them changes: nothing else moves them.
 #include "body/character.h"
+#include "body/engine_ode.h"
 
-#include <ode/ode.h>
 #include <stdlib.h>
 #include <string.h>
 
-// share of a joint's drift that ODE corrects per step. Chosen: the drift then measures 3e-8 m
-#define JOINT_ERP 0.8
 // chosen: beyond any motion of a limb and below the speeds at which ODE aborts
 #define FASTEST_SPIN 3000 // (rad/s)
 // chosen: far above any real value, and its square is still finite
@@ -28,7 +22,6 @@
 #define STILL_SPIN 1e-9   // a leg that spins slower is still (rad/s)
 #define STILL_STEPS 100   // steps after which still legs are at rest ...
 #define STILL_TORQUE 1e-8 // ... while no torque on them changes by more (N m)
-#define FIRST_STEP 1e-4   // chosen: any valid step makes the engine allocate (s)
 
 #define LEGS_SIZE ((HIMC_SEGMENTS - HIMC_LEGS) * sizeof(himc_vec3))
 
@@ -43,9 +36,8 @@ struct himc_character {
     bool sound;             // the engines take this state
     int still;              // steps in which no leg moved; above STILL_STEPS legs sleep
     segment_forces resting; // on the legs, in the last of these steps
-    dWorldID world;
-    int first;                   // segments that move: from the pelvis, 0, if it is free, else 1
-    dBodyID body[HIMC_SEGMENTS]; // of a fixed pelvis NULL: the world
+    himc_ode *ode;          // owned; NULL in a library without ODE
+    int first;              // segments that move: from the pelvis, 0, if it is free, else 1
 };
 
 // false if ODE's own checks would abort the process on one of segments first .. end - 1
@@ -63,71 +55,31 @@ static bool is_sound(const segment_states *s, int first, int end)
     return sum < LARGEST_SUM;
 }
 
-static void give_to_ode(himc_character *c)
-{
-    const himc_body_state *s = &c->state.joints;
-    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
-        himc_vec3 x = c->state.position[i], v = c->state.velocity[i], w = s->spin[i];
-        himc_quat q = s->orientation[i];
-        dBodySetPosition(c->body[i], x.x, x.y, x.z);
-        dBodySetQuaternion(c->body[i], (const dQuaternion){q.w, q.x, q.y, q.z});
-        dBodySetLinearVel(c->body[i], v.x, v.y, v.z);
-        dBodySetAngularVel(c->body[i], w.x, w.y, w.z);
-    }
-}
-
-static himc_vec3 from_ode(const dReal *v)
-{
-    return himc_vec3_make(v[0], v[1], v[2]);
-}
-
 himc_character *himc_character_new(const himc_skeleton *skeleton, himc_error *error)
 {
+    himc_body_state state;
+    himc_pose zero = himc_pose_zero();
     himc_character *c = calloc(1, sizeof *c);
-    if (!c || !dInitODE2(0) || !dAllocateODEDataForThread(dAllocateMaskAll)) {
-        free(c);
-        himc_error_set(error, "character: out of memory for the physics engine");
+    if (!c) {
+        himc_error_set(error, "character: out of memory");
         return NULL;
     }
     c->skeleton = *skeleton;
     c->first = himc_first_moving(skeleton);
-    c->world = dWorldCreate();
-    dWorldSetGravity(c->world, 0, 0, -HIMC_GRAVITY);
-    dWorldSetERP(c->world, JOINT_ERP);
-    dWorldSetCFM(c->world, 0);
-    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
-        const himc_segment *segment = &skeleton->segment[i];
-        himc_vec3 inertia = segment->inertia;
-        dMass mass;
-        c->body[i] = dBodyCreate(c->world);
-        dMassSetParameters(&mass, segment->mass, 0, 0, 0, inertia.x, inertia.y, inertia.z, 0, 0, 0);
-        dBodySetMass(c->body[i], &mass);
-        dBodySetAutoDisableFlag(c->body[i], 0);
-        dBodySetGyroscopicMode(c->body[i], 1);
-    }
-    himc_body_state state;
-    himc_pose zero = himc_pose_zero();
     himc_pose_to_state(skeleton, &zero, NULL, &state);
     himc_character_place(c, &state);
-    give_to_ode(c);
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        dJointID joint = dJointCreateBall(c->world, 0);
-        dJointAttach(joint, c->body[i], c->body[skeleton->segment[i].parent]);
-        dJointSetBallAnchor(joint, state.origin[i].x, state.origin[i].y, state.origin[i].z);
-    }
-    // the engine allocates its working memory in the first step: make it here, not in the audio
-    // callback
-    dWorldStep(c->world, FIRST_STEP);
-    himc_character_place(c, &state);
-    return c;
+    c->ode = himc_ode_new(skeleton, &c->state, error);
+    if (c->ode || !himc_ode_is_here())
+        return c;
+    free(c);
+    return NULL;
 }
 
 void himc_character_free(himc_character *c)
 {
     if (!c)
         return;
-    dWorldDestroy(c->world);
-    dCloseODE();
+    himc_ode_free(c->ode);
     free(c);
 }
 
@@ -200,14 +152,7 @@ bool himc_character_seat(himc_character *c, double height)
     if (!c->sound)
         himc_pose_to_state(&c->skeleton, &zero, NULL, &state);
     himc_character_place(c, &state);
-    give_to_ode(c);
-    // the joints of the pelvis are anchored in ODE's world
-    for (int i = 1; i < HIMC_SEGMENTS; i++) {
-        himc_vec3 at = c->state.joints.origin[i];
-        for (int k = 0; k < dBodyGetNumJoints(c->body[i]); k++)
-            if (!dJointGetBody(dBodyGetJoint(c->body[i], k), 1))
-                dJointSetBallAnchor(dBodyGetJoint(c->body[i], k), at.x, at.y, at.z);
-    }
+    himc_ode_seat(c->ode, &c->state);
     return true;
 }
 
@@ -260,23 +205,8 @@ static void fill_forces(const himc_character *c, const himc_step_forces *sources
 static void step_ode(himc_character *c, const segment_forces *f, double h)
 {
     if (!c->given)
-        give_to_ode(c);
-    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
-        dBodySetForce(c->body[i], f->force[i].x, f->force[i].y, f->force[i].z);
-        dBodySetTorque(c->body[i], f->torque[i].x, f->torque[i].y, f->torque[i].z);
-    }
-    dWorldStep(c->world, h);
-    himc_body_state *s = &c->state.joints;
-    for (int i = c->first; i < HIMC_SEGMENTS; i++) {
-        const dReal *q = dBodyGetQuaternion(c->body[i]), *r = dBodyGetRotation(c->body[i]);
-        s->orientation[i] = (himc_quat){q[0], q[1], q[2], q[3]};
-        s->rotation[i] = (himc_mat3){{{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, {r[8], r[9], r[10]}}};
-        s->spin[i] = from_ode(dBodyGetAngularVel(c->body[i]));
-        c->state.position[i] = from_ode(dBodyGetPosition(c->body[i]));
-        c->state.velocity[i] = from_ode(dBodyGetLinearVel(c->body[i]));
-        himc_vec3 center = himc_mat3_apply(&s->rotation[i], c->skeleton.segment[i].center);
-        s->origin[i] = himc_vec3_sub(c->state.position[i], center);
-    }
+        himc_ode_give(c->ode, &c->state);
+    himc_ode_step(c->ode, f, h, &c->state);
     c->still = 0;
 }
 
@@ -298,7 +228,7 @@ static void step_tree(himc_character *c, const segment_forces *f, double h)
     c->articulated = c->articulated && rest == (c->still > STILL_STEPS);
     c->still = rest ? STILL_STEPS + 1 : c->still < STILL_STEPS ? c->still : STILL_STEPS;
     himc_character_articulation(c);
-    himc_tree_step(&c->skeleton, &c->articulation, f, JOINT_ERP, h, &c->state);
+    himc_tree_step(&c->skeleton, &c->articulation, f, HIMC_JOINT_ERP, h, &c->state);
     if (rest)
         return;
     bool still = true;

@@ -11,6 +11,7 @@
 #include "base/argument.h"
 #include "base/format.h"
 #include "base/text.h"
+#include "body/engine_ode.h"
 #include "performance/performance_body.h"
 
 #include <stddef.h>
@@ -158,6 +159,9 @@ bool himc_settings_read(performance_settings *s, const performance_settings *usu
     const setting *row = find(c->id);
     if (!row)
         return true;
+    if (c->id == HIMC_COMMAND_ENGINE && c->choice[0] == HIMC_ENGINE_ODE && !himc_ode_is_here())
+        return himc_error_set(error, "engine: ode: the Open Dynamics Engine is not built in here, "
+                                     "expected tree");
     void *field = (char *)s + row->at;
     const void *field_usual = (const char *)usual + row->at;
     const double first = c->count > 0 ? c->atom[0].number : 0;

@@ -1,4 +1,5 @@
-/// files.c: names of files on Linux, macOS and other systems of POSIX, and on Windows.
+/// files.c: names of files on Linux, macOS and other systems of POSIX, on Windows, and in a page
+/// (WASI), where a few files lie in memory under plain names, without folders and links.
 ///
 /// A folder that nothing leads out of: on POSIX a name is resolved with all its links, and the
 /// result must lie in the folder. Then it is opened from the folder down, part by part, and no link
@@ -16,6 +17,7 @@
 
 #define LINKS_MAX 40 // followed, as Linux does
 
+#ifndef __wasi__
 // the part of a real path below the folder, with its first separator; NULL if it is not inside
 static const char *below(const char *real, const char *folder, char separator)
 {
@@ -24,6 +26,7 @@ static const char *below(const char *real, const char *folder, char separator)
     bool inside = strncmp(real, folder, length) == 0 && real[length] == separator;
     return inside ? real + length : NULL;
 }
+#endif
 
 #ifdef _WIN32
 #include <io.h>
@@ -135,14 +138,56 @@ int himc_system_open_inside(const char *folder, const char *name)
 #else
 #include <unistd.h>
 
-#ifndef O_PATH // Linux's own: a folder on the way needs not be readable
-#define O_PATH O_RDONLY
-#endif
-
 int himc_system_open(const char *path, int flags)
 {
     return open(path, flags, 0666);
 }
+
+bool himc_system_rename(const char *from, const char *to)
+{
+    return rename(from, to) == 0;
+}
+
+#ifdef __wasi__
+
+char *himc_system_real_path(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 ? strdup(path) : NULL;
+}
+
+char *himc_system_target(const char *path)
+{
+    return strdup(path);
+}
+
+bool himc_system_same(const char *a, const char *b)
+{
+    return strcmp(a, b) == 0;
+}
+
+int himc_system_temporary(char *path, size_t size, const char *ending)
+{
+    snprintf(path, size, "himc-temporary%s", ending);
+    return himc_system_open(path, O_CREAT | O_EXCL | O_WRONLY);
+}
+
+void himc_system_binary(void)
+{
+}
+
+int himc_system_open_inside(const char *folder, const char *name)
+{
+    (void)folder, (void)name;
+    errno = ENOENT;
+    return -1;
+}
+
+#else
+
+#ifndef O_PATH // Linux's own: a folder on the way needs not be readable
+#define O_PATH O_RDONLY
+#endif
 
 char *himc_system_real_path(const char *path)
 {
@@ -166,11 +211,6 @@ char *himc_system_target(const char *path)
         strcpy(at, next);
     }
     return strdup(strlen(path) < sizeof at ? at : path);
-}
-
-bool himc_system_rename(const char *from, const char *to)
-{
-    return rename(from, to) == 0;
 }
 
 bool himc_system_same(const char *a, const char *b)
@@ -214,4 +254,5 @@ int himc_system_open_inside(const char *folder, const char *name)
     free(real);
     return at;
 }
+#endif
 #endif

@@ -1,0 +1,305 @@
+"""The page that plays by itself, build/himc.html, opened as a file in a real Chromium.
+
+No test depends on the speed of the machine: each waits for what must come.
+"""
+
+import json
+import os
+import subprocess
+import sys
+
+sys.path.insert(0, "tests/viewer")
+import report
+from browser import Browser
+
+BUILD, MADE = os.environ["HIMC_BUILD"], os.environ["HIMC_MADE"]
+PAGE = os.path.abspath(os.path.join(BUILD, "himc.html"))
+LONG = bool(os.environ.get("HIMC_LONG"))
+LARGEST = 1.5e6  # bytes of the page
+# what the page tells, kept by START
+START = """
+window.heard = { strikes: [], told: [] };
+const { studio } = viewer, on = studio.on.frame, event = on.event;
+on.event = (e, time) => (e.event === "strike" && heard.strikes.push(e), event(e, time));
+const tell = studio.tell.bind(studio);
+studio.tell = (text, wrong) => (heard.told.push([text, !!wrong]), tell(text, wrong));
+viewer.view.camera.layers.set(7); // without a graphics card a picture takes long, and most tests need none
+"""
+HASH = """
+const names = arguments[0];
+const source = himcScripts.get("worker.js") + arguments[1], files = [...himcFiles],
+    worker = new Worker(URL.createObjectURL(new Blob([`${source}
+onmessage = e => {
+    const module = new WebAssembly.Module(e.data.wasm);
+    postMessage(e.data.pieces.map(([name, bytes]) => hashOf(module, name, bytes)));
+};`])));
+return new Promise(done => {
+    worker.onmessage = e => done(e.data);
+    worker.onerror = e => done([{ line: e.message }]);
+    const pieces = names.map(name => files.find(([n]) => n === name));
+    worker.postMessage({ wasm: files[0][1], pieces });
+});
+"""
+DROP = """
+const all = new DataTransfer();
+for (const [name, letters] of arguments[0])
+    all.items.add(new File([Uint8Array.from(atob(letters), c => c.charCodeAt(0))], name));
+heard.strikes.length = 0;
+heard.told.length = 0;
+dispatchEvent(new DragEvent("drop", { dataTransfer: all, cancelable: true }));
+"""
+browser = None
+
+
+def open_page(hash=""):
+    browser.open("about:blank")
+    browser.open(f"file://{PAGE}{hash}")
+    assert browser.wait("return !!(window.viewer && viewer.studio?.ready)"), browser.log()
+    browser.run(START)
+
+
+def click(name):
+    browser.run(
+        "const b = document.getElementById(arguments[0]);"
+        "b.dispatchEvent(new PointerEvent('pointerdown', { bubbles: true })); b.click();",
+        name,
+    )
+
+
+def drop(*files):
+    import base64
+
+    browser.run(DROP, [[name, base64.b64encode(bytes).decode()] for name, bytes in files])
+
+
+def say(line):
+    browser.run("heard.told.length = 0; viewer.studio.say(arguments[0])", line)
+
+
+def told(seconds=60):
+    """All lines, once there is one."""
+    assert browser.wait("return heard.told.length", seconds), "no line"
+    return browser.run("return heard.told")
+
+
+def refused():
+    """The one line of a refusal."""
+    assert browser.wait("return heard.told.some(([, wrong]) => wrong)", 60), browser.run("return heard.told")
+    wrong = [text for text, wrong in browser.run("return heard.told") if wrong]
+    assert len(wrong) == 1 and "\n" not in wrong[0], wrong
+    return wrong[0]
+
+
+def strikes(count, seconds=60):
+    assert browser.wait(f"return heard.strikes.length >= {count}", seconds), browser.run(
+        "return [heard.strikes.length, heard.told]"
+    )
+    return browser.run("return heard.strikes")
+
+
+def test_all_of_it_fits_into_one_small_file():
+    size = os.path.getsize(PAGE)
+    assert size < LARGEST, size
+    return f"{size / 1e6:.2f} MB"
+
+
+def test_it_opens_as_a_file_without_a_request_or_a_console_line():
+    open_page()
+    asked = browser.run(
+        "return performance.getEntriesByType('resource').map(r => r.name.slice(0, 40))"
+    )
+    assert all(name.startswith(("blob:", "data:")) for name in asked), asked
+    assert not browser.log(), browser.log()
+
+
+def test_the_improvisation_is_that_of_the_program_bit_by_bit():
+    pieces = ["improvisation.txt"]
+    paths = ["patches/improvisation.txt"]
+    if LONG:
+        for name in sorted(os.listdir("patches/pieces")):
+            if name.endswith((".txt", ".mid")):
+                pieces.append(name)
+                paths.append("patches/pieces/" + name)
+    with open("tests/page/hash.js") as file:
+        got = browser.run(HASH, pieces, file.read())
+
+    def native(program):
+        return subprocess.run(
+            [os.path.join(MADE, program), *paths], capture_output=True, text=True, check=True
+        ).stdout.splitlines()
+
+    usual = [line.split() for line in native("play")]
+    for name, one, own in zip(pieces, got, usual, strict=True):
+        samples, strikes, _, coarse = one["line"].split()
+        assert [samples, strikes, coarse] == [own[0], own[1], own[3]], (name, one, own)
+    said = ", ".join(f"{name} {one['speed']:.1f} x" for name, one in zip(pieces, got))
+    if not os.path.exists(os.path.join(MADE, "play-musl")):
+        return f"{said}; floats not compared, without musl-tools"
+    for name, one, line in zip(pieces, got, native("play-musl"), strict=True):
+        assert one["line"] == line, (name, one, line)
+    return said
+
+
+def test_a_click_plays_the_improvisation():
+    click("p-play")
+    assert browser.wait(
+        "const told = viewer.liveSound.nodes.get('page')?.told; return told?.playing && told.peak > 0.001"
+    ), browser.run("return heard.told")
+    strikes(3)
+    assert browser.run("return viewer.joints()?.length") == 22
+    assert browser.run("return document.getElementById('p-play').textContent").startswith("■")
+    # the device plays what the Worker has made, and both have the same count
+    waits = browser.run("return viewer.liveSound.nodes.get('page').told.waits")
+    assert 0 <= waits < 0.4, waits
+    click("p-play")
+    assert browser.wait("return document.getElementById('p-play').textContent.startsWith('▶')")
+
+
+def test_a_score_that_is_dropped_plays():
+    score = b"drum low 29; drum high 23;\n" + b"".join(
+        f"stroke {i / 2} {'right' if i % 2 else 'left'} legato f {'high' if i % 2 else 'low'};\n".encode()
+        for i in range(6)
+    )
+    drop(("two.txt", score))
+    got = strikes(6)
+    assert [s["drum"] for s in got[:4]] == ["low", "high", "low", "high"], got
+    assert browser.wait("return [...viewer.drums.values()].every(d => d.name !== 'kettle')"), "the old drum stays"
+    assert browser.run("return [...document.getElementById('p-drum').options].map(o => o.value)") == ["low", "high"]
+
+
+def test_a_midi_file_that_is_dropped_plays():
+    with open("patches/pieces/zarathustra.mid", "rb") as file:
+        drop(("zarathustra.mid", file.read()))
+    strikes(2)
+
+
+def test_what_cannot_be_played_is_one_line_and_what_was_there_plays_on():
+    cases = {
+        "bad.txt": b"stroke 0 left legto f;",
+        "page.html": b"<img src=x onerror=\"window.pwned = 1\">",
+        "noise.mid": b"MThd\0\0\0\6\0\1\xff\xff\0\0",
+        "empty.bvh": b"",
+        "sound.wav": b"RIFF\0\0\0\0WAVE",
+        '<b onclick="pwned=1">.txt': b"<script>window.pwned = 1</script>;",
+        "deep.xml": b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY a "&a;&a;">]><score-partwise>&a;</score-partwise>',
+    }
+    for name, bytes in cases.items():
+        drop((name, bytes))
+        line = refused()
+        assert len(line) < 400, (name, line)
+    assert browser.run("return window.pwned") is None
+    assert browser.run("return document.querySelectorAll('#p-said b, #p-said img, #p-said script').length") == 0
+    say("info")
+    assert any("drum third" in text for text, _ in told()), told()
+    assert not browser.log(), browser.log()
+
+
+def test_a_message_is_answered_as_in_pure_data():
+    browser.run("viewer.studio.load('improvisation.txt')")
+    assert browser.wait("return viewer.studio.name === 'improvisation.txt'")
+    cases = {
+        "hit left legto f": "hit: NUANCE: legto, expected legato tenuto accent vertical-accent staccato",
+        "engine ode": "engine: ode: the Open Dynamics Engine is not built in here, expected tree",
+        "kettle tune 5": "kettle: tune:",
+        "subscribe 127.0.0.1 9000 pose": "subscribe: only as a message to [himc~] or over OSC",
+        "score none.txt": "none.txt",
+    }
+    for line, why in cases.items():
+        say(line)
+        assert why in refused(), (line, refused())
+    say("kettle info")
+    assert len(told()) >= 1 and not any(wrong for _, wrong in told()), told()
+
+
+def test_keys_and_presses_and_a_keyboard_are_hits():
+    def hit(act):
+        browser.run("heard.strikes.length = 0;" + act)
+        return strikes(1)[0]
+
+    key = "dispatchEvent(new KeyboardEvent('keydown', { key: '%s', bubbles: true }))"
+    assert hit(f"document.body.{key % 'z'}")["hand"] == "left"
+    assert hit(f"document.body.{key % 'x'}")["hand"] == "right"
+    assert hit("viewer.studio.note([0x90, 60, 100])")["drum"] == "kettle"
+    at = hit(
+        """
+        viewer.actions.camera("top"), viewer.view.settle();
+        const drum = [...viewer.drums.values()][0], place = drum.tilted.localToWorld(drum.head.position.clone().set(-0.1, 0.08, 0)),
+            p = place.project(viewer.view.camera);
+        viewer.view.camera.updateMatrixWorld();
+        document.getElementById("stage").dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0, pointerId: 1,
+            clientX: ((p.x + 1) * innerWidth) / 2, clientY: ((1 - p.y) * innerHeight) / 2 }));
+        """
+    )
+    assert abs(at["x"] + 0.1) < 0.03 and abs(at["y"] - 0.08) < 0.03, at
+
+
+def test_a_link_carries_a_short_score():
+    text = "drum only 26;\nstroke 0 left staccato mf; stroke 1 right staccato mf;\n"
+    drop(("short.txt", text.encode()))
+    strikes(2)
+    click("p-link")
+    assert browser.wait("return location.hash.startsWith('#s=')")
+    hash = browser.run("return location.hash")
+    open_page(hash)
+    assert browser.run("return viewer.studio.name") == "link.txt"
+    click("p-play")
+    assert strikes(2)[0]["drum"] == "only"
+    for wrong in ("#s=", "#s=%3Cscript%3E", "#s=AAAA" + "A" * 3000):
+        open_page(wrong)
+        assert browser.run("return viewer.studio.said[0].text") == "this link holds no score"
+        assert not browser.log(), browser.log()
+
+
+def test_a_text_that_is_changed_is_heard_and_a_reload_loses_nothing():
+    open_page()
+    browser.run("document.getElementById('p-piece').value = 'rudiments.txt'")
+    browser.run("document.getElementById('p-piece').dispatchEvent(new Event('change'))")
+    assert browser.wait("return viewer.studio.name === 'rudiments.txt'")
+    text = "drum mine 28;\nstroke 0 left legato f;\nstroke 8 left legato f;\n"
+    write = """
+    const area = document.getElementById("p-text");
+    area.value = arguments[0];
+    area.dispatchEvent(new Event("input"));
+    heard.strikes.length = 0;
+    """
+    browser.run(write, text)
+    click("p-use")
+    assert strikes(1)[0]["drum"] == "mine"
+    browser.run(write, text + "stroke 1 right legto f;\n")
+    click("p-use")
+    assert "legto" in refused()
+    open_page()  # with a text that cannot be played: it waits, and something plays
+    assert browser.run("return document.getElementById('p-text').value").endswith("legto f;\n")
+    assert "legto" in " ".join(one["text"] for one in browser.run("return viewer.studio.said"))
+    browser.run(write, text)
+    click("p-use")
+    assert strikes(1)[0]["drum"] == "mine"
+    open_page()
+    assert browser.run("return document.getElementById('p-text').value") == text
+    browser.run("localStorage.clear()")
+
+
+def test_a_page_around_it_gives_commands_and_hears_the_answers():
+    frame = os.path.join(MADE, "around.html")
+    with open(frame, "w") as file:
+        file.write(
+            f"""<iframe id=f src="file://{PAGE}?embed" width=400 height=300></iframe>
+            <script>said = []; onmessage = e => said.push(e.data.himc); tell = what =>
+            document.getElementById("f").contentWindow.postMessage({{ himc: what }}, "*");</script>"""
+        )
+    browser.open(f"file://{os.path.abspath(frame)}")
+    assert browser.wait("return said.length", 60)
+    browser.run("tell({ name: 'one.txt', score: 'drum solo 26; stroke 0 left legato f;' })")
+    assert browser.wait("return said.some(one => one.text.startsWith('one.txt'))", 60)
+    browser.run("tell('solo tune nonsense')")
+    assert browser.wait("return said.some(one => one.wrong && one.text.includes('tune'))", 60)
+
+
+if __name__ == "__main__":
+    browser = Browser(800, 600)
+    try:
+        tests = [f for name, f in list(globals().items()) if name.startswith("test_")]
+        code = report.run("tests/page/page.py", tests)
+    finally:
+        browser.close()
+    sys.exit(code)

@@ -1,0 +1,380 @@
+// The performer inside the page: starts the Worker that computes it (worker.js), hands the Worker a
+// port to the audio thread, shows what it tells as the stream of any live performer, and turns what
+// the user does into the commands that Pure Data has.
+import * as THREE from "./three.js";
+import { readFrame } from "./stream.js";
+
+const $ = id => document.getElementById(id);
+const RATE = 48000, // (Hz), on every device: the same bits everywhere
+    SAID = 60, // lines that are kept; chosen
+    LONGEST = 20000, // of a link (letters); chosen: what chats and mails keep whole
+    LOWEST = 38, // the note at the left of the tuning, D2 ...
+    JOURNAL = "himc-journal", // in the browser's storage: the scores whose text was changed, by name
+    NOTES = ["C", "C#", "D", "Eb", "E", "F", "F#", "G", "Ab", "A", "Bb", "B"],
+    HITS = { z: "left", x: "right" }; // keys
+const DEFLATE = "deflate-raw",
+    bytesOf = new TextEncoder();
+
+const noteName = key => `${NOTES[key % 12]}${Math.floor(key / 12) - 1}`;
+
+async function squeeze(bytes, stream) {
+    return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+}
+
+// a score as the part of an address after the #
+export async function linkOf(text) {
+    const bytes = await squeeze(bytesOf.encode(text), new CompressionStream(DEFLATE));
+    return `#s=${btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "")}`;
+}
+
+export async function textOf(hash) {
+    const letters = atob(hash.slice(3).replace(/-/g, "+").replace(/_/g, "/")),
+        bytes = Uint8Array.from(letters, c => c.charCodeAt(0));
+    return new TextDecoder().decode(await squeeze(bytes, new DecompressionStream(DEFLATE)));
+}
+
+// `on` has: frame, the handlers of a Stream; fresh(): another piece begins; drums(): those that are seen;
+// ray(press); scene(file): to show one; hold(yes): to draw nothing
+export class Studio {
+    constructor(files, sound, liveSound, on) {
+        ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.files = files));
+        ((this.connections = 1), (this.plays = false), (this.said = []), (this.past = []), (this.names = ""));
+        const [[, wasm], ...pieces] = files;
+        ((this.pieces = pieces.map(([name]) => name)), (this.name = ""), (this.ready = false));
+        this.texts = new Map(pieces); // as they are in the files
+        this.journal = this.remembered();
+        const source = window.himcScripts.get("worker.js"),
+            address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+        this.worker = new Worker(address);
+        this.worker.onmessage = e => this.hear(e.data);
+        this.worker.onerror = e => this.tell(e.message, true);
+        this.worker.postMessage({ begin: { wasm, files: pieces, rate: RATE } });
+        this.controls();
+        document.body.classList.add("studio");
+        this.begin().catch(error => this.tell(error.message, true));
+    }
+
+    async begin() {
+        this.worker.postMessage({ runs: true });
+        if (location.hash.startsWith("#s=")) {
+            const text = await textOf(location.hash).catch(() => null);
+            if (text !== null) return this.load("link.txt", bytesOf.encode(text));
+            this.tell("this link holds no score", true);
+        }
+        if (await this.restore()) return;
+        this.load(this.pieces[0] ?? "");
+    }
+
+    // --- the text of a score, which no end of the page loses
+
+    remembered() {
+        try {
+            const all = JSON.parse(localStorage.getItem(JOURNAL) ?? "{}");
+            return { name: String(all.name ?? ""), text: all.text && typeof all.text === "object" ? all.text : {} };
+        } catch {
+            return { name: "", text: {} };
+        }
+    }
+
+    remember() {
+        try {
+            localStorage.setItem(JOURNAL, JSON.stringify(this.journal));
+        } catch {
+            if (!this.unkept) this.tell("this browser keeps no changes: save the score as a file", true);
+            this.unkept = true;
+        }
+    }
+
+    // the score that was on the stand when the page ended, as it was changed
+    async restore() {
+        const { name, text } = this.journal;
+        if (typeof text[name] !== "string") return false;
+        this.draft = text[name];
+        this.load(name, bytesOf.encode(text[name]));
+        this.tell(`${name} is here again as you left it; "file's text" takes your changes back`);
+        return true;
+    }
+
+    // what is typed is kept at once
+    typed() {
+        ((this.journal.name = this.name || "score.txt"), (this.journal.text[this.journal.name] = $("p-text").value));
+        this.remember();
+    }
+
+    // plays the text; from the beat that was heard last, if `on`
+    use(on = false) {
+        const beat = on && this.beat > 0 ? [`seek ${this.beat}`] : [];
+        this.typed();
+        this.load(this.journal.name, bytesOf.encode($("p-text").value), true, beat);
+    }
+
+    forgetChanges() {
+        const text = this.texts.get(this.name);
+        delete this.journal.text[this.name];
+        this.remember();
+        if (text) this.load(this.name, text);
+    }
+
+    // the text of what is on the stand; "" of what is no text
+    write(bytes) {
+        const text = bytes && !bytes.includes(0) ? new TextDecoder().decode(bytes) : "";
+        $("p-text").value = text;
+        $("p-sheet").hidden = !!bytes && !text;
+    }
+
+    // the device is open: sound goes from the Worker to the audio thread, past this page
+    async listen() {
+        if (this.listens) return;
+        this.listens = true;
+        this.on.hold(true);
+        const port = await this.liveSound.feed("page").catch(error => this.tell(`no sound: ${error.message}`, true));
+        this.on.hold(false);
+        if (port) this.worker.postMessage({ port }, [port]);
+    }
+
+    // --- what the Worker tells
+
+    hear({ frame, loaded, failed, line, saved, bytes, name }) {
+        if (frame) readFrame(frame, this.handlers);
+        else if (saved) this.save(saved, bytes);
+        else if (loaded !== undefined) this.fresh(loaded);
+        else if (line !== undefined) this.answered(line, failed);
+        else if (failed) this.failed(name && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
+    }
+
+    get handlers() {
+        const on = this.on.frame;
+        return {
+            ...on,
+            event: (event, time) => {
+                if (event.event === "beat") this.beat = event.beat;
+                if (event.event === "done") this.playing(false);
+                else if (event.event === "line" || event.event === "note") this.tell(event.text);
+                else if (event.event === "missed" || event.event === "refused") this.tell(event.text, true);
+                else on.event(event, time);
+            },
+        };
+    }
+
+    // what was there goes on; at first there is nothing yet, and a text that cannot be played waits to be mended
+    failed(why) {
+        this.tell(why, true);
+        if (!this.ready && this.draft !== undefined) this.load(this.pieces[0] ?? "");
+    }
+
+    fresh(name) {
+        ((this.name = name), (this.ready = true), (this.names = ""), (this.bytes = this.coming), (this.beat = 0));
+        $("p-drum").replaceChildren();
+        this.on.fresh();
+        this.write(this.draft === undefined ? this.bytes : bytesOf.encode(this.draft));
+        this.draft = undefined;
+        if (!this.pieces.includes(name) && $("p-text").value) this.typed();
+        this.playing(!!this.wanted);
+        $("p-piece").value = this.pieces.includes(name) ? name : "";
+        $("p-piece").options[0].text = this.pieces.includes(name) || !name ? "a piece" : name;
+        this.tell(name ? `${name} is on the stand` : "a performer without a score");
+    }
+
+    answered(line, failed) {
+        if (failed) this.tell(failed, true);
+        const word = line.split(" ")[0];
+        if (!failed && (word === "play" || word === "stop")) this.playing(word === "play");
+    }
+
+    tell(text, wrong = false) {
+        const log = $("p-said"),
+            row = document.createElement("div");
+        row.textContent = text;
+        row.classList.toggle("wrong", wrong);
+        log.append(row);
+        this.said.push({ text, wrong });
+        this.outside?.({ text, wrong });
+        while (log.children.length > SAID) log.firstChild.remove();
+        log.scrollTop = log.scrollHeight;
+    }
+
+    save(name, bytes) {
+        const link = document.createElement("a");
+        link.href = URL.createObjectURL(new Blob([bytes]));
+        link.download = name;
+        link.click();
+        setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    }
+
+    playing(yes) {
+        this.plays = yes;
+        this.wanted = false;
+        $("p-play").textContent = yes ? "■ stop" : "▶ play";
+        $("p-play").setAttribute("aria-pressed", yes);
+    }
+
+    // --- what the user does
+
+    say(line) {
+        this.worker.postMessage({ say: line.trim().replace(/;$/, "") });
+    }
+
+    // a piece of the page, or a file; `play`: at once, after these commands
+    load(name, bytes = null, play = false, first = []) {
+        if (bytes && !this.texts.has(name)) this.texts.set(name, bytes);
+        ((this.wanted = play), (this.coming = bytes ?? this.texts.get(name)));
+        this.worker.postMessage({ load: { name, bytes: this.coming, then: play ? [...first, "play"] : [] } });
+    }
+
+    // as it was changed here, if it was
+    choose(name) {
+        const changed = this.journal.text[name];
+        ((this.journal.name = name), this.remember());
+        this.load(name, typeof changed === "string" ? bytesOf.encode(changed) : null, true);
+    }
+
+    async open(file) {
+        if (/\.himc$/i.test(file.name)) return this.on.scene(file);
+        const bytes = new Uint8Array(await file.arrayBuffer()),
+            name = file.name.split("/").pop();
+        this.texts.delete(name);
+        this.load(name, bytes, true);
+    }
+
+    toggle() {
+        if (this.ready) this.say(this.plays ? "stop" : "play");
+    }
+
+    // x and y on the head (m)
+    hit(hand, dynamic = Number($("p-dynamic").value), spot = "", drum = $("p-drum").value) {
+        this.say(`hit ${hand} legato ${dynamic.toFixed(3)} ${spot} ${drum}`.replace(/ +/g, " "));
+    }
+
+    press(e) {
+        const caster = new THREE.Raycaster(),
+            ray = this.on.ray(e);
+        caster.set(ray.origin, ray.direction);
+        for (const drum of this.on.drums()) {
+            if (!caster.intersectObjects(drum.tilted.children, true).length) continue;
+            const head = drum.tilted,
+                normal = new THREE.Vector3(0, 0, 1).transformDirection(head.matrixWorld),
+                plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, head.getWorldPosition(new THREE.Vector3())),
+                at = ray.intersectPlane(plane, new THREE.Vector3());
+            if (!at) continue;
+            const { x, y } = head.worldToLocal(at),
+                radius = drum.place[4];
+            if (Math.hypot(x, y) < radius) return this.hit("any", undefined, `${x.toFixed(3)} ${y.toFixed(3)}`, drum.name);
+        }
+    }
+
+    key(e) {
+        const hand = HITS[e.key.toLowerCase()];
+        if (e.ctrlKey || e.metaKey || e.altKey || e.repeat || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
+        if (hand) this.hit(hand);
+        else if (e.key === " " && e.target.tagName !== "BUTTON") this.toggle();
+        else return;
+        e.preventDefault();
+        e.stopImmediatePropagation();
+    }
+
+    paste(e) {
+        const files = [...(e.clipboardData?.files ?? [])],
+            text = e.clipboardData?.getData("text");
+        if (/^(INPUT|TEXTAREA)$/.test(e.target.tagName)) return;
+        if (files.length) files.forEach(file => this.open(file));
+        else if (text) this.load("pasted.txt", bytesOf.encode(text), true);
+    }
+
+    async midi() {
+        const access = await navigator.requestMIDIAccess();
+        const listen = () => access.inputs.forEach(input => (input.onmidimessage = e => this.note(e.data)));
+        access.onstatechange = listen;
+        listen();
+        this.tell(access.inputs.size ? `MIDI: ${[...access.inputs.values()].map(i => i.name).join(", ")}` : "MIDI: no keyboard yet");
+    }
+
+    // a key that is pressed; several drums lie on the keys in turn
+    note([status, key, velocity]) {
+        const drums = this.on.drums();
+        if ((status & 0xf0) !== 0x90 || !velocity || !drums.length) return;
+        this.hit("any", velocity / 127, "", drums[key % drums.length].name);
+    }
+
+    // the drums of the piece, once they are seen
+    drums(all) {
+        const names = all.map(drum => drum.name);
+        if (names.join() === this.names) return;
+        this.names = names.join();
+        $("p-drum").replaceChildren(...names.map(name => new Option(name, name)));
+    }
+
+    async copyLink() {
+        const { bytes } = this,
+            text = bytes && new TextDecoder().decode(bytes),
+            link = text && !/\0/.test(text) ? await linkOf(text) : null;
+        if (!link || link.length > LONGEST) return this.tell("only a short score fits into a link", true);
+        const address = location.href.replace(/#.*/, "") + link;
+        history.replaceState(null, "", link);
+        const copied = await navigator.clipboard?.writeText(address).then(() => true, () => false);
+        this.tell(copied ? "the link is copied" : "the link is in the address line");
+    }
+
+    controls() {
+        const click = (id, f) => ($(id).onclick = f);
+        $("perform").hidden = false;
+        $("p-piece").append(new Option("a piece", ""), ...this.pieces.map(name => new Option(name, name)));
+        $("p-piece").onchange = e => e.target.value && this.choose(e.target.value);
+        click("p-play", () => this.toggle());
+        click("p-open", () => $("p-file").click());
+        click("p-link", () => this.copyLink().catch(error => this.tell(error.message, true)));
+        $("p-file").onchange = e => [...e.target.files].forEach(file => this.open(file));
+        $("p-midi").hidden = !navigator.requestMIDIAccess;
+        click("p-midi", () => this.midi().catch(error => this.tell(`MIDI: ${error.message}`, true)));
+        const told = (id, words, command) =>
+            ($(id).oninput = e => {
+                $(id).nextElementSibling.textContent = words(Number(e.target.value));
+                if (command) this.say(command(Number(e.target.value)));
+            });
+        told("p-tempo", bpm => `${bpm} bpm`, bpm => `tempo ${bpm}`);
+        told("p-dynamic", d => ["ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"][Math.round(7 * d)]);
+        told("p-tune", k => noteName(LOWEST + k), k => `${$("p-drum").value} tune ${noteName(LOWEST + k)}`);
+        $("p-mallet").onchange = e => this.say(`${$("p-drum").value} mallet ${e.target.value}`);
+        $("p-text").oninput = () => this.typed();
+        $("p-text").onkeydown = e => e.key === "Enter" && (e.ctrlKey || e.metaKey) && (e.preventDefault(), this.use());
+        click("p-use", () => this.use());
+        click("p-here", () => this.use(true));
+        click("p-undo", () => this.forgetChanges());
+        $("p-form").onsubmit = e => (e.preventDefault(), this.send());
+        $("p-line").onkeydown = e => this.recall(e);
+        click("p-copy", () => navigator.clipboard?.writeText($("p-line").value.replace(/([,;$])/g, "\\$1")));
+        $("stage").addEventListener("pointerdown", e => !e.button && this.press(e), true);
+        addEventListener("keydown", e => this.key(e), true);
+        addEventListener("paste", e => this.paste(e));
+        if (new URLSearchParams(location.search).has("embed")) this.embed();
+    }
+
+    // in another page, which sends { himc: "a command" } or { himc: { name, score } } and hears what is told here
+    embed() {
+        document.body.classList.add("bare");
+        if (parent === window) return;
+        addEventListener("message", e => {
+            const what = e.source === parent ? e.data?.himc : null;
+            if (typeof what === "string") this.say(what);
+            else if (typeof what?.score === "string") this.load(String(what.name ?? "score.txt"), bytesOf.encode(what.score));
+        });
+        this.outside = text => parent.postMessage({ himc: text }, "*");
+    }
+
+    send() {
+        const line = $("p-line").value.trim();
+        if (!line) return;
+        this.past.push(line);
+        this.back = this.past.length;
+        $("p-line").value = "";
+        this.tell(`> ${line}`);
+        this.say(line);
+    }
+
+    recall(e) {
+        const by = { ArrowUp: -1, ArrowDown: 1 }[e.key];
+        if (!by) return;
+        e.preventDefault();
+        this.back = Math.min(this.past.length, Math.max(0, (this.back ?? this.past.length) + by));
+        $("p-line").value = this.past[this.back] ?? "";
+    }
+}
