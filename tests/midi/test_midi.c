@@ -4,7 +4,7 @@
 
 #include "midi/import.h"
 #include "midi/part.h"
-#include "midi/score_file.h"
+#include "musicxml/score_file.h"
 #include "base/file.h"
 #include "base/line.h"
 #include "plan/score.h"

@@ -4,12 +4,12 @@
 /// comments say the same.
 #include "base/file.h"
 #include "cli.h"
-#include "midi/import.h"
-#include "midi/score_file.h"
+#include "musicxml/import.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#define MOST_BYTES ((size_t)64 << 20) // of a file; each reader has its own limit
 #define USUAL_RANGE 22.0 // of `--curve square` (dB): from ppp to fff of this instrument
 
 enum { OUT, PART, CURVE };
@@ -55,8 +55,10 @@ static bool import(const char *path, const char *name, const midi_options *wante
                    himc_error *error)
 {
     size_t size;
-    char *bytes = himc_file_load(path, HIMC_MIDI_BYTES_MAX, &size, error);
-    bool good = bytes && (himc_midi_import(made, bytes, size, name, wanted, error) ||
+    char *bytes = himc_file_load(path, MOST_BYTES, &size, error);
+    himc_score_maker *make = bytes ? himc_score_maker_of(bytes, size) : NULL;
+    make = make ? make : himc_midi_import; // which says that it is none
+    bool good = bytes && (make(made, bytes, size, name, wanted, error) ||
                           himc_error_prefix(error, "%s", name));
     free(bytes);
     return good;

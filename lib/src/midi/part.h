@@ -5,11 +5,15 @@
 #ifndef HIMC_MIDI_PART_H
 #define HIMC_MIDI_PART_H
 
+#include "base/argument.h"
 #include "midi/import.h"
 #include "midi/smf.h"
 
 #define MIDI_HEADS HIMC_DRUMS ///< most of a part
 #define MIDI_UNTUNED (-2)     ///< of midi_head.key: it is used as it is made
+
+/// Keys of drums that General MIDI does not have.
+enum { MIDI_BASS_DRUM = 128, MIDI_TAM_TAM, MIDI_TEMPLE_BLOCKS, MIDI_NO_SOUND, MIDI_KEY_COUNT };
 
 /// What became of a note.
 typedef enum midi_fate {
@@ -46,6 +50,7 @@ typedef enum midi_opening { MIDI_AS_IT_IS, MIDI_CLOSE, MIDI_OPEN } midi_opening;
 /// A stroke of the part.
 typedef struct midi_stroke {
     const midi_note *note; ///< borrowed from the file
+    int order, orders;     ///< of the file, since the stroke before: the first, how many
     int key;               ///< of the note, of timpani moved by octaves into their range
     midi_fate fate;
     int head; ///< its index
@@ -56,7 +61,7 @@ typedef struct midi_stroke {
     bool foot; ///< a foot plays it
     himc_hand hand;
     double dynamic; ///< 0 .. 1
-    double end;     ///< of the note: a hand is not back on the head sooner than 0.15 s (s)
+    double end;     ///< of the note, and of its roll: a hand is not back on the head sooner than 0.15 s (s)
     bool damped;    ///< at the end of its note
     bool in_roll;   ///< another stroke's roll plays it
     midi_roll roll;
@@ -70,7 +75,8 @@ typedef struct midi_pedal {
 } midi_pedal;
 
 typedef struct midi_part {
-    midi_choice choice; ///< not MIDI_ANY
+    const midi_file *file; ///< borrowed
+    midi_choice choice;    ///< not MIDI_ANY
     midi_head head[MIDI_HEADS];
     int heads;
     midi_stroke *stroke; ///< in the order of time (count), owned
@@ -78,10 +84,19 @@ typedef struct midi_part {
     midi_pedal *pedal; ///< in the order of time (pedals), owned
     int pedals;
     int fate[MIDI_FATES]; ///< notes of the file
+    int notes;            ///< of the part, as written
+    char bars[MIDI_FATES][48]; ///< of notes that are not played
     int moved;            ///< by octaves
     int damped;           ///< strokes
+    int untuned;          ///< orders to tune that no drum can follow
+    int mallets;          ///< changes of mallets that are not played
     int rolls, rolled;    ///< rolls, and the strokes in them
 } midi_part;
+
+/// Adds the number of a bar to a list of them, unless it is there already or there are too many.
+void himc_midi_list_bar(char *list, size_t size, const char *number);
+/// When the hands leave a stroke's head: of a roll its end (s).
+double himc_midi_stroke_end(const midi_stroke *stroke);
 
 /// Of two strokes on one head (but for drums: of one pitch) at the same time one is played, the
 /// louder.
@@ -115,8 +130,10 @@ void himc_midi_kit(midi_part *part);
 /// notes.
 int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);
 
-/// keyboard.c: true if a program of General MIDI is that keyboard.
-bool himc_midi_is_keyboard(midi_choice choice, int program);
+/// keyboard.c: the timpani or keyboard of a program of General MIDI (0 .. 127), else MIDI_ANY.
+midi_choice himc_midi_program_choice(int program);
+/// "C#3".
+void himc_midi_key_name(char name[HIMC_NOTE_SIZE], int key);
 /// Gives each stroke its bar.
 void himc_midi_keyboard(midi_part *part);
 

@@ -233,7 +233,8 @@ static bool collect(midi_file *file, reader *r)
                                  .key = e->first,
                                  .velocity = e->second,
                                  .program = program[e->channel],
-                                 .timpani = r->timpani[e->track]};
+                                 .choice = r->timpani[e->track] ? MIDI_TIMPANI : MIDI_ANY,
+                                 .way = {.dynamic = -1, .spot = HIMC_SPOT_NORMAL}};
         }
         if (e->kind == TEMPO && r->per_second == 0) {
             since = seconds;
@@ -313,5 +314,8 @@ void himc_midi_file_free(midi_file *file)
 {
     free(file->notes);
     free(file->tempi);
+    free(file->bars);
+    free(file->orders);
+    free(file->said);
     *file = (midi_file){0};
 }

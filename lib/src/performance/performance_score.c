@@ -12,7 +12,7 @@
 
 #include "capture/take.h"
 #include "head/idiophone.h"
-#include "midi/score_file.h"
+#include "musicxml/score_file.h"
 #include "performance/confine.h"
 #include "performance/research.h"
 #include "plan/score.h"
