@@ -224,6 +224,7 @@ static bool collect(midi_file *file, reader *r)
             *note = NULL;
         }
         if (e->kind == NOTE_ON) {
+            bool timpani = r->timpani[e->track] && e->channel != MIDI_DRUM_CHANNEL;
             *note = &file->notes[file->note_count++];
             **note = (midi_note){.beat = beat,
                                  .seconds = seconds,
@@ -233,7 +234,7 @@ static bool collect(midi_file *file, reader *r)
                                  .key = e->first,
                                  .velocity = e->second,
                                  .program = program[e->channel],
-                                 .choice = r->timpani[e->track] ? MIDI_TIMPANI : MIDI_ANY,
+                                 .choice = timpani ? MIDI_TIMPANI : MIDI_ANY,
                                  .way = {.dynamic = -1, .spot = HIMC_SPOT_NORMAL}};
         }
         if (e->kind == TEMPO && r->per_second == 0) {

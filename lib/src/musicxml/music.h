@@ -9,6 +9,7 @@
 
 typedef struct music_bar {
     double length;   ///< (beats); a pickup is shorter
+    bool sounds;     ///< a part has a note in it
     char number[12]; ///< as printed
     bool forward, backward, segno, coda, to_coda, fine, da_capo, dal_segno;
     int times;        ///< of `backward`, 2 by default

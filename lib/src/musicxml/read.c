@@ -11,6 +11,7 @@
 #include "midi/part.h"
 #include "musicxml/xml.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -437,15 +438,27 @@ static void read_attributes(reader *r, const xml_node *attributes)
         r->time = 4 * beats / unit;
 }
 
+// as it is printed, a word of a comment
+static void read_number(music_bar *bar, const xml_node *measure)
+{
+    if (!bar->number[0])
+        snprintf(bar->number, sizeof bar->number, "%.11s", xml_attribute(measure, "number"));
+    for (char *c = bar->number; *c; c++)
+        *c = isalnum((unsigned char)*c) || strchr("-+.", *c) ? *c : '_';
+}
+
 static void read_measure(reader *r, const xml_node *measure)
 {
     music_bar *bar = &r->music->bars[r->bar];
+    read_number(bar, measure);
     bool own = false;
     for (int i = 0; i < r->instruments; i++)
         own |= r->instrument[i].choice != MIDI_ANY;
+    bool sounds = false;
     r->at = r->last = r->end = 0;
     for (const xml_node *n = measure->child; n; n = n->next) {
         double duration = xml_number(n, "duration", 0) / r->divisions;
+        sounds |= xml_child(n, "pitch") || xml_child(n, "unpitched");
         if (xml_is(n, "note"))
             read_note(r, n);
         else if (xml_is(n, "backup"))
@@ -464,11 +477,12 @@ static void read_measure(reader *r, const xml_node *measure)
     }
     if (bar->length == 0 && r->end == 0)
         r->end = r->time;
-    bar->length = fmax(bar->length, r->end);
-    if (!bar->number[0])
-        snprintf(bar->number, sizeof bar->number, "%.11s", xml_attribute(measure, "number"));
-    for (char *c = bar->number; *c; c++)
-        *c = *c > ' ' && *c < 127 && *c != ';' && *c != ',' && *c != '\\' ? *c : '_';
+    // a rest may fill a whole bar where the bar of others is a pickup
+    if (sounds == bar->sounds)
+        bar->length = fmax(bar->length, r->end);
+    else if (sounds)
+        bar->length = r->end;
+    bar->sounds |= sounds;
 }
 
 static bool read_part(reader *r, const xml_node *part)
