@@ -123,7 +123,7 @@ linux-here: $(EXTERNALS) $(EXTERNALS_64)
 
 arm64: deps ## program and externals for Linux on arm64 with glibc 2.31 and newer, crossed, in build/arm64
 	@tools/build/deps.sh tools/build/deps-arm64.txt
-	@tools/build/root.sh $(BUILD)/arm64/debian arm64 libode8 libccd2 libsndfile1-dev libsndfile1 libflac8 libvorbis0a libvorbisenc2 libogg0 zlib1g-dev \
+	@tools/build/root.sh $(BUILD)/arm64/debian arm64 libode8 libccd2 libsndfile1-dev libsndfile1 libflac8 libvorbis0a libvorbisenc2 libogg0 libexpat1 \
 	    zlib1g $(OLDER_PD)
 	@$(MAKE) $(TABLE)
 	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 $(call OLDER,$(BUILD)/arm64/debian,aarch64) TABLE=$(TABLE)
@@ -142,7 +142,7 @@ windows: deps ## program and externals for Windows, crossed by mingw-w64, in bui
 	@tools/build/deps.sh tools/build/deps-windows.txt
 	@tools/build/windows.sh $(BUILD)/windows/parts
 	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
-	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
+	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include -DXML_STATIC" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
 	    LIB_LIBS="-lode -lexpat -lz -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser edit%"
 windows-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"

@@ -557,7 +557,7 @@ static void test_words_about_tuning_move_a_pedal_there(void)
         TEST_ASSERT_EQUAL_STRING(stroke(0)->drum, stroke(2)->drum);
     }
     PLAY(BAR(1, FOUR C3(16, "")) BAR(2, WORDS("change A to B") C3(16, "")));
-    expect_text("1 word about tuning is not followed: no drum has that pitch");
+    expect_text("1 word about tuning is not followed: no drum has that pitch and time");
 }
 
 // --- instruments

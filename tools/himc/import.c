@@ -1,4 +1,4 @@
-/// import.c: `himc import`: makes a score, to be read and edited, of a MIDI file.
+/// import.c: `himc import`: makes a score, to be read and edited, of a MIDI or MusicXML file.
 ///
 /// What is played and what is not, with the reasons, is printed on stderr; the score's first
 /// comments say the same.
@@ -108,14 +108,15 @@ static int run(const cli_arguments *arguments)
 
 const cli_call cli_import = {
     "import",
-    "FILE.mid",
+    "FILE",
     " -o SCORE",
-    "makes a score of a MIDI file's percussion",
+    "makes a score of the percussion in a MIDI or MusicXML file",
     "Notes of timpani are played on up to four drums, with pedals that move between them;\n"
     "those of the drum channel of General MIDI on a kit and what stands around it; those of\n"
     "keyboards on their bars. One player has two hands and feet: what cannot be played is\n"
     "said on stderr, a line for each reason.\n"
-    "render, info and the command `score` read a MIDI file in the same way by themselves.\n"
+    "render, info and the command `score` read such a file in the same way by themselves.\n"
+    "MusicXML: .musicxml and .mxl, score-partwise.\n"
     "\n"
     "PART: timpani (program 48 of General MIDI and tracks of that name), drums (channel 10),\n"
     "marimba, xylophone, vibraphone, glockenspiel (programs 13, 14, 12, 10).\n"

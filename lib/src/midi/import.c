@@ -258,8 +258,8 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
     if (part->rolls > 0)
         put(t, "%d note%s played as %d roll%s\n", part->rolled,
             part->rolled == 1 ? " is" : "s are", part->rolls, part->rolls == 1 ? "" : "s");
-    report_kind(t, part->untuned, "word about tuning is not followed: no drum has that pitch",
-                "words about tuning are not followed: no drum has that pitch");
+    report_kind(t, part->untuned, "word about tuning is not followed: no drum has that pitch and time",
+                "words about tuning are not followed: no drum has that pitch and time");
     report_kind(t, part->mallets, "change of mallets is not played: a score has one pair",
                 "changes of mallets are not played: a score has one pair");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
@@ -305,7 +305,13 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         for (int k = pedal; k < part->pedals && part->pedal[k].seconds < until; k++)
             if (part->pedal[k].head == s->head && part->pedal[k].seconds > s->end)
                 until = part->pedal[k].seconds;
-        list[count++] = (change){s->end, s->head, -1, "damp 1"};
+        // a dry note that the next one follows at once is damped before that
+        double from = s->end, least = s->note->seconds + 0.15;
+        if (s->note->way.ring < 0 && until - from < 0.1)
+            from = fmax(least, until - 0.25);
+        if (s->note->way.ring < 0 && until - from < 0.05)
+            continue;
+        list[count++] = (change){from, s->head, -1, "damp 1"};
         list[count++] = (change){until, s->head, -1, "damp 0"};
     }
     for (int i = 0; i < file->order_count; i++) {

@@ -13,6 +13,8 @@
 
 enum { OMIT = HIMC_HANDS };
 
+// of the time that a move takes: the planner's margin (hand.c) for a stroke's swing, a little more
+#define MOVE_SHARE 1.45
 #define ROLL_STROKE 0.1 // from a roll's last stroke to its end (s)
 #define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
 
@@ -55,12 +57,11 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     // a roll is left earlier for another drum, up to its middle (planner_roll.c)
     const midi_stroke *before = state->key[hand] < 0 ? NULL : &part->stroke[state->key[hand]];
     if (before && before->roll.length > 0 && s.way > 0) {
-        double end = himc_midi_stroke_end(before), half = 0.5 * (before->note->seconds + end);
-        s.gap = to.at - fmax(half, end - 0.5);
+        double half = 0.5 * (before->note->seconds + himc_midi_stroke_end(before));
+        s.gap = fmax(s.gap, fmin(to.at - half, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)));
     }
-    // on one spot 0.055 s, as the planner refuses 0.04 s; the margin is the planner's (hand.c) for
-    // a stroke's swing, and a little more
-    if (s.gap < fmax(0.055, 1.45 * himc_move_time(s.way, HIMC_HARDEST_MOVE)))
+    // on one spot 0.055 s, as the planner refuses 0.04 s
+    if (s.gap < fmax(0.055, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)))
         return false;
     int written = part->stroke[stroke].note->way.hand;
     state->cost += himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);

@@ -24,8 +24,8 @@ bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_e
     const char *kind = NULL, *suffix = himc_take_suffix_of(bytes, size);
     if (suffix)
         return himc_error_set(error,
-                              "%s: a take: its name must end with %s; expected a score, a MIDI "
-                              "file or a take",
+                              "%s: a take: its name must end with %s; expected a score, MIDI, "
+                              "MusicXML or a take",
                               name, suffix);
     for (size_t i = 0; i < sizeof known / sizeof known[0] && !kind; i++)
         if (size >= strlen(known[i].begin) &&
@@ -34,7 +34,7 @@ bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_e
     if (!kind && memchr(bytes, 0, size))
         kind = "not a text file";
     return !kind ||
-           himc_error_set(error, "%s: %s; expected a score, a MIDI file or a take", name, kind);
+           himc_error_set(error, "%s: %s; expected a score, MIDI, MusicXML or a take", name, kind);
 }
 
 himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
@@ -45,7 +45,7 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
     himc_score *score = NULL;
     if (himc_take_is_capture(path)) {
         himc_error_set(error,
-                       "%s: a take by its suffix, expected a score or a MIDI file; a take "
+                       "%s: a take by its suffix, expected a score, MIDI or MusicXML; a take "
                        "is loaded by take",
                        path);
         return NULL;

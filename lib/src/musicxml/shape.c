@@ -251,12 +251,16 @@ static void add_order(shaper *s, midi_order_kind kind, const music_sign *sign, m
 static void end_at(shaper *s, double beat, int ring)
 {
     midi_file *f = s->file;
-    for (int i = f->note_count - 1, steps = 0; i >= 0 && steps < 16; i--, steps++)
-        if (f->notes[i].track == s->part && f->notes[i].beat < beat - SAME) {
-            if (ring < 0)
-                f->notes[i].off = himc_score_seconds(f->tempi, f->tempo_count, beat);
-            f->notes[i].way.ring = ring;
-        }
+    bool done[256] = {false}; // the last stroke of each drum
+    for (int i = f->note_count - 1, steps = 0; i >= 0 && steps < 16; i--, steps++) {
+        midi_note *n = &f->notes[i];
+        if (n->track != s->part || n->beat > beat - SAME || done[n->key])
+            continue;
+        done[n->key] = true;
+        n->way.ring = ring;
+        if (ring < 0)
+            n->off = himc_score_seconds(f->tempi, f->tempo_count, beat);
+    }
 }
 
 // the signs up to a beat
