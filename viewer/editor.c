@@ -22,8 +22,8 @@
 #define MOST_DESCRIPTORS 4096 // of this process, closed in the child; chosen
 #define MISSING "the program himc is not beside himc-viewer"
 
-static const char *const endings[] = {".txt", ".mid", ".musicxml", ".mxl", ".xml", ".bvh",
-                                      ".c3d", ".trc"};
+static const char *const endings[] = {".txt", ".mid", ".musicxml", ".mxl",
+                                      ".xml", ".bvh", ".c3d",      ".trc"};
 
 bool editor_key(char key[EDITOR_KEY + 1], himc_error *error)
 {

@@ -1,4 +1,4 @@
-/// fuzz_musicxml.c: MusicXML, plain and compressed, from arbitrary bytes. What is accepted becomes a
+/// fuzz_musicxml.c: MusicXML, plain and compressed, from any bytes. What is accepted becomes a
 /// score that is read without an error; what is not is refused in one line.
 #include "fuzz.h"
 #include "musicxml/import.h"

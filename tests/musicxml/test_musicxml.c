@@ -34,23 +34,27 @@ void tearDown(void)
 
 // a score of one part, whose divisions are 4 to a quarter note, at 120 beats a minute
 
-#define HEAD "<?xml version='1.0' encoding='UTF-8'?><!DOCTYPE score-partwise PUBLIC " \
-             "'-//Recordare//DTD MusicXML 4.0 Partwise//EN' " \
-             "'http://www.musicxml.org/dtds/partwise.dtd'><score-partwise version='4.0'>"
-#define PART(name) "<part-list><score-part id='P1'><part-name>" name "</part-name></score-part>" \
-                   "</part-list><part id='P1'>"
+#define HEAD                                                                 \
+    "<?xml version='1.0' encoding='UTF-8'?><!DOCTYPE score-partwise PUBLIC " \
+    "'-//Recordare//DTD MusicXML 4.0 Partwise//EN' "                         \
+    "'http://www.musicxml.org/dtds/partwise.dtd'><score-partwise version='4.0'>"
+#define PART(name)                                                                \
+    "<part-list><score-part id='P1'><part-name>" name "</part-name></score-part>" \
+    "</part-list><part id='P1'>"
 #define TAIL "</part></score-partwise>"
 #define BAR(number, body) "<measure number='" #number "'>" body "</measure>"
 #define FOUR "<attributes><divisions>4</divisions></attributes>"
-#define NOTE(step, octave, duration, more) \
+#define NOTE(step, octave, duration, more)                                                        \
     "<note><pitch><step>" #step "</step><octave>" #octave "</octave></pitch><duration>" #duration \
     "</duration><voice>1</voice>" more "</note>"
 #define C3(duration, more) NOTE(C, 3, duration, more)
 #define REST(duration) "<note><rest/><duration>" #duration "</duration></note>"
-#define GRACE(step) "<note><grace/><pitch><step>" #step "</step><octave>3</octave></pitch>" \
-                    "<voice>1</voice></note>"
-#define MARKS(n) "<notations><ornaments><tremolo type='single'>" #n "</tremolo></ornaments>" \
-                 "</notations>"
+#define GRACE(step)                                                         \
+    "<note><grace/><pitch><step>" #step "</step><octave>3</octave></pitch>" \
+    "<voice>1</voice></note>"
+#define MARKS(n)                                                                \
+    "<notations><ornaments><tremolo type='single'>" #n "</tremolo></ornaments>" \
+    "</notations>"
 #define ARTICULATION(a) "<notations><articulations><" a "/></articulations></notations>"
 #define DIRECTION(type) "<direction><direction-type>" type "</direction-type></direction>"
 #define WORDS(text) DIRECTION("<words>" text "</words>")
@@ -167,8 +171,8 @@ static void test_voices_and_chords_sound_together(void)
 static void test_a_pickup_is_as_long_as_its_notes(void)
 {
     PLAY("<measure number='0' implicit='yes'>" FOUR
-         "<attributes><time><beats>4</beats><beat-type>4</beat-type></time></attributes>" C3(4, "")
-         "</measure>" BAR(1, C3(16, "")));
+         "<attributes><time><beats>4</beats><beat-type>4</beat-type></time></attributes>" C3(
+             4, "") "</measure>" BAR(1, C3(16, "")));
     expect_beats(2, 0.0, 1.0);
     expect_text("comment bar 0;");
 }
@@ -182,15 +186,15 @@ static void test_an_empty_bar_is_as_long_as_its_time_signature(void)
 
 static void test_a_transposing_part_sounds_as_it_is_transposed(void)
 {
-    PLAY(BAR(1, FOUR "<attributes><transpose><chromatic>2</chromatic></transpose></attributes>"
-             C3(16, "")));
+    PLAY(BAR(1, FOUR "<attributes><transpose><chromatic>2</chromatic></transpose></attributes>" C3(
+                    16, "")));
     expect_text("tune D3;");
 }
 
 static void test_tied_notes_are_one_stroke(void)
 {
     PLAY(BAR(1, FOUR C3(16, "<tie type='start'/>"))
-         BAR(2, C3(4, "<tie type='stop'/>") C3(4, "") REST(8)));
+             BAR(2, C3(4, "<tie type='stop'/>") C3(4, "") REST(8)));
     expect_beats(2, 0.0, 5.0);
 }
 
@@ -211,7 +215,7 @@ static void test_what_is_not_played_has_its_bar_and_reason(void)
     TEST_ASSERT_EQUAL(1, made.left_out);
     // four chords of drums in 0.1 s: more than two hands can
     PLAY(BAR(3, FOUR TEMPO(200) NOTE(C, 2, 1, "") NOTE(G, 2, 1, "") NOTE(D, 3, 1, "")
-                     NOTE(G, 3, 1, "") NOTE(C, 2, 1, "") NOTE(G, 3, 1, "") NOTE(G, 2, 10, "")));
+                    NOTE(G, 3, 1, "") NOTE(C, 2, 1, "") NOTE(G, 3, 1, "") NOTE(G, 2, 10, "")));
     expect_text("both hands are busy (bar 3)");
 }
 
@@ -223,12 +227,13 @@ static void test_what_is_not_played_has_its_bar_and_reason(void)
 
 static void test_repeats_and_endings_are_played(void)
 {
-    PLAY(BAR(1, FOUR C3(16, "")) BAR(2, REPEAT("forward") C3(16, ""))
-         BAR(3, ENDING("1", "start") NOTE(G, 2, 16, "")
-                    "<barline><ending number='1' type='stop'/><repeat direction='backward'/>"
-                    "</barline>")
-         BAR(4, ENDING("2", "start") NOTE(D, 3, 16, "") ENDING("2", "discontinue"))
-         BAR(5, C3(16, "") REPEAT("backward")) BAR(6, C3(16, "")));
+    PLAY(BAR(1, FOUR C3(16, "")) BAR(2, REPEAT("forward") C3(16, "")) BAR(
+        3, ENDING("1", "start")
+               NOTE(G, 2, 16,
+                    "") "<barline><ending number='1' type='stop'/><repeat direction='backward'/>"
+                        "</barline>")
+             BAR(4, ENDING("2", "start") NOTE(D, 3, 16, "") ENDING("2", "discontinue"))
+                 BAR(5, C3(16, "") REPEAT("backward")) BAR(6, C3(16, "")));
     expect_beats(8, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0);
     const char *const first = stroke(2)->drum;
     TEST_ASSERT_TRUE(strcmp(first, stroke(4)->drum) != 0);
@@ -238,22 +243,22 @@ static void test_repeats_and_endings_are_played(void)
 static void test_a_repeat_is_played_as_often_as_it_says(void)
 {
     PLAY(BAR(1, FOUR C3(16, "") "<barline><repeat direction='backward' times='3'/></barline>")
-         BAR(2, NOTE(G, 2, 16, "")));
+             BAR(2, NOTE(G, 2, 16, "")));
     expect_beats(4, 0.0, 4.0, 8.0, 12.0);
 }
 
 static void test_da_capo_goes_to_fine_without_repeats(void)
 {
     PLAY(BAR(1, FOUR C3(16, "") REPEAT("backward")) BAR(2, C3(16, "") WORDS("Fine"))
-         BAR(3, C3(16, "") WORDS("D.C. al Fine")));
+             BAR(3, C3(16, "") WORDS("D.C. al Fine")));
     expect_beats(6, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0);
 }
 
 static void test_dal_segno_goes_to_the_coda(void)
 {
     PLAY(BAR(1, FOUR C3(16, "")) BAR(2, "<sound segno='s'/>" NOTE(G, 2, 16, ""))
-         BAR(3, C3(16, "") "<sound tocoda='c'/>") BAR(4, C3(16, "") "<sound dalsegno='s'/>")
-         BAR(5, "<sound coda='c'/>" NOTE(G, 2, 16, "")));
+             BAR(3, C3(16, "") "<sound tocoda='c'/>") BAR(4, C3(16, "") "<sound dalsegno='s'/>")
+                 BAR(5, "<sound coda='c'/>" NOTE(G, 2, 16, "")));
     // 1 2 3 4 2 3 5
     expect_beats(7, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0);
     TEST_ASSERT_EQUAL_STRING(stroke(1)->drum, stroke(4)->drum);
@@ -266,9 +271,8 @@ static void test_tempo_marks_words_and_numbers(void)
 {
     PLAY(BAR(1, FOUR DIRECTION("<metronome><beat-unit>half</beat-unit><per-minute>c. 50"
                                "</per-minute></metronome>") C3(16, ""))
-         BAR(2, WORDS("Adagio molto") C3(16, ""))
-         BAR(3, WORDS("Allegro") TEMPO(140) C3(16, ""))
-         BAR(4, WORDS("Tempo I") C3(16, "")) BAR(5, C3(16, "")));
+             BAR(2, WORDS("Adagio molto") C3(16, "")) BAR(3, WORDS("Allegro") TEMPO(140) C3(16, ""))
+                 BAR(4, WORDS("Tempo I") C3(16, "")) BAR(5, C3(16, "")));
     TEST_ASSERT_EQUAL_FLOAT(100, bpm_at(0));
     TEST_ASSERT_EQUAL_FLOAT(66, bpm_at(4));
     TEST_ASSERT_EQUAL_FLOAT(140, bpm_at(8));
@@ -278,7 +282,7 @@ static void test_tempo_marks_words_and_numbers(void)
 static void test_a_ritardando_slows_evenly_to_a_tempo(void)
 {
     PLAY(BAR(1, FOUR TEMPO(120) C3(16, "")) BAR(2, WORDS("poco rit.") C3(16, ""))
-         BAR(3, WORDS("a tempo") C3(16, "")) BAR(4, C3(16, "")));
+             BAR(3, WORDS("a tempo") C3(16, "")) BAR(4, C3(16, "")));
     TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(3.5));
     for (double beat = 4.5; beat < 8; beat += 0.5)
         TEST_ASSERT_TRUE(bpm_at(beat) < bpm_at(beat - 0.5));
@@ -304,7 +308,7 @@ static void test_dynamics_hold_until_the_next(void)
 static void test_a_hairpin_leads_to_its_end(void)
 {
     PLAY(BAR(1, FOUR DYNAMICS("p") WEDGE("crescendo") C3(4, "") C3(4, "") C3(4, "") C3(4, "")
-             WEDGE("stop")) BAR(2, DYNAMICS("f") C3(4, "") REST(12)));
+                    WEDGE("stop")) BAR(2, DYNAMICS("f") C3(4, "") REST(12)));
     expect_dynamics(5, 2.0, 2.75, 3.5, 4.25, 5.0);
     PLAY(BAR(1, FOUR DYNAMICS("f") WEDGE("diminuendo") C3(8, "") WEDGE("stop") C3(8, "")));
     expect_dynamics(2, 5.0, 4.0);
@@ -313,16 +317,16 @@ static void test_a_hairpin_leads_to_its_end(void)
 static void test_a_word_leads_to_the_next_dynamic(void)
 {
     PLAY(BAR(1, FOUR DYNAMICS("p") WORDS("cresc.") C3(8, "") C3(8, ""))
-         BAR(2, DYNAMICS("ff") C3(16, "")));
+             BAR(2, DYNAMICS("ff") C3(16, "")));
     expect_dynamics(3, 2.0, 4.0, 6.0);
 }
 
 static void test_marks_of_a_note_are_its_nuance(void)
 {
     PLAY(BAR(1, FOUR C3(4, ARTICULATION("accent")) C3(4, ARTICULATION("strong-accent"))
-             C3(4, ARTICULATION("staccato")) C3(4, ARTICULATION("tenuto")))
-         BAR(2, DYNAMICS("sfz") C3(4, "") C3(12, "")));
-    const himc_nuance nuance[] = {HIMC_ACCENT,   HIMC_VERTICAL_ACCENT, HIMC_STACCATO,
+                    C3(4, ARTICULATION("staccato")) C3(4, ARTICULATION("tenuto")))
+             BAR(2, DYNAMICS("sfz") C3(4, "") C3(12, "")));
+    const himc_nuance nuance[] = {HIMC_ACCENT, HIMC_VERTICAL_ACCENT, HIMC_STACCATO,
                                   HIMC_TENUTO, HIMC_VERTICAL_ACCENT, HIMC_LEGATO};
     for (int i = 0; i < 6; i++)
         TEST_ASSERT_EQUAL(nuance[i], stroke(i)->nuance);
@@ -366,8 +370,8 @@ static void test_three_strokes_are_a_roll_unless_measured(void)
 // musescore#16756: a timpani trill is a roll
 static void test_a_trill_is_a_roll(void)
 {
-    PLAY(BAR(1, FOUR C3(8, "<notations><ornaments><trill-mark/></ornaments></notations>")
-             C3(8, "")));
+    PLAY(BAR(1,
+             FOUR C3(8, "<notations><ornaments><trill-mark/></ornaments></notations>") C3(8, "")));
     expect_roll(0, 0, 2, 4, 4);
     TEST_ASSERT_EQUAL(2, score->stroke_count);
 }
@@ -375,14 +379,15 @@ static void test_a_trill_is_a_roll(void)
 // musescore#19095, #21060: hairpins act within a roll, tied over bars, too
 static void test_a_hairpin_acts_within_a_roll(void)
 {
-    PLAY(BAR(1, FOUR DYNAMICS("pp") WEDGE("crescendo") C3(16, "<tie type='start'/>" MARKS(3)))
-         BAR(2, C3(16, "<tie type='stop'/>" MARKS(3)) WEDGE("stop")) BAR(3, DYNAMICS("ff")
-         C3(16, "")));
+    PLAY(BAR(1, FOUR DYNAMICS("pp") WEDGE("crescendo") C3(16, "<tie type='start'/>" MARKS(3))) BAR(
+        2, C3(16, "<tie type='stop'/>" MARKS(3)) WEDGE("stop")) BAR(3, DYNAMICS("ff") C3(16, "")));
     TEST_ASSERT_EQUAL(2, score->stroke_count);
     expect_roll(0, 0, 8, 1, 6);
-    PLAY(BAR(1, FOUR DYNAMICS("p") WEDGE("crescendo") C3(16, MARKS(3)) "<backup><duration>8"
-             "</duration></backup>" WEDGE("stop") WEDGE("diminuendo") "<forward><duration>8"
-             "</duration></forward>" WEDGE("stop")));
+    PLAY(BAR(1, FOUR DYNAMICS("p") WEDGE("crescendo")
+                    C3(16, MARKS(3)) "<backup><duration>8"
+                                     "</duration></backup>" WEDGE("stop") WEDGE(
+                                         "diminuendo") "<forward><duration>8"
+                                                       "</duration></forward>" WEDGE("stop")));
     TEST_ASSERT_EQUAL(2, score->stroke_count);
     expect_roll(0, 0, 2, 2, 3);
     expect_roll(1, 2, 2, 3, 2);
@@ -429,10 +434,11 @@ static void test_an_accent_on_a_roll_is_its_beginning(void)
 
 static void test_two_notes_are_played_in_turn(void)
 {
-#define PAIR(type) "<notations><ornaments><tremolo type='" type "'>2</tremolo></ornaments>" \
-                   "</notations>"
+#define PAIR(type)                                                           \
+    "<notations><ornaments><tremolo type='" type "'>2</tremolo></ornaments>" \
+    "</notations>"
     PLAY(BAR(1, FOUR TEMPO(60) C3(4, "<type>half</type>" PAIR("start"))
-             NOTE(G, 2, 4, "<type>half</type>" PAIR("stop")) REST(8)));
+                    NOTE(G, 2, 4, "<type>half</type>" PAIR("stop")) REST(8)));
     expect_beats(8, 0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75);
     for (int i = 2; i < 8; i++)
         TEST_ASSERT_EQUAL_STRING(stroke(i - 2)->drum, stroke(i)->drum);
@@ -443,7 +449,7 @@ static void test_two_notes_are_played_in_turn(void)
 static void test_graces_are_flam_drag_and_ruff(void)
 {
     PLAY(BAR(1, FOUR REST(4) GRACE(C) C3(4, "") GRACE(C) GRACE(C) C3(4, "") GRACE(C) GRACE(C)
-             GRACE(C) C3(4, "")));
+                    GRACE(C) C3(4, "")));
     TEST_ASSERT_EQUAL(3, score->stroke_count);
     TEST_ASSERT_EQUAL(HIMC_FLAM, stroke(0)->ornament);
     TEST_ASSERT_EQUAL(HIMC_DRAG, stroke(1)->ornament);
@@ -475,7 +481,7 @@ static void test_damped_notes_and_notes_that_ring(void)
     PLAY(BAR(1, FOUR WORDS("l.v.") C3(2, "") REST(14)) BAR(2, C3(16, "")));
     TEST_ASSERT_EQUAL(0, damps());
     PLAY(BAR(1, FOUR C3(2, "<notations><tied type='let-ring'/></notations>") REST(14))
-         BAR(2, C3(16, "")));
+             BAR(2, C3(16, "")));
     TEST_ASSERT_EQUAL(0, damps());
     PLAY(BAR(1, FOUR C3(16, "")) BAR(2, WORDS("secco") C3(8, "") C3(8, "")));
     TEST_ASSERT_EQUAL(1, damps());
@@ -492,8 +498,10 @@ static void test_sticking_is_kept(void)
         "<notations><technical><other-technical>l</other-technical></technical></notations>"};
     for (int k = 0; k < 3; k++) {
         char text[4096];
-        snprintf(text, sizeof text, HEAD PART("Timpani") "<measure number='1'>" FOUR
-                 C3(4, "%s") C3(4, "%s") C3(8, "") "</measure>" TAIL, how[k], how[k]);
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") "<measure number='1'>" FOUR C3(4, "%s") C3(4, "%s")
+                     C3(8, "") "</measure>" TAIL,
+                 how[k], how[k]);
         load(text);
         TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(0)->hand);
         TEST_ASSERT_EQUAL(HIMC_LEFT, stroke(1)->hand);
@@ -512,9 +520,10 @@ static void test_spots_hold_until_the_next(void)
                                            {"al centro", "sul bordo", "naturale"}};
     for (int k = 0; k < 4; k++) {
         char text[4096];
-        snprintf(text, sizeof text, HEAD PART("Timpani") "<measure number='1'>" FOUR
-                 C3(2, "") WORDS("%s") C3(2, "") C3(2, "") WORDS("%s") C3(2, "") WORDS("%s")
-                 C3(8, "") "</measure>" TAIL, words[k][0], words[k][1], words[k][2]);
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") "<measure number='1'>" FOUR C3(2, "") WORDS("%s") C3(2, "")
+                     C3(2, "") WORDS("%s") C3(2, "") WORDS("%s") C3(8, "") "</measure>" TAIL,
+                 words[k][0], words[k][1], words[k][2]);
         load(text);
         const himc_spot spot[] = {HIMC_SPOT_NORMAL, HIMC_SPOT_CENTER, HIMC_SPOT_CENTER,
                                   HIMC_SPOT_RIM, HIMC_SPOT_NORMAL};
@@ -525,13 +534,13 @@ static void test_spots_hold_until_the_next(void)
 
 static void test_mallets_and_cloths(void)
 {
-    PLAY(BAR(1, FOUR WORDS("mit Holzschlägeln") C3(16, "")) BAR(2, WORDS("soft sticks")
-         C3(16, "")));
+    PLAY(BAR(1, FOUR WORDS("mit Holzschlägeln") C3(16, ""))
+             BAR(2, WORDS("soft sticks") C3(16, "")));
     expect_text("third mallet wood;");
     expect_text("1 change of mallets is not played: a score has one pair");
     PLAY(BAR(1, FOUR DIRECTION("<percussion><stick><stick-type>timpani</stick-type>"
                                "<stick-material>hard</stick-material></stick></percussion>")
-             C3(16, "")));
+                    C3(16, "")));
     expect_text("mallet hard;");
     PLAY(BAR(1, FOUR WORDS("coperto") C3(16, "")) BAR(2, WORDS("scoperto") C3(16, "")));
     TEST_ASSERT_EQUAL(2, score->change_count);
@@ -541,13 +550,16 @@ static void test_mallets_and_cloths(void)
 
 static void test_words_about_tuning_move_a_pedal_there(void)
 {
-    static const char *const words[] = {"muta in D", "C muta in D", "change C to D",
+    static const char *const words[] = {"muta in D",          "C muta in D",      "change C to D",
                                         "C nach D umstimmen", "changez do en ré", "Do muta in Re"};
     for (int k = 0; k < 6; k++) {
         char text[4096];
-        snprintf(text, sizeof text, HEAD PART("Timpani") BAR(1, FOUR TEMPO(60) C3(4, "")
-                 NOTE(G, 2, 12, "")) "<measure number='2'>" REST(4) WORDS("%s") REST(12)
-                 "</measure>" BAR(3, REST(16)) BAR(4, NOTE(D, 3, 16, "")) TAIL, words[k]);
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") BAR(1, FOUR TEMPO(60) C3(4, "")
+                                                 NOTE(G, 2, 12, "")) "<measure number='2'>" REST(4)
+                     WORDS("%s") REST(12) "</measure>" BAR(3, REST(16)) BAR(4, NOTE(D, 3, 16, ""))
+                         TAIL,
+                 words[k]);
         load(text);
         TEST_ASSERT_TRUE_MESSAGE(score->change_count > 0, words[k]);
         TEST_ASSERT_EQUAL_MESSAGE(HIMC_COMMAND_TUNE, score->changes[0].command.id, words[k]);
@@ -567,19 +579,29 @@ static void test_names_in_four_languages(void)
     static const struct {
         const char *name, *made;
     } row[] = {
-        {"Kettledrums", "drum "},     {"Pauken", "drum "},
-        {"Timbales", "drum "},        {"Snare Drum", "instrument snare snare"},
+        {"Kettledrums", "drum "},
+        {"Pauken", "drum "},
+        {"Timbales", "drum "},
+        {"Snare Drum", "instrument snare snare"},
         {"Kleine Trommel", "instrument snare snare"},
         {"Caisse claire", "instrument snare snare"},
         {"Tamburo", "instrument snare snare"},
         {"Große Trommel", "instrument bass-drum"},
-        {"Gran Cassa", "instrument bass-drum"}, {"GROSSE CAISSE", "instrument bass-drum"},
-        {"Becken", "instrument crash"},   {"Piatti", "instrument crash"},
-        {"Tam-tam", "instrument tam-tam"}, {"Triangolo", "instrument triangle"},
-        {"Xilofono", "instrument xylophone"}, {"Marimbaphon", "instrument marimba"},
-        {"Vibraphone", "instrument vibraphone"}, {"Jeu de timbres", "instrument glockenspiel"},
-        {"Wood Blocks", "instrument high-block"}, {"Tempelblöcke", "instrument temple-blocks"},
-        {"Bongos", "bongo"}, {"Cowbell", "instrument cowbell"}, {"Claves", "instrument claves"},
+        {"Gran Cassa", "instrument bass-drum"},
+        {"GROSSE CAISSE", "instrument bass-drum"},
+        {"Becken", "instrument crash"},
+        {"Piatti", "instrument crash"},
+        {"Tam-tam", "instrument tam-tam"},
+        {"Triangolo", "instrument triangle"},
+        {"Xilofono", "instrument xylophone"},
+        {"Marimbaphon", "instrument marimba"},
+        {"Vibraphone", "instrument vibraphone"},
+        {"Jeu de timbres", "instrument glockenspiel"},
+        {"Wood Blocks", "instrument high-block"},
+        {"Tempelblöcke", "instrument temple-blocks"},
+        {"Bongos", "bongo"},
+        {"Cowbell", "instrument cowbell"},
+        {"Claves", "instrument claves"},
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         char text[2048];
@@ -595,17 +617,18 @@ static void test_names_in_four_languages(void)
 static void test_a_kit_is_played_by_its_instruments(void)
 {
     load(HEAD "<part-list><score-part id='P1'><part-name>Drumset</part-name>"
-         "<score-instrument id='A'><instrument-name>Acoustic Bass Drum</instrument-name>"
-         "</score-instrument><score-instrument id='B'><instrument-name>x</instrument-name>"
-         "</score-instrument><score-instrument id='C'><instrument-name>y</instrument-name>"
-         "<instrument-sound>metal.hi-hat</instrument-sound></score-instrument>"
-         "<midi-instrument id='A'><midi-channel>10</midi-channel><midi-unpitched>36"
-         "</midi-unpitched></midi-instrument><midi-instrument id='B'><midi-channel>10"
-         "</midi-channel><midi-unpitched>39</midi-unpitched></midi-instrument>"
-         "</score-part></part-list><part id='P1'><measure number='1'>" FOUR
-#define DRUM(id) "<note><unpitched><display-step>F</display-step><display-octave>4" \
-                 "</display-octave></unpitched><duration>4</duration><instrument id='" id "'/></note>"
-         DRUM("A") DRUM("B") DRUM("C") REST(4) "</measure>" TAIL);
+              "<score-instrument id='A'><instrument-name>Acoustic Bass Drum</instrument-name>"
+              "</score-instrument><score-instrument id='B'><instrument-name>x</instrument-name>"
+              "</score-instrument><score-instrument id='C'><instrument-name>y</instrument-name>"
+              "<instrument-sound>metal.hi-hat</instrument-sound></score-instrument>"
+              "<midi-instrument id='A'><midi-channel>10</midi-channel><midi-unpitched>36"
+              "</midi-unpitched></midi-instrument><midi-instrument id='B'><midi-channel>10"
+              "</midi-channel><midi-unpitched>39</midi-unpitched></midi-instrument>"
+              "</score-part></part-list><part id='P1'><measure number='1'>" FOUR
+#define DRUM(id)                                                       \
+    "<note><unpitched><display-step>F</display-step><display-octave>4" \
+    "</display-octave></unpitched><duration>4</duration><instrument id='" id "'/></note>"
+                  DRUM("A") DRUM("B") DRUM("C") REST(4) "</measure>" TAIL);
     TEST_ASSERT_EQUAL_STRING("kick", stroke(0)->drum);
     TEST_ASSERT_EQUAL_STRING("snare", stroke(1)->drum);
     TEST_ASSERT_EQUAL_STRING("hats", stroke(2)->drum);
@@ -615,11 +638,17 @@ static void test_a_kit_is_played_by_its_instruments(void)
 static void test_several_parts_of_timpani_are_played_together(void)
 {
     load(HEAD "<part-list><score-part id='A'><part-name>Timpani I</part-name></score-part>"
-         "<score-part id='V'><part-name>Violin</part-name></score-part>"
-         "<score-part id='B'><part-name>Timpani II</part-name></score-part></part-list>"
-         "<part id='A'>" BAR(1, FOUR DYNAMICS("f") C3(16, "")) "</part>"
-         "<part id='V'>" BAR(1, FOUR TEMPO(77) DYNAMICS("ppp") NOTE(A, 5, 16, "")) "</part>"
-         "<part id='B'>" BAR(1, FOUR DYNAMICS("p") REST(8) NOTE(G, 2, 8, "")) TAIL);
+              "<score-part id='V'><part-name>Violin</part-name></score-part>"
+              "<score-part id='B'><part-name>Timpani II</part-name></score-part></part-list>"
+              "<part id='A'>" BAR(
+                  1, FOUR DYNAMICS("f")
+                         C3(16, "")) "</part>"
+                                     "<part id='V'>" BAR(
+                                         1, FOUR TEMPO(77) DYNAMICS("ppp") NOTE(
+                                                A, 5, 16, "")) "</part>"
+                                                               "<part id='B'>" BAR(
+                                                                   1, FOUR DYNAMICS("p") REST(8)
+                                                                          NOTE(G, 2, 8, "")) TAIL);
     expect_beats(2, 0.0, 2.0);
     expect_dynamics(2, 5.0, 2.0);
     TEST_ASSERT_EQUAL_FLOAT(77, bpm_at(0)); // of any part
@@ -699,9 +728,9 @@ static void test_a_file_of_100_MB_is_refused_by_its_size(void)
 
 static void test_endless_jumps_end(void)
 {
-    PLAY(BAR(1, FOUR C3(16, "") "<barline><repeat direction='backward' times='31'/></barline>")
-         BAR(2, C3(16, "") "<barline><repeat direction='backward' times='999999999'/></barline>")
-         BAR(3, C3(16, "") WORDS("D.C.") WORDS("D.S.")));
+    PLAY(BAR(1, FOUR C3(16, "") "<barline><repeat direction='backward' times='31'/></barline>") BAR(
+        2, C3(16, "") "<barline><repeat direction='backward' times='999999999'/></barline>")
+             BAR(3, C3(16, "") WORDS("D.C.") WORDS("D.S.")));
     TEST_ASSERT_EQUAL(31 + 2 + 1 + 3, score->stroke_count);
 }
 

@@ -212,3 +212,15 @@ void himc_text_add(void *object, const char *line)
     memcpy(text->bytes + text->size + length, ";\n", 3);
     text->size += length + 2;
 }
+
+void himc_text_list(char *list, size_t size, const char *word)
+{
+    size_t used = strlen(list), length = strlen(word);
+    bool again = used >= length && strcmp(list + used - length, word) == 0 &&
+                 (used == length || list[used - length - 1] == ' ');
+    const char *space = used > 0 ? " " : "";
+    if (!again && used + length + sizeof " ..." < size)
+        himc_format(list + used, size - used, "%s%s", space, word);
+    else if (!again && (used < 3 || strcmp(list + used - 3, "...") != 0))
+        himc_format(list + used, size - used, "%s...", space);
+}

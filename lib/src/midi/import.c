@@ -93,11 +93,6 @@ static bool give_instruments(midi_part *part, himc_error *error)
     return true;
 }
 
-double himc_midi_stroke_end(const midi_stroke *stroke)
-{
-    return stroke->roll.length > 0 ? stroke->note->off : stroke->note->seconds;
-}
-
 // the orders between one stroke and the next
 static void share_orders(midi_part *part)
 {
@@ -135,17 +130,6 @@ static void take_notes(midi_part *part, const midi_options *options)
     }
 }
 
-void himc_midi_list_bar(char *list, size_t size, const char *number)
-{
-    size_t used = strlen(list), length = strlen(number);
-    bool again = used >= length && strcmp(list + used - length, number) == 0 &&
-                 (used == length || list[used - length - 1] == ' ');
-    if (!again && used + length + 5 < size)
-        snprintf(list + used, size - used, "%s%s", used ? " " : "", number);
-    else if (!again && (used < 3 || strcmp(list + used - 3, "...") != 0))
-        snprintf(list + used, size - used, " ...");
-}
-
 // the last bar that begins at or before a beat; NULL: none
 static const midi_bar *bar_at(const midi_file *file, double beat)
 {
@@ -169,7 +153,7 @@ static void count_fates(midi_part *part)
         const midi_bar *bar = bar_at(part->file, s->note->beat);
         part->fate[s->fate] += !s->note->way.extra;
         if (bar && !s->note->way.extra)
-            himc_midi_list_bar(part->bars[s->fate], sizeof part->bars[0], bar->number);
+            himc_text_list(part->bars[s->fate], sizeof part->bars[0], bar->number);
         s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most_damped;
         part->damped += s->damped;
         bool roll = s->roll.length > 0 && s->fate == MIDI_PLAYED;
@@ -256,9 +240,10 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                 "notes are moved by octaves to what is built");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");
     if (part->rolls > 0)
-        put(t, "%d note%s played as %d roll%s\n", part->rolled,
-            part->rolled == 1 ? " is" : "s are", part->rolls, part->rolls == 1 ? "" : "s");
-    report_kind(t, part->untuned, "word about tuning is not followed: no drum has that pitch and time",
+        put(t, "%d note%s played as %d roll%s\n", part->rolled, part->rolled == 1 ? " is" : "s are",
+            part->rolls, part->rolls == 1 ? "" : "s");
+    report_kind(t, part->untuned,
+                "word about tuning is not followed: no drum has that pitch and time",
                 "words about tuning are not followed: no drum has that pitch and time");
     report_kind(t, part->mallets, "change of mallets is not played: a score has one pair",
                 "changes of mallets are not played: a score has one pair");
@@ -283,15 +268,11 @@ static int by_time(const void *a, const void *b)
     return (x->seconds > y->seconds) - (x->seconds < y->seconds);
 }
 
-static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_part *part,
-                        double lead)
+// a damping hand lies on the head for 0.25 s (chosen: twice the decay time of a damped head), and
+// is off before the head's next stroke and before its pedal moves
+static int list_damps(const midi_part *part, change *list)
 {
-    change *list = malloc(MOST_CHANGES * sizeof *list);
-    if (!list)
-        return false;
     int count = 0, pedal = 0;
-    // a damping hand lies on the head for 0.25 s (chosen: twice the decay time of a damped head),
-    // and is off before the head's next stroke and before its pedal moves
     for (int i = 0; i < part->count; i++) {
         const midi_stroke *s = &part->stroke[i];
         if (!s->damped)
@@ -314,13 +295,19 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         list[count++] = (change){from, s->head, -1, "damp 1"};
         list[count++] = (change){until, s->head, -1, "damp 0"};
     }
-    for (int i = 0; i < file->order_count; i++) {
-        const midi_order *o = &file->orders[i];
+    return count;
+}
+
+// cloths, pedals, hi-hats; returns how many changes there are then
+static int list_orders(const midi_part *part, change *list, int count)
+{
+    int most = MOST_CHANGES - PEDAL_STEPS * part->pedals;
+    for (int i = 0; i < part->file->order_count; i++) {
+        const midi_order *o = &part->file->orders[i];
         bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
         for (int h = 0; o->kind == MIDI_MUFFLE && mine && h < part->heads; h++)
-            if (part->head[h].key != -1 && count < MOST_CHANGES - PEDAL_STEPS * part->pedals)
-                list[count++] =
-                    (change){o->seconds, h, -1, o->value ? "muffle 1" : "muffle 0"};
+            if (part->head[h].key != -1 && count < most)
+                list[count++] = (change){o->seconds, h, -1, o->value ? "muffle 1" : "muffle 0"};
     }
     // a pedal goes through semitones between, as an undamped drum lets hear
     for (int k = 0; k < part->pedals; k++) {
@@ -340,6 +327,16 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         list[count++] = (change){fmax(s->note->seconds - 0.03, 0), s->head, -1,
                                  last == MIDI_OPEN ? "pedal 0" : "pedal 1"};
     }
+    return count;
+}
+
+static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_part *part,
+                        double lead)
+{
+    change *list = malloc(MOST_CHANGES * sizeof *list);
+    if (!list)
+        return false;
+    int count = list_orders(part, list, list_damps(part, list));
     qsort(list, (size_t)count, sizeof *list, by_time);
     for (int i = 0; i < count; i++) {
         const change *c = &list[i];
@@ -380,8 +377,8 @@ static void put_stroke(himc_text_lines *t, const midi_part *part, const midi_str
             s->part, space, drum);
     else
         put(t, "%s %.9g %s %s %s %s %s%s%s;\n", ornaments[way->ornament], beat,
-            himc_hand_name(s->hand), himc_nuance_name(way->nuance),
-            dynamic_word(first, s->dynamic), spot, s->part, space, drum);
+            himc_hand_name(s->hand), himc_nuance_name(way->nuance), dynamic_word(first, s->dynamic),
+            spot, s->part, space, drum);
 }
 
 // the first mallets that a word names before the first stroke; others cannot be played

@@ -61,7 +61,7 @@ typedef struct midi_stroke {
     bool foot; ///< a foot plays it
     himc_hand hand;
     double dynamic; ///< 0 .. 1
-    double end;     ///< of the note, and of its roll: a hand is not back on the head sooner than 0.15 s (s)
+    double end;     ///< of the note; a hand is back on the head after 0.15 s at the earliest (s)
     bool damped;    ///< at the end of its note
     bool in_roll;   ///< another stroke's roll plays it
     midi_roll roll;
@@ -83,20 +83,21 @@ typedef struct midi_part {
     int count;
     midi_pedal *pedal; ///< in the order of time (pedals), owned
     int pedals;
-    int fate[MIDI_FATES]; ///< notes of the file
-    int notes;            ///< of the part, as written
+    int fate[MIDI_FATES];      ///< notes of the file
+    int notes;                 ///< of the part, as written
     char bars[MIDI_FATES][48]; ///< of notes that are not played
-    int moved;            ///< by octaves
-    int damped;           ///< strokes
-    int untuned;          ///< orders to tune that no drum can follow
-    int mallets;          ///< changes of mallets that are not played
-    int rolls, rolled;    ///< rolls, and the strokes in them
+    int moved;                 ///< by octaves
+    int damped;                ///< strokes
+    int untuned;               ///< orders to tune that no drum can follow
+    int mallets;               ///< changes of mallets that are not played
+    int rolls, rolled;         ///< rolls, and the strokes in them
 } midi_part;
 
-/// Adds the number of a bar to a list of them, unless it is there already or there are too many.
-void himc_midi_list_bar(char *list, size_t size, const char *number);
 /// When the hands leave a stroke's head: of a roll its end (s).
-double himc_midi_stroke_end(const midi_stroke *stroke);
+static inline double himc_midi_stroke_end(const midi_stroke *stroke)
+{
+    return stroke->roll.length > 0 ? stroke->note->off : stroke->note->seconds;
+}
 
 /// Of two strokes on one head (but for drums: of one pitch) at the same time one is played, the
 /// louder.

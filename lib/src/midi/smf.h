@@ -21,9 +21,9 @@ typedef enum midi_choice {
 
 /// How a note is played, as far as the file says so.
 typedef struct midi_way {
-    double dynamic;       ///< 0 .. 1; below 0: by the velocity
-    double length;        ///< of a roll (beats); 0: none
-    double last_dynamic;  ///< of a roll
+    double dynamic;      ///< 0 .. 1; below 0: by the velocity
+    double length;       ///< of a roll (beats); 0: none
+    double last_dynamic; ///< of a roll
     himc_nuance nuance;
     himc_ornament ornament; ///< flam, drag, ruff or none
     himc_spot spot;
@@ -34,14 +34,14 @@ typedef struct midi_way {
 
 /// A note of any track, from its note-on to its note-off.
 typedef struct midi_note {
-    double beat;      ///< of the note-on (quarter notes from the beginning), see midi_file
-    double seconds;   ///< of the note-on, through the tempo map (s)
-    double off;       ///< of the note-off (s); the end of the file if there is none
-    int track;        ///< from 0
-    uint8_t channel;  ///< 0 .. 15
-    uint8_t key;      ///< 0 .. 127; 60 is C4. From 128: drums that only MusicXML has (part.h)
-    uint8_t velocity; ///< 1 .. 127
-    uint8_t program;  ///< of its channel then, 0 .. 127
+    double beat;        ///< of the note-on (quarter notes from the beginning), see midi_file
+    double seconds;     ///< of the note-on, through the tempo map (s)
+    double off;         ///< of the note-off (s); the end of the file if there is none
+    int track;          ///< from 0
+    uint8_t channel;    ///< 0 .. 15
+    uint8_t key;        ///< 0 .. 127; 60 is C4. From 128: drums that only MusicXML has (part.h)
+    uint8_t velocity;   ///< 1 .. 127
+    uint8_t program;    ///< of its channel then, 0 .. 127
     midi_choice choice; ///< of its track's name; MIDI_ANY: its channel or program says it
     midi_way way;
 } midi_note;
@@ -59,8 +59,8 @@ typedef struct midi_order {
     double beat, seconds;
     midi_order_kind kind;
     midi_choice choice; ///< whose part says it
-    int from, value;    ///< tuning: classes of pitch, 0 C .. 11 (12: of any drum); 0 or 1; a mallet,
-                        ///< 0 soft .. 3 wood
+    int from, value; ///< tuning: classes of pitch, 0 C .. 11 (12: of any drum); 0 or 1; a mallet,
+                     ///< 0 soft .. 3 wood
 } midi_order;
 
 /// A file. Beats are quarter notes and the tempo map is the file's, unless `converted`.
@@ -69,7 +69,7 @@ typedef struct midi_file {
     int note_count;
     himc_tempo_change *tempi; ///< as in a score, the first at beat 0 (tempo_count), owned
     int tempo_count;
-    midi_bar *bars;     ///< in the order of beats (bar_count), owned; NULL: not known
+    midi_bar *bars; ///< in the order of beats (bar_count), owned; NULL: not known
     int bar_count;
     midi_order *orders; ///< in the order of beats (order_count), owned
     int order_count;

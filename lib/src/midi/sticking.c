@@ -58,7 +58,8 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     const midi_stroke *before = state->key[hand] < 0 ? NULL : &part->stroke[state->key[hand]];
     if (before && before->roll.length > 0 && s.way > 0) {
         double half = 0.5 * (before->note->seconds + himc_midi_stroke_end(before));
-        s.gap = fmax(s.gap, fmin(to.at - half, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)));
+        s.gap =
+            fmax(s.gap, fmin(to.at - half, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)));
     }
     // on one spot 0.055 s, as the planner refuses 0.04 s
     if (s.gap < fmax(0.055, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)))

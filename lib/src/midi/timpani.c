@@ -133,7 +133,8 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
         state->cost += 1 + 0.1 * way;
     }
     state->key[drum] = s->key;
-    state->ready[drum] = fmin(himc_midi_stroke_end(s) + RING_TIME, s->end + 0.2); // damped, 0.2 s after its note's end
+    state->ready[drum] = fmin(himc_midi_stroke_end(s) + RING_TIME,
+                              s->end + 0.2); // damped, 0.2 s after its note's end
     return true;
 }
 
@@ -196,9 +197,8 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
             part->head[s->head].key = s->key;
         if (pedal) {
             float early = (float)(s->note->seconds - pedal_begin(&now, s->head));
-            part->pedal[part->pedals++] =
-                (midi_pedal){s->note->seconds - (double)early, pedal_time(s->key - from), s->head,
-                             from, s->key};
+            part->pedal[part->pedals++] = (midi_pedal){
+                s->note->seconds - (double)early, pedal_time(s->key - from), s->head, from, s->key};
         }
         now = before; // choose follows the orders again
         choose(part, i, s->head, &now);

@@ -20,10 +20,10 @@
 typedef struct line {
     music_level *levels;
     int count, room;
-    double now;      ///< dynamic
-    double from;     ///< beat of the open hairpin; below 0: none
-    double way;      ///< its direction
-    double end;      ///< of a word that no mark ends; else below 0
+    double now;  ///< dynamic
+    double from; ///< beat of the open hairpin; below 0: none
+    double way;  ///< its direction
+    double end;  ///< of a word that no mark ends; else below 0
     bool failed;
 } line;
 

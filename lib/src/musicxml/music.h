@@ -1,4 +1,4 @@
-/// music.h: a score as it is written: bars, notes and signs of all parts, before repeats are played.
+/// music.h: a score as it is written: bars, notes and signs of all parts.
 #ifndef HIMC_MUSICXML_MUSIC_H
 #define HIMC_MUSICXML_MUSIC_H
 
@@ -18,8 +18,8 @@ typedef struct music_bar {
 
 typedef enum music_tremolo {
     MUSIC_NO_TREMOLO,
-    MUSIC_MARKS,     ///< strokes through the stem: measured or a roll
-    MUSIC_ROLL,      ///< unmeasured, or a trill
+    MUSIC_MARKS,      ///< strokes through the stem: measured or a roll
+    MUSIC_ROLL,       ///< unmeasured, or a trill
     MUSIC_PAIR_BEGIN, ///< two notes in turn
     MUSIC_PAIR_END
 } music_tremolo;

@@ -56,9 +56,12 @@ static bool next_entry(const archive *a, size_t *at, entry *e)
     const size_t head = 46;
     if (*at > a->size || a->size - *at < head || memcmp(a->bytes + *at, "PK\1\2", 4) != 0)
         return false;
-    *e = (entry){(const char *)a->bytes + *at + head, number(a, *at + 28, 2),
-                 number(a, *at + 20, 4),              number(a, *at + 24, 4),
-                 number(a, *at + 42, 4),              (unsigned)number(a, *at + 10, 2)};
+    *e = (entry){(const char *)a->bytes + *at + head,
+                 number(a, *at + 28, 2),
+                 number(a, *at + 20, 4),
+                 number(a, *at + 24, 4),
+                 number(a, *at + 42, 4),
+                 (unsigned)number(a, *at + 10, 2)};
     if (e->name_length > a->size - *at - head)
         return false;
     *at += head + e->name_length + number(a, *at + 30, 2) + number(a, *at + 32, 2);
@@ -128,23 +131,23 @@ static char *unpack(const archive *a, const entry *e, size_t most, himc_error *e
     return NULL;
 }
 
-char *himc_mxl_score(const void *bytes, size_t size, size_t most, size_t *length,
-                     himc_error *error)
+char *himc_mxl_score(const void *bytes, size_t size, size_t most, size_t *length, himc_error *error)
 {
     archive a = {bytes, size};
     entry e;
-    himc_error unread;
     xml_document container = {0};
     const char *name = "";
     if (find(&a, "META-INF/container.xml", &e)) {
-        char *text = unpack(&a, &e, most, &unread);
-        if (text && xml_read(&container, text, e.length, NULL, &unread))
-            name = xml_attribute(
-                xml_child(xml_child(container.root, "rootfiles"), "rootfile"), "full-path");
+        char *text = unpack(&a, &e, most, error);
+        bool good = text && himc_xml_read(&container, text, e.length, NULL, error);
         free(text);
+        if (!good)
+            return NULL;
+        name = himc_xml_attribute(
+            himc_xml_child(himc_xml_child(container.root, "rootfiles"), "rootfile"), "full-path");
     }
     bool found = (name[0] && find(&a, name, &e)) || find(&a, NULL, &e);
-    xml_free(&container);
+    himc_xml_free(&container);
     *length = found ? e.length : 0;
     if (found)
         return unpack(&a, &e, most, error);

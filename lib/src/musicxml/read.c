@@ -3,7 +3,7 @@
 ///
 /// A part is a row of measures. In a measure a cursor goes on with each note, and back and forth by
 /// `backup` and `forward`; durations count in the part's divisions of a quarter note. Notes are
-/// taken of parts that are played here; tempi, fermatas, repeats and jumps of all parts, as programs
+/// taken of parts that are played; tempi, fermatas, repeats and jumps of all parts, as programs
 /// write them into one part only. Invariant: each note of such a part is taken or counted.
 #include "musicxml/music.h"
 
@@ -42,7 +42,7 @@ typedef struct reader {
 void himc_music_omit(music *m, int which, int bar)
 {
     music_omission *o = &m->omitted[which];
-    himc_midi_list_bar(o->bars, sizeof o->bars, m->bars[bar].number);
+    himc_text_list(o->bars, sizeof o->bars, m->bars[bar].number);
     o->count++;
 }
 
@@ -53,8 +53,7 @@ static void add_sign(reader *r, double beat, music_meaning meaning, double value
         r->failed = true;
         return;
     }
-    m->signs[m->sign_count] =
-        (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value};
+    m->signs[m->sign_count] = (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value};
     m->sign_count++;
 }
 
@@ -62,25 +61,25 @@ static void add_sign(reader *r, double beat, music_meaning meaning, double value
 
 static bool is_yes(const xml_node *node, const char *attribute)
 {
-    return xml_has(node, attribute, "yes");
+    return himc_xml_has(node, attribute, "yes");
 }
 
 // by the names first, then by the MIDI instrument
 static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
 {
     instrument *made = &r->instrument[r->instruments++];
-    *made = (instrument){xml_attribute(score, "id"), MIDI_ANY, MUSIC_NO_KEY};
-    const char *const name[] = {xml_text(score, "instrument-sound"),
-                                xml_text(score, "instrument-name"),
-                                xml_text(score, "instrument-abbreviation")};
+    *made = (instrument){himc_xml_attribute(score, "id"), MIDI_ANY, MUSIC_NO_KEY};
+    const char *const name[] = {himc_xml_text(score, "instrument-sound"),
+                                himc_xml_text(score, "instrument-name"),
+                                himc_xml_text(score, "instrument-abbreviation")};
     for (int i = 0; i < 3 && made->choice == MIDI_ANY; i++)
         made->choice = himc_music_instrument(name[i], &made->key);
-    const xml_node *midi = xml_child(r->list, "midi-instrument");
-    while (midi && !xml_has(midi, "id", made->id))
-        midi = xml_next(midi);
-    int key = (int)xml_number(midi, "midi-unpitched", 0) - 1;
-    int program = (int)xml_number(midi, "midi-program", 0) - 1;
-    bool drums = xml_number(midi, "midi-channel", 0) == 10;
+    const xml_node *midi = himc_xml_child(r->list, "midi-instrument");
+    while (midi && !himc_xml_has(midi, "id", made->id))
+        midi = himc_xml_next(midi);
+    int key = (int)himc_xml_number(midi, "midi-unpitched", 0) - 1;
+    int program = (int)himc_xml_number(midi, "midi-program", 0) - 1;
+    bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
     if (made->choice == MIDI_ANY && part != MIDI_ANY)
         *made = (instrument){made->id, part, part_key};
     for (int i = 1; i < MIDI_CHOICES && made->choice == MIDI_ANY && midi && !drums; i++)
@@ -98,14 +97,14 @@ static void read_instrument(reader *r, const xml_node *score, midi_choice part, 
 static void read_instruments(reader *r)
 {
     int key = MUSIC_NO_KEY;
-    midi_choice part = himc_music_instrument(xml_text(r->list, "part-name"), &key);
+    midi_choice part = himc_music_instrument(himc_xml_text(r->list, "part-name"), &key);
     if (part == MIDI_ANY)
-        part = himc_music_instrument(xml_text(r->list, "part-abbreviation"), &key);
+        part = himc_music_instrument(himc_xml_text(r->list, "part-abbreviation"), &key);
     r->instruments = 0;
-    const xml_node *score = xml_child(r->list, "score-instrument");
+    const xml_node *score = himc_xml_child(r->list, "score-instrument");
     if (!score)
         r->instrument[r->instruments++] = (instrument){"", part, key};
-    for (; score && r->instruments < MOST_INSTRUMENTS; score = xml_next(score))
+    for (; score && r->instruments < MOST_INSTRUMENTS; score = himc_xml_next(score))
         read_instrument(r, score, part, key);
 }
 
@@ -114,17 +113,18 @@ static void read_instruments(reader *r)
 static void read_sound(reader *r, const xml_node *sound, double beat, bool dynamic_too)
 {
     music_bar *bar = &r->music->bars[r->bar];
-    const char *tempo = xml_attribute(sound, "tempo"), *level = xml_attribute(sound, "dynamics");
+    const char *tempo = himc_xml_attribute(sound, "tempo"),
+               *level = himc_xml_attribute(sound, "dynamics");
     if (strtod(tempo, NULL) > 0)
         add_sign(r, beat, MUSIC_TEMPO, strtod(tempo, NULL));
     if (dynamic_too && level[0]) // percent of a velocity of 90
         add_sign(r, beat, MUSIC_DYNAMIC, himc_midi_dynamic((int)(0.9 * strtod(level, NULL)), 0));
     bar->da_capo |= is_yes(sound, "dacapo");
-    bar->dal_segno |= xml_attribute(sound, "dalsegno")[0] != '\0';
-    bar->segno |= xml_attribute(sound, "segno")[0] != '\0';
-    bar->coda |= xml_attribute(sound, "coda")[0] != '\0';
-    bar->to_coda |= xml_attribute(sound, "tocoda")[0] != '\0';
-    bar->fine |= xml_attribute(sound, "fine")[0] != '\0';
+    bar->dal_segno |= himc_xml_attribute(sound, "dalsegno")[0] != '\0';
+    bar->segno |= himc_xml_attribute(sound, "segno")[0] != '\0';
+    bar->coda |= himc_xml_attribute(sound, "coda")[0] != '\0';
+    bar->to_coda |= himc_xml_attribute(sound, "tocoda")[0] != '\0';
+    bar->fine |= himc_xml_attribute(sound, "fine")[0] != '\0';
 }
 
 static bool is_tempo(music_meaning meaning)
@@ -157,13 +157,15 @@ static void read_metronome(reader *r, const xml_node *metronome, double beat)
     static const struct {
         const char *unit;
         double beats;
-    } units[] = {{"whole", 4},   {"half", 2}, {"quarter", 1}, {"eighth", .5},
+    } units[] = {{"whole", 4},  {"half", 2},  {"quarter", 1}, {"eighth", .5},
                  {"16th", .25}, {"breve", 8}, {"32nd", .125}};
-    const char *unit = xml_text(metronome, "beat-unit"), *text = xml_text(metronome, "per-minute");
+    const char *unit = himc_xml_text(metronome, "beat-unit"),
+               *text = himc_xml_text(metronome, "per-minute");
     double beats = 0, dot = .5;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         beats = strcmp(unit, units[i].unit) == 0 ? units[i].beats : beats;
-    for (const xml_node *d = xml_child(metronome, "beat-unit-dot"); d; d = xml_next(d), dot /= 2)
+    for (const xml_node *d = himc_xml_child(metronome, "beat-unit-dot"); d;
+         d = himc_xml_next(d), dot /= 2)
         beats *= 1 + dot;
     double number = strtod(text + strcspn(text, "0123456789"), NULL); // "ca. 96"
     if (beats * number > 0)
@@ -172,10 +174,10 @@ static void read_metronome(reader *r, const xml_node *metronome, double beat)
 
 static void read_wedge(reader *r, const xml_node *wedge, double beat)
 {
-    double way = xml_has(wedge, "type", "crescendo")    ? 1
-                 : xml_has(wedge, "type", "diminuendo") ? -1
-                                                        : 0;
-    if (!xml_has(wedge, "type", "continue"))
+    double way = himc_xml_has(wedge, "type", "crescendo")    ? 1
+                 : himc_xml_has(wedge, "type", "diminuendo") ? -1
+                                                             : 0;
+    if (!himc_xml_has(wedge, "type", "continue"))
         add_sign(r, beat, MUSIC_WEDGE, way);
 }
 
@@ -183,9 +185,9 @@ static void read_wedge(reader *r, const xml_node *wedge, double beat)
 static void read_percussion(reader *r, const xml_node *percussion, double beat)
 {
     static const char *const materials[] = {"soft", "medium", "hard", "wood"};
-    const xml_node *stick = xml_child(percussion, "stick");
+    const xml_node *stick = himc_xml_child(percussion, "stick");
     for (int i = 0; i < 4; i++)
-        if (strcmp(xml_text(stick, "stick-material"), materials[i]) == 0)
+        if (strcmp(himc_xml_text(stick, "stick-material"), materials[i]) == 0)
             add_sign(r, beat, MUSIC_MALLET, i);
 }
 
@@ -195,7 +197,7 @@ static bool read_dynamics(reader *r, const xml_node *dynamics, double beat)
     for (const xml_node *d = dynamics->child; d; d = d->next) {
         music_meaning meaning;
         double value;
-        const char *name = xml_is(d, "other-dynamics") ? d->text : d->name;
+        const char *name = himc_xml_is(d, "other-dynamics") ? d->text : d->name;
         if (himc_music_dynamic(name, &meaning, &value)) {
             add_sign(r, beat, meaning, value);
             found = true;
@@ -206,32 +208,32 @@ static bool read_dynamics(reader *r, const xml_node *dynamics, double beat)
 
 static void read_direction(reader *r, const xml_node *direction, bool own)
 {
-    double beat = fmax(r->at + xml_number(direction, "offset", 0) / r->divisions, 0);
-    const xml_node *sound = xml_child(direction, "sound");
+    double beat = fmax(r->at + himc_xml_number(direction, "offset", 0) / r->divisions, 0);
+    const xml_node *sound = himc_xml_child(direction, "sound");
     music_bar *bar = &r->music->bars[r->bar];
-    bool dynamic = false, tempo = xml_attribute(sound, "tempo")[0];
+    bool dynamic = false, tempo = himc_xml_attribute(sound, "tempo")[0];
     bool jumps = false;
     static const char *const jump[] = {"dacapo", "dalsegno", "tocoda", "fine", "coda", "segno"};
     for (int i = 0; i < 6; i++)
-        jumps |= xml_attribute(sound, jump[i])[0] != '\0';
-    const xml_node *type = xml_child(direction, "direction-type");
-    for (; type; type = xml_next(type))
+        jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
+    const xml_node *type = himc_xml_child(direction, "direction-type");
+    for (; type; type = himc_xml_next(type))
         for (const xml_node *d = type->child; d; d = d->next) {
-            if (xml_is(d, "words"))
+            if (himc_xml_is(d, "words"))
                 dynamic |= read_words(r, d, beat, own, jumps);
-            else if (xml_is(d, "metronome") && !tempo)
+            else if (himc_xml_is(d, "metronome") && !tempo)
                 read_metronome(r, d, beat);
-            else if (xml_is(d, "segno") && !jumps)
+            else if (himc_xml_is(d, "segno") && !jumps)
                 bar->segno = true;
-            else if (xml_is(d, "coda") && !jumps)
+            else if (himc_xml_is(d, "coda") && !jumps)
                 bar->coda = true;
-            else if (own && xml_is(d, "dynamics"))
+            else if (own && himc_xml_is(d, "dynamics"))
                 dynamic |= read_dynamics(r, d, beat);
-            else if (own && xml_is(d, "wedge"))
+            else if (own && himc_xml_is(d, "wedge"))
                 read_wedge(r, d, beat);
-            else if (own && xml_is(d, "percussion"))
+            else if (own && himc_xml_is(d, "percussion"))
                 read_percussion(r, d, beat);
-            else if (own && (xml_is(d, "damp") || xml_is(d, "damp-all")))
+            else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
                 add_sign(r, beat, MUSIC_DAMP, 0);
         }
     read_sound(r, sound, beat, own && !dynamic);
@@ -240,27 +242,29 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
 static void read_barline(reader *r, const xml_node *barline)
 {
     music_bar *bar = &r->music->bars[r->bar];
-    const xml_node *repeat = xml_child(barline, "repeat"), *ending = xml_child(barline, "ending");
-    if (xml_has(repeat, "direction", "forward"))
+    const xml_node *repeat = himc_xml_child(barline, "repeat"),
+                   *ending = himc_xml_child(barline, "ending");
+    if (himc_xml_has(repeat, "direction", "forward"))
         bar->forward = true;
-    if (xml_has(repeat, "direction", "backward")) {
+    if (himc_xml_has(repeat, "direction", "backward")) {
         bar->backward = true;
-        int times = atoi(xml_attribute(repeat, "times"));
+        int times = atoi(himc_xml_attribute(repeat, "times"));
         bar->times = times > 2 && times < 32 ? times : 2;
     }
-    if (xml_child(barline, "segno"))
+    if (himc_xml_child(barline, "segno"))
         bar->segno = true;
-    if (xml_child(barline, "coda"))
+    if (himc_xml_child(barline, "coda"))
         bar->coda = true;
     // an ending goes on up to the bar where it stops: order.c
-    for (const char *n = xml_attribute(ending, "number"); *n && xml_has(ending, "type", "start");) {
+    for (const char *n = himc_xml_attribute(ending, "number");
+         *n && himc_xml_has(ending, "type", "start");) {
         int number = atoi(n);
         if (number > 0 && number < 31)
             bar->endings |= 1u << number;
         n += strspn(n, "0123456789");
         n += strcspn(n, "0123456789");
     }
-    if (ending && !xml_has(ending, "type", "start"))
+    if (ending && !himc_xml_has(ending, "type", "start"))
         bar->endings |= 1u; // bit 0: it stops here
 }
 
@@ -269,11 +273,11 @@ static void read_barline(reader *r, const xml_node *barline)
 static int read_pitch(const xml_node *pitch, const char *step, const char *octave)
 {
     static const int natural[] = {9, 11, 0, 2, 4, 5, 7};
-    const char *letter = xml_text(pitch, step);
+    const char *letter = himc_xml_text(pitch, step);
     if (letter[0] < 'A' || letter[0] > 'G')
         return -1;
-    return natural[letter[0] - 'A'] + 12 * ((int)xml_number(pitch, octave, 4) + 1) +
-           (int)lround(xml_number(pitch, "alter", 0));
+    return natural[letter[0] - 'A'] + 12 * ((int)himc_xml_number(pitch, octave, 4) + 1) +
+           (int)lround(himc_xml_number(pitch, "alter", 0));
 }
 
 // of a drum set that says nothing else: where its drums are written (Weinberg 1998), by MIDI key
@@ -281,8 +285,8 @@ static int drum_at(int key)
 {
     static const struct {
         int at, drum;
-    } lines[] = {{62, 44}, {64, 36}, {65, 36}, {67, 41}, {69, 43}, {71, 45}, {72, 38}, {74, 47},
-                 {76, 48}, {77, 51}, {79, 42}, {81, 49}, {83, 57}};
+    } lines[] = {{62, 44}, {64, 36}, {65, 36}, {67, 41}, {69, 43}, {71, 45}, {72, 38},
+                 {74, 47}, {76, 48}, {77, 51}, {79, 42}, {81, 49}, {83, 57}};
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
         if (lines[i].at == key)
             return lines[i].drum;
@@ -292,16 +296,15 @@ static int drum_at(int key)
 static void read_ornaments(music_note *n, const xml_node *ornaments)
 {
     for (const xml_node *o = ornaments ? ornaments->child : NULL; o; o = o->next) {
-        if (xml_is(o, "trill-mark") || xml_is(o, "wavy-line")) {
+        if (himc_xml_is(o, "trill-mark") || himc_xml_is(o, "wavy-line")) {
             n->tremolo = MUSIC_ROLL;
-        } else if (xml_is(o, "tremolo")) {
+        } else if (himc_xml_is(o, "tremolo")) {
             int marks = atoi(o->text);
             n->marks = marks < 0 ? 0 : marks > 8 ? 8 : marks;
-            n->tremolo = xml_has(o, "type", "start")  ? MUSIC_PAIR_BEGIN
-                         : xml_has(o, "type", "stop") ? MUSIC_PAIR_END
-                         : xml_has(o, "type", "unmeasured") || n->marks == 0
-                             ? MUSIC_ROLL
-                             : MUSIC_MARKS;
+            n->tremolo = himc_xml_has(o, "type", "start")                         ? MUSIC_PAIR_BEGIN
+                         : himc_xml_has(o, "type", "stop")                        ? MUSIC_PAIR_END
+                         : himc_xml_has(o, "type", "unmeasured") || n->marks == 0 ? MUSIC_ROLL
+                                                                                  : MUSIC_MARKS;
         }
     }
 }
@@ -315,29 +318,29 @@ static int hand_of(const char *text)
 
 static void read_notations(reader *r, music_note *n, const xml_node *notations)
 {
-    read_ornaments(n, xml_child(notations, "ornaments"));
-    const xml_node *articulations = xml_child(notations, "articulations");
+    read_ornaments(n, himc_xml_child(notations, "ornaments"));
+    const xml_node *articulations = himc_xml_child(notations, "articulations");
     for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
-        n->accent |= xml_is(a, "accent");
-        n->marcato |= xml_is(a, "strong-accent");
-        n->tenuto |= xml_is(a, "tenuto") || xml_is(a, "detached-legato");
-        n->staccato |=
-            xml_is(a, "staccato") || xml_is(a, "staccatissimo") || xml_is(a, "spiccato");
+        n->accent |= himc_xml_is(a, "accent");
+        n->marcato |= himc_xml_is(a, "strong-accent");
+        n->tenuto |= himc_xml_is(a, "tenuto") || himc_xml_is(a, "detached-legato");
+        n->staccato |= himc_xml_is(a, "staccato") || himc_xml_is(a, "staccatissimo") ||
+                       himc_xml_is(a, "spiccato");
     }
-    const xml_node *technical = xml_child(notations, "technical");
+    const xml_node *technical = himc_xml_child(notations, "technical");
     for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next)
-        if (xml_is(t, "fingering") || xml_is(t, "other-technical"))
+        if (himc_xml_is(t, "fingering") || himc_xml_is(t, "other-technical"))
             n->hand = hand_of(t->text) ? hand_of(t->text) : n->hand;
-    for (const xml_node *t = xml_child(notations, "tied"); t; t = xml_next(t))
-        n->ring |= xml_has(t, "type", "let-ring");
-    const xml_node *dynamics = xml_child(notations, "dynamics");
+    for (const xml_node *t = himc_xml_child(notations, "tied"); t; t = himc_xml_next(t))
+        n->ring |= himc_xml_has(t, "type", "let-ring");
+    const xml_node *dynamics = himc_xml_child(notations, "dynamics");
     if (dynamics)
         read_dynamics(r, dynamics, n->at.beat);
 }
 
 static const instrument *instrument_of(const reader *r, const xml_node *note)
 {
-    const char *id = xml_attribute(xml_child(note, "instrument"), "id");
+    const char *id = himc_xml_attribute(himc_xml_child(note, "instrument"), "id");
     for (int i = 0; i < r->instruments && id[0]; i++)
         if (strcmp(r->instrument[i].id, id) == 0)
             return &r->instrument[i];
@@ -347,7 +350,8 @@ static const instrument *instrument_of(const reader *r, const xml_node *note)
 static bool read_key(reader *r, const xml_node *note, music_note *n)
 {
     const instrument *of = instrument_of(r, note);
-    const xml_node *pitch = xml_child(note, "pitch"), *unpitched = xml_child(note, "unpitched");
+    const xml_node *pitch = himc_xml_child(note, "pitch"),
+                   *unpitched = himc_xml_child(note, "unpitched");
     int written = pitch ? read_pitch(pitch, "step", "octave")
                         : read_pitch(unpitched, "display-step", "display-octave");
     n->choice = of->choice;
@@ -364,12 +368,12 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     music *m = r->music;
     music_note n = {.at = {beat, r->bar, r->part, m->note_count},
                     .length = length,
-                    .voice = atoi(xml_text(note, "voice")),
-                    .grace = xml_child(note, "grace") != NULL,
+                    .voice = atoi(himc_xml_text(note, "voice")),
+                    .grace = himc_xml_child(note, "grace") != NULL,
                     .ratio = 1};
-    if (xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
+    if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
         return;
-    if (xml_child(note, "cue")) {
+    if (himc_xml_child(note, "cue")) {
         himc_music_omit(m, MUSIC_CUES, r->bar);
         return;
     }
@@ -378,20 +382,20 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         return;
     }
     for (int i = 0; i < 5; i++)
-        if (strcmp(xml_text(note, "type"), types[i]) == 0)
+        if (strcmp(himc_xml_text(note, "type"), types[i]) == 0)
             n.flags = i + 1;
-    const xml_node *tuplet = xml_child(note, "time-modification");
-    double actual = xml_number(tuplet, "actual-notes", 1),
-           normal = xml_number(tuplet, "normal-notes", 1);
+    const xml_node *tuplet = himc_xml_child(note, "time-modification");
+    double actual = himc_xml_number(tuplet, "actual-notes", 1),
+           normal = himc_xml_number(tuplet, "normal-notes", 1);
     n.ratio = actual >= 1 && normal >= 1 && actual < 100 && normal < 100 ? actual / normal : 1;
-    for (const xml_node *t = xml_child(note, "tie"); t; t = xml_next(t)) {
-        n.tied_on |= xml_has(t, "type", "start");
-        n.tied_back |= xml_has(t, "type", "stop");
-        n.ring |= xml_has(t, "type", "let-ring");
+    for (const xml_node *t = himc_xml_child(note, "tie"); t; t = himc_xml_next(t)) {
+        n.tied_on |= himc_xml_has(t, "type", "start");
+        n.tied_back |= himc_xml_has(t, "type", "stop");
+        n.ring |= himc_xml_has(t, "type", "let-ring");
     }
-    for (const xml_node *l = xml_child(note, "lyric"); l; l = xml_next(l))
-        n.hand = hand_of(xml_text(l, "text")) ? hand_of(xml_text(l, "text")) : n.hand;
-    for (const xml_node *t = xml_child(note, "notations"); t; t = xml_next(t))
+    for (const xml_node *l = himc_xml_child(note, "lyric"); l; l = himc_xml_next(l))
+        n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
+    for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
         read_notations(r, &n, t);
     if (!himc_array_grow(&m->notes, m->note_count, &m->note_room, sizeof *m->notes, r->error))
         r->failed = true;
@@ -401,13 +405,13 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
 
 static void read_note(reader *r, const xml_node *note)
 {
-    bool grace = xml_child(note, "grace"), chord = xml_child(note, "chord");
-    double length = grace ? 0 : xml_number(note, "duration", 0) / r->divisions;
+    bool grace = himc_xml_child(note, "grace"), chord = himc_xml_child(note, "chord");
+    double length = grace ? 0 : himc_xml_number(note, "duration", 0) / r->divisions;
     length = length >= 0 && length < 1000 ? length : 0;
     double beat = chord ? r->last : r->at;
     add_note(r, note, beat, length);
-    for (const xml_node *t = xml_child(note, "notations"); t; t = xml_next(t))
-        if (xml_child(t, "fermata") && length > 0)
+    for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
+        if (himc_xml_child(t, "fermata") && length > 0)
             add_sign(r, beat, MUSIC_FERMATA, length);
     if (!chord)
         r->last = r->at;
@@ -418,22 +422,22 @@ static void read_note(reader *r, const xml_node *note)
 
 static void read_attributes(reader *r, const xml_node *attributes)
 {
-    double divisions = xml_number(attributes, "divisions", r->divisions);
+    double divisions = himc_xml_number(attributes, "divisions", r->divisions);
     r->divisions = divisions > 0 && divisions < 1e6 ? divisions : r->divisions;
-    const xml_node *transpose = xml_child(attributes, "transpose");
+    const xml_node *transpose = himc_xml_child(attributes, "transpose");
     if (transpose) {
-        double by = xml_number(transpose, "chromatic", 0) +
-                    12 * xml_number(transpose, "octave-change", 0);
+        double by = himc_xml_number(transpose, "chromatic", 0) +
+                    12 * himc_xml_number(transpose, "octave-change", 0);
         r->transpose = fabs(by) < 128 ? (int)by : 0;
     }
-    const xml_node *time = xml_child(attributes, "time");
+    const xml_node *time = himc_xml_child(attributes, "time");
     double beats = 0;
-    for (const char *n = xml_text(time, "beats"); n && *n;) { // "3+2"
+    for (const char *n = himc_xml_text(time, "beats"); n && *n;) { // "3+2"
         beats += strtod(n, NULL);
         n = strchr(n, '+');
         n = n ? n + 1 : NULL;
     }
-    double unit = xml_number(time, "beat-type", 4);
+    double unit = himc_xml_number(time, "beat-type", 4);
     if (beats > 0 && beats < 1000 && unit >= 1)
         r->time = 4 * beats / unit;
 }
@@ -442,7 +446,7 @@ static void read_attributes(reader *r, const xml_node *attributes)
 static void read_number(music_bar *bar, const xml_node *measure)
 {
     if (!bar->number[0])
-        snprintf(bar->number, sizeof bar->number, "%.11s", xml_attribute(measure, "number"));
+        snprintf(bar->number, sizeof bar->number, "%.11s", himc_xml_attribute(measure, "number"));
     for (char *c = bar->number; *c; c++)
         *c = isalnum((unsigned char)*c) || strchr("-+.", *c) ? *c : '_';
 }
@@ -457,21 +461,21 @@ static void read_measure(reader *r, const xml_node *measure)
     bool sounds = false;
     r->at = r->last = r->end = 0;
     for (const xml_node *n = measure->child; n; n = n->next) {
-        double duration = xml_number(n, "duration", 0) / r->divisions;
-        sounds |= xml_child(n, "pitch") || xml_child(n, "unpitched");
-        if (xml_is(n, "note"))
+        double duration = himc_xml_number(n, "duration", 0) / r->divisions;
+        sounds |= himc_xml_child(n, "pitch") || himc_xml_child(n, "unpitched");
+        if (himc_xml_is(n, "note"))
             read_note(r, n);
-        else if (xml_is(n, "backup"))
+        else if (himc_xml_is(n, "backup"))
             r->at = fmax(r->at - duration, 0);
-        else if (xml_is(n, "forward"))
+        else if (himc_xml_is(n, "forward"))
             r->at = duration > 0 && duration < 1000 ? r->at + duration : r->at;
-        else if (xml_is(n, "attributes"))
+        else if (himc_xml_is(n, "attributes"))
             read_attributes(r, n);
-        else if (xml_is(n, "direction"))
+        else if (himc_xml_is(n, "direction"))
             read_direction(r, n, own);
-        else if (xml_is(n, "sound"))
+        else if (himc_xml_is(n, "sound"))
             read_sound(r, n, r->at, own);
-        else if (xml_is(n, "barline"))
+        else if (himc_xml_is(n, "barline"))
             read_barline(r, n);
         r->end = fmax(r->end, r->at);
     }
@@ -488,16 +492,16 @@ static void read_measure(reader *r, const xml_node *measure)
 static bool read_part(reader *r, const xml_node *part)
 {
     music *m = r->music;
-    r->list = xml_child(xml_child(r->root, "part-list"), "score-part");
-    while (r->list && !xml_has(r->list, "id", xml_attribute(part, "id")))
-        r->list = xml_next(r->list);
+    r->list = himc_xml_child(himc_xml_child(r->root, "part-list"), "score-part");
+    while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
+        r->list = himc_xml_next(r->list);
     read_instruments(r);
     r->divisions = 1;
     r->transpose = 0;
     r->time = 4;
     r->bar = 0;
-    const xml_node *measure = xml_child(part, "measure");
-    for (; measure && !r->failed; measure = xml_next(measure), r->bar++) {
+    const xml_node *measure = himc_xml_child(part, "measure");
+    for (; measure && !r->failed; measure = himc_xml_next(measure), r->bar++) {
         if (r->bar == MOST_BARS)
             return himc_error_set(r->error, "line %d: bar %d, expected up to %d bars",
                                   measure->line, r->bar + 1, MOST_BARS);
@@ -513,13 +517,13 @@ static bool read_part(reader *r, const xml_node *part)
 
 static bool read_root(reader *r, const xml_node *root)
 {
-    if (xml_is(root, "score-timewise"))
+    if (himc_xml_is(root, "score-timewise"))
         return himc_error_set(r->error, "MusicXML by time: export it as score-partwise");
-    if (!xml_is(root, "score-partwise"))
+    if (!himc_xml_is(root, "score-partwise"))
         return himc_error_set(r->error, "XML of the kind %.40s, expected score-partwise",
                               root->name);
     r->root = root;
-    for (const xml_node *p = xml_child(root, "part"); p; p = xml_next(p), r->part++)
+    for (const xml_node *p = himc_xml_child(root, "part"); p; p = himc_xml_next(p), r->part++)
         if (!read_part(r, p))
             return false;
     return r->music->bar_count > 0 || himc_error_set(r->error, "a score without a bar");
@@ -528,22 +532,22 @@ static bool read_root(reader *r, const xml_node *root)
 bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error)
 {
     // what is only printed
-    static const char *const unused[] = {"identification", "defaults", "credit", "print",
-                                         "stem", "beam", "notehead", "accidental", "harmony",
-                                         "figured-bass", "staff-details", "slur", "clef", NULL};
+    static const char *const unused[] = {
+        "identification", "defaults", "credit",       "print",         "stem", "beam", "notehead",
+        "accidental",     "harmony",  "figured-bass", "staff-details", "slur", "clef", NULL};
     xml_document document;
     *m = (music){
         .omitted = {[MUSIC_CUES] = {"cue note is left out", "cue notes are left out", 0, ""},
                     [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
-                                         "notes are not played: they have no pitch or no length",
-                                         0, ""},
+                                         "notes are not played: they have no pitch or no length", 0,
+                                         ""},
                     [MUSIC_GRACES] = {"grace note is not played: a ruff has two",
                                       "grace notes are not played: a ruff has two", 0, ""}}};
-    if (!xml_read(&document, bytes, size, unused, error))
+    if (!himc_xml_read(&document, bytes, size, unused, error))
         return false;
     reader r = {.music = m, .error = error};
     bool good = read_root(&r, document.root);
-    xml_free(&document);
+    himc_xml_free(&document);
     if (!good)
         himc_music_free(m);
     return good;

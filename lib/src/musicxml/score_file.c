@@ -1,4 +1,4 @@
-/// score_file.c: a score from a file: a text of commands, MIDI or MusicXML, told by its first bytes.
+/// score_file.c: a score from a file of commands, MIDI or MusicXML, told by its first bytes.
 #include "base/file.h"
 #include "capture/take.h"
 #include "musicxml/import.h"

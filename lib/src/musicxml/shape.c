@@ -16,14 +16,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAME 1e-6         // (beats)
-#define STEP (1.0 / 7)    // of dynamics
-#define FAST 8.0          // strokes of a measured tremolo with three marks; chosen: rolls.c
-#define FASTEST 12.0      // strokes of two hands (1/s)
-#define ALTERNATE 0.11    // between strokes on two drums, at least (s); chosen: of one hand .22
-#define GRACE_TIME 0.07   // between strokes that are grace notes (s); chosen: an open ruff
-#define GRACE_SOFTER 0.2  // than their note
-#define ATTACK_TIME 0.3   // of an accent on a roll (s)
+#define SAME 1e-6        // (beats)
+#define STEP (1.0 / 7)   // of dynamics
+#define FAST 8.0         // strokes of a measured tremolo with three marks; chosen: rolls.c
+#define FASTEST 12.0     // strokes of two hands (1/s)
+#define ALTERNATE 0.11   // between strokes on two drums, at least (s); chosen: of one hand .22
+#define GRACE_TIME 0.07  // between strokes that are grace notes (s); chosen: an open ruff
+#define GRACE_SOFTER 0.2 // than their note
+#define ATTACK_TIME 0.3  // of an accent on a roll (s)
 #define MOST_GRACES 8
 #define MOST_STROKES 100000 // as import.c
 #define MOST_CANDIDATES 400 // notes of one beat that a tie is looked for in; chosen: bounds time
@@ -33,13 +33,13 @@ typedef struct shaper {
     midi_file *file;
     himc_error *error;
     int note_room, order_room;
-    int part, sign;              ///< the next sign
+    int part, sign; ///< the next sign
     music_level *levels;
     int level_count;
-    double second;               ///< (beats) now
+    double second; ///< (beats) now
     himc_spot spot;
     int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
-    bool attack;                 ///< of this beat
+    bool attack;                      ///< of this beat
     music_note *grace[MOST_GRACES];
     int graces;
     bool failed;
@@ -176,7 +176,7 @@ static void emit_measured(shaper *s, const music_note *n, double unit, midi_way 
         way.extra = true;
         way.hand = 0;
         way.nuance = way.nuance == HIMC_ACCENT || way.nuance == HIMC_VERTICAL_ACCENT ? HIMC_LEGATO
-                                                                                    : way.nuance;
+                                                                                     : way.nuance;
     }
 }
 
@@ -244,7 +244,8 @@ static void add_order(shaper *s, midi_order_kind kind, const music_sign *sign, m
         return;
     f->orders[f->order_count++] =
         (midi_order){sign->at.beat, himc_score_seconds(f->tempi, f->tempo_count, sign->at.beat),
-                     kind, choice, from, kind == MIDI_TUNING ? value % 100 : value};
+                     kind,          choice,
+                     from,          kind == MIDI_TUNING ? value % 100 : value};
 }
 
 // what sounds is damped at a beat, or rings on
@@ -313,14 +314,16 @@ static void shape_note(shaper *s, music_note *n)
     double unit, least = himc_argument_find("LENGTH", "roll")->low;
     bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = s->attack || n->marcato;
     midi_way way = {.dynamic = level(s, n->at.beat),
-                    .nuance = attack         ? HIMC_VERTICAL_ACCENT
-                              : n->accent    ? HIMC_ACCENT
-                              : n->staccato  ? HIMC_STACCATO
-                              : n->tenuto    ? HIMC_TENUTO
-                                             : HIMC_LEGATO,
+                    .nuance = attack        ? HIMC_VERTICAL_ACCENT
+                              : n->accent   ? HIMC_ACCENT
+                              : n->staccato ? HIMC_STACCATO
+                              : n->tenuto   ? HIMC_TENUTO
+                                            : HIMC_LEGATO,
                     .spot = s->spot,
                     .hand = n->hand ? n->hand : s->hand,
-                    .ring = n->ring ? n->ring : s->ring ? s->ring : s->always};
+                    .ring = n->ring   ? n->ring
+                            : s->ring ? s->ring
+                                      : s->always};
     double louder = attack ? 2 * STEP : n->accent ? STEP : 0;
     emit_graces(s, n, roll, &way);
     if (!roll && n->accent && !attack)

@@ -139,8 +139,7 @@ static bool add_fermatas(map *to, const map *from, const music *m)
 bool himc_music_tempo(const music *m, midi_file *file, himc_error *error)
 {
     map signs = {.error = error}, held = {.error = error};
-    bool good =
-        add(&signs, 0, USUAL_BPM) && add_signs(&signs, m) && add_fermatas(&held, &signs, m);
+    bool good = add(&signs, 0, USUAL_BPM) && add_signs(&signs, m) && add_fermatas(&held, &signs, m);
     free(signs.tempi);
     file->tempi = held.tempi;
     file->tempo_count = held.count;

@@ -163,8 +163,8 @@ static void refuse_entity(void *user, const char *name, int parameter, const cha
     fail(user, "an entity is declared; no score needs one, and none is read");
 }
 
-bool xml_read(xml_document *document, const void *bytes, size_t size, const char *const *unused,
-              himc_error *error)
+bool himc_xml_read(xml_document *document, const void *bytes, size_t size,
+                   const char *const *unused, himc_error *error)
 {
     reader *r = calloc(1, sizeof *r);
     *document = (xml_document){0};
@@ -194,11 +194,11 @@ bool xml_read(xml_document *document, const void *bytes, size_t size, const char
     *document = (xml_document){r->root, r->last};
     free(r);
     if (!good)
-        xml_free(document);
+        himc_xml_free(document);
     return good;
 }
 
-void xml_free(xml_document *document)
+void himc_xml_free(xml_document *document)
 {
     for (block *b = document->memory, *before; b; b = before) {
         before = b->before;
@@ -207,43 +207,43 @@ void xml_free(xml_document *document)
     *document = (xml_document){0};
 }
 
-bool xml_is(const xml_node *node, const char *name)
+bool himc_xml_is(const xml_node *node, const char *name)
 {
     return node && strcmp(node->name, name) == 0;
 }
 
-const xml_node *xml_child(const xml_node *node, const char *name)
+const xml_node *himc_xml_child(const xml_node *node, const char *name)
 {
     const xml_node *child = node ? node->child : NULL;
-    while (child && !xml_is(child, name))
+    while (child && !himc_xml_is(child, name))
         child = child->next;
     return child;
 }
 
-const xml_node *xml_next(const xml_node *node)
+const xml_node *himc_xml_next(const xml_node *node)
 {
     const char *name = node->name;
     do
         node = node->next;
-    while (node && !xml_is(node, name));
+    while (node && !himc_xml_is(node, name));
     return node;
 }
 
-const char *xml_text(const xml_node *node, const char *name)
+const char *himc_xml_text(const xml_node *node, const char *name)
 {
-    const xml_node *child = xml_child(node, name);
+    const xml_node *child = himc_xml_child(node, name);
     return child ? child->text : "";
 }
 
-double xml_number(const xml_node *node, const char *name, double otherwise)
+double himc_xml_number(const xml_node *node, const char *name, double otherwise)
 {
-    const char *text = xml_text(node, name);
+    const char *text = himc_xml_text(node, name);
     char *end;
     double number = strtod(text, &end);
     return end != text && isfinite(number) ? number : otherwise;
 }
 
-const char *xml_attribute(const xml_node *node, const char *name)
+const char *himc_xml_attribute(const xml_node *node, const char *name)
 {
     for (const char *const *a = node ? node->attribute : NULL; a && a[0]; a += 2)
         if (strcmp(a[0], name) == 0)
@@ -251,7 +251,7 @@ const char *xml_attribute(const xml_node *node, const char *name)
     return "";
 }
 
-bool xml_has(const xml_node *node, const char *name, const char *value)
+bool himc_xml_has(const xml_node *node, const char *name, const char *value)
 {
-    return strcmp(xml_attribute(node, name), value) == 0;
+    return strcmp(himc_xml_attribute(node, name), value) == 0;
 }

@@ -21,22 +21,22 @@ typedef struct xml_document {
 /// Reads a document. Elements named in `unused` (NULL after the last) are left out with all that is
 /// in them. False with one line if the bytes are not well-formed, declare an entity, or hold more
 /// elements than any score has. Free with xml_free.
-bool xml_read(xml_document *document, const void *bytes, size_t size, const char *const *unused,
-              himc_error *error);
-void xml_free(xml_document *document);
+bool himc_xml_read(xml_document *document, const void *bytes, size_t size,
+                   const char *const *unused, himc_error *error);
+void himc_xml_free(xml_document *document);
 
 /// The first child of that name; NULL if there is none, or no node.
-const xml_node *xml_child(const xml_node *node, const char *name);
+const xml_node *himc_xml_child(const xml_node *node, const char *name);
 /// The next sibling of the same name, or NULL.
-const xml_node *xml_next(const xml_node *node);
+const xml_node *himc_xml_next(const xml_node *node);
 /// The child's text, "" if there is none.
-const char *xml_text(const xml_node *node, const char *name);
+const char *himc_xml_text(const xml_node *node, const char *name);
 /// The child's text as a number; `otherwise` if it is none.
-double xml_number(const xml_node *node, const char *name, double otherwise);
+double himc_xml_number(const xml_node *node, const char *name, double otherwise);
 /// "" if there is none.
-const char *xml_attribute(const xml_node *node, const char *name);
-bool xml_is(const xml_node *node, const char *name);
+const char *himc_xml_attribute(const xml_node *node, const char *name);
+bool himc_xml_is(const xml_node *node, const char *name);
 /// True if the attribute has that value.
-bool xml_has(const xml_node *node, const char *name, const char *value);
+bool himc_xml_has(const xml_node *node, const char *name, const char *value);
 
 #endif
