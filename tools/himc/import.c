@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "cli.h"
 #include "musicxml/import.h"
+#include "musicxml/names.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,12 +13,15 @@
 #define MOST_BYTES ((size_t)64 << 20) // of a file; each reader has its own limit
 #define USUAL_RANGE 22.0 // of `--curve square` (dB): from ppp to fff of this instrument
 
-enum { OUT, PART, CURVE };
+enum { OUT, PART, CURVE, TRACK, CHANNEL, AS };
 
 static const cli_option options[] = {
     {"output", 'o', "SCORE", "the score; - is the standard output"},
     {"part", 0, "PART", "the first of these of which the file has any"},
     {"curve", 0, "CURVE", "how velocities become dynamics (notation)"},
+    {"track", 0, "N", "only notes of that track or part, from 1"},
+    {"channel", 0, "N", "only notes of that channel, 1 .. 16"},
+    {"as", 0, "INSTRUMENT", "what notes of MIDI are played on: timpani, marimba, snare drum ..."},
     {0},
 };
 
@@ -51,6 +55,27 @@ static bool read_part(const char *word, midi_choice *part, himc_error *error)
                           word);
 }
 
+static bool read_number(const char *option, const char *word, int most, int *number,
+                        himc_error *error)
+{
+    char *end = NULL;
+    long n = word ? strtol(word, &end, 10) : 0;
+    *number = (int)n;
+    return !word || (end != word && !*end && n >= 1 && n <= most) ||
+           himc_error_set(error, "%s: \"%s\", expected 1 .. %d", option, word, most);
+}
+
+static bool read_as(const char *word, midi_options *wanted, himc_error *error)
+{
+    int key = 0;
+    if (!word)
+        return true;
+    wanted->as = strcmp(word, "drums") == 0 ? MIDI_DRUMS : himc_music_instrument(word, &key);
+    wanted->as_key = wanted->as == MIDI_DRUMS && key > 0 ? key : 0;
+    return wanted->as != MIDI_ANY ||
+           himc_error_set(error, "--as: \"%s\", expected an instrument that is played here", word);
+}
+
 static bool import(const char *path, const char *name, const midi_options *wanted, midi_score *made,
                    himc_error *error)
 {
@@ -80,7 +105,7 @@ static bool write_text(const char *path, const char *text, himc_error *error)
 static bool make(const cli_arguments *arguments, midi_score *made, himc_error *error)
 {
     const char *path, *out = arguments->value[OUT];
-    midi_options wanted = {MIDI_ANY, 0};
+    midi_options wanted = {0};
     if (!out)
         return himc_error_set(error, "no -o SCORE given (himc import --help)");
     if (!(path = cli_input(arguments->operand, error)) || !cli_apart(out, &path, 1, error))
@@ -90,6 +115,9 @@ static bool make(const cli_arguments *arguments, midi_score *made, himc_error *e
         return himc_error_set(error, "%s: a score is a text, expected a name like score.txt", out);
     return read_part(arguments->value[PART], &wanted.choice, error) &&
            read_curve(arguments->value[CURVE], &wanted.range, error) &&
+           read_number("--track", arguments->value[TRACK], 65535, &wanted.track, error) &&
+           read_number("--channel", arguments->value[CHANNEL], 16, &wanted.channel, error) &&
+           read_as(arguments->value[AS], &wanted, error) &&
            import(path, cli_is_standard(arguments->operand) ? "standard input" : path, &wanted,
                   made, error) &&
            write_text(out, made->text, error);

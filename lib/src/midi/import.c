@@ -41,7 +41,7 @@ static void put(himc_text_lines *text, const char *format, ...)
     text->size += length;
 }
 
-double himc_midi_dynamic(int velocity, double range)
+double himc_midi_dynamic(double velocity, double range)
 {
     // as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
     if (range == 0)
@@ -72,11 +72,19 @@ static midi_choice choice_of(const midi_note *note)
     return himc_midi_program_choice(note->program);
 }
 
-static midi_choice first_choice(const midi_file *file)
+// MIDI_ANY of a note that is not asked for, too
+static midi_choice asked_choice(const midi_note *note, const midi_options *options)
+{
+    bool asked = (options->track == 0 || options->track == note->track + 1) &&
+                 (options->channel == 0 || options->channel == note->channel + 1);
+    return !asked ? MIDI_ANY : options->as != MIDI_ANY ? options->as : choice_of(note);
+}
+
+static midi_choice first_choice(const midi_file *file, const midi_options *options)
 {
     midi_choice first = MIDI_CHOICES;
     for (int i = 0; i < file->note_count; i++) {
-        midi_choice c = choice_of(&file->notes[i]);
+        midi_choice c = asked_choice(&file->notes[i], options);
         first = c != MIDI_ANY && c < first ? c : first;
     }
     return first == MIDI_CHOICES ? MIDI_DRUMS : first;
@@ -112,21 +120,23 @@ static void take_notes(midi_part *part, const midi_options *options)
     for (int i = 0; i < part->file->note_count; i++) {
         const midi_note *note = &part->file->notes[i];
         const midi_way *way = &note->way;
-        midi_choice choice = choice_of(note);
+        midi_choice choice = asked_choice(note, options);
         bool written = way->dynamic >= 0;
         double damped = note->seconds + 0.15; // by a hand at the earliest (s); chosen
         if (choice != part->choice) {
-            part->fate[choice != MIDI_ANY ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT] += !way->extra;
+            bool drum = choice_of(note) != MIDI_ANY;
+            part->fate[drum ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT] += !way->extra;
             continue;
         }
         part->notes += !way->extra;
         part->stroke[part->count++] = (midi_stroke){
             .note = note,
-            .key = note->key,
+            .key = options->as_key > 0 ? options->as_key : note->key,
             .spot = way->spot,
-            .dynamic = written ? way->dynamic : himc_midi_dynamic(note->velocity, options->range),
+            .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
             .end = fmax(note->off, damped),
-            .roll = {way->length, way->last_dynamic}};
+            .roll = {way->length, written ? way->last_dynamic
+                                          : himc_midi_dynamic(note->last_level, options->range)}};
     }
 }
 
@@ -167,7 +177,7 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
                       himc_error *error)
 {
     part->file = file;
-    part->choice = options->choice == MIDI_ANY ? first_choice(file) : options->choice;
+    part->choice = options->choice == MIDI_ANY ? first_choice(file, options) : options->choice;
     part->stroke = calloc((size_t)file->note_count + 1, sizeof *part->stroke);
     if (!part->stroke)
         return himc_error_set(error, "out of memory for %d notes", file->note_count);
@@ -220,9 +230,6 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
     };
     put(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->notes,
         himc_midi_choice_name(part->choice));
-    if (file->cut > 0)
-        put(t, "the file is cut short: %d of its tracks can be read up to %.3g s only\n", file->cut,
-            file->cut_at);
     report_kind(t, file->missing, "track is missing: the file is cut short or its header is wrong",
                 "tracks are missing: the file is cut short or its header is wrong");
     for (int i = 0; i < MIDI_FATES; i++)
@@ -480,7 +487,7 @@ static bool write_score(midi_score *made, const midi_file *file, midi_part *part
     score.failed |= !put_changes(&score, file, part, lead);
     *made = (midi_score){score.bytes, said.bytes,
                          part->notes - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER] +
-                             file->omitted + file->cut + file->missing};
+                             file->omitted + file->missing};
     if (!score.failed && !said.failed)
         return true;
     himc_midi_score_free(made);
@@ -490,7 +497,7 @@ static bool write_score(midi_score *made, const midi_file *file, midi_part *part
 bool himc_midi_make(midi_score *made, midi_file *file, const char *name,
                     const midi_options *options, himc_error *error)
 {
-    static const midi_options usual = {MIDI_ANY, 0};
+    static const midi_options usual = {0};
     midi_part part = {0};
     *made = (midi_score){0};
     bool good = make_part(&part, file, options ? options : &usual, error);
@@ -516,8 +523,15 @@ bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const ch
     if (size > HIMC_MIDI_BYTES_MAX)
         return himc_error_set(error, "too long, expected %zu MiB of MIDI",
                               HIMC_MIDI_BYTES_MAX >> 20);
-    return himc_midi_file_read(&file, bytes, size, error) &&
-           himc_midi_make(made, &file, name, options, error);
+    if (!himc_midi_file_read(&file, bytes, size, error))
+        return false;
+    if (file.cut > 0) {
+        himc_error_set(error, "cut short: %d of its %d tracks can be read up to %.3g s only",
+                       file.cut, file.tracks, file.cut_at);
+        himc_midi_file_free(&file);
+        return false;
+    }
+    return himc_midi_make(made, &file, name, options, error);
 }
 
 void himc_midi_score_free(midi_score *made)

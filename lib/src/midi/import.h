@@ -8,13 +8,16 @@ typedef struct midi_options {
     midi_choice choice;
     double range; ///< dynamic range of velocities by a square law (dB), 1 .. 80; 0: as notation
                   ///< programs write dynamics
+    int track, channel; ///< whose notes alone are taken, from 1; 0: all
+    midi_choice as;     ///< what they are taken for; MIDI_ANY: as the file says
+    int as_key;         ///< of drums: all are this key; 0: as the file says
 } midi_options;
 
 /// "timpani" and so on; "" of MIDI_ANY. Borrowed, static.
 const char *himc_midi_choice_name(midi_choice choice);
 
-/// The dynamic (0 .. 1) of a velocity (1 .. 127); `range` as in midi_options.
-double himc_midi_dynamic(int velocity, double range);
+/// The dynamic (0 .. 1) of a velocity (0 .. 127); `range` as in midi_options.
+double himc_midi_dynamic(double velocity, double range);
 
 #define HIMC_MIDI_BYTES_MAX \
     ((size_t)4 << 20) ///< of a MIDI file; chosen: a hundred times a long piece

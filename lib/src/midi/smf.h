@@ -42,6 +42,8 @@ typedef struct midi_note {
     uint8_t key;        ///< 0 .. 127; 60 is C4. From 128: drums that only MusicXML has (part.h)
     uint8_t velocity;   ///< 1 .. 127
     uint8_t program;    ///< of its channel then, 0 .. 127
+    double level;       ///< the velocity with volume, expression and pressure, 0 .. 127
+    double last_level;  ///< of a roll (way.length): at its end
     midi_choice choice; ///< of its track's name; MIDI_ANY: its channel or program says it
     midi_way way;
 } midi_note;
