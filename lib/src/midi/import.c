@@ -154,6 +154,20 @@ static const midi_bar *bar_at(const midi_file *file, double beat)
     return low > 0 ? &file->bars[low - 1] : NULL;
 }
 
+// a part of a roll without the part before it is left out, too
+static void drop_rests(midi_part *part)
+{
+    midi_fate fate[MIDI_KEY_COUNT] = {MIDI_PLAYED}; // of the last part of a roll of each key
+    for (int i = 0; i < part->count; i++) {
+        midi_stroke *s = &part->stroke[i];
+        if (s->roll.length <= 0)
+            continue;
+        if (s->note->way.extra && fate[s->key] != MIDI_PLAYED)
+            s->fate = fate[s->key];
+        fate[s->key] = s->fate;
+    }
+}
+
 // a score has lines for so many damped strokes
 static void count_fates(midi_part *part)
 {
@@ -189,6 +203,7 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
         return false;
     for (int i = 0; i < part->count && part->choice != MIDI_TIMPANI; i++)
         part->stroke[i].damped = part->stroke[i].note->way.ring < 0;
+    drop_rests(part);
     count_fates(part);
     if (part->choice == MIDI_TIMPANI && !file->said)
         himc_midi_find_rolls(part);
