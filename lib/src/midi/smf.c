@@ -408,10 +408,15 @@ static int farthest(const sample *s, int count)
 static bool add_rolls(midi_file *file, int *room, const sample *s, int count, himc_error *error)
 {
     const int most = 64; // of a note; chosen, bounds the time
+    const double shortest = himc_argument_find("LENGTH", "roll")->low;
     for (int first = 0, last, bend, made = 0; first + 1 < count; first = last, made++) {
         last = count - 1;
         while (made < most && (bend = farthest(s + first, last - first + 1)) > 0)
             last = first + bend;
+        if (s[last].beat - s[first].beat < shortest && (made > 0 || last + 1 < count)) {
+            made--; // a jump
+            continue;
+        }
         if (!himc_array_grow(&file->notes, file->note_count, room, sizeof *file->notes, error))
             return false;
         midi_note n = file->notes[s->note];
@@ -437,7 +442,8 @@ static bool is_timpani(const midi_note *n)
 // a note of timpani that is held while its level rises is a roll: a single stroke cannot swell
 static bool find_swells(midi_file *file, const reader *r, collection *c)
 {
-    const double least = 0.25, rise = 8; // (s); of a velocity: half a step. Chosen
+    const double least = 0.25, longest = 60; // (s) chosen: a score's limit is 180 s
+    const double rise = 8;                   // of a velocity; chosen: half a step
     int notes = file->note_count, room = r->count + 1;
     sample *line = malloc(((size_t)c->count + 2) * sizeof *line);
     if (!line)
@@ -458,7 +464,8 @@ static bool find_swells(midi_file *file, const reader *r, collection *c)
             low = fmin(low, c->samples[end].level);
             up = fmax(up, c->samples[end].level - low);
         }
-        if (!is_timpani(&n) || n.off - n.seconds < least || up < rise)
+        double time = n.off - n.seconds;
+        if (!is_timpani(&n) || time < least || time > longest || up < rise)
             continue;
         double off = r->per_second > 0 ? n.off * r->per_second / r->quarter
                                        : himc_score_beat(file->tempi, file->tempo_count, n.off);

@@ -24,6 +24,7 @@
 #define GRACE_TIME 0.07  // between strokes that are grace notes (s); chosen: an open ruff
 #define GRACE_SOFTER 0.2 // than their note
 #define ATTACK_TIME 0.3  // of an accent on a roll (s)
+#define LONGEST 60.0     // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
 #define MOST_STROKES 100000 // as import.c
 #define MOST_CANDIDATES 400 // notes of one beat that a tie is looked for in; chosen: bounds time
@@ -155,7 +156,7 @@ static void emit_roll(shaper *s, const music_note *n, double end, double louder,
         double up = louder > 0 && at == begin && end - at > 2 * attack ? louder : 0;
         to = up > 0 ? fmin(to, at + attack) : to;
         to = to > end - least ? end : to;
-        to = fmin(to, at + range->high);
+        to = fmin(to, at + fmin(range->high, LONGEST * s->second));
         way.length = to - at;
         way.dynamic = fmin((at == begin ? base : level(s, at)) + up, 1);
         // just before the point, which may be a step
