@@ -213,6 +213,21 @@ void himc_text_add(void *object, const char *line)
     text->size += length + 2;
 }
 
+void himc_text_print(himc_text_lines *lines, const char *format, ...)
+{
+    char text[1001];
+    va_list args;
+    va_start(args, format);
+    size_t length = himc_format_list(text, sizeof text, format, args);
+    va_end(args);
+    if (!himc_text_reserve(lines, length)) {
+        lines->failed = true;
+        return;
+    }
+    memcpy(lines->bytes + lines->size, text, length + 1);
+    lines->size += length;
+}
+
 void himc_text_list(char *list, size_t size, const char *word)
 {
     size_t used = strlen(list), length = strlen(word);

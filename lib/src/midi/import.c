@@ -23,24 +23,6 @@
 #define GAIN (-2.5)         // (dB) chosen: zarathustra.mid has -23 LUFS, as broadcast
 #define PEDAL_STEPS 4       // of a pedal that moves, at most; chosen: heard as a slide
 
-static void put(himc_text_lines *text, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void put(himc_text_lines *text, const char *format, ...)
-{
-    char line[256];
-    va_list args;
-    va_start(args, format);
-    size_t length = himc_format_list(line, sizeof line, format, args);
-    va_end(args);
-    if (!himc_text_reserve(text, length)) {
-        text->failed = true;
-        return;
-    }
-    memcpy(text->bytes + text->size, line, length + 1);
-    text->size += length;
-}
-
 double himc_midi_dynamic(double velocity, double range)
 {
     // as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
@@ -215,7 +197,7 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
 static void report_kind(himc_text_lines *t, int count, const char *one, const char *many)
 {
     if (count > 0)
-        put(t, "%d %s\n", count, count == 1 ? one : many);
+        himc_text_print(t, "%d %s\n", count, count == 1 ? one : many);
 }
 
 static void report_fate(himc_text_lines *t, const midi_part *part, midi_fate fate,
@@ -224,7 +206,7 @@ static void report_fate(himc_text_lines *t, const midi_part *part, midi_fate fat
     int count = part->fate[fate];
     const char *bars = part->bars[fate], *text = why[count != 1];
     if (count > 0 && bars[0])
-        put(t, "%d %s (bar%s %s)\n", count, text, strchr(bars, ' ') ? "s" : "", bars);
+        himc_text_print(t, "%d %s (bar%s %s)\n", count, text, strchr(bars, ' ') ? "s" : "", bars);
     else
         report_kind(t, count, text, text);
 }
@@ -243,27 +225,28 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
                                    "notes are of other instruments"},
     };
-    put(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->notes,
-        himc_midi_choice_name(part->choice));
+    himc_text_print(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->notes,
+                    himc_midi_choice_name(part->choice));
     report_kind(t, file->missing, "track is missing: the file is cut short or its header is wrong",
                 "tracks are missing: the file is cut short or its header is wrong");
     for (int i = 0; i < MIDI_FATES; i++)
         if (why[i][0])
             report_fate(t, part, (midi_fate)i, why[i]);
     if (file->said)
-        put(t, "%s", file->said);
+        himc_text_print(t, "%s", file->said);
     report_kind(t, part->fate[MIDI_OTHER_PART], "note for other percussion is not asked for",
                 "notes for other percussion are not asked for");
     char line[100];
     for (int key = 0; key < MIDI_KEY_COUNT && part->choice == MIDI_DRUMS; key++)
         if (himc_midi_tell_key(part, key, line, sizeof line) > 0 && line[0])
-            put(t, "%s\n", line);
+            himc_text_print(t, "%s\n", line);
     report_kind(t, part->moved, "note is moved by octaves to what is built",
                 "notes are moved by octaves to what is built");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");
     if (part->rolls > 0)
-        put(t, "%d note%s played as %d roll%s\n", part->rolled, part->rolled == 1 ? " is" : "s are",
-            part->rolls, part->rolls == 1 ? "" : "s");
+        himc_text_print(t, "%d note%s played as %d roll%s\n", part->rolled,
+                        part->rolled == 1 ? " is" : "s are", part->rolls,
+                        part->rolls == 1 ? "" : "s");
     report_kind(t, part->untuned,
                 "word about tuning is not followed: no drum has that pitch and time",
                 "words about tuning are not followed: no drum has that pitch and time");
@@ -271,7 +254,7 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                 "changes of mallets are not played: a score has one pair");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
     if (file->converted)
-        put(t, "the tempo map is not kept: beats are half seconds\n");
+        himc_text_print(t, "the tempo map is not kept: beats are half seconds\n");
 }
 
 // the score
@@ -367,9 +350,9 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         char pitch[HIMC_NOTE_SIZE];
         himc_midi_key_name(pitch, c->key < 0 ? 0 : c->key);
         if (c->key < 0)
-            put(t, "at %.9g %s %s;\n", beat, name, c->does);
+            himc_text_print(t, "at %.9g %s %s;\n", beat, name, c->does);
         else
-            put(t, "at %.9g %s tune %s;\n", beat, name, pitch);
+            himc_text_print(t, "at %.9g %s tune %s;\n", beat, name, pitch);
     }
     free(list);
     return true;
@@ -394,13 +377,13 @@ static void put_stroke(himc_text_lines *t, const midi_part *part, const midi_str
     const char *space = s->part[0] ? " " : "";
     char first[16], last[16];
     if (s->roll.length > 0)
-        put(t, "roll %.9g %.9g single %s %s %s %s%s%s;\n", beat, s->roll.length,
-            dynamic_word(first, s->dynamic), dynamic_word(last, s->roll.last_dynamic), spot,
-            s->part, space, drum);
+        himc_text_print(t, "roll %.9g %.9g single %s %s %s %s%s%s;\n", beat, s->roll.length,
+                        dynamic_word(first, s->dynamic), dynamic_word(last, s->roll.last_dynamic),
+                        spot, s->part, space, drum);
     else
-        put(t, "%s %.9g %s %s %s %s %s%s%s;\n", ornaments[way->ornament], beat,
-            himc_hand_name(s->hand), himc_nuance_name(way->nuance), dynamic_word(first, s->dynamic),
-            spot, s->part, space, drum);
+        himc_text_print(t, "%s %.9g %s %s %s %s %s%s%s;\n", ornaments[way->ornament], beat,
+                        himc_hand_name(s->hand), himc_nuance_name(way->nuance),
+                        dynamic_word(first, s->dynamic), spot, s->part, space, drum);
 }
 
 // the first mallets that a word names before the first stroke; others cannot be played
@@ -429,7 +412,7 @@ static void put_name(himc_text_lines *t, const char *name)
     snprintf(shown, sizeof shown, "%s", slash ? slash + 1 : name);
     for (char *s = shown; *s; s++)
         *s = isalnum((unsigned char)*s) || strchr("-_.", *s) ? *s : '_';
-    put(t, "comment made of %s by himc import;\n", shown);
+    himc_text_print(t, "comment made of %s by himc import;\n", shown);
 }
 
 static void put_heads(himc_text_lines *t, const midi_part *part, const char *mallets)
@@ -439,26 +422,26 @@ static void put_heads(himc_text_lines *t, const midi_part *part, const char *mal
         if (h->key == -1)
             continue;
         if (h->made[0])
-            put(t, "instrument %s %s;\n", h->name, h->made);
+            himc_text_print(t, "instrument %s %s;\n", h->name, h->made);
         else
-            put(t, "drum %s %g;\n", h->name, h->inches);
-        put(t, "%s place %g %g %g %g;\n", h->name, h->x, h->y, h->z, h->tilt);
+            himc_text_print(t, "drum %s %g;\n", h->name, h->inches);
+        himc_text_print(t, "%s place %g %g %g %g;\n", h->name, h->x, h->y, h->z, h->tilt);
         char pitch[HIMC_NOTE_SIZE];
         if (h->key != MIDI_UNTUNED) {
             himc_midi_key_name(pitch, h->key);
-            put(t, "%s tune %s;\n", h->name, pitch);
+            himc_text_print(t, "%s tune %s;\n", h->name, pitch);
         }
         if (mallets)
-            put(t, "%s mallet %s;\n", h->name, mallets);
+            himc_text_print(t, "%s mallet %s;\n", h->name, mallets);
     }
-    put(t, "gain %g;\n", GAIN);
+    himc_text_print(t, "gain %g;\n", GAIN);
 }
 
 static void put_tempi(himc_text_lines *t, const midi_file *file, double last, double lead)
 {
     for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
         double beat = file->tempi[i].beat;
-        put(t, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);
+        himc_text_print(t, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);
     }
 }
 
@@ -471,7 +454,7 @@ static void put_strokes(himc_text_lines *t, const midi_part *part, double lead)
             continue;
         const midi_bar *bar = bar_at(part->file, s->note->beat);
         if (bar && bar != now)
-            put(t, "comment bar %s;\n", bar->number);
+            himc_text_print(t, "comment bar %s;\n", bar->number);
         now = bar;
         put_stroke(t, part, s, s->note->beat + lead);
     }
@@ -494,8 +477,8 @@ static bool write_score(midi_score *made, const midi_file *file, midi_part *part
     put_name(&score, name);
     const char *line = said.failed ? "" : said.bytes;
     for (const char *end; (end = strchr(line, '\n')); line = end + 1)
-        put(&score, "comment %.*s;\n", (int)(end - line), line);
-    put(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
+        himc_text_print(&score, "comment %.*s;\n", (int)(end - line), line);
+    himc_text_print(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
     put_heads(&score, part, mallets);
     put_tempi(&score, file, last, lead);
     put_strokes(&score, part, lead);

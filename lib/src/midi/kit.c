@@ -91,6 +91,27 @@ static const gm_key *find_key(int key)
     return known ? &keys[key - FIRST_KEY] : NULL;
 }
 
+int himc_midi_key_of(const char *instrument, himc_spot spot, bool open)
+{
+    int found = -1;
+    for (int key = FIRST_KEY; key < MIDI_KEY_COUNT; key++) {
+        const gm_key *k = find_key(key);
+        if (!k || !k->instrument || strcmp(k->instrument, instrument) != 0)
+            continue;
+        bool fits = k->how == CLOSED ? !open : k->how == OPENED ? open : k->how != PEDALLED;
+        bool better = found < 0 || (k->spot == spot && find_key(found)->spot != spot);
+        if (fits && better && (!k->instead || k->spot == spot))
+            found = key;
+    }
+    return found;
+}
+
+const char *himc_midi_key_sound(int key)
+{
+    const gm_key *k = find_key(key);
+    return k ? k->sound : "";
+}
+
 void himc_midi_join(midi_part *part)
 {
     int last[MIDI_KEY_COUNT];

@@ -131,6 +131,11 @@ void himc_midi_kit(midi_part *part);
 /// notes.
 int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);
 
+/// The key of an instrument of the kit, struck at that spot; of a hi-hat open or closed; -1: none.
+int himc_midi_key_of(const char *instrument, himc_spot spot, bool open);
+/// What General MIDI calls a key; "" if it has none.
+const char *himc_midi_key_sound(int key);
+
 /// keyboard.c: the timpani or keyboard of a program of General MIDI (0 .. 127), else MIDI_ANY.
 midi_choice himc_midi_program_choice(int program);
 /// "C#3".
