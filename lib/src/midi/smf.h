@@ -28,6 +28,7 @@ typedef struct midi_way {
     himc_ornament ornament; ///< flam, drag, ruff or none
     himc_spot spot;
     int hand;   ///< 1 + himc_hand; 0: any
+    int drum;   ///< of timpani: 1 low .. 4 high; 0: any
     int ring;   ///< 1: it rings on, -1: it is damped at its end, 0: as usual
     bool extra; ///< a stroke of a note that has others: a grace, a part of a tremolo
 } midi_way;

@@ -13,8 +13,9 @@
 #include <string.h>
 
 #define DRUMS MIDI_KEYS
-#define RING_TIME 1.0    // after a stroke an undamped drum may be retuned (s)
-#define MOST_PEDALS 2000 // chosen: an hour of a busy foot, and a score has room for them
+#define RING_TIME 1.0      // after a stroke an undamped drum may be retuned (s)
+#define FASTEST_PEDAL 0.05 // (s) chosen
+#define MOST_PEDALS 2000   // chosen: an hour of a busy foot, and a score has room for them
 
 /// From low on the left to high on the right, as in an orchestra; 23 to 32 inches.
 static const struct {
@@ -88,9 +89,14 @@ static void follow_orders(const midi_part *part, int stroke, midi_state *state, 
         if (o->kind != MIDI_TUNING || o->choice == MIDI_DRUMS)
             continue;
         int drum = find_ordered(state, o, &key);
-        double begin = drum < 0 ? 0 : fmax(o->seconds, pedal_begin(state, drum)), end = begin;
+        double begin = o->seconds, end = begin;
+        // a drum that is named moves while it rings, and as fast as it has to
+        if (drum >= 0 && o->from >= 12)
+            begin = fmax(begin, pedal_begin(state, drum));
         if (drum >= 0)
-            end += pedal_time(key - state->key[drum]);
+            end = begin + pedal_time(key - state->key[drum]);
+        if (o->from < 12 && begin + FASTEST_PEDAL <= s->note->seconds)
+            end = fmin(end, s->note->seconds);
         if (drum < 0 || end > s->note->seconds) {
             if (record)
                 record->untuned++;
@@ -114,6 +120,8 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
         state->cost += 30;
         return true;
     }
+    int written = s->note->way.drum;
+    state->cost += written > 0 && written != drum + 1 ? 20 : 0; // less than to leave it out
     double at = s->note->seconds;
     int key = state->key[drum], way = abs(s->key - key);
     int low = timpano[drum].low, high = timpano[drum].high;
@@ -127,7 +135,7 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
         state->cost += 0.5; // no more drums than the piece needs
     if (key >= 0 && way > 0) {
         double end = pedal_begin(state, drum) + pedal_time(way);
-        if (end > at)
+        if (end > at && written != drum + 1) // else it glides under the stroke
             return false;
         state->foot = end + 0.3; // s to the next pedal
         state->cost += 1 + 0.1 * way;
@@ -196,9 +204,12 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
         if (from < 0)
             part->head[s->head].key = s->key;
         if (pedal) {
+            double time = pedal_time(s->key - from);
             float early = (float)(s->note->seconds - pedal_begin(&now, s->head));
-            part->pedal[part->pedals++] = (midi_pedal){
-                s->note->seconds - (double)early, pedal_time(s->key - from), s->head, from, s->key};
+            if ((double)early < time)
+                time = early = (float)FASTEST_PEDAL;
+            part->pedal[part->pedals++] =
+                (midi_pedal){s->note->seconds - (double)early, time, s->head, from, s->key};
         }
         now = before; // choose follows the orders again
         choose(part, i, s->head, &now);

@@ -6,6 +6,7 @@
 #include "musicxml/export.h"
 
 #include "base/array.h"
+#include "base/format.h"
 #include "midi/part.h"
 #include "musicxml/names.h"
 #include "plan/score.h"
@@ -113,6 +114,14 @@ static int part_key(const char *part)
     return himc_note_frequency(part, &hz) ? key_of(hz) : -1;
 }
 
+// a timpano with the name that the import gives it
+static int drum_of(const head *h)
+{
+    char name[HIMC_NAME_SIZE + 10];
+    himc_format(name, sizeof name, "%s timpano", h->name);
+    return h->choice == MIDI_TIMPANI ? himc_music_drum(name) : 0;
+}
+
 static bool add_note(exporter *x, const himc_stroke *s)
 {
     midi_file *f = x->file;
@@ -144,6 +153,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
         .key = (uint8_t)key,
         .choice = h->choice,
         .way = {.dynamic = s->dynamic,
+                .drum = drum_of(h),
                 .length = end - s->beat,
                 .last_dynamic = s->last_dynamic,
                 .nuance = s->nuance,

@@ -39,8 +39,10 @@ typedef struct music_note {
     midi_choice choice;
     int key;
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
-    int ring; ///< 1, -1, or 0: not written
-    int hand; ///< 1 + himc_hand, or 0
+    int ring;       ///< 1, -1, or 0: not written
+    int hand;       ///< 1 + himc_hand, or 0
+    int drum;       ///< of timpani: 1 low .. 4 high; 0: not written
+    double dynamic; ///< of its own; below 0: not written
     music_tremolo tremolo;
     int marks, flags; ///< strokes through the stem; flags of the note
     double ratio;     ///< of a tuplet: written length over sounding

@@ -200,6 +200,16 @@ midi_choice himc_music_instrument(const char *name, int *key)
     return MIDI_ANY;
 }
 
+int himc_music_drum(const char *name)
+{
+    static const char *const drums[] = {"low timpano", "second timpano", "third timpano",
+                                        "high timpano"};
+    for (int i = 0; i < 4; i++)
+        if (strcmp(name, drums[i]) == 0)
+            return i + 1;
+    return 0;
+}
+
 bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
 {
     static const char *const steps[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"};

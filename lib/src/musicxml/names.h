@@ -10,6 +10,9 @@
 /// whose part it is, and of drums the key (midi/kit.c). MIDI_ANY if it is none that is played.
 midi_choice himc_music_instrument(const char *name, int *key);
 
+/// The timpano of a name as `himc export` writes it, "second timpano": 1 low .. 4 high; else 0.
+int himc_music_drum(const char *name);
+
 /// What a word or a sign asks for.
 typedef enum music_meaning {
     MUSIC_DYNAMIC,     ///< value: 0 .. 1

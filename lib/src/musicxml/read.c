@@ -24,6 +24,7 @@ typedef struct instrument {
     const char *id;
     midi_choice choice;
     int key;
+    int drum; ///< of timpani
 } instrument;
 
 typedef struct reader {
@@ -68,12 +69,13 @@ static bool is_yes(const xml_node *node, const char *attribute)
 static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
 {
     instrument *made = &r->instrument[r->instruments++];
-    *made = (instrument){himc_xml_attribute(score, "id"), MIDI_ANY, MUSIC_NO_KEY};
+    *made = (instrument){himc_xml_attribute(score, "id"), MIDI_ANY, MUSIC_NO_KEY, 0};
     const char *const name[] = {himc_xml_text(score, "instrument-sound"),
                                 himc_xml_text(score, "instrument-name"),
                                 himc_xml_text(score, "instrument-abbreviation")};
     for (int i = 0; i < 3 && made->choice == MIDI_ANY; i++)
         made->choice = himc_music_instrument(name[i], &made->key);
+    made->drum = himc_music_drum(name[1]);
     const xml_node *midi = himc_xml_child(r->list, "midi-instrument");
     while (midi && !himc_xml_has(midi, "id", made->id))
         midi = himc_xml_next(midi);
@@ -81,7 +83,7 @@ static void read_instrument(reader *r, const xml_node *score, midi_choice part, 
     int program = (int)himc_xml_number(midi, "midi-program", 0) - 1;
     bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
     if (made->choice == MIDI_ANY && part != MIDI_ANY)
-        *made = (instrument){made->id, part, part_key};
+        *made = (instrument){made->id, part, part_key, 0};
     for (int i = 1; i < MIDI_CHOICES && made->choice == MIDI_ANY && midi && !drums; i++)
         if (himc_midi_program_choice(program) == (midi_choice)i)
             made->choice = (midi_choice)i;
@@ -103,7 +105,7 @@ static void read_instruments(reader *r)
     r->instruments = 0;
     const xml_node *score = himc_xml_child(r->list, "score-instrument");
     if (!score)
-        r->instrument[r->instruments++] = (instrument){"", part, key};
+        r->instrument[r->instruments++] = (instrument){"", part, key, 0};
     for (; score && r->instruments < MOST_INSTRUMENTS; score = himc_xml_next(score))
         read_instrument(r, score, part, key);
 }
@@ -118,7 +120,7 @@ static void read_sound(reader *r, const xml_node *sound, double beat, bool dynam
     if (strtod(tempo, NULL) > 0)
         add_sign(r, beat, MUSIC_TEMPO, strtod(tempo, NULL));
     if (dynamic_too && level[0]) // percent of a velocity of 90
-        add_sign(r, beat, MUSIC_DYNAMIC, himc_midi_dynamic((int)(0.9 * strtod(level, NULL)), 0));
+        add_sign(r, beat, MUSIC_DYNAMIC, himc_midi_dynamic(0.9 * strtod(level, NULL), 0));
     bar->da_capo |= is_yes(sound, "dacapo");
     bar->dal_segno |= himc_xml_attribute(sound, "dalsegno")[0] != '\0';
     bar->segno |= himc_xml_attribute(sound, "segno")[0] != '\0';
@@ -355,6 +357,7 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
     int written = pitch ? read_pitch(pitch, "step", "octave")
                         : read_pitch(unpitched, "display-step", "display-octave");
     n->choice = of->choice;
+    n->drum = of->drum;
     n->key = written + (pitch ? r->transpose : 0);
     if (of->choice == MIDI_DRUMS)
         n->key = of->key != MUSIC_NO_KEY ? of->key : drum_at(written);
@@ -377,6 +380,9 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         himc_music_omit(m, MUSIC_CUES, r->bar);
         return;
     }
+    // percent of a velocity of 90
+    const char *level = himc_xml_attribute(note, "dynamics");
+    n.dynamic = level[0] ? fmin(himc_midi_dynamic(0.9 * strtod(level, NULL), 0), 1) : -1;
     if (!read_key(r, note, &n) || (!n.grace && length <= 0)) {
         himc_music_omit(m, MUSIC_BAD_NOTES, r->bar);
         return;

@@ -314,7 +314,8 @@ static void shape_note(shaper *s, music_note *n)
 {
     double unit, least = himc_argument_find("LENGTH", "roll")->low;
     bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = s->attack || n->marcato;
-    midi_way way = {.dynamic = level(s, n->at.beat),
+    midi_way way = {.dynamic = n->dynamic >= 0 ? n->dynamic : level(s, n->at.beat),
+                    .drum = n->drum,
                     .nuance = attack        ? HIMC_VERTICAL_ACCENT
                               : n->accent   ? HIMC_ACCENT
                               : n->staccato ? HIMC_STACCATO

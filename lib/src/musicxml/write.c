@@ -51,9 +51,15 @@ static long ticks_of(double beat)
     return lround(beat * TICKS);
 }
 
+// an accent is read a step louder
+static bool is_louder(const midi_way *way)
+{
+    return way->nuance == HIMC_ACCENT && way->length <= 0;
+}
+
 static int step_of(const midi_way *way, double dynamic)
 {
-    int step = (int)lround(7 * dynamic) - (way->nuance == HIMC_ACCENT && way->length <= 0);
+    int step = (int)lround(7 * dynamic) - is_louder(way);
     return step < 0 ? 0 : step;
 }
 
@@ -82,6 +88,13 @@ static void put_pitch(const writer *w, int key)
         PUT(w, "<pitch><step>%s</step><octave>%d</octave></pitch>", steps[key % 12], key / 12 - 1);
 }
 
+// which drum of a kit, or which timpano
+static void put_instrument(const writer *w, const midi_note *n)
+{
+    if (w->choice == MIDI_DRUMS || (w->choice == MIDI_TIMPANI && n->way.drum > 0))
+        PUT(w, "<instrument id=\"I%d\"/>", w->choice == MIDI_DRUMS ? n->key : n->way.drum);
+}
+
 static void put_graces(const writer *w, const item *i)
 {
     int count = i->note->way.ornament; // in the order of the ornaments: 0 to 3
@@ -89,8 +102,7 @@ static void put_graces(const writer *w, const item *i)
         PUT(w, "<note><grace/>");
         put_pitch(w, i->note->key);
         PUT(w, "<voice>%d</voice>", i->voice + 1);
-        if (w->choice == MIDI_DRUMS)
-            PUT(w, "<instrument id=\"I%d\"/>", i->note->key);
+        put_instrument(w, i->note);
         PUT(w, "<type>16th</type></note>\n");
     }
 }
@@ -132,15 +144,16 @@ static void put_note(const writer *w, const item *i, long from, long to)
     bool begins = from == i->begin, ties_on = i->note->way.length > 0 && to < i->end;
     if (begins)
         put_graces(w, i);
-    PUT(w, "<note>");
+    double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
+    // the exact dynamic, in percent of a velocity of 90
+    PUT(w, "<note dynamics=\"%.6g\">", (16 + 112 * fmax(level, 0)) / 0.9);
     put_pitch(w, i->note->key);
     PUT(w, "<duration>%ld</duration>", to - from);
     if (!begins)
         PUT(w, "<tie type=\"stop\"/>");
     if (ties_on)
         PUT(w, "<tie type=\"start\"/>");
-    if (w->choice == MIDI_DRUMS)
-        PUT(w, "<instrument id=\"I%d\"/>", i->note->key);
+    put_instrument(w, i->note);
     PUT(w, "<voice>%d</voice>", i->voice + 1);
     put_type(w, to - from);
     put_notations(w, i, begins, ties_on);
@@ -356,17 +369,26 @@ static void put_part_list(const writer *w)
 {
     static const char *const names[] = {"",          "Timpani",    "Percussion",  "Marimba",
                                         "Xylophone", "Vibraphone", "Glockenspiel"};
+    static const char *const drums[] = {"", "low", "second", "third", "high"};
     bool used[MIDI_KEY_COUNT] = {false};
     PUT(w, "<score-part id=\"P%d\"><part-name>%s</part-name>\n", (int)w->choice, names[w->choice]);
     for (int i = 0; i < w->count && w->choice == MIDI_DRUMS; i++)
         used[w->items[i].note->key] = true;
-    for (int key = 0; key < MIDI_KEY_COUNT; key++)
+    for (int i = 0; i < w->count && w->choice == MIDI_TIMPANI; i++)
+        used[w->items[i].note->way.drum] = true;
+    for (int drum = 1; drum <= 4 && w->choice == MIDI_TIMPANI; drum++)
+        if (used[drum])
+            PUT(w,
+                "<score-instrument id=\"I%d\"><instrument-name>%s timpano</instrument-name>"
+                "</score-instrument>\n",
+                drum, drums[drum]);
+    for (int key = 0; key < MIDI_KEY_COUNT && w->choice == MIDI_DRUMS; key++)
         if (used[key])
             PUT(w,
                 "<score-instrument id=\"I%d\"><instrument-name>%s</instrument-name>"
                 "</score-instrument>\n",
                 key, himc_midi_key_sound(key));
-    for (int key = 0; key < MIDI_BASS_DRUM; key++)
+    for (int key = 0; key < MIDI_BASS_DRUM && w->choice == MIDI_DRUMS; key++)
         if (used[key])
             PUT(w,
                 "<midi-instrument id=\"I%d\"><midi-channel>10</midi-channel><midi-unpitched>%d"
