@@ -31,8 +31,8 @@ COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW) $(if $(findstring clang
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it
-LIB_LIBS = -lode -lstdc++ -lpthread -lm
-LIBS     = $(AS_NEEDED) -lsndfile -lz $(LIB_LIBS)
+LIB_LIBS = -lode -lexpat -lz -lstdc++ -lpthread -lm
+LIBS     = $(AS_NEEDED) -lsndfile $(LIB_LIBS)
 AS_NEEDED = -Wl,--as-needed
 
 # what is built from what is there
@@ -45,7 +45,7 @@ LINK_SHARED = -shared -Wl,-soname,libhimc.so.$(MAJOR) -Wl,-Bsymbolic-functions -
 PD_ENDING := pd_linux
 # macOS, with clang as gcc: not tried on one (docs/pd.md)
 ifneq ($(findstring darwin,$(shell $(CC) -dumpmachine)),)
-LIB_LIBS    = -lode -lc++ -lm
+LIB_LIBS    = -lode -lexpat -lz -lc++ -lm
 AS_NEEDED   =
 SHARED     := $(BUILD)/libhimc.$(VERSION).dylib
 LINK_SHARED = -dynamiclib -install_name @rpath/libhimc.$(VERSION).dylib
@@ -59,7 +59,7 @@ EXTERNALS := $(patsubst pd-externals/%.c,$(BUILD)/externals/himc/%.$(PD_ENDING),
 EXTERNALS_64    := $(EXTERNALS:$(BUILD)/externals/%.$(PD_ENDING)=$(BUILD)/externals-64/%.linux-amd64-64.so)
 EXTERNALS_MULTI := $(EXTERNALS:$(BUILD)/externals/%=$(BUILD)/externals-multi/%)
 # the rooms of the library, in the order of the data flow
-ROOMS     := system base body capture track plan midi control bank head drum performance osc
+ROOMS     := system base body capture track plan midi musicxml control bank head drum performance osc
 LIB_O     := $(foreach room,$(ROOMS),$(patsubst lib/src/%,$(BUILD)/lib/%.o,$(basename $(wildcard lib/src/$(room)/*.c lib/src/$(room)/*.cpp))))
 # the page in one file, for himc share, where the viewer can be built
 SHARE_O   := $(if $(EXE),,$(if $(wildcard /usr/share/javascript/three/three.module.js),$(patsubst %,$(BUILD)/viewer/%.o,pages recording scene share)))
@@ -123,7 +123,7 @@ linux-here: $(EXTERNALS) $(EXTERNALS_64)
 
 arm64: deps ## program and externals for Linux on arm64 with glibc 2.31 and newer, crossed, in build/arm64
 	@tools/build/deps.sh tools/build/deps-arm64.txt
-	@tools/build/root.sh $(BUILD)/arm64/debian arm64 libode8 libccd2 libsndfile1-dev libsndfile1 libflac8 libvorbis0a libvorbisenc2 libogg0 zlib1g-dev \
+	@tools/build/root.sh $(BUILD)/arm64/debian arm64 libode8 libccd2 libsndfile1-dev libsndfile1 libflac8 libvorbis0a libvorbisenc2 libogg0 libexpat1 \
 	    zlib1g $(OLDER_PD)
 	@$(MAKE) $(TABLE)
 	@$(MAKE) arm64-here BUILD=$(BUILD)/arm64 $(call OLDER,$(BUILD)/arm64/debian,aarch64) TABLE=$(TABLE)
@@ -142,8 +142,8 @@ windows: deps ## program and externals for Windows, crossed by mingw-w64, in bui
 	@tools/build/deps.sh tools/build/deps-windows.txt
 	@tools/build/windows.sh $(BUILD)/windows/parts
 	@$(MAKE) windows-here BUILD=$(BUILD)/windows CC=x86_64-w64-mingw32-gcc EXE=.exe WINDOWS=$(WINDOWS) LDFLAGS="-static -L$(WINDOWS)/lib" \
-	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
-	    LIB_LIBS="-lode -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser edit%"
+	    CPPFLAGS="-D__USE_MINGW_ANSI_STDIO=1 -I$(WINDOWS)/include -DXML_STATIC" CFLAGS="-Wno-format -Wa,-muse-unaligned-vector-move $(CFLAGS)" \
+	    LIB_LIBS="-lode -lexpat -lz -lstdc++ -lpthread -lws2_32 -lm" LEFT_OUT="evaluate% trial pool browser edit%"
 windows-here: $(PROGRAM)
 	@echo "pd   $(BUILD)/externals"
 	$(call make_externals,$(BUILD)/externals extension=m_amd64 ARCHIVES=$(WINDOWS)/lib PDBINDIR=$(WINDOWS)/lib PDINCLUDEDIR=/usr/include/pd)

@@ -22,7 +22,8 @@
 #define MOST_DESCRIPTORS 4096 // of this process, closed in the child; chosen
 #define MISSING "the program himc is not beside himc-viewer"
 
-static const char *const endings[] = {".txt", ".mid", ".bvh", ".c3d", ".trc"};
+static const char *const endings[] = {".txt", ".mid", ".musicxml", ".mxl",
+                                      ".xml", ".bvh", ".c3d",      ".trc"};
 
 bool editor_key(char key[EDITOR_KEY + 1], himc_error *error)
 {
@@ -177,8 +178,8 @@ bool editor_keep(editor *e, int place, const char *bytes, size_t size, himc_erro
     const char *zero = memchr(bytes, 0, size), *ending = zero ? ending_of(bytes) : NULL;
     if (!ending)
         return himc_error_set(error,
-                              "%.80s: expected a score (.txt), a MIDI file (.mid) or a take "
-                              "(.bvh .c3d .trc)",
+                              "%.80s: expected a score (.txt), MIDI (.mid), MusicXML "
+                              "(.musicxml .mxl .xml) or a take (.bvh .c3d .trc)",
                               zero ? bytes : "a file without a name");
     if (!folder_make(e->folder, error))
         return false;

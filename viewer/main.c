@@ -21,7 +21,7 @@ static const char help[] =
     "  --osc PORT       receive OSC on this UDP port, 0 .. 65535, 0 any free (9001)\n"
     "  --http PORT      serve the page on this port (8080)\n"
     "  --bind ADDR      on this address (127.0.0.1); 0.0.0.0 lets other machines in\n"
-    "  --edit SOURCE    change a score, a MIDI file or a take on the page, and hear it at once\n"
+    "  --edit SOURCE    change a score, MIDI, MusicXML or a take on the page, and hear it at once\n"
     "  --play F.himc    play a scene that himc render --scene wrote\n"
     "  --no-browser     only print the address\n"
     "  --help           this text\n";

@@ -44,15 +44,15 @@ typedef struct himc_score {
     int change_count;         ///< 0 .. 10000, with the lines
     int *order;   ///< strokes and changes as in the file (stroke_count + change_count), owned: i of
                   ///< strokes, or -1 - i of changes; NULL if there are none
-    char *report; ///< of a MIDI file: what is played and what not; of a text: commands that stand
-                  ///< inside a comment; lines that end with \n, owned; NULL if there are none
+    char *report; ///< of MIDI, MusicXML: what is played and what not; of a text: commands that
+                  ///< stand inside a comment; lines that end with \n, owned; NULL if there are none
     int left_out; ///< of a MIDI file: notes of its part that are not played, tracks cut short; of a
                   ///< text: commands that stand inside a comment
 } himc_score;
 
-/// Reads the file, a score or a Standard MIDI File (told by its first bytes), whose parts of
-/// timpani, else of drums, become a score. NULL with "file:line: ..." if anything in it is wrong.
-/// Free with himc_score_free.
+/// Reads the file, a score, a Standard MIDI File or MusicXML (told by its first bytes), whose parts
+/// of timpani, else of drums, become a score. NULL with "file:line: ..." if anything in it is
+/// wrong. Free with himc_score_free.
 himc_score *himc_score_load(const char *path, himc_error *error);
 
 /// Frees the score and its arrays. NULL is allowed.

@@ -1,7 +1,7 @@
 /// test_take.c: tips, gaps, axes and units of takes made from known motions.
 #include "take_motions.h"
 
-#include "midi/score_file.h"
+#include "musicxml/score_file.h"
 
 void setUp(void)
 {

@@ -552,6 +552,21 @@ refuses test_curve_out_of_range_is_refused "expected 1 .. 80 dB" import roll.mid
 refuses test_unknown_part_is_refused "expected timpani drums marimba" import roll.mid --part bass -o x.txt
 refuses test_part_that_is_not_there_is_refused "none of a drum (channel 10)" import roll.mid --part drums -o x.txt
 printf 'MThd junk' >junk.mid
+# MusicXML
+cp "$root/tests/fuzz/corpus/musicxml/signs" signs.musicxml
+cp "$root/tests/fuzz/corpus/musicxml/compressed" signs.mxl
+"$himc" import signs.musicxml -o made.txt 2>err
+check test_import_reports_on_musicxml [ "$(head -n 1 err)" = "8 of 8 notes for timpani are played" ]
+"$himc" import - -o - <signs.mxl 2>/dev/null | sed 1d >packed.txt
+check test_compressed_musicxml_is_the_same [ "$(sed 1d made.txt | cmp - packed.txt && echo same)" = same ]
+"$himc" info signs.mxl >out
+check test_info_tells_what_of_musicxml_is_played [ "$(sed -n 's/^rolls *//p' out)" = "2 single" ]
+"$himc" render signs.musicxml -o signs.wav --strokes struck.csv >out 2>err
+check test_musicxml_is_rendered [ "$(tail -n 1 out | grep -o '"missed": [0-9]*')" = '"missed": 0' ]
+check test_a_roll_of_musicxml_grows [ "$(awk -F, 'NR > 1 && $3 == "second" && $1 < 3.7 { v[++n] = $7 } END { print (v[n] > 1.3 * v[1]) }' struck.csv)" = 1 ]
+refuses test_entities_are_refused "an entity is declared" import "$root/tests/fuzz/corpus/musicxml/entity" -o x.txt
+printf '<html><p>x</p></html>' >page.txt
+refuses test_a_web_page_is_no_score "page.txt: XML of the kind html, expected score-partwise" render page.txt -o x.wav
 refuses test_bad_midi_file_is_refused_by_render "junk.mid: not a MIDI file" render junk.mid -o x.wav
 
 if [ -r "$stroke" ]; then

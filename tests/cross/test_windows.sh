@@ -36,8 +36,8 @@ doubles() { # doubles NAME COMMAND...: the samples of NAME.wav, and what they we
 }
 { echo "listener 2.3 0.5 1.3;"; cat score.txt; } >heard.txt
 link="$source/tests/cross/doubles.c -I$source/lib -o"
-gcc $link doubles "$here/libhimc.a" -lode -lstdc++ -lpthread -lm
-x86_64-w64-mingw32-gcc -static $link doubles.exe "$windows/libhimc.a" -L"$windows/parts/root/lib" -lode -lstdc++ -lpthread -lws2_32 -lm
+gcc $link doubles "$here/libhimc.a" -lode -lexpat -lz -lstdc++ -lpthread -lm
+x86_64-w64-mingw32-gcc -static $link doubles.exe "$windows/libhimc.a" -L"$windows/parts/root/lib" -lode -lexpat -lz -lstdc++ -lpthread -lws2_32 -lm
 check test_sound_of_linux_is_its_doubles_rounded doubles here ./doubles
 check test_sound_is_its_doubles_rounded doubles there "$wine" doubles.exe
 for name in here there; do

@@ -26,8 +26,10 @@ static void check_report(const char *report, const himc_score *score)
         if ((strstr(text, "not played") || strstr(text, "one stroke")) &&
             sscanf(text, "%d", &count) == 1)
             missing += count;
-        if (strstr(text, "played as"))
-            sscanf(text, "%d notes are played as %d", &rolled, &rolls);
+        const char *as = strstr(text, "played as ");
+        if (as)
+            require(sscanf(text, "%d", &rolled) == 1 && sscanf(as, "played as %d", &rolls) == 1,
+                    "rolls are counted");
     }
     require(rolls == count_rolls(score), "rolls are as many as the report says");
     require(played == score->stroke_count - rolls + rolled, "and strokes");

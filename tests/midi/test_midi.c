@@ -4,7 +4,7 @@
 
 #include "midi/import.h"
 #include "midi/part.h"
-#include "midi/score_file.h"
+#include "musicxml/score_file.h"
 #include "base/file.h"
 #include "base/line.h"
 #include "plan/score.h"
@@ -358,8 +358,9 @@ static void test_a_pedal_passes_the_semitone_between_two_pitches(void)
         for (const char *at = made.text; (at = strstr(at, "low tune ")); tuned++) {
             TEST_ASSERT_LESS_THAN_INT_MESSAGE(3, tuned, made.text);
             at += strlen("low tune ");
-            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.001, 440 * pow(2, (key[i][tuned] - 69) / 12.0),
-                                              atof(at), made.text);
+            static const char *const names[] = {"D2;", "D#2;", "E2;"};
+            TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(names[key[i][tuned] - 38], at,
+                                                 strlen(names[key[i][tuned] - 38]), made.text);
         }
         TEST_ASSERT_EQUAL_INT_MESSAGE(3, tuned, made.text);
         tearDown();
@@ -701,6 +702,194 @@ static void test_a_midi_file_outside_the_folder_is_refused(void)
     TEST_ASSERT_NOT_NULL(strstr(error.text, "no such file in the folder given by --files"));
 }
 
+// controllers
+
+static void test_volume_and_expression_scale_velocities(void)
+{
+    for (int control = 7; control <= 11; control += 4) {
+        builder b;
+        begin(&b);
+        event(&b, 0, 0xc2, 47, 0);
+        b.size--; // a program has one byte
+        event(&b, 0, 0xb2, control, 100);
+        event(&b, 0, 0x92, 45, 96);
+        event(&b, 2 * QUARTER, 0x82, 45, 0);
+        event(&b, 0, 0xb2, control, 50);
+        event(&b, 0, 0x92, 45, 96);
+        event(&b, 2 * QUARTER, 0x82, 45, 0);
+        end(&b);
+        import(&b, NULL);
+        TEST_ASSERT_EQUAL(2, score->stroke_count);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, himc_midi_dynamic(96, 0), score->strokes[0].dynamic);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, himc_midi_dynamic(48, 0), score->strokes[1].dynamic);
+        tearDown();
+    }
+}
+
+// a timpani note of two quarters whose controller or pressure rises and falls
+static void swell(builder *b, int status, int first, const int *value, int count)
+{
+    begin(b);
+    PUT(b, 0, 0xc2, 47);
+    if (status == 0xb2)
+        event(b, 0, 0xb2, first, 127);
+    event(b, 0, 0x92, 45, 120);
+    for (int i = 0; i < count; i++) {
+        int two = status == 0xd2 ? value[i] : first;
+        event(b, i ? 2 * QUARTER / count : 0, status, two, value[i]);
+        b->size -= status == 0xd2;
+    }
+    event(b, 2 * QUARTER / count, 0x82, 45, 0);
+    end(b);
+}
+
+static void test_a_swell_on_a_held_note_is_the_crescendo_of_a_roll(void)
+{
+    builder b;
+    swell(&b, 0xb2, 11, (int[]){30, 45, 60, 75, 90, 105, 120, 127}, 8);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL(HIMC_ROLL_SINGLE, score->strokes[0].ornament);
+    TEST_ASSERT_DOUBLE_WITHIN(0.3, 1.75, score->strokes[0].length);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, himc_midi_dynamic(120 * 30 / 127.0, 0),
+                              score->strokes[0].dynamic);
+    TEST_ASSERT_DOUBLE_WITHIN(0.07, himc_midi_dynamic(120, 0), score->strokes[0].last_dynamic);
+    reported("1 of 1 notes for timpani are played");
+    tearDown();
+    // and back
+    swell(&b, 0xb2, 11, (int[]){30, 70, 100, 127, 127, 100, 70, 30}, 8);
+    import(&b, NULL);
+    TEST_ASSERT_TRUE_MESSAGE(score->stroke_count >= 2, made.text);
+    bool rises = false, falls = false;
+    for (const himc_stroke *s = score->strokes; s < score->strokes + score->stroke_count; s++) {
+        rises |= !falls && s->last_dynamic > s->dynamic + 0.2;
+        falls |= rises && s->last_dynamic < s->dynamic - 0.2;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(rises && falls, made.text);
+    reported("1 of 1 notes for timpani are played");
+}
+
+static void test_pressure_swells_and_a_fading_note_is_a_stroke(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xc2, 47);
+    event(&b, 0, 0x92, 45, 60);
+    for (int i = 0; i < 8; i++)
+        event(&b, QUARTER / 4, 0xa2, 45, 16 * i);
+    event(&b, 1, 0x82, 45, 0);
+    end(&b);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL(HIMC_ROLL_SINGLE, score->strokes[0].ornament);
+    tearDown();
+    begin(&b);
+    PUT(&b, 0, 0xc2, 47);
+    event(&b, 0, 0x92, 45, 60);
+    for (int i = 0; i < 8; i++)
+        PUT(&b, QUARTER / 4, 0xd2, (uint8_t)(16 * i));
+    event(&b, 1, 0x82, 45, 0);
+    end(&b);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL(HIMC_ROLL_SINGLE, score->strokes[0].ornament);
+    tearDown();
+    swell(&b, 0xb2, 11, (int[]){127, 110, 90, 70, 50, 30, 10, 0}, 8);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL(1, score->stroke_count);
+    TEST_ASSERT_EQUAL(HIMC_PLAIN, score->strokes[0].ornament);
+}
+
+static void test_a_held_pedal_lets_notes_ring(void)
+{
+    for (int pedal = 0; pedal <= 127; pedal += 127) {
+        builder b;
+        begin(&b);
+        PUT(&b, 0, 0xc2, 47);
+        event(&b, 0, 0xb2, 64, pedal);
+        event(&b, 0, 0x92, 45, 90);
+        event(&b, QUARTER / 2, 0x82, 45, 0);
+        event(&b, 4 * QUARTER, 0x92, 45, 90);
+        event(&b, QUARTER, 0x82, 45, 0);
+        end(&b);
+        import(&b, NULL);
+        TEST_ASSERT_EQUAL(pedal ? 0 : 2, score->change_count);
+        tearDown();
+    }
+}
+
+static void test_a_cut_file_is_refused_with_how_far_it_was_read(void)
+{
+    builder b;
+    timpani(&b, (int[]){45, 45, 45}, 3, QUARTER, 40);
+    TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size - 5, "x", NULL, &error));
+    TEST_ASSERT_EQUAL_STRING_LEN("cut short: 1 of its 1 tracks can be read up to 1", error.text,
+                                 48);
+}
+
+static void test_32nds_at_8_a_second_are_a_roll(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xff, 0x51, 3, 0x0f, 0x42, 0x40); // 60 a minute
+    PUT(&b, 0, 0xc2, 47);
+    for (int i = 0; i < 8; i++) {
+        event(&b, 0, 0x92, 45, 80);
+        event(&b, QUARTER / 8, 0x82, 45, 0);
+    }
+    end(&b);
+    import(&b, NULL);
+    reported("8 notes are played as 1 roll");
+}
+
+static void test_tracks_channels_and_instruments_can_be_asked_for(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xc0, 0); // a piano
+    event(&b, 0, 0x90, 45, 80);
+    event(&b, QUARTER, 0x91, 52, 80);
+    event(&b, QUARTER, 0x81, 52, 0);
+    end(&b);
+    TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size, "x", NULL, &error));
+    import(&b, &(midi_options){.as = MIDI_TIMPANI});
+    reported("2 of 2 notes for timpani are played");
+    tearDown();
+    import(&b, &(midi_options){.as = MIDI_TIMPANI, .channel = 2});
+    reported("1 of 1 notes for timpani are played");
+    reported("1 note is of another instrument");
+    tearDown();
+    import(&b, &(midi_options){.as = MIDI_DRUMS, .as_key = 38, .track = 1});
+    TEST_ASSERT_EQUAL_STRING("snare", score->strokes[1].drum);
+    tearDown();
+    TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size, "x",
+                                       &(midi_options){.as = MIDI_TIMPANI, .track = 2}, &error));
+}
+
+static void test_a_track_named_timpani_may_be_on_the_drum_channel(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xff, 3, 7, 'T', 'i', 'm', 'p', 'a', 'n', 'i');
+    event(&b, 0, 0x99, 45, 80);
+    event(&b, QUARTER, 0x89, 45, 0);
+    end(&b);
+    import(&b, NULL);
+    reported("1 of 1 notes for timpani are played");
+}
+
+static void test_bars_are_counted_by_the_meter(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xff, 0x58, 4, 3, 2, 24, 8); // 3/4
+    PUT(&b, 0, 0xc2, 47);
+    for (int i = 0; i < 2; i++) {
+        event(&b, 0, 0x92, 45, 80);
+        event(&b, 3 * QUARTER, 0x82, 45, 0);
+    }
+    end(&b);
+    import(&b, NULL);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "comment bar 2;\nstroke 5 "), made.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -734,5 +923,14 @@ int main(void)
     RUN_TEST(test_a_tempo_that_scores_do_not_have_leaves_the_times);
     RUN_TEST(test_score_file_loads_midi_and_keeps_its_report);
     RUN_TEST(test_a_midi_file_outside_the_folder_is_refused);
+    RUN_TEST(test_volume_and_expression_scale_velocities);
+    RUN_TEST(test_a_swell_on_a_held_note_is_the_crescendo_of_a_roll);
+    RUN_TEST(test_pressure_swells_and_a_fading_note_is_a_stroke);
+    RUN_TEST(test_a_held_pedal_lets_notes_ring);
+    RUN_TEST(test_a_cut_file_is_refused_with_how_far_it_was_read);
+    RUN_TEST(test_32nds_at_8_a_second_are_a_roll);
+    RUN_TEST(test_tracks_channels_and_instruments_can_be_asked_for);
+    RUN_TEST(test_a_track_named_timpani_may_be_on_the_drum_channel);
+    RUN_TEST(test_bars_are_counted_by_the_meter);
     return UNITY_END();
 }

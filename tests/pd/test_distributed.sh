@@ -19,7 +19,7 @@ report() { # report NAME WHY: passed if WHY is empty
 }
 
 "$CC" -std=c17 -O2 -Wall -Wextra -Ilib -Ilib/src tests/pd/packets.c "$HIMC_BUILD/libhimc.a" \
-    -Wl,--as-needed -lode -llo -lstdc++ -lpthread -lm -o "$dir/packets" || exit 1
+    -Wl,--as-needed -lode -lexpat -lz -llo -lstdc++ -lpthread -lm -o "$dir/packets" || exit 1
 awk -v seconds=$seconds 'BEGIN {
     # three strokes a beat, hands in turn, at 120 beats a minute
     print "tempo 120;"

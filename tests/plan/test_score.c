@@ -178,7 +178,8 @@ static void test_errors_name_file_and_line(void)
     TEST_ASSERT_NOT_NULL(strstr(error.text, "tests: "));
     TEST_ASSERT_NULL(himc_score_load("/proc/self/environ", &error)); // zeros among its letters
     TEST_ASSERT_EQUAL_STRING(
-        "/proc/self/environ: not a text file; expected a score, a MIDI file or a take", error.text);
+        "/proc/self/environ: not a text file; expected a score, MIDI, MusicXML or a take",
+        error.text);
 }
 
 // room for a path and 256 characters more; a word that long once ended the program

@@ -357,6 +357,11 @@ static void *load_midi(himc_error *why)
     return himc_score_load("tests/midi/pedals.mid", why);
 }
 
+static void *load_musicxml(himc_error *why)
+{
+    return himc_score_load("tests/fuzz/corpus/musicxml/compressed", why);
+}
+
 static void *make_player(himc_error *why)
 {
     himc_skeleton_config given = himc_skeleton_default();
@@ -457,6 +462,7 @@ static void test_nothing_is_made_without_memory_and_nothing_is_left(void)
                           {"TRC written", save_trc, NULL},
                           {"score", load_score, free_score},
                           {"MIDI file", load_midi, free_score},
+                          {"MusicXML file", load_musicxml, free_score},
                           {"player", make_player, free_player},
                           {"recording", make_recording, free_recording},
                           {"limits", learn_limits, NULL},

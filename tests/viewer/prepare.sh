@@ -15,7 +15,7 @@ done
 mkdir -p "$dir"
 for program in sender perform; do
     "$CC" -std=c17 -O2 -Wall -Wextra -Wpedantic -Ilib tests/viewer/$program.c "$HIMC_BUILD/libhimc.a" \
-        -Wl,--as-needed -lode -llo -lstdc++ -lpthread -lm -o "$dir/$program" || exit 1
+        -Wl,--as-needed -lode -lexpat -lz -llo -lstdc++ -lpthread -lm -o "$dir/$program" || exit 1
 done
 "$HIMC_BUILD/bin/himc" render patches/improvisation.txt -o "$dir/play.wav" \
     --motion "$dir/motion.csv" --strokes "$dir/strokes.csv" --scene "$dir/play.himc" >/dev/null 2>&1 &&

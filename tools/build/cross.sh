@@ -16,7 +16,10 @@ cross() {
     [ ! -e "root/lib/$library" ] || return 0
     unpack "$package"
     echo "cross $package"
-    { cmake -S "$package" -B "$package/cross" -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY \
+    # expat's is a folder further in
+    from=$package
+    [ -e "$from/CMakeLists.txt" ] || from=$package/$package
+    { cmake -S "$from" -B "$package/cross" -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY \
         -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
         -DCMAKE_INSTALL_PREFIX="$PWD/root" "$@" && cmake --build "$package/cross" -j"$(nproc)" -t install; } \
         >"$package.log" 2>&1 || { tail -n 5 "$PWD/$package.log" >&2; exit 1; }
@@ -24,10 +27,12 @@ cross() {
     [ -e "root/lib/$library" ] || mv "root/lib/${library%.a}_doubles.a" "root/lib/$library"
 }
 
-# cross_libraries OPTION...: ODE without collisions, and libsndfile with WAV, AIFF and AU alone
+# cross_libraries OPTION...: ODE without collisions, libsndfile with WAV, AIFF and AU alone, and expat
 cross_libraries() {
     cross ode libode.a -DODE_DOUBLE_PRECISION=ON -DODE_WITH_DEMOS=OFF -DODE_WITH_TESTS=OFF -DODE_WITH_LIBCCD=OFF \
         -DODE_WITH_GIMPACT=OFF -DODE_WITH_OPCODE=OFF "$@"
     cross libsndfile libsndfile.a -DBUILD_PROGRAMS=OFF -DBUILD_EXAMPLES=OFF -DBUILD_TESTING=OFF -DENABLE_EXTERNAL_LIBS=OFF \
         -DENABLE_MPEG=OFF "$@"
+    cross expat libexpat.a -DEXPAT_BUILD_TOOLS=OFF -DEXPAT_BUILD_EXAMPLES=OFF -DEXPAT_BUILD_TESTS=OFF -DEXPAT_BUILD_DOCS=OFF \
+        -DEXPAT_SHARED_LIBS=OFF "$@"
 }

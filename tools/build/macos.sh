@@ -1,6 +1,6 @@
 #!/bin/sh
 # What the build for macOS needs, into DIR: a compiler that has Apple's free headers and the names of its libraries (zig's, from PyPI),
-# as DIR/bin/cc and c++, and ODE and libsndfile, crossed from Debian's sources into DIR/root.
+# as DIR/bin/cc and c++, and ODE, libsndfile and expat, crossed from Debian's sources into DIR/root.
 #   tools/build/macos.sh DIR
 set -eu
 tools=$(cd "${0%/*}" && pwd)

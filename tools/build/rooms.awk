@@ -57,7 +57,7 @@ function add_call(from, called, to)
 }
 
 BEGIN {
-    rooms = split("system base body capture track plan midi control bank head drum performance osc mocap tools/himc", order, " ")
+    rooms = split("system base body capture track plan midi musicxml control bank head drum performance osc mocap tools/himc", order, " ")
     for (i = 1; i <= rooms; i++)
         rank[order[i]] = i
     # the room of a public header

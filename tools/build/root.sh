@@ -1,6 +1,6 @@
 #!/bin/sh
 # A compiler whose programs load on old Linux systems, and Debian's libraries for another machine: the C library of Debian 11, version
-# 2.31 (Ubuntu 20.04 has the same), the C++ run time of its GCC, ODE, and the PACKAGEs named, unpacked in FOLDER/root, not installed; FOLDER/bin has
+# 2.31 (Ubuntu 20.04 has the same), the C++ run time of its GCC, ODE, expat, zlib, and the PACKAGEs named, unpacked in FOLDER/root, not installed; FOLDER/bin has
 # the compiler of this system, MACHINE-linux-gnu-gcc and -g++, that takes headers and libraries from there. A newer run time
 # would ask for functions that an older C library lacks (arc4random, _dl_find_object).
 #   tools/build/root.sh FOLDER amd64|arm64 [PACKAGE...]
@@ -21,7 +21,7 @@ echo "deb [arch=$arch${key:+ signed-by=$key}] $mirror bullseye main" >apt/source
 options="-q -o APT::Architectures::=amd64 -o APT::Architectures::=arm64 -o APT::Sandbox::User=$(id -un) -o Dir::Etc::SourceList=$PWD/apt/sources.list
     -o Dir::Etc::SourceParts=- -o Dir::State=$PWD/apt -o Dir::State::Status=$PWD/apt/status -o Dir::Cache=$PWD/apt/cache"
 (apt-get $options update && cd packages &&
-    apt-get $options download $(printf "%s:$arch " libc6 libc6-dev linux-libc-dev libcrypt1 libgcc-10-dev libstdc++-10-dev libode-dev "$@")
+    apt-get $options download $(printf "%s:$arch " libc6 libc6-dev linux-libc-dev libcrypt1 libgcc-10-dev libstdc++-10-dev libode-dev libexpat1-dev zlib1g-dev "$@")
 ) >apt.log 2>&1 || { tail -n 3 "$PWD/apt.log" >&2; exit 1; }
 for package in packages/*.deb; do
     dpkg-deb -x "$package" root.new

@@ -1,6 +1,6 @@
 #!/bin/sh
-# What the build for Windows links with, crossed from Debian's sources into DIR/root: ODE and libsndfile (WAV, AIFF and AU alone), and
-# an import library for what m_pd.h declares of Pd's pd.dll. With `pd` as second word also Pd itself, without a window and a sound
+# What the build for Windows links with, crossed from Debian's sources into DIR/root: ODE, libsndfile (WAV, AIFF and AU alone) and
+# expat, and an import library for what m_pd.h declares of Pd's pd.dll. With `pd` as second word also Pd itself, without a window and a sound
 # card, in DIR/pd/bin, to try the externals in.
 #   tools/build/windows.sh DIR [pd]
 set -eu

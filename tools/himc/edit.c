@@ -11,9 +11,8 @@
 #include "edit_journal.h"
 #include "edit_play.h"
 #include "edit_text.h"
-#include "midi/import.h"
-#include "midi/score_file.h"
-#include "midi/smf.h"
+#include "musicxml/import.h"
+#include "musicxml/score_file.h"
 #include "performance/performance_body.h"
 #include "performance/performance_drums.h"
 #include "plan/score.h"
@@ -132,11 +131,12 @@ static void name_source(const session *s, himc_error *error)
 
 // --- the piece
 
-static char *text_of_midi(const char *bytes, size_t size, const char *name, himc_error *error)
+static char *text_of_music(himc_score_maker *make, const char *bytes, size_t size, const char *name,
+                           himc_error *error)
 {
     midi_score made = {0};
     char *text = NULL;
-    if (himc_midi_import(&made, bytes, size, name, NULL, error))
+    if (make(&made, bytes, size, name, NULL, error))
         text = strdup(made.text);
     else
         himc_error_prefix(error, "%s", name);
@@ -162,10 +162,10 @@ static char *text_of(const char *source, const char *name, himc_error *error)
         return text;
     }
     char *bytes = himc_file_load(source, LARGEST_TEXT, &size, error);
-    bool midi = bytes && himc_midi_is_file(bytes, size);
-    if (!bytes || (!midi && himc_score_is_text(bytes, size, name, error)))
+    himc_score_maker *make = bytes ? himc_score_maker_of(bytes, size) : NULL;
+    if (!bytes || (!make && himc_score_is_text(bytes, size, name, error)))
         return bytes;
-    char *text = midi ? text_of_midi(bytes, size, name, error) : NULL;
+    char *text = make ? text_of_music(make, bytes, size, name, error) : NULL;
     free(bytes);
     return text;
 }

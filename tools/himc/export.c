@@ -1,5 +1,5 @@
-/// export.c: `himc export`: the performer and the set-up as a model of MuJoCo (MJCF), for other
-/// engines to judge the body by.
+/// export.c: `himc export`: a score as notation, MusicXML or MIDI; or the performer and the set-up as
+/// a model of MuJoCo (MJCF), for other engines to judge the body by.
 ///
 /// A body element has the frame of its segment, so masses, centres and inertias are the skeleton's
 /// own numbers, and a ball joint is where the skeleton has it. All geoms are for looking: they have
@@ -8,9 +8,15 @@
 #include "body/posture.h"
 #include "cli.h"
 #include "himc/drum.h"
+#include "musicxml/export.h"
+#include "musicxml/score_file.h"
 #include "performance/research.h"
 
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #define RATE 48000.0 // every performance has one (Hz); the model does not depend on it
 // the stool, as it is drawn: its radius, and its middle behind the hips (m)
@@ -147,10 +153,60 @@ static bool write_model(model *m, himc_performance *p, const char *path, himc_er
     return good;
 }
 
+// notation
+
+static bool ends_with(const char *name, const char *ending)
+{
+    size_t length = strlen(name), end = strlen(ending);
+    return length >= end && strcasecmp(name + length - end, ending) == 0;
+}
+
+// the title of a piece: its file's name without what XML would take for more
+static void title_of(char *title, size_t size, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(title, size, "%s", slash ? slash + 1 : path);
+    title[strcspn(title, ".")] = '\0';
+    for (char *c = title; *c; c++)
+        *c = isalnum((unsigned char)*c) || *c == '-' ? *c : ' ';
+}
+
+static bool write_bytes(const char *path, const himc_text_lines *text, himc_error *error)
+{
+    cli_file file;
+    if (!cli_file_open(&file, path, error))
+        return false;
+    fwrite(text->bytes, 1, text->size, file.stream);
+    bool good = cli_file_close(&file, error) && cli_file_keep(&file, error);
+    cli_file_drop(&file);
+    return good;
+}
+
+static bool write_notation(const char *path, const char *out, bool midi, himc_error *error)
+{
+    himc_text_lines text = {0};
+    midi_file notes = {0};
+    char title[64];
+    himc_score *score = himc_score_load(path, error);
+    bool good =
+        score && (himc_music_notes(&notes, score, error) || himc_error_prefix(error, "%s", path));
+    title_of(title, sizeof title, path);
+    if (good &&
+        !(midi ? himc_music_write_midi(&text, &notes) : himc_music_write(&text, &notes, title)))
+        good = himc_error_set(error, "out of memory for the notes");
+    good = good && write_bytes(out, &text, error);
+    if (good && notes.said)
+        fputs(notes.said, stderr);
+    free(text.bytes);
+    himc_midi_file_free(&notes);
+    himc_score_free(score);
+    return good;
+}
+
 enum { OUT, STANCE };
 
 static const cli_option options[] = {
-    {"output", 'o', "F.xml", "the model; - is the standard output"},
+    {"output", 'o', "FILE", "notation: .musicxml, .mid; the model: .xml, - is standard output"},
     {"stance", 0, "STANCE",
      "fixed: the pelvis is held; seated, standing: it has a free joint; else as SETUP says"},
     {0},
@@ -162,7 +218,14 @@ static bool export(const cli_arguments *arguments, himc_error *error)
     const char *stance = arguments->value[STANCE];
     model m = {.free = false};
     if (!out)
-        return himc_error_set(error, "no -o F.xml given (himc export --help)");
+        return himc_error_set(error, "no -o FILE given (himc export --help)");
+    bool midi = ends_with(out, ".mid");
+    if (midi || ends_with(out, ".musicxml")) {
+        if (!path)
+            return himc_error_set(error, "no SCORE given, expected one to write as notes");
+        return (path = cli_input(path, error)) && cli_apart(out, &path, 1, error) &&
+               write_notation(path, out, midi, error);
+    }
     if (!cli_ending_is("-o", out, ".xml", error) ||
         (path && (!(path = cli_input(path, error)) || !cli_apart(out, &path, 1, error))))
         return false;
@@ -185,10 +248,13 @@ static int run(const cli_arguments *arguments)
 
 const cli_call cli_export = {
     "export",
-    "[SETUP]",
-    " -o F.xml",
-    "writes body and drums as a model of MuJoCo (MJCF)",
-    "SETUP is a score or a take: its player and drums; without it the usual ones. Segments have\n"
+    "[SCORE]",
+    " -o FILE",
+    "writes a score as MusicXML or MIDI, or body and drums as a model of MuJoCo (MJCF)",
+    "-o F.musicxml, F.mid: the strokes of a score as a part to print; what notation does not\n"
+    "have is counted on stderr. `himc import` reads it back: a pedal is \"C muta in D\", sticking\n"
+    "a fingering, dynamics are steps; MIDI keeps times, pitches and velocities.\n"
+    "-o F.xml: SCORE is a score or a take: its player and drums; without it the usual ones. Segments have\n"
     "their masses, centres and inertias and ball joints; all geoms are for looking and touch\n"
     "nothing. Sites are at the sticks' tips, the key frame `rest` is the posture before a stroke.\n"
     "With a free joint the columns `root` of `himc render --motion` are what holds the pelvis.",

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "capture/take.h"
 #include "cli.h"
-#include "midi/smf.h"
+#include "musicxml/import.h"
 #include "system/files.h"
 
 #include <errno.h>
@@ -191,7 +191,7 @@ static void remove_input(void)
 static const char *suffix_of(const char *bytes, size_t size)
 {
     const char *take = himc_take_suffix_of(bytes, size);
-    return take ? take : himc_midi_is_file(bytes, size) ? ".mid" : ".txt";
+    return take ? take : himc_score_maker_of(bytes, size) ? ".mid" : ".txt";
 }
 
 void cli_name_input(char *line)

@@ -269,8 +269,8 @@ const cli_call cli_info = {
     "info",
     "FILE",
     "",
-    "describes a score, a MIDI file or a take," HIMC_TAKE_SUFFIXES,
-    "Of a MIDI file: what of it can be played, and the score made of it. Of a take:\n"
+    "describes a score, MIDI, MusicXML or a take," HIMC_TAKE_SUFFIXES,
+    "Of MIDI and MusicXML: what of it can be played, and the score made of it. Of a take:\n"
     "rate, length, points, gaps, the strikes found in it, the player, where drumhead and\n"
     "seat are placed.",
     options,

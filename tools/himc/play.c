@@ -185,7 +185,7 @@ const cli_call cli_play = {
     "play",
     "[SOURCE]",
     "",
-    "plays a score, a MIDI file or a take to the sound card",
+    "plays a score, MIDI, MusicXML or a take to the sound card",
     "Ends after the last stroke, or by Ctrl-C. The last line printed is one JSON object: seconds\n"
     "underruns latency_ms load. A score that loops goes on.",
     options,

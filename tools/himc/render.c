@@ -566,7 +566,7 @@ const cli_call cli_render = {
     "render",
     "SOURCE",
     " -o OUT.wav",
-    "plays a score, a MIDI file or a take," HIMC_TAKE_SUFFIXES ", into a sound file",
+    "plays a score, MIDI, MusicXML or a take," HIMC_TAKE_SUFFIXES ", into a sound file",
     "SOURCE - is the standard input. The last line on standard output (standard error, if a file is\n"
     "-) is one JSON object, unless it is a terminal: seconds strokes played missed tip_rms_mm tip_rms_percent\n"
     " peak_force_n realtime_factor unplanned_contacts longest_contact_s moved moved_max_mm\n"

@@ -355,7 +355,7 @@ export async function readScene(bytes, name, tell, reading) {
         text = new TextDecoder();
     if (text.decode(bytes.subarray(0, 7)) !== MAGIC)
         throw new Error(
-            `${name}: expected a score (.txt), a MIDI file (.mid), a take (.bvh .c3d .trc) or a scene (.himc), which himc render SOURCE -o SOUND.wav --scene FILE.himc makes`,
+            `${name}: expected a score (.txt), MIDI (.mid), MusicXML (.musicxml .mxl .xml), a take (.bvh .c3d .trc) or a scene (.himc), which himc render SOURCE -o SOUND.wav --scene FILE.himc makes`,
         );
     if (bytes[7] !== VERSION)
         throw new Error(`${name}: version ${bytes[7]} of scenes, this page reads ${VERSION}`);

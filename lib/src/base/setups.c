@@ -31,7 +31,10 @@ const char himc_setup_around[] =
     "instrument claves claves; claves place .25 .3 1;"
     "instrument high-block wood-block 900; high-block place .92 .3 .95;"
     "instrument low-block wood-block 640; low-block place .88 .44 .95;"
-    "instrument triangle triangle; triangle place .5 .2 1.2;";
+    "instrument triangle triangle; triangle place .5 .2 1.2;"
+    "instrument bass-drum bass-drum 32; bass-drum place .25 .84 .85;"
+    "instrument tam-tam tam-tam 32; tam-tam place .08 -.94 .85;"
+    "instrument temple-blocks temple-blocks; temple-blocks place .7 .02 .94;";
 
 const himc_setup himc_setups[] = {
     {"kit", himc_setup_kit},

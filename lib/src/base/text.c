@@ -212,3 +212,30 @@ void himc_text_add(void *object, const char *line)
     memcpy(text->bytes + text->size + length, ";\n", 3);
     text->size += length + 2;
 }
+
+void himc_text_print(himc_text_lines *lines, const char *format, ...)
+{
+    char text[1001];
+    va_list args;
+    va_start(args, format);
+    size_t length = himc_format_list(text, sizeof text, format, args);
+    va_end(args);
+    if (!himc_text_reserve(lines, length)) {
+        lines->failed = true;
+        return;
+    }
+    memcpy(lines->bytes + lines->size, text, length + 1);
+    lines->size += length;
+}
+
+void himc_text_list(char *list, size_t size, const char *word)
+{
+    size_t used = strlen(list), length = strlen(word);
+    bool again = used >= length && strcmp(list + used - length, word) == 0 &&
+                 (used == length || list[used - length - 1] == ' ');
+    const char *space = used > 0 ? " " : "";
+    if (!again && used + length + sizeof " ..." < size)
+        himc_format(list + used, size - used, "%s%s", space, word);
+    else if (!again && (used < 3 || strcmp(list + used - 3, "...") != 0))
+        himc_format(list + used, size - used, "%s...", space);
+}

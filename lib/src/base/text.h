@@ -53,6 +53,14 @@ void himc_text_clear(himc_text_lines *lines);
 /// Adds a line and ";\n"; `lines` is a himc_text_lines.
 void himc_text_add(void *lines, const char *line);
 
+/// Adds text as it is (conversions of base/format.h), of up to 1000 characters.
+void himc_text_print(himc_text_lines *lines, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/// Adds a word to a list of words, unless it is the last already; of too many, "..." stands for the
+/// rest.
+void himc_text_list(char *list, size_t size, const char *word);
+
 /// Of many names the one that a misspelt word means. Zero but for `word` at first.
 typedef struct himc_nearest {
     const char *word; ///< as written, borrowed

@@ -24,25 +24,7 @@
 #define GAIN (-2.5)         // (dB) chosen: zarathustra.mid has -23 LUFS, as broadcast
 #define PEDAL_STEPS 4       // of a pedal that moves, at most; chosen: heard as a slide
 
-static void put(himc_text_lines *text, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void put(himc_text_lines *text, const char *format, ...)
-{
-    char line[256];
-    va_list args;
-    va_start(args, format);
-    size_t length = himc_format_list(line, sizeof line, format, args);
-    va_end(args);
-    if (!himc_text_reserve(text, length)) {
-        text->failed = true;
-        return;
-    }
-    memcpy(text->bytes + text->size, line, length + 1);
-    text->size += length;
-}
-
-double himc_midi_dynamic(int velocity, double range)
+double himc_midi_dynamic(double velocity, double range)
 {
     // as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
     if (range == 0)
@@ -66,22 +48,26 @@ const char *himc_midi_choice_name(midi_choice choice)
 
 static midi_choice choice_of(const midi_note *note)
 {
-    const int program = 47; // "48 Timpani" of General MIDI, which counts from 1
+    if (note->choice != MIDI_ANY)
+        return note->choice;
     if (note->channel == MIDI_DRUM_CHANNEL)
         return MIDI_DRUMS;
-    if (note->program == program || note->timpani)
-        return MIDI_TIMPANI;
-    for (int i = 0; i < MIDI_CHOICES; i++)
-        if (himc_midi_is_keyboard((midi_choice)i, note->program))
-            return (midi_choice)i;
-    return MIDI_ANY;
+    return himc_midi_program_choice(note->program);
 }
 
-static midi_choice first_choice(const midi_file *file)
+// MIDI_ANY of a note that is not asked for, too
+static midi_choice asked_choice(const midi_note *note, const midi_options *options)
+{
+    bool asked = (options->track == 0 || options->track == note->track + 1) &&
+                 (options->channel == 0 || options->channel == note->channel + 1);
+    return !asked ? MIDI_ANY : options->as != MIDI_ANY ? options->as : choice_of(note);
+}
+
+static midi_choice first_choice(const midi_file *file, const midi_options *options)
 {
     midi_choice first = MIDI_CHOICES;
     for (int i = 0; i < file->note_count; i++) {
-        midi_choice c = choice_of(&file->notes[i]);
+        midi_choice c = asked_choice(&file->notes[i], options);
         first = c != MIDI_ANY && c < first ? c : first;
     }
     return first == MIDI_CHOICES ? MIDI_DRUMS : first;
@@ -98,28 +84,101 @@ static bool give_instruments(midi_part *part, himc_error *error)
     return true;
 }
 
+// the orders between one stroke and the next
+static void share_orders(midi_part *part)
+{
+    int next = 0;
+    for (int i = 0; i < part->count; i++) {
+        midi_stroke *s = &part->stroke[i];
+        s->order = next;
+        while (next < part->file->order_count &&
+               part->file->orders[next].seconds <= s->note->seconds + 1e-6)
+            next++;
+        s->orders = next - s->order;
+    }
+}
+
+static void take_notes(midi_part *part, const midi_options *options)
+{
+    for (int i = 0; i < part->file->note_count; i++) {
+        const midi_note *note = &part->file->notes[i];
+        const midi_way *way = &note->way;
+        midi_choice choice = asked_choice(note, options);
+        bool written = way->dynamic >= 0;
+        double damped = note->seconds + 0.15; // by a hand at the earliest (s); chosen
+        if (choice != part->choice) {
+            bool drum = choice_of(note) != MIDI_ANY;
+            part->fate[drum ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT] += !way->extra;
+            continue;
+        }
+        part->notes += !way->extra;
+        part->stroke[part->count++] = (midi_stroke){
+            .note = note,
+            .key = options->as_key > 0 ? options->as_key : note->key,
+            .spot = way->spot,
+            .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
+            .end = fmax(note->off, damped),
+            .roll = {way->length, written ? way->last_dynamic
+                                          : himc_midi_dynamic(note->last_level, options->range)}};
+    }
+}
+
+// the last bar that begins at or before a beat; NULL: none
+static const midi_bar *bar_at(const midi_file *file, double beat)
+{
+    int low = 0, high = file->bar_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (file->bars[middle].beat <= beat + 1e-6)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low > 0 ? &file->bars[low - 1] : NULL;
+}
+
+// a part of a roll without the part before it is left out, too
+static void drop_rests(midi_part *part)
+{
+    midi_fate fate[MIDI_KEY_COUNT] = {MIDI_PLAYED}; // of the last part of a roll of each key
+    for (int i = 0; i < part->count; i++) {
+        midi_stroke *s = &part->stroke[i];
+        if (s->roll.length <= 0)
+            continue;
+        if (s->note->way.extra && fate[s->key] != MIDI_PLAYED)
+            s->fate = fate[s->key];
+        fate[s->key] = s->fate;
+    }
+}
+
+// a score has lines for so many damped strokes
+static void count_fates(midi_part *part)
+{
+    int most_damped = (MOST_CHANGES - PEDAL_STEPS * part->pedals) / 2;
+    for (int i = 0; i < part->count; i++) {
+        midi_stroke *s = &part->stroke[i];
+        const midi_bar *bar = bar_at(part->file, s->note->beat);
+        part->fate[s->fate] += !s->note->way.extra;
+        if (bar && !s->note->way.extra)
+            himc_text_list(part->bars[s->fate], sizeof part->bars[0], bar->number);
+        s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most_damped;
+        part->damped += s->damped;
+        bool roll = s->roll.length > 0 && s->fate == MIDI_PLAYED;
+        part->rolls += roll;
+        part->rolled += roll && !s->note->way.extra;
+    }
+}
+
 // the notes of the part as strokes with heads and hands
 static bool make_part(midi_part *part, const midi_file *file, const midi_options *options,
                       himc_error *error)
 {
-    part->choice = options->choice == MIDI_ANY ? first_choice(file) : options->choice;
+    part->file = file;
+    part->choice = options->choice == MIDI_ANY ? first_choice(file, options) : options->choice;
     part->stroke = calloc((size_t)file->note_count + 1, sizeof *part->stroke);
     if (!part->stroke)
         return himc_error_set(error, "out of memory for %d notes", file->note_count);
-    for (int i = 0; i < file->note_count; i++) {
-        const midi_note *note = &file->notes[i];
-        midi_choice choice = choice_of(note);
-        double damped = note->seconds + 0.15; // by a hand at the earliest (s); chosen
-        if (choice == part->choice)
-            part->stroke[part->count++] =
-                (midi_stroke){.note = note,
-                              .key = note->key,
-                              .spot = HIMC_SPOT_NORMAL,
-                              .dynamic = himc_midi_dynamic(note->velocity, options->range),
-                              .end = fmax(note->off, damped)};
-        else
-            part->fate[choice != MIDI_ANY ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT]++;
-    }
+    take_notes(part, options);
     if (part->setup && part->choice != MIDI_DRUMS)
         return himc_error_set(error,
                               "a set-up is for drums, expected none: %s has instruments of "
@@ -127,17 +186,14 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
                               himc_midi_choice_name(part->choice));
     if (part->count > MOST_STROKES)
         return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
+    share_orders(part);
     if (!give_instruments(part, error) || !himc_midi_stick(part, error))
         return false;
-    // a score has lines for so many damped strokes
-    int most_damped = (MOST_CHANGES - PEDAL_STEPS * part->pedals) / 2;
-    for (int i = 0; i < part->count; i++) {
-        midi_stroke *s = &part->stroke[i];
-        part->fate[s->fate]++;
-        s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most_damped;
-        part->damped += s->damped;
-    }
-    if (part->choice == MIDI_TIMPANI)
+    for (int i = 0; i < part->count && part->choice != MIDI_TIMPANI; i++)
+        part->stroke[i].damped = part->stroke[i].note->way.ring < 0;
+    drop_rests(part);
+    count_fates(part);
+    if (part->choice == MIDI_TIMPANI && !file->said)
         himc_midi_find_rolls(part);
     return true;
 }
@@ -147,7 +203,18 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
 static void report_kind(himc_text_lines *t, int count, const char *one, const char *many)
 {
     if (count > 0)
-        put(t, "%d %s\n", count, count == 1 ? one : many);
+        himc_text_print(t, "%d %s\n", count, count == 1 ? one : many);
+}
+
+static void report_fate(himc_text_lines *t, const midi_part *part, midi_fate fate,
+                        const char *const why[2])
+{
+    int count = part->fate[fate];
+    const char *bars = part->bars[fate], *text = why[count != 1];
+    if (count > 0 && bars[0])
+        himc_text_print(t, "%d %s (bar%s %s)\n", count, text, strchr(bars, ' ') ? "s" : "", bars);
+    else
+        report_kind(t, count, text, text);
 }
 
 static void report(himc_text_lines *t, const midi_file *file, const midi_part *part)
@@ -164,39 +231,39 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
                                    "notes are of other instruments"},
     };
-    put(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->count,
-        himc_midi_choice_name(part->choice));
-    if (file->cut > 0)
-        put(t, "the file is cut short: %d of its tracks can be read up to %.3g s only\n", file->cut,
-            file->cut_at);
+    himc_text_print(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->notes,
+                    himc_midi_choice_name(part->choice));
     report_kind(t, file->missing, "track is missing: the file is cut short or its header is wrong",
                 "tracks are missing: the file is cut short or its header is wrong");
     for (int i = 0; i < MIDI_FATES; i++)
         if (why[i][0])
-            report_kind(t, part->fate[i], why[i][0], why[i][1]);
+            report_fate(t, part, (midi_fate)i, why[i]);
+    if (file->said)
+        himc_text_print(t, "%s", file->said);
     report_kind(t, part->fate[MIDI_OTHER_PART], "note for other percussion is not asked for",
                 "notes for other percussion are not asked for");
     char line[100];
-    for (int key = 0; key < 128 && part->choice == MIDI_DRUMS; key++)
+    for (int key = 0; key < MIDI_KEY_COUNT && part->choice == MIDI_DRUMS; key++)
         if (himc_midi_tell_key(part, key, line, sizeof line) > 0 && line[0])
-            put(t, "%s\n", line);
+            himc_text_print(t, "%s\n", line);
     report_kind(t, part->moved, "note is moved by octaves to what is built",
                 "notes are moved by octaves to what is built");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");
     if (part->rolls > 0)
-        put(t, "%d notes are played as %d roll%s\n", part->rolled, part->rolls,
-            part->rolls == 1 ? "" : "s");
+        himc_text_print(t, "%d note%s played as %d roll%s\n", part->rolled,
+                        part->rolled == 1 ? " is" : "s are", part->rolls,
+                        part->rolls == 1 ? "" : "s");
+    report_kind(t, part->untuned,
+                "word about tuning is not followed: no drum has that pitch and time",
+                "words about tuning are not followed: no drum has that pitch and time");
+    report_kind(t, part->mallets, "change of mallets is not played: a score has one pair",
+                "changes of mallets are not played: a score has one pair");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
     if (file->converted)
-        put(t, "the tempo map is not kept: beats are half seconds\n");
+        himc_text_print(t, "the tempo map is not kept: beats are half seconds\n");
 }
 
 // the score
-
-static double frequency(int key)
-{
-    return 440 * pow(2, (key - 69) / 12.0);
-}
 
 /// A line of a drum's head.
 typedef struct change {
@@ -212,15 +279,11 @@ static int by_time(const void *a, const void *b)
     return (x->seconds > y->seconds) - (x->seconds < y->seconds);
 }
 
-static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_part *part,
-                        double lead)
+// a damping hand lies on the head for 0.25 s (chosen: twice the decay time of a damped head), and
+// is off before the head's next stroke and before its pedal moves
+static int list_damps(const midi_part *part, change *list)
 {
-    change *list = malloc(MOST_CHANGES * sizeof *list);
-    if (!list)
-        return false;
     int count = 0, pedal = 0;
-    // a damping hand lies on the head for 0.25 s (chosen: twice the decay time of a damped head),
-    // and is off before the head's next stroke and before its pedal moves
     for (int i = 0; i < part->count; i++) {
         const midi_stroke *s = &part->stroke[i];
         if (!s->damped)
@@ -234,8 +297,28 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         for (int k = pedal; k < part->pedals && part->pedal[k].seconds < until; k++)
             if (part->pedal[k].head == s->head && part->pedal[k].seconds > s->end)
                 until = part->pedal[k].seconds;
-        list[count++] = (change){s->end, s->head, -1, "damp 1"};
+        // a dry note that the next one follows at once is damped before that
+        double from = s->end, least = s->note->seconds + 0.15;
+        if (s->note->way.ring < 0 && until - from < 0.1)
+            from = fmax(least, until - 0.25);
+        if (s->note->way.ring < 0 && until - from < 0.05)
+            continue;
+        list[count++] = (change){from, s->head, -1, "damp 1"};
         list[count++] = (change){until, s->head, -1, "damp 0"};
+    }
+    return count;
+}
+
+// cloths, pedals, hi-hats; returns how many changes there are then
+static int list_orders(const midi_part *part, change *list, int count)
+{
+    int most = MOST_CHANGES - PEDAL_STEPS * part->pedals;
+    for (int i = 0; i < part->file->order_count; i++) {
+        const midi_order *o = &part->file->orders[i];
+        bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
+        for (int h = 0; o->kind == MIDI_MUFFLE && mine && h < part->heads; h++)
+            if (part->head[h].key != -1 && count < most)
+                list[count++] = (change){o->seconds, h, -1, o->value ? "muffle 1" : "muffle 0"};
     }
     // a pedal goes through semitones between, as an undamped drum lets hear
     for (int k = 0; k < part->pedals; k++) {
@@ -255,22 +338,139 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         list[count++] = (change){fmax(s->note->seconds - 0.03, 0), s->head, -1,
                                  last == MIDI_OPEN ? "pedal 0" : "pedal 1"};
     }
+    return count;
+}
+
+static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_part *part,
+                        double lead)
+{
+    change *list = malloc(MOST_CHANGES * sizeof *list);
+    if (!list)
+        return false;
+    int count = list_orders(part, list, list_damps(part, list));
     qsort(list, (size_t)count, sizeof *list, by_time);
     for (int i = 0; i < count; i++) {
         const change *c = &list[i];
         double beat = himc_score_beat(file->tempi, file->tempo_count, c->seconds) + lead;
         const char *name = part->head[c->head].name;
+        char pitch[HIMC_NOTE_SIZE];
+        himc_midi_key_name(pitch, c->key < 0 ? 0 : c->key);
         if (c->key < 0)
-            put(t, "at %.9g %s %s;\n", beat, name, c->does);
+            himc_text_print(t, "at %.9g %s %s;\n", beat, name, c->does);
         else
-            put(t, "at %.9g %s tune %.6g;\n", beat, name, frequency(c->key));
+            himc_text_print(t, "at %.9g %s tune %s;\n", beat, name, pitch);
     }
     free(list);
     return true;
 }
 
-static bool write_score(midi_score *made, const midi_file *file, const midi_part *part,
-                        const char *name, const char *setup, himc_error *error)
+// a dynamic as its word, where it is one within a hundredth
+static const char *dynamic_word(char word[16], double dynamic)
+{
+    static const char *const steps[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"};
+    int step = (int)lround(7 * dynamic);
+    if (fabs(dynamic - step / 7.0) < 0.01)
+        return steps[step];
+    himc_format(word, 16, "%.3g", dynamic);
+    return word;
+}
+
+static void put_stroke(himc_text_lines *t, const midi_part *part, const midi_stroke *s, double beat)
+{
+    static const char *const ornaments[] = {"stroke", "flam", "drag", "ruff"};
+    const midi_way *way = &s->note->way;
+    const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
+    const char *space = s->part[0] ? " " : "";
+    char first[16], last[16];
+    if (s->roll.length > 0)
+        himc_text_print(t, "roll %.9g %.9g single %s %s %s %s%s%s;\n", beat, s->roll.length,
+                        dynamic_word(first, s->dynamic), dynamic_word(last, s->roll.last_dynamic),
+                        spot, s->part, space, drum);
+    else
+        himc_text_print(t, "%s %.9g %s %s %s %s %s%s%s;\n", ornaments[way->ornament], beat,
+                        himc_hand_name(s->hand), himc_nuance_name(way->nuance),
+                        dynamic_word(first, s->dynamic), spot, s->part, space, drum);
+}
+
+// the first mallets that a word names before the first stroke; others cannot be played
+static const char *find_mallets(midi_part *part, double first)
+{
+    static const char *const mallets[] = {"soft", "medium", "hard", "wood"};
+    const char *found = NULL;
+    for (int i = 0; i < part->file->order_count; i++) {
+        const midi_order *o = &part->file->orders[i];
+        bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
+        if (o->kind != MIDI_MALLET || !mine)
+            continue;
+        if (o->beat <= first + 1e-6)
+            found = mallets[o->value & 3];
+        else
+            part->mallets++;
+    }
+    return found;
+}
+
+// the file's name as a word: what ends a word or a line in Pure Data becomes _
+static void put_name(himc_text_lines *t, const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    char shown[64];
+    snprintf(shown, sizeof shown, "%s", slash ? slash + 1 : name);
+    for (char *s = shown; *s; s++)
+        *s = isalnum((unsigned char)*s) || strchr("-_.", *s) ? *s : '_';
+    himc_text_print(t, "comment made of %s by himc import;\n", shown);
+}
+
+static void put_heads(himc_text_lines *t, const midi_part *part, const char *mallets,
+                      const char *setup)
+{
+    if (setup)
+        himc_text_print(t, "setup %s;\n", setup);
+    for (int i = 0; i < part->heads && !setup; i++) {
+        const midi_head *h = &part->head[i];
+        if (h->key == -1)
+            continue;
+        if (h->made[0])
+            himc_text_print(t, "instrument %s %s;\n", h->name, h->made);
+        else
+            himc_text_print(t, "drum %s %g;\n", h->name, h->inches);
+        himc_text_print(t, "%s place %g %g %g %g;\n", h->name, h->x, h->y, h->z, h->tilt);
+        char pitch[HIMC_NOTE_SIZE];
+        if (h->key != MIDI_UNTUNED) {
+            himc_midi_key_name(pitch, h->key);
+            himc_text_print(t, "%s tune %s;\n", h->name, pitch);
+        }
+        if (mallets)
+            himc_text_print(t, "%s mallet %s;\n", h->name, mallets);
+    }
+    himc_text_print(t, "gain %g;\n", GAIN);
+}
+
+static void put_tempi(himc_text_lines *t, const midi_file *file, double last, double lead)
+{
+    for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
+        double beat = file->tempi[i].beat;
+        himc_text_print(t, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);
+    }
+}
+
+static void put_strokes(himc_text_lines *t, const midi_part *part, double lead)
+{
+    const midi_bar *now = NULL;
+    for (int i = 0; i < part->count; i++) {
+        const midi_stroke *s = &part->stroke[i];
+        if (s->fate != MIDI_PLAYED || s->in_roll)
+            continue;
+        const midi_bar *bar = bar_at(part->file, s->note->beat);
+        if (bar && bar != now)
+            himc_text_print(t, "comment bar %s;\n", bar->number);
+        now = bar;
+        put_stroke(t, part, s, s->note->beat + lead);
+    }
+}
+
+static bool write_score(midi_score *made, const midi_file *file, midi_part *part, const char *name,
+                        const char *setup, himc_error *error)
 {
     himc_text_lines score = {0}, said = {0};
     // whole beats before the file's first, so that the first stroke comes 1 s later at the earliest
@@ -281,54 +481,20 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
     double wait = fmax(0, 1.0 - part->stroke[first].note->seconds);
     double lead = ceil(wait * file->tempi[0].bpm / 60);
     double last = part->stroke[part->count - 1].note->beat;
+    const char *mallets = find_mallets(part, part->stroke[first].note->beat);
     report(&said, file, part);
-    // the file's name as a word: what ends a word or a line in Pure Data becomes _
-    const char *slash = strrchr(name, '/');
-    char shown[64];
-    snprintf(shown, sizeof shown, "%s", slash ? slash + 1 : name);
-    for (char *s = shown; *s; s++)
-        *s = isalnum((unsigned char)*s) || strchr("-_.", *s) ? *s : '_';
-    put(&score, "comment made of %s by himc import;\n", shown);
+    put_name(&score, name);
     const char *line = said.failed ? "" : said.bytes;
     for (const char *end; (end = strchr(line, '\n')); line = end + 1)
-        put(&score, "comment %.*s;\n", (int)(end - line), line);
-    put(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
-    if (setup)
-        put(&score, "setup %s;\n", setup);
-    for (int i = 0; i < part->heads && !setup; i++) {
-        const midi_head *h = &part->head[i];
-        if (h->key == -1)
-            continue;
-        if (h->made[0])
-            put(&score, "instrument %s %s;\n", h->name, h->made);
-        else
-            put(&score, "drum %s %g;\n", h->name, h->inches);
-        put(&score, "%s place %g %g %g %g;\n", h->name, h->x, h->y, h->z, h->tilt);
-        if (h->key >= 0)
-            put(&score, "%s tune %.6g;\n", h->name, frequency(h->key));
-    }
-    put(&score, "gain %g;\n", GAIN);
-    for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
-        double beat = file->tempi[i].beat;
-        put(&score, "tempo %.9g %.9g;\n", file->tempi[i].bpm, beat > 0 ? beat + lead : 0);
-    }
-    for (int i = 0; i < part->count; i++) {
-        const midi_stroke *s = &part->stroke[i];
-        if (s->fate != MIDI_PLAYED || s->in_roll)
-            continue;
-        const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
-        double beat = s->note->beat + lead;
-        if (s->roll.length > 0)
-            put(&score, "roll %.9g %.9g single %.3g %.3g %s %s;\n", beat, s->roll.length,
-                s->dynamic, s->roll.last_dynamic, spot, drum);
-        else
-            put(&score, "stroke %.9g %s legato %.3g %s %s%s%s;\n", beat, himc_hand_name(s->hand),
-                s->dynamic, spot, s->part, s->part[0] ? " " : "", drum);
-    }
+        himc_text_print(&score, "comment %.*s;\n", (int)(end - line), line);
+    himc_text_print(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
+    put_heads(&score, part, mallets, setup);
+    put_tempi(&score, file, last, lead);
+    put_strokes(&score, part, lead);
     score.failed |= !put_changes(&score, file, part, lead);
     *made = (midi_score){score.bytes, said.bytes,
-                         part->count - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER] +
-                             file->cut + file->missing};
+                         part->notes - part->fate[MIDI_PLAYED] - part->fate[MIDI_TOGETHER] +
+                             file->omitted + file->missing};
     if (!score.failed && !said.failed)
         return true;
     himc_midi_score_free(made);
@@ -348,30 +514,46 @@ static bool read_setup(midi_part *part, const midi_options *options, himc_error 
     return part->setup;
 }
 
-bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const char *name,
-                      const midi_options *options, himc_error *error)
+bool himc_midi_make(midi_score *made, midi_file *file, const char *name,
+                    const midi_options *options, himc_error *error)
 {
-    static const midi_options usual = {MIDI_ANY, 0, NULL};
-    midi_file file;
+    static const midi_options usual = {0};
     midi_part part = {0};
     *made = (midi_score){0};
     options = options ? options : &usual;
-    if (!himc_midi_file_read(&file, bytes, size, error))
-        return false;
-    bool good = read_setup(&part, options, error) && make_part(&part, &file, options, error);
+    bool good = read_setup(&part, options, error) && make_part(&part, file, options, error);
     if (good && part.fate[MIDI_PLAYED] == 0)
-        good = himc_error_set(error, "nothing to play: %d note%s, none %s", file.note_count,
-                              file.note_count == 1 ? "" : "s",
+        good = himc_error_set(error, "nothing to play: %d note%s, none %s", file->note_count,
+                              file->note_count == 1 ? "" : "s",
                               part.choice == MIDI_TIMPANI
                                   ? "of timpani (program 48 or a track of that name)"
                               : part.choice == MIDI_DRUMS ? "of a drum (channel 10)"
                                                           : "of that keyboard");
-    good = good && write_score(made, &file, &part, name, options->setup, error);
+    good = good && write_score(made, file, &part, name, options->setup, error);
     himc_score_free(part.setup);
     free(part.stroke);
     free(part.pedal);
-    himc_midi_file_free(&file);
+    himc_midi_file_free(file);
     return good;
+}
+
+bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const char *name,
+                      const midi_options *options, himc_error *error)
+{
+    midi_file file;
+    *made = (midi_score){0};
+    if (size > HIMC_MIDI_BYTES_MAX)
+        return himc_error_set(error, "too long, expected %zu MiB of MIDI",
+                              HIMC_MIDI_BYTES_MAX >> 20);
+    if (!himc_midi_file_read(&file, bytes, size, error))
+        return false;
+    if (file.cut > 0) {
+        himc_error_set(error, "cut short: %d of its %d tracks can be read up to %.3g s only",
+                       file.cut, file.tracks, file.cut_at);
+        himc_midi_file_free(&file);
+        return false;
+    }
+    return himc_midi_make(made, &file, name, options, error);
 }
 
 void himc_midi_score_free(midi_score *made)

@@ -1,20 +1,8 @@
-/// import.h: a score made of a MIDI file.
+/// import.h: a score made of a MIDI file, or of notes that another reader has made.
 #ifndef HIMC_MIDI_IMPORT_H
 #define HIMC_MIDI_IMPORT_H
 
-#include "himc/score.h"
-
-/// Whose notes are played.
-typedef enum midi_choice {
-    MIDI_ANY,          ///< the first of these of which there are any
-    MIDI_TIMPANI,      ///< program 48 of General MIDI, or a track of that name
-    MIDI_DRUMS,        ///< channel 10
-    MIDI_MARIMBA,      ///< program 13
-    MIDI_XYLOPHONE,    ///< program 14
-    MIDI_VIBRAPHONE,   ///< program 12
-    MIDI_GLOCKENSPIEL, ///< program 10
-    MIDI_CHOICES
-} midi_choice;
+#include "midi/smf.h"
 
 typedef struct midi_options {
     midi_choice choice;
@@ -22,13 +10,19 @@ typedef struct midi_options {
                   ///< programs write dynamics
     const char
         *setup; ///< of drums: a set-up's name or file, whose instruments play; NULL: as needed
+    int track, channel; ///< whose notes alone are taken, from 1; 0: all
+    midi_choice as;     ///< what they are taken for; MIDI_ANY: as the file says
+    int as_key;         ///< of drums: all are this key; 0: as the file says
 } midi_options;
 
 /// "timpani" and so on; "" of MIDI_ANY. Borrowed, static.
 const char *himc_midi_choice_name(midi_choice choice);
 
-/// The dynamic (0 .. 1) of a velocity (1 .. 127); `range` as in midi_options.
-double himc_midi_dynamic(int velocity, double range);
+/// The dynamic (0 .. 1) of a velocity (0 .. 127); `range` as in midi_options.
+double himc_midi_dynamic(double velocity, double range);
+
+#define HIMC_MIDI_BYTES_MAX \
+    ((size_t)4 << 20) ///< of a MIDI file; chosen: a hundred times a long piece
 
 /// What has been made; both texts end with 0, and are freed with himc_midi_score_free.
 typedef struct midi_score {
@@ -42,6 +36,9 @@ typedef struct midi_score {
 /// drums.
 bool himc_midi_import(midi_score *made, const void *bytes, size_t size, const char *name,
                       const midi_options *options, himc_error *error);
+/// The same of notes; a reader of another kind of files has made them. `file` is freed.
+bool himc_midi_make(midi_score *made, midi_file *file, const char *name,
+                    const midi_options *options, himc_error *error);
 void himc_midi_score_free(midi_score *made);
 
 #endif

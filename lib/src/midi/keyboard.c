@@ -20,13 +20,22 @@ static const struct {
     [MIDI_GLOCKENSPIEL - FIRST] = {"glockenspiel", 9, 79, 108, .034},
 };
 
-bool himc_midi_is_keyboard(midi_choice choice, int program)
+midi_choice himc_midi_program_choice(int program)
 {
-    return choice >= FIRST && choice < MIDI_CHOICES && boards[choice - FIRST].program == program;
+    const int timpani = 47; // "48 Timpani" of General MIDI, which counts from 1
+    for (int i = FIRST; i < MIDI_CHOICES; i++)
+        if (boards[i - FIRST].program == program)
+            return (midi_choice)i;
+    return program == timpani ? MIDI_TIMPANI : MIDI_ANY;
 }
 
 static const char *const notes[] = {"C",  "C#", "D",  "D#", "E",  "F",
                                     "F#", "G",  "G#", "A",  "A#", "B"};
+
+void himc_midi_key_name(char name[HIMC_NOTE_SIZE], int key)
+{
+    himc_format(name, HIMC_NOTE_SIZE, "%s%d", notes[key % 12], key / 12 - 1);
+}
 
 // naturals below a key, and whether it is one
 static int naturals(int key)
@@ -58,8 +67,10 @@ void himc_midi_keyboard(midi_part *part)
     const char *name = boards[part->choice - FIRST].name;
     midi_head *head = &part->head[part->heads++];
     *head = (midi_head){.name = name, .x = .45, .z = .87, .key = MIDI_UNTUNED};
-    himc_format(head->made, sizeof head->made, "%s %s%d %s%d", name, notes[first % 12],
-                first / 12 - 1, notes[last % 12], last / 12 - 1);
+    char low_name[HIMC_NOTE_SIZE], high_name[HIMC_NOTE_SIZE];
+    himc_midi_key_name(low_name, first);
+    himc_midi_key_name(high_name, last);
+    himc_format(head->made, sizeof head->made, "%s %s %s", name, low_name, high_name);
     double pitch = boards[part->choice - FIRST].pitch,
            middle = .5 * (naturals(first) + naturals(last));
     for (int i = 0; i < part->count; i++) {
@@ -67,7 +78,7 @@ void himc_midi_keyboard(midi_part *part)
         bool natural = notes[s->key % 12][1] == '\0';
         s->x = natural ? -.07 : .07; // (m) about, of the two rows
         s->y = pitch * (middle - naturals(s->key) + (natural ? 0 : .5));
-        himc_format(s->part, sizeof s->part, "%s%d", notes[s->key % 12], s->key / 12 - 1);
+        himc_midi_key_name(s->part, s->key);
     }
     himc_midi_join(part);
 }

@@ -79,15 +79,46 @@ static const gm_key keys[] = {
     {"open triangle", "triangle", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
 };
 
+// what General MIDI does not have, from MIDI_BASS_DRUM on
+static const gm_key concert[] = {
+    {"bass drum", "bass-drum", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"tam-tam", "tam-tam", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"temple block", "temple-blocks", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"other percussion", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+};
+
 static const gm_key *find_key(int key)
 {
+    if (key >= MIDI_BASS_DRUM && key < MIDI_KEY_COUNT)
+        return &concert[key - MIDI_BASS_DRUM];
     bool known = key >= FIRST_KEY && key < FIRST_KEY + (int)(sizeof keys / sizeof keys[0]);
     return known ? &keys[key - FIRST_KEY] : NULL;
 }
 
+int himc_midi_key_of(const char *instrument, himc_spot spot, bool open)
+{
+    int found = -1;
+    for (int key = FIRST_KEY; key < MIDI_KEY_COUNT; key++) {
+        const gm_key *k = find_key(key);
+        if (!k || !k->instrument || strcmp(k->instrument, instrument) != 0)
+            continue;
+        bool fits = k->how == CLOSED ? !open : k->how == OPENED ? open : k->how != PEDALLED;
+        bool better = found < 0 || (k->spot == spot && find_key(found)->spot != spot);
+        if (fits && better && (!k->instead || k->spot == spot))
+            found = key;
+    }
+    return found;
+}
+
+const char *himc_midi_key_sound(int key)
+{
+    const gm_key *k = find_key(key);
+    return k ? k->sound : "";
+}
+
 void himc_midi_join(midi_part *part)
 {
-    int last[128];
+    int last[MIDI_KEY_COUNT];
     memset(last, -1, sizeof last);
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
@@ -181,7 +212,7 @@ void himc_midi_kit(midi_part *part)
             s->fate = MIDI_NO_INSTRUMENT;
             continue;
         }
-        s->spot = key->spot;
+        s->spot = s->spot == HIMC_SPOT_NORMAL ? key->spot : s->spot;
         s->foot = key->how == BY_FOOT || key->how == PEDALLED;
         s->pedal = key->how == OPENED ? MIDI_OPEN : key->how >= CLOSED ? MIDI_CLOSE : MIDI_AS_IT_IS;
         snprintf(s->part, sizeof s->part, "%s", key->part ? key->part : "");

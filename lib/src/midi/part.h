@@ -5,11 +5,15 @@
 #ifndef HIMC_MIDI_PART_H
 #define HIMC_MIDI_PART_H
 
+#include "base/argument.h"
 #include "midi/import.h"
 #include "midi/smf.h"
 
 #define MIDI_HEADS HIMC_DRUMS ///< most of a part
 #define MIDI_UNTUNED (-2)     ///< of midi_head.key: it is used as it is made
+
+/// Keys of drums that General MIDI does not have.
+enum { MIDI_BASS_DRUM = 128, MIDI_TAM_TAM, MIDI_TEMPLE_BLOCKS, MIDI_NO_SOUND, MIDI_KEY_COUNT };
 
 /// What became of a note.
 typedef enum midi_fate {
@@ -46,6 +50,7 @@ typedef enum midi_opening { MIDI_AS_IT_IS, MIDI_CLOSE, MIDI_OPEN } midi_opening;
 /// A stroke of the part.
 typedef struct midi_stroke {
     const midi_note *note; ///< borrowed from the file
+    int order, orders;     ///< of the file, since the stroke before: the first, how many
     int key;               ///< of the note, of timpani moved by octaves into their range
     midi_fate fate;
     int head; ///< its index
@@ -56,7 +61,7 @@ typedef struct midi_stroke {
     bool foot; ///< a foot plays it
     himc_hand hand;
     double dynamic; ///< 0 .. 1
-    double end;     ///< of the note: a hand is not back on the head sooner than 0.15 s (s)
+    double end;     ///< of the note; a hand is back on the head after 0.15 s at the earliest (s)
     bool damped;    ///< at the end of its note
     bool in_roll;   ///< another stroke's roll plays it
     midi_roll roll;
@@ -70,19 +75,30 @@ typedef struct midi_pedal {
 } midi_pedal;
 
 typedef struct midi_part {
-    midi_choice choice; ///< not MIDI_ANY
-    himc_score *setup;  ///< owned; its instruments are all that there are; or NULL
+    const midi_file *file; ///< borrowed
+    midi_choice choice;    ///< not MIDI_ANY
+    himc_score *setup;     ///< owned; its instruments are all that there are; or NULL
     midi_head head[MIDI_HEADS];
     int heads;
     midi_stroke *stroke; ///< in the order of time (count), owned
     int count;
     midi_pedal *pedal; ///< in the order of time (pedals), owned
     int pedals;
-    int fate[MIDI_FATES]; ///< notes of the file
-    int moved;            ///< by octaves
-    int damped;           ///< strokes
-    int rolls, rolled;    ///< rolls, and the strokes in them
+    int fate[MIDI_FATES];      ///< notes of the file
+    int notes;                 ///< of the part, as written
+    char bars[MIDI_FATES][48]; ///< of notes that are not played
+    int moved;                 ///< by octaves
+    int damped;                ///< strokes
+    int untuned;               ///< orders to tune that no drum can follow
+    int mallets;               ///< changes of mallets that are not played
+    int rolls, rolled;         ///< rolls, and the strokes in them
 } midi_part;
+
+/// When the hands leave a stroke's head: of a roll its end (s).
+static inline double himc_midi_stroke_end(const midi_stroke *stroke)
+{
+    return stroke->roll.length > 0 ? stroke->note->off : stroke->note->seconds;
+}
 
 /// Of two strokes on one head (but for drums: of one pitch) at the same time one is played, the
 /// louder.
@@ -116,8 +132,15 @@ void himc_midi_kit(midi_part *part);
 /// notes.
 int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);
 
-/// keyboard.c: true if a program of General MIDI is that keyboard.
-bool himc_midi_is_keyboard(midi_choice choice, int program);
+/// The key of an instrument of the kit, struck at that spot; of a hi-hat open or closed; -1: none.
+int himc_midi_key_of(const char *instrument, himc_spot spot, bool open);
+/// What General MIDI calls a key; "" if it has none.
+const char *himc_midi_key_sound(int key);
+
+/// keyboard.c: the timpani or keyboard of a program of General MIDI (0 .. 127), else MIDI_ANY.
+midi_choice himc_midi_program_choice(int program);
+/// "C#3".
+void himc_midi_key_name(char name[HIMC_NOTE_SIZE], int key);
 /// Gives each stroke its bar.
 void himc_midi_keyboard(midi_part *part);
 

@@ -1,8 +1,8 @@
 /// rolls.c: which fast repeats of the timpani are rolls.
 ///
 /// A roll in a MIDI file is a row of notes as fast as its maker could; a player plays as many
-/// strokes as drum and dynamic ask for. So strokes of one drum at 9 a second and more, four at
-/// least, with no other drum between them, become a `roll` from the first to the end of the last.
+/// strokes as drum and dynamic ask for. So strokes of one drum at 9 a second and more, 32nds
+/// at 8, four at least, with no other drum between them, become a `roll` from the first to the end of the last.
 /// Where the dynamics do not lie on a line, another roll begins. The drum channel has no rolls:
 /// there such rows are fills, whose rhythm counts.
 #include "base/argument.h"
@@ -10,10 +10,11 @@
 
 #include <math.h>
 
-#define SLOWEST 9.0     // strokes of a roll (1/s)
-#define LEAST_NOTES 4   // of a roll
-#define MOST_NOTES 1000 // of a roll; chosen: a minute of a fast one
-#define LONGEST 60.0    // (s) chosen: the score's limit less a last stroke at the slowest tempo
+#define SLOWEST 9.0      // strokes of a roll (1/s)
+#define SLOWEST_32ND 7.9 // of 32nds, as programs write a tremolo of three strokes
+#define LEAST_NOTES 4    // of a roll
+#define MOST_NOTES 1000  // of a roll; chosen: a minute of a fast one
+#define LONGEST 60.0     // (s) chosen: the score's limit less a last stroke at the slowest tempo
 #define MOVE_TIME 0.5 // from its last stroke to one on another drum (s); chosen: sticking.c's need
 #define MOST_OFF_LINE 0.06 // of the dynamics from a straight line; chosen: less than half a step
 
@@ -24,6 +25,13 @@ static int next_played(const midi_part *part, int index)
         if (part->stroke[index].fate == MIDI_PLAYED)
             return index;
     return -1;
+}
+
+static bool is_fast(const midi_note *a, const midi_note *b)
+{
+    double gap = b->seconds - a->seconds;
+    bool thirty_second = fabs(b->beat - a->beat - 0.125) < 1e-3;
+    return gap <= 1 / (thirty_second ? SLOWEST_32ND : SLOWEST);
 }
 
 // true if the dynamics from the first to the last lie on a line
@@ -48,9 +56,11 @@ void himc_midi_find_rolls(midi_part *part)
     midi_stroke *s = part->stroke;
     for (int first = next_played(part, -1), last; first >= 0; first = next_played(part, last)) {
         int end = first, row = 1, next, notes = 1;
+        if (s[last = first].roll.length > 0)
+            continue;
         while (row < MOST_NOTES && (next = next_played(part, end)) >= 0 &&
-               s[next].head == s[first].head &&
-               s[next].note->seconds - s[end].note->seconds <= 1 / SLOWEST &&
+               s[next].head == s[first].head && s[next].roll.length == 0 &&
+               is_fast(s[end].note, s[next].note) &&
                s[next].note->seconds - s[first].note->seconds <= LONGEST &&
                is_straight(part, first, next)) {
             end = next;

@@ -1,8 +1,9 @@
 /// smf.c: the reader of MIDI files.
 ///
 /// A file is chunks: a header, then tracks of events, each after a delta time in ticks. The tracks
-/// are read one by one into one list of the events that matter (notes, programs, tempi), sorted by
-/// tick; then one pass turns ticks into seconds and note-ons with their note-offs into notes. Each
+/// are read one by one into one list of the events that matter, sorted by tick; then one pass turns
+/// ticks into seconds and note-ons with their note-offs into notes, whose level follows volume,
+/// expression and pressure. A held note of timpani that swells is a roll. Each
 /// byte is taken through `next_byte`, which knows the end of its chunk; a chunk longer than the
 /// file is cut to it. Seconds: t += ticks * us / (1e6 ppqn), in the order of the merged tempo map.
 /// Invariant: nothing before `bytes` or from `end` on is read, whatever the lengths in the file
@@ -11,13 +12,27 @@
 
 #include "base/argument.h"
 #include "base/array.h"
+#include "base/format.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 
+#define TIMPANI_PROGRAM 47 // "48 Timpani" of General MIDI, which counts from 1
 #define USUAL_TEMPO 500000 // of a file that says nothing (microseconds per quarter note)
 
-typedef enum event_kind { NOTE_OFF, NOTE_ON, PROGRAM, TEMPO } event_kind;
+typedef enum event_kind {
+    NOTE_OFF,
+    NOTE_ON,
+    PROGRAM,
+    CONTROL,
+    PRESSURE,
+    KEY_PRESSURE,
+    TEMPO,
+    METER
+} event_kind;
+
+enum { VOLUME = 7, EXPRESSION = 11, SUSTAIN = 64 }; // controllers that count
 
 typedef struct event {
     int64_t tick;
@@ -39,7 +54,8 @@ typedef struct reader {
     bool over;          ///< the end-of-track event has come
     event *events;
     int count, room;
-    bool *timpani; ///< (tracks) of the names
+    bool *timpani;      ///< (tracks) of the names
+    uint16_t *channels; ///< (tracks) that have notes, a bit each
     himc_error *error;
 } reader;
 
@@ -113,25 +129,31 @@ static bool names_timpani(const uint8_t *text, size_t size)
 // a message to a channel, of one data byte or two; `first` has been read
 static bool read_message(reader *r, uint8_t first)
 {
-    enum { OFF = 0x8, ON = 0x9, SET_PROGRAM = 0xc, PRESSURE = 0xd };
+    enum { OFF = 0x8, ON, KEY_PRESS, CHANGE, SET_PROGRAM, PRESS };
+    static const event_kind kinds[] = {
+        [OFF] = NOTE_OFF,   [ON] = NOTE_ON,          [KEY_PRESS] = KEY_PRESSURE,
+        [CHANGE] = CONTROL, [SET_PROGRAM] = PROGRAM, [PRESS] = PRESSURE};
     int word = r->status >> 4;
-    bool two = word != SET_PROGRAM && word != PRESSURE;
+    bool two = word != SET_PROGRAM && word != PRESS;
     uint8_t second = two ? next_byte(r) : 0;
     if (r->cut)
         return true;
     if (first > 127 || second > 127)
         return wrong(r, "a data byte above 127");
     event e = {.channel = r->status & 0xf, .first = first, .second = second};
-    if (word != OFF && word != ON && word != SET_PROGRAM)
+    bool unused = word == CHANGE && first != VOLUME && first != EXPRESSION && first != SUSTAIN;
+    if (word > PRESS || unused)
         return true;
-    e.kind = word == SET_PROGRAM ? PROGRAM : word == ON && second > 0 ? NOTE_ON : NOTE_OFF;
+    if (word == ON)
+        r->channels[r->track] |= (uint16_t)(1 << e.channel);
+    e.kind = (uint8_t)(word == ON && second == 0 ? NOTE_OFF : kinds[word]);
     return add_event(r, &e);
 }
 
 static bool read_event(reader *r)
 {
     enum { EXCLUSIVE = 0xf0, ESCAPE = 0xf7, META = 0xff };
-    enum { NAME = 0x03, END = 0x2f, SET_TEMPO = 0x51 }; // types of META
+    enum { NAME = 0x03, END = 0x2f, SET_TEMPO = 0x51, SET_METER = 0x58 }; // types of META
     uint32_t delta, length;
     if (!next_length(r, &delta))
         return false;
@@ -159,6 +181,8 @@ static bool read_event(reader *r)
         r->timpani[r->track] |= names_timpani(data, length);
     if (type == SET_TEMPO && length >= 3)
         return add_event(r, &(event){.kind = TEMPO, .tempo = number_of(data, 3)});
+    if (type == SET_METER && length >= 2 && data[0] > 0 && data[1] < 8)
+        return add_event(r, &(event){.kind = METER, .first = data[0], .second = data[1]});
     return true;
 }
 
@@ -198,59 +222,286 @@ static int by_tick(const void *a, const void *b)
                               : (x->order > y->order) - (x->order < y->order);
 }
 
-// from events to notes and tempi
-static bool collect(midi_file *file, reader *r)
+// how loud a channel is besides its velocities
+
+typedef struct channel {
+    uint8_t program, pressure, key_pressure[128];
+    uint8_t control[2], most[2]; ///< volume and expression: now, and the largest in the file
+    bool sustain;
+    midi_note *sounding[128];
+} channel;
+
+/// What a note's level has become.
+typedef struct sample {
+    int note; ///< its index
+    double beat, seconds, level;
+} sample;
+
+typedef struct collection {
+    channel channel[16];
+    sample *samples;
+    int count, room;
+} collection;
+
+// volume and expression in shares of the channel's largest, as levels are for the mixing desk; a
+// key that is pressed goes from its velocity towards the loudest
+static double level_of(const channel *c, int key, int velocity)
 {
-    uint8_t program[16] = {0};
-    midi_note *sounding[16][128] = {{NULL}};
+    double level = velocity;
+    for (int i = 0; i < 2; i++)
+        level *= c->most[i] > 0 ? (double)c->control[i] / c->most[i] : 1;
+    int press = c->pressure > c->key_pressure[key] ? c->pressure : c->key_pressure[key];
+    return level + (127 - level) * press / 127.0;
+}
+
+static void begin_channels(collection *c, const reader *r)
+{
+    static const uint8_t usual[2] = {100, 127}; // of General MIDI
+    for (int k = 0; k < 16; k++)
+        memcpy(c->channel[k].control, usual, sizeof usual);
+    for (const event *e = r->events; e < r->events + r->count; e++) {
+        bool counts = e->kind == CONTROL && e->first != SUSTAIN;
+        channel *of = &c->channel[e->channel];
+        uint8_t *most = &of->most[e->first == EXPRESSION];
+        // what holds before a first change counts, unless that comes at the beginning
+        if (counts && *most == 0 && e->tick > 0)
+            *most = usual[e->first == EXPRESSION];
+        if (counts && e->second > *most)
+            *most = e->second;
+    }
+}
+
+// a controller or a pressure moves: what sounds gets another level
+static bool follow_control(collection *c, const midi_file *file, const event *e, double beat,
+                           double seconds, himc_error *error)
+{
+    const int most = 200000; // chosen: as many as a score has strokes
+    channel *of = &c->channel[e->channel];
+    if (e->kind == CONTROL && e->first == SUSTAIN)
+        of->sustain = e->second >= 64;
+    else if (e->kind == CONTROL)
+        of->control[e->first == EXPRESSION] = e->second;
+    else if (e->kind == PRESSURE)
+        of->pressure = e->first;
+    else
+        of->key_pressure[e->first] = e->second;
+    if (e->kind == CONTROL && e->first == SUSTAIN)
+        return true;
+    for (int key = 0; key < 128 && c->count < most; key++) {
+        const midi_note *n = of->sounding[key];
+        if (!n)
+            continue;
+        if (!himc_array_grow(&c->samples, c->count, &c->room, sizeof *c->samples, error))
+            return false;
+        c->samples[c->count++] =
+            (sample){(int)(n - file->notes), beat, seconds, level_of(of, key, n->velocity)};
+    }
+    return true;
+}
+
+static void begin_note(midi_file *file, const reader *r, channel *c, const event *e, double beat,
+                       double seconds)
+{
+    // a track's name says more than the drum channel, unless it has other channels, too
+    bool timpani = r->timpani[e->track] &&
+                   (e->channel != MIDI_DRUM_CHANNEL || r->channels[e->track] == 1 << e->channel);
+    midi_note *note = c->sounding[e->first] = &file->notes[file->note_count++];
+    *note = (midi_note){.beat = beat,
+                        .seconds = seconds,
+                        .off = -1,
+                        .track = e->track,
+                        .channel = e->channel,
+                        .key = e->first,
+                        .velocity = e->second,
+                        .program = c->program,
+                        .level = level_of(c, e->first, e->second),
+                        .choice = timpani ? MIDI_TIMPANI : MIDI_ANY,
+                        .way = {.dynamic = -1, .spot = HIMC_SPOT_NORMAL}};
+}
+
+static bool add_tempo(midi_file *file, double beat, uint32_t tempo)
+{
+    double bpm = 60e6 / (tempo ? tempo : 1);
+    bool again = file->tempi[file->tempo_count - 1].beat == beat;
+    // a score has lines for 10000 changes
+    bool good = bpm >= HIMC_BPM_MIN && bpm <= HIMC_BPM_MAX && file->tempo_count <= 10000;
+    file->tempo_count += !again;
+    file->tempi[file->tempo_count - 1] = (himc_tempo_change){beat, bpm};
+    return good;
+}
+
+// from events to notes and tempi
+static bool collect(midi_file *file, reader *r, collection *c)
+{
     file->notes = calloc((size_t)r->count + 1, sizeof *file->notes);
     file->tempi = calloc((size_t)r->count + 1, sizeof *file->tempi);
     if (!file->notes || !file->tempi)
         return himc_error_set(r->error, "out of memory for %d events", r->count);
     if (r->count > 0)
         qsort(r->events, (size_t)r->count, sizeof *r->events, by_tick);
+    begin_channels(c, r);
     file->tempi[file->tempo_count++] = (himc_tempo_change){0, 60e6 / USUAL_TEMPO};
     int64_t tick = 0;                                         // where the present tempo began ...
     double beat, seconds = 0, since = 0, tempo = USUAL_TEMPO; // ... and when (s)
     for (const event *e = r->events; e < r->events + r->count; e++) {
+        channel *of = &c->channel[e->channel];
         beat = (double)e->tick / r->quarter;
         seconds = r->per_second > 0 ? (double)e->tick / r->per_second
                                     : since + (double)(e->tick - tick) * tempo / (1e6 * r->quarter);
-        midi_note **note = &sounding[e->channel][e->first];
+        midi_note **note = &of->sounding[e->first & 127];
         if (e->kind == PROGRAM)
-            program[e->channel] = e->first;
+            of->program = e->first;
         if ((e->kind == NOTE_ON || e->kind == NOTE_OFF) && *note) {
             (*note)->off = seconds;
+            (*note)->way.ring = of->sustain;
             *note = NULL;
         }
-        if (e->kind == NOTE_ON) {
-            *note = &file->notes[file->note_count++];
-            **note = (midi_note){.beat = beat,
-                                 .seconds = seconds,
-                                 .off = -1,
-                                 .track = e->track,
-                                 .channel = e->channel,
-                                 .key = e->first,
-                                 .velocity = e->second,
-                                 .program = program[e->channel],
-                                 .timpani = r->timpani[e->track]};
-        }
+        if (e->kind == NOTE_ON)
+            begin_note(file, r, of, e, beat, seconds);
+        if (e->kind >= CONTROL && e->kind <= KEY_PRESSURE &&
+            !follow_control(c, file, e, beat, seconds, r->error))
+            return false;
         if (e->kind == TEMPO && r->per_second == 0) {
             since = seconds;
             tick = e->tick;
             tempo = e->tempo;
-            double bpm = 60e6 / (e->tempo ? e->tempo : 1);
-            bool again = file->tempi[file->tempo_count - 1].beat == beat;
-            // a score has lines for 10000 changes
-            file->converted |=
-                bpm < HIMC_BPM_MIN || bpm > HIMC_BPM_MAX || file->tempo_count > 10000;
-            file->tempo_count += !again;
-            file->tempi[file->tempo_count - 1] = (himc_tempo_change){beat, bpm};
+            file->converted |= !add_tempo(file, beat, e->tempo);
         }
     }
     for (int i = 0; i < file->note_count; i++)
         if (file->notes[i].off < 0)
             file->notes[i].off = seconds;
+    return true;
+}
+
+// swells
+
+static int by_note(const void *a, const void *b)
+{
+    const sample *x = a, *y = b;
+    int later = (x->seconds > y->seconds) - (x->seconds < y->seconds);
+    return x->note != y->note ? x->note - y->note : later;
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const midi_note *x = a, *y = b;
+    return (x->seconds > y->seconds) - (x->seconds < y->seconds);
+}
+
+// the sample that is farthest from the line between the first and the last; 0: all are near it
+static int farthest(const sample *s, int count)
+{
+    double most = 4; // of a velocity; chosen: a quarter of a step
+    int found = 0;
+    double time = s[count - 1].seconds - s[0].seconds, rise = s[count - 1].level - s[0].level;
+    for (int i = 1; i + 1 < count; i++) {
+        double share = time > 0 ? (s[i].seconds - s[0].seconds) / time : 0;
+        double off = fabs(s[i].level - s[0].level - share * rise);
+        found = off > most ? i : found;
+        most = fmax(off, most);
+    }
+    return found;
+}
+
+// a roll for each line that the samples lie on; the first is the note itself
+static bool add_rolls(midi_file *file, int *room, const sample *s, int count, himc_error *error)
+{
+    const int most = 64; // of a note; chosen, bounds the time
+    const double shortest = himc_argument_find("LENGTH", "roll")->low;
+    for (int first = 0, last, bend, made = 0; first + 1 < count; first = last, made++) {
+        last = count - 1;
+        while (made < most && (bend = farthest(s + first, last - first + 1)) > 0)
+            last = first + bend;
+        if (s[last].beat - s[first].beat < shortest && (made > 0 || last + 1 < count)) {
+            made--; // a jump
+            continue;
+        }
+        if (!himc_array_grow(&file->notes, file->note_count, room, sizeof *file->notes, error))
+            return false;
+        midi_note n = file->notes[s->note];
+        n.way.length = s[last].beat - s[first].beat;
+        n.beat = s[first].beat;
+        n.seconds = s[first].seconds;
+        n.off = s[last].seconds;
+        n.level = s[first].level;
+        n.last_level = s[last].level;
+        n.way.extra = made > 0;
+        file->notes[made > 0 ? file->note_count : s->note] = n;
+        file->note_count += made > 0;
+    }
+    return true;
+}
+
+static bool is_timpani(const midi_note *n)
+{
+    return n->choice == MIDI_TIMPANI ||
+           (n->channel != MIDI_DRUM_CHANNEL && n->program == TIMPANI_PROGRAM);
+}
+
+// a note of timpani that is held while its level rises is a roll: a single stroke cannot swell
+static bool find_swells(midi_file *file, const reader *r, collection *c)
+{
+    const double least = 0.25, longest = 60; // (s) chosen: a score's limit is 180 s
+    const double rise = 8;                   // of a velocity; chosen: half a step
+    int notes = file->note_count, room = r->count + 1;
+    sample *line = malloc(((size_t)c->count + 2) * sizeof *line);
+    if (!line)
+        return himc_error_set(r->error, "out of memory for %d events", c->count);
+    if (c->count > 0)
+        qsort(c->samples, (size_t)c->count, sizeof *c->samples, by_note);
+    bool good = true;
+    for (int i = 0, end; i < c->count && good; i = end) {
+        int index = c->samples[i].note, count = 0;
+        midi_note n = file->notes[index];
+        double low = n.level, up = 0;
+        line[count++] = (sample){index, n.beat, n.seconds, n.level};
+        for (end = i; end < c->count && c->samples[end].note == index; end++) {
+            // one at the beginning is the beginning
+            count -= count == 1 && c->samples[end].seconds == n.seconds;
+            line[count++] = c->samples[end];
+            low = count == 1 ? line[0].level : low;
+            low = fmin(low, c->samples[end].level);
+            up = fmax(up, c->samples[end].level - low);
+        }
+        double time = n.off - n.seconds;
+        if (!is_timpani(&n) || time < least || time > longest || up < rise)
+            continue;
+        double off = r->per_second > 0 ? n.off * r->per_second / r->quarter
+                                       : himc_score_beat(file->tempi, file->tempo_count, n.off);
+        line[count] = (sample){index, off, n.off, line[count - 1].level};
+        good = add_rolls(file, &room, line, count + 1, r->error);
+    }
+    if (file->note_count > notes)
+        qsort(file->notes, (size_t)file->note_count, sizeof *file->notes, by_time);
+    free(line);
+    return good;
+}
+
+// bars
+
+static bool place_bars(midi_file *file, const reader *r)
+{
+    const int most = 60000; // chosen: a day of music
+    double last = file->note_count > 0 ? file->notes[file->note_count - 1].beat : 0;
+    double beat = 0, length = 4;
+    int room = 0;
+    for (const event *e = r->events; beat <= last && file->bar_count < most;) {
+        // a meter that changes within a bar begins another one
+        double next = beat + length;
+        for (; e < r->events + r->count && (double)e->tick / r->quarter < next - 1e-6; e++)
+            if (e->kind == METER) {
+                double at = (double)e->tick / r->quarter;
+                length = 4.0 * e->first / (1 << e->second);
+                next = at > beat + 1e-6 ? at : beat + length;
+            }
+        if (!himc_array_grow(&file->bars, file->bar_count, &room, sizeof *file->bars, r->error))
+            return false;
+        midi_bar *bar = &file->bars[file->bar_count++];
+        bar->beat = beat;
+        himc_format(bar->number, sizeof bar->number, "%d", file->bar_count);
+        beat = next;
+    }
     return true;
 }
 
@@ -263,8 +514,11 @@ static bool settle_beats(midi_file *file, const reader *r)
     file->converted |= r->per_second > 0;
     if (file->converted) {
         const double bpm = 120;
-        for (int i = 0; i < file->note_count; i++)
-            file->notes[i].beat = file->notes[i].seconds * bpm / 60;
+        for (int i = 0; i < file->note_count; i++) {
+            midi_note *n = &file->notes[i];
+            n->beat = n->seconds * bpm / 60;
+            n->way.length = n->way.length > 0 ? (n->off - n->seconds) * bpm / 60 : 0;
+        }
         file->tempi[0] = (himc_tempo_change){0, bpm};
         file->tempo_count = 1;
     }
@@ -297,12 +551,19 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
     if (frames)
         r.per_second = (rate == 29 ? 30000.0 / 1001 : rate) * ticks;
     r.timpani = calloc(UINT16_MAX, sizeof *r.timpani);
-    bool good = r.timpani || himc_error_set(error, "out of memory");
-    good = good && read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r) &&
-           settle_beats(file, &r);
+    r.channels = calloc(UINT16_MAX, sizeof *r.channels);
+    collection *c = calloc(1, sizeof *c);
+    bool good = (r.timpani && r.channels && c) || himc_error_set(error, "out of memory");
+    good = good && read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r, c) &&
+           find_swells(file, &r, c) && settle_beats(file, &r) &&
+           (file->converted || place_bars(file, &r));
     int promised = (int)number_of(at + 10, 2);
     file->missing = promised > file->tracks ? promised - file->tracks : 0;
+    if (c)
+        free(c->samples);
+    free(c);
     free(r.timpani);
+    free(r.channels);
     free(r.events);
     if (!good)
         himc_midi_file_free(file);
@@ -313,5 +574,8 @@ void himc_midi_file_free(midi_file *file)
 {
     free(file->notes);
     free(file->tempi);
+    free(file->bars);
+    free(file->orders);
+    free(file->said);
     *file = (midi_file){0};
 }

@@ -7,18 +7,64 @@
 
 #define MIDI_DRUM_CHANNEL 9 ///< "channel 10", of General MIDI's drums
 
+/// Whose notes are played.
+typedef enum midi_choice {
+    MIDI_ANY,          ///< the first of these of which there are any
+    MIDI_TIMPANI,      ///< program 48 of General MIDI, or a track of that name
+    MIDI_DRUMS,        ///< channel 10
+    MIDI_MARIMBA,      ///< program 13
+    MIDI_XYLOPHONE,    ///< program 14
+    MIDI_VIBRAPHONE,   ///< program 12
+    MIDI_GLOCKENSPIEL, ///< program 10
+    MIDI_CHOICES
+} midi_choice;
+
+/// How a note is played, as far as the file says so.
+typedef struct midi_way {
+    double dynamic;      ///< 0 .. 1; below 0: by the velocity
+    double length;       ///< of a roll (beats); 0: none
+    double last_dynamic; ///< of a roll
+    himc_nuance nuance;
+    himc_ornament ornament; ///< flam, drag, ruff or none
+    himc_spot spot;
+    int hand;   ///< 1 + himc_hand; 0: any
+    int drum;   ///< of timpani: 1 low .. 4 high; 0: any
+    int ring;   ///< 1: it rings on, -1: it is damped at its end, 0: as usual
+    bool extra; ///< a stroke of a note that has others: a grace, a part of a tremolo
+} midi_way;
+
 /// A note of any track, from its note-on to its note-off.
 typedef struct midi_note {
-    double beat;      ///< of the note-on (quarter notes from the beginning), see midi_file
-    double seconds;   ///< of the note-on, through the tempo map (s)
-    double off;       ///< of the note-off (s); the end of the file if there is none
-    int track;        ///< from 0
-    uint8_t channel;  ///< 0 .. 15
-    uint8_t key;      ///< 0 .. 127; 60 is C4
-    uint8_t velocity; ///< 1 .. 127
-    uint8_t program;  ///< of its channel then, 0 .. 127
-    bool timpani;     ///< its track has a timpani's name
+    double beat;        ///< of the note-on (quarter notes from the beginning), see midi_file
+    double seconds;     ///< of the note-on, through the tempo map (s)
+    double off;         ///< of the note-off (s); the end of the file if there is none
+    int track;          ///< from 0
+    uint8_t channel;    ///< 0 .. 15
+    uint8_t key;        ///< 0 .. 127; 60 is C4. From 128: drums that only MusicXML has (part.h)
+    uint8_t velocity;   ///< 1 .. 127
+    uint8_t program;    ///< of its channel then, 0 .. 127
+    double level;       ///< the velocity with volume, expression and pressure, 0 .. 127
+    double last_level;  ///< of a roll (way.length): at its end
+    midi_choice choice; ///< of its track's name; MIDI_ANY: its channel or program says it
+    midi_way way;
 } midi_note;
+
+/// The beginning of a bar.
+typedef struct midi_bar {
+    double beat;
+    char number[12];
+} midi_bar;
+
+typedef enum midi_order_kind { MIDI_TUNING, MIDI_MUFFLE, MIDI_MALLET } midi_order_kind;
+
+/// What the player is told between notes, by MusicXML.
+typedef struct midi_order {
+    double beat, seconds;
+    midi_order_kind kind;
+    midi_choice choice; ///< whose part says it
+    int from, value; ///< tuning: classes of pitch, 0 C .. 11 (12: of any drum); 0 or 1; a mallet,
+                     ///< 0 soft .. 3 wood
+} midi_order;
 
 /// A file. Beats are quarter notes and the tempo map is the file's, unless `converted`.
 typedef struct midi_file {
@@ -26,6 +72,12 @@ typedef struct midi_file {
     int note_count;
     himc_tempo_change *tempi; ///< as in a score, the first at beat 0 (tempo_count), owned
     int tempo_count;
+    midi_bar *bars; ///< in the order of beats (bar_count), owned; NULL: not known
+    int bar_count;
+    midi_order *orders; ///< in the order of beats (order_count), owned
+    int order_count;
+    char *said;     ///< lines of the report that the reader makes, owned, or NULL
+    int omitted;    ///< notes that the reader leaves out
     int tracks;     ///< read
     int cut;        ///< tracks that end in the middle of an event or go on behind the file's end
     int missing;    ///< tracks that the header promises and the file does not have

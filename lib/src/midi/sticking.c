@@ -13,6 +13,11 @@
 
 enum { OMIT = HIMC_HANDS };
 
+// of the time that a move takes: the planner's margin (hand.c) for a stroke's swing, a little more
+#define MOVE_SHARE 1.45
+#define ROLL_STROKE 0.1 // from a roll's last stroke to its end (s)
+#define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
+
 /// A stroke of one hand.
 typedef struct place {
     double at;   ///< (s); far in the past at first
@@ -21,13 +26,16 @@ typedef struct place {
 
 // of a stroke, at the normal spot: towards the player from the centre; -1: at first each hand is
 // before its own side
-static place place_of(const midi_part *part, int stroke, int hand)
+static place place_of(const midi_part *part, int stroke, int hand, int now)
 {
     if (stroke < 0)
         return (place){-1e3, 0.5, hand == HIMC_LEFT ? 0.2 : -0.2};
     const midi_head *head = &part->head[part->stroke[stroke].head];
     const midi_stroke *s = &part->stroke[stroke];
-    return (place){s->note->seconds, head->x - 0.75 * head->radius + s->x, head->y + s->y};
+    double at = s->note->seconds;
+    if (s->roll.length > 0 && stroke != now) // its last stroke, about
+        at = fmax(at, himc_midi_stroke_end(s) - ROLL_STROKE);
+    return (place){at, head->x - 0.75 * head->radius + s->x, head->y + s->y};
 }
 
 // the state's key is the index of each hand's last stroke
@@ -38,19 +46,30 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
         state->cost += omit + omit_loud * part->stroke[stroke].dynamic;
         return true;
     }
-    place to = place_of(part, stroke, hand), from = place_of(part, state->key[hand], hand),
-          other = place_of(part, state->key[1 - hand], 1 - hand);
+    place to = place_of(part, stroke, hand, stroke),
+          from = place_of(part, state->key[hand], hand, stroke),
+          other = place_of(part, state->key[1 - hand], 1 - hand, stroke);
     himc_sticking s = {.gap = to.at - from.at,
                        .way = hypot(to.x - from.x, to.y - from.y),
                        .inwards = hand == HIMC_LEFT ? other.y - to.y : to.y - other.y,
                        .other_gap = to.at - other.at};
     s.same_spot = s.way == 0;
-    // on one spot 0.055 s, as the planner refuses 0.04 s; the margin is the planner's (hand.c) for
-    // a stroke's swing, and a little more
-    if (s.gap < fmax(0.055, 1.45 * himc_move_time(s.way, HIMC_HARDEST_MOVE)))
+    // a roll is left earlier for another drum, up to its middle (planner_roll.c)
+    const midi_stroke *before = state->key[hand] < 0 ? NULL : &part->stroke[state->key[hand]];
+    if (before && before->roll.length > 0 && s.way > 0) {
+        double half = 0.5 * (before->note->seconds + himc_midi_stroke_end(before));
+        s.gap =
+            fmax(s.gap, fmin(to.at - half, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)));
+    }
+    // on one spot 0.055 s, as the planner refuses 0.04 s
+    if (s.gap < fmax(0.055, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)))
         return false;
+    int written = part->stroke[stroke].note->way.hand;
     state->cost += himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);
+    state->cost += written > 0 && written != 1 + hand ? OTHER_HAND : 0;
     state->key[hand] = stroke;
+    if (part->stroke[stroke].roll.length > 0)
+        state->key[1 - hand] = stroke;
     return true;
 }
 

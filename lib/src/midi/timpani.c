@@ -13,8 +13,9 @@
 #include <string.h>
 
 #define DRUMS MIDI_KEYS
-#define RING_TIME 1.0    // after a stroke an undamped drum may be retuned (s)
-#define MOST_PEDALS 2000 // chosen: an hour of a busy foot, and a score has room for them
+#define RING_TIME 1.0      // after a stroke an undamped drum may be retuned (s)
+#define FASTEST_PEDAL 0.05 // (s) chosen
+#define MOST_PEDALS 2000   // chosen: an hour of a busy foot, and a score has room for them
 
 /// From low on the left to high on the right, as in an orchestra; 23 to 32 inches.
 static const struct {
@@ -49,15 +50,78 @@ static double pedal_begin(const midi_state *state, int drum)
     return fmax(state->ready[drum], state->foot);
 }
 
+// the pitch of a class (0 C .. 11) nearest to `key` that a drum has; -1: none
+static int nearest_pitch(int drum, int key, int pitch)
+{
+    int best = -1;
+    for (int k = timpano[drum].low; k <= timpano[drum].high; k++)
+        if (k % 12 == pitch && (best < 0 || abs(k - key) < abs(best - key)))
+            best = k;
+    return best;
+}
+
+// the drum that an order to tune is for, and its new pitch; -1: none
+static int find_ordered(const midi_state *state, const midi_order *o, int *key)
+{
+    int best = -1;
+    for (int d = 0; d < DRUMS; d++) {
+        int now = state->key[d], to = now < 0 ? -1 : nearest_pitch(d, now, o->value);
+        if (to < 0 || (o->from < 12 && now % 12 != o->from))
+            continue;
+        if (o->from >= 12 && now % 12 == o->value)
+            return -1; // a drum has it
+        if (best < 0 || abs(to - now) < abs(*key - state->key[best])) {
+            best = d;
+            *key = to;
+        }
+    }
+    return best;
+}
+
+// drums are tuned as the words before a stroke say, if there is time; `record` (or NULL) gets the
+// pedals
+static void follow_orders(const midi_part *part, int stroke, midi_state *state, midi_part *record)
+{
+    const midi_stroke *s = &part->stroke[stroke];
+    for (int i = s->order; i < s->order + s->orders; i++) {
+        const midi_order *o = &part->file->orders[i];
+        int key = 0;
+        if (o->kind != MIDI_TUNING || o->choice == MIDI_DRUMS)
+            continue;
+        int drum = find_ordered(state, o, &key);
+        double begin = o->seconds, end = begin;
+        // a drum that is named moves while it rings, and as fast as it has to
+        if (drum >= 0 && o->from >= 12)
+            begin = fmax(begin, pedal_begin(state, drum));
+        if (drum >= 0)
+            end = begin + pedal_time(key - state->key[drum]);
+        if (o->from < 12 && begin + FASTEST_PEDAL <= s->note->seconds)
+            end = fmin(end, s->note->seconds);
+        if (drum < 0 || end > s->note->seconds) {
+            if (record)
+                record->untuned++;
+            continue;
+        }
+        if (record && record->pedals < MOST_PEDALS && key != state->key[drum])
+            record->pedal[record->pedals++] =
+                (midi_pedal){begin, end - begin, drum, state->key[drum], key};
+        state->key[drum] = key;
+        state->foot = end + 0.3;
+    }
+}
+
 // a state's key is the pitch of each drum (MIDI keys, -1: not tuned yet), which may be retuned when
 // it is `ready`; false if the drum cannot play the note
 static bool choose(const midi_part *part, int stroke, int drum, midi_state *state)
 {
     const midi_stroke *s = &part->stroke[stroke];
+    follow_orders(part, stroke, state, NULL);
     if (drum == OMIT) {
         state->cost += 30;
         return true;
     }
+    int written = s->note->way.drum;
+    state->cost += written > 0 && written != drum + 1 ? 20 : 0; // less than to leave it out
     double at = s->note->seconds;
     int key = state->key[drum], way = abs(s->key - key);
     int low = timpano[drum].low, high = timpano[drum].high;
@@ -71,13 +135,14 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
         state->cost += 0.5; // no more drums than the piece needs
     if (key >= 0 && way > 0) {
         double end = pedal_begin(state, drum) + pedal_time(way);
-        if (end > at)
+        if (end > at && written != drum + 1) // else it glides under the stroke
             return false;
         state->foot = end + 0.3; // s to the next pedal
         state->cost += 1 + 0.1 * way;
     }
     state->key[drum] = s->key;
-    state->ready[drum] = fmin(at + RING_TIME, s->end + 0.2); // damped, 0.2 s after its note's end
+    state->ready[drum] = fmin(himc_midi_stroke_end(s) + RING_TIME,
+                              s->end + 0.2); // damped, 0.2 s after its note's end
     return true;
 }
 
@@ -96,7 +161,10 @@ static void find_damped(midi_part *part)
             moves[part->pedal[pedal - 1].head] = part->pedal[pedal - 1].seconds;
         bool early = off - at < 0.7 * (next[s->head] - at);
         bool time = next[s->head] - off > 0.3 && any - off > 0.2; // drum and hands rest so long (s)
-        s->damped = (early && time && isfinite(next[s->head])) || moves[s->head] < at + RING_TIME;
+        s->damped = (early && time && isfinite(next[s->head])) ||
+                    moves[s->head] < himc_midi_stroke_end(s) + RING_TIME;
+        if (s->note->way.ring != 0)
+            s->damped = s->note->way.ring < 0;
         next[s->head] = any = at;
         moves[s->head] = HUGE_VAL;
     }
@@ -124,6 +192,8 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
         midi_stroke *s = &part->stroke[i];
         if (s->fate != MIDI_PLAYED)
             continue;
+        midi_state before = now;
+        follow_orders(part, i, &now, part);
         int from = drum[i] == OMIT ? -1 : now.key[drum[i]];
         bool pedal = from >= 0 && from != s->key;
         if (drum[i] == OMIT || (pedal && part->pedals == MOST_PEDALS)) {
@@ -134,11 +204,14 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
         if (from < 0)
             part->head[s->head].key = s->key;
         if (pedal) {
-            float before = (float)(s->note->seconds - pedal_begin(&now, s->head));
+            double time = pedal_time(s->key - from);
+            float early = (float)(s->note->seconds - pedal_begin(&now, s->head));
+            if ((double)early < time)
+                time = early = (float)FASTEST_PEDAL;
             part->pedal[part->pedals++] =
-                (midi_pedal){s->note->seconds - (double)before, pedal_time(s->key - from), s->head,
-                             from, s->key};
+                (midi_pedal){s->note->seconds - (double)early, time, s->head, from, s->key};
         }
+        now = before; // choose follows the orders again
         choose(part, i, s->head, &now);
     }
     if (good)

@@ -13,7 +13,7 @@
 #include "base/head_frame.h"
 #include "capture/take.h"
 #include "head/idiophone.h"
-#include "midi/score_file.h"
+#include "musicxml/score_file.h"
 #include "performance/confine.h"
 #include "performance/research.h"
 #include "plan/score.h"
@@ -585,7 +585,7 @@ static himc_job_state install(himc_job *job, himc_error *error)
     j->part = is_setup(j) && j->part == BEFORE_STROKES ? AFTER_STROKES : j->part + 1;
     if (j->part <= AFTER_STROKES)
         return HIMC_JOB_MORE;
-    // what is played of a MIDI file, and what not; what of a text stands in a comment
+    // what is played of a MIDI or MusicXML file, and what not; what of a text stands in a comment
     const char *line = j->score->report ? j->score->report : "", *end;
     for (; (end = strchr(line, '\n')); line = end + 1)
         himc_events_note_as(&j->performance->events, j->score->left_out ? NOTE_USUAL : NOTE_MINOR,

@@ -264,7 +264,7 @@ static bool prepare(himc_job *job, himc_error *error)
         if (!j->take && !himc_take_is_capture(j->name))
             return himc_error_set(error,
                                   "take: %s: not a take by its suffix, expected" HIMC_TAKE_SUFFIXES
-                                  "; a score or a MIDI file is loaded by score",
+                                  "; a score, MIDI or MusicXML is loaded by score",
                                   j->name);
         if (!j->take)
             j->take = himc_take_load_in(j->command.folder, j->name, &j->options, error);

@@ -1,9 +1,8 @@
-/// score_file.c: a score from a file: a text of commands, or a MIDI file, told by its first bytes.
+/// score_file.c: a score from a file of commands, MIDI or MusicXML, told by its first bytes.
 #include "base/file.h"
 #include "capture/take.h"
-#include "midi/import.h"
-#include "midi/score_file.h"
-#include "midi/smf.h"
+#include "musicxml/import.h"
+#include "musicxml/score_file.h"
 #include "plan/score.h"
 
 #include <stdlib.h>
@@ -19,16 +18,14 @@ bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_e
                  {"fLaC", "a sound"},
                  {"OggS", "a sound"},
                  {"ID3", "a sound"},
-                 {"PK\3\4", "an archive: export a .mxl as MIDI"},
                  {"%PDF", "a PDF"},
-                 {"<", "XML or a web page: export MusicXML as MIDI"},
                  {"{", "JSON"},
                  {"version https://git-lfs", "a pointer to Git's large files: run git lfs pull"}};
     const char *kind = NULL, *suffix = himc_take_suffix_of(bytes, size);
     if (suffix)
         return himc_error_set(error,
-                              "%s: a take: its name must end with %s; expected a score, a MIDI "
-                              "file or a take",
+                              "%s: a take: its name must end with %s; expected a score, MIDI, "
+                              "MusicXML or a take",
                               name, suffix);
     for (size_t i = 0; i < sizeof known / sizeof known[0] && !kind; i++)
         if (size >= strlen(known[i].begin) &&
@@ -37,7 +34,7 @@ bool himc_score_is_text(const char *bytes, size_t size, const char *name, himc_e
     if (!kind && memchr(bytes, 0, size))
         kind = "not a text file";
     return !kind ||
-           himc_error_set(error, "%s: %s; expected a score, a MIDI file or a take", name, kind);
+           himc_error_set(error, "%s: %s; expected a score, MIDI, MusicXML or a take", name, kind);
 }
 
 himc_score *himc_score_load_in(const char *folder, const char *path, himc_error *error)
@@ -48,19 +45,17 @@ himc_score *himc_score_load_in(const char *folder, const char *path, himc_error 
     himc_score *score = NULL;
     if (himc_take_is_capture(path)) {
         himc_error_set(error,
-                       "%s: a take by its suffix, expected a score or a MIDI file; a take "
+                       "%s: a take by its suffix, expected a score, MIDI or MusicXML; a take "
                        "is loaded by take",
                        path);
         return NULL;
     }
     char *bytes = himc_file_load_in(folder, path, most, &size, error);
-    if (bytes && !himc_midi_is_file(bytes, size)) {
+    himc_score_maker *make = bytes ? himc_score_maker_of(bytes, size) : NULL;
+    if (bytes && !make) {
         if (himc_score_is_text(bytes, size, path, error))
             score = himc_score_parse(bytes, path, folder, error);
-    } else if (bytes && size > HIMC_MIDI_BYTES_MAX) {
-        himc_error_set(error, "%s: too long, expected %zu MiB of MIDI", path,
-                       HIMC_MIDI_BYTES_MAX >> 20);
-    } else if (bytes && !himc_midi_import(&made, bytes, size, path, NULL, error)) {
+    } else if (bytes && !make(&made, bytes, size, path, NULL, error)) {
         himc_error_prefix(error, "%s", path);
     } else if (bytes) {
         score = himc_score_parse(made.text, path, folder, error);

@@ -1,0 +1,134 @@
+/// level.c: the dynamics of a part in time, from its marks and hairpins.
+///
+/// A hairpin leads to the mark at its end; without one it goes a step, two if it is longer than
+/// HAIRPIN. A word (cresc.) leads to the next mark within LONGEST_WORD, else as a hairpin of
+/// HAIRPIN. A part that says nothing is mf. Invariant: the beats of the points never decrease.
+#include "musicxml/music.h"
+
+#include "base/array.h"
+
+#include <math.h>
+
+#define STEP (1.0 / 7)
+#define USUAL (4 * STEP)  // mf
+#define HAIRPIN 4.0       // (beats)
+#define LONGEST_WORD 32.0 // (beats)
+#define REACH 1.0         // a mark so much after a hairpin is its end (beats)
+#define LOUD_TIME 0.3     // of fp, before the p (s)
+#define SAME 1e-6         // (beats)
+
+typedef struct line {
+    music_level *levels;
+    int count, room;
+    double now;  ///< dynamic
+    double from; ///< beat of the open hairpin; below 0: none
+    double way;  ///< its direction
+    double end;  ///< of a word that no mark ends; else below 0
+    bool failed;
+} line;
+
+static void add(line *l, double beat, double dynamic)
+{
+    himc_error unused;
+    dynamic = fmin(fmax(dynamic, 0), 1);
+    if (l->count > 0)
+        beat = fmax(beat, l->levels[l->count - 1].beat);
+    if (!himc_array_grow(&l->levels, l->count, &l->room, sizeof *l->levels, &unused)) {
+        l->failed = true;
+        return;
+    }
+    l->levels[l->count++] = (music_level){beat, dynamic};
+    l->now = dynamic;
+}
+
+// the next mark of the part behind sign `i`, up to `until`; -1: none
+static int next_mark(const music *m, int part, int i, double from, double until)
+{
+    const int most = i + 2000; // signs; chosen: bounds the time
+    for (int k = i + 1; k < m->sign_count && k < most && m->signs[k].at.beat <= until + SAME; k++)
+        if (m->signs[k].at.part == part && m->signs[k].meaning == MUSIC_DYNAMIC &&
+            m->signs[k].at.beat >= from - SAME)
+            return k;
+    return -1;
+}
+
+static void close_hairpin(line *l, const music *m, int part, int i, double beat)
+{
+    double steps = beat - l->from > HAIRPIN ? 2 * STEP : STEP, to = l->now + l->way * steps;
+    int mark = next_mark(m, part, i, beat, beat + REACH);
+    if (mark >= 0 && (m->signs[mark].value - l->now) * l->way > 0)
+        to = m->signs[mark].value;
+    add(l, beat, to);
+    l->from = -1;
+}
+
+static void open_hairpin(line *l, double beat, double way)
+{
+    add(l, beat, l->now);
+    l->from = beat;
+    l->way = way;
+    l->end = -1;
+}
+
+static void take_sign(line *l, const music *m, int part, int i, double second)
+{
+    const music_sign *s = &m->signs[i];
+    double beat = s->at.beat;
+    if (l->from >= 0 && l->end >= 0 && beat >= l->end - SAME)
+        close_hairpin(l, m, part, i - 1, l->end);
+    bool open = l->from >= 0, begins = open && beat < l->from + SAME;
+    if (s->meaning == MUSIC_DYNAMIC || s->meaning == MUSIC_FORTEPIANO) {
+        bool leads = s->meaning == MUSIC_DYNAMIC && (s->value - l->now) * l->way > 0;
+        if (!open || begins || !leads)
+            add(l, beat, l->now);
+        if (s->meaning == MUSIC_FORTEPIANO) {
+            add(l, beat, 5 * STEP);
+            beat += LOUD_TIME * second;
+        }
+        add(l, beat, s->value);
+        l->from = begins ? l->from : -1;
+    } else if (s->meaning == MUSIC_WEDGE) {
+        if (open && !begins)
+            close_hairpin(l, m, part, i, beat);
+        if (s->value != 0)
+            open_hairpin(l, beat, s->value);
+    } else if (s->meaning == MUSIC_GROWING && !open) {
+        open_hairpin(l, beat, s->value);
+        if (next_mark(m, part, i, beat, beat + LONGEST_WORD) < 0)
+            l->end = beat + HAIRPIN;
+    }
+}
+
+music_level *himc_music_levels(const music *m, int part, double second, int *count)
+{
+    line l = {.now = USUAL, .from = -1, .end = -1};
+    add(&l, 0, USUAL);
+    for (int i = 0; i < m->sign_count; i++)
+        if (m->signs[i].at.part == part && m->signs[i].meaning <= MUSIC_GROWING)
+            take_sign(&l, m, part, i, second);
+    if (l.from >= 0)
+        close_hairpin(&l, m, part, m->sign_count, l.end >= 0 ? l.end : l.from + HAIRPIN);
+    if (l.failed) {
+        free(l.levels);
+        return NULL;
+    }
+    *count = l.count;
+    return l.levels;
+}
+
+double himc_music_level(const music_level *levels, int count, double beat)
+{
+    int low = 0, high = count; // the last point at or before the beat
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (levels[middle].beat <= beat + SAME)
+            low = middle;
+        else
+            high = middle;
+    }
+    if (low + 1 == count || levels[low + 1].beat <= levels[low].beat)
+        return levels[low].dynamic;
+    double share = (beat - levels[low].beat) / (levels[low + 1].beat - levels[low].beat);
+    share = fmin(fmax(share, 0), 1);
+    return levels[low].dynamic + share * (levels[low + 1].dynamic - levels[low].dynamic);
+}

@@ -1,0 +1,103 @@
+/// music.h: a score as it is written: bars, notes and signs of all parts.
+#ifndef HIMC_MUSICXML_MUSIC_H
+#define HIMC_MUSICXML_MUSIC_H
+
+#include "base/text.h"
+#include "musicxml/names.h"
+
+#define MUSIC_BYTES_MAX ((size_t)64 << 20) ///< of a file, also unpacked; chosen: a long symphony
+
+typedef struct music_bar {
+    double length;   ///< (beats); a pickup is shorter
+    bool sounds;     ///< a part has a note in it
+    char number[12]; ///< as printed
+    bool forward, backward, segno, coda, to_coda, fine, da_capo, dal_segno;
+    int times;        ///< of `backward`, 2 by default
+    unsigned endings; ///< bit k: it is played the k-th time, from 1; 0: always
+} music_bar;
+
+typedef enum music_tremolo {
+    MUSIC_NO_TREMOLO,
+    MUSIC_MARKS,      ///< strokes through the stem: measured or a roll
+    MUSIC_ROLL,       ///< unmeasured, or a trill
+    MUSIC_PAIR_BEGIN, ///< two notes in turn
+    MUSIC_PAIR_END
+} music_tremolo;
+
+/// Where a note or a sign stands.
+typedef struct music_place {
+    double beat;          ///< in its bar; after himc_music_order from the beginning
+    int bar, part, order; ///< `order` among all of its kind
+} music_place;
+
+/// A note of a part that is played; a chord is several.
+typedef struct music_note {
+    music_place at;
+    double length; ///< (beats); 0: a grace note, below 0: played with another one
+    double rolled; ///< of a tremolo with ties (beats)
+    int voice;
+    midi_choice choice;
+    int key;
+    bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
+    int ring;       ///< 1, -1, or 0: not written
+    int hand;       ///< 1 + himc_hand, or 0
+    int drum;       ///< of timpani: 1 low .. 4 high; 0: not written
+    double dynamic; ///< of its own; below 0: not written
+    music_tremolo tremolo;
+    int marks, flags; ///< strokes through the stem; flags of the note
+    double ratio;     ///< of a tuplet: written length over sounding
+} music_note;
+
+/// A sign or a word.
+typedef struct music_sign {
+    music_place at;
+    music_meaning meaning;
+    double value;
+} music_sign;
+
+/// What is left out of the score: the reason, and bars.
+typedef struct music_omission {
+    const char *one, *many; ///< "cue note is left out", "cue notes are left out"
+    int count;
+    char bars[48];
+} music_omission;
+
+enum { MUSIC_CUES, MUSIC_BAD_NOTES, MUSIC_GRACES, MUSIC_OMISSIONS };
+
+typedef struct music {
+    music_bar *bars;
+    int bar_count, bar_room;
+    music_note *notes;
+    int note_count, note_room;
+    music_sign *signs;
+    int sign_count, sign_room;
+    bool jumps; ///< of da capo and the like, as `sound` elements say
+    music_omission omitted[MUSIC_OMISSIONS];
+} music;
+
+/// read.c: all of a document; false with one line if it is no score.
+bool himc_music_read(music *music, const void *bytes, size_t size, himc_error *error);
+void himc_music_free(music *music);
+
+/// order.c: puts notes and signs in the order in which they are played, with repeats, on beats from
+/// the beginning. `bars` of the file get their beats.
+bool himc_music_order(music *music, midi_file *file, himc_error *error);
+
+/// tempo.c: makes the file's tempi of the signs.
+bool himc_music_tempo(const music *music, midi_file *file, himc_error *error);
+
+/// How loud a part is: a line through points, up or down at once where two have one beat.
+typedef struct music_level {
+    double beat, dynamic; ///< 0 .. 1
+} music_level;
+
+/// level.c: the points of a part's signs (`count`), owned by the caller; NULL without memory.
+music_level *himc_music_levels(const music *music, int part, double second, int *count);
+double himc_music_level(const music_level *levels, int count, double beat);
+
+/// shape.c: makes the file's notes and orders of it.
+bool himc_music_shape(music *music, midi_file *file, himc_error *error);
+
+void himc_music_omit(music *music, int which, int bar);
+
+#endif

@@ -1,0 +1,356 @@
+/// names.c: tables of words: instruments, dynamics, tempi, places, mallets, and of tunings.
+///
+/// A text is folded first: small letters, and a space for each - and each . and _ of an
+/// instrument's name, so that "drum.bass-drum" of MusicXML's list of sounds and "Bass Drum" are
+/// one. A word of a table counts where it begins a word of the text; the first row that does so is
+/// an instrument, every row is an instruction, but of two that begin at one place the longer.
+/// Tempi of words are those of metronomes' scales, rounded; no note depends on them where the file
+/// has a number.
+#include "musicxml/names.h"
+
+#include "midi/part.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MOST_TEXT 256 // bytes of a text that are looked at
+
+// words of a row stand between |
+
+static const struct {
+    const char *words;
+    midi_choice choice;
+    int key;
+} instruments[] = {
+    // what begins as another one comes first
+    {"drum timbale|high timbale", MIDI_DRUMS, 65},
+    {"low timbale", MIDI_DRUMS, 66},
+    {"röhrenglocke|tubular", MIDI_ANY, 0},
+    {"schellen|tambour de basque|tambourin|tamburin|tamburell", MIDI_DRUMS, 54},
+    {"timp|pauk|kettle|timbal", MIDI_TIMPANI, 0},
+    {"marimb", MIDI_MARIMBA, 0},
+    {"xyloph|xylor|xilof|silof", MIDI_XYLOPHONE, 0},
+    {"vibraph|vibraf", MIDI_VIBRAPHONE, 0},
+    {"glockensp|jeu de timbres|campanelli|orchestra bells", MIDI_GLOCKENSPIEL, 0},
+    {"drum set|drumset|drum kit|drumkit", MIDI_DRUMS, MUSIC_NO_KEY},
+    {"side stick|cross stick|rimshot", MIDI_DRUMS, 37},
+    {"electric snare", MIDI_DRUMS, 40},
+    {"snare|side drum|caisse claire|kleine trommel|military drum|militärtrommel|"
+     "tambour|tamburo|rullante|cassa chiara",
+     MIDI_DRUMS, 38},
+    {"kick", MIDI_DRUMS, 36},
+    {"bass drum|grosse caisse|große trommel|grosse trommel|gran cassa|grancassa", MIDI_DRUMS,
+     MIDI_BASS_DRUM},
+    {"tam tam|tamtam|gong", MIDI_DRUMS, MIDI_TAM_TAM},
+    {"open hi hat|hi hat open", MIDI_DRUMS, 46},
+    {"pedal hi hat|hi hat pedal", MIDI_DRUMS, 44},
+    {"hi hat|hihat|charleston", MIDI_DRUMS, 42},
+    {"splash", MIDI_DRUMS, 55},
+    {"china|chinese", MIDI_DRUMS, 52},
+    {"ride bell", MIDI_DRUMS, 53},
+    {"ride", MIDI_DRUMS, 51},
+    {"crash|cymbal|becken|piatt|cinelli", MIDI_DRUMS, 49},
+    {"triang", MIDI_DRUMS, 81},
+    {"low wood block", MIDI_DRUMS, 77},
+    {"wood block|woodblock|holzblock|bloc de bois|blocco di legno", MIDI_DRUMS, 76},
+    {"temple|tempelbl", MIDI_DRUMS, MIDI_TEMPLE_BLOCKS},
+    {"clave", MIDI_DRUMS, 75},
+    {"cow bell|cowbell|kuhglocke|bells cowbell|cencerro|campanacci|cloche de vache", MIDI_DRUMS,
+     56},
+    {"low agogo", MIDI_DRUMS, 68},
+    {"agogo", MIDI_DRUMS, 67},
+    {"low bongo", MIDI_DRUMS, 61},
+    {"bongo", MIDI_DRUMS, 60},
+    {"mute high conga", MIDI_DRUMS, 62},
+    {"low conga", MIDI_DRUMS, 64},
+    {"conga", MIDI_DRUMS, 63},
+    {"tumba", MIDI_DRUMS, 64},
+    {"low floor tom", MIDI_DRUMS, 41},
+    {"floor tom|standtom", MIDI_DRUMS, 43},
+    {"low mid tom|mid tom", MIDI_DRUMS, 47},
+    {"low tom", MIDI_DRUMS, 45},
+    {"high tom", MIDI_DRUMS, 50},
+    {"tom", MIDI_DRUMS, 48},
+    {"castanet|kastagn", MIDI_DRUMS, MIDI_NO_SOUND},
+    {"maraca", MIDI_DRUMS, 70},
+    {"cabasa", MIDI_DRUMS, 69},
+    {"guiro", MIDI_DRUMS, 73},
+    {"whip|peitsche|fouet|frusta|ratchet", MIDI_DRUMS, MIDI_NO_SOUND},
+    {"drum|schlagzeug|schlagwerk|batteri|percuss|perkuss", MIDI_DRUMS, MUSIC_NO_KEY},
+    {"trommel", MIDI_DRUMS, 38},
+};
+
+/// A $ at the end: the whole word, not its beginning.
+static const struct {
+    const char *words;
+    music_meaning meaning;
+    double value;
+} instructions[] = {
+    {"l.v|let ring|laissez vibrer|laisser vibrer|lasciar vibrare|lasciare vibrare|"
+     "klingen lassen",
+     MUSIC_RING, 1},
+    {"sempre secco|immer trocken|toujours sec", MUSIC_RING_ALWAYS, -1},
+    {"secco|damp|dämpf|étouff|etouff|soffoc|trocken|sec$|dry$", MUSIC_RING, -1},
+    {"in der mitte|mitte|au centre|al centro|nel centro|au milieu|center|centre|"
+     "middle of",
+     MUSIC_SPOT, HIMC_SPOT_CENTER},
+    {"near rim|near the rim|near edge|near the edge|at the edge|am rand|nahe am rand|"
+     "au bord|près du bord|vicino al bordo|al bordo|sul bordo",
+     MUSIC_SPOT, HIMC_SPOT_RIM},
+    {"normal|ord.|ordinario|gewöhnlich|normale stelle|naturale", MUSIC_SPOT, HIMC_SPOT_NORMAL},
+    {"wood$|holz|bois$|legno", MUSIC_MALLET, 3},
+    {"hard stick|hard mallet|harte|dures|bacchette dure", MUSIC_MALLET, 2},
+    {"medium stick|medium mallet|felt|filz|feutre|feltro", MUSIC_MALLET, 1},
+    {"soft stick|soft mallet|sponge|schwamm|weiche|éponge|spugna|molle|morbid|doux", MUSIC_MALLET,
+     0},
+    {"senza sord|sans sourd|ohne dämpfer|scoperto|scoperti|unmuffled|mute off|"
+     "découvert",
+     MUSIC_MUFFLE, 0},
+    {"con sord|avec sourd|mit dämpfer|coperto|coperti|muffled|gedeckt|bedeckt|"
+     "couvert|voilé",
+     MUSIC_MUFFLE, 1},
+    {"unmeasured", MUSIC_MEASURED, 0},
+    {"misurato|measured|mesuré|gemessen", MUSIC_MEASURED, 1},
+    {"poco a poco cresc|cresc", MUSIC_GROWING, 1},
+    {"decresc|dim.|dimin|morendo", MUSIC_GROWING, -1},
+    {"tempo primo|tempo i$|tempo 1$", MUSIC_TEMPO_BACK, 1},
+    {"a tempo|im tempo|au mouvement|au mouvt", MUSIC_TEMPO_BACK, 0},
+    {"rit.|ritard|rall|ralent", MUSIC_TEMPO_RAMP, 0.75},
+    {"riten|allarg|verbreitern|langsamer", MUSIC_TEMPO_RAMP, 0.8},
+    {"cédez", MUSIC_TEMPO_RAMP, 0.85},
+    {"accel|stringendo|schneller werden", MUSIC_TEMPO_RAMP, 1.25},
+    {"pressez", MUSIC_TEMPO_RAMP, 1.2},
+    {"prestissimo", MUSIC_TEMPO_WORD, 200},
+    {"presto", MUSIC_TEMPO_WORD, 184},
+    {"vivacissimo|sehr schnell|très vif", MUSIC_TEMPO_WORD, 176},
+    {"vivace|vivo$", MUSIC_TEMPO_WORD, 160},
+    {"allegrissimo", MUSIC_TEMPO_WORD, 172},
+    {"allegretto", MUSIC_TEMPO_WORD, 112},
+    {"allegro moderato|bewegt", MUSIC_TEMPO_WORD, 116},
+    {"allegro", MUSIC_TEMPO_WORD, 132},
+    {"moderato", MUSIC_TEMPO_WORD, 108},
+    {"andantino", MUSIC_TEMPO_WORD, 84},
+    {"andante", MUSIC_TEMPO_WORD, 78},
+    {"adagietto", MUSIC_TEMPO_WORD, 72},
+    {"adagio", MUSIC_TEMPO_WORD, 66},
+    {"larghetto", MUSIC_TEMPO_WORD, 63},
+    {"largo", MUSIC_TEMPO_WORD, 50},
+    {"lento$", MUSIC_TEMPO_WORD, 52},
+    {"grave", MUSIC_TEMPO_WORD, 40},
+    {"sehr langsam|très lent", MUSIC_TEMPO_WORD, 46},
+    {"langsam|lent$", MUSIC_TEMPO_WORD, 54},
+    {"mäßig|mässig", MUSIC_TEMPO_WORD, 96},
+    {"schnell|vif$|rapide", MUSIC_TEMPO_WORD, 152},
+    {"lebhaft", MUSIC_TEMPO_WORD, 144},
+    {"modéré", MUSIC_TEMPO_WORD, 100},
+    {"d.c.|da capo", MUSIC_DA_CAPO, 0},
+    {"d.s.|dal segno", MUSIC_DAL_SEGNO, 0},
+    {"to coda|alla coda", MUSIC_TO_CODA, 0},
+};
+
+// capital letters of ASCII and of Latin-1 in UTF-8
+static void fold(char out[MOST_TEXT], const char *text, bool name)
+{
+    size_t length = 0;
+    bool high = false;
+    for (; *text && length < MOST_TEXT - 1; text++) {
+        unsigned char c = (unsigned char)*text;
+        if (high && c >= 0x80 && c <= 0x9e)
+            c += 0x20;
+        else if (c == '-' || isspace(c) || (name && (c == '.' || c == '_')))
+            c = ' ';
+        high = (unsigned char)*text == 0xc3;
+        out[length++] = (char)(c < 0x80 ? tolower(c) : c);
+    }
+    out[length] = '\0';
+}
+
+static bool begins_word(const char *text, const char *at)
+{
+    unsigned char before = at > text ? (unsigned char)at[-1] : ' ';
+    return !isalnum(before) && before < 0x80;
+}
+
+// the length of the longest of a row's words that begins at `at`, 0: none
+static size_t begins_with(const char *at, const char *words)
+{
+    size_t longest = 0;
+    for (const char *word = words; *word; word += *word == '|') {
+        size_t all = strcspn(word, "|"), length = all - (word[all - 1] == '$');
+        bool whole = length < all && isalpha((unsigned char)at[length]);
+        if (length > longest && !whole && strncmp(at, word, length) == 0)
+            longest = length;
+        word += all;
+    }
+    return longest;
+}
+
+midi_choice himc_music_instrument(const char *name, int *key)
+{
+    char text[MOST_TEXT];
+    fold(text, name, true);
+    for (size_t i = 0; i < sizeof instruments / sizeof *instruments; i++)
+        for (const char *at = text; *at; at++)
+            if (begins_word(text, at) && begins_with(at, instruments[i].words) > 0) {
+                *key = instruments[i].key;
+                return instruments[i].choice;
+            }
+    *key = MUSIC_NO_KEY;
+    return MIDI_ANY;
+}
+
+int himc_music_drum(const char *name)
+{
+    static const char *const drums[] = {"low timpano", "second timpano", "third timpano",
+                                        "high timpano"};
+    for (int i = 0; i < 4; i++)
+        if (strcmp(name, drums[i]) == 0)
+            return i + 1;
+    return 0;
+}
+
+bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
+{
+    static const char *const steps[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"};
+    static const struct {
+        const char *name;
+        music_meaning meaning;
+        int step; // of 7
+    } others[] = {
+        {"fp", MUSIC_FORTEPIANO, 2}, {"sfp", MUSIC_FORTEPIANO, 2}, {"sfpp", MUSIC_FORTEPIANO, 1},
+        {"pf", MUSIC_DYNAMIC, 4},    {"n", MUSIC_DYNAMIC, 0},      {"sf", MUSIC_ATTACK, 0},
+        {"sfz", MUSIC_ATTACK, 0},    {"sffz", MUSIC_ATTACK, 0},    {"fz", MUSIC_ATTACK, 0},
+        {"rf", MUSIC_ATTACK, 0},     {"rfz", MUSIC_ATTACK, 0},     {"sfzp", MUSIC_FORTEPIANO, 2}};
+    *meaning = MUSIC_DYNAMIC;
+    size_t length = strlen(name);
+    if (length > 3 && length <= 6 && strspn(name, name[0] == 'p' ? "p" : "f") == length) {
+        *value = name[0] == 'f';
+        return true;
+    }
+    for (int i = 0; i < 8; i++)
+        if (strcmp(name, steps[i]) == 0) {
+            *value = i / 7.0;
+            return true;
+        }
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (strcmp(name, others[i].name) == 0) {
+            *meaning = others[i].meaning;
+            *value = others[i].step / 7.0;
+            return true;
+        }
+    return false;
+}
+
+/// A pitch in words at `*at`, which moves behind it: "F", "b flat", "F#", German "fis" and "es",
+/// French and Italian "fa", "si bémol". Its class (0 C .. 11), or -1. `german`: B is B flat, and H
+/// is B.
+static int read_pitch(const char **at, bool german)
+{
+    static const struct {
+        const char *name;
+        int pitch;
+    } whole[] = {{"sol", 7}, {"do", 0}, {"ut", 0},  {"re", 2}, {"ré", 2}, {"mi", 4},
+                 {"fa", 5},  {"la", 9}, {"si", 11}, {"as", 8}, {"es", 3}};
+    static const int natural[] = {9, 11, 0, 2, 4, 5, 7, 11}; // a .. h
+    static const struct {
+        const char *name;
+        int shift;
+    } signs[] = {{"isis", 2},   {"is", 1},        {"es", -1},    {"#", 1},  {"♯", 1},
+                 {"♭", -1},     {" flat", -1},    {" sharp", 1}, {"b", -1}, {" bémol", -1},
+                 {" dièse", 1}, {" bemolle", -1}, {" moll", 0}};
+    int pitch = -1;
+    const char *p = *at;
+    for (size_t i = 0; i < sizeof whole / sizeof *whole && pitch < 0; i++) {
+        size_t length = strlen(whole[i].name);
+        if (strncmp(p, whole[i].name, length) == 0 && !isalpha((unsigned char)p[length])) {
+            pitch = whole[i].pitch;
+            p += length;
+        }
+    }
+    if (pitch < 0 && *p >= 'a' && *p <= 'h') {
+        pitch = german && *p == 'b' ? 10 : natural[*p - 'a'];
+        p++;
+    }
+    for (size_t i = 0; i < sizeof signs / sizeof *signs && pitch >= 0; i++)
+        if (strncmp(p, signs[i].name, strlen(signs[i].name)) == 0) {
+            pitch = (pitch + signs[i].shift + 12) % 12;
+            p += strlen(signs[i].name);
+            break;
+        }
+    if (pitch < 0 || isalpha((unsigned char)*p) || (unsigned char)*p >= 0x80)
+        return -1;
+    *at = p + strspn(p, "0123456789");
+    return pitch;
+}
+
+// "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la"
+static int read_tunings(const char *text, int most, double *value)
+{
+    static const char *const tells[] = {"muta", "mutano", "change", "umstimmen", "stimmen",
+                                        "tune", "retune", "cambia", "nach"};
+    static const char *const joins[] = {"to", "in", "en", "nach", "auf", "muta", "->", "→"};
+    bool told = false;
+    for (size_t i = 0; i < sizeof tells / sizeof *tells; i++) {
+        const char *at = strstr(text, tells[i]);
+        told |= at && begins_word(text, at);
+    }
+    bool german = strstr(text, "stimm") || strstr(text, "nach ");
+    int from = 12, count = 0;
+    bool joined = false;
+    for (const char *at = text; told && *at && count < most;) {
+        at += strspn(at, " ,;:()");
+        const char *word = at;
+        int pitch = read_pitch(&at, german);
+        if (pitch >= 0 && (joined || from < 12)) {
+            value[count++] = 100 * from + pitch;
+            from = 12;
+            joined = false;
+        } else if (pitch >= 0) {
+            from = pitch;
+        }
+        if (pitch >= 0)
+            continue;
+        size_t length = strcspn(at, " ,;:()");
+        for (size_t i = 0; i < sizeof joins / sizeof *joins; i++)
+            joined |= strlen(joins[i]) == length && strncmp(word, joins[i], length) == 0;
+        at += length;
+    }
+    return count;
+}
+
+int himc_music_words(const char *words, int most, music_meaning *meaning, double *value)
+{
+    char text[MOST_TEXT];
+    int count = 0;
+    fold(text, words, false);
+    if (strcmp(text, "r") == 0 || strcmp(text, "l") == 0) {
+        meaning[0] = MUSIC_HAND;
+        value[0] = text[0] == 'r' ? HIMC_RIGHT : HIMC_LEFT;
+        return 1;
+    }
+    if (himc_music_dynamic(text, &meaning[0], &value[0]))
+        return 1;
+    if (strcmp(text, "fine") == 0) {
+        meaning[0] = MUSIC_FINE;
+        return 1;
+    }
+    count = read_tunings(text, most, value);
+    for (int i = 0; i < count; i++)
+        meaning[i] = MUSIC_TUNING;
+    const size_t rows = sizeof instructions / sizeof *instructions;
+    for (const char *at = text; *at && count < most;) {
+        size_t longest = 0, found = rows;
+        for (size_t i = 0; i < rows && begins_word(text, at); i++) {
+            size_t length = begins_with(at, instructions[i].words);
+            found = length > longest ? i : found;
+            longest = length > longest ? length : longest;
+        }
+        if (found < rows) {
+            meaning[count] = instructions[found].meaning;
+            value[count++] = instructions[found].value;
+        }
+        at += longest > 0 ? longest : 1;
+    }
+    return count;
+}

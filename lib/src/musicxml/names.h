@@ -1,0 +1,49 @@
+/// names.h: what the words of a score mean: names of instruments, and instructions to the player.
+#ifndef HIMC_MUSICXML_NAMES_H
+#define HIMC_MUSICXML_NAMES_H
+
+#include "midi/smf.h"
+
+#define MUSIC_NO_KEY (-1) ///< of a drum set, whose notes say which drum they are
+
+/// The instrument of a name in English, German, French or Italian, or of an instrument-sound id:
+/// whose part it is, and of drums the key (midi/kit.c). MIDI_ANY if it is none that is played.
+midi_choice himc_music_instrument(const char *name, int *key);
+
+/// The timpano of a name as `himc export` writes it, "second timpano": 1 low .. 4 high; else 0.
+int himc_music_drum(const char *name);
+
+/// What a word or a sign asks for.
+typedef enum music_meaning {
+    MUSIC_DYNAMIC,     ///< value: 0 .. 1
+    MUSIC_ATTACK,      ///< sf, sfz: of this note alone
+    MUSIC_FORTEPIANO,  ///< value: the dynamic after the attack
+    MUSIC_WEDGE,       ///< value: 1 crescendo, -1 diminuendo, 0 its end
+    MUSIC_GROWING,     ///< value: 1 or -1; as a word, to the next dynamic
+    MUSIC_TEMPO,       ///< value: (beats per minute)
+    MUSIC_TEMPO_WORD,  ///< the same, by custom
+    MUSIC_TEMPO_RAMP,  ///< value: share of the tempo at its end
+    MUSIC_TEMPO_BACK,  ///< value: 0 a tempo, 1 tempo primo
+    MUSIC_FERMATA,     ///< value: length of the note (beats)
+    MUSIC_SPOT,        ///< value: himc_spot
+    MUSIC_RING,        ///< value: 1 rings on, -1 damped: this note
+    MUSIC_RING_ALWAYS, ///< from here on; value 0: as usual
+    MUSIC_DAMP,        ///< what sounds is damped here
+    MUSIC_MALLET,      ///< value: 0 soft, 1 medium, 2 hard, 3 wood
+    MUSIC_MUFFLE,      ///< value: 1 or 0
+    MUSIC_HAND,        ///< value: himc_hand, of the note here
+    MUSIC_MEASURED,    ///< value: 1 tremolos are measured, 0 not
+    MUSIC_TUNING,      ///< value: 100 from + to (classes of pitch, 0 C .. 11), from 12: any drum
+    MUSIC_DA_CAPO,
+    MUSIC_DAL_SEGNO,
+    MUSIC_TO_CODA,
+    MUSIC_FINE
+} music_meaning;
+
+/// Finds what a text asks for; at most `most` of `meaning` and `value`. Returns how many.
+int himc_music_words(const char *text, int most, music_meaning *meaning, double *value);
+
+/// The sign of a dynamic by its element's name ("mf", "sfz"); false if there is none.
+bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value);
+
+#endif

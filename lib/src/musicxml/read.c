@@ -1,0 +1,568 @@
+/// read.c: from the tree of a MusicXML document (W3C 2021, score-partwise 3.1 and 4.0) to bars,
+/// notes and signs.
+///
+/// A part is a row of measures. In a measure a cursor goes on with each note, and back and forth by
+/// `backup` and `forward`; durations count in the part's divisions of a quarter note. Notes are
+/// taken of parts that are played; tempi, fermatas, repeats and jumps of all parts, as programs
+/// write them into one part only. Invariant: each note of such a part is taken or counted.
+#include "musicxml/music.h"
+
+#include "base/array.h"
+#include "midi/part.h"
+#include "musicxml/xml.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_INSTRUMENTS 64 // of a part
+#define MOST_BARS 20000     // chosen: no piece has as many
+
+typedef struct instrument {
+    const char *id;
+    midi_choice choice;
+    int key;
+    int drum; ///< of timpani
+} instrument;
+
+typedef struct reader {
+    music *music;
+    himc_error *error;
+    const xml_node *root, *list; ///< the part's entry in the part-list
+    int part, bar;
+    instrument instrument[MOST_INSTRUMENTS];
+    int instruments;
+    double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
+    double time;                     ///< length of a bar (beats)
+    int transpose;                   ///< (semitones)
+    bool failed;
+} reader;
+
+void himc_music_omit(music *m, int which, int bar)
+{
+    music_omission *o = &m->omitted[which];
+    himc_text_list(o->bars, sizeof o->bars, m->bars[bar].number);
+    o->count++;
+}
+
+static void add_sign(reader *r, double beat, music_meaning meaning, double value)
+{
+    music *m = r->music;
+    if (!himc_array_grow(&m->signs, m->sign_count, &m->sign_room, sizeof *m->signs, r->error)) {
+        r->failed = true;
+        return;
+    }
+    m->signs[m->sign_count] = (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value};
+    m->sign_count++;
+}
+
+// instruments
+
+static bool is_yes(const xml_node *node, const char *attribute)
+{
+    return himc_xml_has(node, attribute, "yes");
+}
+
+// by the names first, then by the MIDI instrument
+static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
+{
+    instrument *made = &r->instrument[r->instruments++];
+    *made = (instrument){himc_xml_attribute(score, "id"), MIDI_ANY, MUSIC_NO_KEY, 0};
+    const char *const name[] = {himc_xml_text(score, "instrument-sound"),
+                                himc_xml_text(score, "instrument-name"),
+                                himc_xml_text(score, "instrument-abbreviation")};
+    for (int i = 0; i < 3 && made->choice == MIDI_ANY; i++)
+        made->choice = himc_music_instrument(name[i], &made->key);
+    made->drum = himc_music_drum(name[1]);
+    const xml_node *midi = himc_xml_child(r->list, "midi-instrument");
+    while (midi && !himc_xml_has(midi, "id", made->id))
+        midi = himc_xml_next(midi);
+    int key = (int)himc_xml_number(midi, "midi-unpitched", 0) - 1;
+    int program = (int)himc_xml_number(midi, "midi-program", 0) - 1;
+    bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
+    if (made->choice == MIDI_ANY && part != MIDI_ANY)
+        *made = (instrument){made->id, part, part_key, 0};
+    for (int i = 1; i < MIDI_CHOICES && made->choice == MIDI_ANY && midi && !drums; i++)
+        if (himc_midi_program_choice(program) == (midi_choice)i)
+            made->choice = (midi_choice)i;
+    if (made->choice == MIDI_ANY && drums)
+        made->choice = MIDI_DRUMS;
+    // a key says it best, but not a kit's drum for a concert's
+    bool concert = made->key >= 128 && part_key >= 128;
+    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert)
+        made->key = key;
+}
+
+// what the part is; an entry for a part without instruments, too
+static void read_instruments(reader *r)
+{
+    int key = MUSIC_NO_KEY;
+    midi_choice part = himc_music_instrument(himc_xml_text(r->list, "part-name"), &key);
+    if (part == MIDI_ANY)
+        part = himc_music_instrument(himc_xml_text(r->list, "part-abbreviation"), &key);
+    r->instruments = 0;
+    const xml_node *score = himc_xml_child(r->list, "score-instrument");
+    if (!score)
+        r->instrument[r->instruments++] = (instrument){"", part, key, 0};
+    for (; score && r->instruments < MOST_INSTRUMENTS; score = himc_xml_next(score))
+        read_instrument(r, score, part, key);
+}
+
+// signs and words
+
+static void read_sound(reader *r, const xml_node *sound, double beat, bool dynamic_too)
+{
+    music_bar *bar = &r->music->bars[r->bar];
+    const char *tempo = himc_xml_attribute(sound, "tempo"),
+               *level = himc_xml_attribute(sound, "dynamics");
+    if (strtod(tempo, NULL) > 0)
+        add_sign(r, beat, MUSIC_TEMPO, strtod(tempo, NULL));
+    if (dynamic_too && level[0]) // percent of a velocity of 90
+        add_sign(r, beat, MUSIC_DYNAMIC, himc_midi_dynamic(0.9 * strtod(level, NULL), 0));
+    bar->da_capo |= is_yes(sound, "dacapo");
+    bar->dal_segno |= himc_xml_attribute(sound, "dalsegno")[0] != '\0';
+    bar->segno |= himc_xml_attribute(sound, "segno")[0] != '\0';
+    bar->coda |= himc_xml_attribute(sound, "coda")[0] != '\0';
+    bar->to_coda |= himc_xml_attribute(sound, "tocoda")[0] != '\0';
+    bar->fine |= himc_xml_attribute(sound, "fine")[0] != '\0';
+}
+
+static bool is_tempo(music_meaning meaning)
+{
+    return meaning >= MUSIC_TEMPO && meaning <= MUSIC_FERMATA;
+}
+
+static bool read_words(reader *r, const xml_node *words, double beat, bool own, bool sound)
+{
+    music_bar *bar = &r->music->bars[r->bar];
+    music_meaning meaning[8];
+    double value[8];
+    bool dynamic = false;
+    int count = himc_music_words(words->text, 8, meaning, value);
+    for (int i = 0; i < count; i++) {
+        // a `sound` beside it says where it jumps
+        bar->da_capo |= meaning[i] == MUSIC_DA_CAPO && !sound;
+        bar->dal_segno |= meaning[i] == MUSIC_DAL_SEGNO && !sound;
+        bar->to_coda |= meaning[i] == MUSIC_TO_CODA && !sound;
+        bar->fine |= meaning[i] == MUSIC_FINE && !sound;
+        if (meaning[i] < MUSIC_DA_CAPO && (own || is_tempo(meaning[i])))
+            add_sign(r, beat, meaning[i], value[i]);
+        dynamic |= meaning[i] == MUSIC_DYNAMIC;
+    }
+    return dynamic;
+}
+
+static void read_metronome(reader *r, const xml_node *metronome, double beat)
+{
+    static const struct {
+        const char *unit;
+        double beats;
+    } units[] = {{"whole", 4},  {"half", 2},  {"quarter", 1}, {"eighth", .5},
+                 {"16th", .25}, {"breve", 8}, {"32nd", .125}};
+    const char *unit = himc_xml_text(metronome, "beat-unit"),
+               *text = himc_xml_text(metronome, "per-minute");
+    double beats = 0, dot = .5;
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        beats = strcmp(unit, units[i].unit) == 0 ? units[i].beats : beats;
+    for (const xml_node *d = himc_xml_child(metronome, "beat-unit-dot"); d;
+         d = himc_xml_next(d), dot /= 2)
+        beats *= 1 + dot;
+    double number = strtod(text + strcspn(text, "0123456789"), NULL); // "ca. 96"
+    if (beats * number > 0)
+        add_sign(r, beat, MUSIC_TEMPO, beats * number);
+}
+
+static void read_wedge(reader *r, const xml_node *wedge, double beat)
+{
+    double way = himc_xml_has(wedge, "type", "crescendo")    ? 1
+                 : himc_xml_has(wedge, "type", "diminuendo") ? -1
+                                                             : 0;
+    if (!himc_xml_has(wedge, "type", "continue"))
+        add_sign(r, beat, MUSIC_WEDGE, way);
+}
+
+// a picture of mallets
+static void read_percussion(reader *r, const xml_node *percussion, double beat)
+{
+    static const char *const materials[] = {"soft", "medium", "hard", "wood"};
+    const xml_node *stick = himc_xml_child(percussion, "stick");
+    for (int i = 0; i < 4; i++)
+        if (strcmp(himc_xml_text(stick, "stick-material"), materials[i]) == 0)
+            add_sign(r, beat, MUSIC_MALLET, i);
+}
+
+static bool read_dynamics(reader *r, const xml_node *dynamics, double beat)
+{
+    bool found = false;
+    for (const xml_node *d = dynamics->child; d; d = d->next) {
+        music_meaning meaning;
+        double value;
+        const char *name = himc_xml_is(d, "other-dynamics") ? d->text : d->name;
+        if (himc_music_dynamic(name, &meaning, &value)) {
+            add_sign(r, beat, meaning, value);
+            found = true;
+        }
+    }
+    return found;
+}
+
+static void read_direction(reader *r, const xml_node *direction, bool own)
+{
+    double beat = fmax(r->at + himc_xml_number(direction, "offset", 0) / r->divisions, 0);
+    const xml_node *sound = himc_xml_child(direction, "sound");
+    music_bar *bar = &r->music->bars[r->bar];
+    bool dynamic = false, tempo = himc_xml_attribute(sound, "tempo")[0];
+    bool jumps = false;
+    static const char *const jump[] = {"dacapo", "dalsegno", "tocoda", "fine", "coda", "segno"};
+    for (int i = 0; i < 6; i++)
+        jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
+    const xml_node *type = himc_xml_child(direction, "direction-type");
+    for (; type; type = himc_xml_next(type))
+        for (const xml_node *d = type->child; d; d = d->next) {
+            if (himc_xml_is(d, "words"))
+                dynamic |= read_words(r, d, beat, own, jumps);
+            else if (himc_xml_is(d, "metronome") && !tempo)
+                read_metronome(r, d, beat);
+            else if (himc_xml_is(d, "segno") && !jumps)
+                bar->segno = true;
+            else if (himc_xml_is(d, "coda") && !jumps)
+                bar->coda = true;
+            else if (own && himc_xml_is(d, "dynamics"))
+                dynamic |= read_dynamics(r, d, beat);
+            else if (own && himc_xml_is(d, "wedge"))
+                read_wedge(r, d, beat);
+            else if (own && himc_xml_is(d, "percussion"))
+                read_percussion(r, d, beat);
+            else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
+                add_sign(r, beat, MUSIC_DAMP, 0);
+        }
+    read_sound(r, sound, beat, own && !dynamic);
+}
+
+static void read_barline(reader *r, const xml_node *barline)
+{
+    music_bar *bar = &r->music->bars[r->bar];
+    const xml_node *repeat = himc_xml_child(barline, "repeat"),
+                   *ending = himc_xml_child(barline, "ending");
+    if (himc_xml_has(repeat, "direction", "forward"))
+        bar->forward = true;
+    if (himc_xml_has(repeat, "direction", "backward")) {
+        bar->backward = true;
+        int times = atoi(himc_xml_attribute(repeat, "times"));
+        bar->times = times > 2 && times < 32 ? times : 2;
+    }
+    if (himc_xml_child(barline, "segno"))
+        bar->segno = true;
+    if (himc_xml_child(barline, "coda"))
+        bar->coda = true;
+    // an ending goes on up to the bar where it stops: order.c
+    for (const char *n = himc_xml_attribute(ending, "number");
+         *n && himc_xml_has(ending, "type", "start");) {
+        int number = atoi(n);
+        if (number > 0 && number < 31)
+            bar->endings |= 1u << number;
+        n += strspn(n, "0123456789");
+        n += strcspn(n, "0123456789");
+    }
+    if (ending && !himc_xml_has(ending, "type", "start"))
+        bar->endings |= 1u; // bit 0: it stops here
+}
+
+// notes
+
+static int read_pitch(const xml_node *pitch, const char *step, const char *octave)
+{
+    static const int natural[] = {9, 11, 0, 2, 4, 5, 7};
+    const char *letter = himc_xml_text(pitch, step);
+    if (letter[0] < 'A' || letter[0] > 'G')
+        return -1;
+    return natural[letter[0] - 'A'] + 12 * ((int)himc_xml_number(pitch, octave, 4) + 1) +
+           (int)lround(himc_xml_number(pitch, "alter", 0));
+}
+
+// of a drum set that says nothing else: where its drums are written (Weinberg 1998), by MIDI key
+static int drum_at(int key)
+{
+    static const struct {
+        int at, drum;
+    } lines[] = {{62, 44}, {64, 36}, {65, 36}, {67, 41}, {69, 43}, {71, 45}, {72, 38},
+                 {74, 47}, {76, 48}, {77, 51}, {79, 42}, {81, 49}, {83, 57}};
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+        if (lines[i].at == key)
+            return lines[i].drum;
+    return 38;
+}
+
+static void read_ornaments(music_note *n, const xml_node *ornaments)
+{
+    for (const xml_node *o = ornaments ? ornaments->child : NULL; o; o = o->next) {
+        if (himc_xml_is(o, "trill-mark") || himc_xml_is(o, "wavy-line")) {
+            n->tremolo = MUSIC_ROLL;
+        } else if (himc_xml_is(o, "tremolo")) {
+            int marks = atoi(o->text);
+            n->marks = marks < 0 ? 0 : marks > 8 ? 8 : marks;
+            n->tremolo = himc_xml_has(o, "type", "start")                         ? MUSIC_PAIR_BEGIN
+                         : himc_xml_has(o, "type", "stop")                        ? MUSIC_PAIR_END
+                         : himc_xml_has(o, "type", "unmeasured") || n->marks == 0 ? MUSIC_ROLL
+                                                                                  : MUSIC_MARKS;
+        }
+    }
+}
+
+static int hand_of(const char *text)
+{
+    if (strlen(text) != 1 || !strchr("RLrldgDG", *text))
+        return 0;
+    return 1 + (strchr("RrdD", *text) ? HIMC_RIGHT : HIMC_LEFT);
+}
+
+static void read_notations(reader *r, music_note *n, const xml_node *notations)
+{
+    read_ornaments(n, himc_xml_child(notations, "ornaments"));
+    const xml_node *articulations = himc_xml_child(notations, "articulations");
+    for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
+        n->accent |= himc_xml_is(a, "accent");
+        n->marcato |= himc_xml_is(a, "strong-accent");
+        n->tenuto |= himc_xml_is(a, "tenuto") || himc_xml_is(a, "detached-legato");
+        n->staccato |= himc_xml_is(a, "staccato") || himc_xml_is(a, "staccatissimo") ||
+                       himc_xml_is(a, "spiccato");
+    }
+    const xml_node *technical = himc_xml_child(notations, "technical");
+    for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next)
+        if (himc_xml_is(t, "fingering") || himc_xml_is(t, "other-technical"))
+            n->hand = hand_of(t->text) ? hand_of(t->text) : n->hand;
+    for (const xml_node *t = himc_xml_child(notations, "tied"); t; t = himc_xml_next(t))
+        n->ring |= himc_xml_has(t, "type", "let-ring");
+    const xml_node *dynamics = himc_xml_child(notations, "dynamics");
+    if (dynamics)
+        read_dynamics(r, dynamics, n->at.beat);
+}
+
+static const instrument *instrument_of(const reader *r, const xml_node *note)
+{
+    const char *id = himc_xml_attribute(himc_xml_child(note, "instrument"), "id");
+    for (int i = 0; i < r->instruments && id[0]; i++)
+        if (strcmp(r->instrument[i].id, id) == 0)
+            return &r->instrument[i];
+    return &r->instrument[0];
+}
+
+static bool read_key(reader *r, const xml_node *note, music_note *n)
+{
+    const instrument *of = instrument_of(r, note);
+    const xml_node *pitch = himc_xml_child(note, "pitch"),
+                   *unpitched = himc_xml_child(note, "unpitched");
+    int written = pitch ? read_pitch(pitch, "step", "octave")
+                        : read_pitch(unpitched, "display-step", "display-octave");
+    n->choice = of->choice;
+    n->drum = of->drum;
+    n->key = written + (pitch ? r->transpose : 0);
+    if (of->choice == MIDI_DRUMS)
+        n->key = of->key != MUSIC_NO_KEY ? of->key : drum_at(written);
+    return (pitch || unpitched) && n->key >= 0 && n->key < 256 &&
+           (written >= 0 || of->key != MUSIC_NO_KEY) && (of->choice == MIDI_DRUMS || n->key < 128);
+}
+
+static void add_note(reader *r, const xml_node *note, double beat, double length)
+{
+    static const char *const types[] = {"eighth", "16th", "32nd", "64th", "128th"};
+    music *m = r->music;
+    music_note n = {.at = {beat, r->bar, r->part, m->note_count},
+                    .length = length,
+                    .voice = atoi(himc_xml_text(note, "voice")),
+                    .grace = himc_xml_child(note, "grace") != NULL,
+                    .ratio = 1};
+    if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
+        return;
+    if (himc_xml_child(note, "cue")) {
+        himc_music_omit(m, MUSIC_CUES, r->bar);
+        return;
+    }
+    // percent of a velocity of 90
+    const char *level = himc_xml_attribute(note, "dynamics");
+    n.dynamic = level[0] ? fmin(himc_midi_dynamic(0.9 * strtod(level, NULL), 0), 1) : -1;
+    if (!read_key(r, note, &n) || (!n.grace && length <= 0)) {
+        himc_music_omit(m, MUSIC_BAD_NOTES, r->bar);
+        return;
+    }
+    for (int i = 0; i < 5; i++)
+        if (strcmp(himc_xml_text(note, "type"), types[i]) == 0)
+            n.flags = i + 1;
+    const xml_node *tuplet = himc_xml_child(note, "time-modification");
+    double actual = himc_xml_number(tuplet, "actual-notes", 1),
+           normal = himc_xml_number(tuplet, "normal-notes", 1);
+    n.ratio = actual >= 1 && normal >= 1 && actual < 100 && normal < 100 ? actual / normal : 1;
+    for (const xml_node *t = himc_xml_child(note, "tie"); t; t = himc_xml_next(t)) {
+        n.tied_on |= himc_xml_has(t, "type", "start");
+        n.tied_back |= himc_xml_has(t, "type", "stop");
+        n.ring |= himc_xml_has(t, "type", "let-ring");
+    }
+    for (const xml_node *l = himc_xml_child(note, "lyric"); l; l = himc_xml_next(l))
+        n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
+    for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
+        read_notations(r, &n, t);
+    if (!himc_array_grow(&m->notes, m->note_count, &m->note_room, sizeof *m->notes, r->error))
+        r->failed = true;
+    else
+        m->notes[m->note_count++] = n;
+}
+
+static void read_note(reader *r, const xml_node *note)
+{
+    bool grace = himc_xml_child(note, "grace"), chord = himc_xml_child(note, "chord");
+    double length = grace ? 0 : himc_xml_number(note, "duration", 0) / r->divisions;
+    length = length >= 0 && length < 1000 ? length : 0;
+    double beat = chord ? r->last : r->at;
+    add_note(r, note, beat, length);
+    for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
+        if (himc_xml_child(t, "fermata") && length > 0)
+            add_sign(r, beat, MUSIC_FERMATA, length);
+    if (!chord)
+        r->last = r->at;
+    if (!chord && !grace)
+        r->at += length;
+    r->end = fmax(r->end, r->at);
+}
+
+static void read_attributes(reader *r, const xml_node *attributes)
+{
+    double divisions = himc_xml_number(attributes, "divisions", r->divisions);
+    r->divisions = divisions > 0 && divisions < 1e6 ? divisions : r->divisions;
+    const xml_node *transpose = himc_xml_child(attributes, "transpose");
+    if (transpose) {
+        double by = himc_xml_number(transpose, "chromatic", 0) +
+                    12 * himc_xml_number(transpose, "octave-change", 0);
+        r->transpose = fabs(by) < 128 ? (int)by : 0;
+    }
+    const xml_node *time = himc_xml_child(attributes, "time");
+    double beats = 0;
+    for (const char *n = himc_xml_text(time, "beats"); n && *n;) { // "3+2"
+        beats += strtod(n, NULL);
+        n = strchr(n, '+');
+        n = n ? n + 1 : NULL;
+    }
+    double unit = himc_xml_number(time, "beat-type", 4);
+    if (beats > 0 && beats < 1000 && unit >= 1)
+        r->time = 4 * beats / unit;
+}
+
+// as it is printed, a word of a comment
+static void read_number(music_bar *bar, const xml_node *measure)
+{
+    if (!bar->number[0])
+        snprintf(bar->number, sizeof bar->number, "%.11s", himc_xml_attribute(measure, "number"));
+    for (char *c = bar->number; *c; c++)
+        *c = isalnum((unsigned char)*c) || strchr("-+.", *c) ? *c : '_';
+}
+
+static void read_measure(reader *r, const xml_node *measure)
+{
+    music_bar *bar = &r->music->bars[r->bar];
+    read_number(bar, measure);
+    bool own = false;
+    for (int i = 0; i < r->instruments; i++)
+        own |= r->instrument[i].choice != MIDI_ANY;
+    bool sounds = false;
+    r->at = r->last = r->end = 0;
+    for (const xml_node *n = measure->child; n; n = n->next) {
+        double duration = himc_xml_number(n, "duration", 0) / r->divisions;
+        sounds |= himc_xml_child(n, "pitch") || himc_xml_child(n, "unpitched");
+        if (himc_xml_is(n, "note"))
+            read_note(r, n);
+        else if (himc_xml_is(n, "backup"))
+            r->at = fmax(r->at - duration, 0);
+        else if (himc_xml_is(n, "forward"))
+            r->at = duration > 0 && duration < 1000 ? r->at + duration : r->at;
+        else if (himc_xml_is(n, "attributes"))
+            read_attributes(r, n);
+        else if (himc_xml_is(n, "direction"))
+            read_direction(r, n, own);
+        else if (himc_xml_is(n, "sound"))
+            read_sound(r, n, r->at, own);
+        else if (himc_xml_is(n, "barline"))
+            read_barline(r, n);
+        r->end = fmax(r->end, r->at);
+    }
+    if (bar->length == 0 && r->end == 0)
+        r->end = r->time;
+    // a rest may fill a whole bar where the bar of others is a pickup
+    if (sounds == bar->sounds)
+        bar->length = fmax(bar->length, r->end);
+    else if (sounds)
+        bar->length = r->end;
+    bar->sounds |= sounds;
+}
+
+static bool read_part(reader *r, const xml_node *part)
+{
+    music *m = r->music;
+    r->list = himc_xml_child(himc_xml_child(r->root, "part-list"), "score-part");
+    while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
+        r->list = himc_xml_next(r->list);
+    read_instruments(r);
+    r->divisions = 1;
+    r->transpose = 0;
+    r->time = 4;
+    r->bar = 0;
+    const xml_node *measure = himc_xml_child(part, "measure");
+    for (; measure && !r->failed; measure = himc_xml_next(measure), r->bar++) {
+        if (r->bar == MOST_BARS)
+            return himc_error_set(r->error, "line %d: bar %d, expected up to %d bars",
+                                  measure->line, r->bar + 1, MOST_BARS);
+        if (r->bar == m->bar_count) {
+            if (!himc_array_grow(&m->bars, m->bar_count, &m->bar_room, sizeof *m->bars, r->error))
+                return false;
+            m->bars[m->bar_count++] = (music_bar){.times = 2};
+        }
+        read_measure(r, measure);
+    }
+    return !r->failed;
+}
+
+static bool read_root(reader *r, const xml_node *root)
+{
+    if (himc_xml_is(root, "score-timewise"))
+        return himc_error_set(r->error, "MusicXML by time: export it as score-partwise");
+    if (!himc_xml_is(root, "score-partwise"))
+        return himc_error_set(r->error, "XML of the kind %.40s, expected score-partwise",
+                              root->name);
+    r->root = root;
+    for (const xml_node *p = himc_xml_child(root, "part"); p; p = himc_xml_next(p), r->part++)
+        if (!read_part(r, p))
+            return false;
+    return r->music->bar_count > 0 || himc_error_set(r->error, "a score without a bar");
+}
+
+bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error)
+{
+    // what is only printed
+    static const char *const unused[] = {
+        "identification", "defaults", "credit",       "print",         "stem", "beam", "notehead",
+        "accidental",     "harmony",  "figured-bass", "staff-details", "slur", "clef", NULL};
+    xml_document document;
+    *m = (music){
+        .omitted = {[MUSIC_CUES] = {"cue note is left out", "cue notes are left out", 0, ""},
+                    [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
+                                         "notes are not played: they have no pitch or no length", 0,
+                                         ""},
+                    [MUSIC_GRACES] = {"grace note is not played: a ruff has two",
+                                      "grace notes are not played: a ruff has two", 0, ""}}};
+    if (!himc_xml_read(&document, bytes, size, unused, error))
+        return false;
+    reader r = {.music = m, .error = error};
+    bool good = read_root(&r, document.root);
+    himc_xml_free(&document);
+    if (!good)
+        himc_music_free(m);
+    return good;
+}
+
+void himc_music_free(music *m)
+{
+    free(m->bars);
+    free(m->notes);
+    free(m->signs);
+    *m = (music){0};
+}

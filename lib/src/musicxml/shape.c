@@ -1,0 +1,409 @@
+/// shape.c: from written notes to the notes of a player: ties, tremolos, graces, nuances.
+///
+/// Part by part: ties join notes; then each note takes the dynamic of its beat (level.c), the words
+/// that hold there, and its own marks. One or two strokes through the stem are measured, as many as
+/// written; three are a roll from FAST strokes a second on, more are always one; a trill is one. A
+/// roll is cut where its dynamic bends. Grace notes on the drum of their note are its flam, drag or
+/// ruff; others, and those before a roll, are strokes of their own before the beat. A chosen
+/// number has no published source. Invariant: each note makes at least one stroke, but a tied one.
+#include "musicxml/music.h"
+
+#include "base/argument.h"
+#include "base/array.h"
+#include "midi/part.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SAME 1e-6        // (beats)
+#define STEP (1.0 / 7)   // of dynamics
+#define FAST 8.0         // strokes of a measured tremolo with three marks; chosen: rolls.c
+#define FASTEST 12.0     // strokes of two hands (1/s)
+#define ALTERNATE 0.11   // between strokes on two drums, at least (s); chosen: of one hand .22
+#define GRACE_TIME 0.07  // between strokes that are grace notes (s); chosen: an open ruff
+#define GRACE_SOFTER 0.2 // than their note
+#define ATTACK_TIME 0.3  // of an accent on a roll (s)
+#define LONGEST 60.0     // roll (s); chosen: a score's limit is 180 s
+#define MOST_GRACES 8
+#define MOST_STROKES 100000 // as import.c
+#define MOST_CANDIDATES 400 // notes of one beat that a tie is looked for in; chosen: bounds time
+
+typedef struct shaper {
+    music *music;
+    midi_file *file;
+    himc_error *error;
+    int note_room, order_room;
+    int part, sign; ///< the next sign
+    music_level *levels;
+    int level_count;
+    double second; ///< (beats) now
+    himc_spot spot;
+    int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
+    bool attack;                      ///< of this beat
+    music_note *grace[MOST_GRACES];
+    int graces;
+    bool failed;
+} shaper;
+
+// ties
+
+// the first note at or after a beat
+static int first_from(const music *m, double beat)
+{
+    int low = 0, high = m->note_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (m->notes[middle].at.beat < beat - SAME)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static music_note *find_next(music *m, const music_note *n, bool tie)
+{
+    double end = n->at.beat + n->length;
+    int first = first_from(m, end);
+    for (int i = first; i < m->note_count && i - first < MOST_CANDIDATES; i++) {
+        music_note *to = &m->notes[i];
+        if (to->at.beat > end + SAME)
+            break;
+        bool fits = tie ? to->key == n->key && to->tied_back
+                        : to->voice == n->voice && to->tremolo == MUSIC_PAIR_END;
+        if (fits && to->at.part == n->at.part && to->length > 0 && !to->grace)
+            return to;
+    }
+    return NULL;
+}
+
+// backwards, so that a row of tied notes becomes one
+static void join_ties(music *m)
+{
+    for (int i = m->note_count - 1; i >= 0; i--) {
+        music_note *n = &m->notes[i], *to = n->tied_on ? find_next(m, n, true) : NULL;
+        n->rolled = n->tremolo == MUSIC_NO_TREMOLO ? 0 : n->length;
+        if (n->tied_on && !to)
+            n->ring = 1; // into the air
+        if (!to || n->tremolo >= MUSIC_PAIR_BEGIN)
+            continue;
+        n->tremolo = n->tremolo ? n->tremolo : to->tremolo;
+        n->marks = n->marks ? n->marks : to->marks;
+        n->rolled = to->tremolo ? n->length + to->rolled : n->rolled;
+        n->length += to->length;
+        n->ring = to->ring;
+        to->length = -1;
+    }
+}
+
+// what is made
+
+static double bpm_at(const midi_file *file, double beat)
+{
+    int low = 0, high = file->tempo_count;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (file->tempi[middle].beat <= beat + SAME)
+            low = middle;
+        else
+            high = middle;
+    }
+    return file->tempi[low].bpm;
+}
+
+static void emit(shaper *s, const music_note *n, double beat, double end, const midi_way *way)
+{
+    midi_file *f = s->file;
+    if (f->note_count >= MOST_STROKES && !s->failed) {
+        himc_error_set(s->error, "more than %d strokes", MOST_STROKES);
+        s->failed = true;
+    }
+    if (s->failed || (s->failed = !himc_array_grow(&f->notes, f->note_count, &s->note_room,
+                                                   sizeof *f->notes, s->error)))
+        return;
+    f->notes[f->note_count++] = (midi_note){
+        .beat = beat,
+        .seconds = himc_score_seconds(f->tempi, f->tempo_count, beat),
+        .off = himc_score_seconds(f->tempi, f->tempo_count, end),
+        .track = n->at.part,
+        .key = (uint8_t)n->key,
+        .velocity = 80,
+        .choice = n->choice,
+        .way = *way,
+    };
+}
+
+static double level(const shaper *s, double beat)
+{
+    return himc_music_level(s->levels, s->level_count, beat);
+}
+
+// from `begin` to `end`, cut at the points between
+static void emit_roll(shaper *s, const music_note *n, double end, double louder, midi_way way)
+{
+    const himc_argument *range = himc_argument_find("LENGTH", "roll");
+    double begin = n->at.beat, least = fmax(range->low, 0.1);
+    double attack = ATTACK_TIME * s->second;
+    double base = way.dynamic;
+    int next = 0;
+    while (next < s->level_count && s->levels[next].beat <= begin + SAME)
+        next++;
+    for (double at = begin; at < end - SAME;) {
+        while (next < s->level_count && s->levels[next].beat < at + least)
+            next++;
+        double to = next < s->level_count ? s->levels[next].beat : end;
+        double up = louder > 0 && at == begin && end - at > 2 * attack ? louder : 0;
+        to = up > 0 ? fmin(to, at + attack) : to;
+        to = to > end - least ? end : to;
+        to = fmin(to, at + fmin(range->high, LONGEST * s->second));
+        way.length = to - at;
+        way.dynamic = fmin((at == begin ? base : level(s, at)) + up, 1);
+        // just before the point, which may be a step
+        way.last_dynamic = fmin(level(s, to - 2 * SAME), 1);
+        emit(s, n, at, to, &way);
+        way.extra = true;
+        at = to;
+    }
+}
+
+static void emit_measured(shaper *s, const music_note *n, double unit, midi_way way)
+{
+    int count = (int)lround(n->rolled / unit);
+    for (int i = 0; i < count; i++) {
+        double at = n->at.beat + i * n->rolled / count;
+        way.dynamic = i == 0 ? way.dynamic : level(s, at);
+        emit(s, n, at, i + 1 < count ? at : n->at.beat + n->length, &way);
+        way.extra = true;
+        way.hand = 0;
+        way.nuance = way.nuance == HIMC_ACCENT || way.nuance == HIMC_VERTICAL_ACCENT ? HIMC_LEGATO
+                                                                                     : way.nuance;
+    }
+}
+
+// two notes in turn; the second one is found behind the first
+static void emit_pair(shaper *s, music_note *n, double unit, midi_way way)
+{
+    music_note *other = find_next(s->music, n, false);
+    double all = 2 * n->length;
+    while (unit / s->second < ALTERNATE && unit < n->length)
+        unit *= 2;
+    int count = (int)lround(all / unit);
+    count = count < 2 || !other ? 2 : count;
+    for (int i = 0; i < count; i++) {
+        double at = n->at.beat + i * all / count;
+        way.dynamic = level(s, at);
+        way.extra = i > 1;
+        if (i % 2 == 0)
+            emit(s, n, at, at + all / count, &way);
+        else if (other)
+            emit(s, other, at, at + all / count, &way);
+        way.hand = 0;
+    }
+    if (other)
+        other->length = -1;
+}
+
+// flam, drag or ruff, or strokes of their own
+static void emit_graces(shaper *s, const music_note *n, bool roll, midi_way *way)
+{
+    bool same = true;
+    for (int i = 0; i < s->graces; i++)
+        same &= s->grace[i]->key == n->key && s->grace[i]->choice == n->choice;
+    if (same && !roll) {
+        static const himc_ornament ornament[] = {HIMC_PLAIN, HIMC_FLAM, HIMC_DRAG, HIMC_RUFF};
+        way->ornament = ornament[s->graces < 3 ? s->graces : 3];
+        for (int i = 3; i < s->graces; i++)
+            himc_music_omit(s->music, MUSIC_GRACES, n->at.bar);
+        s->graces = 0;
+        return;
+    }
+    midi_way grace = *way;
+    grace.extra = true;
+    grace.hand = 0;
+    grace.nuance = HIMC_LEGATO;
+    grace.dynamic = fmax(way->dynamic - GRACE_SOFTER, 0);
+    double first = n->at.beat - s->graces * GRACE_TIME * s->second;
+    for (int i = 0; i < s->graces; i++) {
+        double at = n->at.beat + (first - n->at.beat) * (s->graces - i) / s->graces;
+        if (first >= 0)
+            emit(s, s->grace[i], at, n->at.beat, &grace);
+        else
+            himc_music_omit(s->music, MUSIC_GRACES, n->at.bar);
+    }
+    s->graces = 0;
+}
+
+// words and signs
+
+static void add_order(shaper *s, midi_order_kind kind, const music_sign *sign, midi_choice choice)
+{
+    midi_file *f = s->file;
+    int value = (int)sign->value, from = kind == MIDI_TUNING ? value / 100 : 0;
+    if (s->failed || (s->failed = !himc_array_grow(&f->orders, f->order_count, &s->order_room,
+                                                   sizeof *f->orders, s->error)))
+        return;
+    f->orders[f->order_count++] =
+        (midi_order){sign->at.beat, himc_score_seconds(f->tempi, f->tempo_count, sign->at.beat),
+                     kind,          choice,
+                     from,          kind == MIDI_TUNING ? value % 100 : value};
+}
+
+// what sounds is damped at a beat, or rings on
+static void end_at(shaper *s, double beat, int ring)
+{
+    midi_file *f = s->file;
+    bool done[256] = {false}; // the last stroke of each drum
+    for (int i = f->note_count - 1, steps = 0; i >= 0 && steps < 16; i--, steps++) {
+        midi_note *n = &f->notes[i];
+        if (n->track != s->part || n->beat > beat - SAME || done[n->key])
+            continue;
+        done[n->key] = true;
+        n->way.ring = ring;
+        if (ring < 0)
+            n->off = himc_score_seconds(f->tempi, f->tempo_count, beat);
+    }
+}
+
+// the signs up to a beat
+static void take_signs(shaper *s, double beat, midi_choice choice)
+{
+    for (; s->sign < s->music->sign_count; s->sign++) {
+        const music_sign *sign = &s->music->signs[s->sign];
+        if (sign->at.beat > beat + SAME)
+            return;
+        if (sign->at.part != s->part)
+            continue;
+        switch (sign->meaning) {
+        case MUSIC_ATTACK: s->attack = true; break;
+        case MUSIC_SPOT: s->spot = (himc_spot)sign->value; break;
+        case MUSIC_RING:
+            // at a rest it is for what sounds
+            if (sign->at.beat > beat - SAME)
+                s->ring = (int)sign->value;
+            else
+                end_at(s, sign->at.beat, (int)sign->value);
+            break;
+        case MUSIC_RING_ALWAYS: s->always = (int)sign->value; break;
+        case MUSIC_DAMP: end_at(s, sign->at.beat, -1); break;
+        case MUSIC_HAND: s->hand = 1 + (int)sign->value; break;
+        case MUSIC_MEASURED: s->measured = (int)sign->value; break;
+        case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, choice); break;
+        case MUSIC_MUFFLE: add_order(s, MIDI_MUFFLE, sign, choice); break;
+        case MUSIC_TUNING: add_order(s, MIDI_TUNING, sign, choice); break;
+        default: break;
+        }
+    }
+}
+
+// true if its strokes are a roll; `unit`: from stroke to stroke (beats)
+static bool is_roll(const shaper *s, const music_note *n, double *unit)
+{
+    *unit = pow(0.5, n->marks + n->flags) / n->ratio;
+    double rate = s->second / *unit;
+    if (n->tremolo == MUSIC_ROLL)
+        return true;
+    if (n->tremolo != MUSIC_MARKS)
+        return false;
+    if (rate > FASTEST || n->marks > 3 || (n->marks == 3 && s->measured == 0))
+        return true;
+    return n->marks == 3 && s->measured != 1 && rate > FAST - SAME;
+}
+
+static void shape_note(shaper *s, music_note *n)
+{
+    double unit, least = himc_argument_find("LENGTH", "roll")->low;
+    bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = s->attack || n->marcato;
+    midi_way way = {.dynamic = n->dynamic >= 0 ? n->dynamic : level(s, n->at.beat),
+                    .drum = n->drum,
+                    .nuance = attack        ? HIMC_VERTICAL_ACCENT
+                              : n->accent   ? HIMC_ACCENT
+                              : n->staccato ? HIMC_STACCATO
+                              : n->tenuto   ? HIMC_TENUTO
+                                            : HIMC_LEGATO,
+                    .spot = s->spot,
+                    .hand = n->hand ? n->hand : s->hand,
+                    .ring = n->ring   ? n->ring
+                            : s->ring ? s->ring
+                                      : s->always};
+    double louder = attack ? 2 * STEP : n->accent ? STEP : 0;
+    emit_graces(s, n, roll, &way);
+    if (!roll && n->accent && !attack)
+        way.dynamic = fmin(way.dynamic + STEP, 1);
+    if (roll)
+        emit_roll(s, n, n->at.beat + n->rolled, louder, way);
+    else if (n->tremolo == MUSIC_MARKS)
+        emit_measured(s, n, unit, way);
+    else if (n->tremolo == MUSIC_PAIR_BEGIN)
+        emit_pair(s, n, unit, way);
+    else
+        emit(s, n, n->at.beat, n->at.beat + n->length, &way);
+}
+
+static bool shape_part(shaper *s, int part)
+{
+    music *m = s->music;
+    double last = -1;
+    s->part = part;
+    s->sign = s->always = s->ring = s->hand = s->graces = 0;
+    s->measured = -1;
+    s->attack = false;
+    s->spot = HIMC_SPOT_NORMAL;
+    s->levels = himc_music_levels(m, part, bpm_at(s->file, 0) / 60, &s->level_count);
+    if (!s->levels)
+        return himc_error_set(s->error, "out of memory for %d signs", m->sign_count);
+    for (int i = 0; i < m->note_count && !s->failed; i++) {
+        music_note *n = &m->notes[i];
+        if (n->at.part != part || n->length < 0)
+            continue;
+        if (n->at.beat > last + SAME && last >= 0) {
+            s->attack = false;
+            s->ring = s->hand = 0;
+        }
+        if (n->grace && s->graces < MOST_GRACES)
+            s->grace[s->graces++] = n;
+        else if (n->grace)
+            himc_music_omit(m, MUSIC_GRACES, n->at.bar);
+        if (n->grace)
+            continue;
+        take_signs(s, n->at.beat, n->choice);
+        last = n->at.beat;
+        s->second = bpm_at(s->file, last) / 60;
+        shape_note(s, n);
+    }
+    take_signs(s, HUGE_VAL, MIDI_ANY);
+    free(s->levels);
+    return !s->failed;
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const midi_note *x = a, *y = b;
+    if (x->seconds != y->seconds)
+        return x->seconds < y->seconds ? -1 : 1;
+    return x->track != y->track ? x->track - y->track : x->key - y->key;
+}
+
+static int by_order(const void *a, const void *b)
+{
+    const midi_order *x = a, *y = b;
+    return (x->seconds > y->seconds) - (x->seconds < y->seconds);
+}
+
+bool himc_music_shape(music *m, midi_file *file, himc_error *error)
+{
+    shaper s = {.music = m, .file = file, .error = error};
+    int parts = 0;
+    join_ties(m);
+    for (int i = 0; i < m->note_count; i++)
+        parts = m->notes[i].at.part >= parts ? m->notes[i].at.part + 1 : parts;
+    for (int part = 0; part < parts; part++)
+        if (!shape_part(&s, part))
+            return false;
+    if (file->note_count > 0)
+        qsort(file->notes, (size_t)file->note_count, sizeof *file->notes, by_time);
+    if (file->order_count > 0)
+        qsort(file->orders, (size_t)file->order_count, sizeof *file->orders, by_order);
+    file->tracks = parts;
+    return true;
+}

@@ -1,0 +1,185 @@
+/// write_midi.c: notes as a Standard MIDI File of format 1, a track for each part.
+///
+/// A roll is the strokes that a player would about play, as MIDI has no tremolo; grace notes stand
+/// before their note; hands, nuances and places are lost. Velocities are those of notation
+/// programs (midi/import.c). Events are sorted by tick, ends before beginnings.
+#include "musicxml/export.h"
+
+#include "midi/part.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TICKS 960       // of a quarter note
+#define ROLL_RATE 11.0  // strokes of a roll (1/s); chosen: of a middle drum (plan/ornament.c)
+#define GRACE_TIME 0.04 // (s) chosen, as there
+#define SHORT 0.05      // of a stroke's note (s)
+
+typedef struct event {
+    long tick;
+    uint8_t bytes[3];
+} event;
+
+typedef struct writer {
+    const midi_file *file;
+    event *events;
+    int count, room;
+    bool failed;
+} writer;
+
+static void add(writer *w, double beat, uint8_t status, uint8_t key, double velocity)
+{
+    if (w->count >= w->room) {
+        int room = 2 * w->room + 256;
+        event *more = realloc(w->events, (size_t)room * sizeof *more);
+        w->failed |= !more;
+        if (!more)
+            return;
+        w->events = more;
+        w->room = room;
+    }
+    velocity = fmin(fmax(velocity, 1), 127);
+    w->events[w->count++] =
+        (event){lround(fmax(beat, 0) * TICKS), {status, key, (uint8_t)lround(velocity)}};
+}
+
+static void add_stroke(writer *w, const midi_note *n, double seconds, double dynamic)
+{
+    static const uint8_t channel[] = {
+        [MIDI_TIMPANI] = 0,   [MIDI_DRUMS] = 9,      [MIDI_MARIMBA] = 1,
+        [MIDI_XYLOPHONE] = 2, [MIDI_VIBRAPHONE] = 3, [MIDI_GLOCKENSPIEL] = 4};
+    const midi_file *f = w->file;
+    uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : 36;
+    double end = himc_score_beat(f->tempi, f->tempo_count, seconds + SHORT);
+    add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key, 16 + 112 * dynamic);
+    add(w, end, on & 0x8f, key, 64);
+}
+
+static void add_note(writer *w, const midi_note *n)
+{
+    const midi_way *way = &n->way;
+    double seconds = n->off - n->seconds;
+    int strokes = way->length > 0 ? (int)fmax(lround(seconds * ROLL_RATE), 4) : 1;
+    for (int g = way->ornament; g > 0; g--)
+        if (n->seconds - g * GRACE_TIME >= 0)
+            add_stroke(w, n, n->seconds - g * GRACE_TIME, 0.6 * way->dynamic);
+    for (int i = 0; i < strokes; i++)
+        add_stroke(w, n, n->seconds + seconds * i / strokes,
+                   way->dynamic +
+                       (strokes > 1 ? (way->last_dynamic - way->dynamic) * i / strokes : 0));
+}
+
+static int by_tick(const void *a, const void *b)
+{
+    const event *x = a, *y = b;
+    if (x->tick != y->tick)
+        return x->tick < y->tick ? -1 : 1;
+    // ends first
+    return (x->bytes[0] & 0x10) != (y->bytes[0] & 0x10)
+               ? (x->bytes[0] & 0x10) - (y->bytes[0] & 0x10)
+               : x->bytes[1] - y->bytes[1];
+}
+
+static void put(himc_text_lines *out, const void *bytes, size_t size)
+{
+    if (!himc_text_reserve(out, size)) {
+        out->failed = true;
+        return;
+    }
+    memcpy(out->bytes + out->size, bytes, size);
+    out->size += size;
+}
+
+static void put_number(himc_text_lines *out, unsigned long number, int bytes)
+{
+    for (int i = bytes - 1; i >= 0; i--)
+        put(out, &(uint8_t){(uint8_t)(number >> (8 * i))}, 1);
+}
+
+static void put_length(himc_text_lines *out, long number)
+{
+    for (int shift = 21; shift > 0; shift -= 7)
+        if (number >> shift)
+            put(out, &(uint8_t){(uint8_t)(0x80 | (number >> shift & 0x7f))}, 1);
+    put(out, &(uint8_t){(uint8_t)(number & 0x7f)}, 1);
+}
+
+// a chunk whose length is known at its end
+static size_t begin_track(himc_text_lines *out)
+{
+    put(out, "MTrk\0\0\0\0", 8);
+    return out->size;
+}
+
+static void end_track(himc_text_lines *out, size_t begin)
+{
+    put(out, "\0\xff\x2f\0", 4);
+    size_t length = out->size - begin;
+    for (int i = 0; i < 4 && !out->failed; i++)
+        out->bytes[begin - 4 + (size_t)i] = (char)(uint8_t)(length >> (24 - 8 * i));
+}
+
+static void put_tempi(himc_text_lines *out, const midi_file *file)
+{
+    size_t begin = begin_track(out);
+    long now = 0;
+    for (int i = 0; i < file->tempo_count; i++) {
+        long tick = lround(file->tempi[i].beat * TICKS);
+        put_length(out, tick - now);
+        put(out, "\xff\x51\3", 3);
+        put_number(out, (unsigned long)fmin(lround(60e6 / file->tempi[i].bpm), 0xffffff), 3);
+        now = tick;
+    }
+    end_track(out, begin);
+}
+
+static void put_part(himc_text_lines *out, writer *w, midi_choice choice)
+{
+    static const struct {
+        const char *name;
+        uint8_t status, program;
+    } part[] = {[MIDI_TIMPANI] = {"Timpani", 0xc0, 47},
+                [MIDI_DRUMS] = {"Drums", 0xc9, 0},
+                [MIDI_MARIMBA] = {"Marimba", 0xc1, 12},
+                [MIDI_XYLOPHONE] = {"Xylophone", 0xc2, 13},
+                [MIDI_VIBRAPHONE] = {"Vibraphone", 0xc3, 11},
+                [MIDI_GLOCKENSPIEL] = {"Glockenspiel", 0xc4, 9}};
+    const char *name = part[choice].name;
+    long now = 0;
+    w->count = 0;
+    for (int i = 0; i < w->file->note_count; i++)
+        if (w->file->notes[i].choice == choice)
+            add_note(w, &w->file->notes[i]);
+    qsort(w->events, (size_t)w->count, sizeof *w->events, by_tick);
+    size_t begin = begin_track(out);
+    put(out, (uint8_t[]){0, 0xff, 3, (uint8_t)strlen(name)}, 4);
+    put(out, name, strlen(name));
+    put(out, (uint8_t[]){0, part[choice].status, part[choice].program}, 3);
+    for (int i = 0; i < w->count; i++) {
+        put_length(out, w->events[i].tick - now);
+        put(out, w->events[i].bytes, 3);
+        now = w->events[i].tick;
+    }
+    end_track(out, begin);
+}
+
+bool himc_music_write_midi(himc_text_lines *out, const midi_file *file)
+{
+    writer w = {.file = file};
+    bool used[MIDI_CHOICES] = {false};
+    int tracks = 1;
+    for (int i = 0; i < file->note_count; i++)
+        used[file->notes[i].choice] = true;
+    for (int c = MIDI_TIMPANI; c < MIDI_CHOICES; c++)
+        tracks += used[c];
+    put(out, "MThd\0\0\0\6\0\1", 10);
+    put_number(out, (unsigned long)tracks, 2);
+    put_number(out, TICKS, 2);
+    put_tempi(out, file);
+    for (int c = MIDI_TIMPANI; c < MIDI_CHOICES && !w.failed; c++)
+        if (used[c])
+            put_part(out, &w, (midi_choice)c);
+    free(w.events);
+    return !out->failed && !w.failed;
+}
