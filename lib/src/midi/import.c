@@ -269,6 +269,25 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
     return true;
 }
 
+// the instruments: those of a set-up, or each that is used
+static void put_instruments(himc_text_lines *score, const midi_part *part, const char *setup)
+{
+    if (setup)
+        put(score, "setup %s;\n", setup);
+    for (int i = 0; i < part->heads && !setup; i++) {
+        const midi_head *h = &part->head[i];
+        if (h->key == -1)
+            continue;
+        if (h->made[0])
+            put(score, "instrument %s %s;\n", h->name, h->made);
+        else
+            put(score, "drum %s %g;\n", h->name, h->inches);
+        put(score, "%s place %g %g %g %g;\n", h->name, h->x, h->y, h->z, h->tilt);
+        if (h->key >= 0)
+            put(score, "%s tune %.6g;\n", h->name, frequency(h->key));
+    }
+}
+
 static bool write_score(midi_score *made, const midi_file *file, const midi_part *part,
                         const char *name, const char *setup, himc_error *error)
 {
@@ -293,20 +312,7 @@ static bool write_score(midi_score *made, const midi_file *file, const midi_part
     for (const char *end; (end = strchr(line, '\n')); line = end + 1)
         put(&score, "comment %.*s;\n", (int)(end - line), line);
     put(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
-    if (setup)
-        put(&score, "setup %s;\n", setup);
-    for (int i = 0; i < part->heads && !setup; i++) {
-        const midi_head *h = &part->head[i];
-        if (h->key == -1)
-            continue;
-        if (h->made[0])
-            put(&score, "instrument %s %s;\n", h->name, h->made);
-        else
-            put(&score, "drum %s %g;\n", h->name, h->inches);
-        put(&score, "%s place %g %g %g %g;\n", h->name, h->x, h->y, h->z, h->tilt);
-        if (h->key >= 0)
-            put(&score, "%s tune %.6g;\n", h->name, frequency(h->key));
-    }
+    put_instruments(&score, part, setup);
     put(&score, "gain %g;\n", GAIN);
     for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= last; i++) {
         double beat = file->tempi[i].beat;
@@ -342,6 +348,9 @@ static bool read_setup(midi_part *part, const midi_options *options, himc_error 
     himc_atom atom = {HIMC_ATOM_SYMBOL, 0, options->setup};
     if (!options->setup)
         return true;
+    if (strpbrk(options->setup, " \t\n;,\\"))
+        return himc_error_set(error, "setup: %s: a score cannot name it, expected no space ; , \\",
+                              options->setup);
     if (!himc_command_parse(&setup, HIMC_PERFORMER, "setup", &atom, 1, error))
         return false;
     part->setup = himc_score_of_setup(&setup, error);
