@@ -71,8 +71,8 @@ HIMC_RT void himc_membrane_upright(const himc_membrane *membrane, int count, con
 /// himc_drum_kicked when the contact is over.
 HIMC_RT bool himc_drum_kick(himc_drum *drum, int delay, double x, double y, double velocity,
                             int kick, himc_error *error);
-/// Before a stick in the air strikes there: at a spot beyond the rim it meets hoop, shell or another
-/// stick, whose mallet head and place it gets; of a rim shot its shaft will, too.
+/// Before a stick in the air strikes there: at a spot beyond the rim it meets hoop, shell or
+/// another stick, and gets that contact's head and place; of a rim shot its shaft will, too.
 HIMC_RT void himc_drum_meet(const himc_drum *drum, himc_spot spot, himc_stick *stick);
 /// Whether a pedal closes it, as a hi-hat.
 HIMC_RT bool himc_drum_hats(const himc_drum *drum);

@@ -133,8 +133,8 @@ HIMC_RT void himc_drum_find_ways(himc_drum *drum);
 
 /// Launches the strikes that are due, as long as a mallet is free; the others go on waiting.
 HIMC_RT void himc_drum_launch(himc_drum *drum);
-/// After the tip of a rim shot has met the head: its shaft falls on the hoop. The hand does not feel
-/// that.
+/// After the tip of a rim shot has met the head: its shaft falls on the hoop. The hand does not
+/// feel that.
 HIMC_RT void himc_drum_launch_shaft(himc_drum *drum, himc_stick *stick);
 /// Samples until the next strike is due, at most `most`; 0 if one is due.
 HIMC_RT int himc_drum_until_launch(const himc_drum *drum, int most);

@@ -229,8 +229,6 @@ HIMC_RT bool himc_planner_name_current(const himc_planner *planner, himc_hand ha
 HIMC_RT const char *himc_grace_name(himc_ornament ornament);
 /// How far the spot of that stroke is moved aside, as the hands would have met (m); usually 0.
 HIMC_RT double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t);
-/// Its spot as written, also if it lands beside that.
-HIMC_RT himc_spot himc_planner_spot(const himc_planner *planner, himc_hand hand, double t);
 
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
 /// begins again; when the score is over it goes on until `play`, `stop`, `seek` or `loop`.

@@ -764,12 +764,6 @@ double himc_planner_yields(const himc_planner *planner, himc_hand hand, double t
     return s ? s->yields : 0;
 }
 
-himc_spot himc_planner_spot(const himc_planner *planner, himc_hand hand, double t)
-{
-    const timed_stroke *s = himc_planner_current_planned(&planner->hand[hand], t);
-    return s ? s->stroke.spot : HIMC_SPOT_NORMAL;
-}
-
 bool himc_planner_current(const himc_planner *planner, himc_hand hand, double t,
                           himc_stroke *stroke, int *drum, double *contact_time)
 {
