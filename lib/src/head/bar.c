@@ -60,8 +60,8 @@ typedef struct bar_row {
 static const bar_row rows[] = {
     {ROSEWOOD,
      131,
-     0.024,
-     0,
+     0.022,
+     0.12,
      0.060,
      0.22,
      4,
