@@ -5,9 +5,8 @@
 
 #include "body/tree.h"
 
-#define HIMC_JOINT_ERP                                                          \
-    0.8 ///< share of a joint's drift that an engine corrects per step. Chosen: \
-        ///< the drift then measures 3e-8 m
+/// Share of a joint's drift that an engine corrects per step. Chosen: the drift is 3e-8 m then.
+#define HIMC_JOINT_ERP 0.8
 
 /// Bodies and joints of ODE. Opaque.
 typedef struct himc_ode himc_ode;
