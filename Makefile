@@ -498,7 +498,8 @@ $(BUILD)/viewer/skeleton.js: $(TABLE)
 
 $(VIEWER_O) $(BUILD)/viewer/engine/engine.o: $(BUILD)/viewer/skeleton.h
 $(BUILD)/viewer/pages.o: $(wildcard viewer/page/*) $(BUILD)/viewer/skeleton.js
--include $(VIEWER_O:.o=.d) $(BUILD)/viewer/engine/engine.d $(PAGE_MAKER).d
+-include $(VIEWER_O:.o=.d)
+-include $(BUILD)/viewer/engine/engine.d $(BUILD)/viewer/engine/page.d
 
 $(VIEWER): $(VIEWER_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
 	$(call say,link)
