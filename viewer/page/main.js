@@ -348,7 +348,7 @@ function frame(_, now = clock(), draw = true) {
     if (now - written > 250) {
         written = now;
         panel.write([...performers.values()], numbers, now, playback);
-        panel.silent(playback ? !!playback.sound.buffer : !!studio || now - liveSound.heard < 1000, sound);
+        panel.silent(playback ? !!playback.sound.buffer : studio ? sound.context?.state !== "running" : now - liveSound.heard < 1000, sound);
         studio?.drums(shownDrums());
         panel.filming(recorder.filming);
     }
@@ -383,13 +383,13 @@ const phone = matchMedia("(max-width: 760px), (max-height: 480px)"),
 
 // on a phone the picture is in the middle of what the writing leaves
 function lifted() {
-    if (!playback) return 0;
+    if (!playback) return studio && phone.matches && !lying.matches ? (footer.offsetHeight - HEADER) / 2 / innerHeight : 0;
     if (playback.compare === "side" && !phone.matches) return 0; // the buttons are above them
     if (phone.matches) return Math.max(0, (footer.offsetHeight - HEADER) / 2 / innerHeight);
     return panel.timeline.all ? TALL : LIFT;
 }
 
-const aside = () => (lying.matches ? inspector.getBoundingClientRect().right / 2 / innerWidth : 0);
+const aside = () => (lying.matches ? (studio && !playback ? document.getElementById("perform") : inspector).getBoundingClientRect().right / 2 / innerWidth : 0);
 
 const resized = new ResizeObserver(() => {
     document.body.style.setProperty("--footer", `${footer.offsetHeight}px`);
@@ -609,6 +609,7 @@ if (window.himcFiles)
         fresh: () => (forget(), panel.forget()),
         drums: shownDrums,
         hold: yes => (held = yes),
+        wide: () => !phone.matches,
         ray: e => view.ray(e),
         scene: async file => play(new Uint8Array(await file.arrayBuffer()), file.name),
     });

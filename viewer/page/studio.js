@@ -34,7 +34,7 @@ export async function textOf(hash) {
 }
 
 // `on` has: frame, the handlers of a Stream; fresh(): another piece begins; drums(): those that are seen;
-// ray(press); scene(file): to show one; hold(yes): to draw nothing
+// ray(press); scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
 export class Studio {
     constructor(files, sound, liveSound, on) {
         ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.files = files));
@@ -317,6 +317,7 @@ export class Studio {
     controls() {
         const click = (id, f) => ($(id).onclick = f);
         $("perform").hidden = false;
+        $("p-more").open = this.on.wide();
         $("p-piece").append(new Option("a piece", ""), ...this.pieces.map(name => new Option(name, name)));
         $("p-piece").onchange = e => e.target.value && this.choose(e.target.value);
         click("p-play", () => this.toggle());

@@ -5,7 +5,7 @@
 
 #include "body/tree.h"
 
-/// Share of a joint's drift that an engine corrects per step. Chosen: the drift then measures 3e-8 m.
+/// Share of a joint's drift that an engine corrects per step. Chosen: the drift is 3e-8 m then.
 #define HIMC_JOINT_ERP 0.8
 
 /// Bodies and joints of ODE. Opaque.
