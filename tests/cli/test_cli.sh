@@ -540,8 +540,8 @@ check test_a_midi_file_is_struck_within_10_ms [ "$(sed 1d struck.csv | wc -l) $(
 "$himc" info roll.mid >out
 check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n 's/^strokes *//p; s/^rolls *//p' out | tr '\n' ' ')" = \
     "40 notes are played as 3 rolls 0 3 single " ]
-refuses test_export_needs_an_output "no -o F.xml given" export
-refuses test_export_of_another_format_is_refused "-o: piece.mid, expected a name that ends with .xml" export piece.txt -o piece.mid
+refuses test_export_needs_an_output "no -o FILE given" export
+refuses test_export_of_another_format_is_refused "-o: piece.ogg, expected a name that ends with .musicxml, .mid or .xml" export piece.txt -o piece.ogg
 refuses test_export_of_no_stance_is_refused 'expected fixed seated standing' export --stance lying -o x.xml
 refuses test_export_does_not_write_over_its_setup "named twice" export still.xml -o ./still.xml
 refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
@@ -564,6 +564,15 @@ check test_info_tells_what_of_musicxml_is_played [ "$(sed -n 's/^rolls *//p' out
 "$himc" render signs.musicxml -o signs.wav --strokes struck.csv >out 2>err
 check test_musicxml_is_rendered [ "$(tail -n 1 out | grep -o '"missed": [0-9]*')" = '"missed": 0' ]
 check test_a_roll_of_musicxml_grows [ "$(awk -F, 'NR > 1 && $3 == "second" && $1 < 3.7 { v[++n] = $7 } END { print (v[n] > 1.3 * v[1]) }' struck.csv)" = 1 ]
+"$himc" export made.txt -o again.musicxml && "$himc" import again.musicxml -o again.txt 2>err
+check test_exported_musicxml_comes_back [ "$(head -n 1 err) $(grep -c '^\(stroke\|roll\|drag\)' again.txt)" = "8 of 8 notes for timpani are played 8" ]
+"$himc" export made.txt -o again.mid && "$himc" info again.mid >out
+check test_exported_midi_is_read [ $? = 0 ]
+refuses test_export_of_notes_needs_a_score "no SCORE given" export -o x.musicxml
+head -c 90 scherzo.mid >cut.mid
+refuses test_a_cut_midi_file_is_refused "cut.mid: cut short: 1 of its" render cut.mid -o x.wav
+refuses test_track_out_of_range_is_refused 'expected 1 .. 16' import scherzo.mid --channel 17 -o x.txt
+refuses test_unknown_instrument_is_refused "expected an instrument that is played here" import scherzo.mid --as oboe -o x.txt
 refuses test_entities_are_refused "an entity is declared" import "$root/tests/fuzz/corpus/musicxml/entity" -o x.txt
 printf '<html><p>x</p></html>' >page.txt
 refuses test_a_web_page_is_no_score "page.txt: XML of the kind html, expected score-partwise" render page.txt -o x.wav

@@ -1,5 +1,5 @@
-/// export.c: `himc export`: a score as notation, MusicXML or MIDI; or the performer and the set-up as
-/// a model of MuJoCo (MJCF), for other engines to judge the body by.
+/// export.c: `himc export`: a score as notation, MusicXML or MIDI; or performer and set-up as a
+/// model of MuJoCo (MJCF), for other engines to judge the body by.
 ///
 /// A body element has the frame of its segment, so masses, centres and inertias are the skeleton's
 /// own numbers, and a ball joint is where the skeleton has it. All geoms are for looking: they have
@@ -226,8 +226,10 @@ static bool export(const cli_arguments *arguments, himc_error *error)
         return (path = cli_input(path, error)) && cli_apart(out, &path, 1, error) &&
                write_notation(path, out, midi, error);
     }
-    if (!cli_ending_is("-o", out, ".xml", error) ||
-        (path && (!(path = cli_input(path, error)) || !cli_apart(out, &path, 1, error))))
+    if (!cli_is_standard(out) && !ends_with(out, ".xml"))
+        return himc_error_set(
+            error, "-o: %s, expected a name that ends with .musicxml, .mid or .xml", out);
+    if ((path && (!(path = cli_input(path, error)) || !cli_apart(out, &path, 1, error))))
         return false;
     himc_performance *p = cli_load(path, RATE, NULL, error);
     bool good = p && (!stance || cli_tell(p, "stance", stance, error));
@@ -254,7 +256,7 @@ const cli_call cli_export = {
     "-o F.musicxml, F.mid: the strokes of a score as a part to print; what notation does not\n"
     "have is counted on stderr. `himc import` reads it back: a pedal is \"C muta in D\", sticking\n"
     "a fingering, dynamics are steps; MIDI keeps times, pitches and velocities.\n"
-    "-o F.xml: SCORE is a score or a take: its player and drums; without it the usual ones. Segments have\n"
+    "-o F.xml: player and drums of a score or a take; without it the usual ones. Segments have\n"
     "their masses, centres and inertias and ball joints; all geoms are for looking and touch\n"
     "nothing. Sites are at the sticks' tips, the key frame `rest` is the posture before a stroke.\n"
     "With a free joint the columns `root` of `himc render --motion` are what holds the pelvis.",

@@ -1,10 +1,10 @@
 /// rolls.c: which fast repeats of the timpani are rolls.
 ///
 /// A roll in a MIDI file is a row of notes as fast as its maker could; a player plays as many
-/// strokes as drum and dynamic ask for. So strokes of one drum at 9 a second and more, 32nds
-/// at 8, four at least, with no other drum between them, become a `roll` from the first to the end of the last.
-/// Where the dynamics do not lie on a line, another roll begins. The drum channel has no rolls:
-/// there such rows are fills, whose rhythm counts.
+/// strokes as drum and dynamic ask for. So strokes of one drum at 9 a second and more, 32nds at 8,
+/// four at least, with no other drum between them, become a `roll` from the first to the end of the
+/// last. Where the dynamics do not lie on a line, another roll begins. The drum channel has no
+/// rolls: there such rows are fills, whose rhythm counts.
 #include "base/argument.h"
 #include "midi/part.h"
 
