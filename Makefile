@@ -516,12 +516,13 @@ $(BUILD)/himc.html: $(PAGE_MAKER) $(BUILD)/page/engine.wasm $(PAGE_PIECES)
 
 # clang-16 runs Debian's wasm-opt, if that is installed, without SIMD, and fails: hence -O0
 $(BUILD)/page/engine.wasm: $(TABLE) FORCE
+	$(Q)tools/build/page.sh $(BUILD)/page/parts
 	+$(Q)$(MAKE) page-here BUILD=$(BUILD)/page CC="clang-16 --target=wasm32-wasi" CXX="clang++-16 --target=wasm32-wasi -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1" \
-	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -D_WASI_EMULATED_GETPID" ARCH= SANITIZE= CFLAGS="-msimd128 -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
+	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -D_WASI_EMULATED_GETPID -isystem $(abspath $(BUILD))/page/parts/include" ARCH= SANITIZE= CFLAGS="-msimd128 -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
 	    LDFLAGS="-O0 -Wl,-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table
 PAGE_LEFT_OUT := $(addprefix $(BUILD)/lib/,drum/loader.o system/thread.o system/udp.o)
 page-here: $(BUILD)/viewer/engine/engine.o $(BUILD)/tools/himc/live.o $(BUILD)/tools/himc/cli.o $(BUILD)/viewer/scene.o $(BUILD)/viewer/scene_encode.o $(filter-out $(PAGE_LEFT_OUT),$(LIB_O))
-	$(Q)$(CXX) $(LDFLAGS) $^ -lwasi-emulated-getpid -o $(BUILD)/engine.new
+	$(Q)$(CXX) $(LDFLAGS) $^ $(BUILD)/parts/parts.o -lwasi-emulated-getpid -o $(BUILD)/engine.new
 	$(Q)cmp -s $(BUILD)/engine.new $(BUILD)/engine.wasm || cp $(BUILD)/engine.new $(BUILD)/engine.wasm
 
 $(PAGE_MAKER): $(BUILD)/viewer/engine/page.o $(SHARE_O) $(filter-out %/linear.o,$(filter $(BUILD)/lib/system/% $(BUILD)/lib/base/%,$(LIB_O)))
