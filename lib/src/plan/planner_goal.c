@@ -155,6 +155,14 @@ static int own_drum(const himc_planner *planner, himc_hand hand)
     return h->struck ? h->drum : himc_planner_score_first_drum(score, hand, score->beat, h->drum);
 }
 
+/// The hand has not struck yet, and has a stroke to come.
+static bool begins_with(const himc_planner *planner, himc_hand hand)
+{
+    const planner_score *score = &planner->score;
+    return !planner->hand[hand].struck &&
+           himc_planner_score_first_drum(score, hand, score->beat, -1) >= 0;
+}
+
 static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_vec3 *place)
 {
     const himc_head_frame *head = &planner->drum[drum];
@@ -169,10 +177,10 @@ static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_
 himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand)
 {
     himc_vec3 place;
-    // over its own drum, but hands that have played do not rest crossed
+    // over its own drum, but the hands rest crossed only where both are to begin so
     int left = own_drum(planner, HIMC_LEFT), right = own_drum(planner, HIMC_RIGHT);
-    bool struck = planner->hand[HIMC_LEFT].struck || planner->hand[HIMC_RIGHT].struck;
-    bool crossed = struck && azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
+    bool begins = begins_with(planner, HIMC_LEFT) && begins_with(planner, HIMC_RIGHT);
+    bool crossed = !begins && azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
     if (is_rest(planner, hand, (hand == HIMC_LEFT) != crossed ? left : right, &place))
         return place;
     for (int drum = 0; drum < HIMC_DRUMS; drum++)
