@@ -206,7 +206,7 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
         if (pedal) {
             double time = pedal_time(s->key - from);
             float early = (float)(s->note->seconds - pedal_begin(&now, s->head));
-            if ((double)early < time)
+            if ((double)early < time - 1e-4) // beyond rounding
                 time = early = (float)FASTEST_PEDAL;
             part->pedal[part->pedals++] =
                 (midi_pedal){s->note->seconds - (double)early, time, s->head, from, s->key};
