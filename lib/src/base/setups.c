@@ -7,7 +7,7 @@
 
 const char himc_setup_kit[] = "instrument snare snare 14; snare place .52 .02 .72;"
                               "instrument hats hi-hat 14; hats place .42 .46 .88;"
-                              "instrument high-tom tom 10; high-tom place .78 .3 .88 .2;"
+                              "instrument high-tom tom 10; high-tom place .74 .29 .88 .2;"
                               "instrument tom tom 12; tom place .84 0 .88 .2;"
                               "instrument floor tom 16; floor place .42 -.42 .7;"
                               "instrument crash crash 18; crash place .6 -.66 .98 .25;"

@@ -31,6 +31,7 @@
 #define CROSSED_GAP 0.05   // ... and crossed ones nearer by this
 #define CROSSED 0.02       // one tip is so far on the other's side (m)
 #define UNSURE_GAP 0.004 // real gaps are less than rehearsed ones by up to this (m): seen 1 to 4 mm
+#define SLIDE 1.5 // of tips along each other in strokes on one drum, at most (m/s); chosen
 #define UNSURE 0.003     // so early or late a stick may pass (s): the rebound is only predicted ...
 #define MOST_UNSURE 0.01 // ... so that the gap may be less by this, too (m)
 #define STRETCHED 2.0    // ... and a body gap by this share of the way out of reach: seen up to 1.8
@@ -200,12 +201,13 @@ double himc_planner_least_gap(himc_clearance *clear, double speed_past)
 }
 
 /// Of the tips past each other, from above (m/s): all of it where one stick is over the other; of
-/// sticks side by side the part that brings them nearer.
+/// sticks side by side the part that brings them nearer, and what is faster than strokes on a drum.
 static double speed_past(const planner_hand *hand, double t, himc_vec3 across)
 {
     himc_vec3 v = himc_vec3_sub(himc_hand_at(&hand[HIMC_LEFT].plan, t).v,
                                 himc_hand_at(&hand[HIMC_RIGHT].plan, t).v);
-    return hypot(v.x * across.x + v.y * across.y, across.z * hypot(v.x, v.y));
+    double all = hypot(v.x, v.y), nearer = hypot(v.x * across.x + v.y * across.y, across.z * all);
+    return fmin(all, nearer + fmax(all - SLIDE, 0));
 }
 
 /// One moment of the walk through the plans of both hands and a lift; what is near before `ignored`
@@ -222,7 +224,8 @@ static int walk_step(const himc_planner *planner, planner_rehearsal *walk, const
         at.place[i] = soon ? s->goal.spot : at.tip[i];
     }
     himc_clearance clear = look(planner->config.body, &at, walk);
-    double gap = himc_planner_least_gap(&clear, speed_past(hand, at.time, clear.across));
+    double gap =
+        himc_planner_least_gap(&clear, speed_past(hand, at.time, clear.across));
     double lack = lack_of(&clear, &at, &order);
     walk->after = fmin(clear.sticks < PASSING_GAP ? PASSING_STEP : STEP,
                        fmin(himc_planner_touch_after(&hand[HIMC_LEFT], walk->t),

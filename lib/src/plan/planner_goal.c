@@ -10,8 +10,9 @@
 
 // the goal; chosen: a unit of another spot further off than any of another speed, of another grip
 // further still
-#define OTHER_SPOT 10 // as a difference of log speed
-#define OTHER_GRIP 20 // as a difference of log speed
+#define CROSSED_MOST 0.6 // between drums over which crossed hands wait; chosen (m)
+#define OTHER_SPOT 10    // as a difference of log speed
+#define OTHER_GRIP 20    // as a difference of log speed
 
 // the last bounces of a hand before a written stroke
 #define FULL_HURRY 0.97       // of an arm's greatest speed: so fast a stroke is within 0.5 dB
@@ -177,9 +178,11 @@ static bool is_rest(const himc_planner *planner, himc_hand hand, int drum, himc_
 himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand)
 {
     himc_vec3 place;
-    // over its own drum, but the hands rest crossed only where both are to begin so
+    // over its own drum, but the hands rest crossed only where both are to begin so, and near
     int left = own_drum(planner, HIMC_LEFT), right = own_drum(planner, HIMC_RIGHT);
-    bool begins = begins_with(planner, HIMC_LEFT) && begins_with(planner, HIMC_RIGHT);
+    bool begins = begins_with(planner, HIMC_LEFT) && begins_with(planner, HIMC_RIGHT) &&
+                  himc_vec3_length(himc_vec3_sub(planner->drum[left].center,
+                                                 planner->drum[right].center)) < CROSSED_MOST;
     bool crossed = !begins && azimuth(&planner->drum[left]) < azimuth(&planner->drum[right]);
     if (is_rest(planner, hand, (hand == HIMC_LEFT) != crossed ? left : right, &place))
         return place;
