@@ -23,12 +23,12 @@ def score():
         stroke(1 + i / 2, HANDS[(i + 1) % 2], "accent" if i % 4 == 0 else "legato")
     for i in range(8):
         stroke(13 + i / 2, HANDS[(i + 1) % 2], spot="rim")
-    lines.append("roll 17 2 single mf mf;")
-    strokes.append(dict(beat=17, roll=2))
+    lines.append("roll 17 4 single mf mf;")
+    strokes.append(dict(beat=17, roll=4))
     for i in range(16):
-        stroke(20 + i / 4, HANDS[(i + 1) % 2], run=True)
+        stroke(22 + i / 4, HANDS[(i + 1) % 2], run=True)
     for i in range(8):
-        stroke(24.5 + i / 2, HANDS[(i + 1) % 2])
+        stroke(26.5 + i / 2, HANDS[(i + 1) % 2])
     return "\n".join(lines) + "\n", strokes
 
 
@@ -44,11 +44,11 @@ def plan(strokes, fault, draw):
     """Strikes of a player: lists of (time, speed, x, y) for each hand, and what has been planted."""
     beat, start = 60 / 112 * draw.uniform(0.87, 1.15), draw.uniform(0.8, 2)
     length = strokes[-1]["beat"]
-    plain = [s for s in strokes if "roll" not in s and not s["run"] and 3 < s["beat"] < length - 2 and s["beat"] not in (16.5, 24.5)]
+    plain = [s for s in strokes if "roll" not in s and not s["run"] and 3 < s["beat"] < length - 2 and s["beat"] not in (16.5, 26.5)]
     chosen, clock, planted, shift = draw.choice(plain), 0, {"fault": fault}, 0
     if fault == "extra":
         chosen = draw.choice([s for s in plain if s["beat"] < 15])
-    wander, phase = draw.uniform(0, 0.002), draw.uniform(0, 6)
+    wander, phase = draw.uniform(0, 0.0007), draw.uniform(0, 6)
     strikes = {hand: [] for hand in HANDS}
 
     def time(b):

@@ -82,6 +82,7 @@ typedef struct lesson {
     lesson_figure tempo;     ///< played over asked
     double bpm;              ///< of the score at its first stroke
     double level;            ///< mean of all, against the score's dynamics (dB)
+    double lead[HIMC_HANDS]; ///< of a hand named for its time; rolls are judged without it (s)
     double length;           ///< of the played strokes (s)
     bool body, torques;      ///< shares and torques are known
     double bent[HIMC_HANDS]; ///< share of the time with the wrist beyond 15 degrees

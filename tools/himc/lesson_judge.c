@@ -356,6 +356,8 @@ static bool judge_groups(lesson *l, course *c, const quantity *q)
         if (!best.in)
             break;
         tell_group(l, q, &best);
+        if (best.kind == HAND && q->threshold == jnd(c->interval))
+            l->lead[best.id] = best.effect[0];
         for (int k = 0; k < c->n; k++)
             for (int axis = 0; axis < q->axes; axis++)
                 if (group[best.kind * c->n + k] == best.id)
@@ -485,7 +487,8 @@ static void judge_rolls(lesson *l, const course *c)
             if (!in)
                 continue;
             p->roll = i;
-            t[n] = p->strike.time, level[n++] = 20 * log10(p->strike.velocity);
+            t[n] = p->strike.time - l->lead[p->strike.hand],
+            level[n++] = 20 * log10(p->strike.velocity);
         }
         judge_roll(l, r, t, level, n);
     }
@@ -557,7 +560,7 @@ static bool new_course(const lesson *l, course *c)
 }
 
 // places of the strokes about their median, with the take turned by so many right angles; returns
-// their mean distance from it
+// the sum of their distances from the medians of each hand and of both
 static double place(const lesson *l, course *c, int turn)
 {
     static const double cosine[] = {1, 0, -1, 0};
@@ -568,14 +571,22 @@ static double place(const lesson *l, course *c, int turn)
         c->value[1][k] = co * x.x - si * x.y - a.x;
         c->value[2][k] = si * x.x + co * x.y - a.y;
     }
-    for (int axis = 1; axis < 3; axis++) {
-        memcpy(c->scratch, c->value[axis], (size_t)c->n * sizeof *c->scratch);
-        double middle = median(c->scratch, c->n);
-        for (int k = 0; k < c->n; k++)
-            c->value[axis][k] -= middle;
+    double middle[3][3] = {{0}}; // of the left hand, the right, both
+    for (int axis = 1; axis < 3; axis++)
+        for (int hand = 0; hand < 3; hand++) {
+            int n = 0;
+            for (int k = 0; k < c->n; k++)
+                if (hand == 2 || (int)l->played[c->stroke[k]].strike.hand == hand)
+                    c->scratch[n++] = c->value[axis][k];
+            middle[axis][hand] = median(c->scratch, n);
+        }
+    for (int k = 0; k < c->n; k++) {
+        const double *x = middle[1], *y = middle[2];
+        int hand = (int)l->played[c->stroke[k]].strike.hand;
+        // chosen: a hand's own spots tell the direction better than the other hand does
+        sum += 4 * hypot(c->value[1][k] - x[hand], c->value[2][k] - y[hand]);
+        sum += hypot(c->value[1][k] -= x[2], c->value[2][k] -= y[2]);
     }
-    for (int k = 0; k < c->n; k++)
-        sum += hypot(c->value[1][k], c->value[2][k]) / c->n;
     return sum;
 }
 
@@ -584,7 +595,7 @@ static double place(const lesson *l, course *c, int turn)
 static void measure(lesson *l, course *c)
 {
     int turn = 0;
-    double least = 0.8 * place(l, c, 0); // chosen: the take's own direction is likelier
+    double least = 0.9 * place(l, c, 0); // chosen: the take's own direction is likelier
     for (int k = 1; k < 4; k++) {
         double sum = place(l, c, k);
         if (sum < least)
@@ -612,8 +623,6 @@ bool lesson_judge(lesson *l, himc_error *error)
         find_beat(&c);
         measure(l, &c);
         find_runs(l);
-        judge_rolls(l, &c);
-        judge_missing(l);
     }
     const quantity quantities[] = {
         {"time", "ms", "later", "earlier", time_source, 1, 1e3, jnd(c.interval)},
@@ -628,6 +637,10 @@ bool lesson_judge(lesson *l, himc_error *error)
         good = judge_groups(l, &c, &quantities[q]);
         if (good)
             judge_singles(l, &c, &quantities[q], q == 0 ? 1 / (l->rate * sqrt(12)) : 0);
+    }
+    if (good) {
+        judge_rolls(l, &c);
+        judge_missing(l);
     }
     free(c.asked);
     free(c.stroke);

@@ -4,7 +4,7 @@
 /// (i, j) says that asked event i is played event j; its cost is the least over predecessors of
 ///
 ///     ((d - r D) / s)^2, at most LEAP        d, D: intervals since then, played and asked
-///     + GAP for each event left out between   s = 20 ms + 0.08 r D
+///     + GAP for each event left out between   s = 30 ms + 0.08 r D
 ///     + OTHER for each hand that differs
 ///
 /// So the offset does not matter, and a wait costs LEAP once. The tempo r begins with each of a
@@ -19,7 +19,7 @@
 // costs; chosen by generated takes (tests/cli/lesson_takes.py)
 #define TOGETHER 0.035 // (s)
 #define LEAP 14.0
-#define GAP 4.0
+#define GAP 6.0
 #define ROLLED 0.02 // for a played event that a roll may contain
 #define OTHER 3.0
 #define BACK 4 // events left out in a row, less one; in a roll ...
@@ -82,7 +82,7 @@ static void try_from(const table *t, int i, int j, int from_i, int from_j, doubl
         return;
     double asked = t->asked[i].time - t->asked[from_i].time,
            played = t->played[j].time - t->played[from_j].time, due = from->tempo * asked,
-           z = (played - due) / (0.02 + 0.08 * due),
+           z = (played - due) / (0.03 + 0.08 * due),
            cost = from->cost + left_out + fmin(z * z, LEAP);
     if (cost >= to->cost)
         return;
