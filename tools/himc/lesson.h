@@ -47,6 +47,7 @@ typedef struct lesson_roll {
     double from, to;         ///< asked (s)
     bool written;            ///< a `roll`: its number of strokes is free
     int strokes;             ///< played
+    double begin;            ///< of the first (s)
     double rate;             ///< (strokes a second)
     double uneven, u;        ///< standard deviation about even strokes, its uncertainty (s)
     double gallop, u_gallop; ///< every second stroke late by this (s)

@@ -309,28 +309,32 @@ typedef struct quantity {
     double scale, threshold;
 } quantity;
 
-static void tell_group(lesson *l, const quantity *q, const difference *d)
+static void tell_group(lesson *l, const quantity *q, difference d)
 {
     char who[80], others[40] = "the others";
-    double shown = q->scale * (q->axes > 1 ? d->size : d->effect[0]);
-    lesson_fault *f = add(l, q->kind, shown, q->scale * d->u, SURE, q->scale * q->threshold);
+    if (d.kind == HAND && d.effect[0] > 0 && q->axes == 1) { // the softer hand, the earlier one
+        d.id = !d.id;
+        d.effect[0] = -d.effect[0];
+    }
+    double shown = q->scale * (q->axes > 1 ? d.size : d.effect[0]);
+    lesson_fault *f = add(l, q->kind, shown, q->scale * d.u, SURE, q->scale * q->threshold);
     if (!f)
         return;
-    name_group(l, d->kind, d->id, who, sizeof who);
-    if (d->kind == HAND)
-        snprintf(others, sizeof others, "the %s hand's", himc_hand_name((himc_hand)!d->id));
+    name_group(l, d.kind, d.id, who, sizeof who);
+    if (d.kind == HAND)
+        snprintf(others, sizeof others, "the %s hand's", himc_hand_name((himc_hand)!d.id));
     who[0] = 'T';
     if (q->axes > 1)
         snprintf(
             f->what, sizeof f->what,
             "%s land %.0f mm beside their place (%.0f mm %s, %.0f mm to the %s), measured from %s",
-            who, shown, 1e3 * fabs(d->effect[0]), d->effect[0] > 0 ? "too far" : "too near",
-            1e3 * fabs(d->effect[1]), d->effect[1] > 0 ? "left" : "right", others);
+            who, shown, 1e3 * fabs(d.effect[0]), d.effect[0] > 0 ? "too far" : "too near",
+            1e3 * fabs(d.effect[1]), d.effect[1] > 0 ? "left" : "right", others);
     else
         snprintf(f->what, sizeof f->what, "%s are %.1f %s %s than %s", who, fabs(shown), q->unit,
                  shown > 0 ? q->more : q->less, others);
-    snprintf(f->how, sizeof f->how, "%d strokes against %d", d->in, d->out);
-    explain(f, q->scale * d->spread, q->unit, q->source);
+    snprintf(f->how, sizeof f->how, "%d strokes against %d", d.in, d.out);
+    explain(f, q->scale * d.spread, q->unit, q->source);
 }
 
 /// Names the largest difference and takes it away, again and again.
@@ -355,7 +359,7 @@ static bool judge_groups(lesson *l, course *c, const quantity *q)
             }
         if (!best.in)
             break;
-        tell_group(l, q, &best);
+        tell_group(l, q, best);
         if (best.kind == HAND && q->threshold == jnd(c->interval))
             l->lead[best.id] = best.effect[0];
         for (int k = 0; k < c->n; k++)
@@ -370,7 +374,7 @@ static bool judge_groups(lesson *l, course *c, const quantity *q)
 /// Strokes that are far outside the player's own spread.
 static void judge_singles(lesson *l, course *c, const quantity *q, double least)
 {
-    double own = 0, worst = 0, *size = c->value[0];
+    double own = 0, worst = 0, rest = 0, *size = c->value[0];
     int which = -1, count = 0;
     for (int axis = 0; axis < q->axes; axis++) {
         for (int k = 0; k < c->n; k++)
@@ -380,13 +384,18 @@ static void judge_singles(lesson *l, course *c, const quantity *q, double least)
             c->value[axis][k] -= middle;
         own = hypot(own, spread(c, c->value[axis]));
     }
-    own = fmax(own, least);
     for (int k = 0; k < c->n; k++) {
         double x = q->axes > 1 ? hypot(size[k], c->value[1][k]) : size[k];
-        count += fabs(x) - SINGLE * own > q->threshold;
+        c->scratch[k] = fabs(x);
         if (fabs(x) > fabs(worst))
             worst = x, which = k;
     }
+    qsort(c->scratch, (size_t)c->n, sizeof *c->scratch, himc_order_doubles);
+    for (int k = 0; k < c->n - 2; k++) // the two furthest may be faults
+        rest += c->scratch[k] * c->scratch[k] / (c->n - 2);
+    own = fmax(fmax(own, sqrt(rest)), least);
+    for (int k = 0; k < c->n; k++)
+        count += c->scratch[k] - SINGLE * own > q->threshold;
     lesson_fault *f =
         c->n < 2 * FEWEST || which < 0
             ? NULL
@@ -408,7 +417,7 @@ static void judge_singles(lesson *l, course *c, const quantity *q, double least)
 static void judge_roll(lesson *l, lesson_roll *r, const double *t, const double *level, int n)
 {
     double index[512], value[512], p[3], u[3], even[2] = {0}, ss = 0, louder = 0, mean = 0;
-    r->strokes = n;
+    r->strokes = n, r->begin = n ? t[0] : NAN;
     if (n < 2 * FEWEST)
         return;
     for (int k = 1; k < n; k++)

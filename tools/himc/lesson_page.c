@@ -50,10 +50,10 @@ static void put_head(const lesson *l, FILE *out)
         "svg{width:100%;height:auto;background:#fafafa;break-inside:avoid}svg text{font:9px sans-serif;fill:#444}"
         ".left{fill:var(--left);color:var(--left)}.right{fill:var(--right);color:var(--right)}"
         ".t{overflow-x:auto}table{border-collapse:collapse;font-size:.86em}"
-        "td,th{padding:2px 8px;text-align:right;border-bottom:1px solid #ddd;white-space:nowrap}"
+        "td,th{padding:2px 8px;text-align:right;border-bottom:1px solid #ddd;vertical-align:top}td{white-space:nowrap}td:last-child{white-space:normal}"
         "th:first-child,td:first-child{text-align:left}.bad{background:#fde2e2}"
         "@media print{body{font-size:11px;padding:0}.t{overflow:visible}table{font-size:8px}"
-        "tr{break-inside:avoid}}</style><h1>Lesson: ",
+        "svg text{font-size:8px}tr{break-inside:avoid}}</style><h1>Lesson: ",
         out);
     put_text(out, l->take);
     fputs(" <small>against</small> ", out);
@@ -166,11 +166,13 @@ static void put_plot(const lesson *l, himc_hand hand, int what, double most, dou
         "<svg viewBox='0 0 %g %g' role=img aria-label='%s hand'><rect x=%g y=%.1f width=%g height=%.1f "
         "fill='#e6f4e6'/>",
         WIDE, HIGH, side[hand], LEFT, middle - band * up, WIDE - LEFT, 2 * band * up);
-    fprintf(out,
-            "<path d='M%g %gH%g' stroke='#888'/><text x=0 y=12>%+.3g</text><text x=0 y=%g>%s</text>"
-            "<text x=0 y=%g>%+.3g</text><text x=%g y=12 class=%s>%s hand</text>",
-            LEFT, middle, WIDE, most, middle + 3, what == 'o' ? "0 ms" : "0 dB", HIGH - 2, -most,
-            LEFT + 4, side[hand], side[hand]);
+    fprintf(
+        out,
+        "<path d='M%g %gH%g' stroke='#888'/><text x=0 y=12>%.0f %s</text><text x=0 y=%g>%s</text>"
+        "<text x=0 y=%g>%.0f %s</text><text x=%g y=12 class=%s>%s hand</text>",
+        LEFT, middle, WIDE, most, what == 'o' ? "early" : "louder", middle + 3,
+        what == 'o' ? "0 ms" : "0 dB", HIGH - 2, most, what == 'o' ? "late" : "softer", WIDE - 50,
+        side[hand], side[hand]);
     for (int k = 0, shown = 0; k < l->count && shown < SHOWN; k++) {
         const lesson_played *p = &l->played[k];
         double y = what == 'o' ? 1e3 * p->off : p->level,
@@ -271,7 +273,7 @@ static void put_hands(const lesson *l, FILE *out)
         fputs(
             head
                 ? ""
-                : "<h2>Rolls and fast runs</h2><div class=t><table><tr><th>asked at<th>strokes<th>a second"
+                : "<h2>Rolls and fast runs</h2><div class=t><table><tr><th>played at<th>strokes<th>a second"
                   "<th>unevenness (ms)<th>every second one late by (ms)<th>loudness spread (dB)",
             out);
         fprintf(out, "<tr><td>%.1f s<td>%d<td>%.1f<td>%.1f ± %.1f<td>%+.1f ± %.1f<td>%.1f", r->from,
