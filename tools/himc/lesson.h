@@ -96,9 +96,6 @@ typedef struct lesson {
 bool lesson_match(lesson *l, himc_error *error);
 /// Time, level and place of each stroke, rolls, and the faults, the largest first. False: no memory.
 bool lesson_judge(lesson *l, himc_error *error);
-/// Mean of the strokes of a hand: 'o'ff (s), 'l'evel (dB), 'h'eight, 'p'ath (m), 0 .. 3 shares of the
-/// limbs, 4 .. 6 torques.
-lesson_figure lesson_mean(const lesson *l, himc_hand hand, int of);
 /// Shares of the joints, wrist and torques, of takes that show whole arms. Others stay as they are.
 void lesson_body(lesson *l, himc_take *take, const himc_take_options *options);
 

@@ -34,8 +34,10 @@ static const char place_source[] =
     "chosen: 20 mm, within which himc counts a stroke as on its spot; no listeners' threshold is "
     "published";
 #define JND_TEMPO 2.0 // (%)
-static const char tempo_source[] = "listeners notice a drift of about 2 %: Dahl and Madison 2005";
-static const char none_source[] = "a stroke too few or too many is heard";
+static const char tempo_source[] =
+    "listeners notice a drift of about 2 %, several studies cited by Dahl and Madison 2005";
+static const char none_source[] =
+    "a stroke too few or too many is always heard; no threshold is published";
 
 static double jnd(double interval)
 {
@@ -165,10 +167,11 @@ static void explain(lesson_fault *f, double spread_, const char *unit, const cha
 /// Waits and jumps: an interval that is too long or too short, and all strokes after it with it.
 static void find_waits(lesson *l, course *c)
 {
-    int n = 0;
-    for (int k = 1; k < c->n; k++)
-        if (c->asked[k] - c->asked[k - 1] > 0.04)
-            c->scratch[n++] = (c->played[k] - c->played[k - 1]) / (c->asked[k] - c->asked[k - 1]);
+    int n = 0, lag = c->n < 12 ? 1 : 6; // chosen: over some strokes, as hands may differ
+    for (int k = lag; k < c->n; k++)
+        if (c->asked[k] - c->asked[k - lag] > 0.04)
+            c->scratch[n++] =
+                (c->played[k] - c->played[k - lag]) / (c->asked[k] - c->asked[k - lag]);
     double slope = median(c->scratch, n), *e = c->value[0];
     for (int k = 0; k < c->n; k++)
         e[k] = k ? c->played[k] - c->played[k - 1] - slope * (c->asked[k] - c->asked[k - 1]) : 0;
@@ -177,7 +180,7 @@ static void find_waits(lesson *l, course *c)
     for (int k = 0; k < c->n; k++) {
         double before = 0, after = 0;
         c->segment[k] = segment;
-        if (k < 3 || k + 3 > c->n || fabs(e[k]) < 6 * own + 2 * jnd(c->interval))
+        if (k < 3 || k + 3 > c->n || fabs(e[k]) < 6 * own + 2 * jnd(c->asked[k] - c->asked[k - 1]))
             continue;
         for (int i = 1; i <= 3; i++) {
             before += (c->played[k - i] - c->played[k - 1] -
@@ -293,9 +296,11 @@ static difference compare(const course *c, const int *group, int kind, int id, i
                 pow(c->value[axis][k] - sum[group[k] == id] / n[group[k] == id], 2);
         d.effect[axis] = sum[1] / n[1] - sum[0] / n[0];
         d.size = hypot(d.size, d.effect[axis]);
+        // a few strokes may lie close together by chance
+        double pooled = (ss[0] + ss[1]) / (c->n - 2);
         for (int side = 0; side < 2; side++)
-            variance += ss[side] / (n[side] - 1) / n[side];
-        d.spread = hypot(d.spread, sqrt((ss[0] + ss[1]) / (c->n - 2)));
+            variance += fmax(pooled, ss[side] / (n[side] - 1)) / n[side];
+        d.spread = hypot(d.spread, sqrt(pooled));
     }
     d.u = sqrt(variance);
     d.excess = (d.size - SURE * d.u) / threshold;
@@ -369,6 +374,15 @@ static bool judge_groups(lesson *l, course *c, const quantity *q)
     }
     free(group);
     return group != NULL;
+}
+
+// a displaced stroke is heard against its neighbours; the first and the last have one alone
+static void against_neighbours(course *c)
+{
+    double *x = c->value[0];
+    memcpy(c->scratch, x, (size_t)c->n * sizeof *x);
+    for (int k = 0; k < c->n; k++)
+        x[k] = k && k + 1 < c->n ? x[k] - 0.5 * (c->scratch[k - 1] + c->scratch[k + 1]) : 0;
 }
 
 /// Strokes that are far outside the player's own spread.
@@ -487,12 +501,12 @@ static void judge_rolls(lesson *l, const course *c)
         int n = 0, segment = 0;
         for (int k = 0; k < c->n && c->asked[k] < r->from; k++)
             segment = c->segment[k];
-        double from = beat_at(c, r->from, segment) - 0.06, to = beat_at(c, r->to, segment);
+        double from = beat_at(c, r->from, segment) - 0.12, to = beat_at(c, r->to, segment) + 0.12;
         for (int k = 0; k < l->count && n < 512; k++) {
             lesson_played *p = &l->played[k];
-            bool in =
-                p->strike.time >= from && (r->written ? p->of < 0 && p->strike.time < to - 0.03
-                                                      : p->of >= 0 && p->strike.time < to + 0.06);
+            double asked = p->of < 0 ? NAN : l->asked[p->of].time;
+            bool in = r->written ? p->of < 0 && p->strike.time >= from && p->strike.time < to
+                                 : asked > r->from - 1e-6 && asked < r->to + 1e-6;
             if (!in)
                 continue;
             p->roll = i;
@@ -644,6 +658,8 @@ bool lesson_judge(lesson *l, himc_error *error)
             c.value[1][k] = p->aside.y;
         }
         good = judge_groups(l, &c, &quantities[q]);
+        if (good && q == 0)
+            against_neighbours(&c);
         if (good)
             judge_singles(l, &c, &quantities[q], q == 0 ? 1 / (l->rate * sqrt(12)) : 0);
     }
@@ -654,30 +670,4 @@ bool lesson_judge(lesson *l, himc_error *error)
     free(c.asked);
     free(c.stroke);
     return good || himc_error_set(error, "out of memory");
-}
-
-lesson_figure lesson_mean(const lesson *l, himc_hand hand, int of)
-{
-    lesson_figure f = {0};
-    double ss = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (int k = 0; k < l->count; k++) {
-            const lesson_played *p = &l->played[k];
-            double x = of == 'o'   ? p->off
-                       : of == 'l' ? p->level
-                       : of == 'h' ? p->height
-                       : of == 'p' ? p->path
-                       : of < 4    ? p->share[of]
-                                   : p->torque[of - 4];
-            if (p->strike.hand != hand || !isfinite(x))
-                continue;
-            if (pass)
-                ss += (x - f.mean) * (x - f.mean);
-            else
-                f.mean += (x - f.mean) / ++f.count;
-        }
-    f.spread = f.count > 1 ? sqrt(ss / (f.count - 1)) : NAN;
-    f.u = f.spread / sqrt(f.count);
-    f.mean = f.count ? f.mean : NAN;
-    return f;
 }
