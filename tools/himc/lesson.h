@@ -94,9 +94,10 @@ typedef struct lesson {
 
 /// Gives each asked stroke its played one. False: nothing matches.
 bool lesson_match(lesson *l, himc_error *error);
-/// Time, level and place of each stroke, rolls, and the faults, the largest first. False: no memory.
+/// Time, level and place of each stroke, rolls, and the faults, the largest first. False: no
+/// memory.
 bool lesson_judge(lesson *l, himc_error *error);
-/// Shares of the joints, wrist and torques, of takes that show whole arms. Others stay as they are.
+/// Shares of the joints, wrist and torques, of takes that show whole arms.
 void lesson_body(lesson *l, himc_take *take, const himc_take_options *options);
 
 void lesson_page(const lesson *l, FILE *out);

@@ -209,8 +209,8 @@ bool lesson_match(lesson *l, himc_error *error)
     for (int k = 0; k < l->asked_count; k++)
         due += l->seen[l->asked[k].hand];
     // chosen: with fewer no figure could be trusted
-    return (l->matched >= 4 && 2 * l->matched >= due) ||
+    return (l->matched >= 3 && 2 * l->matched >= due) ||
            himc_error_set(error,
-                          "%s does not match %s: %d of %d strokes found, expected 4 and half",
+                          "%s does not match %s: %d of %d strokes found, expected 3 and half",
                           l->take, l->score, l->matched, due);
 }
