@@ -115,9 +115,11 @@ static void follow_tip(const lesson *l, const himc_take_tip *tip, int from, less
     p->height = tip->x[top].z - p->strike.x.z;
     for (int k = top; k < frame; k++)
         p->path += himc_vec3_length(himc_vec3_sub(tip->x[k + 1], tip->x[k]));
-    // time within a frame; the fall gains a frame's share of its acceleration v^2 / 2 h
+    // a time is uniform within a frame. Of generated takes with 0.3 mm of noise (lesson_takes.py)
+    // speeds are off by 0.3 dB; falls of few frames by up to 2 dB in 8 frames and 4 dB in 5
+    double frames = 2 * fmax(p->height, 0.02) / p->strike.velocity * l->rate;
     p->u_time = 1 / (l->rate * sqrt(12));
-    p->u_level = 8.686 * p->strike.velocity / (2 * fmax(p->height, 0.02)) * p->u_time;
+    p->u_level = hypot(0.3, 60 / (frames * frames));
 }
 
 static bool hear(lesson *l, himc_take *take, const himc_take_options *options, himc_error *error)

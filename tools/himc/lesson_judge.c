@@ -386,7 +386,7 @@ static void against_neighbours(course *c)
 }
 
 /// Strokes that are far outside the player's own spread.
-static void judge_singles(lesson *l, course *c, const quantity *q, double least)
+static void judge_singles(lesson *l, course *c, const quantity *q)
 {
     double own = 0, worst = 0, rest = 0, *size = c->value[0];
     int which = -1, count = 0;
@@ -407,7 +407,9 @@ static void judge_singles(lesson *l, course *c, const quantity *q, double least)
     qsort(c->scratch, (size_t)c->n, sizeof *c->scratch, himc_order_doubles);
     for (int k = 0; k < c->n - 2; k++) // the two furthest may be faults
         rest += c->scratch[k] * c->scratch[k] / (c->n - 2);
-    own = fmax(fmax(own, sqrt(rest)), least);
+    const lesson_played *p = &l->played[c->stroke[which < 0 ? 0 : which]];
+    own = fmax(own, sqrt(rest));
+    own = hypot(own, q->axes > 1 ? 0 : q->scale > 1 ? p->u_time : p->u_level);
     for (int k = 0; k < c->n; k++)
         count += c->scratch[k] - SINGLE * own > q->threshold;
     lesson_fault *f =
@@ -661,7 +663,7 @@ bool lesson_judge(lesson *l, himc_error *error)
         if (good && q == 0)
             against_neighbours(&c);
         if (good)
-            judge_singles(l, &c, &quantities[q], q == 0 ? 1 / (l->rate * sqrt(12)) : 0);
+            judge_singles(l, &c, &quantities[q]);
     }
     if (good) {
         judge_rolls(l, &c);
