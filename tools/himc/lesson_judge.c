@@ -358,8 +358,9 @@ static bool judge_groups(lesson *l, course *c, const quantity *q)
                 difference d = {.excess = 0};
                 if (first)
                     d = compare(c, g, kind, g[k], q->axes, q->threshold);
-                // of two groups the smaller differs from the larger
-                if (d.excess > best.excess * 1.0001 + (d.in > d.out ? 1e-3 : 0))
+                if (d.in > d.out) // of two groups the smaller differs from the larger
+                    d.excess *= 0.999;
+                if (d.excess > best.excess * 1.0001)
                     best = d;
             }
         if (!best.in)

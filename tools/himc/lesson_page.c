@@ -86,7 +86,7 @@ static void put_head(const lesson *l, FILE *out)
         ".left{fill:#1864ab;color:#1864ab}.right{fill:#c2410c;color:#c2410c}\n"
         "table{border-collapse:collapse;font-size:.86em}td{white-space:nowrap}\n"
         "td,th{padding:2px 8px;text-align:right;border-bottom:1px solid #ddd;vertical-align:top}\n"
-        "th:first-child,td:first-child,.p{text-align:left;white-space:normal}\n"
+        "th:first-child,td:first-child,.p{text-align:left;white-space:normal;min-width:9em}\n"
         "@media print{body{font-size:11px;padding:0}.t{overflow:visible}tr{break-inside:avoid}}\n"
         "</style><h1>Lesson: ",
         out);
@@ -193,7 +193,7 @@ static void put_plot(const lesson *l, himc_hand hand, bool time, double band, FI
             "<path d='M%g %gH%g' stroke='#888'/><text y=10>%.0f %s</text><text y=%g>0</text>"
             "<text y=%g>%.0f %s</text><text x=%g y=10 class=%s>%s hand</text>",
             LEFT, middle, WIDE, most, time ? "ms early" : "dB louder", middle + 3, HIGH - 2, most,
-            time ? "ms late" : "dB softer", WIDE - 45, himc_hand_name(hand), himc_hand_name(hand));
+            time ? "ms late" : "dB softer", WIDE - 52, himc_hand_name(hand), himc_hand_name(hand));
     for (int k = 0; k < l->count && k < SHOWN; k++) {
         const lesson_played *p = &l->played[k];
         double y = time ? -1e3 * p->off : p->level, u = time ? 1e3 * p->u_time : p->u_level;
