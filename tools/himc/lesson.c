@@ -92,6 +92,15 @@ static bool ask(lesson *l, himc_error *error)
     if (good && !l->asked_count)
         good = himc_error_set(error, "%s: no strokes beside rolls, expected some to compare",
                               l->score);
+    // a stroke that the model could not play has the speed of the next, else of the last
+    for (int k = l->asked_count - 2; good && k >= 0; k--)
+        if (!isfinite(l->asked[k].speed))
+            l->asked[k].speed = l->asked[k + 1].speed;
+    for (int k = 1; good && k < l->asked_count; k++)
+        if (!isfinite(l->asked[k].speed))
+            l->asked[k].speed = l->asked[k - 1].speed;
+    if (good && !isfinite(l->asked[0].speed))
+        good = himc_error_set(error, "%s: the model can play none of its strokes", l->score);
     for (int k = 0; good && k < l->rolls; k++) { // the first beat may wait for the first stroke
         const lesson_asked *a = &l->asked[0];
         double delay = a->time - himc_score_seconds(score->tempi, score->tempo_count, a->beat);
