@@ -170,10 +170,14 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
     if (argc > optind && (!call->operand[0] || strstr(call->operand, "...")))
         return himc_error_set(error, "\"%s\" is one too many (himc %s --help)", argv[optind],
                               call->name);
-    if (argc - optind > 1)
+    const char *second = strchr(call->operand, ' ');
+    if (argc - optind > 1 + (second != NULL))
         return himc_error_set(error, "one %s at a time: \"%s\" is one too many", call->operand,
-                              argv[optind + 1]);
+                              argv[optind + 1 + (second != NULL)]);
     out->operand = argv[optind];
+    out->second = second && out->operand ? argv[optind + 1] : NULL;
+    if (second && out->operand && !out->second)
+        return himc_error_set(error, "no%s given (himc %s --help)", second, call->name);
     if (!out->operand && call->operand[0] && call->operand[0] != '[')
         return himc_error_set(error, "no %s given (himc %s --help)", call->operand, call->name);
     return true;

@@ -21,10 +21,10 @@ typedef struct cli_option {
 #define CLI_OPTIONS 32
 #define CLI_REPEATED 64 ///< of the values of the repeated option; chosen
 
-/// The command line: at most one operand, and the value of each option or NULL, in the order of the
+/// The command line: the operands, and the value of each option or NULL, in the order of the
 /// table ("" for a switch).
 typedef struct cli_arguments {
-    const char *operand;
+    const char *operand, *second; ///< second: of a call with two operands
     const char *value[CLI_OPTIONS];
     const char *repeated[CLI_REPEATED]; ///< of the option that may be repeated
     int repeats;
@@ -35,7 +35,8 @@ typedef struct cli_arguments {
 /// One call of the program: `himc NAME ...`.
 typedef struct cli_call {
     const char *name;
-    const char *operand;       ///< "SOURCE", "[SCORE]" when it may be left out, "" for none
+    const char *operand;       ///< "SOURCE", "[SCORE]" when it may be left out, "" for none,
+                               ///< "SCORE TAKE" for two
     const char *needs;         ///< options that must be given, for the usage line: " -o OUT.wav"
     const char *does;          ///< one line
     const char *more;          ///< further text of --help, or ""
@@ -44,7 +45,7 @@ typedef struct cli_call {
 } cli_call;
 
 extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_share,
-    cli_export, cli_film, cli_play, cli_serve, cli_bench, cli_edit;
+    cli_export, cli_film, cli_play, cli_serve, cli_bench, cli_edit, cli_lesson;
 
 /// Reads the arguments after the call's name; false with one line: the fault and the allowed
 /// values.

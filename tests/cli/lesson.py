@@ -1,0 +1,152 @@
+"""`himc lesson` against takes with planted faults, and its page, tables and errors."""
+
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+import lesson_takes
+import report
+
+HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
+SHARED = os.environ.get("HIMC_SHARED", "../shared")
+LONG = os.environ.get("HIMC_LONG")
+RATES = (60, 120, 250)
+folder = tempfile.TemporaryDirectory(prefix="himc-lesson-")
+
+
+def path(name, text=None):
+    where = os.path.join(folder.name, name)
+    if text is not None:
+        with open(where, "w") as file:
+            file.write(text)
+    return where
+
+
+SCORE = path("score.txt", lesson_takes.score()[0])
+
+
+def lesson(score, take, *options):
+    """(status, standard output, standard error)"""
+    done = subprocess.run([HIMC, "lesson", score, take, "-o", path("page.html"), *options], capture_output=True, text=True, timeout=600)
+    return done.returncode, done.stdout, done.stderr
+
+
+def judged(fault, rate, seed):
+    planted = lesson_takes.make(path("take.csv"), fault, rate, seed)
+    status, out, err = lesson(SCORE, path("take.csv"), "--json", "--up", "z", "--csv", path("strokes.csv"))
+    assert status == 0, err
+    return planted, json.loads(out)
+
+
+def refused(text, *arguments):
+    status, out, err = lesson(*arguments)
+    assert status == 1 and not out and err.count("\n") == 1 and text in err, err
+
+
+def test_planted_faults_are_named():
+    cases = [(fault, rate, seed) for fault in lesson_takes.FAULTS for rate in RATES for seed in range(6)]
+    cases = cases if LONG else [(fault, RATES[i % 3], 0) for i, fault in enumerate(lesson_takes.FAULTS)]
+    unnamed = []
+    for case in cases:
+        planted, told = judged(*case)
+        if not lesson_takes.is_named(planted, told["faults"]):
+            unnamed.append((case, planted, [f["what"] for f in told["faults"][:3]]))
+    assert len(unnamed) <= 0.05 * len(cases), unnamed
+    return f"{len(cases) - len(unnamed)} of {len(cases)} {unnamed}"
+
+
+def test_nothing_is_invented():
+    cases = [(rate, seed) for rate in RATES for seed in range(36 if LONG else 2)]
+    false = []
+    for rate, seed in cases:
+        _, told = judged("none", rate, seed)
+        if told["faults"]:
+            false.append((rate, seed, [f["what"] for f in told["faults"]]))
+        assert told["matched"] == told["asked"], (rate, seed, told)
+    assert len(false) <= 0.02 * len(cases), false
+    return f"{len(false)} of {len(cases)} {false}"
+
+
+def test_times_are_those_of_the_take():
+    strikes, _ = lesson_takes.plan(lesson_takes.score()[1], "none", lesson_takes.random.Random("none 250 0"))
+    judged("none", 250, 0)
+    with open(path("strokes.csv")) as file:
+        rows = [row for row in csv.DictReader(file) if row["state"] == "played"]
+    worst = max(min(abs(float(row["played_s"]) - s[0]) for s in strikes[row["hand"]]) for row in rows)
+    assert len(rows) == 56 and worst < 0.006, worst  # a frame is 4 ms, and the frames do not begin with the take
+    for row in rows:
+        assert 0.0010 < float(row["time_uncertainty_s"]) < 0.0013 and float(row["level_uncertainty_db"]) > 0
+
+
+def test_every_verdict_has_a_number_its_uncertainty_and_a_source():
+    _, told = judged("soft", 120, 1)
+    with open(path("page.html")) as file:
+        page = file.read()
+    assert told["faults"] and told["faults"][0]["uncertainty"] > 0 and told["faults"][0]["threshold"] > 0
+    items = re.findall("<li>(.*?)</li>", page)
+    assert len(items) == min(3, len(told["faults"]))
+    for item in items:
+        assert "±" in item and "threshold" in item and re.search("19[0-9][0-9]|20[0-9][0-9]|published", item), item
+
+
+def test_page_needs_nothing_else():
+    judged("missing", 60, 1)
+    with open(path("page.html")) as file:
+        page = file.read()
+    assert len(page) < 4e6 and page.count("<svg") > 4 and "viewport" in page
+    assert not re.search(r"https?:|<script|<link|src=|url\(|@import", page)
+    assert "class=bad" in page and "missing" in page
+
+
+def test_same_take_gives_the_same_page():
+    pages = []
+    for _ in range(2):
+        judged("spot", 120, 1)
+        with open(path("page.html")) as file:
+            pages.append(file.read())
+    assert pages[0] == pages[1]
+
+
+def test_the_model_itself_has_nothing_to_practise():
+    text = "tempo 100;\n" + "".join(f"stroke {1 + i / 2:g} {('left', 'right')[i % 2]} legato mf;\n" for i in range(24))
+    subprocess.run([HIMC, "render", path("own.txt", text), "-o", path("own.wav"), "--set", f"record {path('own.bvh')}", "--quiet", "--rate", "8000"],
+                   check=True, capture_output=True)
+    status, out, err = lesson(path("own.txt"), path("own.bvh"), "--json", "--csv", path("own.csv"))
+    told = json.loads(out)
+    assert status == 0 and told["matched"] == 24 and not told["faults"] and abs(told["tempo_bpm"] - 100) < 0.2, (told, err)
+    with open(path("own.csv")) as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        shares = [float(row[f"{limb}_share"]) for limb in ("shoulder", "elbow", "wrist", "trunk")]
+        assert abs(sum(shares) - 1) < 1e-3 and float(row["wrist_torque_n_m"]) > 0.01, row
+
+
+def test_errors_are_one_line():
+    judged("none", 60, 0)
+    take = path("take.csv")
+    refused("no strokes", path("empty.txt", "tempo 90;\n"), take)
+    refused("no strokes", path("roll.txt", "roll 1 4 single mf mf;\n"), take)
+    refused("no point has a stick tip's name", SCORE, path("nose.csv", "time,NOSE_x_m,NOSE_y_m,NOSE_z_m\n0,0,0,1\n0.01,0,0,1\n0.02,0,0,1\n"))
+    other = "".join(f"stroke {1 + 0.37 * i * i:g} left legato mf;\n" for i in range(30))
+    refused("does not match", path("other.txt", other), take)
+    refused("expected a take", SCORE, SCORE)
+    refused("expected a score", take, take)
+    done = subprocess.run([HIMC, "lesson", SCORE, "-o", path("page.html")], capture_output=True, text=True)
+    assert done.returncode == 1 and "no TAKE given" in done.stderr, done.stderr
+    done = subprocess.run([HIMC, "lesson", SCORE, take], capture_output=True, text=True)
+    assert done.returncode == 1 and "no -o PAGE.html" in done.stderr, done.stderr
+
+
+def test_a_real_stroke_is_no_lesson_and_says_so():
+    take = os.path.join(SHARED, "mocap/drumstroke_pearl_240hz/stroke.trc")
+    if not os.path.exists(take):
+        raise report.Ignored("no ../shared/mocap")
+    refused("1 of 28 strokes found", SCORE, take)
+
+
+if __name__ == "__main__":
+    sys.exit(report.run("tests/cli/lesson.py", [f for n, f in sorted(globals().items()) if n.startswith("test_")]))

@@ -1,0 +1,184 @@
+"""Takes for tests of `himc lesson`, made without the planner: tips on parabolas, minimum-jerk rises and cubic contacts, with planted faults.
+
+A player has an own tempo and offset, a clock that wanders and is corrected, motor delays, and spreads of loudness and place. Times in s, lengths in m.
+"""
+
+import bisect
+import math
+import random
+
+HANDS = ("left", "right")
+BASE = {"normal": -0.2476, "rim": -0.3038}  # of a 26-inch head, measured in `himc render --strokes`
+
+
+def score():
+    """(text, strokes): strokes are dicts of beat, hand, dB over mf, spot, run; a roll has `roll`, its length in beats."""
+    lines, strokes = ["tempo 112;"], []
+
+    def stroke(beat, hand, nuance="legato", spot="normal", run=False):
+        lines.append(f"stroke {beat:g} {hand} {nuance} mf {spot};")
+        strokes.append(dict(beat=beat, hand=hand, nuance=nuance, spot=spot, run=run))
+
+    for i in range(24):
+        stroke(1 + i / 2, HANDS[(i + 1) % 2], "accent" if i % 4 == 0 else "legato")
+    for i in range(8):
+        stroke(13 + i / 2, HANDS[(i + 1) % 2], spot="rim")
+    lines.append("roll 17 4 single mf mf;")
+    strokes.append(dict(beat=17, roll=4))
+    for i in range(16):
+        stroke(22 + i / 4, HANDS[(i + 1) % 2], run=True)
+    for i in range(8):
+        stroke(26.5 + i / 2, HANDS[(i + 1) % 2])
+    return "\n".join(lines) + "\n", strokes
+
+
+def speed_of(stroke):
+    """About the model's impact speed (m/s)."""
+    return {"accent": 3.03, "legato": 2.9}[stroke["nuance"]]
+
+
+FAULTS = ("early", "late", "single", "soft", "spot", "rim", "drag", "rush", "roll", "missing", "extra", "wait")
+
+
+def plan(strokes, fault, draw):
+    """Strikes of a player: lists of (time, speed, x, y) for each hand, and what has been planted."""
+    beat, start = 60 / 112 * draw.uniform(0.87, 1.15), draw.uniform(0.8, 2)
+    length = strokes[-1]["beat"]
+    plain = [s for s in strokes if "roll" not in s and not s["run"] and 3 < s["beat"] < length - 2 and s["beat"] not in (16.5, 26.5)]
+    chosen, clock, planted, shift = draw.choice(plain), 0, {"fault": fault}, 0
+    if fault == "extra":
+        chosen = draw.choice([s for s in plain if s["beat"] < 15])
+    wander, phase = draw.uniform(0, 0.0007), draw.uniform(0, 6)
+    strikes = {hand: [] for hand in HANDS}
+
+    def time(b):
+        drift = {"drag": 0.07, "rush": -0.07}.get(fault, 0) * 0.5 * b * b / length
+        return start + beat * (b + drift + wander * length * math.sin(phase + 6.28 * b / length)) + shift
+
+    def strike(t, hand, speed, spot):
+        x, y = BASE[spot], 0.015 if hand == "left" else -0.015
+        if fault == "rim":
+            x = BASE["normal"]
+        if fault == "spot" and hand == "left":
+            x += 0.055
+        if fault == "soft" and hand == "left":
+            speed *= 10 ** (-5 / 20)
+        t += {("early", "left"): -0.024, ("late", "right"): 0.024}.get((fault, hand), 0)
+        speed *= 10 ** (draw.gauss(0, 0.9) / 20)
+        strikes[hand].append((t, speed, x + draw.gauss(0, 0.007), y + draw.gauss(0, 0.006)))
+
+    for s in strokes:
+        if "roll" in s:
+            rate = draw.uniform(10, 12)
+            count = int(s["roll"] * beat * rate)
+            gallop, random_ = draw.choice(((0.016, 0.003), (0.0, 0.016))) if fault == "roll" else (0, 0.003)
+            for k in range(count):
+                t = time(s["beat"]) + (k + 0.2) / rate + gallop * (k % 2) + max(-0.03, min(0.03, draw.gauss(0, random_)))
+                strike(t, HANDS[(k + 1) % 2], 2.6, "normal")
+            continue
+        if fault == "wait" and s is chosen:
+            shift = draw.uniform(0.2, 0.35)
+            planted["beat"] = s["beat"]
+        quick = 0.6 if s["run"] else 1
+        clock = 0.8 * clock + draw.gauss(0, 0.0045) * quick
+        late = clock + draw.gauss(0, 0.003) * quick
+        if s is chosen and fault in ("single", "missing", "extra"):
+            planted.update(beat=s["beat"], hand=s["hand"])
+            late += draw.choice((-0.08, 0.08)) if fault == "single" else 0
+            if fault == "missing":
+                continue
+            if fault == "extra":
+                strike(time(s["beat"] + 0.42), s["hand"], 2, s["spot"])
+        strike(time(s["beat"]) + late, s["hand"], speed_of(s), s["spot"])
+    return {hand: sorted(list_) for hand, list_ in strikes.items()}, planted
+
+
+CONTACT, REBOUND = 0.006, 0.45  # (s), share of the speed
+
+
+def rise(t, duration, speed, height):
+    """Quintic from 0 with that speed, unaccelerated, to rest at a height."""
+    s = t / duration
+    m = speed * duration
+    jerk = s**3 * (10 - 15 * s + 6 * s * s)
+    return height * jerk + m * (s - 6 * s**3 + 8 * s**4 - 3 * s**5)
+
+
+class Tip:
+    """A tip's path through strikes; z is the height over the head."""
+
+    def __init__(self, strikes):
+        self.strikes = strikes
+        self.falls = []
+        for k, (t, speed, x, y) in enumerate(strikes):
+            gap = t - strikes[k - 1][0] - CONTACT if k else 1
+            fall = min(2 * 0.045 * speed / 1 if speed < 1 else 0.19, 0.55 * gap)
+            self.falls.append((fall, speed * fall / 2))  # a parabola: height = v T / 2
+        self.begins = [s[0] for s in strikes]
+
+    def at(self, t):
+        k = bisect.bisect_right(self.begins, t) - 1
+        if k >= 0 and t - self.begins[k] < CONTACT:
+            t0, v, x, y = self.strikes[k]
+            s = (t - t0) / CONTACT
+            return x, y, CONTACT * (-v * (s - 2 * s * s + s**3) + REBOUND * v * (s**3 - s * s))
+        following = self.strikes[k + 1] if k + 1 < len(self.strikes) else None
+        fall, height = self.falls[k + 1] if following else (0.2, 0.2)
+        before = self.strikes[k] if k >= 0 else None
+        end = following[0] if following else before[0] + 1.2
+        begin = before[0] + CONTACT if before else end - 0.8 - fall
+        here, there = before or following, following or before
+        share = min(1, max(0, (t - begin) / max(end - begin, 1e-6)))
+        share = share**3 * (10 - 15 * share + 6 * share * share)
+        x, y = (a + (b - a) * share for a, b in zip(here[2:], there[2:]))
+        if following and t > end - fall:
+            s = (t - end + fall) / fall
+            z = height * (1 - s * s)
+        else:
+            up = max(end - fall - begin, 1e-6)
+            speed = min(REBOUND * before[1], 2 * height / up) if before else 0
+            z = rise(min(max(t - begin, 0), up), up, speed if before else 0, height - (0 if before else 0.1)) + (0 if before else 0.1)
+        return x - 0.15 * max(z, 0), y, z
+
+
+def write(path, strikes, rate, draw, noise=0.0003):
+    """A CSV of both tips somewhere in a laboratory, z up."""
+    origin = [draw.uniform(-0.5, 0.5), draw.uniform(-0.5, 0.5), draw.uniform(0.6, 0.9)]
+    tips = [Tip(strikes[hand]) for hand in HANDS]
+    last = max(s[-1][0] for s in strikes.values()) + 0.8
+    with open(path, "w") as file:
+        print("time," + ",".join(f"{tip}_{axis}_m" for tip in ("LTIP", "RTIP") for axis in "xyz"), file=file)
+        phase = draw.random() / rate  # frames do not know about beats
+        for k in range(int(last * rate)):
+            row = [k / rate]
+            for tip in tips:
+                row += [a + o + draw.gauss(0, noise) for a, o in zip(tip.at(k / rate + phase), origin)]
+            print(",".join(f"{v:.6f}" for v in row), file=file)
+
+
+def is_named(planted, faults):
+    """True if one of the three faults named first is the planted one."""
+    fault = planted["fault"]
+    for f in faults[:3]:
+        kind, what, effect = f["kind"], f["what"], f["effect"]
+        beat = f"beat {planted.get('beat', -1):g}"
+        if fault in ("early", "late") and kind == "time" and ("left hand's" in what and "earlier" in what or "right hand's" in what and "later" in what):
+            return abs(abs(effect) - 24) < 8
+        if fault == "soft" and kind == "level" and ("left hand's" in what and "softer" in what or "right hand's" in what and "louder" in what):
+            return abs(abs(effect) - 5) < 1.5
+        if fault in ("spot", "rim") and kind == "spot" and abs(effect - 55) < 15:
+            return True
+        if fault in ("drag", "rush") and kind == "tempo" and fault in what:
+            return True
+        if fault in ("single", "missing", "wait") and beat in what and kind == {"single": "time"}.get(fault, fault):
+            return True
+        if fault in ("roll", "extra") and kind == fault:
+            return True
+    return False
+
+
+def make(path, fault, rate, seed):
+    draw = random.Random(f"{fault} {rate} {seed}")
+    strikes, planted = plan(score()[1], fault, draw)
+    write(path, strikes, rate, draw)
+    return planted

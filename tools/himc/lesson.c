@@ -1,0 +1,258 @@
+/// lesson.c: `himc lesson`: a take compared with a score, stroke by stroke.
+///
+/// The asked strokes are those of a performance that plays the score; the played ones are the
+/// strikes of the take.
+#include "lesson.h"
+
+#include "base/head_frame.h"
+#include "capture/take.h"
+#include "cli.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RATE 8000 // of the model's samples (Hz); chosen: strokes and speeds are heard by no one
+#define BLOCK 512
+
+static bool keep_asked(lesson *l, himc_performance *p, const himc_event *event, himc_error *error)
+{
+    const himc_strike *s = &event->strike;
+    bool strike = event->kind == HIMC_EVENT_STRIKE || event->kind == HIMC_EVENT_MISSED;
+    if (!strike || !isfinite(s->beat) || !isfinite(s->planned_time) || s->hand >= HIMC_HANDS)
+        return true;
+    for (int k = 0; k < l->rolls; k++) // its own strokes are the player's choice
+        if (s->beat >= l->roll[k].from - 1e-6 && s->beat < l->roll[k].to - 1e-6)
+            return true;
+    if (l->asked_count == LESSON_MOST)
+        return himc_error_set(error, "%s: more than %d strokes", l->score, LESSON_MOST);
+    himc_drum *drum = NULL;
+    for (int i = 0;
+         (drum = himc_performance_drum(p, i)) && strcmp(himc_drum_name(drum), s->drum) != 0;)
+        i++;
+    lesson_asked a = {.beat = s->beat,
+                      .time = s->planned_time,
+                      .hand = s->hand,
+                      .by = -1,
+                      .speed = event->kind == HIMC_EVENT_STRIKE ? s->velocity : NAN};
+    snprintf(a.nuance, sizeof a.nuance, "%s", s->nuance);
+    snprintf(a.drum, sizeof a.drum, "%s", s->drum);
+    a.x = drum ? himc_head_frame_to_world(himc_drum_head_frame(drum), s->planned_x, s->planned_y)
+               : himc_vec3_make(s->planned_x, s->planned_y, 0);
+    int k = l->asked_count++;
+    for (; k > 0 && l->asked[k - 1].time > a.time; k--)
+        l->asked[k] = l->asked[k - 1];
+    l->asked[k] = a;
+    return true;
+}
+
+// rolls in beats; find_delay makes seconds of them
+static void find_rolls(lesson *l, const himc_score *score)
+{
+    for (int i = 0; i < score->stroke_count && l->rolls < LESSON_ROLLS / 2; i++) {
+        const himc_stroke *s = &score->strokes[i];
+        if (s->ornament >= HIMC_ROLL_SINGLE)
+            l->roll[l->rolls++] =
+                (lesson_roll){.from = s->beat, .to = s->beat + s->length, .written = true};
+    }
+    l->bpm = score->tempi[0].bpm;
+    for (int i = 1; i < score->tempo_count && score->stroke_count; i++)
+        if (score->tempi[i].beat <= score->strokes[0].beat)
+            l->bpm = score->tempi[i].bpm;
+}
+
+static bool play_score(lesson *l, himc_performance *p, double most, himc_error *error)
+{
+    himc_event event = {.kind = HIMC_EVENT_BEAT};
+    bool good = cli_tell(p, "mode ik", NULL, error) && cli_tell(p, "human 0", NULL, error) &&
+                cli_tell(p, "loop 0", NULL, error) && cli_tell(p, "play", NULL, error);
+    for (uint64_t n = 0; good && event.kind != HIMC_EVENT_DONE && (double)n < most * RATE;
+         n += BLOCK) {
+        himc_performance_process(p, BLOCK, NULL);
+        while (good && event.kind != HIMC_EVENT_DONE && himc_performance_event(p, &event))
+            good = keep_asked(l, p, &event, error);
+    }
+    return good;
+}
+
+static bool ask(lesson *l, himc_error *error)
+{
+    himc_score *score = himc_score_load(l->score, error);
+    if (!score)
+        return false;
+    double last = 0;
+    find_rolls(l, score);
+    for (int i = 0; i < score->stroke_count; i++)
+        last = fmax(last, score->strokes[i].beat + score->strokes[i].length);
+    last = himc_score_seconds(score->tempi, score->tempo_count, last);
+    himc_performance *p = cli_load(l->score, RATE, NULL, error);
+    l->asked = malloc(LESSON_MOST * sizeof *l->asked);
+    bool good = p && (l->asked || himc_error_set(error, "out of memory")) &&
+                play_score(l, p, last + 30, error);
+    if (good && !l->asked_count)
+        good = himc_error_set(error, "%s: no strokes beside rolls, expected some to compare",
+                              l->score);
+    // a stroke that the model could not play has the speed of the next, else of the last
+    for (int k = l->asked_count - 2; good && k >= 0; k--)
+        if (!isfinite(l->asked[k].speed))
+            l->asked[k].speed = l->asked[k + 1].speed;
+    for (int k = 1; good && k < l->asked_count; k++)
+        if (!isfinite(l->asked[k].speed))
+            l->asked[k].speed = l->asked[k - 1].speed;
+    if (good && !isfinite(l->asked[0].speed))
+        good = himc_error_set(error, "%s: the model can play none of its strokes", l->score);
+    for (int k = 0; good && k < l->rolls; k++) { // the first beat may wait for the first stroke
+        const lesson_asked *a = &l->asked[0];
+        double delay = a->time - himc_score_seconds(score->tempi, score->tempo_count, a->beat);
+        lesson_roll *r = &l->roll[k];
+        r->from = delay + himc_score_seconds(score->tempi, score->tempo_count, r->from);
+        r->to = delay + himc_score_seconds(score->tempi, score->tempo_count, r->to);
+    }
+    himc_performance_free(p);
+    himc_score_free(score);
+    return good;
+}
+
+// height before a stroke, and the path of its fall
+static void follow_tip(const lesson *l, const himc_take_tip *tip, int from, lesson_played *p)
+{
+    int frame = p->strike.frame, top = from;
+    for (int k = from; k <= frame; k++)
+        if (tip->x[k].z >= tip->x[top].z)
+            top = k;
+    p->top = top;
+    p->height = tip->x[top].z - p->strike.x.z;
+    for (int k = top; k < frame; k++)
+        p->path += himc_vec3_length(himc_vec3_sub(tip->x[k + 1], tip->x[k]));
+    // a time is uniform within a frame. Of generated takes with 0.3 mm of noise (lesson_takes.py)
+    // speeds are off by 0.3 dB; falls of few frames by up to 2 dB in 8 frames and 4 dB in 5
+    double frames = 2 * fmax(p->height, 0.02) / p->strike.velocity * l->rate;
+    p->u_time = 1 / (l->rate * sqrt(12));
+    p->u_level = hypot(0.3, 60 / (frames * frames));
+}
+
+static bool hear(lesson *l, himc_take *take, const himc_take_options *options, himc_error *error)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_strike_survey seen;
+    int from[HIMC_HANDS] = {0, 0};
+    if (!himc_take_tips(take, options, tips, error))
+        return himc_take_name_error(l->take, error);
+    if (!himc_take_strikes(take, tips, &seen))
+        return himc_error_set(error, "out of memory");
+    l->rate = himc_take_rate(take);
+    l->played = calloc((size_t)seen.count + 1, sizeof *l->played);
+    for (int h = 0; h < HIMC_HANDS; h++)
+        l->seen[h] = tips[h].present;
+    for (int k = 0; l->played && k < seen.count && k < LESSON_MOST; k++) {
+        lesson_played *p = &l->played[l->count++];
+        *p = (lesson_played){.strike = seen.strikes[k],
+                             .of = -1,
+                             .roll = -1,
+                             .off = NAN,
+                             .steady = NAN,
+                             .level = NAN,
+                             .aside = {NAN, NAN, NAN},
+                             .share = {NAN, NAN, NAN, NAN},
+                             .torque = {NAN, NAN, NAN}};
+        follow_tip(l, &tips[p->strike.hand], from[p->strike.hand], p);
+        from[p->strike.hand] = p->strike.frame;
+    }
+    l->length = seen.count ? seen.strikes[seen.count - 1].time - seen.strikes[0].time : 0;
+    free(seen.strikes);
+    return (l->played || himc_error_set(error, "out of memory")) &&
+           (l->count || himc_error_set(error, "%s: no strikes found in the tips", l->take));
+}
+
+enum { OUT, CSV, JSON, TAKE };
+static const cli_option options[] = {
+    {"output", 'o', "PAGE.html", "the page; needs no server and no network"},
+    {"csv", 0, "F.csv", "a row for each stroke: asked, played, missing"},
+    {"json", 0, NULL, "figures and faults as one JSON object on standard output"},
+    CLI_TAKE_OPTIONS,
+    {0},
+};
+
+static bool write_file(const lesson *l, const char *path, void (*write)(const lesson *, FILE *),
+                       himc_error *error)
+{
+    cli_file file = {0};
+    bool good = !path || cli_file_open(&file, path, error);
+    if (path && good) {
+        write(l, file.stream);
+        good = cli_file_close(&file, error) && cli_file_keep(&file, error);
+    }
+    cli_file_drop(&file);
+    return good;
+}
+
+static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *error)
+{
+    himc_take_options how;
+    if (!cli_is_take(l->take))
+        return himc_error_set(error, "%s: expected a take," HIMC_TAKE_SUFFIXES, l->take);
+    if (cli_is_take(l->score))
+        return himc_error_set(error, "%s: expected a score, not a take", l->score);
+    if (!cli_take_options(l->take, arguments->value + TAKE, &how, error) || !ask(l, error))
+        return false;
+    himc_take *take = himc_take_load(l->take, &how, error);
+    bool good =
+        take && hear(l, take, &how, error) && lesson_match(l, error) && lesson_judge(l, error);
+    if (good)
+        lesson_body(l, take, &how);
+    himc_take_free(take);
+    return good;
+}
+
+static void tell(const lesson *l)
+{
+    printf("%d of %d strokes matched, %.1f BPM\n", l->matched, l->asked_count,
+           l->bpm * l->tempo.mean);
+    for (int k = 0; k < l->faults && k < LESSON_NAMED; k++)
+        printf("%d. %s\n", k + 1, l->fault[k].what);
+    if (!l->faults)
+        puts("nothing stands out");
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    const char *const *value = arguments->value;
+    lesson *l = calloc(1, sizeof *l);
+    bool good =
+        l && (value[OUT] || himc_error_set(&error, "no -o PAGE.html given (himc lesson --help)"));
+    if (good) {
+        l->score = cli_input(arguments->operand, &error);
+        l->take = arguments->second;
+        const char *const files[] = {l->score, l->take, value[OUT]};
+        good = l->score && cli_ending_is("-o", value[OUT], ".html", &error) &&
+               cli_ending_is("--csv", value[CSV], ".csv", &error) &&
+               cli_apart(value[OUT], files, 2, &error) && cli_apart(value[CSV], files, 3, &error) &&
+               read_sources(l, arguments, &error) &&
+               write_file(l, value[OUT], lesson_page, &error) &&
+               write_file(l, value[CSV], lesson_csv, &error);
+    }
+    if (good && value[JSON])
+        lesson_json(l, stdout);
+    else if (good && !cli_is_standard(value[OUT]))
+        tell(l);
+    if (l) {
+        free(l->asked);
+        free(l->played);
+        free(l);
+    }
+    return good ? cli_finish(&cli_lesson)
+                : cli_fail(&cli_lesson, "%s", l ? error.text : "out of memory");
+}
+
+const cli_call cli_lesson = {
+    "lesson",
+    "SCORE TAKE",
+    " -o PAGE.html",
+    "compares a take with a score: time, loudness, place, what to practise",
+    "TAKE is a motion capture," HIMC_TAKE_SUFFIXES
+    ", of which the tips of the sticks suffice. Its\n"
+    "tempo and its beginning are free. The page opens in any browser, also printed or on a phone.",
+    options,
+    run,
+};
