@@ -1,0 +1,240 @@
+/// fit_drum.c: each size of timpano, tuned to each strong partial, is set beside what was found.
+///
+/// The air over the head makes the ratios of (1,1) .. (6,1) depend on the drum's size at a pitch: a
+/// size more is 1 % of (2,1), 1.5 % of (3,1), 2 % of (4,1), and a partial is found within a tenth
+/// of that. So the size whose own modes fit best is the drum's; all of its partials tune it. What
+/// the air takes follows from both; the losses S0 and S1 are the rest, by least squares. A room
+/// that rings longer than a partial hides its decay, which then counts less.
+#include "fit_drum.h"
+
+#include "himc/drum.h"
+#include "himc/membrane.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define RATE 48000.0
+#define LOWEST 55.0    // of (1,1) (Hz)
+#define HIGHEST 290.0  // (Hz)
+#define STRONGEST 12   // partials that may be (1,1)
+#define NEAR 0.015     // a partial this near a mode may be it (per frequency) ...
+#define CLOSE 0.004    // ... and at this distance counts half
+#define CLEAREST 25.0  // (dB) more counts no more
+#define LEAST_CLEAR 6. // (dB) less is no partial
+#define DECAYS 0.7     // of ln T60: counts half
+#define UP_TO 2.6      // partials up to this multiple of (1,1) are judged; above modes are dense
+#define UNEXPLAINED 0.5 // a partial that the drum has not counts so much against it
+#define NEEDED 3       // (1,1) .. (3,1) are heard of every timpano ...
+#define MISSING 10.0   // ... or it is less likely (dB)
+#define TUNINGS 3      // rounds
+#define LEAST_SCORE 10 // chosen
+
+static const double sizes[] = {20, 23, 26, 29, 32};
+#define SIZES (sizeof sizes / sizeof *sizes)
+
+// usual losses, which a drum has where nothing else is known (himc_head_default)
+#define USUAL_CONSTANT 0.3
+#define USUAL_SQUARE 5e-8
+
+static bool tell(himc_drum *drum, himc_error *error, const char *format, double a, double b)
+{
+    char text[128];
+    himc_command command;
+    snprintf(text, sizeof text, format, a, b);
+    return himc_command_parse_text(&command, HIMC_DRUM, text, error) &&
+           himc_drum_command(drum, &command, error);
+}
+
+static himc_drum *make(const fit_drum *d, double uniformity, himc_error *error)
+{
+    himc_drum *drum = himc_drum_new("fit", d->inches, RATE, error);
+    himc_drum_set_external_sound(drum, true); // modes are the same whatever sounds
+    if (drum && tell(drum, error, "uniformity %g", uniformity, 0) &&
+        tell(drum, error, "decay %.9g %.9g", d->constant, d->square) &&
+        tell(drum, error, "tune %.9g", d->tune, 0))
+        return drum;
+    himc_drum_release(drum);
+    return NULL;
+}
+
+int fit_drum_modes(const fit_drum *drum, fit_mode modes[FIT_MODES], himc_error *error)
+{
+    himc_drum *made = make(drum, 1, error);
+    int count = 0;
+    for (int i = 0; made && count < FIT_MODES; i++) {
+        himc_mode mode = himc_membrane_mode(himc_drum_membrane(made), i);
+        if (!(mode.mass > 0))
+            break;
+        if (mode.m >= 0 && !mode.sine)
+            modes[count++] = (fit_mode){mode.m, mode.n, mode.frequency, log(1000) / mode.decay};
+    }
+    himc_drum_release(made);
+    return count;
+}
+
+// of (m,1); a head of any size has it among its modes
+static const fit_mode *order(const fit_mode *modes, int count, int m)
+{
+    for (int i = 0; i < count; i++)
+        if (modes[i].m == m && modes[i].n == 1)
+            return &modes[i];
+    return NULL;
+}
+
+// how near a partial is to a mode, and it rings as long: 1, or less
+static double likeness(const partial *p, const fit_mode *mode)
+{
+    double apart = (p->frequency / mode->frequency - 1) / CLOSE;
+    double decay = log(p->t60 / mode->t60) / DECAYS;
+    return 1 / (1 + apart * apart) / (1 + decay * decay);
+}
+
+// which partials the drum's orders are
+static void assign(const partials_list *partials, const fit_mode *modes, int count, fit_drum *d)
+{
+    for (int m = 1; m <= FIT_ORDERS; m++) {
+        const fit_mode *mode = order(modes, count, m);
+        double most = 0;
+        d->of[m - 1] = -1;
+        for (int i = 0; mode && i < partials->count; i++) {
+            const partial *p = &partials->row[i];
+            double value = likeness(p, mode) * fmin(p->clear, CLEAREST);
+            if (fabs(p->frequency / mode->frequency - 1) < NEAR && p->clear > LEAST_CLEAR &&
+                value > most) {
+                most = value;
+                d->of[m - 1] = i;
+            }
+        }
+    }
+}
+
+// what of the clear partials is the drum's, less what is not and what is not there (dB)
+static double judge(const partials_list *partials, const fit_mode *modes, int count,
+                    const fit_drum *d)
+{
+    double score = 0;
+    for (int i = 0; i < partials->count; i++) {
+        const partial *p = &partials->row[i];
+        double most = 0, worth = fmin(p->clear, CLEAREST) - LEAST_CLEAR;
+        if (p->frequency > UP_TO * d->tune || worth < 0)
+            continue;
+        for (int k = 0; k < count; k++)
+            if (modes[k].m > 0 && modes[k].n <= 2)
+                most = fmax(most, likeness(p, &modes[k]));
+        score += worth * (most - UNEXPLAINED * (1 - most));
+    }
+    for (int m = 1; m <= NEEDED; m++)
+        score -= d->of[m - 1] < 0 ? MISSING : 0;
+    return score;
+}
+
+static bool match(const partials_list *partials, fit_drum *d, himc_error *error)
+{
+    fit_mode modes[FIT_MODES];
+    int count = fit_drum_modes(d, modes, error);
+    if (count == 0)
+        return false;
+    double sum = 0, weights = 0, squares = 0;
+    assign(partials, modes, count, d);
+    for (int m = 1; m <= FIT_ORDERS; m++) {
+        if (d->of[m - 1] < 0)
+            continue;
+        const fit_mode *mode = order(modes, count, m);
+        const partial *p = &partials->row[d->of[m - 1]];
+        double part = fmax(p->frequency_error / p->frequency, 0.0005);
+        double w = likeness(p, mode) * fmin(p->clear, CLEAREST) / (1 + pow(part / 0.001, 2));
+        double apart = log(p->frequency / mode->frequency);
+        sum += w * apart;
+        squares += w * apart * apart;
+        weights += w;
+    }
+    d->score = judge(partials, modes, count, d);
+    d->cents = weights > 0 ? 1200 / log(2) * sqrt(squares / weights) : 0;
+    d->tune *= weights > 0 ? exp(sum / weights) : 1; // of the next round
+    return true;
+}
+
+// in the order of energy
+static int strongest(const partials_list *partials, int *out)
+{
+    int count = 0;
+    for (int i = 0; i < partials->count; i++) {
+        const partial *p = &partials->row[i];
+        int k = count;
+        if (p->frequency < LOWEST || p->frequency > HIGHEST || p->clear < LEAST_CLEAR)
+            continue;
+        for (; k > 0 && p->energy > partials->row[out[k - 1]].energy; k--)
+            if (k < STRONGEST)
+                out[k] = out[k - 1];
+        if (k < STRONGEST)
+            out[k] = i;
+        count += count < STRONGEST;
+    }
+    return count;
+}
+
+// S0 and S1 of least squares, drawn to the usual ones as if each were known within itself
+static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *error)
+{
+    fit_mode none[FIT_MODES], one[FIT_MODES];
+    fit_drum bare = *d, lossy = *d;
+    bare.constant = bare.square = lossy.square = 0;
+    lossy.constant = 1;
+    int count = fit_drum_modes(&bare, none, error);
+    if (count == 0 || fit_drum_modes(&lossy, one, error) == 0)
+        return false;
+    // unknowns in units of the usual ones
+    double aa = 1, ab = 0, bb = 1, ay = 1, by = 1;
+    for (int m = 1; m <= FIT_ORDERS; m++) {
+        const fit_mode *mode = order(none, count, m);
+        if (d->of[m - 1] < 0 || !mode)
+            continue;
+        const partial *p = &partials->row[d->of[m - 1]];
+        double decay = log(1000) / p->t60, air = log(1000) / mode->t60;
+        double load = log(1000) / one[mode - none].t60 - air;
+        double hidden = 0.4 / (1 + pow(p->t60 / fmax(partials->room, 1e-3), 3));
+        double known = decay * sqrt(pow(p->t60_error / p->t60, 2) + hidden * hidden + 0.03 * 0.03);
+        double a = load * USUAL_CONSTANT / known, y = (decay - air) / known;
+        double b = load * USUAL_SQUARE * pow(2 * HIMC_PI * mode->frequency, 2) / known;
+        aa += a * a;
+        ab += a * b;
+        bb += b * b;
+        ay += a * y;
+        by += b * y;
+    }
+    double det = aa * bb - ab * ab, s0 = (ay * bb - by * ab) / det, s1 = (by * aa - ay * ab) / det;
+    if (s0 < 0)
+        s1 = by / bb;
+    if (s1 < 0)
+        s0 = ay / aa;
+    d->constant = USUAL_CONSTANT * fmax(s0, 0);
+    d->square = USUAL_SQUARE * fmax(s1, 0);
+    return true;
+}
+
+bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *error)
+{
+    int candidates[STRONGEST];
+    int count = strongest(partials, candidates);
+    out->score = -INFINITY;
+    for (size_t s = 0; s < SIZES; s++)
+        for (int i = 0; i < count; i++) {
+            fit_drum d = {.inches = sizes[s],
+                          .tune = partials->row[candidates[i]].frequency,
+                          .constant = USUAL_CONSTANT,
+                          .square = USUAL_SQUARE};
+            for (int round = 0; round < TUNINGS; round++) {
+                double tune = d.tune;
+                if (!match(partials, &d, error))
+                    return false;
+                if (round == TUNINGS - 1)
+                    d.tune = tune;
+            }
+            if (d.score > out->score)
+                *out = d;
+        }
+    if (out->score < LEAST_SCORE)
+        return himc_error_set(error, "no timpano has these partials");
+    return find_losses(partials, out, error);
+}
