@@ -26,8 +26,8 @@ static int run(const cli_arguments *a)
     for (int i = 0; i < n; i++)
         if (modes[i].n == 1 && modes[i].m <= 6 && modes[i].m > 0)
             printf("  m %d %.2f %.2f found %.2f %.2f\n", modes[i].m, modes[i].frequency, modes[i].t60,
-                   d.of[modes[i].m - 1] < 0 ? 0 : found.row[d.of[modes[i].m - 1]].frequency,
-                   d.of[modes[i].m - 1] < 0 ? 0 : found.row[d.of[modes[i].m - 1]].t60);
+                   d.of[2*modes[i].m - 2+modes[i].sine] < 0 ? 0 : found.row[d.of[2*modes[i].m - 2+modes[i].sine]].frequency,
+                   d.of[2*modes[i].m - 2+modes[i].sine] < 0 ? 0 : found.row[d.of[2*modes[i].m - 2+modes[i].sine]].t60);
     return 0;
 }
 const cli_call cli_fit = {"fit", "RECORDING", " -o DRUM.txt", "makes a drum of recorded strokes", "", options, run};

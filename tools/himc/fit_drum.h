@@ -14,19 +14,21 @@ typedef struct fit_drum {
     int mallet;              ///< place in fit_mallets
     int dynamic;             ///< place in fit_dynamics
     double mallet_clear;     ///< distance of the next mallet over its own (dB)
-    int of[FIT_ORDERS];      ///< place of the partial that (m,1) is, by m - 1; -1: none found
+    int of[2 * FIT_ORDERS];  ///< place of the partial that a member of the pair (m,1) is, from
+                             ///< 2 (m - 1) on, cosine and sine; -1: none found
     double score;
     double cents; ///< RMS of the partials beside its own
 } fit_drum;
 
 extern const char *const fit_mallets[], *const fit_dynamics[];
 
-/// A mode of it, a pair as one.
+/// A mode of it.
 typedef struct fit_mode {
     int m, n;
+    bool sine;
     double frequency, t60;
 } fit_mode;
-#define FIT_MODES 60
+#define FIT_MODES 80
 
 /// Its modes (m, n), rising in frequency; how many, or 0 with the reason.
 int fit_drum_modes(const fit_drum *drum, fit_mode modes[FIT_MODES], himc_error *error);

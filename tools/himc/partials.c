@@ -49,7 +49,8 @@ static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN,
 typedef struct band {
     double centre, width; // (Hz)
     int step, half;       // decimation, filter
-    double *tap;          // (2 half + 1)
+    double *tap;          // (2 half + 1) filter, turning by the centre: real parts ...
+    double *turning;      // ... and imaginary ones
     double *z;            // (tracks, samples, 2)
     int samples, tracks;
 } band;
@@ -66,43 +67,46 @@ static bool band_open(band *b, double low, const partials_sound *sound)
     b->half = (int)(TAPS * sound->rate / transition);
     b->step = (int)fmax(1, sound->rate / (b->width + 2 * transition));
     b->tap = malloc(sizeof *b->tap * (size_t)(2 * b->half + 1));
+    b->turning = malloc(sizeof *b->turning * (size_t)(2 * b->half + 1));
     b->z = malloc(sizeof *b->z * 2 * SPAN * PARTIALS_TRACKS);
-    if (!b->tap || !b->z)
+    if (!b->tap || !b->turning || !b->z)
         return false;
     for (int i = -b->half; i <= b->half; i++) {
         double t = i / (b->half + 1.0), angle = 2 * HIMC_PI * stop * i / sound->rate;
         double window = 0.42 + 0.5 * cos(HIMC_PI * t) + 0.08 * cos(2 * HIMC_PI * t);
         sum += b->tap[i + b->half] = window * (i ? sin(angle) / angle : 1);
     }
-    for (int i = 0; i <= 2 * b->half; i++)
-        b->tap[i] /= sum;
+    for (int i = 0; i <= 2 * b->half; i++) {
+        double angle = -2 * HIMC_PI * b->centre * (i - b->half) / sound->rate;
+        b->turning[i] = b->tap[i] / sum * sin(angle);
+        b->tap[i] *= cos(angle) / sum;
+    }
     return true;
 }
 
 static void band_close(band *b)
 {
     free(b->tap);
+    free(b->turning);
     free(b->z);
 }
 
 // one filtered sample of the band, its centre at 0 Hz
-static void band_sample(const band *b, const double *x, size_t at, double rate, double out[2])
+static void band_sample(const band *b, const double *x, double angle, double out[2])
 {
-    double turn = -2 * HIMC_PI * b->centre / rate, c = cos(turn), s = sin(turn);
-    double start = turn * (double)(at - (size_t)b->half), re = cos(start), im = sin(start);
-    out[0] = out[1] = 0;
-    for (int i = -b->half; i <= b->half; i++) {
-        double value = b->tap[i + b->half] * x[(size_t)((long)at + i)], next = re * c - im * s;
-        out[0] += value * re;
-        out[1] += value * im;
-        im = re * s + im * c;
-        re = next;
+    double re = 0, im = 0, c = cos(angle), s = sin(angle);
+    for (int i = 0; i <= 2 * b->half; i++) {
+        re += b->tap[i] * x[i];
+        im += b->turning[i] * x[i];
     }
+    out[0] = c * re - s * im;
+    out[1] = c * im + s * re;
 }
 
 // fills z from a track's sample `from` on; false if the tracks are too short
 static bool band_fill(band *b, const partials_sound *sound, size_t from, int span)
 {
+    double turn = -2 * HIMC_PI * b->centre / sound->rate;
     size_t shortest = sound->length[0];
     for (int i = 1; i < sound->tracks; i++)
         shortest = sound->length[i] < shortest ? sound->length[i] : shortest;
@@ -113,7 +117,8 @@ static bool band_fill(band *b, const partials_sound *sound, size_t from, int spa
         return false;
     for (int i = 0; i < sound->tracks; i++)
         for (int n = 0; n < b->samples; n++)
-            band_sample(b, sound->track[i], from + (size_t)n * (size_t)b->step, sound->rate,
+            band_sample(b, sound->track[i] + from - b->half + (size_t)n * (size_t)b->step,
+                        turn * (double)(from + (size_t)n * (size_t)b->step),
                         &b->z[2 * ((size_t)i * (size_t)b->samples + (size_t)n)]);
     return true;
 }

@@ -45,7 +45,7 @@ himc_linear himc_linear_vibrations(int n, const double *k, const double *m, doub
 /// by least squares; poles that grow get 0.
 himc_linear himc_linear_exponentials(int samples, int channels, const double *z, int most,
                                      double clear, double *p, double *c, int *found);
-#define HIMC_LINEAR_LAGS 150 ///< chosen
+#define HIMC_LINEAR_LAGS 110 ///< chosen
 
 #ifdef __cplusplus
 }
