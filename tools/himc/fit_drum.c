@@ -13,7 +13,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <stdlib.h>
 
 #define RATE 48000.0
 #define LOWEST 55.0    // of (1,1) (Hz)
@@ -52,12 +51,13 @@ static bool tell(himc_drum *drum, himc_error *error, const char *format, double 
            himc_drum_command(drum, &command, error);
 }
 
-static himc_drum *make(const fit_drum *d, himc_error *error)
+himc_drum *fit_drum_make(const fit_drum *d, int mallet, double rate, himc_error *error)
 {
-    himc_drum *drum = himc_drum_new("fit", d->inches, RATE, error);
-    himc_drum_set_external_sound(drum, true); // modes are the same whatever sounds
+    char felt[32];
+    snprintf(felt, sizeof felt, "mallet %s", fit_mallets[mallet]);
+    himc_drum *drum = himc_drum_new("fit", d->inches, rate, error);
     if (drum && tell(drum, error, "decay %.9g %.9g", d->constant, d->square) &&
-        tell(drum, error, "tune %.9g", d->tune, 0))
+        tell(drum, error, "tune %.9g", d->tune, 0) && tell(drum, error, felt, 0, 0))
         return drum;
     himc_drum_release(drum);
     return NULL;
@@ -65,7 +65,7 @@ static himc_drum *make(const fit_drum *d, himc_error *error)
 
 int fit_drum_modes(const fit_drum *drum, fit_mode modes[FIT_MODES], himc_error *error)
 {
-    himc_drum *made = make(drum, error);
+    himc_drum *made = fit_drum_make(drum, 0, RATE, error);
     int count = 0;
     for (int i = 0; made && count < FIT_MODES; i++) {
         himc_mode mode = himc_membrane_mode(himc_drum_membrane(made), i);
@@ -248,7 +248,7 @@ bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *err
             if (d.score > out->score)
                 *out = d;
         }
-    if (out->score < LEAST_SCORE && !getenv("FORCE"))
-        return himc_error_set(error, "no timpano has these partials");
+    if (out->score < LEAST_SCORE)
+        return himc_error_set(error, "no timpano has these partials, expected --instrument modes");
     return find_losses(partials, out, error);
 }

@@ -13,14 +13,13 @@ typedef struct fit_drum {
     double constant, square; ///< losses S0 (1/s), S1 (s)
     int mallet;              ///< place in fit_mallets
     int dynamic;             ///< place in fit_dynamics
-    double mallet_clear;     ///< distance of the next mallet over its own (dB)
+    double distance;         ///< of its blow's spectrum from the sound's (RMS dB) ...
+    double next;             ///< ... and of the next mallet's
     int of[2 * FIT_ORDERS];  ///< place of the partial that a member of the pair (m,1) is, from
                              ///< 2 (m - 1) on, cosine and sine; -1: none found
     double score;
     double cents; ///< RMS of the partials beside its own
 } fit_drum;
-
-extern const char *const fit_mallets[], *const fit_dynamics[];
 
 /// A mode of it.
 typedef struct fit_mode {
@@ -33,13 +32,24 @@ typedef struct fit_mode {
 /// Its modes (m, n), rising in frequency; how many, or 0 with the reason.
 int fit_drum_modes(const fit_drum *drum, fit_mode modes[FIT_MODES], himc_error *error);
 
+typedef struct himc_drum himc_drum;
+
+/// It, at `rate` (Hz), with that mallet; owned. NULL with the reason.
+himc_drum *fit_drum_make(const fit_drum *drum, int mallet, double rate, himc_error *error);
+
+/// Strikes a drum at `x` (m) at that speed (m/s) and adds what two ears hear of it, for `seconds`.
+bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_sound *out,
+              himc_error *error);
+
 /// The drum that has these partials, but for its mallet. False with the reason: no timpano has.
 bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *error);
 
-/// Chooses the mallet whose blow has the spectrum of the sound's.
+/// Chooses the mallet and the speed whose blow has the spectrum of the sound's.
 bool fit_drum_strike(const partials_sound *sound, fit_drum *drum, himc_error *error);
 
-/// The score that makes and strikes it.
-void fit_drum_score(const fit_drum *drum, const char *name, char *text, size_t size);
+#define FIT_PLACE 0.75 ///< of a blow from the centre, per radius: the usual one
+extern const double fit_speeds[]; ///< (m/s) of `dynamic`
+/// Names of `mallet` and `dynamic`, ended by NULL.
+extern const char *const fit_mallets[], *const fit_dynamics[];
 
 #endif

@@ -1,0 +1,138 @@
+/// fit_strike.c: which mallet has struck, by the spectrum of the blow.
+///
+/// Every mallet strikes the drum at soft, middle and strong speed, at the usual place, heard by
+/// two ears. The first 60 ms are compared in half octaves, their means made alike, in which what
+/// the recording has as noise counts as such in both.
+#include "fit_drum.h"
+
+#include "himc/drum.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LENGTH 0.06      // (s) of the blow; chosen: contacts last 2 to 12 ms
+#define LOW 56.0         // (Hz) of the first band
+#define BANDS 14         // half octaves, to 7 kHz
+#define LINES 12         // frequencies in each
+#define DYNAMICS 3
+#define HEARD 0.6        // (s) as long as a stroke must be
+#define BLOCK 1024
+#define MALLETS 4
+
+const char *const fit_mallets[] = {"soft", "medium", "hard", "wood", NULL};
+const char *const fit_dynamics[] = {"p", "mf", "ff", NULL};
+const double fit_speeds[] = {1.3, 2.9, 5.1}; // of legato strokes
+
+typedef struct spectrum {
+    double power[BANDS];
+} spectrum;
+
+// of one channel, in a window that falls to 0
+static void add_spectrum(const double *x, size_t length, double rate, spectrum *s)
+{
+    for (int b = 0; b < BANDS; b++)
+        for (int l = 0; l < LINES; l++) {
+            double f = LOW * pow(2, 0.5 * (b + (l + 0.5) / LINES)), re = 0, im = 0;
+            double turn = 2 * HIMC_PI * f / rate, c = cos(turn), sine = sin(turn), u = 1, v = 0;
+            for (size_t i = 0; i < length && f < 0.45 * rate; i++) {
+                double value = x[i] * (1 + cos(HIMC_PI * (double)i / (double)length)), next;
+                re += value * u;
+                im += value * v;
+                next = u * c - v * sine;
+                v = u * sine + v * c;
+                u = next;
+            }
+            s->power[b] += (re * re + im * im) * pow(2, 0.5 * b);
+        }
+}
+
+bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_sound *out,
+              himc_error *error)
+{
+    double rate = himc_drum_rate(drum), row[BLOCK];
+    size_t frames = (size_t)(seconds * rate);
+    float *heard = calloc(2 * (frames + BLOCK), sizeof *heard);
+    bool good = heard ? himc_drum_set_usual_listener(drum, error) &&
+                            himc_drum_strike_at(drum, 0, x, 0, speed, error)
+                      : himc_error_set(error, "out of memory");
+    for (size_t at = 0; good && at < frames; at += BLOCK) {
+        himc_drum_advance(drum, BLOCK, NULL, NULL, NULL);
+        for (int c = 0; c < 2; c++) {
+            himc_drum_read_channel(drum, c, at, BLOCK, row);
+            for (size_t i = 0; i < BLOCK; i++)
+                heard[2 * (at + i) + (size_t)c] = (float)row[i];
+        }
+    }
+    good = good && partials_add(out, heard, frames, 2, rate, "the drum made", error);
+    free(heard);
+    return good;
+}
+
+static bool blow(const fit_drum *d, int mallet, double speed, double rate, spectrum *out,
+                 himc_error *error)
+{
+    himc_drum *drum = fit_drum_make(d, mallet, rate, error);
+    partials_sound heard = {.tracks = 0};
+    bool good = drum && fit_hear(drum, -FIT_PLACE * 0.0127 * d->inches, speed, HEARD, &heard, error);
+    *out = (spectrum){{0}};
+    for (int i = 0; i < heard.tracks; i++)
+        add_spectrum(heard.track[i], (size_t)(LENGTH * rate), rate, out);
+    partials_sound_free(&heard);
+    himc_drum_release(drum);
+    return good;
+}
+
+// RMS over the bands (dB), the mean set aside
+static double apart(const spectrum *found, const spectrum *noise, const spectrum *made)
+{
+    double difference[BANDS], mean = 0, sum = 0, offset = 0, weight = 0;
+    for (int round = 0; round < 4; round++) {
+        mean = weight = 0;
+        for (int b = 0; b < BANDS; b++) {
+            double floor = 4 * noise->power[b] + 1e-12 * found->power[0];
+            double level = 10 * log10(found->power[b] + floor);
+            difference[b] = level - 10 * log10(made->power[b] * pow(10, 0.1 * offset) + floor);
+            double w = found->power[b] / (found->power[b] + floor);
+            mean += w * difference[b];
+            weight += w;
+        }
+        offset += mean / weight;
+    }
+    for (int b = 0; b < BANDS; b++)
+        sum += difference[b] * difference[b];
+    return sqrt(sum / BANDS);
+}
+
+bool fit_drum_strike(const partials_sound *sound, fit_drum *d, himc_error *error)
+{
+    spectrum found = {{0}}, noise = {{0}}, made;
+    size_t length = (size_t)(LENGTH * sound->rate);
+    for (int i = 0; i < sound->tracks; i++) {
+        add_spectrum(sound->track[i], length, sound->rate, &found);
+        add_spectrum(sound->track[i] + sound->length[i] - length, length, sound->rate, &noise);
+    }
+    d->distance = d->next = INFINITY;
+    for (int mallet = 0; mallet < MALLETS; mallet++) {
+        double best = INFINITY;
+        int dynamic = 0;
+        for (int v = 0; v < DYNAMICS; v++) {
+            if (!blow(d, mallet, fit_speeds[v], sound->rate, &made, error))
+                return false;
+            double here = apart(&found, &noise, &made);
+            if (here < best) {
+                best = here;
+                dynamic = v;
+            }
+        }
+        if (best < d->distance) {
+            d->next = d->distance;
+            d->distance = best;
+            d->mallet = mallet;
+            d->dynamic = dynamic;
+        } else
+            d->next = fmin(d->next, best);
+    }
+    return true;
+}
