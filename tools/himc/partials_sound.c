@@ -16,6 +16,7 @@
 #define LONGEST 20.0     // (s) of it that is used
 #define READ_LONGEST 300 // (s) of a file
 #define NOISY (-20.0)    // (dB) noise beside the first .5 s
+#define STEADY 0.5       // level at the end per that at the onset: nothing was struck
 #define FLAT 4           // samples of one value at the peak ...
 #define FLATS 3          // ... so often are no chance
 #define RISE 4.0         // of the envelope within 50 ms: another stroke ...
@@ -84,13 +85,12 @@ static bool check_one(const stroke *s, himc_error *error)
     return true;
 }
 
-// what sounds before the onset, else at the end (dB re the first .5 s)
+// what sounds before the onset (dB re the first .5 s); without a time before it nothing is known
 static double noise_of(const stroke *s)
 {
-    size_t before = (size_t)(0.02 * s->rate), part = s->frames / 20;
+    size_t before = (size_t)(0.02 * s->rate);
     double sound = level(s, s->onset, (size_t)(LEAST * s->rate));
-    double floor = s->onset > 4 * before ? level(s, 0, s->onset - before)
-                                         : level(s, s->frames - part, part);
+    double floor = s->onset > 4 * before ? level(s, 0, s->onset - before) : 0;
     return 20 * log10(fmax(floor, 1e-9 * sound) / sound);
 }
 
@@ -108,6 +108,11 @@ static bool check(const stroke *s, double *noise, himc_error *error)
     if (here > NOISY)
         return himc_error_set(error, "%s: noise at %.0f dB of the stroke, expected below %.0f dB",
                               s->name, here, NOISY);
+    size_t part = s->frames / 20;
+    double left = level(s, s->frames - part, part) / level(s, s->onset, part);
+    if (left > STEADY)
+        return himc_error_set(error, "%s: as loud at its end as at its beginning, expected a stroke",
+                              s->name);
     *noise = fmax(*noise, here);
     return true;
 }
