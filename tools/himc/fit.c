@@ -15,6 +15,7 @@
 #define HIGHEST 1200.0   // (Hz) of a timpano
 #define SECONDS 4.0      // of the blow that is set beside the recording
 #define NEAR 0.015       // per frequency: the same partial
+#define ALIKE 0.003      // per frequency: so near it is
 #define SURE 6.0         // (dB) clear of the others
 #define STEADY 0.2       // (Hz)
 
@@ -124,7 +125,7 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
     if (!partials_find(&f->sound, f->list ? FIT_LIST_HIGHEST : HIGHEST, &f->found, error))
         return false;
     name_drum(out, f->name, sizeof f->name);
-    if (!f->list && !fit_drum_find(&f->found, &f->drum, error)) {
+    if (!f->list && !fit_drum_find(&f->found, !kind, &f->drum, error)) {
         if (kind || !partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error))
             return false;
         f->list = true;
@@ -150,16 +151,17 @@ static const partial *nearest(const fit *f, const partial *p)
     return best;
 }
 
-// the surest partials, those of a drum first
+// of a drum the partials that it has, of a list the clear ones
 static int rows(const fit *f, int out[ROWS])
 {
     int count = 0;
     for (int i = 0; i < f->found.count && count < ROWS; i++) {
-        const partial *p = &f->found.row[i];
+        const partial *p = &f->found.row[i], *q = nearest(f, p);
         bool member = false;
         for (int k = 0; k < 2 * FIT_ORDERS; k++)
             member = member || (!f->list && f->drum.of[k] == i);
-        if (member || (p->clear > (f->list ? 0 : 2 * SURE) && p->frequency_error < STEADY))
+        bool alike = q && fabs(q->frequency / p->frequency - 1) < ALIKE;
+        if (member || (p->clear > SURE && p->frequency_error < STEADY && (alike || f->list)))
             out[count++] = i;
     }
     return count;
@@ -173,12 +175,15 @@ static void report(const fit *f, bool json)
 {
     int row[ROWS], count = rows(f, row);
     const fit_drum *d = &f->drum;
-    double strongest = -INFINITY, made = -INFINITY;
+    double strongest = -INFINITY, louder = 0; // the made ones, in the mean
+    int pairs = 0;
     for (int i = 0; i < count; i++) {
         const partial *p = &f->found.row[row[i]], *q = nearest(f, p);
         strongest = fmax(strongest, p->level);
-        made = q ? fmax(made, q->level) : made;
+        louder += q ? q->level - p->level : 0;
+        pairs += q != NULL;
     }
+    louder /= pairs ? pairs : 1;
     printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n", f->list ? "modes" : "timpano");
     if (!f->list)
         printf(json ? "\"inches\": %g, \"tune_hz\": %.4f, \"decay_s0\": %g, \"decay_s1\": %g, "
@@ -200,7 +205,7 @@ static void report(const fit *f, bool json)
         if (q)
             printf(json ? ", \"made_hz\": %.3f, \"made_t60_s\": %.4f, \"made_level_db\": %.2f"
                         : "      %9.2f %6.2f %6.1f",
-                   q->frequency, q->t60, q->level - made);
+                   q->frequency, q->t60, q->level - louder - strongest);
         puts(json ? "}" : "");
     }
     if (json)

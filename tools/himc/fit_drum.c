@@ -225,7 +225,7 @@ static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *
     return true;
 }
 
-bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *error)
+bool fit_drum_find(const partials_list *partials, bool sure, fit_drum *out, himc_error *error)
 {
     int candidates[STRONGEST];
     int count = strongest(partials, candidates);
@@ -248,7 +248,7 @@ bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *err
             if (d.score > out->score)
                 *out = d;
         }
-    if (out->score < LEAST_SCORE)
+    if (!(out->score > (sure ? LEAST_SCORE : -INFINITY)))
         return himc_error_set(error, "no timpano has these partials, expected --instrument modes");
     return find_losses(partials, out, error);
 }

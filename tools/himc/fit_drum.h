@@ -41,8 +41,9 @@ himc_drum *fit_drum_make(const fit_drum *drum, int mallet, double rate, himc_err
 bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_sound *out,
               himc_error *error);
 
-/// The drum that has these partials, but for its mallet. False with the reason: no timpano has.
-bool fit_drum_find(const partials_list *partials, fit_drum *out, himc_error *error);
+/// The drum that has these partials, but for its mallet; if it need not be `sure`, the likeliest.
+/// False with the reason: no timpano has.
+bool fit_drum_find(const partials_list *partials, bool sure, fit_drum *out, himc_error *error);
 
 /// Chooses the mallet and the speed whose blow has the spectrum of the sound's.
 bool fit_drum_strike(const partials_sound *sound, fit_drum *drum, himc_error *error);
