@@ -15,6 +15,7 @@
 #define HIGHEST 1200.0   // (Hz) of a timpano
 #define SECONDS 4.0      // of the blow that is set beside the recording
 #define NEAR 0.015       // per frequency: the same partial
+#define UNKNOWN (-170.0) // (dB) digital silence before the stroke, or nothing
 #define ALIKE 0.003      // per frequency: so near it is
 #define SURE 6.0         // (dB) clear of the others
 #define STEADY 0.2       // (Hz)
@@ -99,11 +100,11 @@ static bool hear_again(fit *f, himc_error *error)
 {
     const fit_drum *d = &f->drum;
     double rate = f->sound.rate < 16000 ? 48000 : f->sound.rate;
-    himc_drum *drum = f->list ? fit_list_drum(f->beside, rate, error)
-                              : fit_drum_make(d, d->mallet, rate, error);
+    himc_drum *drum =
+        f->list ? fit_list_drum(f->beside, rate, error) : fit_drum_make(d, d->mallet, rate, error);
     double x = f->list ? 0 : -FIT_PLACE * 0.0127 * d->inches;
-    bool good = drum && fit_hear(drum, x, fit_speeds[f->list ? 1 : d->dynamic], SECONDS, &f->again,
-                                 error);
+    bool good =
+        drum && fit_hear(drum, x, fit_speeds[f->list ? 2 : d->dynamic], SECONDS, &f->again, error);
     himc_drum_release(drum);
     return good && partials_find(&f->again, f->list ? FIT_LIST_HIGHEST : HIGHEST, &f->made, error);
 }
@@ -115,8 +116,7 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
         return himc_error_set(error, "no -o DRUM.txt given (himc fit --help)");
     if (kind && strcmp(kind, "timpano") && strcmp(kind, "modes"))
         return himc_error_set(error, "--instrument: %s, expected timpano or modes", kind);
-    if (!cli_ending_is("-o", out, ".txt", error) ||
-        !cli_apart(out, a->repeated, a->repeats, error))
+    if (!cli_ending_is("-o", out, ".txt", error) || !cli_apart(out, a->repeated, a->repeats, error))
         return false;
     for (int i = 0; i < a->repeats; i++)
         if (!partials_read(&f->sound, a->repeated[i], error))
@@ -142,7 +142,8 @@ static const partial *nearest(const fit *f, const partial *p)
     const partial *best = NULL;
     double most = NEAR * p->frequency;
     for (int i = 0; i < f->made.count; i++) {
-        double apart = fabs(f->made.row[i].frequency - p->frequency) + 0.02 * f->made.row[i].frequency_error;
+        double apart =
+            fabs(f->made.row[i].frequency - p->frequency) + 0.02 * f->made.row[i].frequency_error;
         if (apart < most && f->made.row[i].clear > 0) {
             most = apart;
             best = &f->made.row[i];
@@ -186,14 +187,20 @@ static void report(const fit *f, bool json)
     louder /= pairs ? pairs : 1;
     printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n", f->list ? "modes" : "timpano");
     if (!f->list)
-        printf(json ? "\"inches\": %g, \"tune_hz\": %.4f, \"decay_s0\": %g, \"decay_s1\": %g, "
-                      "\"mallet\": \"%s\", \"dynamic\": \"%s\", \"mallet_db\": %.2f, "
-                      "\"next_mallet_db\": %.2f, "
-                    : "drum        %g inches, tuned to %.2f Hz, losses %.3g 1/s and %.3g s\n"
-                      "blow        %s mallet, %s: spectrum within %.1f dB, the next mallet's %.1f\n",
+        printf(json
+                   ? "\"inches\": %g, \"tune_hz\": %.4f, \"decay_s0\": %g, \"decay_s1\": %g, "
+                     "\"mallet\": \"%s\", \"dynamic\": \"%s\", \"mallet_db\": %.2f, "
+                     "\"next_mallet_db\": %.2f, "
+                   : "drum        %g inches, tuned to %.2f Hz, losses %.3g 1/s and %.3g s\n"
+                     "blow        %s mallet, %s: spectrum within %.1f dB, the next mallet's %.1f\n",
                d->inches, d->tune, d->constant, d->square, fit_mallets[d->mallet],
                fit_dynamics[d->dynamic], d->distance, d->next);
-    printf(json ? "\"noise_db\": %.1f, \"partials\": [" : "noise       %.0f dB\n\n", f->sound.noise);
+    if (f->sound.noise > UNKNOWN)
+        printf(json ? "\"noise_db\": %.1f, " : "noise       %.0f dB\n", f->sound.noise);
+    else
+        fputs(json ? "\"noise_db\": null, " : "noise       not known: nothing before the stroke\n",
+              stdout);
+    fputs(json ? "\"partials\": [" : "\n", stdout);
     if (!json)
         puts("    found (Hz, +-; T60 s, +-; dB)              made (Hz; T60 s; dB)");
     for (int i = 0; i < count; i++) {

@@ -12,24 +12,28 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define RATE 48000.0
-#define LOWEST 55.0    // of (1,1) (Hz)
-#define HIGHEST 290.0  // (Hz)
-#define STRONGEST 8    // partials that may be (1,1)
-#define NEAR 0.015     // a partial this near a mode may be it (per frequency) ...
-#define CLOSE 0.004    // ... and at this distance counts half
-#define CLEAREST 25.0  // (dB) more counts no more
-#define LEAST_CLEAR 6. // (dB) less is no partial
-#define STEADY 0.08    // (Hz) a partial that moves so much counts half
-#define DECAYS 0.7     // of ln T60: counts half
-#define UP_TO 2.6      // partials up to this multiple of (1,1) are judged; above modes are dense
+#define LOWEST 55.0     // of (1,1) (Hz)
+#define HIGHEST 290.0   // (Hz)
+#define STRONGEST 8     // partials that may be (1,1)
+#define NEAR 0.015      // a partial this near a mode may be it (per frequency) ...
+#define CLOSE 0.004     // ... and at this distance counts half
+#define CLEAREST 25.0   // (dB) more counts no more
+#define LEAST_CLEAR 6.  // (dB) less is no partial
+#define STEADY 0.08     // (Hz) a partial that moves so much counts half
+#define STEADY_PART 0.1 // ... beside so much of 1/T60
+#define DECAYS 0.7      // of ln T60: counts half
+#define UP_TO 2.6       // partials up to this multiple of (1,1) are judged; above modes are dense
+#define DOWN_TO 0.6     // ... and so far below it: a room has poles everywhere
+#define LOUD 40.0       // (dB) below the strongest a partial counts nothing
 #define UNEXPLAINED 0.5 // a partial that the drum has not counts so much against it
-#define NEEDED 3       // (1,1) .. (3,1) are heard of every timpano ...
-#define MISSING 10.0   // ... or it is less likely (dB)
-#define TUNINGS 3      // rounds
-#define LEAST_SCORE 10 // chosen
+#define NEEDED 3        // (1,1) .. (3,1) are heard of every timpano ...
+#define MISSING 10.0    // ... or it is less likely (dB)
+#define TUNINGS 3       // rounds
+#define LEAST_SCORE 10  // chosen
 
 // what players tune them to: F3 to C4, D3 to A3, A2 to F3, F2 to C#3, C2 to A2 (Hz)
 static const struct {
@@ -91,7 +95,7 @@ static const fit_mode *member(const fit_mode *modes, int count, int k)
 // how surely it is a partial (dB): clear of others, and in one place in all windows
 static double worth(const partial *p)
 {
-    double moves = p->frequency_error / STEADY;
+    double moves = p->frequency_error / (STEADY + STEADY_PART / p->t60);
     return fmax(0, fmin(p->clear, CLEAREST) - LEAST_CLEAR) / (1 + moves * moves);
 }
 
@@ -125,16 +129,19 @@ static void assign(const partials_list *partials, const fit_mode *modes, int cou
 static double judge(const partials_list *partials, const fit_mode *modes, int count,
                     const fit_drum *d)
 {
-    double score = 0;
+    double score = 0, strongest = -INFINITY;
+    for (int i = 0; i < partials->count; i++)
+        if (worth(&partials->row[i]) > 0)
+            strongest = fmax(strongest, partials->row[i].energy);
     for (int i = 0; i < partials->count; i++) {
         const partial *p = &partials->row[i];
-        double most = 0;
-        if (p->frequency < LOWEST || p->frequency > UP_TO * d->tune)
+        double most = 0, loud = fmax(0, 1 + (p->energy - strongest) / LOUD);
+        if (p->frequency < DOWN_TO * d->tune || p->frequency > UP_TO * d->tune)
             continue;
         for (int k = 0; k < count; k++)
             if (modes[k].m > 0 && modes[k].n <= 2)
                 most = fmax(most, likeness(p, &modes[k]));
-        score += worth(p) * (most - UNEXPLAINED * (1 - most));
+        score += worth(p) * loud * (most - UNEXPLAINED * (1 - most));
     }
     for (int k = 0; k < 2 * NEEDED; k += 2)
         score -= d->of[k] < 0 && d->of[k + 1] < 0 ? MISSING : 0;
@@ -230,6 +237,14 @@ bool fit_drum_find(const partials_list *partials, bool sure, fit_drum *out, himc
     int candidates[STRONGEST];
     int count = strongest(partials, candidates);
     out->score = -INFINITY;
+    if (getenv("FITDEBUG"))
+        for (int i = 0; i < partials->count; i++) {
+            const partial *p = &partials->row[i];
+            if (worth(p) > 2)
+                fprintf(stderr, "%.2f %.2f t %.2f %.2f lev %.1f clear %.1f worth %.1f\n",
+                        p->frequency, p->frequency_error, p->t60, p->t60_error, p->level, p->clear,
+                        worth(p));
+        }
     for (size_t s = 0; s < SIZES; s++)
         for (int i = 0; i < count; i++) {
             fit_drum d = {.inches = sizes[s].inches,
@@ -243,8 +258,11 @@ bool fit_drum_find(const partials_list *partials, bool sure, fit_drum *out, himc
                 if (round == TUNINGS - 1)
                     d.tune = tune;
             }
-            d.score -= OUTSIDE * fmax(0, fmax(log2(d.tune / sizes[s].high),
-                                              log2(sizes[s].low / d.tune)));
+            d.score -=
+                OUTSIDE * fmax(0, fmax(log2(d.tune / sizes[s].high), log2(sizes[s].low / d.tune)));
+            if (getenv("FITDEBUG"))
+                fprintf(stderr, "size %g tune %.2f score %.1f cents %.1f\n", d.inches, d.tune,
+                        d.score, d.cents);
             if (d.score > out->score)
                 *out = d;
         }

@@ -48,7 +48,7 @@ bool fit_drum_find(const partials_list *partials, bool sure, fit_drum *out, himc
 /// Chooses the mallet and the speed whose blow has the spectrum of the sound's.
 bool fit_drum_strike(const partials_sound *sound, fit_drum *drum, himc_error *error);
 
-#define FIT_PLACE 0.75 ///< of a blow from the centre, per radius: the usual one
+#define FIT_PLACE 0.75            ///< of a blow from the centre, per radius: the usual one
 extern const double fit_speeds[]; ///< (m/s) of `dynamic`
 /// Names of `mallet` and `dynamic`, ended by NULL.
 extern const char *const fit_mallets[], *const fit_dynamics[];

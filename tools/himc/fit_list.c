@@ -12,13 +12,13 @@
 #include <math.h>
 #include <string.h>
 
-#define MODES 60     // the strongest; chosen
-#define RADIUS 0.1   // (m) of the struck disc, chosen
-#define MASS 0.05    // (kg) chosen
+#define MODES 60      // the strongest; chosen
+#define RADIUS 0.1    // (m) of the struck disc, chosen
+#define MASS 0.05     // (kg) chosen
 #define PRESSURE 1e-4 // of the loudest mode (Pa s^2/m); as of the lists of lists.c
 #define ROUNDS 2
-#define CLEAR 0.0    // (dB) a partial less clear is the room's
-#define NEAR 1.5     // (Hz)
+#define CLEAR 0.0 // (dB) a partial less clear is the room's
+#define NEAR 1.5  // (Hz)
 #define SECONDS 4.0
 
 typedef struct list {
@@ -50,8 +50,9 @@ static bool write(const list *l, const char *path, himc_error *error)
         pitch = l->of[i]->energy > strongest ? l->of[i]->frequency : pitch;
         strongest = fmax(strongest, l->of[i]->energy);
     }
-    fprintf(file.stream, "# made by himc fit\npitch %.6g\nmallet 1e9 1.5 0.03\nsurface struck disc %g\n",
-            pitch, RADIUS);
+    fprintf(file.stream,
+            "# made by himc fit\npitch %.6g\nmallet 1e9 1.5 0.03\nsurface struck disc %g\n", pitch,
+            RADIUS);
     for (int i = 0; i < l->count; i++)
         fprintf(file.stream, "pressure %.4g\nmode %.7g %.4g %g 1 1\n",
                 fmax(1e-12, PRESSURE * l->pressure[i] / loudest), l->of[i]->frequency,
@@ -84,7 +85,7 @@ static bool correct(list *l, const char *path, double rate, himc_error *error)
     static partials_list made; // large
     partials_sound heard = {.tracks = 0};
     himc_drum *drum = fit_list_drum(path, rate, error);
-    bool good = drum && fit_hear(drum, 0, fit_speeds[1], SECONDS, &heard, error) &&
+    bool good = drum && fit_hear(drum, 0, fit_speeds[2], SECONDS, &heard, error) &&
                 partials_find(&heard, FIT_LIST_HIGHEST, &made, error);
     for (int i = 0; good && i < l->count; i++) {
         const partial *best = NULL;
@@ -110,7 +111,8 @@ bool fit_list(const partials_sound *sound, const partials_list *found, const cha
     list l = {.count = 0};
     choose(found, &l);
     if (l.count == 0)
-        return himc_error_set(error, "no partial is clear of the noise, expected a sound that rings");
+        return himc_error_set(error,
+                              "no partial is clear of the noise, expected a sound that rings");
     bool good = write(&l, path, error);
     for (int round = 0; good && round < ROUNDS; round++)
         good = correct(&l, path, sound->rate, error) && write(&l, path, error);

@@ -1,8 +1,8 @@
 /// fit_strike.c: which mallet has struck, by the spectrum of the blow.
 ///
-/// Every mallet strikes the drum at soft, middle and strong speed, at the usual place, heard by
-/// two ears. The first 60 ms are compared in half octaves, their means made alike, in which what
+/// The performer strikes the drum with every mallet from soft to strong, heard by two ears. The first 60 ms are compared in half octaves, their means made alike, in which what
 /// the recording has as noise counts as such in both.
+#include "cli.h"
 #include "fit_drum.h"
 
 #include "himc/drum.h"
@@ -12,18 +12,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LENGTH 0.06      // (s) of the blow; chosen: contacts last 2 to 12 ms
-#define LOW 56.0         // (Hz) of the first band
-#define BANDS 14         // half octaves, to 7 kHz
-#define LINES 12         // frequencies in each
-#define DYNAMICS 3
-#define HEARD 0.6        // (s) as long as a stroke must be
+#define LENGTH 0.06 // (s) of the blow; chosen: contacts last 2 to 12 ms
+#define LOW 56.0    // (Hz) of the first band
+#define BANDS 14    // half octaves, to 7 kHz
+#define LINES 12    // frequencies in each
+#define DYNAMICS 5
+#define HEARD 1.1 // (s) a beat, and as long as a stroke must be
 #define BLOCK 1024
 #define MALLETS 4
 
 const char *const fit_mallets[] = {"soft", "medium", "hard", "wood", NULL};
-const char *const fit_dynamics[] = {"p", "mf", "ff", NULL};
-const double fit_speeds[] = {1.3, 2.9, 5.1}; // of legato strokes
+const char *const fit_dynamics[] = {"p", "mp", "mf", "f", "ff", NULL};
+const double fit_speeds[] = {1.3, 2, 2.9, 3.9, 5.1}; // of legato strokes
 
 typedef struct spectrum {
     double power[BANDS];
@@ -70,17 +70,48 @@ bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_
     return good;
 }
 
-static bool blow(const fit_drum *d, int mallet, double speed, double rate, spectrum *out,
+// a performance in which the drum is struck once
+static himc_performance *perform(const fit_drum *d, int mallet, int dynamic, double rate,
+                                 himc_error *error)
+{
+    char stroke[64];
+    snprintf(stroke, sizeof stroke, "stroke 1 right legato %s", fit_dynamics[dynamic]);
+    himc_performance_config config = himc_performance_default();
+    config.sample_rate = rate;
+    config.physics_rate = fmin(config.physics_rate, rate);
+    config.heard = true;
+    himc_performance *p = himc_performance_new(&config, error);
+    himc_drum *drum = p ? fit_drum_make(d, mallet, rate, error) : NULL;
+    bool good = drum && himc_performance_add_drum(p, drum, error) &&
+                cli_tell(p, "tempo 120", NULL, error) && cli_tell(p, stroke, NULL, error) &&
+                cli_tell(p, "play", NULL, error);
+    himc_drum_release(drum);
+    if (good)
+        return p;
+    himc_performance_free(p);
+    return NULL;
+}
+
+// what is heard of it until a little after the blow
+static bool blow(const fit_drum *d, int mallet, int dynamic, double rate, spectrum *out,
                  himc_error *error)
 {
-    himc_drum *drum = fit_drum_make(d, mallet, rate, error);
-    partials_sound heard = {.tracks = 0};
-    bool good = drum && fit_hear(drum, -FIT_PLACE * 0.0127 * d->inches, speed, HEARD, &heard, error);
+    size_t frames = (size_t)(HEARD * rate);
+    float *heard = calloc(2 * (frames + BLOCK), sizeof *heard);
+    himc_performance *p = heard ? perform(d, mallet, dynamic, rate, error) : NULL;
+    partials_sound sound = {.tracks = 0};
+    bool good = heard || himc_error_set(error, "out of memory");
+    for (size_t at = 0; p && at < frames; at += BLOCK) {
+        himc_performance_process(p, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
+        cli_mix(p, at, BLOCK, 2, heard + 2 * at);
+    }
+    good = good && p && partials_add(&sound, heard, frames, 2, rate, "the drum made", error);
     *out = (spectrum){{0}};
-    for (int i = 0; i < heard.tracks; i++)
-        add_spectrum(heard.track[i], (size_t)(LENGTH * rate), rate, out);
-    partials_sound_free(&heard);
-    himc_drum_release(drum);
+    for (int i = 0; i < sound.tracks; i++)
+        add_spectrum(sound.track[i], (size_t)(LENGTH * rate), rate, out);
+    partials_sound_free(&sound);
+    himc_performance_free(p);
+    free(heard);
     return good;
 }
 
@@ -118,7 +149,7 @@ bool fit_drum_strike(const partials_sound *sound, fit_drum *d, himc_error *error
         double best = INFINITY;
         int dynamic = 0;
         for (int v = 0; v < DYNAMICS; v++) {
-            if (!blow(d, mallet, fit_speeds[v], sound->rate, &made, error))
+            if (!blow(d, mallet, v, sound->rate, &made, error))
                 return false;
             double here = apart(&found, &noise, &made);
             if (here < best) {

@@ -300,7 +300,8 @@ static void compare_neighbours(partials_list *p)
     p->room = n < 10 ? 0 : late[n / 2];
 }
 
-bool partials_find(const partials_sound *sound, double highest, partials_list *out, himc_error *error)
+bool partials_find(const partials_sound *sound, double highest, partials_list *out,
+                   himc_error *error)
 {
     double width;
     out->count = 0;

@@ -20,7 +20,7 @@ typedef struct partial {
     double level;           ///< at the onset, of all channels (dB re the sound's peak)
     double phase;           ///< at the onset, of the first channel (rad)
     double energy;          ///< 10 lg of what it has over all time (dB)
-    double clear;           ///< by which that, or its level after .7 s, stands out of its neighbours' (dB)
+    double clear; ///< by which that, or its level after .7 s, stands out of its neighbours' (dB)
 } partial;
 
 /// What was heard, each channel of each stroke from its onset on.
@@ -47,6 +47,7 @@ bool partials_add(partials_sound *sound, const float *samples, size_t frames, in
 void partials_sound_free(partials_sound *sound);
 
 /// All partials up to `highest` (Hz). False with the reason, without memory.
-bool partials_find(const partials_sound *sound, double highest, partials_list *out, himc_error *error);
+bool partials_find(const partials_sound *sound, double highest, partials_list *out,
+                   himc_error *error);
 
 #endif

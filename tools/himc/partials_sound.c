@@ -111,8 +111,8 @@ static bool check(const stroke *s, double *noise, himc_error *error)
     size_t part = s->frames / 20;
     double left = level(s, s->frames - part, part) / level(s, s->onset, part);
     if (left > STEADY)
-        return himc_error_set(error, "%s: as loud at its end as at its beginning, expected a stroke",
-                              s->name);
+        return himc_error_set(
+            error, "%s: as loud at its end as at its beginning, expected a stroke", s->name);
     *noise = fmax(*noise, here);
     return true;
 }

@@ -82,7 +82,8 @@ himc_linear himc_linear_exponentials(int samples, int channels, const double *z,
         Eigen::SelfAdjointEigenSolver<complex_columns> spaces(covariance(values, lags));
         if (spaces.info() != Eigen::Success)
             return HIMC_LINEAR_UNSOLVED;
-        double noise = std::max(spaces.eigenvalues()[lags / 4], 1e-12 * spaces.eigenvalues()[lags - 1]);
+        double noise =
+            std::max(spaces.eigenvalues()[lags / 4], 1e-12 * spaces.eigenvalues()[lags - 1]);
         *found = std::min(most, (int)(spaces.eigenvalues().array() > clear * noise).count());
         if (*found == 0)
             return HIMC_LINEAR_SOLVED;
