@@ -16,6 +16,8 @@
 #define SECONDS 4.0      // of the blow that is set beside the recording
 #define NEAR 0.015       // per frequency: the same partial
 #define UNKNOWN (-170.0) // (dB) digital silence before the stroke, or nothing
+#define LEAST_SCORE 0.0  // of a drum (dB) ...
+#define MOST_APART 6.0   // ... and of its blow's spectrum (dB); chosen
 #define ALIKE 0.003      // per frequency: so near it is
 #define SURE 6.0         // (dB) clear of the others
 #define STEADY 0.2       // (Hz)
@@ -109,6 +111,21 @@ static bool hear_again(fit *f, himc_error *error)
     return good && partials_find(&f->again, f->list ? FIT_LIST_HIGHEST : HIGHEST, &f->made, error);
 }
 
+// a drum; or a list, where none is like it and none is asked for
+static bool find_drum(fit *f, const char *kind, himc_error *error)
+{
+    fit_drum choice[FIT_CHOICES];
+    int count = fit_drum_find(&f->found, choice, error);
+    if (count > 0 && !fit_drum_strike(&f->sound, choice, count, &f->drum, error))
+        return false;
+    if (count > 0 && (kind || (f->drum.score > LEAST_SCORE && f->drum.distance < MOST_APART)))
+        return true;
+    f->list = !kind && partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
+    if (f->list)
+        cli_say("note: no timpano sounds so: a list of modes\n");
+    return f->list;
+}
+
 static bool work(fit *f, const cli_arguments *a, himc_error *error)
 {
     const char *kind = a->value[INSTRUMENT], *out = a->value[OUT];
@@ -125,13 +142,7 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
     if (!partials_find(&f->sound, f->list ? FIT_LIST_HIGHEST : HIGHEST, &f->found, error))
         return false;
     name_drum(out, f->name, sizeof f->name);
-    if (!f->list && !fit_drum_find(&f->found, !kind, &f->drum, error)) {
-        if (kind || !partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error))
-            return false;
-        f->list = true;
-        cli_say("note: %s: no timpano has these partials: a list of modes\n", a->repeated[0]);
-    }
-    if (!f->list && !fit_drum_strike(&f->sound, &f->drum, error))
+    if (!f->list && !find_drum(f, kind, error))
         return false;
     return (f->list ? write_list : write_drum)(f, out, error) && hear_again(f, error);
 }

@@ -12,7 +12,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define RATE 48000.0
@@ -33,7 +32,6 @@
 #define NEEDED 3        // (1,1) .. (3,1) are heard of every timpano ...
 #define MISSING 10.0    // ... or it is less likely (dB)
 #define TUNINGS 3       // rounds
-#define LEAST_SCORE 10  // chosen
 
 // what players tune them to: F3 to C4, D3 to A3, A2 to F3, F2 to C#3, C2 to A2 (Hz)
 static const struct {
@@ -232,41 +230,49 @@ static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *
     return true;
 }
 
-bool fit_drum_find(const partials_list *partials, bool sure, fit_drum *out, himc_error *error)
+// keeps the likeliest, each size and pitch once; they are in order
+static int add_choice(fit_drum *choice, int count, const fit_drum *d)
 {
-    int candidates[STRONGEST];
-    int count = strongest(partials, candidates);
-    out->score = -INFINITY;
-    if (getenv("FITDEBUG"))
-        for (int i = 0; i < partials->count; i++) {
-            const partial *p = &partials->row[i];
-            if (worth(p) > 2)
-                fprintf(stderr, "%.2f %.2f t %.2f %.2f lev %.1f clear %.1f worth %.1f\n",
-                        p->frequency, p->frequency_error, p->t60, p->t60_error, p->level, p->clear,
-                        worth(p));
+    for (int i = 0; i < count; i++)
+        if (choice[i].inches == d->inches && fabs(choice[i].tune / d->tune - 1) < NEAR) {
+            if (d->score > choice[i].score)
+                choice[i] = *d;
+            return count;
         }
+    int k = count;
+    for (; k > 0 && d->score > choice[k - 1].score; k--)
+        if (k < FIT_CHOICES)
+            choice[k] = choice[k - 1];
+    if (k < FIT_CHOICES)
+        choice[k] = *d;
+    return count < FIT_CHOICES ? count + 1 : count;
+}
+
+int fit_drum_find(const partials_list *partials, fit_drum choice[FIT_CHOICES], himc_error *error)
+{
+    int candidates[STRONGEST], count = 0;
+    int first = strongest(partials, candidates);
     for (size_t s = 0; s < SIZES; s++)
-        for (int i = 0; i < count; i++) {
+        for (int i = 0; i < first; i++) {
+            double tune = partials->row[candidates[i]].frequency;
             fit_drum d = {.inches = sizes[s].inches,
-                          .tune = partials->row[candidates[i]].frequency,
+                          .tune = tune,
                           .constant = USUAL_CONSTANT,
                           .square = USUAL_SQUARE};
             for (int round = 0; round < TUNINGS; round++) {
-                double tune = d.tune;
+                tune = d.tune;
                 if (!match(partials, &d, error))
-                    return false;
-                if (round == TUNINGS - 1)
-                    d.tune = tune;
+                    return 0;
             }
+            d.tune = tune; // that `of` belongs to
             d.score -=
-                OUTSIDE * fmax(0, fmax(log2(d.tune / sizes[s].high), log2(sizes[s].low / d.tune)));
-            if (getenv("FITDEBUG"))
-                fprintf(stderr, "size %g tune %.2f score %.1f cents %.1f\n", d.inches, d.tune,
-                        d.score, d.cents);
-            if (d.score > out->score)
-                *out = d;
+                OUTSIDE * fmax(0, fmax(log2(tune / sizes[s].high), log2(sizes[s].low / tune)));
+            count = add_choice(choice, count, &d);
         }
-    if (!(out->score > (sure ? LEAST_SCORE : -INFINITY)))
-        return himc_error_set(error, "no timpano has these partials, expected --instrument modes");
-    return find_losses(partials, out, error);
+    for (int i = 0; i < count; i++)
+        if (!find_losses(partials, &choice[i], error))
+            return 0;
+    if (count == 0)
+        himc_error_set(error, "no partial is clear of the noise, expected a stroke that rings");
+    return count;
 }

@@ -41,12 +41,14 @@ himc_drum *fit_drum_make(const fit_drum *drum, int mallet, double rate, himc_err
 bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_sound *out,
               himc_error *error);
 
-/// The drum that has these partials, but for its mallet; if it need not be `sure`, the likeliest.
-/// False with the reason: no timpano has.
-bool fit_drum_find(const partials_list *partials, bool sure, fit_drum *out, himc_error *error);
+#define FIT_CHOICES 10
+/// The drums that may have these partials, but for their mallets, the likeliest first; how many, or
+/// 0 with the reason.
+int fit_drum_find(const partials_list *partials, fit_drum choice[FIT_CHOICES], himc_error *error);
 
-/// Chooses the mallet and the speed whose blow has the spectrum of the sound's.
-bool fit_drum_strike(const partials_sound *sound, fit_drum *drum, himc_error *error);
+/// Which of them it is, and the mallet and the dynamic whose blow has the spectrum of the sound's.
+bool fit_drum_strike(const partials_sound *sound, const fit_drum *choice, int count, fit_drum *out,
+                     himc_error *error);
 
 #define FIT_PLACE 0.75            ///< of a blow from the centre, per radius: the usual one
 extern const double fit_speeds[]; ///< (m/s) of `dynamic`

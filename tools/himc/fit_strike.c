@@ -1,4 +1,4 @@
-/// fit_strike.c: which mallet has struck, by the spectrum of the blow.
+/// fit_strike.c: which drum and which mallet have sounded, by the spectrum of the blow.
 ///
 /// The performer strikes the drum with every mallet from soft to strong, heard by two ears. The first 60 ms are compared in half octaves, their means made alike, in which what
 /// the recording has as noise counts as such in both.
@@ -17,7 +17,9 @@
 #define BANDS 14    // half octaves, to 7 kHz
 #define LINES 12    // frequencies in each
 #define DYNAMICS 5
-#define HEARD 1.1 // (s) a beat, and as long as a stroke must be
+#define MIDDLE 2
+#define LIKELY 0.02 // (dB of the spectrum per dB of the partials) chosen
+#define HEARD 1.1   // (s) a beat, and as long as a stroke must be
 #define BLOCK 1024
 #define MALLETS 4
 
@@ -136,34 +138,49 @@ static double apart(const spectrum *found, const spectrum *noise, const spectrum
     return sqrt(sum / BANDS);
 }
 
-bool fit_drum_strike(const partials_sound *sound, fit_drum *d, himc_error *error)
+// tries all mallets at some dynamics, and keeps what is nearer
+static bool try_blows(const spectrum *found, const spectrum *noise, double rate, int from, int to,
+                      fit_drum *d, himc_error *error)
 {
-    spectrum found = {{0}}, noise = {{0}}, made;
+    spectrum made;
+    for (int i = MALLETS * from; i < MALLETS * to; i++) {
+        int mallet = i % MALLETS, dynamic = i / MALLETS;
+        if (!blow(d, mallet, dynamic, rate, &made, error))
+            return false;
+        double here = apart(found, noise, &made);
+        if (here < d->distance) {
+            d->next = mallet == d->mallet ? d->next : d->distance;
+            d->distance = here;
+            d->mallet = mallet;
+            d->dynamic = dynamic;
+        } else if (mallet != d->mallet)
+            d->next = fmin(d->next, here);
+    }
+    return true;
+}
+
+bool fit_drum_strike(const partials_sound *sound, const fit_drum *choice, int count, fit_drum *out,
+                     himc_error *error)
+{
+    spectrum found = {{0}}, noise = {{0}};
     size_t length = (size_t)(LENGTH * sound->rate);
+    double best = INFINITY;
     for (int i = 0; i < sound->tracks; i++) {
         add_spectrum(sound->track[i], length, sound->rate, &found);
         add_spectrum(sound->track[i] + sound->length[i] - length, length, sound->rate, &noise);
     }
-    d->distance = d->next = INFINITY;
-    for (int mallet = 0; mallet < MALLETS; mallet++) {
-        double best = INFINITY;
-        int dynamic = 0;
-        for (int v = 0; v < DYNAMICS; v++) {
-            if (!blow(d, mallet, v, sound->rate, &made, error))
-                return false;
-            double here = apart(&found, &noise, &made);
-            if (here < best) {
-                best = here;
-                dynamic = v;
-            }
+    for (int i = 0; i < count; i++) {
+        fit_drum d = choice[i];
+        d.distance = d.next = INFINITY;
+        d.mallet = -1;
+        if (!try_blows(&found, &noise, sound->rate, MIDDLE, MIDDLE + 1, &d, error))
+            return false;
+        double value = d.distance - LIKELY * d.score;
+        if (value < best) {
+            best = value;
+            *out = d;
         }
-        if (best < d->distance) {
-            d->next = d->distance;
-            d->distance = best;
-            d->mallet = mallet;
-            d->dynamic = dynamic;
-        } else
-            d->next = fmin(d->next, best);
     }
-    return true;
+    return try_blows(&found, &noise, sound->rate, 0, MIDDLE, out, error) &&
+           try_blows(&found, &noise, sound->rate, MIDDLE + 1, DYNAMICS, out, error);
 }
