@@ -17,7 +17,7 @@
 #define RATE 48000.0
 #define LOWEST 55.0     // of (1,1) (Hz)
 #define HIGHEST 290.0   // (Hz)
-#define STRONGEST 8     // partials that may be (1,1)
+#define STRONGEST 10    // partials that may be (1,1)
 #define NEAR 0.015      // a partial this near a mode may be it (per frequency) ...
 #define CLOSE 0.004     // ... and at this distance counts half
 #define CLEAREST 25.0   // (dB) more counts no more
@@ -97,6 +97,17 @@ static double worth(const partial *p)
     return fmax(0, fmin(p->clear, CLEAREST) - LEAST_CLEAR) / (1 + moves * moves);
 }
 
+// the same, less for what is softer than the strongest
+static double weight(const partials_list *partials, int i)
+{
+    double strongest = -INFINITY;
+    for (int k = 0; k < partials->count; k++)
+        if (worth(&partials->row[k]) > 0)
+            strongest = fmax(strongest, partials->row[k].energy);
+    const partial *p = &partials->row[i];
+    return worth(p) * fmax(0, 1 + (p->energy - strongest) / LOUD);
+}
+
 // how near a partial is to a mode, and it rings as long: 1, or less
 static double likeness(const partial *p, const fit_mode *mode)
 {
@@ -127,19 +138,16 @@ static void assign(const partials_list *partials, const fit_mode *modes, int cou
 static double judge(const partials_list *partials, const fit_mode *modes, int count,
                     const fit_drum *d)
 {
-    double score = 0, strongest = -INFINITY;
-    for (int i = 0; i < partials->count; i++)
-        if (worth(&partials->row[i]) > 0)
-            strongest = fmax(strongest, partials->row[i].energy);
+    double score = 0;
     for (int i = 0; i < partials->count; i++) {
         const partial *p = &partials->row[i];
-        double most = 0, loud = fmax(0, 1 + (p->energy - strongest) / LOUD);
+        double most = 0;
         if (p->frequency < DOWN_TO * d->tune || p->frequency > UP_TO * d->tune)
             continue;
         for (int k = 0; k < count; k++)
             if (modes[k].m > 0 && modes[k].n <= 2)
                 most = fmax(most, likeness(p, &modes[k]));
-        score += worth(p) * loud * (most - UNEXPLAINED * (1 - most));
+        score += weight(partials, i) * (most - UNEXPLAINED * (1 - most));
     }
     for (int k = 0; k < 2 * NEEDED; k += 2)
         score -= d->of[k] < 0 && d->of[k + 1] < 0 ? MISSING : 0;
@@ -172,7 +180,7 @@ static bool match(const partials_list *partials, fit_drum *d, himc_error *error)
     return true;
 }
 
-// in the order of worth
+// in the order of weight
 static int strongest(const partials_list *partials, int *out)
 {
     int count = 0;
@@ -181,7 +189,7 @@ static int strongest(const partials_list *partials, int *out)
         int k = count;
         if (p->frequency < LOWEST || p->frequency > HIGHEST || worth(p) == 0)
             continue;
-        for (; k > 0 && worth(p) > worth(&partials->row[out[k - 1]]); k--)
+        for (; k > 0 && weight(partials, i) > weight(partials, out[k - 1]); k--)
             if (k < STRONGEST)
                 out[k] = out[k - 1];
         if (k < STRONGEST)
