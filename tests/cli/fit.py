@@ -124,8 +124,6 @@ def test_drums_are_found_again():
 
 
 def test_what_is_written_plays():
-    text = open(path("drum.txt")).read()
-    assert text.splitlines()[1].startswith("drum drum") or "drum " in text
     report_ = json.loads(good("render", path("drum.txt"), "-o", path("again.wav"), "--json"))
     assert report_["played"] == 1 and report_["missed"] == 0
     assert "radius" in open(path("drum-head.txt")).read()

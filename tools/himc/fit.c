@@ -77,11 +77,12 @@ static bool write_drum(fit *f, const char *path, himc_error *error)
     char text[1024], head[512];
     snprintf(head, sizeof head, "radius %.6g;\ndecay %.6g %.6g;\ntune %.6g;\nmallet %s;\n",
              0.0127 * d->inches, d->constant, d->square, d->tune, fit_mallets[d->mallet]);
-    snprintf(text, sizeof text,
-             "# made by himc fit\ndrum %s %g;\n%s decay %.6g %.6g;\n%s tune %.6g;\n%s mallet %s;\n"
-             "tempo 60;\nstroke 1 right legato %s;\n",
-             f->name, d->inches, f->name, d->constant, d->square, f->name, d->tune, f->name,
-             fit_mallets[d->mallet], fit_dynamics[d->dynamic]);
+    snprintf(
+        text, sizeof text,
+        "comment made by himc fit;\ndrum %s %g;\n%s decay %.6g %.6g;\n%s tune %.6g;\n%s mallet %s;\n"
+        "tempo 60;\nstroke 1 right legato %s;\n",
+        f->name, d->inches, f->name, d->constant, d->square, f->name, d->tune, f->name,
+        fit_mallets[d->mallet], fit_dynamics[d->dynamic]);
     beside(path, "head", f->beside, sizeof f->beside);
     return write_file(f->beside, head, error) && write_file(path, text, error);
 }
@@ -92,9 +93,10 @@ static bool write_list(fit *f, const char *path, himc_error *error)
     beside(path, "modes", f->beside, sizeof f->beside);
     if (!fit_list(&f->sound, &f->found, f->beside, error))
         return false;
-    snprintf(text, sizeof text,
-             "# made by himc fit\ninstrument %s modes %s;\ntempo 60;\nstroke 1 right legato mf;\n",
-             f->name, f->beside);
+    snprintf(
+        text, sizeof text,
+        "comment made by himc fit;\ninstrument %s modes %s;\ntempo 60;\nstroke 1 right legato mf;\n",
+        f->name, f->beside);
     return write_file(path, text, error);
 }
 

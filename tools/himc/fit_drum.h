@@ -37,7 +37,8 @@ typedef struct himc_drum himc_drum;
 /// It, at `rate` (Hz), with that mallet; owned. NULL with the reason.
 himc_drum *fit_drum_make(const fit_drum *drum, int mallet, double rate, himc_error *error);
 
-/// Strikes a drum at `x` (m) at that speed (m/s) and adds what two ears hear of it, for `seconds`.
+/// Strikes a drum at `x` (m) at that speed (m/s) and adds what its pickup has of it, for `seconds`,
+/// without a room.
 bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_sound *out,
               himc_error *error);
 

@@ -56,8 +56,7 @@ bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_
     double rate = himc_drum_rate(drum), row[BLOCK];
     size_t frames = (size_t)(seconds * rate);
     float *heard = calloc(2 * (frames + BLOCK), sizeof *heard);
-    bool good = heard ? himc_drum_set_usual_listener(drum, error) &&
-                            himc_drum_strike_at(drum, 0, x, 0, speed, error)
+    bool good = heard ? himc_drum_strike_at(drum, 0, x, 0, speed, error)
                       : himc_error_set(error, "out of memory");
     for (size_t at = 0; good && at < frames; at += BLOCK) {
         himc_drum_advance(drum, BLOCK, NULL, NULL, NULL);

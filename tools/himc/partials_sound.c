@@ -9,19 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CELL 0.005       // (s) of the envelope
-#define SILENT 1e-4      // peak, -80 dB of full scale
-#define BEGINS 0.1       // of the peak: there a stroke has begun
-#define LEAST 0.5        // (s) after the onset
-#define LONGEST 20.0     // (s) of it that is used
-#define READ_LONGEST 300 // (s) of a file
-#define NOISY (-20.0)    // (dB) noise beside the first .5 s
-#define STEADY 0.5       // level at the end per that at the onset: nothing was struck
-#define FLAT 4           // samples of one value at the peak ...
-#define FLATS 3          // ... so often are no chance
-#define RISE 4.0         // of the envelope within 50 ms: another stroke ...
-#define APART 0.12       // ... if it comes so late (s) ...
-#define LOUD 0.1         // ... and is so loud, per peak
+#define CELL 0.005        // (s) of the envelope
+#define SILENT 1e-4       // peak, -80 dB of full scale
+#define BEGINS 0.1        // of the peak: there a stroke has begun
+#define NEAR_LOUDEST 0.25 // of a cell's level
+#define LEAST 0.5         // (s) after the onset
+#define LONGEST 20.0      // (s) of it that is used
+#define READ_LONGEST 300  // (s) of a file
+#define NOISY (-20.0)     // (dB) noise beside the first .5 s
+#define STEADY 0.5        // level at the end per that at the onset: nothing was struck
+#define FLAT 4            // samples of one value at the peak ...
+#define FLATS 3           // ... so often are no chance
+#define RISE 4.0          // of the envelope within 50 ms: another stroke ...
+#define APART 0.12        // ... if it comes so late (s) ...
+#define LOUD 0.1          // ... and is so loud, per peak
 
 typedef struct stroke {
     const float *x;
@@ -47,12 +48,20 @@ static double level(const stroke *s, size_t from, size_t frames)
     return end > from ? sqrt(sum / ((double)(end - from) * s->channels)) : 0;
 }
 
+// the peak, and where the sound first comes near the loudest cell's level
 static void measure(stroke *s)
 {
+    size_t cell = (size_t)(CELL * s->rate);
+    double loudest = 0;
     s->peak = 0;
     for (size_t i = 0; i < s->frames * (size_t)s->channels; i++)
         s->peak = fmax(s->peak, fabs((double)s->x[i]));
-    for (s->onset = 0; s->onset < s->frames; s->onset++)
+    for (size_t i = 0; i < s->frames; i += cell)
+        loudest = fmax(loudest, level(s, i, cell));
+    size_t first = 0;
+    while (first < s->frames && level(s, first, cell) < NEAR_LOUDEST * loudest)
+        first += cell;
+    for (s->onset = first > cell ? first - cell : 0; s->onset < s->frames; s->onset++)
         for (int c = 0; c < s->channels; c++)
             if (fabs(at(s, s->onset, c)) >= BEGINS * s->peak)
                 return;
@@ -80,7 +89,7 @@ static bool check_one(const stroke *s, himc_error *error)
         double now = level(s, i, wide), before = level(s, i - wide, wide);
         if (now > RISE * before && now > LOUD * loudest)
             return himc_error_set(error, "%s: a second stroke %.2f s after the first, expected one",
-                                  s->name, (double)(i - s->onset) / s->rate);
+                                  s->name, (double)(i + wide - s->onset) / s->rate);
     }
     return true;
 }
