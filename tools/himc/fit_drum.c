@@ -31,7 +31,11 @@
 #define UNEXPLAINED 0.5 // a partial that the drum has not counts so much against it
 #define NEEDED 3        // (1,1) .. (3,1) are heard of every timpano ...
 #define MISSING 10.0    // ... or it is less likely (dB)
-#define TUNINGS 3       // rounds
+#define SHARP 0.001     // per frequency: a fine tuning
+#define STEP 0.0002
+#define SEARCHED 50 // steps either way
+#define FINE_UP_TO 3.6
+#define TUNINGS 3 // rounds
 
 // what players tune them to: F3 to C4, D3 to A3, A2 to F3, F2 to C#3, C2 to A2 (Hz)
 static const struct {
@@ -238,6 +242,48 @@ static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *
     return true;
 }
 
+// how well all modes tuned by a factor are partials, sharply
+static double accord(const partials_list *partials, const fit_mode *modes, int count, double most,
+                     double factor)
+{
+    double sum = 0;
+    for (int k = 0; k < count && modes[k].frequency < most; k++) {
+        double best = 0;
+        for (int i = 0; i < partials->count && modes[k].m > 0 && modes[k].n <= 2; i++) {
+            const partial *p = &partials->row[i];
+            double apart = (p->frequency / (factor * modes[k].frequency) - 1) / SHARP;
+            double decay = log(p->t60 / modes[k].t60) / DECAYS;
+            best = fmax(best, worth(p) * exp(-apart * apart) / (1 + decay * decay));
+        }
+        sum += best;
+    }
+    return sum;
+}
+
+// tunes a drum so that most of its modes are partials, and says which
+static bool refine(const partials_list *partials, fit_drum *d, himc_error *error)
+{
+    fit_mode modes[FIT_MODES];
+    for (int round = 0; round < 2; round++) {
+        double best = 0, tune = d->tune;
+        int count = fit_drum_modes(d, modes, error);
+        if (count == 0)
+            return false;
+        for (int i = -SEARCHED; i <= SEARCHED; i++) {
+            double factor = 1 + STEP * i;
+            double value = accord(partials, modes, count, FINE_UP_TO * d->tune, factor);
+            if (value > best) {
+                best = value;
+                tune = d->tune * factor;
+            }
+        }
+        d->tune = tune;
+    }
+    int count = fit_drum_modes(d, modes, error);
+    assign(partials, modes, count, d);
+    return count > 0;
+}
+
 // keeps the likeliest, each size and pitch once; they are in order
 static int add_choice(fit_drum *choice, int count, const fit_drum *d)
 {
@@ -278,7 +324,7 @@ int fit_drum_find(const partials_list *partials, fit_drum choice[FIT_CHOICES], h
             count = add_choice(choice, count, &d);
         }
     for (int i = 0; i < count; i++)
-        if (!find_losses(partials, &choice[i], error))
+        if (!refine(partials, &choice[i], error) || !find_losses(partials, &choice[i], error))
             return 0;
     if (count == 0)
         himc_error_set(error, "no partial is clear of the noise, expected a stroke that rings");
