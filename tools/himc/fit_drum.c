@@ -37,6 +37,10 @@
 #define FINE_UP_TO 3.6
 #define TUNINGS 3 // rounds
 
+const char *const fit_mallets[] = {"soft", "medium", "hard", "wood", NULL};
+const char *const fit_dynamics[] = {"p", "mp", "mf", "f", "ff", NULL};
+const double fit_speeds[] = {1.3, 2, 2.9, 3.9, 5.1}; // of legato strokes
+
 // what players tune them to: F3 to C4, D3 to A3, A2 to F3, F2 to C#3, C2 to A2 (Hz)
 static const struct {
     double inches, low, high;

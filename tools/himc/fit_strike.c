@@ -1,7 +1,8 @@
 /// fit_strike.c: which drum and which mallet have sounded, by the spectrum of the blow.
 ///
-/// The performer strikes the drum with every mallet from soft to strong, heard by two ears. The first 60 ms are compared in half octaves, their means made alike, in which what
-/// the recording has as noise counts as such in both.
+/// The performer strikes each drum that may be it with every mallet, mf, then the nearest one from
+/// soft to strong, heard by two ears. The first 60 ms are compared in half octaves, their means made
+/// alike, in which what the recording has as noise counts as such in both.
 #include "cli.h"
 #include "fit_drum.h"
 
@@ -22,10 +23,6 @@
 #define HEARD 1.1   // (s) a beat, and as long as a stroke must be
 #define BLOCK 1024
 #define MALLETS 4
-
-const char *const fit_mallets[] = {"soft", "medium", "hard", "wood", NULL};
-const char *const fit_dynamics[] = {"p", "mp", "mf", "f", "ff", NULL};
-const double fit_speeds[] = {1.3, 2, 2.9, 3.9, 5.1}; // of legato strokes
 
 typedef struct spectrum {
     double power[BANDS];
