@@ -33,7 +33,7 @@
 #define MISSING 10.0    // ... or it is less likely (dB)
 #define SHARP 0.001     // per frequency: a fine tuning
 #define STEP 0.0002
-#define SEARCHED 50 // steps either way
+#define SEARCHED 25 // steps either way
 #define FINE_UP_TO 3.6
 #define TUNINGS 3 // rounds
 
@@ -247,8 +247,8 @@ static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *
 }
 
 // how well all modes tuned by a factor are partials, sharply
-static double accord(const partials_list *partials, const fit_mode *modes, int count, double most,
-                     double factor)
+static double accord(const partials_list *partials, const double *weights, const fit_mode *modes,
+                     int count, double most, double factor)
 {
     double sum = 0;
     for (int k = 0; k < count && modes[k].frequency < most; k++) {
@@ -257,7 +257,7 @@ static double accord(const partials_list *partials, const fit_mode *modes, int c
             const partial *p = &partials->row[i];
             double apart = (p->frequency / (factor * modes[k].frequency) - 1) / SHARP;
             double decay = log(p->t60 / modes[k].t60) / DECAYS;
-            best = fmax(best, worth(p) * exp(-apart * apart) / (1 + decay * decay));
+            best = fmax(best, weights[i] * exp(-apart * apart) / (1 + decay * decay));
         }
         sum += best;
     }
@@ -268,6 +268,9 @@ static double accord(const partials_list *partials, const fit_mode *modes, int c
 static bool refine(const partials_list *partials, fit_drum *d, himc_error *error)
 {
     fit_mode modes[FIT_MODES];
+    double weights[PARTIALS_MOST];
+    for (int i = 0; i < partials->count; i++)
+        weights[i] = weight(partials, i);
     for (int round = 0; round < 2; round++) {
         double best = 0, tune = d->tune;
         int count = fit_drum_modes(d, modes, error);
@@ -275,7 +278,7 @@ static bool refine(const partials_list *partials, fit_drum *d, himc_error *error
             return false;
         for (int i = -SEARCHED; i <= SEARCHED; i++) {
             double factor = 1 + STEP * i;
-            double value = accord(partials, modes, count, FINE_UP_TO * d->tune, factor);
+            double value = accord(partials, weights, modes, count, FINE_UP_TO * d->tune, factor);
             if (value > best) {
                 best = value;
                 tune = d->tune * factor;

@@ -1,8 +1,8 @@
 /// fit_strike.c: which drum and which mallet have sounded, by the spectrum of the blow.
 ///
 /// The performer strikes each drum that may be it with every mallet, mf, then the nearest one from
-/// soft to strong, heard by two ears. The first 60 ms are compared in half octaves, their means made
-/// alike, in which what the recording has as noise counts as such in both.
+/// soft to strong, heard by two ears. The first 60 ms are compared in half octaves, their means
+/// made alike, in which what the recording has as noise counts as such in both.
 #include "cli.h"
 #include "fit_drum.h"
 
