@@ -1,6 +1,6 @@
 /// fit_strike.c: which drum and which mallet have sounded, by the spectrum of the blow.
 ///
-/// The performer strikes each drum that may be it with every mallet, mf, then the nearest one from
+/// The performer strikes each drum that may be it with every mallet, mf, then the nearest two from
 /// soft to strong, heard by two ears. The first 60 ms are compared in half octaves, their means
 /// made alike, in which what the recording has as noise counts as such in both.
 #include "cli.h"
@@ -19,6 +19,7 @@
 #define LINES 12    // frequencies in each
 #define DYNAMICS 5
 #define MIDDLE 2
+#define FINALISTS 2 // drums whose blows are tried at all dynamics
 #define LIKELY 0.02 // (dB of the spectrum per dB of the partials) chosen
 #define HEARD 1.1   // (s) a beat, and as long as a stroke must be
 #define BLOCK 1024
@@ -155,28 +156,41 @@ static bool try_blows(const spectrum *found, const spectrum *noise, double rate,
     return true;
 }
 
+static double unlike(const fit_drum *d)
+{
+    return d->distance - LIKELY * d->score;
+}
+
 bool fit_drum_strike(const partials_sound *sound, const fit_drum *choice, int count, fit_drum *out,
                      himc_error *error)
 {
     spectrum found = {{0}}, noise = {{0}};
     size_t length = (size_t)(LENGTH * sound->rate);
-    double best = INFINITY;
     for (int i = 0; i < sound->tracks; i++) {
         add_spectrum(sound->track[i], length, sound->rate, &found);
         add_spectrum(sound->track[i] + sound->length[i] - length, length, sound->rate, &noise);
     }
+    fit_drum likely[FINALISTS];
+    int kept = 0;
     for (int i = 0; i < count; i++) {
         fit_drum d = choice[i];
         d.distance = d.next = INFINITY;
         d.mallet = -1;
         if (!try_blows(&found, &noise, sound->rate, MIDDLE, MIDDLE + 1, &d, error))
             return false;
-        double value = d.distance - LIKELY * d.score;
-        if (value < best) {
-            best = value;
-            *out = d;
-        }
+        int k = kept < FINALISTS ? kept++ : FINALISTS;
+        for (; k > 0 && unlike(&d) < unlike(&likely[k - 1]); k--)
+            if (k < FINALISTS)
+                likely[k] = likely[k - 1];
+        if (k < FINALISTS)
+            likely[k] = d;
     }
-    return try_blows(&found, &noise, sound->rate, 0, MIDDLE, out, error) &&
-           try_blows(&found, &noise, sound->rate, MIDDLE + 1, DYNAMICS, out, error);
+    for (int i = 0; i < kept; i++) {
+        if (!try_blows(&found, &noise, sound->rate, 0, MIDDLE, &likely[i], error) ||
+            !try_blows(&found, &noise, sound->rate, MIDDLE + 1, DYNAMICS, &likely[i], error))
+            return false;
+        if (i == 0 || unlike(&likely[i]) < unlike(out))
+            *out = likely[i];
+    }
+    return kept > 0;
 }
