@@ -119,7 +119,7 @@ static bool check(const stroke *s, double *noise, himc_error *error)
                               s->name, here, NOISY);
     size_t part = s->frames / 20;
     double left = level(s, s->frames - part, part) / level(s, s->onset, part);
-    if (left > STEADY)
+    if (left > STEADY && length > 2 * LEAST) // else it may still ring
         return himc_error_set(
             error, "%s: as loud at its end as at its beginning, expected a stroke", s->name);
     *noise = fmax(*noise, here);
