@@ -76,14 +76,14 @@ for owner in "himc contributors" "three.js authors" "Russell L. Smith" "Benoit J
 done
 calls=$("$himc" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 check test_help_lists_all_calls [ "$calls" = \
-    "render evaluate edit info lesson modes import export share film play serve bench " ]
+    "render evaluate edit info lesson modes fit import export share film play serve bench " ]
 for call in $calls; do
     "$himc" $call --help >out 2>err
     check test_${call}_has_help [ "$?$(head -c 11 out)$(cat err)" = "0usage: himc" ]
 done
 
 # how it refuses what it is given
-refuses test_no_call_is_refused "expected render, evaluate, edit, info, lesson, modes, import, export, share, film, play, serve, bench"
+refuses test_no_call_is_refused "expected render, evaluate, edit, info, lesson, modes, fit, import, export, share, film, play, serve, bench"
 refuses test_unknown_call_is_refused '"drum"' drum
 refuses test_misspelt_call_is_found 'unknown call "rnder", did you mean render?' rnder piece.txt
 refuses test_misspelt_option_is_found 'unknown option --strkes, did you mean --strokes?' render piece.txt --strkes x.csv

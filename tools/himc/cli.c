@@ -162,7 +162,8 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
             return true;
     }
     // further files of an option that takes several, as a shell's *.c3d gives them
-    for (; out->repeats && strstr(call->operand, "...") && argc > optind; optind++) {
+    bool several = call->operand[0] != '[' && strstr(call->operand, "...");
+    for (; (out->repeats || several) && strstr(call->operand, "...") && argc > optind; optind++) {
         if (out->repeats == CLI_REPEATED)
             return himc_error_set(error, "more than %d files", CLI_REPEATED);
         out->repeated[out->repeats++] = argv[optind];
@@ -178,7 +179,7 @@ bool cli_read(const cli_call *call, int argc, char **argv, cli_arguments *out, h
     out->second = second && out->operand ? argv[optind + 1] : NULL;
     if (second && out->operand && !out->second)
         return himc_error_set(error, "no%s given (himc %s --help)", second, call->name);
-    if (!out->operand && call->operand[0] && call->operand[0] != '[')
+    if (!out->operand && !out->repeats && call->operand[0] && call->operand[0] != '[')
         return himc_error_set(error, "no %s given (himc %s --help)", call->operand, call->name);
     return true;
 }

@@ -45,7 +45,7 @@ typedef struct cli_call {
 } cli_call;
 
 extern const cli_call cli_render, cli_evaluate, cli_info, cli_modes, cli_import, cli_share,
-    cli_export, cli_film, cli_play, cli_serve, cli_bench, cli_edit, cli_lesson;
+    cli_export, cli_fit, cli_film, cli_play, cli_serve, cli_bench, cli_edit, cli_lesson;
 
 /// Reads the arguments after the call's name; false with one line: the fault and the allowed
 /// values.

@@ -17,8 +17,8 @@ static const cli_call *const calls[] = {
 #ifndef _WIN32 // their workers are forks
     &cli_evaluate, &cli_edit,
 #endif
-    &cli_info,     &cli_lesson, &cli_modes, &cli_import, &cli_export,
-    &cli_share,    &cli_film,   &cli_play,  &cli_serve,  &cli_bench,
+    &cli_info,     &cli_lesson, &cli_modes, &cli_fit,   &cli_import, &cli_export,
+    &cli_share,    &cli_film,   &cli_play,  &cli_serve, &cli_bench,
 };
 #define CALLS (sizeof calls / sizeof *calls)
 

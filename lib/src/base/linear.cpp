@@ -6,6 +6,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <complex>
 #include <new>
 
 namespace
@@ -15,6 +18,9 @@ using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 using columns = Eigen::MatrixXd;
 using vector = Eigen::VectorXd;
 using given = Eigen::Map<const matrix>;
+using complex_columns = Eigen::MatrixXcd;
+using complex_vector = Eigen::VectorXcd;
+using signals = Eigen::Map<const complex_columns>;
 
 himc_linear outcome(Eigen::ComputationInfo info, himc_linear otherwise)
 {
@@ -35,7 +41,63 @@ template <class work> himc_linear attempt(work solve)
 #endif
 }
 
+// the covariance of `lags` values in a row
+complex_columns covariance(const signals &z, int lags)
+{
+    complex_columns sum = complex_columns::Zero(lags, lags);
+    int places = (int)z.rows() - lags + 1;
+    for (int channel = 0; channel < z.cols(); channel++) {
+        complex_columns rows(lags, places);
+        for (int i = 0; i < lags; i++)
+            rows.row(i) = z.col(channel).segment(i, places).transpose();
+        sum.noalias() += rows * rows.adjoint();
+    }
+    return sum;
+}
+
+// what turns the space of the signal from one value to the next
+complex_vector turns(const complex_columns &space)
+{
+    auto first = space.topRows(space.rows() - 1), next = space.bottomRows(space.rows() - 1);
+    complex_columns squares = first.adjoint() * first;
+    complex_columns turn = squares.ldlt().solve(first.adjoint() * next);
+    return Eigen::ComplexEigenSolver<complex_columns>(turn, false).eigenvalues();
+}
+
+complex_columns amplitudes(const signals &z, const complex_vector &poles)
+{
+    complex_columns powers(z.rows(), poles.size());
+    for (int k = 0; k < poles.size(); k++) {
+        std::complex<double> power = std::abs(poles[k]) < 1 ? 1 : 0;
+        for (int n = 0; n < z.rows(); n++, power *= poles[k])
+            powers(n, k) = power;
+    }
+    return powers.colPivHouseholderQr().solve(z);
+}
+
 } // namespace
+
+himc_linear himc_linear_exponentials(int samples, int channels, const double *z, int most,
+                                     double clear, double *p, double *c, int *found)
+{
+    return attempt([=] {
+        signals values(reinterpret_cast<const std::complex<double> *>(z), samples, channels);
+        int lags = std::min(samples / 2, HIMC_LINEAR_LAGS);
+        Eigen::SelfAdjointEigenSolver<complex_columns> spaces(covariance(values, lags));
+        if (spaces.info() != Eigen::Success)
+            return HIMC_LINEAR_UNSOLVED;
+        double noise =
+            std::max(spaces.eigenvalues()[lags / 4], 1e-12 * spaces.eigenvalues()[lags - 1]);
+        *found = std::min(most, (int)(spaces.eigenvalues().array() > clear * noise).count());
+        if (*found == 0)
+            return HIMC_LINEAR_SOLVED;
+        complex_vector poles = turns(spaces.eigenvectors().rightCols(*found));
+        Eigen::Map<complex_vector>(reinterpret_cast<std::complex<double> *>(p), *found) = poles;
+        Eigen::Map<complex_columns>(reinterpret_cast<std::complex<double> *>(c), *found, channels) =
+            amplitudes(values, poles);
+        return HIMC_LINEAR_SOLVED;
+    });
+}
 
 himc_linear himc_linear_solve(int n, double *a, double *x)
 {

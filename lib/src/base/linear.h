@@ -37,6 +37,16 @@ himc_linear himc_linear_eigenvalues(int n, const double *a, double *lambda, doub
 himc_linear himc_linear_vibrations(int n, const double *k, const double *m, double *lambda,
                                    double *v);
 
+/// Poles p of a sum of exponentials, z[n] = sum_k c_k p_k^n, in noise: `channels` of `samples`
+/// complex values (real, imaginary) that share them, one after the other. ESPRIT (Roy and Kailath
+/// 1989): the signal's part of the covariance of so many values in a row, `samples`/2 and at most
+/// HIMC_LINEAR_LAGS, turns by the poles from one value to the next. There are as many (`found`, up
+/// to `most`) as eigenvalues of the covariance stand out of its lower half by the factor `clear`.
+/// `c` (channels x found) are fitted by least squares; those of poles that grow are 0.
+himc_linear himc_linear_exponentials(int samples, int channels, const double *z, int most,
+                                     double clear, double *p, double *c, int *found);
+#define HIMC_LINEAR_LAGS 110 ///< chosen
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,183 @@
+"""`himc fit` against drums whose numbers are known: rendered in our room, with pink noise; and against recordings that are none."""
+
+import array
+import csv
+import io
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+import tempfile
+
+import report
+
+HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
+RATE = 48000
+folder = tempfile.TemporaryDirectory(prefix="himc-fit-")
+# inches, tuning (Hz), mallet, dynamic, losses if not the usual ones
+DRUMS = [
+    (23, 143.178, "medium", "f", None), (20, 170.45, "soft", "mf", (0.3, 3e-8)), (26, 113.958, "hard", "mp", None), (32, 83.066, "wood", "mf", None),
+    (20, 262.0, "medium", "f", None), (20, 225.72, "hard", "mp", None), (20, 172.725, "wood", "mf", (0.3, 3e-8)), (23, 177.275, "soft", "mf", None),
+    (23, 208.0, "hard", "mp", (0.3, 3e-8)), (23, 179.55, "wood", "mf", None), (26, 162.855, "soft", "mf", None), (26, 148.911, "medium", "f", (0.3, 3e-8)),
+    (26, 165.0, "wood", "mf", None), (29, 89.262, "soft", "mf", (0.3, 3e-8)), (29, 122.388, "medium", "f", None), (29, 111.43, "hard", "mp", None),
+    (29, 84.738, "wood", "mf", (0.3, 3e-8)), (32, 82.0, "soft", "mf", None), (32, 66.69, "medium", "f", None), (32, 96.726, "hard", "mp", (0.3, 3e-8)),
+]
+LONG = bool(os.environ.get("HIMC_LONG"))
+
+
+def path(name):
+    return os.path.join(folder.name, name)
+
+
+def himc(*words):
+    return subprocess.run([HIMC, *words], capture_output=True, text=True)
+
+
+def good(*words):
+    done = himc(*words)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def write_text(name, text):
+    with open(path(name), "w") as file:
+        file.write(text)
+    return path(name)
+
+
+def write_wave(name, samples, channels=1):
+    data = array.array("f", samples).tobytes()
+    words = (1, 3, channels, RATE, 4 * channels * RATE, 4 * channels, 32)
+    form = b"".join(n.to_bytes(size, "little") for n, size in zip((16,) + words[1:], (4, 2, 2, 4, 4, 2, 2)))
+    with open(path(name), "wb") as file:
+        file.write(b"RIFF" + (36 + len(data)).to_bytes(4, "little") + b"WAVEfmt " + form + b"data" + len(data).to_bytes(4, "little") + data)
+    return path(name)
+
+
+def read_wave(name):
+    with open(name, "rb") as file:
+        data = file.read()
+    at = data.index(b"data") + 8
+    return array.array("f", data[at : at + (len(data) - at) // 8 * 8])
+
+
+def pink(count, rng):
+    """Kellet's three poles: -3 dB an octave within half a decibel above 40 Hz"""
+    a = b = c = 0.0
+    for _ in range(count):
+        w = rng.gauss(0, 1)
+        a = 0.99765 * a + 0.0990460 * w
+        b = 0.96300 * b + 0.2965164 * w
+        c = 0.57000 * c + 1.0526913 * w
+        yield a + b + c + 0.1848 * w
+
+
+def recorded(i):
+    """a drum's stroke in our room, with pink noise 40 dB below its first second"""
+    inches, tune, mallet, dynamic, losses = DRUMS[i]
+    decay = "d decay %g %g;\n" % losses if losses else ""
+    score = write_text("true.txt", f"drum d {inches};\nd tune {tune};\nd uniformity .2 {100 + i};\n{decay}d mallet {mallet};\n"
+                       f"tempo 60;\nstroke 1 right legato {dynamic};\n")
+    good("render", score, "-o", path("true.wav"))
+    sound, rng = read_wave(path("true.wav")), random.Random(i)
+    first = sound[2 * RATE : 4 * RATE]
+    for channel in range(2):
+        noise = list(pink(len(sound) // 2, rng))
+        scale = 0.01 * math.sqrt(sum(x * x for x in first) / len(first)) / math.sqrt(sum(x * x for x in noise) / len(noise))
+        for n, x in enumerate(noise):
+            sound[2 * n + channel] += scale * x
+    return score, write_wave("true.wav", sound, 2)
+
+
+def modes(score):
+    """(m,1) of a score's drum: mean frequency of the pair (Hz), mean T60 (s)"""
+    rows = [r for r in csv.DictReader(io.StringIO(good("modes", score))) if r["n"] == "1"]
+    found = {}
+    for m in range(1, 6):
+        pair = [r for r in rows if int(r["m"]) == m]
+        found[m] = [sum(float(r[key]) for r in pair) / len(pair) for key in ("frequency_hz", "t60_s")]
+    return found
+
+
+def test_drums_are_found_again():
+    count, mallets, worst = (len(DRUMS) if LONG else 4), 0, [0, 0, 0]
+    wrong = []
+    for i in range(count):
+        inches, tune, mallet = DRUMS[i][:3]
+        score, sound = recorded(i)
+        found = json.loads(good("fit", sound, "-o", path("drum.txt"), "--json"))
+        if found["instrument"] != "timpano" or found["inches"] != inches:
+            wrong.append((i, found["instrument"], found.get("inches")))
+            continue
+        mallets += found["mallet"] == mallet
+        worst[0] = max(worst[0], abs((found["tune_hz"] / tune) ** 2 - 1))  # of the tension, as size and density are alike
+        made, true = modes(path("drum.txt")), modes(score)
+        for m, (hz, t60) in true.items():
+            off = abs(made[m][0] - hz), abs(made[m][1] / t60 - 1)
+            worst[1:] = [max(a, b) for a, b in zip(worst[1:], off)]
+    said = "tension %.2f %%, partials %.2f Hz, T60 %.1f %%, mallets %d of %d" % (100 * worst[0], worst[1], 100 * worst[2], mallets, count)
+    assert not wrong, f"{wrong} {said}"
+    assert worst[0] < 0.01 and worst[1] < 0.5 and worst[2] < 0.1 and mallets >= 0.9 * count, said
+    return said
+
+
+def test_what_is_written_plays():
+    report_ = json.loads(good("render", path("drum.txt"), "-o", path("again.wav"), "--json"))
+    assert report_["played"] == 1 and report_["missed"] == 0
+    assert "radius" in open(path("drum-head.txt")).read()
+
+
+def rings(partials, seconds=2.0, lead=0.2):
+    """damped sinusoids (Hz, T60, amplitude) after a silence"""
+    quiet, out = int(lead * RATE), []
+    for n in range(int(seconds * RATE)):
+        t = (n - quiet) / RATE
+        out.append(sum(a * math.exp(-6.9078 * t / t60) * math.cos(6.2831853 * f * t) for f, t60, a in partials) if t >= 0 else 0.0)
+    return out
+
+
+BAR = [(440.0, 1.2, 0.3), (1763.0, 0.6, 0.15), (4290.0, 0.3, 0.05)]
+
+
+def test_a_bar_becomes_a_list_of_modes():
+    sound, rng = rings(BAR), random.Random(1)
+    found = json.loads(good("fit", write_wave("bar.wav", [x + 1e-5 * rng.gauss(0, 1) for x in sound]), "-o", path("bar.txt"), "--json"))
+    assert found["instrument"] == "modes", found
+    for f, t60, a in BAR:
+        p = min(found["partials"], key=lambda p: abs(p["hz"] - f))
+        assert abs(p["hz"] - f) < 0.1 and abs(p["t60_s"] / t60 - 1) < 0.03, p
+        assert abs(p["made_hz"] - f) < 0.2 and abs(p["made_t60_s"] / t60 - 1) < 0.1, p
+        assert abs(p["level_db"] - 20 * math.log10(a / 0.3)) < 0.5 and abs(p["made_level_db"] - p["level_db"]) < 3, p
+    assert json.loads(good("render", path("bar.txt"), "-o", path("again.wav"), "--json"))["played"] == 1
+
+
+def refused(name, samples, words):
+    done = himc("fit", write_wave(name, samples), "-o", path("none.txt"))
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
+    assert not os.path.exists(path("none.txt"))
+
+
+def test_bad_recordings_are_refused():
+    stroke, rng = rings(BAR), random.Random(2)
+    refused("silence.wav", [0.0] * RATE, "silence")
+    refused("clipped.wav", [max(-0.2, min(0.2, x)) for x in stroke], "clipped")
+    refused("two.wav", [x + y for x, y in zip(stroke, rings(BAR, 2.0, 1.0))], "a second stroke 0.8")
+    refused("short.wav", stroke[: RATE // 2], "0.30 s from the stroke on")
+    refused("noisy.wav", [x + rng.gauss(0, 0.03) for x in stroke], "noise at")
+    refused("noise.wav", [rng.gauss(0, 0.1) for _ in stroke], "as loud at its end")
+    write_text("text.wav", "no sound")
+    done = himc("fit", path("text.wav"), "-o", path("none.txt"))
+    assert done.returncode == 1 and "no sound file" in done.stderr, done.stderr
+
+
+def test_wrong_words_are_refused():
+    for words, line in (((), "no RECORDING"), ((path("bar.wav"),), "no -o"), ((path("bar.wav"), "-o", path("a.txt"), "--instrument", "gong"), "expected timpano or modes"),
+                        ((path("bar.wav"), "-o", path("bar.wav")), "ends with .txt")):
+        done = himc("fit", *words)
+        assert done.returncode == 1 and line in done.stderr, done.stderr
+
+
+TESTS = [test for name, test in list(globals().items()) if name.startswith("test_")]
+sys.exit(report.run("tests/cli/test_fit.sh", TESTS))

@@ -1,0 +1,258 @@
+/// fit.c: `himc fit`: a drum from recorded strokes, as commands that make it.
+///
+/// partials.c finds what sounds, fit_drum.c the timpano that sounds so, fit_strike.c its mallet;
+/// what is no timpano becomes a list of modes (fit_list.c). The drum made is struck and its
+/// partials are set beside those found.
+#include "cli.h"
+#include "fit_drum.h"
+#include "fit_list.h"
+#include "himc/drum.h"
+
+#include <math.h>
+#include <string.h>
+
+#define ROWS 24          // of the report
+#define HIGHEST 1200.0   // (Hz) of a timpano
+#define SECONDS 4.0      // of the blow that is set beside the recording
+#define NEAR 0.015       // per frequency: the same partial
+#define UNKNOWN (-170.0) // (dB) digital silence before the stroke, or nothing
+#define LEAST_SCORE 0.0  // of a drum (dB) ...
+#define MOST_APART 6.0   // ... and of its blow's spectrum (dB); chosen
+#define ALIKE 0.003      // per frequency: so near it is
+#define SURE 6.0         // (dB) clear of the others
+#define STEADY 0.2       // (Hz)
+
+enum { OUT, INSTRUMENT, JSON };
+
+static const cli_option options[] = {
+    {"output", 'o', "DRUM.txt", "the commands, a score; DRUM-head.txt is the same for [membrane~]"},
+    {"instrument", 0, "KIND", "timpano, or modes: a list of modes; else what the partials say"},
+    {"json", 0, NULL, "the report as a JSON object"},
+    {0},
+};
+
+typedef struct fit {
+    partials_sound sound, again;
+    partials_list found, made;
+    fit_drum drum;
+    bool list;
+    char name[HIMC_NAME_SIZE], beside[HIMC_PATH_SIZE];
+} fit;
+
+// the name of the drum: the file's without folder, ending and what a drum's name cannot have
+static void name_drum(const char *path, char *name, size_t size)
+{
+    const char *slash = strrchr(path, '/');
+    size_t n = 0;
+    for (const char *at = slash ? slash + 1 : path; *at && *at != '.' && n + 1 < size; at++)
+        if ((*at >= 'a' && *at <= 'z') || (n > 0 && *at >= '0' && *at <= '9'))
+            name[n++] = *at;
+    name[n] = '\0';
+    if (n < 2 || himc_command_find(HIMC_PERFORMER, name) || himc_command_find(HIMC_DRUM, name))
+        snprintf(name, size, "fitted");
+}
+
+static bool write_file(const char *path, const char *text, himc_error *error)
+{
+    cli_file file;
+    if (!cli_file_open(&file, path, error))
+        return false;
+    fputs(text, file.stream);
+    bool good = cli_file_close(&file, error) && cli_file_keep(&file, error);
+    cli_file_drop(&file);
+    return good;
+}
+
+static void beside(const char *path, const char *what, char *out, size_t size)
+{
+    size_t length = strlen(path);
+    if (length > 4 && !strcmp(path + length - 4, ".txt"))
+        length -= 4;
+    snprintf(out, size, "%.*s-%s.txt", (int)length, path, what);
+}
+
+static bool write_drum(fit *f, const char *path, himc_error *error)
+{
+    const fit_drum *d = &f->drum;
+    char text[1024], head[512];
+    snprintf(head, sizeof head, "radius %.6g;\ndecay %.6g %.6g;\ntune %.6g;\nmallet %s;\n",
+             0.0127 * d->inches, d->constant, d->square, d->tune, fit_mallets[d->mallet]);
+    snprintf(
+        text, sizeof text,
+        "comment made by himc fit;\ndrum %s %g;\n%s decay %.6g %.6g;\n%s tune %.6g;\n%s mallet %s;\n"
+        "tempo 60;\nstroke 1 right legato %s;\n",
+        f->name, d->inches, f->name, d->constant, d->square, f->name, d->tune, f->name,
+        fit_mallets[d->mallet], fit_dynamics[d->dynamic]);
+    beside(path, "head", f->beside, sizeof f->beside);
+    return write_file(f->beside, head, error) && write_file(path, text, error);
+}
+
+static bool write_list(fit *f, const char *path, himc_error *error)
+{
+    char text[3 * HIMC_PATH_SIZE];
+    beside(path, "modes", f->beside, sizeof f->beside);
+    if (!fit_list(&f->sound, &f->found, f->beside, error))
+        return false;
+    snprintf(
+        text, sizeof text,
+        "comment made by himc fit;\ninstrument %s modes %s;\ntempo 60;\nstroke 1 right legato mf;\n",
+        f->name, f->beside);
+    return write_file(path, text, error);
+}
+
+static bool hear_again(fit *f, himc_error *error)
+{
+    const fit_drum *d = &f->drum;
+    double rate = f->sound.rate < 16000 ? 48000 : f->sound.rate;
+    himc_drum *drum =
+        f->list ? fit_list_drum(f->beside, rate, error) : fit_drum_make(d, d->mallet, rate, error);
+    double x = f->list ? 0 : -FIT_PLACE * 0.0127 * d->inches;
+    bool good =
+        drum && fit_hear(drum, x, fit_speeds[f->list ? 2 : d->dynamic], SECONDS, &f->again, error);
+    himc_drum_release(drum);
+    return good && partials_find(&f->again, f->list ? FIT_LIST_HIGHEST : HIGHEST, &f->made, error);
+}
+
+// a drum; or a list, where none is like it and none is asked for
+static bool find_drum(fit *f, const char *kind, himc_error *error)
+{
+    fit_drum choice[FIT_CHOICES];
+    int count = fit_drum_find(&f->found, choice, error);
+    if (count > 0 && !fit_drum_strike(&f->sound, choice, count, &f->drum, error))
+        return false;
+    if (count > 0 && (kind || (f->drum.score > LEAST_SCORE && f->drum.distance < MOST_APART)))
+        return true;
+    f->list = !kind && partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
+    if (f->list)
+        cli_say("note: no timpano sounds so: a list of modes\n");
+    return f->list;
+}
+
+static bool work(fit *f, const cli_arguments *a, himc_error *error)
+{
+    const char *kind = a->value[INSTRUMENT], *out = a->value[OUT];
+    if (!out)
+        return himc_error_set(error, "no -o DRUM.txt given (himc fit --help)");
+    if (kind && strcmp(kind, "timpano") && strcmp(kind, "modes"))
+        return himc_error_set(error, "--instrument: %s, expected timpano or modes", kind);
+    if (!cli_ending_is("-o", out, ".txt", error) || !cli_apart(out, a->repeated, a->repeats, error))
+        return false;
+    for (int i = 0; i < a->repeats; i++)
+        if (!partials_read(&f->sound, a->repeated[i], error))
+            return false;
+    f->list = kind && !strcmp(kind, "modes");
+    if (!partials_find(&f->sound, f->list ? FIT_LIST_HIGHEST : HIGHEST, &f->found, error))
+        return false;
+    name_drum(out, f->name, sizeof f->name);
+    if (!f->list && !find_drum(f, kind, error))
+        return false;
+    return (f->list ? write_list : write_drum)(f, out, error) && hear_again(f, error);
+}
+
+// the made partial nearest to a found one, or NULL
+static const partial *nearest(const fit *f, const partial *p)
+{
+    const partial *best = NULL;
+    double most = NEAR * p->frequency;
+    for (int i = 0; i < f->made.count; i++) {
+        double apart =
+            fabs(f->made.row[i].frequency - p->frequency) + 0.02 * f->made.row[i].frequency_error;
+        if (apart < most && f->made.row[i].clear > 0) {
+            most = apart;
+            best = &f->made.row[i];
+        }
+    }
+    return best;
+}
+
+// of a drum the partials that it has, of a list the clear ones
+static int rows(const fit *f, int out[ROWS])
+{
+    int count = 0;
+    for (int i = 0; i < f->found.count && count < ROWS; i++) {
+        const partial *p = &f->found.row[i], *q = nearest(f, p);
+        bool member = false;
+        for (int k = 0; k < 2 * FIT_ORDERS; k++)
+            member = member || (!f->list && f->drum.of[k] == i);
+        bool alike = q && fabs(q->frequency / p->frequency - 1) < ALIKE;
+        if (member || (p->clear > SURE && p->frequency_error < STEADY && (alike || f->list)))
+            out[count++] = i;
+    }
+    return count;
+}
+
+static const char *const text_row = "%9.2f %6.2f %6.2f %6.2f %6.1f";
+static const char *const json_row =
+    "{\"hz\": %.3f, \"hz_error\": %.3f, \"t60_s\": %.4f, \"t60_error_s\": %.4f, \"level_db\": %.2f";
+
+static void report(const fit *f, bool json)
+{
+    int row[ROWS], count = rows(f, row);
+    const fit_drum *d = &f->drum;
+    double strongest = -INFINITY, louder = 0; // the made ones, in the mean
+    int pairs = 0;
+    for (int i = 0; i < count; i++) {
+        const partial *p = &f->found.row[row[i]], *q = nearest(f, p);
+        strongest = fmax(strongest, p->level);
+        louder += q ? q->level - p->level : 0;
+        pairs += q != NULL;
+    }
+    louder /= pairs ? pairs : 1;
+    printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n", f->list ? "modes" : "timpano");
+    if (!f->list)
+        printf(json
+                   ? "\"inches\": %g, \"tune_hz\": %.4f, \"decay_s0\": %g, \"decay_s1\": %g, "
+                     "\"mallet\": \"%s\", \"dynamic\": \"%s\", \"mallet_db\": %.2f, "
+                     "\"next_mallet_db\": %.2f, "
+                   : "drum        %g inches, tuned to %.2f Hz, losses %.3g 1/s and %.3g s\n"
+                     "blow        %s mallet, %s: spectrum within %.1f dB, the next mallet's %.1f\n",
+               d->inches, d->tune, d->constant, d->square, fit_mallets[d->mallet],
+               fit_dynamics[d->dynamic], d->distance, d->next);
+    if (f->sound.noise > UNKNOWN)
+        printf(json ? "\"noise_db\": %.1f, " : "noise       %.0f dB\n", f->sound.noise);
+    else
+        fputs(json ? "\"noise_db\": null, " : "noise       not known: nothing before the stroke\n",
+              stdout);
+    fputs(json ? "\"partials\": [" : "\n", stdout);
+    if (!json)
+        puts("    found (Hz, +-; T60 s, +-; dB)              made (Hz; T60 s; dB)");
+    for (int i = 0; i < count; i++) {
+        const partial *p = &f->found.row[row[i]], *q = nearest(f, p);
+        if (json && i > 0)
+            printf(", ");
+        printf(json ? json_row : text_row, p->frequency, p->frequency_error, p->t60, p->t60_error,
+               p->level - strongest);
+        if (q)
+            printf(json ? ", \"made_hz\": %.3f, \"made_t60_s\": %.4f, \"made_level_db\": %.2f"
+                        : "      %9.2f %6.2f %6.1f",
+                   q->frequency, q->t60, q->level - louder - strongest);
+        puts(json ? "}" : "");
+    }
+    if (json)
+        puts("]}");
+}
+
+static int run(const cli_arguments *arguments)
+{
+    himc_error error;
+    static fit f; // large
+    bool good = work(&f, arguments, &error);
+    if (good)
+        report(&f, arguments->value[JSON]);
+    partials_sound_free(&f.sound);
+    partials_sound_free(&f.again);
+    return good ? cli_finish(&cli_fit) : cli_fail(&cli_fit, "%s", error.text);
+}
+
+const cli_call cli_fit = {
+    "fit",
+    "RECORDING...",
+    " -o DRUM.txt",
+    "makes a drum of recorded strokes",
+    "Each RECORDING is one stroke on the same instrument: WAV, FLAC, OGG and what else libsndfile\n"
+    "reads, from its onset for .5 s or more, better 4 s, without clipping. The report sets the\n"
+    "partials found, with their errors, beside those of the drum made. A timpano becomes commands\n"
+    "(size, tuning, losses, mallet), anything else a list of modes, DRUM-modes.txt.",
+    options,
+    run,
+};

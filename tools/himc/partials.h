@@ -1,0 +1,53 @@
+/// partials.h: the partials of struck sounds: damped sinusoids, found in recordings of one
+/// instrument.
+#ifndef PARTIALS_H
+#define PARTIALS_H
+
+#include "himc/base.h"
+
+#include <stddef.h>
+
+#define PARTIALS_MOST 400
+#define PARTIALS_TRACKS 32 ///< channels of all recordings together
+
+/// One damped sinusoid. Errors are standard deviations, as far as it was found alike in windows
+/// that begin at different times.
+typedef struct partial {
+    double frequency;       ///< (Hz)
+    double frequency_error; ///< (Hz)
+    double t60;             ///< (s)
+    double t60_error;       ///< (s)
+    double level;           ///< at the onset, of all channels (dB re the sound's peak)
+    double phase;           ///< at the onset, of the first channel (rad)
+    double energy;          ///< 10 lg of what it has over all time (dB)
+    double clear; ///< by which that, or its level after .7 s, stands out of its neighbours' (dB)
+} partial;
+
+/// What was heard, each channel of each stroke from its onset on.
+typedef struct partials_sound {
+    double *track[PARTIALS_TRACKS]; ///< (length), their peak over the channels of a stroke is 1
+    size_t length[PARTIALS_TRACKS];
+    int tracks;
+    double rate;  ///< (Hz), of all
+    double noise; ///< before the onset or at the very end (dB re the first .5 s), the worst
+} partials_sound;
+
+typedef struct partials_list {
+    partial row[PARTIALS_MOST]; ///< rising in frequency
+    int count;
+    double room; ///< T60 of what sounds between the partials, the middle one (s)
+} partials_list;
+
+/// Adds the stroke of a sound file. False with the reason: no sound file, silence, clipped, too
+/// short, too noisy, two strokes, another sample rate.
+bool partials_read(partials_sound *sound, const char *path, himc_error *error);
+/// Adds the channels of a stroke, taken over by copy: `samples` of each, `channels` in turn.
+bool partials_add(partials_sound *sound, const float *samples, size_t frames, int channels,
+                  double rate, const char *name, himc_error *error);
+void partials_sound_free(partials_sound *sound);
+
+/// All partials up to `highest` (Hz). False with the reason, without memory.
+bool partials_find(const partials_sound *sound, double highest, partials_list *out,
+                   himc_error *error);
+
+#endif

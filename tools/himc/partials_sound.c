@@ -1,0 +1,192 @@
+/// partials_sound.c: recordings of one stroke each, from the onset on; a bad one is refused.
+#define _POSIX_C_SOURCE 200809L // fileno
+#include "partials.h"
+#include "sound_file.h"
+
+#include "base/file.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CELL 0.005        // (s) of the envelope
+#define SILENT 1e-4       // peak, -80 dB of full scale
+#define BEGINS 0.1        // of the peak: there a stroke has begun
+#define NEAR_LOUDEST 0.25 // of a cell's level
+#define LEAST 0.5         // (s) after the onset
+#define LONGEST 20.0      // (s) of it that is used
+#define READ_LONGEST 300  // (s) of a file
+#define NOISY (-20.0)     // (dB) noise beside the first .5 s
+#define STEADY 0.5        // level at the end per that at the onset: nothing was struck
+#define FLAT 4            // samples of one value at the peak ...
+#define FLATS 3           // ... so often are no chance
+#define RISE 4.0          // of the envelope within 50 ms: another stroke ...
+#define APART 0.12        // ... if it comes so late (s) ...
+#define LOUD 0.1          // ... and is so loud, per peak
+
+typedef struct stroke {
+    const float *x;
+    size_t frames, onset;
+    int channels;
+    double rate, peak;
+    const char *name;
+} stroke;
+
+static double at(const stroke *s, size_t frame, int channel)
+{
+    return (double)s->x[frame * (size_t)s->channels + (size_t)channel];
+}
+
+// RMS of all channels over so many frames, fewer at the end
+static double level(const stroke *s, size_t from, size_t frames)
+{
+    double sum = 0;
+    size_t end = from + frames < s->frames ? from + frames : s->frames;
+    for (size_t i = from; i < end; i++)
+        for (int c = 0; c < s->channels; c++)
+            sum += at(s, i, c) * at(s, i, c);
+    return end > from ? sqrt(sum / ((double)(end - from) * s->channels)) : 0;
+}
+
+// the peak, and where the sound first comes near the loudest cell's level
+static void measure(stroke *s)
+{
+    size_t cell = (size_t)(CELL * s->rate);
+    double loudest = 0;
+    s->peak = 0;
+    for (size_t i = 0; i < s->frames * (size_t)s->channels; i++)
+        s->peak = fmax(s->peak, fabs((double)s->x[i]));
+    for (size_t i = 0; i < s->frames; i += cell)
+        loudest = fmax(loudest, level(s, i, cell));
+    size_t first = 0;
+    while (first < s->frames && level(s, first, cell) < NEAR_LOUDEST * loudest)
+        first += cell;
+    for (s->onset = first > cell ? first - cell : 0; s->onset < s->frames; s->onset++)
+        for (int c = 0; c < s->channels; c++)
+            if (fabs(at(s, s->onset, c)) >= BEGINS * s->peak)
+                return;
+}
+
+static bool check_clipped(const stroke *s, himc_error *error)
+{
+    int flats = 0;
+    for (int c = 0; c < s->channels; c++)
+        for (size_t i = 0, run = 0; i < s->frames; i++) {
+            bool flat = i > 0 && at(s, i, c) == at(s, i - 1, c);
+            run = fabs(at(s, i, c)) < 0.98 * s->peak ? 0 : flat ? run + 1 : 1;
+            flats += run == FLAT;
+        }
+    return flats < FLATS ||
+           himc_error_set(error, "%s: clipped in %d places, expected a recording with headroom",
+                          s->name, flats);
+}
+
+static bool check_one(const stroke *s, himc_error *error)
+{
+    size_t cell = (size_t)(CELL * s->rate), wide = 10 * cell;
+    double loudest = level(s, s->onset, wide);
+    for (size_t i = s->onset + (size_t)(APART * s->rate); i + wide < s->frames; i += cell) {
+        double now = level(s, i, wide), before = level(s, i - wide, wide);
+        if (now > RISE * before && now > LOUD * loudest)
+            return himc_error_set(error, "%s: a second stroke %.2f s after the first, expected one",
+                                  s->name, (double)(i + wide - s->onset) / s->rate);
+    }
+    return true;
+}
+
+// what sounds before the onset (dB re the first .5 s); without a time before it nothing is known
+static double noise_of(const stroke *s)
+{
+    size_t before = (size_t)(0.02 * s->rate);
+    double sound = level(s, s->onset, (size_t)(LEAST * s->rate));
+    double floor = s->onset > 4 * before ? level(s, 0, s->onset - before) : 0;
+    return 20 * log10(fmax(floor, 1e-9 * sound) / sound);
+}
+
+static bool check(const stroke *s, double *noise, himc_error *error)
+{
+    double length = (double)(s->frames - s->onset) / s->rate;
+    if (s->peak < SILENT)
+        return himc_error_set(error, "%s: silence, expected a stroke", s->name);
+    if (length < LEAST)
+        return himc_error_set(error, "%s: %.2f s from the stroke on, expected %.1f or more",
+                              s->name, length, LEAST);
+    if (!check_clipped(s, error) || !check_one(s, error))
+        return false;
+    double here = noise_of(s);
+    if (here > NOISY)
+        return himc_error_set(error, "%s: noise at %.0f dB of the stroke, expected below %.0f dB",
+                              s->name, here, NOISY);
+    size_t part = s->frames / 20;
+    double left = level(s, s->frames - part, part) / level(s, s->onset, part);
+    if (left > STEADY && length > 2 * LEAST) // else it may still ring
+        return himc_error_set(
+            error, "%s: as loud at its end as at its beginning, expected a stroke", s->name);
+    *noise = fmax(*noise, here);
+    return true;
+}
+
+bool partials_add(partials_sound *sound, const float *samples, size_t frames, int channels,
+                  double rate, const char *name, himc_error *error)
+{
+    stroke s = {.x = samples, .frames = frames, .channels = channels, .rate = rate, .name = name};
+    if (sound->tracks == 0)
+        sound->noise = -INFINITY;
+    else if (sound->rate != rate)
+        return himc_error_set(error, "%s: %.0f Hz, expected %.0f Hz as the others", name, rate,
+                              sound->rate);
+    if (sound->tracks + channels > PARTIALS_TRACKS)
+        return himc_error_set(error, "%s: more than %d channels in all", name, PARTIALS_TRACKS);
+    measure(&s);
+    if (!check(&s, &sound->noise, error))
+        return false;
+    sound->rate = rate;
+    size_t length = (size_t)fmin((double)(frames - s.onset), LONGEST * rate);
+    for (int c = 0; c < channels; c++) {
+        double *track = malloc(sizeof *track * length);
+        if (!track)
+            return himc_error_set(error, "%s: out of memory", name);
+        for (size_t i = 0; i < length; i++)
+            track[i] = at(&s, s.onset + i, c) / s.peak;
+        sound->length[sound->tracks] = length;
+        sound->track[sound->tracks++] = track;
+    }
+    return true;
+}
+
+bool partials_read(partials_sound *sound, const char *path, himc_error *error)
+{
+    FILE *stream = himc_file_read(path, error);
+    if (!stream)
+        return false;
+    SF_INFO info = {0};
+    SNDFILE *file = sf_open_fd(fileno(stream), SFM_READ, &info, SF_FALSE);
+    float *samples = NULL;
+    bool good = file || himc_error_set(error, "%s: no sound file that libsndfile reads: %s", path,
+                                       sf_strerror(NULL));
+    if (good && (info.samplerate < 8000 || (double)info.frames > READ_LONGEST * info.samplerate))
+        good = himc_error_set(error, "%s: %.1f s at %d Hz, expected up to %d s, at 8000 Hz or more",
+                              path, (double)info.frames / info.samplerate, info.samplerate,
+                              READ_LONGEST);
+    if (good) {
+        samples = malloc(sizeof *samples * ((size_t)info.frames + 1) * (size_t)info.channels);
+        good = samples || himc_error_set(error, "%s: out of memory", path);
+    }
+    if (good) {
+        sf_count_t read = sf_readf_float(file, samples, info.frames);
+        good = partials_add(sound, samples, (size_t)(read < 0 ? 0 : read), info.channels,
+                            info.samplerate, path, error);
+    }
+    free(samples);
+    if (file)
+        sf_close(file);
+    fclose(stream);
+    return good;
+}
+
+void partials_sound_free(partials_sound *sound)
+{
+    for (int i = 0; i < sound->tracks; i++)
+        free(sound->track[i]);
+    sound->tracks = 0;
+}
