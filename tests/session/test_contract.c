@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "himc/himc.h"
 #include "himc/body.h"
+#include "himc/drive.h"
 #include "himc/loader.h"
 #include "himc/membrane.h"
 #include "himc/mocap.h"
@@ -41,6 +42,7 @@ static himc_osc *osc;
 static himc_loader *loader;
 static himc_player player;
 static himc_event event;
+static himc_drive driven; // none
 static double sound[480], force[2][480], x, y;
 static int whole;
 static char line[HIMC_OSC_LINE];
@@ -147,6 +149,7 @@ static const himc_tempo_change tempi[] = {{0, 100}, {4, 140}};
     CALL(himc_performance_stop, if (whole == ROUNDS - 1) himc_performance_stop(performer))         \
     CALL(himc_performance_target,                                                                  \
          himc_performance_target(performer, HIMC_LEFT, (himc_vec3){9, 9, 9 + x}))                  \
+    CALL(himc_performance_drive, himc_performance_drive(performer, &driven, &error))               \
     CALL(himc_performance_process,                                                                 \
          himc_performance_process(performer, 480, (double *[]){force[0], force[1]}))               \
     CALL(himc_performance_time, himc_performance_time(performer))                                  \
