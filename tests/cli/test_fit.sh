@@ -1,6 +1,6 @@
 #!/bin/sh
 # `himc fit`: drums of known size, tuning, losses and mallet are found again in their sound; bad recordings are refused.
-# tests/cli/fit.py has the tests. HIMC_LONG=1: 20 drums in place of 4.
+# tests/cli/fit.py has the tests. HIMC_LONG=1: 20 drums in place of 2.
 : "${HIMC_BUILD:=build}"
 export HIMC_BUILD
 if ! command -v python3 >/dev/null; then

@@ -8,7 +8,7 @@ mkdir -p "$out"
 build() {
     "$CC" -std=c17 -O2 -ffp-contract=off -I. -Ilib -Ilib/src -Iviewer -I"$HIMC_BUILD/viewer" tests/page/play.c viewer/engine/engine.c \
         viewer/scene.c viewer/scene_encode.c tools/himc/live.c tools/himc/cli.c tools/himc/file.c \
-        -Wl,--start-group "$@" "$HIMC_BUILD/libhimc.a" -Wl,--end-group -Wl,--as-needed -lode -lstdc++ -lpthread -lm
+        -Wl,--start-group "$@" "$HIMC_BUILD/libhimc.a" -Wl,--end-group -Wl,--as-needed -lode -lexpat -lz -lstdc++ -lpthread -lm
 }
 build -o "$out/play" || exit 1
 musl=$(ls /usr/lib/*-linux-musl/libc.a 2>/dev/null | head -n 1)
