@@ -201,6 +201,26 @@ static void test_a_roll_is_a_roll_after_midi(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.06, 5 / 7.0, back[1].last_dynamic);
 }
 
+static void test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s(void)
+{
+    static himc_score_maker *const make[] = {himc_music_import, himc_midi_import};
+    parse("setup kit; stroke 1 left legato mf rim hats; stroke 2 foot legato f hats;");
+    for (int i = 0; i < 2; i++) {
+        midi_score made;
+        midi_options options = {.choice = MIDI_DRUMS};
+        if (i == 1) {
+            free(text.bytes);
+            text = (himc_text_lines){0};
+            TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+        }
+        TEST_ASSERT_TRUE_MESSAGE(make[i](&made, text.bytes, text.size, "back", &options, &error),
+                                 error.text);
+        TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "pedal 0"), made.text);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "foot legato"), made.text);
+        himc_midi_score_free(&made);
+    }
+}
+
 static void test_a_score_without_strokes_is_refused(void)
 {
     score = himc_score_parse("drum kettle;", "words", NULL, &error);
@@ -218,6 +238,7 @@ int main(void)
     RUN_TEST(test_ornaments_rolls_spots_and_dynamics_are_written);
     RUN_TEST(test_midi_keeps_times_pitches_and_dynamics);
     RUN_TEST(test_a_roll_is_a_roll_after_midi);
+    RUN_TEST(test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s);
     RUN_TEST(test_a_score_without_strokes_is_refused);
     return UNITY_END();
 }

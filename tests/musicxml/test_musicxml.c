@@ -367,6 +367,15 @@ static void test_three_strokes_are_a_roll_unless_measured(void)
     expect_roll(0, 0, 4, 4, 4);
 }
 
+static void test_three_strokes_under_a_fermata_are_a_roll(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(96) REST(8)
+                    C3(8, "<notations><ornaments><tremolo type='single'>3</tremolo></ornaments>"
+                          "<fermata/></notations>")));
+    TEST_ASSERT_EQUAL(1, score->stroke_count);
+    expect_roll(0, 2, 2, 4, 4);
+}
+
 // musescore#16756: a timpani trill is a roll
 static void test_a_trill_is_a_roll(void)
 {
@@ -808,6 +817,7 @@ int main(void)
     RUN_TEST(test_fp_is_loud_once);
     RUN_TEST(test_two_strokes_through_the_stem_are_measured);
     RUN_TEST(test_three_strokes_are_a_roll_unless_measured);
+    RUN_TEST(test_three_strokes_under_a_fermata_are_a_roll);
     RUN_TEST(test_a_trill_is_a_roll);
     RUN_TEST(test_a_hairpin_acts_within_a_roll);
     RUN_TEST(test_graces_come_before_a_roll);

@@ -480,7 +480,8 @@ static bool write_score(midi_score *made, const midi_file *file, midi_part *part
         first++;
     double wait = fmax(0, 1.0 - part->stroke[first].note->seconds);
     double lead = ceil(wait * file->tempi[0].bpm / 60);
-    double last = part->stroke[part->count - 1].note->beat;
+    const midi_stroke *final = &part->stroke[part->count - 1];
+    double last = final->note->beat + fmax(final->note->way.length, final->roll.length);
     const char *mallets = find_mallets(part, part->stroke[first].note->beat);
     report(&said, file, part);
     put_name(&score, name);

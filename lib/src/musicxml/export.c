@@ -17,6 +17,7 @@
 #include <string.h>
 
 #define USUAL_INCHES 26.0 // of a timpano, which then sounds ...
+#define PEDAL_HAT 44      // General MIDI's key of hats that a foot closes
 #define USUAL_KEY 50      // ... D3
 
 /// A drum of the score.
@@ -57,10 +58,10 @@ static void add_head(exporter *x, const char *name, const char *kind, double siz
     int key = MUSIC_NO_KEY;
     if (!h)
         return;
-    *h = (head){.name = name, .kind = kind, .choice = MIDI_TIMPANI, .key = USUAL_KEY, .open = true};
+    *h = (head){.name = name, .kind = kind, .choice = MIDI_TIMPANI, .key = USUAL_KEY};
     if (strcmp(kind, "timpano") != 0) {
         h->choice = himc_music_instrument(kind, &key);
-        h->key = himc_midi_key_of(name, HIMC_SPOT_NORMAL, true);
+        h->key = himc_midi_key_of(name, HIMC_SPOT_NORMAL, false);
         h->key = h->key < 0 ? key : h->key;
         if (h->choice == MIDI_ANY && h->key >= 0)
             h->choice = MIDI_DRUMS;
@@ -131,6 +132,8 @@ static bool add_note(exporter *x, const himc_stroke *s)
         h = &x->head[x->heads - 1];
     }
     int key = h->choice == MIDI_DRUMS ? himc_midi_key_of(h->name, s->spot, h->open) : h->key;
+    if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
+        key = PEDAL_HAT;
     key = key < 0 ? h->key : key;
     if (h->choice > MIDI_DRUMS)
         key = part_key(s->part);

@@ -40,6 +40,7 @@ typedef struct shaper {
     double second; ///< (beats) now
     himc_spot spot;
     int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
+    double held;                      ///< a fermata ends (beats)
     bool attack;                      ///< of this beat
     music_note *grace[MOST_GRACES];
     int graces;
@@ -287,6 +288,7 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
         case MUSIC_RING_ALWAYS: s->always = (int)sign->value; break;
         case MUSIC_DAMP: end_at(s, sign->at.beat, -1); break;
         case MUSIC_HAND: s->hand = 1 + (int)sign->value; break;
+        case MUSIC_FERMATA: s->held = sign->at.beat + sign->value; break;
         case MUSIC_MEASURED: s->measured = (int)sign->value; break;
         case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, choice); break;
         case MUSIC_MUFFLE: add_order(s, MIDI_MUFFLE, sign, choice); break;
@@ -305,7 +307,8 @@ static bool is_roll(const shaper *s, const music_note *n, double *unit)
         return true;
     if (n->tremolo != MUSIC_MARKS)
         return false;
-    if (rate > FASTEST || n->marks > 3 || (n->marks == 3 && s->measured == 0))
+    bool held = n->at.beat < s->held - SAME; // what is held is not counted
+    if (rate > FASTEST || n->marks > 3 || (n->marks == 3 && (s->measured == 0 || held)))
         return true;
     return n->marks == 3 && s->measured != 1 && rate > FAST - SAME;
 }

@@ -111,10 +111,11 @@ bool himc_motion_rests_elsewhere(const performance_motion *m)
     return far > 0;
 }
 
-void himc_motion_set_drum(performance_motion *m, int index, const himc_head_frame *frame)
+void himc_motion_set_drum(performance_motion *m, int index, const himc_head_frame *frame,
+                          bool first)
 {
     himc_planner_set_drum(m->planner, index, frame);
-    if (index == 0)
+    if (first)
         m->body.posture.level = frame->center.z + m->body.posture.skeleton.mallet_radius;
     m->replan = true;
 }

@@ -92,8 +92,9 @@ HIMC_RT void himc_motion_replan(performance_motion *motion);
 HIMC_RT void himc_motion_seat(performance_motion *motion, double height);
 /// True if the hands of the planner rest elsewhere at the start than the last setpoints say.
 HIMC_RT bool himc_motion_rests_elsewhere(const performance_motion *motion);
+/// A drum has this place; with `first` it is the first one of the hands, which rest at its height.
 HIMC_RT void himc_motion_set_drum(performance_motion *motion, int index,
-                                  const himc_head_frame *frame);
+                                  const himc_head_frame *frame, bool first);
 /// Read task: the targets at the tick after `t`, and at this one if the plan has changed.
 HIMC_RT void himc_motion_read_task(performance_motion *motion, const performance_settings *settings,
                                    const performance_drums *drums, double t, double next);

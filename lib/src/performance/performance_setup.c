@@ -261,9 +261,12 @@ void himc_performance_notice_drums(himc_performance *p)
         return;
     if (unseen)
         fit_stool(p->motion, p->body, &p->drums, &p->settings);
+    int first = 0; // of the hands
+    while (first + 1 < p->drums.count && himc_drum_is_footed(p->drums.slot[first].drum))
+        first++;
     for (int i = 0; i < p->drums.count; i++)
         if (noticed[i])
-            himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i));
+            himc_motion_set_drum(p->motion, i, himc_drums_frame(&p->drums, i), i == first);
     if (unseen) {
         put_together(p->motion, p->body, &p->settings, 0);
         himc_performance_adopt(p, &p->settings);
