@@ -162,7 +162,7 @@ def is_named(planted, faults):
     for f in faults[:3]:
         kind, what, effect = f["kind"], f["what"], f["effect"]
         beat = f"beat {planted.get('beat', -1):g}"
-        if fault in ("early", "late") and kind == "time" and ("left hand's" in what and "earlier" in what or "right hand's" in what and "later" in what):
+        if fault in ("early", "late") and kind == "time" and "right behind the left" in what:
             return abs(abs(effect) - 24) < 8
         if fault == "soft" and kind == "level" and ("left hand's" in what and "softer" in what or "right hand's" in what and "louder" in what):
             return abs(abs(effect) - 5) < 1.5

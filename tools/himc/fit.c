@@ -124,7 +124,8 @@ static bool find_drum(fit *f, const char *kind, himc_error *error)
         return true;
     f->list = !kind && partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
     if (f->list)
-        cli_say("note: no timpano sounds so: a list of modes\n");
+        cli_say(
+            "note: no timpano found: a list of modes (--instrument timpano makes the nearest)\n");
     return f->list;
 }
 

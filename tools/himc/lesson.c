@@ -206,8 +206,10 @@ static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *
 
 static void tell(const lesson *l)
 {
-    printf("%d of %d strokes matched, %.1f BPM\n", l->matched, l->asked_count,
-           l->bpm * l->tempo.mean);
+    double seconds, decibels;
+    lesson_scatter(l, &seconds, &decibels);
+    printf("%d of %d strokes matched, %.1f BPM, %.1f ms and %.1f dB off (RMS)\n", l->matched,
+           l->asked_count, l->bpm * l->tempo.mean, 1e3 * seconds, decibels);
     for (int k = 0; k < l->faults && k < LESSON_NAMED; k++)
         printf("%d. %s\n", k + 1, l->fault[k].what);
     if (!l->faults)

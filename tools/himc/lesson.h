@@ -97,6 +97,8 @@ bool lesson_match(lesson *l, himc_error *error);
 /// Time, level and place of each stroke, rolls, and the faults, the largest first. False: no
 /// memory.
 bool lesson_judge(lesson *l, himc_error *error);
+/// How far strokes are off the beat of the player's own tempo, and off the asked level, RMS.
+void lesson_scatter(const lesson *l, double *seconds, double *decibels);
 /// Shares of the joints, wrist and torques, of takes that show whole arms.
 void lesson_body(lesson *l, himc_take *take, const himc_take_options *options);
 

@@ -314,6 +314,19 @@ typedef struct quantity {
     double scale, threshold;
 } quantity;
 
+void lesson_scatter(const lesson *l, double *seconds, double *decibels)
+{
+    double n = 0, time = 0, level = 0;
+    for (int i = 0; i < l->count; i++)
+        if (isfinite(l->played[i].off)) {
+            n++;
+            time += l->played[i].off * l->played[i].off;
+            level += l->played[i].level * l->played[i].level;
+        }
+    *seconds = n > 0 ? sqrt(time / n) : NAN;
+    *decibels = n > 0 ? sqrt(level / n) : NAN;
+}
+
 static void tell_group(lesson *l, const quantity *q, difference d)
 {
     char who[80], others[40] = "the others";
@@ -335,6 +348,9 @@ static void tell_group(lesson *l, const quantity *q, difference d)
             "%s land %.0f mm beside their place (%.0f mm %s, %.0f mm to the %s), measured from %s",
             who, shown, 1e3 * fabs(d.effect[0]), d.effect[0] > 0 ? "too far" : "too near",
             1e3 * fabs(d.effect[1]), d.effect[1] > 0 ? "left" : "right", others);
+    else if (d.kind == HAND && strcmp(q->kind, "time") == 0) // who is right is not known
+        snprintf(f->what, sizeof f->what, "The hands are %.1f ms apart: the %s behind the %s",
+                 fabs(shown), himc_hand_name((himc_hand)!d.id), himc_hand_name((himc_hand)d.id));
     else
         snprintf(f->what, sizeof f->what, "%s are %.1f %s %s than %s", who, fabs(shown), q->unit,
                  shown > 0 ? q->more : q->less, others);

@@ -119,11 +119,17 @@ static void put_faults(const lesson *l, FILE *out)
         fputs("</li>\n", out);
     }
     fputs("</ol>", out);
+    double seconds, decibels;
+    lesson_scatter(l, &seconds, &decibels);
     if (!l->faults)
         fputs(
             "<p><b>Nothing stands out.</b> No difference is both beyond your own spread and beyond "
             "its threshold.</p>",
             out);
+    fprintf(out,
+            "<p>Your strokes lie %.1f ms off your own beat and %.1f dB off the written dynamics "
+            "(RMS). The more they scatter, the larger a difference must be to be told.</p>",
+            1e3 * seconds, decibels);
     if (l->faults > LESSON_NAMED)
         fprintf(out, "<p><small>%d more are beyond their thresholds, by less.</small></p>",
                 l->faults - LESSON_NAMED);
