@@ -565,7 +565,7 @@ static void test_drums_are_played_on_a_set_up(void)
     for (int i = 0; i < 6; i++)
         event(&b, i ? QUARTER : 0, 0x99, keys[i], 90);
     end(&b);
-    import(&b, &(midi_options){MIDI_ANY, 0, "multi"});
+    import(&b, &(midi_options){.setup = "multi"});
     reported("4 of 6 notes for drums are played");
     reported("1 of bass drum 1: no kick in the set-up");
     reported("1 of closed hi-hat: no hats in the set-up");
@@ -580,7 +580,7 @@ static void test_drums_are_played_on_a_set_up(void)
     for (int i = 0; i < 6; i++)
         event(&b, i ? QUARTER : 0, 0x99, keys[i], 90);
     end(&b);
-    import(&b, &(midi_options){MIDI_ANY, 0, path});
+    import(&b, &(midi_options){.setup = path});
     reported("2 of 6 notes for drums are played");
     TEST_ASSERT_EQUAL_STRING("mine", score->strokes[0].drum);
     TEST_ASSERT_EQUAL_STRING("boom", score->strokes[1].drum);
@@ -589,10 +589,11 @@ static void test_drums_are_played_on_a_set_up(void)
     event(&b, 0, 0x99, 38, 90);
     end(&b);
     TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size, "t.mid",
-                                       &(midi_options){MIDI_ANY, 0, "attic"}, &error));
+                                       &(midi_options){.setup = "attic"}, &error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "setup: attic"), error.text);
     TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size, "t.mid",
-                                       &(midi_options){MIDI_MARIMBA, 0, "kit"}, &error));
+                                       &(midi_options){.choice = MIDI_MARIMBA, .setup = "kit"},
+                                       &error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "a set-up is for drums"), error.text);
 }
 

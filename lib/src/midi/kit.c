@@ -95,6 +95,18 @@ static const gm_key *find_key(int key)
     return known ? &keys[key - FIRST_KEY] : NULL;
 }
 
+// how well a key stands for that spot
+static int likeness(const gm_key *k, himc_spot spot)
+{
+    return k->spot == spot ? 2 : k->spot == HIMC_SPOT_NORMAL;
+}
+
+himc_spot himc_midi_key_spot(int key)
+{
+    const gm_key *k = find_key(key);
+    return k ? k->spot : HIMC_SPOT_NORMAL;
+}
+
 int himc_midi_key_of(const char *instrument, himc_spot spot, bool open)
 {
     int found = -1;
@@ -103,7 +115,7 @@ int himc_midi_key_of(const char *instrument, himc_spot spot, bool open)
         if (!k || !k->instrument || strcmp(k->instrument, instrument) != 0)
             continue;
         bool fits = k->how == CLOSED ? !open : k->how == OPENED ? open : k->how != PEDALLED;
-        bool better = found < 0 || (k->spot == spot && find_key(found)->spot != spot);
+        bool better = found < 0 || likeness(k, spot) > likeness(find_key(found), spot);
         if (fits && better && (!k->instead || k->spot == spot))
             found = key;
     }

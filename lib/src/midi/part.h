@@ -134,6 +134,8 @@ int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);
 
 /// The key of an instrument of the kit, struck at that spot; of a hi-hat open or closed; -1: none.
 int himc_midi_key_of(const char *instrument, himc_spot spot, bool open);
+/// Where the instrument of that key of the kit is struck.
+himc_spot himc_midi_key_spot(int key);
 /// What General MIDI calls a key; "" if it has none.
 const char *himc_midi_key_sound(int key);
 

@@ -17,8 +17,8 @@
 #include <string.h>
 
 #define USUAL_INCHES 26.0 // of a timpano, which then sounds ...
-#define PEDAL_HAT 44      // General MIDI's key of hats that a foot closes
 #define USUAL_KEY 50      // ... D3
+#define PEDAL_HAT 44      // General MIDI's key of hats that a foot closes
 
 /// A drum of the score.
 typedef struct head {
@@ -35,6 +35,7 @@ typedef struct exporter {
     midi_file *file;
     head head[HIMC_DRUMS];
     int heads, note_room, order_room, lost;
+    int spots; ///< of drums, without a key
     himc_error *error;
 } exporter;
 
@@ -135,6 +136,8 @@ static bool add_note(exporter *x, const himc_stroke *s)
     if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
         key = PEDAL_HAT;
     key = key < 0 ? h->key : key;
+    x->spots += h->choice == MIDI_DRUMS && s->hand != HIMC_FOOT && s->spot != HIMC_SPOT_NORMAL &&
+                himc_midi_key_spot(key) != s->spot;
     if (h->choice > MIDI_DRUMS)
         key = part_key(s->part);
     if (key < 0 || h->choice == MIDI_ANY) {
@@ -194,9 +197,14 @@ bool himc_music_notes(midi_file *file, const himc_score *score, himc_error *erro
     }
     if (good && file->note_count == 0)
         good = himc_error_set(error, "no stroke that notation has, expected a score with strokes");
-    if (good && x->lost > 0 && (file->said = malloc(100)))
-        snprintf(file->said, 100, "%d stroke%s not written: notation has no such instrument\n",
-                 x->lost, x->lost == 1 ? " is" : "s are");
+    himc_text_lines said = {0};
+    if (good && x->lost > 0)
+        himc_text_print(&said, "%d stroke%s not written: notation has no such instrument\n",
+                        x->lost, x->lost == 1 ? " is" : "s are");
+    if (good && x->spots > 0)
+        himc_text_print(&said, "%d spot%s not written: the instrument has no key for it\n",
+                        x->spots, x->spots == 1 ? " is" : "s are");
+    file->said = said.bytes;
     free(x);
     if (!good)
         himc_midi_file_free(file);
