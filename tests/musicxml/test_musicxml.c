@@ -463,6 +463,7 @@ static void test_graces_are_flam_drag_and_ruff(void)
     TEST_ASSERT_EQUAL(HIMC_FLAM, stroke(0)->ornament);
     TEST_ASSERT_EQUAL(HIMC_DRAG, stroke(1)->ornament);
     TEST_ASSERT_EQUAL(HIMC_RUFF, stroke(2)->ornament);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "1 grace"), made.report); // of the ruff's three
 }
 
 static void test_a_grace_on_another_drum_is_a_stroke(void)

@@ -214,7 +214,7 @@ static void emit_graces(shaper *s, const music_note *n, bool roll, midi_way *way
     if (same && !roll) {
         static const himc_ornament ornament[] = {HIMC_PLAIN, HIMC_FLAM, HIMC_DRAG, HIMC_RUFF};
         way->ornament = ornament[s->graces < 3 ? s->graces : 3];
-        for (int i = 3; i < s->graces; i++)
+        for (int i = 2; i < s->graces; i++)
             himc_music_omit(s->music, MUSIC_GRACES, n->at.bar);
         s->graces = 0;
         return;
@@ -349,6 +349,7 @@ static bool shape_part(shaper *s, int part)
     double last = -1;
     s->part = part;
     s->sign = s->always = s->ring = s->hand = s->graces = 0;
+    s->held = 0;
     s->measured = -1;
     s->attack = false;
     s->spot = HIMC_SPOT_NORMAL;
