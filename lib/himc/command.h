@@ -39,7 +39,8 @@ const char *himc_nuance_name(himc_nuance nuance);
 /// Where on the head a stroke lands. In the order of the argument SPOT.
 typedef enum himc_spot {
     HIMC_SPOT_CENTER,     ///< the centre
-    HIMC_SPOT_NORMAL,     ///< 0.75 of the radius towards the performer
+    HIMC_SPOT_NORMAL,     ///< of a timpano 0.75 of the radius towards the performer, of drums with
+                          ///< two heads 0.3; other instruments have their own
     HIMC_SPOT_RIM,        ///< 0.92 of the radius towards the performer
     HIMC_SPOT_CROSSSTICK, ///< the shaft on the hoop, the tip lies on the head
     HIMC_SPOT_RIMSHOT,    ///< the tip on the head and the shaft on the hoop at once

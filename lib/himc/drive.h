@@ -7,10 +7,10 @@
 
 HIMC_BEGIN
 
-/// What drives joints from outside, for controllers of one's own and for learners. Where `aimed`,
-/// a joint of mode `id` is to have `rotation` and `rate` (in its parent's frame); in `himc` that is
-/// the posture of the null space. Where `turned`, `torque` (on the child, about its own axes) takes
-/// the place of the controller's; neither strength nor limits act on it. Without effect in `ik`.
+/// What drives joints. Where `aimed`, a joint of mode `id` is to have `rotation` and `rate` (in its
+/// parent's frame); in `himc` they are the posture of the null space. Where `turned`, `torque` (on
+/// the child, about its own axes) takes the place of the controller's; neither strength nor limits
+/// act on it. Without effect in `ik`. In the order of himc_joint_name.
 typedef struct himc_drive {
     bool aimed[HIMC_JOINTS], turned[HIMC_JOINTS];
     himc_quat rotation[HIMC_JOINTS]; ///< unit

@@ -35,7 +35,7 @@
 ///     track        a source: the trajectories of the drumstick tips, from a take
 ///     plan         a source: the same from a score, hits and live targets
 ///     midi         a score made of a MIDI file
-///     musicxml     the same of a MusicXML file
+///     musicxml     the same of a MusicXML file; scores written as MusicXML and MIDI
 ///     control      inverse kinematics and inverse dynamics
 ///     bank         many damped oscillators
 ///     head         kinds of instrument, a file each: modes, air and kettle, uneven lugs, pickups

@@ -179,7 +179,7 @@ typedef struct himc_stick {
     double height;         ///< up positive (m); the step moves it
     double velocity;       ///< up positive (m/s); the step changes it
     double hold;           ///< while it presses, the head is damped as by so much `damp`, 0 .. 1
-    double shaft; ///< as the tip meets the head it meets the hoop, at that part of the speed
+    double shaft; ///< speed of a rim shot's shaft on the hoop over the tip's, 0: no rim shot
     bool one_way; ///< the stick meets a head at rest; the head's vibration does not push back
 
     double force;          ///< mean of the last sample (N, >= 0, on the stick upwards)

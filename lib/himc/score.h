@@ -46,8 +46,8 @@ typedef struct himc_score {
                   ///< strokes, or -1 - i of changes; NULL if there are none
     char *report; ///< of MIDI, MusicXML: what is played and what not; of a text: commands that
                   ///< stand inside a comment; lines that end with \n, owned; NULL if there are none
-    int left_out; ///< of a MIDI file: notes of its part that are not played, tracks cut short; of a
-                  ///< text: commands that stand inside a comment
+    int left_out; ///< of MIDI, MusicXML: notes of the part that are not played, tracks that are
+                  ///< missing; of a text: commands that stand inside a comment
 } himc_score;
 
 /// Reads the file, a score, a Standard MIDI File or MusicXML (told by its first bytes), whose parts

@@ -77,6 +77,10 @@ static void test_an_aimed_joint_comes_to_its_rotation_and_is_given_back(void)
     TEST_ASSERT_TRUE_MESSAGE(himc_performance_drive(p, &drive, &error), error.text);
     himc_performance_process(p, 48000, NULL);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0, between(row.rotation[elbow], drive.rotation[elbow]));
+    drive.rate[elbow] = himc_vec3_make(0, 1, 0); // held with a rate, it stays beside it
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_drive(p, &drive, &error), error.text);
+    himc_performance_process(p, 48000, NULL);
+    TEST_ASSERT_TRUE(between(row.rotation[elbow], drive.rotation[elbow]) > 5e-3);
     TEST_ASSERT_TRUE(himc_performance_drive(p, NULL, &error));
     himc_performance_process(p, 48000, NULL);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0, between(row.rotation[elbow], before));

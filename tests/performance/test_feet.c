@@ -107,17 +107,6 @@ static void test_no_hand_is_sent_to_a_kick_on_the_floor(void)
     TEST_ASSERT_EQUAL_STRING("foot", stroke(0).hand);
 }
 
-static void test_a_kick_that_is_made_first_decides_no_height(void)
-{
-    subscribe("strikes");
-    load("instrument kick kick 22; kick place .8 .1 .4 .8; instrument snare snare;"
-         "snare place .52 .02 .72; tempo 60; stroke 2 right legato mf snare;");
-    say("/himc/play", "");
-    play(3);
-    TEST_ASSERT_EQUAL_STRING("", last_error());
-    TEST_ASSERT_EQUAL_INT(1, count("/himc/strike"));
-}
-
 static void test_hands_play_a_kick_that_is_at_their_height(void)
 {
     subscribe("strikes");
@@ -208,7 +197,6 @@ int main(void)
     RUN_TEST(test_a_foot_s_strike_has_its_beat);
     RUN_TEST(test_a_foot_follows_a_message_and_a_seek);
     RUN_TEST(test_no_hand_is_sent_to_a_kick_on_the_floor);
-    RUN_TEST(test_a_kick_that_is_made_first_decides_no_height);
     RUN_TEST(test_hands_play_a_kick_that_is_at_their_height);
     return UNITY_END();
 }

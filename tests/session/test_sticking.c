@@ -110,11 +110,27 @@ static void test_equal_strokes_are_equal_after_a_loud_one(void)
     himc_performance_free(p);
 }
 
+static void test_a_kick_that_is_made_first_decides_no_height(void)
+{
+    himc_performance *p = session_new();
+    session_score(p, "/tmp/himc-kick-first.txt",
+                  "instrument kick kick 22; kick place .8 .1 .4 .8; instrument snare snare;"
+                  "snare place .52 .02 .72; tempo 60; stroke 1 right legato mf snare;");
+    session_do(p, "play");
+    heard h = {0};
+    session_play(p, 3, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.strikes);
+    TEST_ASSERT_EQUAL_INT(1, himc_performance_measure(p).played);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_written_sticking_is_kept_on_a_snare);
     RUN_TEST(test_a_written_sticking_is_kept_in_every_set_up);
     RUN_TEST(test_equal_strokes_are_equal_after_a_loud_one);
+    RUN_TEST(test_a_kick_that_is_made_first_decides_no_height);
     return UNITY_END();
 }

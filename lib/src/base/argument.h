@@ -28,12 +28,12 @@ const himc_argument *himc_argument_find(const char *name, const char *context);
 /// True if the atom fits.
 bool himc_argument_accepts(const himc_argument *argument, const himc_atom *atom);
 
-/// Index of the atom among the argument's words, or -1.
-/// Whether a word is that of a hand of `stroke`.
-bool himc_is_hand(const char *word);
 /// The hand that a checked word names.
 himc_hand himc_argument_hand(const himc_atom *atom);
+/// Whether a word is that of a hand of `stroke`.
+bool himc_is_hand(const char *word);
 
+/// Index of the atom among the argument's words, or -1.
 int himc_argument_choice(const himc_argument *argument, const himc_atom *atom);
 
 /// The number of an accepted atom in single precision, as all hosts have it. The ends of the range

@@ -31,7 +31,7 @@
 #define CROSSED_GAP 0.05   // ... and crossed ones nearer by this
 #define CROSSED 0.02       // one tip is so far on the other's side (m)
 #define UNSURE_GAP 0.004 // real gaps are less than rehearsed ones by up to this (m): seen 1 to 4 mm
-#define SLIDE 1.5 // of tips along each other in strokes on one drum, at most (m/s); chosen
+#define SLIDE 1.5        // of tips along each other in strokes on one drum, at most (m/s); chosen
 #define UNSURE 0.003     // so early or late a stick may pass (s): the rebound is only predicted ...
 #define MOST_UNSURE 0.01 // ... so that the gap may be less by this, too (m)
 #define STRETCHED 2.0    // ... and a body gap by this share of the way out of reach: seen up to 1.8
@@ -224,8 +224,7 @@ static int walk_step(const himc_planner *planner, planner_rehearsal *walk, const
         at.place[i] = soon ? s->goal.spot : at.tip[i];
     }
     himc_clearance clear = look(planner->config.body, &at, walk);
-    double gap =
-        himc_planner_least_gap(&clear, speed_past(hand, at.time, clear.across));
+    double gap = himc_planner_least_gap(&clear, speed_past(hand, at.time, clear.across));
     double lack = lack_of(&clear, &at, &order);
     walk->after = fmin(clear.sticks < PASSING_GAP ? PASSING_STEP : STEP,
                        fmin(himc_planner_touch_after(&hand[HIMC_LEFT], walk->t),
