@@ -240,6 +240,39 @@ static void test_repeats_and_endings_are_played(void)
     TEST_ASSERT_EQUAL_STRING(stroke(3)->drum, stroke(1)->drum);
 }
 
+static void test_endings_without_a_number_or_a_stop_lose_no_bar(void)
+{
+    PLAY(BAR(1, FOUR C3(16, "")) BAR(2, ENDING("", "start") C3(16, "") ENDING("", "stop"))
+             BAR(3, C3(16, "")));
+    expect_beats(3, 0.0, 4.0, 8.0);
+    PLAY(BAR(1, FOUR C3(16, "")) BAR(2, ENDING("1", "start") C3(16, "") REPEAT("backward"))
+             BAR(3, ENDING("2", "start") C3(16, "") ENDING("2", "stop")));
+    expect_beats(4, 0.0, 4.0, 8.0, 12.0);
+}
+
+static void test_numbers_beyond_music_are_read_and_lose_nothing(void)
+{
+    PLAY(BAR(1, FOUR C3(16, MARKS(1)) "<backup><duration>-1e19</duration></backup>")
+             BAR(2, C3(16, MARKS(4))));
+    TEST_ASSERT_TRUE(score->stroke_count >= 2);
+    PLAY(BAR(1, FOUR TEMPO(4) C3(16, MARKS(3)) C3(16, MARKS(4)))); // rolls longer than a minute
+    TEST_ASSERT_TRUE(score->stroke_count >= 2);
+    PLAY(BAR(1, FOUR C3(1, MARKS(1)) C3(15, ""))); // a note without a type
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+}
+
+static void test_graces_at_the_end_are_counted(void)
+{
+    PLAY(BAR(1, FOUR C3(16, "") GRACE(C)));
+    expect_text("1 grace note is not played");
+}
+
+static void test_an_accent_over_a_rest_is_not_the_next_note_s(void)
+{
+    PLAY(BAR(1, FOUR DYNAMICS("f") C3(4, "") DYNAMICS("sfz") REST(4) C3(8, "")));
+    TEST_ASSERT_EQUAL(stroke(0)->nuance, stroke(1)->nuance);
+}
+
 static void test_a_repeat_is_played_as_often_as_it_says(void)
 {
     PLAY(BAR(1, FOUR C3(16, "") "<barline><repeat direction='backward' times='3'/></barline>")
@@ -292,6 +325,8 @@ static void test_a_ritardando_slows_evenly_to_a_tempo(void)
 
 static void test_a_fermata_holds(void)
 {
+    PLAY(BAR(1, FOUR TEMPO(40) C3(16, "<notations><fermata/></notations>")) BAR(2, C3(16, "")));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 8.0, time_between(0, 4)); // longer by 2 s at most
     PLAY(BAR(1, FOUR TEMPO(120) C3(4, "<notations><fermata/></notations>") C3(4, "") REST(8)));
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.0, time_between(0, 1));
     TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(1));
@@ -463,7 +498,8 @@ static void test_graces_are_flam_drag_and_ruff(void)
     TEST_ASSERT_EQUAL(HIMC_FLAM, stroke(0)->ornament);
     TEST_ASSERT_EQUAL(HIMC_DRAG, stroke(1)->ornament);
     TEST_ASSERT_EQUAL(HIMC_RUFF, stroke(2)->ornament);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "1 grace"), made.report); // of the ruff's three
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "1 grace"),
+                                 made.report); // of the ruff's three
 }
 
 static void test_a_grace_on_another_drum_is_a_stroke(void)
@@ -706,6 +742,7 @@ static void test_other_documents_are_refused_by_their_kind(void)
 {
 #define REFUSE(text, expected) refuse(text, strlen(text), expected)
     REFUSE("<html><body/></html>", "XML of the kind html, expected score-partwise");
+    REFUSE("<credit/>", "XML of the kind credit, expected score-partwise");
     REFUSE("<score-timewise/>", "export it as score-partwise");
     REFUSE("<score-partwise/>", "a score without a bar");
     REFUSE("<score-partwise>\n<part>\n</score-partwise>", "line 3: mismatched tag");
@@ -805,6 +842,10 @@ int main(void)
     RUN_TEST(test_cue_notes_are_left_out_and_counted_with_their_bars);
     RUN_TEST(test_what_is_not_played_has_its_bar_and_reason);
     RUN_TEST(test_repeats_and_endings_are_played);
+    RUN_TEST(test_endings_without_a_number_or_a_stop_lose_no_bar);
+    RUN_TEST(test_numbers_beyond_music_are_read_and_lose_nothing);
+    RUN_TEST(test_graces_at_the_end_are_counted);
+    RUN_TEST(test_an_accent_over_a_rest_is_not_the_next_note_s);
     RUN_TEST(test_a_repeat_is_played_as_often_as_it_says);
     RUN_TEST(test_da_capo_goes_to_fine_without_repeats);
     RUN_TEST(test_dal_segno_goes_to_the_coda);

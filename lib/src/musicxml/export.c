@@ -31,7 +31,6 @@ typedef struct head {
 } head;
 
 typedef struct exporter {
-    const himc_score *score;
     midi_file *file;
     head head[HIMC_DRUMS];
     int heads, note_room, order_room, lost;
@@ -138,6 +137,10 @@ static bool add_note(exporter *x, const himc_stroke *s)
     key = key < 0 ? h->key : key;
     x->spots += h->choice == MIDI_DRUMS && s->hand != HIMC_FOOT && s->spot != HIMC_SPOT_NORMAL &&
                 himc_midi_key_spot(key) != s->spot;
+    himc_spot spot = s->spot;
+    if (spot == HIMC_SPOT_XY || (h->choice == MIDI_TIMPANI && spot > HIMC_SPOT_RIM))
+        spot = HIMC_SPOT_NORMAL;
+    x->spots += spot != s->spot && s->spot != HIMC_SPOT_XY;
     if (h->choice > MIDI_DRUMS)
         key = part_key(s->part);
     if (key < 0 || h->choice == MIDI_ANY) {
@@ -164,7 +167,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .last_dynamic = s->last_dynamic,
                 .nuance = s->nuance,
                 .ornament = s->ornament < HIMC_ROLL_SINGLE ? s->ornament : HIMC_PLAIN,
-                .spot = s->spot == HIMC_SPOT_XY ? HIMC_SPOT_NORMAL : s->spot,
+                .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
     };
     return true;
@@ -180,7 +183,7 @@ bool himc_music_notes(midi_file *file, const himc_score *score, himc_error *erro
     if (!good)
         himc_error_set(error, "out of memory for the notes");
     if (good) {
-        *x = (exporter){.score = score, .file = file, .error = error};
+        *x = (exporter){.file = file, .error = error};
         memcpy(file->tempi, score->tempi, tempi);
         file->tempo_count = score->tempo_count;
     }

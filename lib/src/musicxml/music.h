@@ -71,7 +71,6 @@ typedef struct music {
     int note_count, note_room;
     music_sign *signs;
     int sign_count, sign_room;
-    bool jumps; ///< of da capo and the like, as `sound` elements say
     music_omission omitted[MUSIC_OMISSIONS];
 } music;
 

@@ -17,13 +17,16 @@ static void spread_endings(music *m)
 {
     for (int i = 0; i < m->bar_count; i++) {
         unsigned mask = m->bars[i].endings & ~1u;
-        if (!mask)
+        if (!mask) {
+            m->bars[i].endings = 0; // a stop without a beginning
             continue;
+        }
         int end = i;
         while (end < m->bar_count && !(m->bars[end].endings & 1) &&
                (end == i || !(m->bars[end].endings & ~1u)))
             end++;
-        if (end == m->bar_count || !(m->bars[end].endings & 1))
+        if (end == m->bar_count || !(m->bars[end].endings & 1) ||
+            (end > i && m->bars[end].endings & ~1u))
             end = i;
         for (int k = i; k <= end; k++)
             m->bars[k].endings = mask;

@@ -66,6 +66,12 @@ static bool is_yes(const xml_node *node, const char *attribute)
 }
 
 // by the names first, then by the MIDI instrument
+// a whole number, within limits that no score reaches
+static int whole(const xml_node *node, const char *name, int otherwise)
+{
+    return (int)lround(fmin(fmax(himc_xml_number(node, name, otherwise), -1000), 1000));
+}
+
 static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
 {
     instrument *made = &r->instrument[r->instruments++];
@@ -79,17 +85,16 @@ static void read_instrument(reader *r, const xml_node *score, midi_choice part, 
     const xml_node *midi = himc_xml_child(r->list, "midi-instrument");
     while (midi && !himc_xml_has(midi, "id", made->id))
         midi = himc_xml_next(midi);
-    int key = (int)himc_xml_number(midi, "midi-unpitched", 0) - 1;
-    int program = (int)himc_xml_number(midi, "midi-program", 0) - 1;
+    int key = whole(midi, "midi-unpitched", 0) - 1;
+    int program = whole(midi, "midi-program", 0) - 1;
     bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
     if (made->choice == MIDI_ANY && part != MIDI_ANY)
         *made = (instrument){made->id, part, part_key, 0};
-    for (int i = 1; i < MIDI_CHOICES && made->choice == MIDI_ANY && midi && !drums; i++)
-        if (himc_midi_program_choice(program) == (midi_choice)i)
-            made->choice = (midi_choice)i;
+    if (made->choice == MIDI_ANY && midi && !drums)
+        made->choice = himc_midi_program_choice(program);
     if (made->choice == MIDI_ANY && drums)
         made->choice = MIDI_DRUMS;
-    // a key says it best, but not a kit's drum for a concert's
+    // the MIDI key decides, unless both names say a concert instrument, which General MIDI lacks
     bool concert = made->key >= 128 && part_key >= 128;
     if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert)
         made->key = key;
@@ -278,8 +283,7 @@ static int read_pitch(const xml_node *pitch, const char *step, const char *octav
     const char *letter = himc_xml_text(pitch, step);
     if (letter[0] < 'A' || letter[0] > 'G')
         return -1;
-    return natural[letter[0] - 'A'] + 12 * ((int)himc_xml_number(pitch, octave, 4) + 1) +
-           (int)lround(himc_xml_number(pitch, "alter", 0));
+    return natural[letter[0] - 'A'] + 12 * (whole(pitch, octave, 4) + 1) + whole(pitch, "alter", 0);
 }
 
 // of a drum set that says nothing else: where its drums are written (Weinberg 1998), by MIDI key
@@ -472,7 +476,7 @@ static void read_measure(reader *r, const xml_node *measure)
         if (himc_xml_is(n, "note"))
             read_note(r, n);
         else if (himc_xml_is(n, "backup"))
-            r->at = fmax(r->at - duration, 0);
+            r->at = duration > 0 ? fmax(r->at - duration, 0) : r->at;
         else if (himc_xml_is(n, "forward"))
             r->at = duration > 0 && duration < 1000 ? r->at + duration : r->at;
         else if (himc_xml_is(n, "attributes"))
@@ -543,12 +547,15 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
         "accidental",     "harmony",  "figured-bass", "staff-details", "slur", "clef", NULL};
     xml_document document;
     *m = (music){
-        .omitted = {[MUSIC_CUES] = {"cue note is left out", "cue notes are left out", 0, ""},
-                    [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
-                                         "notes are not played: they have no pitch or no length", 0,
-                                         ""},
-                    [MUSIC_GRACES] = {"grace note is not played: a ruff has two",
-                                      "grace notes are not played: a ruff has two", 0, ""}}};
+        .omitted = {
+            [MUSIC_CUES] = {"cue note is left out", "cue notes are left out", 0, ""},
+            [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
+                                 "notes are not played: they have no pitch or no length", 0, ""},
+            [MUSIC_GRACES] = {"grace note is not played: a ruff has two, others need time "
+                              "before a note",
+                              "grace notes are not played: a ruff has two, others need time "
+                              "before a note",
+                              0, ""}}};
     if (!himc_xml_read(&document, bytes, size, unused, error))
         return false;
     reader r = {.music = m, .error = error};

@@ -5,7 +5,7 @@
 /// written; three are a roll from FAST strokes a second on, more are always one; a trill is one. A
 /// roll is cut where its dynamic bends. Grace notes on the drum of their note are its flam, drag or
 /// ruff; others, and those before a roll, are strokes of their own before the beat. A chosen
-/// number has no published source. Invariant: each note makes at least one stroke, but a tied one.
+/// number has no published source. Invariant: each note but a tied one makes at least one stroke, or is counted as omitted.
 #include "musicxml/music.h"
 
 #include "base/argument.h"
@@ -16,9 +16,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAME 1e-6        // (beats)
-#define STEP (1.0 / 7)   // of dynamics
-#define FAST 8.0         // strokes of a measured tremolo with three marks; chosen: rolls.c
+#define SAME 1e-6      // (beats)
+#define STEP (1.0 / 7) // of dynamics
+#define FAST 8.0 // (1/s) a tremolo of three marks is a roll from this rate on; chosen, as rolls.c
 #define FASTEST 12.0     // strokes of two hands (1/s)
 #define ALTERNATE 0.11   // between strokes on two drums, at least (s); chosen: of one hand .22
 #define GRACE_TIME 0.07  // between strokes that are grace notes (s); chosen: an open ruff
@@ -37,7 +37,7 @@ typedef struct shaper {
     int part, sign; ///< the next sign
     music_level *levels;
     int level_count;
-    double second; ///< (beats) now
+    double second; ///< beats in one second at the present note
     himc_spot spot;
     int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
     double held;                      ///< a fermata ends (beats)
@@ -145,19 +145,20 @@ static void emit_roll(shaper *s, const music_note *n, double end, double louder,
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
     double begin = n->at.beat, least = fmax(range->low, 0.1);
-    double attack = ATTACK_TIME * s->second;
-    double base = way.dynamic;
+    double attack = fmax(ATTACK_TIME * s->second, least);
+    double base = way.dynamic, most = fmin(range->high, LONGEST * s->second);
     int next = 0;
     while (next < s->level_count && s->levels[next].beat <= begin + SAME)
         next++;
-    for (double at = begin; at < end - SAME;) {
+    for (double at = begin; at < end - SAME && !s->failed;) {
         while (next < s->level_count && s->levels[next].beat < at + least)
             next++;
         double to = next < s->level_count ? s->levels[next].beat : end;
         double up = louder > 0 && at == begin && end - at > 2 * attack ? louder : 0;
         to = up > 0 ? fmin(to, at + attack) : to;
         to = to > end - least ? end : to;
-        to = fmin(to, at + fmin(range->high, LONGEST * s->second));
+        if (to > at + most) // no rest shorter than a roll can be
+            to = end < at + most + least ? at + most / 2 : at + most;
         way.length = to - at;
         way.dynamic = fmin((at == begin ? base : level(s, at)) + up, 1);
         // just before the point, which may be a step
@@ -171,6 +172,7 @@ static void emit_roll(shaper *s, const music_note *n, double end, double louder,
 static void emit_measured(shaper *s, const music_note *n, double unit, midi_way way)
 {
     int count = (int)lround(n->rolled / unit);
+    count = count > 0 ? count : 1; // a note without a type has no flags
     for (int i = 0; i < count; i++) {
         double at = n->at.beat + i * n->rolled / count;
         way.dynamic = i == 0 ? way.dynamic : level(s, at);
@@ -276,7 +278,7 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
         if (sign->at.part != s->part)
             continue;
         switch (sign->meaning) {
-        case MUSIC_ATTACK: s->attack = true; break;
+        case MUSIC_ATTACK: s->attack |= sign->at.beat > beat - SAME; break;
         case MUSIC_SPOT: s->spot = (himc_spot)sign->value; break;
         case MUSIC_RING:
             // at a rest it is for what sounds
@@ -287,7 +289,9 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
             break;
         case MUSIC_RING_ALWAYS: s->always = (int)sign->value; break;
         case MUSIC_DAMP: end_at(s, sign->at.beat, -1); break;
-        case MUSIC_HAND: s->hand = 1 + (int)sign->value; break;
+        case MUSIC_HAND:
+            s->hand = sign->at.beat > beat - SAME ? 1 + (int)sign->value : s->hand;
+            break;
         case MUSIC_FERMATA: s->held = sign->at.beat + sign->value; break;
         case MUSIC_MEASURED: s->measured = (int)sign->value; break;
         case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, choice); break;
@@ -375,6 +379,8 @@ static bool shape_part(shaper *s, int part)
         s->second = bpm_at(s->file, last) / 60;
         shape_note(s, n);
     }
+    for (int i = 0; i < s->graces; i++) // no note follows
+        himc_music_omit(m, MUSIC_GRACES, s->grace[i]->at.bar);
     take_signs(s, HUGE_VAL, MIDI_ANY);
     free(s->levels);
     return !s->failed;

@@ -51,7 +51,7 @@ static bool sets_tempo(music_meaning meaning)
 static double add_ramp(map *to, const music *m, int i, double bpm)
 {
     const music_sign *s = &m->signs[i];
-    double end = s->at.beat + ALONE_RAMP, last = bpm * s->value;
+    double end = s->at.beat + ALONE_RAMP, last = fmax(bpm * s->value, HIMC_BPM_MIN);
     for (int k = i + 1; k < m->sign_count; k++)
         if (sets_tempo(m->signs[k].meaning) && m->signs[k].at.beat > s->at.beat + SAME) {
             double beat = m->signs[k].at.beat;

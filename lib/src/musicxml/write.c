@@ -97,12 +97,13 @@ static void put_instrument(const writer *w, const midi_note *n)
 
 static void put_graces(const writer *w, const item *i)
 {
-    int count = i->note->way.ornament; // in the order of the ornaments: 0 to 3
+    // in the order of the ornaments: 0 to 3, a ruff with three, as a drag has two
+    int count = i->note->way.ornament;
     for (int k = 0; k < count; k++) {
         PUT(w, "<note><grace/>");
         put_pitch(w, i->note->key);
-        PUT(w, "<voice>%d</voice>", i->voice + 1);
         put_instrument(w, i->note);
+        PUT(w, "<voice>%d</voice>", i->voice + 1);
         PUT(w, "<type>16th</type></note>\n");
     }
 }

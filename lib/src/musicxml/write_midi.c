@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define BASS_DRUM 36    // for concert instruments that General MIDI has no key for
 #define TICKS 960       // of a quarter note
 #define ROLL_RATE 11.0  // strokes of a roll (1/s); chosen: of a middle drum (plan/ornament.c)
 #define GRACE_TIME 0.04 // (s) chosen, as there
@@ -50,7 +51,7 @@ static void add_stroke(writer *w, const midi_note *n, double seconds, double dyn
         [MIDI_TIMPANI] = 0,   [MIDI_DRUMS] = 9,      [MIDI_MARIMBA] = 1,
         [MIDI_XYLOPHONE] = 2, [MIDI_VIBRAPHONE] = 3, [MIDI_GLOCKENSPIEL] = 4};
     const midi_file *f = w->file;
-    uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : 36;
+    uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : BASS_DRUM;
     double end = himc_score_beat(f->tempi, f->tempo_count, seconds + SHORT);
     add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key, 16 + 112 * dynamic);
     add(w, end, on & 0x8f, key, 64);

@@ -90,7 +90,7 @@ static void begin_element(void *user, const char *name, const char **attribute)
 {
     reader *r = user;
     bool unused = r->skipped > 0;
-    for (const char *const *u = r->unused; u && *u && !unused; u++)
+    for (const char *const *u = r->depth > 0 ? r->unused : NULL; u && *u && !unused; u++)
         unused = strcmp(name, *u) == 0;
     r->length = 0;
     if (r->depth == MOST_DEEP || r->skipped > MOST_DEEP) {
@@ -126,6 +126,8 @@ static void end_element(void *user, const char *name)
 {
     reader *r = user;
     (void)name;
+    if (r->failed) // expat may end an empty element although it was stopped
+        return;
     if (r->skipped > 0) {
         r->skipped--;
         return;

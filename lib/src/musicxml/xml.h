@@ -20,7 +20,7 @@ typedef struct xml_document {
 
 /// Reads a document. Elements named in `unused` (NULL after the last) are left out with all that is
 /// in them. False with one line if the bytes are not well-formed, declare an entity, or hold more
-/// elements than any score has. Free with xml_free.
+/// elements than any score has. Free with himc_xml_free.
 bool himc_xml_read(xml_document *document, const void *bytes, size_t size,
                    const char *const *unused, himc_error *error);
 void himc_xml_free(xml_document *document);
