@@ -36,7 +36,7 @@ torques of these joints (8, 3) in N m about their own axes, beside which the per
 TIPS_LOW, TIPS_HIGH = (0.0, -1.2, 0.3), (1.2, 1.2, 2.0)  # m: the space before a player
 # N m, isometric maxima of a healthy man's shoulder, elbow, wrist and fingers (docs/model.md)
 STRENGTH = {"shoulder": 80.0, "elbow": 70.0, "wrist": 12.0, "grip": 5.0}
-FASTEST = 160.0  # rad/s: above any person's joint, as the program's own line says; the body is lost
+FASTEST = 160.0  # rad/s: faster than any human joint: the simulation has diverged
 OBSERVED = (("joints", (19, 4), 1), ("rates", (19, 3), 1e3), ("tips", (2, 6), 1e2), ("forces", (2,), 1e4), ("strokes", (2, 2, 6), 1e4))
 AHEAD = 2  # strokes of each hand in an observation
 HEARD_AGAIN = 10  # steps between two comparisons of the sound, 40 ms
@@ -54,14 +54,14 @@ EAR = 0.01  # lost each 40 ms by a mean difference of 20 dB and more in the octa
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Where an episode is: its seed and actions, which lead there again to the last bit."""
+    """Where an episode is: its seed and actions, which lead there again to the last bit (with motor noise only if it had a seed)."""
     seed: Optional[int]
     actions: tuple
 
 
 @functools.lru_cache(maxsize=8)
 def _reference(score: str, settings: tuple):
-    """Strokes of himc's own performer by hand, with the place of the tip at contact; and the sound's octaves."""
+    """Strokes of himc's own performer by hand, with the place of the tip at contact; and the left channel of its sound."""
     if _is_take(score):
         raise Error(f"score: {score}: is a take, expected a score")
     r = render(score, rate=RATE, settings=settings)
@@ -75,7 +75,7 @@ def _reference(score: str, settings: tuple):
 
 
 def _octaves(sound: NDArray) -> NDArray:
-    """Levels of octaves (dB) of the last 40 ms, from -100 dB re full scale up."""
+    """Levels of octaves (dB) of a piece of sound, from -100 dB re full scale up."""
     power = np.abs(np.fft.rfft(sound * np.hanning(len(sound)))) ** 2 / len(sound) ** 2
     bins = np.searchsorted(np.fft.rfftfreq(len(sound), 1 / RATE), BANDS)
     return 10 * np.log10(np.add.reduceat(power, bins)[:-1] + 1e-10)

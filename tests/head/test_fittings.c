@@ -1,5 +1,6 @@
 /// test_fittings.c: what a stick meets beside the head: hoop, shell, another stick; and a hi-hat's
 /// plates, which a foot closes.
+#include "made_drum.h"
 #include "unity.h"
 
 #include "base/head_frame.h"
@@ -29,15 +30,8 @@ void tearDown(void)
 
 static void make(const char *words)
 {
-    himc_error error = {0};
-    himc_command command;
-    char line[80];
-    snprintf(line, sizeof line, "instrument d %s", words);
-    TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&command, HIMC_PERFORMER, line, &error),
-                             error.text);
     himc_drum_release(drum);
-    drum = himc_drum_made(&command, RATE, &error);
-    TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
+    drum = made_drum(words, RATE);
 }
 
 // advances with a stick, or NULL, and hears it from sample `from` on

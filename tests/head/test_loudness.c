@@ -1,6 +1,7 @@
 /// test_loudness.c: how loud instruments are beside each other, and the bars of one: the loudest
 /// 0.4 s (ITU-R BS.1770) at 1 m, on four sides, against the table of docs/model.md.
 #define _DEFAULT_SOURCE
+#include "made_drum.h"
 #include "himc/loader.h"
 #include "say_drum.h"
 
@@ -10,17 +11,10 @@
 #define WITHIN 4.0     // (dB)
 #define SAMPLES (RATE / 2)
 
-// what `instrument` makes of these words
 static void make(const char *words)
 {
-    himc_command command;
-    char line[80];
-    snprintf(line, sizeof line, "instrument d %s", words);
-    TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&command, HIMC_PERFORMER, line, &error),
-                             error.text);
     himc_drum_release(drum);
-    drum = himc_drum_made(&command, RATE, &error);
-    TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
+    drum = made_drum(words, RATE);
 }
 
 // in place, by the standard's two filters at 48 kHz

@@ -1,4 +1,5 @@
 /// test_two_heads.c: drums with a shell, and the wires of a snare.
+#include "made_drum.h"
 #include "unity.h"
 
 #include "drum/contact.h"
@@ -26,18 +27,10 @@ void tearDown(void)
     himc_drum_release(drum);
 }
 
-// what `instrument` makes of these words
 static himc_drum *make(const char *words)
 {
-    himc_error error = {0};
-    himc_command command;
-    char line[80];
-    snprintf(line, sizeof line, "instrument d %s", words);
-    TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&command, HIMC_PERFORMER, line, &error),
-                             error.text);
     himc_drum_release(drum);
-    drum = himc_drum_made(&command, RATE, &error);
-    TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
+    drum = made_drum(words, RATE);
     return drum;
 }
 

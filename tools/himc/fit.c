@@ -11,16 +11,17 @@
 #include <math.h>
 #include <string.h>
 
-#define ROWS 24          // of the report
-#define HIGHEST 1200.0   // (Hz) of a timpano
-#define SECONDS 4.0      // of the blow that is set beside the recording
-#define NEAR 0.015       // per frequency: the same partial
-#define UNKNOWN (-170.0) // (dB) digital silence before the stroke, or nothing
-#define LEAST_SCORE 0.0  // of a drum (dB) ...
-#define MOST_APART 6.0   // ... and of its blow's spectrum (dB); chosen
-#define ALIKE 0.003      // per frequency: so near it is
-#define SURE 6.0         // (dB) clear of the others
-#define STEADY 0.2       // (Hz)
+#define RADIUS_PER_INCH 0.0127 // (m) half an inch
+#define ROWS 24                // of the report
+#define HIGHEST 1200.0         // (Hz) of a timpano
+#define SECONDS 4.0            // of the blow that is set beside the recording
+#define NEAR 0.015             // per frequency: the same partial
+#define UNKNOWN (-170.0)       // (dB) digital silence before the stroke, or nothing
+#define LEAST_SCORE 0.0        // of a drum (dB) ...
+#define MOST_APART 6.0         // ... and of its blow's spectrum (dB); chosen
+#define ALIKE 0.003            // per frequency: so near it is
+#define SURE 6.0               // (dB) clear of the others
+#define STEADY 0.2             // (Hz)
 
 enum { OUT, INSTRUMENT, JSON };
 
@@ -76,7 +77,7 @@ static bool write_drum(fit *f, const char *path, himc_error *error)
     const fit_drum *d = &f->drum;
     char text[1024], head[512];
     snprintf(head, sizeof head, "radius %.6g;\ndecay %.6g %.6g;\ntune %.6g;\nmallet %s;\n",
-             0.0127 * d->inches, d->constant, d->square, d->tune, fit_mallets[d->mallet]);
+             RADIUS_PER_INCH * d->inches, d->constant, d->square, d->tune, fit_mallets[d->mallet]);
     snprintf(
         text, sizeof text,
         "comment made by himc fit;\ndrum %s %g;\n%s decay %.6g %.6g;\n%s tune %.6g;\n%s mallet %s;\n"
@@ -91,6 +92,8 @@ static bool write_list(fit *f, const char *path, himc_error *error)
 {
     char text[3 * HIMC_PATH_SIZE];
     beside(path, "modes", f->beside, sizeof f->beside);
+    if (strpbrk(f->beside, " ;,\\"))
+        return himc_error_set(error, "-o: %s, expected a path without space ; , and \\", path);
     if (!fit_list(&f->sound, &f->found, f->beside, error))
         return false;
     snprintf(
@@ -106,7 +109,7 @@ static bool hear_again(fit *f, himc_error *error)
     double rate = f->sound.rate < 16000 ? 48000 : f->sound.rate;
     himc_drum *drum =
         f->list ? fit_list_drum(f->beside, rate, error) : fit_drum_make(d, d->mallet, rate, error);
-    double x = f->list ? 0 : -FIT_PLACE * 0.0127 * d->inches;
+    double x = f->list ? 0 : -FIT_PLACE * RADIUS_PER_INCH * d->inches;
     bool good =
         drum && fit_hear(drum, x, fit_speeds[f->list ? 2 : d->dynamic], SECONDS, &f->again, error);
     himc_drum_release(drum);
@@ -134,6 +137,8 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
     const char *kind = a->value[INSTRUMENT], *out = a->value[OUT];
     if (!out)
         return himc_error_set(error, "no -o DRUM.txt given (himc fit --help)");
+    if (cli_is_standard(out))
+        return himc_error_set(error, "-o: -, expected a file: a second one is named after it");
     if (kind && strcmp(kind, "timpano") && strcmp(kind, "modes"))
         return himc_error_set(error, "--instrument: %s, expected timpano or modes", kind);
     if (!cli_ending_is("-o", out, ".txt", error) || !cli_apart(out, a->repeated, a->repeats, error))

@@ -46,7 +46,7 @@ static bool keep_asked(lesson *l, himc_performance *p, const himc_event *event, 
     return true;
 }
 
-// rolls in beats; find_delay makes seconds of them
+// fills the rolls, in beats; ask() makes seconds of them
 static void find_rolls(lesson *l, const himc_score *score)
 {
     for (int i = 0; i < score->stroke_count && l->rolls < LESSON_ROLLS / 2; i++) {
@@ -234,9 +234,10 @@ static int run(const cli_arguments *arguments)
                write_file(l, value[OUT], lesson_page, &error) &&
                write_file(l, value[CSV], lesson_csv, &error);
     }
+    bool piped = cli_is_standard(value[OUT]) || cli_is_standard(value[CSV]);
     if (good && value[JSON])
-        lesson_json(l, stdout);
-    else if (good && !cli_is_standard(value[OUT]))
+        lesson_json(l, piped ? stderr : stdout);
+    else if (good && !piped)
         tell(l);
     if (l) {
         free(l->asked);
@@ -254,7 +255,7 @@ const cli_call cli_lesson = {
     "compares a take with a score: time, loudness, place, what to practise",
     "TAKE is a motion capture," HIMC_TAKE_SUFFIXES
     ", of which the tips of the sticks suffice. Its\n"
-    "tempo and its beginning are free. The page opens in any browser, also printed or on a phone.",
+    "tempo and its beginning are free. The page opens in any browser, fits a phone and can be printed.",
     options,
     run,
 };

@@ -62,7 +62,7 @@ typedef struct lesson_figure {
 
 /// Something worth practising.
 typedef struct lesson_fault {
-    char kind[16];                       ///< time level spot tempo wait roll missing extra hand
+    char kind[16];                       ///< time level spot tempo wait roll missing extra
     char what[160];                      ///< in plain words
     char how[96];                        ///< of which strokes
     double effect, u, spread, threshold; ///< in `unit`; u is a standard uncertainty

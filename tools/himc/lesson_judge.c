@@ -382,7 +382,7 @@ static bool judge_groups(lesson *l, course *c, const quantity *q)
         if (!best.in)
             break;
         tell_group(l, q, best);
-        if (best.kind == HAND && q->threshold == jnd(c->interval))
+        if (best.kind == HAND && !strcmp(q->kind, "time"))
             l->lead[best.id] = best.effect[0];
         for (int k = 0; k < c->n; k++)
             for (int axis = 0; axis < q->axes; axis++)

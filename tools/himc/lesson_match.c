@@ -22,7 +22,7 @@
 #define GAP 6.0
 #define ROLLED 0.02 // for a played event that a roll may contain
 #define OTHER 3.0
-#define BACK 4 // events left out in a row, less one; in a roll ...
+#define BACK 4 // steps back: up to BACK - 1 events left out in a row; in a roll ...
 #define BACK_ROLL 400
 #define FOLLOW 0.15 // share of a new interval in the tempo
 #define TEMPI 29    // from half to twice the score's

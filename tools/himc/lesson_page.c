@@ -71,6 +71,15 @@ static void put_number(FILE *out, double x, int digits, const char *unknown)
         fprintf(out, "%.*f", digits, fabs(x) < 0.5 * pow(10, -digits) ? 0 : x);
 }
 
+// of left and right, times a factor
+static void put_both(const double of[HIMC_HANDS], double by, int digits, FILE *out)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        fputs("<td>", out);
+        put_number(out, by * of[hand], digits, "");
+    }
+}
+
 static void put_head(const lesson *l, FILE *out)
 {
     const char *take = strrchr(l->take, '/'), *score = strrchr(l->score, '/');
@@ -128,7 +137,7 @@ static void put_faults(const lesson *l, FILE *out)
             out);
     fprintf(out,
             "<p>Your strokes lie %.1f ms off your own beat and %.1f dB off the written dynamics "
-            "(RMS). The more they scatter, the larger a difference must be to be told.</p>",
+            "(RMS). The more they scatter, the larger a difference must be to be named.</p>",
             1e3 * seconds, decibels);
     if (l->faults > LESSON_NAMED)
         fprintf(out, "<p><small>%d more are beyond their thresholds, by less.</small></p>",
@@ -267,15 +276,18 @@ static void put_hands(const lesson *l, FILE *out)
         put_number(out, left && right ? mean[0] - mean[1] : NAN, c->digits, "");
         fprintf(out, "<td class=p>%s\n", c->published);
     }
-    if (l->body)
-        fprintf(
-            out,
-            "<tr><td>Wrist bent beyond 15° (%% of the time)<td>%.0f<td>%.0f<td><td class=p>strained "
-            "(RULA, McAtamney and Corlett 1993); a quarter of drummers' disorders are in the wrist (Azar 2020)",
-            100 * l->bent[0], 100 * l->bent[1]);
-    if (l->torques)
-        fprintf(out, "<tr><td>Work of the arm, a stroke (J)<td>%.2f<td>%.2f<td><td>", l->work[0],
-                l->work[1]);
+    if (l->body) {
+        fputs("<tr><td>Wrist bent beyond 15° (% of the time)", out);
+        put_both(l->bent, 100, 0, out);
+        fputs("<td><td class=p>strained (RULA, McAtamney and Corlett 1993); a quarter of drummers' "
+              "disorders are in the wrist (Azar 2020)",
+              out);
+    }
+    if (l->torques) {
+        fputs("<tr><td>Work of the arm, a stroke (J)", out);
+        put_both(l->work, 1, 2, out);
+        fputs("<td><td>", out);
+    }
     fputs("</table></div>", out);
 }
 

@@ -127,7 +127,7 @@ struct motion_table {
     motion_table_format format;
     bool failed;
     bool has[ARRAYS];
-    double *data; ///< row after row, but of a CSV
+    double *data; ///< row after row; unused for a CSV
     size_t rows, room, width;
 };
 

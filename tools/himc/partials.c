@@ -249,7 +249,7 @@ static void merge(partials_list *p)
     for (int i = 0; i < p->count; i++)
         strongest = fmax(strongest, p->row[i].energy);
     for (int i = 0; i < p->count; i++) {
-        partial *last = &p->row[kept - 1], *now = &p->row[i];
+        partial *last = &p->row[kept ? kept - 1 : 0], *now = &p->row[i];
         if (now->energy < strongest + LEVEL_LEAST)
             continue;
         bool one = kept > 0 && now->frequency - last->frequency < MERGED &&

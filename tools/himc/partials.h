@@ -20,7 +20,7 @@ typedef struct partial {
     double level;           ///< at the onset, of all channels (dB re the sound's peak)
     double phase;           ///< at the onset, of the first channel (rad)
     double energy;          ///< 10 lg of what it has over all time (dB)
-    double clear; ///< by which that, or its level after .7 s, stands out of its neighbours' (dB)
+    double clear; ///< by which that, or its level after 1 s, stands out of its neighbours' (dB)
 } partial;
 
 /// What was heard, each channel of each stroke from its onset on.
@@ -29,7 +29,7 @@ typedef struct partials_sound {
     size_t length[PARTIALS_TRACKS];
     int tracks;
     double rate;  ///< (Hz), of all
-    double noise; ///< before the onset or at the very end (dB re the first .5 s), the worst
+    double noise; ///< before the onset (dB re the first .5 s), of the worst
 } partials_sound;
 
 typedef struct partials_list {

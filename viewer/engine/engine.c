@@ -213,6 +213,8 @@ static bool obey(const himc_command *c)
 bool page_command(void)
 {
     himc_command command;
+    if (!e.performance)
+        return himc_error_set(&e.error, "no performer yet, expected a score first");
     if (!himc_command_parse_text(&command, HIMC_PERFORMER, e.input, &e.error) || !obey(&command))
         return false;
     if (command.id == HIMC_COMMAND_PLAY || command.id == HIMC_COMMAND_RESET)

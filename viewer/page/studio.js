@@ -28,6 +28,7 @@ export async function linkOf(text) {
 }
 
 export async function textOf(hash) {
+    if (hash.length > LONGEST) throw new Error("too long");
     const letters = atob(hash.slice(3).replace(/-/g, "+").replace(/_/g, "/")),
         bytes = Uint8Array.from(letters, c => c.charCodeAt(0));
     return new TextDecoder().decode(await squeeze(bytes, new DecompressionStream(DEFLATE)));
@@ -37,8 +38,9 @@ export async function textOf(hash) {
 // ray(press); scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
 export class Studio {
     constructor(files, sound, liveSound, on) {
-        ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.files = files));
-        ((this.connections = 1), (this.plays = false), (this.said = []), (this.past = []), (this.names = ""));
+        ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.queue = []));
+        ((this.plays = false), (this.said = []), (this.past = []), (this.names = ""));
+        this.embedded = new URLSearchParams(location.search).has("embed");
         const [[, wasm], ...pieces] = files;
         ((this.pieces = pieces.map(([name]) => name)), (this.name = ""), (this.ready = false));
         this.texts = new Map(pieces); // as they are in the files
@@ -67,9 +69,10 @@ export class Studio {
 
     // --- the text of a score, which no end of the page loses
 
+    // a page around this one neither reads nor changes it
     remembered() {
         try {
-            const all = JSON.parse(localStorage.getItem(JOURNAL) ?? "{}");
+            const all = JSON.parse((!this.embedded && localStorage.getItem(JOURNAL)) || "{}");
             return { name: String(all.name ?? ""), text: all.text && typeof all.text === "object" ? all.text : {} };
         } catch {
             return { name: "", text: {} };
@@ -77,6 +80,7 @@ export class Studio {
     }
 
     remember() {
+        if (this.embedded) return;
         try {
             localStorage.setItem(JOURNAL, JSON.stringify(this.journal));
         } catch {
@@ -91,12 +95,14 @@ export class Studio {
         if (typeof text[name] !== "string") return false;
         this.draft = text[name];
         this.load(name, bytesOf.encode(text[name]));
-        this.tell(`${name} is here again as you left it; "file's text" takes your changes back`);
+        const own = this.pieces.includes(name) ? `; "file's text" takes your changes back` : "";
+        this.tell(`${name} is here again as you left it${own}`);
         return true;
     }
 
-    // what is typed is kept at once
+    // what is typed is kept at once; a link in the address would bring back another text
     typed() {
+        if (location.hash) history.replaceState(null, "", location.pathname + location.search);
         ((this.journal.name = this.name || "score.txt"), (this.journal.text[this.journal.name] = $("p-text").value));
         this.remember();
     }
@@ -129,6 +135,7 @@ export class Studio {
         this.on.hold(true);
         const port = await this.liveSound.feed("page").catch(error => this.tell(`no sound: ${error.message}`, true));
         this.on.hold(false);
+        this.listens = !!port;
         if (port) this.worker.postMessage({ port }, [port]);
     }
 
@@ -139,7 +146,16 @@ export class Studio {
         else if (saved) this.save(saved, bytes);
         else if (loaded !== undefined) this.fresh(loaded);
         else if (line !== undefined) this.answered(line, failed);
-        else if (failed) this.failed(name && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
+        else if (failed) {
+            this.asked(name);
+            this.failed(name && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
+        }
+    }
+
+    // what was asked of the Worker under that name, the oldest
+    asked(name) {
+        const at = this.queue.findIndex(one => one.name === name);
+        return at < 0 ? {} : this.queue.splice(0, at + 1)[at];
     }
 
     get handlers() {
@@ -159,20 +175,24 @@ export class Studio {
     // what was there goes on; at first there is nothing yet, and a text that cannot be played waits to be mended
     failed(why) {
         this.tell(why, true);
-        if (!this.ready && this.draft !== undefined) this.load(this.pieces[0] ?? "");
+        if (this.ready || this.draft === undefined || this.mends) return;
+        this.mends = true;
+        this.load(this.pieces[0] ?? "");
     }
 
-    fresh(name) {
-        ((this.name = name), (this.ready = true), (this.names = ""), (this.bytes = this.coming), (this.beat = 0));
+    fresh(loaded) {
+        const { bytes, play } = this.asked(loaded),
+            name = this.draft === undefined ? loaded : this.journal.name; // a draft keeps its name
+        ((this.name = name), (this.ready = true), (this.names = ""), (this.bytes = bytes), (this.beat = 0));
         $("p-drum").replaceChildren();
         this.on.fresh();
         this.write(this.draft === undefined ? this.bytes : bytesOf.encode(this.draft));
         this.draft = undefined;
         if (!this.pieces.includes(name) && $("p-text").value) this.typed();
-        this.playing(!!this.wanted);
+        this.playing(!!play);
         $("p-piece").value = this.pieces.includes(name) ? name : "";
         $("p-piece").options[0].text = this.pieces.includes(name) || !name ? "a piece" : name;
-        this.tell(name ? `${name} is on the stand` : "a performer without a score");
+        this.tell(loaded ? `${loaded} is on the stand` : "a performer without a score");
     }
 
     answered(line, failed) {
@@ -187,7 +207,7 @@ export class Studio {
         row.textContent = text;
         row.classList.toggle("wrong", wrong);
         log.append(row);
-        this.said.push({ text, wrong });
+        this.said = [...this.said, { text, wrong }].slice(-SAID);
         this.outside?.({ text, wrong });
         while (log.children.length > SAID) log.firstChild.remove();
         log.scrollTop = log.scrollHeight;
@@ -203,7 +223,6 @@ export class Studio {
 
     playing(yes) {
         this.plays = yes;
-        this.wanted = false;
         $("p-play").textContent = yes ? "■ stop" : "▶ play";
         $("p-play").setAttribute("aria-pressed", yes);
     }
@@ -217,8 +236,9 @@ export class Studio {
     // a piece of the page, or a file; `play`: at once, after these commands
     load(name, bytes = null, play = false, first = []) {
         if (bytes && !this.texts.has(name)) this.texts.set(name, bytes);
-        ((this.wanted = play), (this.coming = bytes ?? this.texts.get(name)));
-        this.worker.postMessage({ load: { name, bytes: this.coming, then: play ? [...first, "play"] : [] } });
+        bytes ??= this.texts.get(name);
+        this.queue.push({ name, bytes, play });
+        this.worker.postMessage({ load: { name, bytes, then: play ? [...first, "play"] : [] } });
     }
 
     // as it was changed here, if it was
@@ -228,7 +248,11 @@ export class Studio {
         this.load(name, typeof changed === "string" ? bytesOf.encode(changed) : null, true);
     }
 
-    async open(file) {
+    open(file) {
+        return this.read(file).catch(error => this.tell(`${file.name}: ${error.message}`, true));
+    }
+
+    async read(file) {
         if (/\.himc$/i.test(file.name)) return this.on.scene(file);
         const bytes = new Uint8Array(await file.arrayBuffer()),
             name = file.name.split("/").pop();
@@ -263,10 +287,10 @@ export class Studio {
     }
 
     key(e) {
-        const hand = HITS[e.key.toLowerCase()];
+        const hand = HITS[e.key?.toLowerCase()];
         if (e.ctrlKey || e.metaKey || e.altKey || e.repeat || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
         if (hand) this.hit(hand);
-        else if (e.key === " " && e.target.tagName !== "BUTTON") this.toggle();
+        else if (e.key === " " && !/^(BUTTON|SUMMARY)$/.test(e.target.tagName)) this.toggle();
         else return;
         e.preventDefault();
         e.stopImmediatePropagation();
@@ -346,7 +370,7 @@ export class Studio {
         $("stage").addEventListener("pointerdown", e => !e.button && this.press(e), true);
         addEventListener("keydown", e => this.key(e), true);
         addEventListener("paste", e => this.paste(e));
-        if (new URLSearchParams(location.search).has("embed")) this.embed();
+        if (this.embedded) this.embed();
     }
 
     // in another page, which sends { himc: "a command" } or { himc: { name, score } } and hears what is told here

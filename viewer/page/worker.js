@@ -151,7 +151,8 @@ class Engine {
 
     input(words) {
         const at = this.calls.page_input(),
-            bytes = bytesOf.encode(words).subarray(0, 8191);
+            bytes = bytesOf.encode(words);
+        if (bytes.length >= INPUT) throw new Error(`${words.slice(0, 40)} ...: ${bytes.length} bytes, expected fewer than ${INPUT}`);
         new Uint8Array(this.files.memory.buffer).set([...bytes, 0], at);
     }
 
@@ -185,7 +186,8 @@ class Engine {
 
 // --- in the Worker
 
-const CHUNK = 256, // samples at a time
+const INPUT = 8192, // PAGE_INPUT of viewer/engine/engine.h (bytes)
+    CHUNK = 256, // samples at a time
     AHEAD = 0.06, // (s) of sound that waits in the audio thread; chosen: `latency` adds 0.15
     MORE = 0.02, // after each time that it was not enough ...
     MOST = 0.25, // ... up to this
@@ -196,7 +198,6 @@ class Player {
     constructor() {
         ((this.engine = null), (this.port = null), (this.runs = false));
         ((this.made = 0), (this.played = 0), (this.ahead = AHEAD), (this.missed = 0), (this.asked = -Infinity));
-        this.late = 0; // chunks that took longer than they last
     }
 
     tell(message, transfer = []) {
@@ -206,13 +207,23 @@ class Player {
     begin({ wasm, files, rate }) {
         this.engine = new Engine(new WebAssembly.Module(wasm), rate);
         for (const [name, bytes] of files) this.engine.files.bytes.set(name, bytes);
-        setInterval(() => this.tick(), TICK);
+        setInterval(() => this.guarded(() => this.tick()), TICK);
     }
 
     listen(port) {
         this.port = port;
         ((this.made = 0), (this.played = 0));
-        port.onmessage = e => this.asks(e.data);
+        port.onmessage = e => this.guarded(() => this.asks(e.data));
+    }
+
+    // an error that the engine throws while it plays ends the playing, once
+    guarded(play) {
+        try {
+            play();
+        } catch (error) {
+            this.runs = false;
+            this.tell({ failed: error.message });
+        }
     }
 
     // the audio thread has played so many samples, and had none so often
@@ -233,16 +244,15 @@ class Player {
     }
 
     fill() {
-        if (!this.runs) return;
+        if (!this.runs || !this.loaded) return;
         const { engine } = this,
             until = this.played + this.ahead * engine.rate;
-        for (let begun = performance.now(); this.made < until; begun = performance.now()) {
-            const wall = (performance.timeOrigin + begun) / 1000,
+        while (this.made < until) {
+            const wall = (performance.timeOrigin + performance.now()) / 1000,
                 samples = engine.play(CHUNK, wall),
                 time = engine.calls.page_told() - (1000 * CHUNK) / engine.rate;
             this.made += CHUNK;
             this.port?.postMessage({ time, rate: engine.rate, channels: 2, samples, behind: this.ahead }, [samples.buffer]);
-            this.late += performance.now() - begun > (1000 * CHUNK) / engine.rate;
         }
         this.look();
     }
@@ -257,6 +267,7 @@ class Player {
         if (bytes) engine.files.bytes.set(name, bytes);
         const failed = engine.load(name);
         if (failed) return this.tell({ failed, name });
+        this.loaded = true;
         this.tell({ loaded: name });
         for (const line of then ?? []) this.say(line);
         if (!this.runs) (engine.play(CHUNK, 0), this.look()); // how it looks at rest

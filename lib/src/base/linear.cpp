@@ -55,13 +55,14 @@ complex_columns covariance(const signals &z, int lags)
     return sum;
 }
 
-// what turns the space of the signal from one value to the next
+// what turns the space of the signal from one value to the next; empty: not found
 complex_vector turns(const complex_columns &space)
 {
     auto first = space.topRows(space.rows() - 1), next = space.bottomRows(space.rows() - 1);
     complex_columns squares = first.adjoint() * first;
     complex_columns turn = squares.ldlt().solve(first.adjoint() * next);
-    return Eigen::ComplexEigenSolver<complex_columns>(turn, false).eigenvalues();
+    Eigen::ComplexEigenSolver<complex_columns> poles(turn, false);
+    return poles.info() == Eigen::Success ? poles.eigenvalues() : complex_vector();
 }
 
 complex_columns amplitudes(const signals &z, const complex_vector &poles)
@@ -92,6 +93,8 @@ himc_linear himc_linear_exponentials(int samples, int channels, const double *z,
         if (*found == 0)
             return HIMC_LINEAR_SOLVED;
         complex_vector poles = turns(spaces.eigenvectors().rightCols(*found));
+        if (poles.size() == 0)
+            return HIMC_LINEAR_UNSOLVED;
         Eigen::Map<complex_vector>(reinterpret_cast<std::complex<double> *>(p), *found) = poles;
         Eigen::Map<complex_columns>(reinterpret_cast<std::complex<double> *>(c), *found, channels) =
             amplitudes(values, poles);

@@ -37,15 +37,15 @@ himc_linear himc_linear_eigenvalues(int n, const double *a, double *lambda, doub
 himc_linear himc_linear_vibrations(int n, const double *k, const double *m, double *lambda,
                                    double *v);
 
-/// Poles p of a sum of exponentials, z[n] = sum_k c_k p_k^n, in noise: `channels` of `samples`
-/// complex values (real, imaginary) that share them, one after the other. ESPRIT (Roy and Kailath
-/// 1989): the signal's part of the covariance of so many values in a row, `samples`/2 and at most
-/// HIMC_LINEAR_LAGS, turns by the poles from one value to the next. There are as many (`found`, up
-/// to `most`) as eigenvalues of the covariance stand out of its lower half by the factor `clear`.
-/// `c` (channels x found) are fitted by least squares; those of poles that grow are 0.
+/// Poles p_k and amplitudes c_k of z[n] = sum_k c_k p_k^n in noise, by ESPRIT (Roy and Kailath
+/// 1989). `z`: `channels` blocks of `samples` complex values (real, imaginary) with common poles.
+/// The covariance is that of samples/2 consecutive values, at most HIMC_LINEAR_LAGS; `found` (at
+/// most `most`) is the number of its eigenvalues above `clear` times the median of the lower half.
+/// The caller's arrays `p` (2 most) and `c` (2 most channels) get `found` poles, then `found`
+/// amplitudes a channel (least squares; 0 of a pole that grows).
 himc_linear himc_linear_exponentials(int samples, int channels, const double *z, int most,
                                      double clear, double *p, double *c, int *found);
-#define HIMC_LINEAR_LAGS 110 ///< chosen
+#define HIMC_LINEAR_LAGS 110 ///< consecutive values; chosen: bounds the eigenvalue problem
 
 #ifdef __cplusplus
 }
