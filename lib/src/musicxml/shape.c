@@ -7,6 +7,7 @@
 /// ruff; others, and those before a roll, are strokes of their own before the beat. A chosen
 /// number has no published source. Invariant: each note but a tied one makes at least one stroke, or
 /// is counted as omitted.
+/// is counted as omitted.
 #include "musicxml/music.h"
 
 #include "base/argument.h"
