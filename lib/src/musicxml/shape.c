@@ -5,9 +5,8 @@
 /// written; three are a roll from FAST strokes a second on, more are always one; a trill is one. A
 /// roll is cut where its dynamic bends. Grace notes on the drum of their note are its flam, drag or
 /// ruff; others, and those before a roll, are strokes of their own before the beat. A chosen
-/// number has no published source. Invariant: each note but a tied one makes at least one stroke, or
-/// is counted as omitted.
-/// is counted as omitted.
+/// number has no published source. Invariant: each note but a tied one makes at least one stroke,
+/// or is counted as omitted.
 #include "musicxml/music.h"
 
 #include "base/argument.h"
