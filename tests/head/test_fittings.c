@@ -232,6 +232,18 @@ static void test_a_foot_chokes_open_hats(void)
     TEST_ASSERT_TRUE(rings[1] < rings[0] - 20);
 }
 
+static void test_smaller_hoops_and_shells_sound_higher_sticks_alike(void)
+{
+    const struct {
+        int index; // hoop, stick, shell
+        double higher;
+    } of[] = {{0, 4}, {7, 1}, {10, 2}};
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, of[i].higher,
+                                  himc_fittings_oscillator(of[i].index, .089).omega /
+                                      himc_fittings_oscillator(of[i].index, .178).omega);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -243,5 +255,6 @@ int main(void)
     RUN_TEST(test_drums_that_hands_or_beaters_play_have_no_such_spots);
     RUN_TEST(test_hats_that_a_foot_closes_say_chick);
     RUN_TEST(test_a_foot_chokes_open_hats);
+    RUN_TEST(test_smaller_hoops_and_shells_sound_higher_sticks_alike);
     return UNITY_END();
 }

@@ -188,6 +188,19 @@ static void test_midi_keeps_times_pitches_and_dynamics(void)
     himc_midi_file_free(&file);
 }
 
+static void test_midi_has_each_grace_note(void)
+{
+    score = himc_score_parse("drum kettle; flam 1 right legato f; drag 2 left legato f;"
+                             "ruff 3 left legato f; stroke 4 right legato f;",
+                             "words", NULL, &error);
+    TEST_ASSERT_TRUE(himc_music_notes(&notes, score, &error));
+    TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+    midi_file file;
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, text.bytes, text.size, &error), error.text);
+    TEST_ASSERT_EQUAL(4 + 1 + 2 + 3, file.note_count);
+    himc_midi_file_free(&file);
+}
+
 static void test_a_roll_is_a_roll_after_midi(void)
 {
     score = himc_score_parse("drum kettle; tempo 60; stroke 0 right legato f; roll 2 4 single p f;",
@@ -252,6 +265,7 @@ int main(void)
     RUN_TEST(test_pedals_come_back_as_words);
     RUN_TEST(test_ornaments_rolls_spots_and_dynamics_are_written);
     RUN_TEST(test_midi_keeps_times_pitches_and_dynamics);
+    RUN_TEST(test_midi_has_each_grace_note);
     RUN_TEST(test_a_roll_is_a_roll_after_midi);
     RUN_TEST(test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s);
     RUN_TEST(test_spots_without_a_key_are_told_and_come_back_normal);

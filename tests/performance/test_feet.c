@@ -159,6 +159,25 @@ static void test_a_foot_s_strokes_are_as_far_apart_as_one_plays_them(void)
     TEST_ASSERT_EQUAL_INT(2, stats.missed);
 }
 
+static void test_the_way_to_another_pedal_takes_time(void)
+{
+    himc_event event;
+    int strikes = 0, missed = 0;
+    load("instrument a kick 22; a place .8 .3 .1 .8; instrument b kick 22; b place .8 -.3 .1 .8;"
+         "tempo 60; stroke 0 foot legato f a; stroke .15 foot legato f b;"
+         "stroke .5 foot legato f b;");
+    himc_performance_play(performance, NULL);
+    for (int i = 0; i < 200; i++) {
+        himc_performance_process(performance, 480, NULL);
+        while (himc_performance_event(performance, &event)) {
+            strikes += event.kind == HIMC_EVENT_STRIKE;
+            missed += event.kind == HIMC_EVENT_MISSED;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(2, strikes);
+    TEST_ASSERT_EQUAL_INT(1, missed);
+}
+
 static void test_the_largest_force_is_also_a_foot_s(void)
 {
     subscribe("strikes");
@@ -193,6 +212,7 @@ int main(void)
     RUN_TEST(test_feet_alone_play_a_loop_and_stop_when_cleared);
     RUN_TEST(test_what_no_foot_plays_is_refused_in_one_line);
     RUN_TEST(test_a_foot_s_strokes_are_as_far_apart_as_one_plays_them);
+    RUN_TEST(test_the_way_to_another_pedal_takes_time);
     RUN_TEST(test_the_largest_force_is_also_a_foot_s);
     RUN_TEST(test_a_foot_s_strike_has_its_beat);
     RUN_TEST(test_a_foot_follows_a_message_and_a_seek);
