@@ -264,7 +264,7 @@ const cli_call cli_evaluate = {
     "Each row plays disturbed takes of the motion database: nuance,controller,law,trials,rms_mm,\n"
     "rms_sd_mm,amplitude_mm,rms_percent,elbow_range_ratio. RMS is the distance of captured and\n"
     "simulated tips, impacts included, SD its deviation over the trials (nan of one). Of a log one\n"
-    "trial is played again: a log of another program is refused. docs/results/scaling.md: how to run it on\n"
+    "trial is played again: a log of another program is refused. docs/results/evaluation.md: how to run it on\n"
     "several machines. With --take the captures are one's own: take,controller,law,strokes,played,\n"
     "rms_mm,max_mm,amplitude_mm,rms_percent,elbow_range_ratio; --left-tip A,B names alternatives,\n"
     "of which each take has one.",

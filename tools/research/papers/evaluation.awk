@@ -6,6 +6,7 @@ FNR == 1 { file++ }
 file == 1 { mean[$1, $2, $3, $4] = $6; sd[$1, $2, $3, $4] = $7; count($1 SUBSEP $4, $5 + 0); own[$1, $2, $3, $4] = $8; next }
 file == 2 {
     if ($2 == "all") { outside[$1] = $3; all[$1] = $4; angles[$1] = sprintf("%.2f°, %.2f°, %.2f°", $7, $8, $9); most[$1] = $7 > $8 ? ($7 > $9 ? $7 : $9) : ($8 > $9 ? $8 : $9); landed[$1] = sprintf("%d of %d strokes landed", $10, $11) }
+    if ($1 == "feedforward" && $2 != "all" && $3 > most_outside + 0) { most_outside = $3; worst = $2 }
     line[$1, $2] = sprintf("| %s | %s | %s | %s | %s .. %s | %s, %s, %s | %d of %d |", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
     next
 }
@@ -42,6 +43,6 @@ function pair(gain, nuance, law,    id, himc) {
 function met(good) { return good ? "met" : "not met" }
 function here(text) { match($0, /^[|][^|]*[|][^|]*[|]/); print substr($0, 1, RLENGTH) " " text " |" }
 /^\| tips in `himc`, default law/ { here(outside["computed-torque"] " % / " all["computed-torque"] " %, " landed["computed-torque"] ": " met(outside["computed-torque"] + 0 <= 0.05) " / " met(all["computed-torque"] + 0 <= 0.3)); next }
-/^\| `feedforward` at 2 strokes/ { here(outside["feedforward"] " %, " landed["feedforward"] ": " met(outside["feedforward"] + 0 <= 0.6) " over all; nuances below"); next }
+/^\| `feedforward` at 2 strokes/ { here(outside["feedforward"] " %, " landed["feedforward"] ": " met(outside["feedforward"] + 0 <= 0.6) " over all; " worst ", the largest, " most_outside); next }
 /^\| shoulder, elbow, wrist against/ { here(angles["computed-torque"] " over all: " met(most["computed-torque"] <= 1)); next }
 { print }
