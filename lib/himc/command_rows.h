@@ -97,17 +97,17 @@
 // to the performer
 HIMC_COMMAND_ROW(
     STROKE, stroke, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
-    "adds one stroke to the score; dead: the mallet stays on the head; PART of an instrument "
-    "that has several: a pitch, or a name")
-HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
-                 "plays a stroke so long after the message as `latency` says; any: with the hand "
-                 "that suits better, on one drum in turns")
+    "adds one stroke to the score; dead: the mallet stays on the head; PART: a pitch or a name, of "
+    "an instrument that has several")
+HIMC_COMMAND_ROW(
+    HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
+    "plays a stroke `latency` after the message; any: with the better hand, on one drum in turns")
 HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [PART] [DRUM] | "
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [PART] [DRUM]",
-    "adds a roll, from one dynamic to another: single strokes of both hands, or, as drummers "
-    "play it, strokes that bounce once (double) or until the next (press)")
+    "adds a roll, from one dynamic to another: single strokes, or strokes that bounce once "
+    "(double) or until the next (press)")
 HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with a grace note by the other hand")
 HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
@@ -116,10 +116,10 @@ HIMC_COMMAND_ROW(RUFF, ruff, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with two grace notes as `drag`, a little slower")
 HIMC_COMMAND_ROW(
     AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
-    "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, pedal, "
-    "damp, muffle, decay or glide; or pushes the performer")
+    "changes a drum at a beat by tune, gliss, tension, pedal, damp, muffle, decay or glide; or "
+    "pushes the performer")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
-                 "sets the tempo, 100 by default, from that beat or from now on")
+                 "sets the tempo, from that beat or from now on; 100 by default")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
                  "1: the score begins again after its last whole beat")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
@@ -133,28 +133,30 @@ HIMC_COMMAND_ROW(SCORE, score, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDE
                  "loads a score; while one plays, the new one follows it")
 HIMC_COMMAND_ROW(TAKE, take, PERFORMER, NOW, HIMC_IN_FOLDER, "FILE",
                  "loads a motion capture and tracks it")
-HIMC_COMMAND_ROW(NUDGE, nudge, PERFORMER, NOW, 0, "HAND TIME SPAN X Y Z",
-                 "leads a tip of the take aside by that way at that time, smoothly within SPAN "
-                 "before and after; strikes stay strikes")
+HIMC_COMMAND_ROW(
+    NUDGE, nudge, PERFORMER, NOW, 0, "HAND TIME SPAN X Y Z",
+    "moves a tip of the take by that way at that time, smoothly within SPAN before and after")
 HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
-                 "cuts strokes out of a take and plays them instead of the built-in ones")
+                 "plays strokes cut out of a take instead of the built-in ones")
 HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",
-                 "moves a drumstick's tip to a point; it follows a stream of targets")
+                 "moves a drumstick's tip to a point, or along a stream of points")
 
 // settings, in the order of `dump`
 HIMC_SETTING_ROW(RATE, rate, NOW, "physics HZ | task HZ", rate, physics_rate, "", STEPS,
                  "sets the rate of simulation or control")
-HIMC_SETTING_ROW(ENGINE, engine, AT_SAMPLE, "tree|ode", word, engine, "tree", NOTHING,
-                 "chooses who solves the equations of the body's motion, to the same result: himc, "
-                 "along the tree of joints, or the Open Dynamics Engine")
+HIMC_SETTING_ROW(
+    ENGINE, engine, AT_SAMPLE, "tree|ode", word, engine, "tree", NOTHING,
+    "solves the equations of the body's motion along the tree of joints, or by the Open Dynamics "
+    "Engine, to the same result")
 HIMC_SETTING_ROW(COUPLING, coupling, AT_SAMPLE, "two-way|one-way", word, coupling, "two-way",
                  NOTHING, "two-way: the head's vibration pushes back on the stick")
 HIMC_SETTING_ROW(PLAYER, player, NOW, "HEIGHT MASS", player, skeleton, "", BODY,
                  "changes the performer's body")
-HIMC_SETTING_ROW(STANCE, stance, NOW, "fixed|seated|standing", word, stance, "fixed", BODY,
-                 "fixed: the pelvis is held, as published; seated: it rests on the stool, the feet "
-                 "on the floor, and gives way, and a foot works the pedal that moves; standing: he "
-                 "balances on his feet, without pedals, with `law computed-torque`")
+HIMC_SETTING_ROW(
+    STANCE, stance, NOW, "fixed|seated|standing", word, stance, "fixed", BODY,
+    "fixed: the pelvis is held, as published; seated: it rests on the stool, the feet on the "
+    "floor, and a foot works the pedals; standing: he balances on his feet, without pedals, with "
+    "`law computed-torque`")
 HIMC_SETTING_ROW(MODE, mode, AT_SAMPLE, "himc|id|ik", word, control.mode, "", MODE,
                  "chooses the control pipeline")
 HIMC_SETTING_ROW(SOLVER, solver, AT_SAMPLE, "dls|pinv|transpose|nakamura|sdls", word,
@@ -163,9 +165,10 @@ HIMC_SETTING_ROW(DAMPING, damping, AT_SAMPLE, "LAMBDA", numbers, control.damping
                  "sets the damping of the least squares")
 HIMC_SETTING_ROW(POSTURE, posture, AT_SAMPLE, "SWITCH", switch, control.posture, "", NOTHING,
                  "null space of the tips: 1 keeps a natural posture, 0 is unused, as published")
-HIMC_SETTING_ROW(BEND, bend, AT_SAMPLE, "SWITCH", switch, bend, "1", REPLAN,
-                 "in `id`: 1 bends a take's arms so that its tips are reached and strokes land, 0 "
-                 "follows the joints as captured, as published")
+HIMC_SETTING_ROW(
+    BEND, bend, AT_SAMPLE, "SWITCH", switch, bend, "1", REPLAN,
+    "in `id`: 1 bends a take's arms so that strokes land, 0 follows the joints as captured, as "
+    "published")
 HIMC_SETTING_ROW(ELBOW, elbow, AT_SAMPLE, "SWITCH", switch, control.elbow, "", NOTHING,
                  "1: the elbow's place has priority over the rest of the posture")
 HIMC_SETTING_ROW(WEIGHTS, weights, AT_SAMPLE, "SHOULDER ELBOW WRIST GRIP", numbers, control.weight,
@@ -174,59 +177,57 @@ HIMC_SETTING_ROW(LAW, law, AT_SAMPLE, &HIMC_LAWS(HIMC_ROW_LAW)[1], word, control
                  "chooses the inverse dynamics")
 HIMC_SETTING_ROW(LIMITS, limits, NOW, "off|ellipsoid|euler", word, limits, "off", LIMITS,
                  "limits the joints to the range of the take's player, else of table 1")
-HIMC_SETTING_ROW(GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB", gain, gain, "",
-                 FADER,
-                 "sets stiffness and damping of a joint's servo, or the natural frequency of all "
-                 "over the default, or resets all; with one number, how loud all drums are heard")
+HIMC_SETTING_ROW(
+    GAIN, gain, NOW, "reset | frequency FACTOR | JOINT KS KD | DB", gain, gain, "", FADER,
+    "sets stiffness and damping of a joint's servo, or the natural frequency of all over the "
+    "default; reset: the defaults; with one number: how loud all drums are heard")
 HIMC_SETTING_ROW(
     STRENGTH, strength, NOW, "human|off | JOINT TORQUE", strength, control.strength, "", NOTHING,
     "human: joints have a man's largest torques, 80 N m at the shoulder of 75 kg, up to 6 times "
-    "that (standing 2) while a tip is astray, and muscles hold in a contact; off: no limit, as published; or "
-    "sets the largest torque of a joint")
+    "that (standing 2) while a tip is astray; off: no limit, as published; or sets the largest "
+    "torque of a joint")
 HIMC_SETTING_ROW(
     GRIP, grip, NOW, "german|french [servo] | servo", grip, grip, "german", GRIP,
-    "sets the grip: palms down (german), or thumbs up (french), and lets doubles, "
-    "buzzes and grace notes bounce; servo: a stroke has one short contact, as published")
+    "palms down (german) or thumbs up (french); doubles, buzzes and grace notes bounce; servo: a "
+    "stroke has one short contact, as published")
 HIMC_SETTING_ROW(HUMAN, human, AT_SAMPLE, "AMOUNT [SEED]", human, human, "0", HUMAN,
-                 "lets strokes vary in time, force, place and angle as a player's do, 0: not at "
-                 "all; each seed is another player")
+                 "lets strokes vary as a player's do, 0: not at all; each seed is another player")
 HIMC_SETTING_ROW(ALIVE, alive, AT_SAMPLE, "SWITCH", switch, alive, "0", NOTHING,
                  "1: head and trunk follow the music, the player breathes; 0: they rest")
 HIMC_SETTING_ROW(
     LATENCY, latency, AT_SAMPLE, "MS | auto", latency, latency, "150", NOTHING,
-    "has every hit land exactly so long after its message, 150 by default, as strong "
-    "as that allows; auto: 330, so that all but vertical accents from f on are as strong as "
-    "written; 0: each as soon as it can")
+    "each hit lands so long after its message, 150 by default, as strong as that allows; auto: "
+    "330; 0: as soon as it can")
 
+HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",
+                 "pushes a segment for a time, at its centre of mass or ALONG m from its joint")
 HIMC_COMMAND_ROW(
-    PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",
-    "pushes a segment with a force for a time, at its centre of mass or ALONG m from its joint")
-HIMC_COMMAND_ROW(LISTENER, listener, PERFORMER, NOW, 0, "off | usual | X Y Z [YAW]",
-                 "has all drums heard by two ears there, facing the performer or that way; usual: "
-                 "in front, but for drums whose pickups are asked for; off: by the drums' pickups")
-HIMC_COMMAND_ROW(ROOM, room, PERFORMER, AT_SAMPLE, 0, "SECONDS [VOLUME]",
-                 "sets the reverberation time and the size of the room around the listener, 2 s "
-                 "and 1500 m^3 by default; 0: no walls")
-HIMC_COMMAND_ROW(MUTE, mute, PERFORMER, AT_SAMPLE, 0, "SWITCH",
-                 "1: silences all drums, which play on unheard")
+    LISTENER, listener, PERFORMER, NOW, 0, "off | usual | X Y Z [YAW]",
+    "places the two ears that hear all drums, facing the performer or that way; usual: in front, "
+    "except for drums with a pickup of their own; off: by the drums' pickups")
+HIMC_COMMAND_ROW(
+    ROOM, room, PERFORMER, AT_SAMPLE, 0, "SECONDS [VOLUME]",
+    "sets reverberation time and size of the listener's room, 2 s and 1500 m^3 by default; 0: no "
+    "walls")
+HIMC_COMMAND_ROW(MUTE, mute, PERFORMER, AT_SAMPLE, 0, "SWITCH", "1: silences all drums")
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
                  "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
 HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")
 HIMC_COMMAND_ROW(DUMP, dump, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
-                 "answers with the state as commands that make it again, or writes it to a file, "
-                 "which is a score")
+                 "answers with the state as commands, or writes it to a file, which is a score")
 HIMC_COMMAND_ROW(PRESET, preset, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_IN_FOLDER, "NAME",
-                 "loads NAME.txt, a score or what `dump NAME.txt` has written")
+                 "loads NAME.txt, a score, or written by `dump`")
 HIMC_COMMAND_ROW(RESET, reset, PERFORMER, NOW, 0, "",
                  "sets everything as when just made; a [membrane~] keeps its settings")
 HIMC_COMMAND_ROW(MAKE_DRUM, drum, PERFORMER, NOW, HIMC_MAKES_DRUM, "NAME [INCHES]",
                  "makes a drum, 26 inches by default")
-HIMC_COMMAND_ROW(INSTRUMENT, instrument, PERFORMER, NOW, HIMC_MAKES_DRUM,
-                 "NAME INSTRUMENT [SIZE] [SIZE] | NAME INSTRUMENT NOTE [NOTE] | NAME modes FILE",
-                 "makes an instrument with its own mallets, of so many inches (a cymbal also mm "
-                 "thick), of that pitch, or with bars from that to another pitch")
+HIMC_COMMAND_ROW(
+    INSTRUMENT, instrument, PERFORMER, NOW, HIMC_MAKES_DRUM,
+    "NAME INSTRUMENT [SIZE] [SIZE] | NAME INSTRUMENT NOTE [NOTE] | NAME modes FILE",
+    "makes an instrument with its own mallets: of so many inches (a cymbal also mm thick), of that "
+    "pitch, or with bars between two pitches")
 HIMC_COMMAND_ROW(SETUP, setup, PERFORMER, NOW, HIMC_IN_FOLDER, "SETUP | FILE",
-                 "makes instruments and puts them where players have them, as commands in a FILE")
+                 "makes several instruments and puts them at their places")
 HIMC_COMMAND_ROW(SUBSCRIBE, subscribe, PERFORMER, NETWORK, 0,
                  "HOST PORT " HIMC_ROW_STREAM " [HZ] | HOST vmc [HZ]",
                  "sends a stream to an address over OSC, 33 times a second by default; vmc to port "
@@ -248,9 +249,9 @@ HIMC_COMMAND_ROW(TUNE, tune, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "HZ | 
 HIMC_COMMAND_ROW(GLISS, gliss, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT,
                  "HZ SECONDS | NOTE SECONDS",
                  "moves the pedal evenly to that pitch in that time while the head sounds")
-HIMC_COMMAND_ROW(MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT | auto",
-                 "sets the number of modes; auto: exact where they overlap little, statistical "
-                 "above, up to 8 kHz and more")
+HIMC_COMMAND_ROW(
+    MODES, modes, DRUM, NOW, HIMC_CHANGES_HEAD, "COUNT | auto",
+    "sets the number of modes; auto: exact ones where they overlap little, statistical ones above")
 HIMC_COMMAND_ROW(DECAY, decay, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "T60 | SIGMA0 SIGMA1",
                  "sets the losses by the decay time, or by both of their parameters")
 HIMC_COMMAND_ROW(AIR, air, DRUM, NOW, HIMC_CHANGES_HEAD, "SWITCH",
@@ -259,36 +260,33 @@ HIMC_COMMAND_ROW(KETTLE, kettle, DRUM, NOW, HIMC_CHANGES_HEAD, "usual | VOLUME",
                  "sets the volume under the head, or the usual one for its radius")
 HIMC_COMMAND_ROW(
     GLIDE, glide, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
-    "sets how much the tension rises as the head bows out, or how much energy goes to a "
-    "cymbal's high modes as it bends")
+    "sets how much the tension rises as the head bows out, or how much energy a cymbal's high "
+    "modes get")
 HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a hand on the head")
-HIMC_COMMAND_ROW(
-    PEDAL, pedal, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
-    "presses the pedal of a hi-hat, which closes it, or of a vibraphone, which lets its "
-    "bars ring")
+HIMC_COMMAND_ROW(PEDAL, pedal, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
+                 "closes a hi-hat, or lets the bars of a vibraphone ring")
 HIMC_COMMAND_ROW(MUFFLE, muffle, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a cloth on the head, 1: coperto, a dry thud with a pitch")
 HIMC_COMMAND_ROW(SKIN, skin, DRUM, NOW, HIMC_CHANGES_HEAD, "plastic|calf",
                  "sets density and losses of a head of that skin, tuned as it was")
 HIMC_COMMAND_ROW(WIRES, wires, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "SWITCH | PULL",
-                 "puts wires to the lower head of a drum with two, drawn to it as the strainer "
-                 "says, or takes them off it")
-HIMC_COMMAND_ROW(UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",
-                 "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes "
-                 "split and beat, each seed in its own way")
+                 "puts snare wires to the lower head, drawn to it by PULL, or takes them off")
+HIMC_COMMAND_ROW(
+    UNIFORMITY, uniformity, DRUM, NOW, HIMC_CHANGES_HEAD, "AMOUNT [SEED]",
+    "sets how evenly a round head is tensioned, 1: perfectly; below, pairs of modes beat, each "
+    "seed in its own way")
 HIMC_COMMAND_ROW(
     SHAPE, shape, DRUM, NOW, HIMC_CHANGES_HEAD, HIMC_KINDS(HIMC_ROW_KIND) "FILE",
-    "makes a head of another outline, or one of up to 800 masses on springs from a file; a drum "
-    "with a shell; bars (of one pitch, or to another); a cymbal; or what has no skin, as a list of "
-    "modes")
+    "gives the drum another outline, a shell, bars of one pitch or between two, a cymbal's plate, "
+    "a list of modes, or masses on springs (at most 800) from a file")
 HIMC_COMMAND_ROW(
     MALLET, mallet, DRUM, NOW, 0,
     "soft|medium|hard|wood|usual | K ALPHA MASS | "
     "HAND soft|medium|hard|wood|usual | "
     "HAND K ALPHA MASS",
-    "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both; usual: "
-    "the one that suits the instrument")
+    "chooses the mallet, or its stiffness, exponent and mass, of one hand or of both; usual: the "
+    "instrument's")
 HIMC_COMMAND_ROW(NOISE, noise, DRUM, NOW, 0, "AMOUNT",
                  "sets how loud felt, shaft, shell and stand answer a blow")
 HIMC_COMMAND_ROW(PLACE, place, DRUM, NOW, 0, "X Y Z [TILT]",
@@ -303,20 +301,17 @@ HIMC_COMMAND_ROW(CHANNEL, channel, DRUM, NOW, HIMC_CHANGES_HEAD,
                  "sets where the sound of one pickup is taken")
 HIMC_COMMAND_ROW(
     DRUM_LISTENER, listener, DRUM, NOW, 0, "off | usual",
-    "off: the drum is heard by its pickups, as after `pickup`; usual: by two ears, in place of "
-    "the first two pickups")
+    "off: the drum is heard by its pickups; usual: by two ears, in place of the first two pickups")
 HIMC_COMMAND_ROW(DRUM_GAIN, gain, DRUM, NOW, 0, "DB",
-                 "sets how loud the drum is heard, 0 by default: a fader, which changes no motion")
-HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH",
-                 "1: silences the drum, which plays on unheard")
+                 "sets how loud the drum is heard, 0 by default")
+HIMC_COMMAND_ROW(DRUM_MUTE, mute, DRUM, NOW, 0, "SWITCH", "1: silences the drum")
 HIMC_COMMAND_ROW(TECHNIQUE, technique, DRUM, NOW, 0, "modal|signal|clip",
-                 "chooses how blows become sound: by the head, or by the patch around it in Pure "
-                 "Data, which hears of no damping")
+                 "the sound is made by the head, or by the patch around it in Pure Data")
 HIMC_COMMAND_ROW(DRUM_INFO, info, DRUM, HOST, 0, "", "describes the drum in a few lines")
 HIMC_COMMAND_ROW(DRUM_DUMP, dump, DRUM, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
-                 "answers with the state as commands that make it again, or writes it to a file")
+                 "answers with the state as commands, or writes it to a file")
 HIMC_COMMAND_ROW(DRUM_PRESET, preset, DRUM, NOW, HIMC_NOT_IN_SCORE, "FILE",
-                 "loads FILE.txt, which `dump FILE.txt` has written: all of it, or nothing")
+                 "loads FILE.txt, written by `dump`: all of it, or nothing")
 HIMC_COMMAND_ROW(STRIKE, strike, DRUM, AT_SAMPLE, 0, "X Y VELOCITY", "strikes without a performer")
 
 #undef HIMC_ROW_STROKE

@@ -58,31 +58,33 @@ static void make_commands(himc_receiver receiver)
     }
 }
 
-// each atom in capitals once for each meaning it has
+// each atom in capitals once for each meaning it has; a name of any letters needs no row
 static void make_atoms(void)
 {
-    char seen[4096] = "", line[680], allowed[512], key[128];
-    say("| atom | of | expected |\n|---|---|---|\n");
+    char line[680], allowed[512], key[128];
+    say("| atom | expected |\n|---|---|\n");
     const himc_command_row *row;
     for (int i = 0; (row = himc_command_table(i)); i++) {
         char grammar[256], *word, *rest = grammar;
         const char *context = row->name;
         snprintf(grammar, sizeof grammar, "%s", row->atoms);
         while ((word = strsep(&rest, " []"))) {
-            if (islower((unsigned char)word[0]) && !strchr(word, '|'))
+            if (strcmp(word, "|") == 0)
+                context = row->name;
+            else if (islower((unsigned char)word[0]) && !strchr(word, '|'))
                 context = word;
             const himc_argument *a =
                 isupper((unsigned char)word[0]) ? himc_argument_find(word, context) : NULL;
-            if (!a)
+            if (!a || a->kind == HIMC_ARGUMENT_TEXT)
                 continue;
-            snprintf(key, sizeof key, "| %s | %s |", a->names, a->contexts ? a->contexts : "");
-            for (char *c = key; (c = strchr(c, '|')); c++) // those within a list
-                *c = c > key && c[-1] != ' ' ? ' ' : '|';
-            if (strstr(seen, key))
-                continue;
-            strncat(seen, key, sizeof seen - strlen(seen) - 1);
+            snprintf(key, sizeof key, "%s%s%s", a->names, a->contexts ? " of " : "",
+                     a->contexts ? a->contexts : "");
+            for (char *c = key; (c = strchr(c, '|'));)
+                *c = ' ';
             himc_argument_describe(a, allowed, sizeof allowed);
-            snprintf(line, sizeof line, "%s %s |\n", key, allowed);
+            snprintf(line, sizeof line, "| %s | %s |\n", key, allowed);
+            if (strstr(tables, line))
+                continue;
             say(line);
         }
     }
