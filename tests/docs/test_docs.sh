@@ -76,7 +76,7 @@ deviation() {
 check test_a_deviation_of_few_trials_is_not_measured [ "$(deviation 17 .5 .5 .5)$(deviation 100 nan .5 .5)" = "stated: not measuredstated: not measured" ]
 check test_a_smaller_deviation_by_the_papers_law_agrees [ "$(deviation 18 .5 .5 2)" = agrees ]
 check test_a_deviation_says_by_which_servos_and_laws_it_is_smaller [ "$(deviation 100 2 .5 .5)$(deviation 100 2 2 .5)" = \
-    "of trials of one sequence, not by the player's servos (0 of 5)of trials of one sequence, by laws that the papers do not have; by theirs in 0 of 10" ]
+    "of trials of one sequence, not by the player's servos (0 of 5)of trials of one sequence, by laws of ours; by theirs in 0 of 10" ]
 check test_a_larger_deviation_does_not_agree [ "$(deviation 100 2 2 2)" = "does not agree" ]
 check test_nothing_agrees_without_a_number [ "$(awk -F ' [|] ' '$4 == "agrees" && $3 !~ /[0-9]/' "$work/documented")" = "" ]
 

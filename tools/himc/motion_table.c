@@ -30,7 +30,7 @@ typedef struct array {
 } array;
 
 #define AT(field) offsetof(himc_motion_row, field)
-#define WORK "since the rows began (docs/data.md)"
+#define WORK "since the rows began"
 
 static const array arrays[] = {
     {"targets", "targets", PER_HAND, "_target", 3, "m", AT(target), 8, true,
@@ -68,15 +68,15 @@ static const array arrays[] = {
     {"contact", "tip_forces", PER_HAND, "_tip_force", 3, "n", AT(tip_force), 0, false,
      "force of the head on the body's stick, mean of this row's physics step"},
     {"contact", "mallet_forces", PER_HAND, "_mallet_force", 3, "n", AT(mallet_force), 0, false,
-     "and on the mallet's mass beyond the body's stick (docs/data.md)"},
+     "and on the mallet's mass beyond the body's stick"},
     {"contact", "impulses", PER_HAND, "_impulse", 1, "n_s", AT(impulse), 0, false,
-     "impulse of the head on the stick since the last row, with the step that begins at this one"},
+     "impulse of the head on the stick since the last row"},
     {"contact", "felt", PER_HAND, "_felt", 1, "j", AT(energy.felt), 0, false,
      "energy stored in the mallet's felt"},
     {"contact", "heads", PER_ROW, "heads", 1, "j", AT(energy.heads), 0, false,
      "energy of all heads in vibration"},
     {"contact", "lost", PER_ROW, "lost", 1, "j", AT(energy.lost), 0, false,
-     "energy that sticks gave to heads and felt and that is gone"},
+     "energy lost in heads and felt"},
     {"pushes", "pushes", PER_SEGMENT, "_push", 3, "n", AT(push), 0, false,
      "force of the command push"},
     {"pushes", "push_points", PER_SEGMENT, "_push_at", 3, "m", AT(push_at), 0, false,
@@ -88,19 +88,17 @@ static const array arrays[] = {
     {"null-space", "null_space", PER_HAND, "_null_space", 1, "", AT(null_space), 0, false,
      "share of the arm's squared joint rates that moves no tip, 0 .. 1"},
     {"co-contraction", "co_contraction", PER_JOINT, "_co_contraction", 1, "", AT(co_contraction), 0,
-     false,
-     "torque given at once in a contact and 20 ms after, not by activation, over the strength; 0 "
-     "with `strength off`"},
+     false, "torque of co-contraction over the strength; 0 with `strength off`"},
     {"root", "root_force", PER_ROW, "root_force", 3, "n", AT(root_force), 0, false,
-     "force of the world on the pelvis, mean since the last row (docs/data.md)"},
+     "force of the world on the pelvis, mean since the last row"},
     {"root", "root_moment", PER_ROW, "root_moment", 3, "n_m", AT(root_moment), 0, false,
      "and its moment about the midpoint of the hip joints"},
     {"root", "root_center", PER_ROW, "root_center", 3, "m", AT(root_center), 0, false,
-     "centre of pressure on the plane of the seat, or the floor if he stands; NaN without a force upwards"},
+     "centre of pressure on the seat's plane (standing: the floor); NaN without a force upwards"},
     {"root", "root_friction", PER_ROW, "root_friction", 1, "", AT(root_friction), 0, false,
-     "friction needed: horizontal over vertical force; NaN without a force upwards"},
+     "friction needed: horizontal over vertical force; likewise"},
     {"root", "seat_force", PER_ROW, "seat_force", 3, "n", AT(seat_force), 0, false,
-     "force of the stool on a body that sits, mean as above; 0 with `stance fixed`"},
+     "force of the stool, mean since the last row; 0 with `stance fixed`"},
     {"root", "foot_forces", PER_HAND, "_foot_force", 3, "n", AT(foot_force), 0, false,
      "force of the floor on the foot of that side; likewise"},
     {"energy", "kinetic", PER_ROW, "kinetic", 1, "j", AT(energy.kinetic), 0, false,
@@ -114,7 +112,7 @@ static const array arrays[] = {
     {"energy", "push_work", PER_ROW, "push_work", 1, "j", AT(energy.push), 0, false,
      "work of the command push " WORK},
     {"energy", "support_work", PER_ROW, "support_work", 1, "j", AT(energy.support), 0, false,
-     "work of seat and floor since the rows began (docs/data.md)"},
+     "work of seat and floor " WORK},
     {"energy", "placed", PER_ROW, "placed", 1, "j", AT(energy.placed), 0, false,
      "given to the body by putting it elsewhere " WORK},
     {"energy", "numerical", PER_ROW, "numerical", 1, "j", AT(energy.numerical), 0, false,
@@ -368,11 +366,9 @@ void motion_table_help(FILE *stream, bool markdown)
     static const char *const each[] = {"", "each hand's", "each joint's", "each segment's"};
     static const char *const shape[] = {"", "2, ", "19, ", "20, "};
     const char *last = "";
-    fputs(
-        markdown
-            ? "| group | in an .npz | shape of a row | in a CSV | unit | |\n|---|---|---|---|---|---|\n"
-            : "groups for --columns; a * is in the usual table\n",
-        stream);
+    fputs(markdown ? "| group | in an .npz | shape of a row | in a CSV | |\n|---|---|---|---|---|\n"
+                   : "groups for --columns; a * is in the usual table\n",
+          stream);
     for (size_t i = 0; i < ARRAYS; i++) {
         const array *a = &arrays[i];
         char unit[24], first[24];
@@ -380,13 +376,13 @@ void motion_table_help(FILE *stream, bool markdown)
         snprintf(first, sizeof first, "%s%s", strcmp(a->group, last) ? a->group : "",
                  a->usual && strcmp(a->group, last) ? "*" : "");
         if (markdown)
-            fprintf(stream, "| `%s`%s | `%s%s%s` | (%s%d) | `%s%s%s%s%s` | %s | %s |\n", a->group,
+            fprintf(stream, "| `%s`%s | `%s%s%s` | (%s%d) | `%s%s%s%s%s` | %s |\n", a->group,
                     a->usual ? " \\*" : "", a->name, a->unit[0] ? "_" : "", a->unit, shape[a->per],
                     a->components, a->per == PER_ROW ? "" : "ITEM", a->what,
                     a->components == 4   ? "w"
                     : a->components == 3 ? "_x"
                                          : "",
-                    a->unit[0] ? "_" : "", a->unit, unit, a->is);
+                    a->unit[0] ? "_" : "", a->unit, a->is);
         else
             fprintf(stream, "  %-15s %s %s (%s)\n", first, each[a->per], a->is, unit);
         last = a->group;
