@@ -62,7 +62,6 @@ static void make_commands(himc_receiver receiver)
 static void make_atoms(void)
 {
     char line[680], allowed[512], key[128];
-    say("| atom | expected |\n|---|---|\n");
     const himc_command_row *row;
     for (int i = 0; (row = himc_command_table(i)); i++) {
         char grammar[256], *word, *rest = grammar;
@@ -82,7 +81,7 @@ static void make_atoms(void)
             for (char *c = key; (c = strchr(c, '|'));)
                 *c = ' ';
             himc_argument_describe(a, allowed, sizeof allowed);
-            snprintf(line, sizeof line, "| %s | %s |\n", key, allowed);
+            snprintf(line, sizeof line, "- %s: %s\n", key, allowed);
             if (strstr(tables, line))
                 continue;
             say(line);
