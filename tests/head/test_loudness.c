@@ -1,5 +1,5 @@
 /// test_loudness.c: how loud instruments are beside each other, and the bars of one: the loudest
-/// 0.4 s (ITU-R BS.1770) at 1 m, on four sides, against the table below.
+/// 0.4 s (ITU-R BS.1770) at 1 m, on four sides, against the table of docs/model.md.
 #define _DEFAULT_SOURCE
 #include "made_drum.h"
 #include "himc/loader.h"
