@@ -11,18 +11,11 @@
 #define SECOND RATE
 #define LATE (500 * 0.04) // so far a drum is behind its performer or ahead (cents in a second)
 
-static void say(himc_drum *drum, const char *text)
-{
-    himc_command c;
-    TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&c, HIMC_DRUM, text, &error), error.text);
-    TEST_ASSERT_TRUE_MESSAGE(himc_drum_command(drum, &c, &error), error.text);
-}
-
 static himc_drum *struck_drum(void)
 {
     himc_drum *drum = himc_drum_new("low", 26, RATE, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
-    say(drum, "tune A2");
+    drum_do(drum, "tune A2");
     TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 0, -0.2, 0, 2, &error));
     himc_drum_advance(drum, SECOND, NULL, NULL, NULL);
     return drum;
@@ -54,9 +47,9 @@ static void test_a_gliss_is_even_in_pitch_and_ends_where_tune_does(void)
 {
     himc_drum *drum = struck_drum(), *tuned = struck_drum();
     double from = pitch(drum);
-    say(tuned, "tune D3");
+    drum_do(tuned, "tune D3");
     double way = cents(pitch(tuned), from);
-    say(drum, "gliss D3 0.8");
+    drum_do(drum, "gliss D3 0.8");
     for (int i = 1; i <= 4; i++) {
         run(drum, 0.2); // 50 of 200 steps
         TEST_ASSERT_DOUBLE_WITHIN(1.01 * way / 200, i * way / 4, cents(pitch(drum), from));
@@ -86,7 +79,7 @@ static void test_a_gliss_is_the_same_in_blocks_of_any_size(void)
     static const int block[] = {1, 64, 5000};
     for (int k = 0; k < 3; k++) {
         himc_drum *drum = struck_drum();
-        say(drum, "gliss F2 0.5");
+        drum_do(drum, "gliss F2 0.5");
         TEST_ASSERT_TRUE(himc_drum_strike_at(drum, 7777, -0.2, 0.05, 3, &error));
         hear(drum, block[k], sound[k], LENGTH);
         himc_drum_release(drum);
@@ -114,7 +107,7 @@ static void test_the_steps_of_a_gliss_are_not_heard(void)
     for (int k = 0; k < 3; k++) {
         himc_drum *drum = struck_drum();
         run(drum, 1); // the high modes are over
-        say(drum, moves[k]);
+        drum_do(drum, moves[k]);
         hear(drum, 64, sound, LENGTH);
         TEST_ASSERT_TRUE(high_level(sound, LENGTH) < -110);
         himc_drum_release(drum);
@@ -128,7 +121,7 @@ static void test_energy_never_grows_in_a_gliss(void)
     himc_membrane *head = himc_drum_membrane(drum);
     double before = himc_membrane_energy(head);
     for (int k = 0; k < 3; k++) {
-        say(drum, moves[k]);
+        drum_do(drum, moves[k]);
         for (int i = 0; i < 300; i++) {
             himc_drum_advance(drum, 50, NULL, NULL, NULL);
             double now = himc_membrane_energy(head);
@@ -144,21 +137,21 @@ static void test_what_is_sent_meanwhile_replaces_a_gliss_or_lets_it_go_on(void)
 {
     himc_drum *drum = struck_drum();
     double from = pitch(drum);
-    say(drum, "gliss D3 0.8");
+    drum_do(drum, "gliss D3 0.8");
     run(drum, 0.4);
-    say(drum, "damp 0.5"); // the hand leaves the pedal alone
+    drum_do(drum, "damp 0.5"); // the hand leaves the pedal alone
     TEST_ASSERT_EQUAL_DOUBLE(0.5, himc_membrane_head(himc_drum_membrane(drum))->damp);
     run(drum, 0.401);
     TEST_ASSERT_DOUBLE_WITHIN(1, 500, cents(pitch(drum), from));
     TEST_ASSERT_EQUAL_DOUBLE(0.5, himc_membrane_head(himc_drum_membrane(drum))->damp);
-    say(drum, "gliss A3 0.8");
+    drum_do(drum, "gliss A3 0.8");
     run(drum, 0.4);
-    say(drum, "gliss D3 0.2"); // back from half way
+    drum_do(drum, "gliss D3 0.2"); // back from half way
     run(drum, 0.201);
     TEST_ASSERT_DOUBLE_WITHIN(1, 500, cents(pitch(drum), from));
-    say(drum, "gliss A3 0.8");
+    drum_do(drum, "gliss A3 0.8");
     run(drum, 0.1);
-    say(drum, "tune A2");
+    drum_do(drum, "tune A2");
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 0, cents(pitch(drum), from));
     run(drum, 1);
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 0, cents(pitch(drum), from));

@@ -5,20 +5,13 @@
 
 #include <math.h>
 
-static void say(himc_drum *drum, const char *text)
-{
-    himc_command c;
-    TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&c, HIMC_DRUM, text, &error), error.text);
-    TEST_ASSERT_TRUE_MESSAGE(himc_drum_command(drum, &c, &error), error.text);
-}
-
 static himc_drum *drum_of(double inches, const char *pitch)
 {
     char tune[20];
     himc_drum *drum = himc_drum_new("low", inches, 48000, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(drum, error.text);
     snprintf(tune, sizeof tune, "tune %s", pitch);
-    say(drum, tune);
+    drum_do(drum, tune);
     return drum;
 }
 
@@ -46,7 +39,7 @@ static void test_a_muffled_drum_is_dry_and_has_its_pitch(void)
         double ring[7], hz = mode_of(drum, 1, 1).frequency, noise = drum->noise.amount;
         for (int m = 1; m < 7; m++)
             ring[m] = t60(drum, m);
-        say(drum, "muffle 1");
+        drum_do(drum, "muffle 1");
         printf("%s: (1,1) %.2f of %.2f s, (2,1) %.2f s, (6,1) %.2f s\n", pitch[i], t60(drum, 1),
                ring[1], t60(drum, 2), t60(drum, 6));
         TEST_ASSERT_DOUBLE_WITHIN(0.12, 0.3, t60(drum, 1));
@@ -58,9 +51,9 @@ static void test_a_muffled_drum_is_dry_and_has_its_pitch(void)
         TEST_ASSERT_EQUAL_DOUBLE(hz, mode.frequency);
         TEST_ASSERT_TRUE(mode.decay < 0.1 * HIMC_PI * hz); // ten periods are heard
         TEST_ASSERT_DOUBLE_WITHIN(3, -10, 20 * log10(drum->noise.amount / noise));
-        say(drum, "muffle 0.5");
+        drum_do(drum, "muffle 0.5");
         TEST_ASSERT_TRUE(t60(drum, 1) > 0.33 && t60(drum, 1) < ring[1]);
-        say(drum, "muffle 0");
+        drum_do(drum, "muffle 0");
         TEST_ASSERT_EQUAL_DOUBLE(ring[1], t60(drum, 1));
         TEST_ASSERT_EQUAL_DOUBLE(noise, drum->noise.amount);
         himc_drum_release(drum);
@@ -71,11 +64,11 @@ static void test_a_cloth_and_a_hand_add_up_and_are_two_things(void)
 {
     himc_drum *drum = drum_of(26, "D3");
     double bare = mode_of(drum, 1, 1).decay;
-    say(drum, "damp 0.5");
+    drum_do(drum, "damp 0.5");
     double hand = mode_of(drum, 1, 1).decay - bare;
-    say(drum, "muffle 0.5");
+    drum_do(drum, "muffle 0.5");
     double both = mode_of(drum, 1, 1).decay - bare;
-    say(drum, "damp 0");
+    drum_do(drum, "damp 0");
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, both - hand, mode_of(drum, 1, 1).decay - bare);
     TEST_ASSERT_EQUAL_DOUBLE(0.5, himc_membrane_head(himc_drum_membrane(drum))->muffle);
     himc_drum_release(drum);
@@ -89,10 +82,10 @@ static void test_a_calf_head_is_heavier_keeps_its_pitch_and_loses_its_upper_part
     double tension = himc_membrane_head(head)->tension;
     for (int m = 1; m < 7; m++)
         plastic[m] = t60(drum, m);
-    say(drum, "skin plastic");
+    drum_do(drum, "skin plastic");
     TEST_ASSERT_EQUAL_DOUBLE(tension, himc_membrane_head(head)->tension);
     TEST_ASSERT_EQUAL_DOUBLE(plastic[6], t60(drum, 6));
-    say(drum, "skin calf");
+    drum_do(drum, "skin calf");
     TEST_ASSERT_DOUBLE_WITHIN(0.026, 0.375, himc_membrane_head(head)->density);
     TEST_ASSERT_DOUBLE_WITHIN(1e-5 * pitch, pitch,
                               himc_membrane_principal(head, himc_membrane_head(head)));
@@ -100,7 +93,7 @@ static void test_a_calf_head_is_heavier_keeps_its_pitch_and_loses_its_upper_part
         printf("(%d,1) %.2f s, %.2f s of plastic\n", m, t60(drum, m), plastic[m]);
     TEST_ASSERT_TRUE(t60(drum, 4) < 0.75 * plastic[4] && t60(drum, 6) < 0.6 * plastic[6]);
     TEST_ASSERT_TRUE(t60(drum, 6) / plastic[6] < t60(drum, 2) / plastic[2]);
-    say(drum, "skin plastic");
+    drum_do(drum, "skin plastic");
     TEST_ASSERT_DOUBLE_WITHIN(1e-5 * tension, tension, himc_membrane_head(head)->tension);
     TEST_ASSERT_DOUBLE_WITHIN(1e-4 * plastic[6], plastic[6], t60(drum, 6));
     himc_drum_release(drum);
@@ -120,7 +113,7 @@ static void test_a_calf_head_rings_shorter_on_every_drum_at_every_pitch(void)
         double plastic[7];
         for (int m = 1; m < 7; m++)
             plastic[m] = t60(drum, m);
-        say(drum, "skin calf");
+        drum_do(drum, "skin calf");
         printf("%g %s: (1,1) %.2f of %.2f s\n", sets[i / 3].inches, sets[i / 3].pitch[i % 3],
                t60(drum, 1), plastic[1]);
         for (int m = 1; m < 7; m++)

@@ -1,16 +1,6 @@
 // Receivers that subscribe, change their subscription, vanish and come back; many of them.
 #include "osc_ear.h"
 
-// lines that say that a receiver vanished
-static int lines_of_vanished(void)
-{
-    char line[HIMC_OSC_LINE];
-    int lines = 0;
-    while (himc_osc_line(osc, line))
-        lines += strstr(line, "forgotten after 60 s") != NULL;
-    return lines;
-}
-
 static void test_subscriptions_change_and_end_while_playing(void)
 {
     subscribe("targets 100");

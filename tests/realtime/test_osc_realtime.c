@@ -2,15 +2,6 @@
 #define OSC_REAL_TIME
 #include "osc_ear.h"
 
-static int lines_of_vanished(void)
-{
-    char line[HIMC_OSC_LINE];
-    int lines = 0;
-    while (himc_osc_line(osc, line))
-        lines += strstr(line, "forgotten after 60 s") != NULL;
-    return lines;
-}
-
 static void test_pose_comes_33_times_a_second_with_20_bodies(void)
 {
     subscribe("pose");

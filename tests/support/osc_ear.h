@@ -330,4 +330,14 @@ static inline void restart(const himc_osc_config *config)
     start(config);
 }
 
+// lines that say that a receiver vanished
+static inline int lines_of_vanished(void)
+{
+    char line[HIMC_OSC_LINE];
+    int lines = 0;
+    while (himc_osc_line(osc, line))
+        lines += strstr(line, "forgotten after 60 s") != NULL;
+    return lines;
+}
+
 #endif

@@ -168,4 +168,11 @@ static inline int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+static inline void drum_do(himc_drum *drum, const char *text)
+{
+    himc_command c;
+    TEST_ASSERT_TRUE_MESSAGE(himc_command_parse_text(&c, HIMC_DRUM, text, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_drum_command(drum, &c, &error), error.text);
+}
+
 #endif

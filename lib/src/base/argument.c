@@ -22,7 +22,7 @@ static const char *const nuances[] = {"legato",          "tenuto",   "accent",
                                       "vertical-accent", "staccato", NULL};
 static const char *const spots[] = {"center",  "normal", "rim",   "crossstick",
                                     "rimshot", "click",  "shell", NULL};
-static const char *const dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
+const char *const himc_dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
 
 #define WORD(word) word,
 static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
@@ -38,7 +38,7 @@ static const himc_argument arguments[] = {
     {"HAND", "stroke", HIMC_ARGUMENT_WORD, 0, 0, "", stroke_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
-    {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", dynamics},
+    {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", himc_dynamics},
     {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
     {"SETUP", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", setups},
     {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},

@@ -24,9 +24,14 @@
 #define GAIN (-2.5)         // (dB) chosen: zarathustra.mid has -23 LUFS, as broadcast
 #define PEDAL_STEPS 4       // of a pedal that moves, at most; chosen: heard as a slide
 
+// as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
+double himc_midi_velocity(double dynamic)
+{
+    return 16 + 112 * dynamic;
+}
+
 double himc_midi_dynamic(double velocity, double range)
 {
-    // as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
     if (range == 0)
         return fmax(0, fmin((velocity - 16) / 112.0, 1));
     // Dannenberg 2006: amplitude = (m v + b)^2, 1 at 127, and `range` less at 1
@@ -367,10 +372,9 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
 // a dynamic as its word, where it is one within a hundredth
 static const char *dynamic_word(char word[16], double dynamic)
 {
-    static const char *const steps[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"};
     int step = (int)lround(7 * dynamic);
     if (fabs(dynamic - step / 7.0) < 0.01)
-        return steps[step];
+        return himc_dynamics[step];
     himc_format(word, 16, "%.3g", dynamic);
     return word;
 }

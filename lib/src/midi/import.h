@@ -20,6 +20,8 @@ const char *himc_midi_choice_name(midi_choice choice);
 
 /// The dynamic (0 .. 1) of a velocity (0 .. 127); `range` as in midi_options.
 double himc_midi_dynamic(double velocity, double range);
+/// Its inverse for range 0, also beyond 127.
+double himc_midi_velocity(double dynamic);
 
 #define HIMC_MIDI_BYTES_MAX \
     ((size_t)4 << 20) ///< of a MIDI file; chosen: a hundred times a long piece

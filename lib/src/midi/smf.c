@@ -59,6 +59,14 @@ typedef struct reader {
     himc_error *error;
 } reader;
 
+double himc_midi_bpm(const himc_tempo_change *tempi, int count, double beat)
+{
+    const double same = 1e-6; // (beats)
+    while (count > 1 && tempi[1].beat <= beat + same)
+        tempi++, count--;
+    return tempi[0].bpm;
+}
+
 bool himc_midi_is_file(const void *bytes, size_t size)
 {
     return size >= 4 && memcmp(bytes, "MThd", 4) == 0;

@@ -86,6 +86,9 @@ typedef struct midi_file {
                     ///< scores do not have
 } midi_file;
 
+/// The tempo (beats per minute) of a map at a beat.
+double himc_midi_bpm(const himc_tempo_change *tempi, int count, double beat);
+
 bool himc_midi_is_file(const void *bytes, size_t size);
 
 /// Reads a file of format 0, 1 or 2 (whose tracks follow each other). A track that ends in the

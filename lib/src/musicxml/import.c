@@ -28,19 +28,17 @@ bool himc_music_is_file(const void *bytes, size_t size)
 // what the reader leaves out, as lines of the report
 static bool tell(const music *m, midi_file *file, himc_error *error)
 {
-    size_t used = 0, room = MUSIC_OMISSIONS * sizeof(music_omission) + MUSIC_OMISSIONS * 100;
-    file->said = calloc(room, 1);
-    if (!file->said)
-        return himc_error_set(error, "out of memory for the report");
+    himc_text_lines said = {0};
+    bool good = himc_text_reserve(&said, 1);
     for (int i = 0; i < MUSIC_OMISSIONS; i++) {
         const music_omission *o = &m->omitted[i];
         if (o->count > 0)
-            used += (size_t)snprintf(file->said + used, room - used, "%d %s (bar%s %s)\n", o->count,
-                                     o->count == 1 ? o->one : o->many,
-                                     strchr(o->bars, ' ') ? "s" : "", o->bars);
+            himc_text_print(&said, "%d %s (bar%s %s)\n", o->count, o->count == 1 ? o->one : o->many,
+                            strchr(o->bars, ' ') ? "s" : "", o->bars);
     }
+    file->said = said.bytes;
     file->omitted = m->omitted[MUSIC_BAD_NOTES].count + m->omitted[MUSIC_GRACES].count;
-    return true;
+    return (good && !said.failed) || himc_error_set(error, "out of memory for the report");
 }
 
 static bool read_file(midi_file *file, const void *bytes, size_t size, himc_error *error)

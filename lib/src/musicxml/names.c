@@ -212,7 +212,6 @@ int himc_music_drum(const char *name)
 
 bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
 {
-    static const char *const steps[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"};
     static const struct {
         const char *name;
         music_meaning meaning;
@@ -229,7 +228,7 @@ bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
         return true;
     }
     for (int i = 0; i < 8; i++)
-        if (strcmp(name, steps[i]) == 0) {
+        if (strcmp(name, himc_dynamics[i]) == 0) {
             *value = i / 7.0;
             return true;
         }

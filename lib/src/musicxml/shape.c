@@ -101,19 +101,6 @@ static void join_ties(music *m)
 
 // what is made
 
-static double bpm_at(const midi_file *file, double beat)
-{
-    int low = 0, high = file->tempo_count;
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (file->tempi[middle].beat <= beat + SAME)
-            low = middle;
-        else
-            high = middle;
-    }
-    return file->tempi[low].bpm;
-}
-
 static void emit(shaper *s, const music_note *n, double beat, double end, const midi_way *way)
 {
     midi_file *f = s->file;
@@ -358,7 +345,8 @@ static bool shape_part(shaper *s, int part)
     s->measured = -1;
     s->attack = false;
     s->spot = HIMC_SPOT_NORMAL;
-    s->levels = himc_music_levels(m, part, bpm_at(s->file, 0) / 60, &s->level_count);
+    s->levels = himc_music_levels(
+        m, part, himc_midi_bpm(s->file->tempi, s->file->tempo_count, 0) / 60, &s->level_count);
     if (!s->levels)
         return himc_error_set(s->error, "out of memory for %d signs", m->sign_count);
     for (int i = 0; i < m->note_count && !s->failed; i++) {
@@ -377,7 +365,7 @@ static bool shape_part(shaper *s, int part)
             continue;
         take_signs(s, n->at.beat, n->choice);
         last = n->at.beat;
-        s->second = bpm_at(s->file, last) / 60;
+        s->second = himc_midi_bpm(s->file->tempi, s->file->tempo_count, last) / 60;
         shape_note(s, n);
     }
     for (int i = 0; i < s->graces; i++) // no note follows

@@ -99,14 +99,6 @@ static bool add_signs(map *to, const music *m)
     return true;
 }
 
-static double bpm_at(const himc_tempo_change *tempi, int count, double beat)
-{
-    int i = 0;
-    while (i + 1 < count && tempi[i + 1].beat <= beat + SAME)
-        i++;
-    return tempi[i].bpm;
-}
-
 // the tempi of `from` with holds; fermatas at one beat are one
 static bool add_fermatas(map *to, const map *from, const music *m)
 {
@@ -120,13 +112,13 @@ static bool add_fermatas(map *to, const map *from, const music *m)
         for (; next < from->count && from->tempi[next].beat < begin - SAME; next++)
             if (!add(to, from->tempi[next].beat, from->tempi[next].bpm))
                 return false;
-        double bpm = bpm_at(from->tempi, from->count, begin);
+        double bpm = himc_midi_bpm(from->tempi, from->count, begin);
         double more = fmin(s->value, MOST_HELD * bpm / 60);
         if (!add(to, begin, bpm * s->value / (s->value + more)))
             return false;
         while (next < from->count && from->tempi[next].beat <= end + SAME)
             next++;
-        if (!add(to, end, bpm_at(from->tempi, from->count, end)))
+        if (!add(to, end, himc_midi_bpm(from->tempi, from->count, end)))
             return false;
         done = end;
     }

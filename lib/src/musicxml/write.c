@@ -108,14 +108,6 @@ static void put_graces(const writer *w, const item *i)
     }
 }
 
-static double bpm_at(const midi_file *file, double beat)
-{
-    double bpm = file->tempi[0].bpm;
-    for (int i = 0; i < file->tempo_count && file->tempi[i].beat <= beat + 1e-9; i++)
-        bpm = file->tempi[i].bpm;
-    return bpm;
-}
-
 static void put_notations(const writer *w, const item *i, bool begins, bool ties_on)
 {
     static const char *const marks[] = {[HIMC_TENUTO] = "tenuto",
@@ -131,7 +123,7 @@ static void put_notations(const writer *w, const item *i, bool begins, bool ties
         PUT(w, "<tied type=\"start\"/>");
     if (roll) // three strokes where nobody could take them for 32nds
         PUT(w, "<ornaments><tremolo type=\"single\">%d</tremolo></ornaments>",
-            bpm_at(w->file, i->note->beat) > 61 ? 3 : 4);
+            himc_midi_bpm(w->file->tempi, w->file->tempo_count, i->note->beat) > 61 ? 3 : 4);
     if (begins && way->hand > 0 && !roll)
         PUT(w, "<technical><fingering>%s</fingering></technical>",
             way->hand == 1 + HIMC_LEFT ? "L" : "R");
@@ -147,7 +139,7 @@ static void put_note(const writer *w, const item *i, long from, long to)
         put_graces(w, i);
     double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
     // the exact dynamic, in percent of a velocity of 90
-    PUT(w, "<note dynamics=\"%.6g\">", (16 + 112 * fmax(level, 0)) / 0.9);
+    PUT(w, "<note dynamics=\"%.6g\">", himc_midi_velocity(fmax(level, 0)) / 0.9);
     put_pitch(w, i->note->key);
     PUT(w, "<duration>%ld</duration>", to - from);
     if (!begins)
@@ -213,10 +205,9 @@ static void put_orders(const writer *w, long begin, long *at)
 
 static void put_dynamic(writer *w, long *at, long to, int step)
 {
-    static const char *const steps[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff"};
     move(w, at, to);
     PUT(w, "<direction><direction-type><dynamics><%s/></dynamics></direction-type></direction>\n",
-        steps[step]);
+        himc_dynamics[step]);
     w->step = step;
 }
 

@@ -53,7 +53,8 @@ static void add_stroke(writer *w, const midi_note *n, double seconds, double dyn
     const midi_file *f = w->file;
     uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : BASS_DRUM;
     double end = himc_score_beat(f->tempi, f->tempo_count, seconds + SHORT);
-    add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key, 16 + 112 * dynamic);
+    add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key,
+        himc_midi_velocity(dynamic));
     add(w, end, on & 0x8f, key, 64);
 }
 
