@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { WASM_PAGE = 65536, SPARE = 4 << 20 }; // (bytes); chosen: what is added while a piece is played
+
 struct edit_play {
     bool made;
 };
@@ -17,6 +19,7 @@ static struct {
     edit_play play;
     edit_player player;
     char name[PAGE_INPUT], record[PAGE_INPUT];
+    size_t room; ///< (bytes)
 } e;
 
 // of a scene with another one in it, which is not made here; the library of WebAssembly has none
@@ -99,6 +102,18 @@ bool page_edit_proved(void)
 
 // --- what is played
 
+// Room for a second performance, which an exchange needs for a moment: a copy that comes back must find
+// it there, and no rest of one in it, or copies would differ by that.
+static void make_room(size_t more)
+{
+    size_t used = (size_t)__builtin_wasm_memory_size(0) * WASM_PAGE;
+    e.room = e.room ? e.room : used;
+    char *room = malloc(e.room + more);
+    if (room)
+        memset(room, 0, e.room + more);
+    free(room);
+}
+
 static char *text_to_play(void)
 {
     size_t size;
@@ -116,6 +131,7 @@ bool page_piece_begin(void)
     e.player = (edit_player){.name = e.name, .options = &e.session.take, .to = stdout};
     bool good = text && edit_player_begin(&e.player, text, line ? e.record : NULL, page_reason());
     free(text);
+    make_room(SPARE);
     fflush(stdout);
     return good;
 }
@@ -130,6 +146,7 @@ int page_piece_exchange(void)
     char *text = text_to_play();
     bool late = false, good = text && edit_player_exchange(&e.player, text, &late, page_reason());
     free(text);
+    make_room(0);
     fflush(stdout);
     return good ? 1 : late ? -1 : 0;
 }
