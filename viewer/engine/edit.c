@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WASM_PAGE = 65536, SPARE = 4 << 20 }; // (bytes); chosen: what is added while a piece is played
+enum { WASM_PAGE = 65536, PART = 65536 }; // (bytes)
+enum { SPARE = 4 << 20 };                 // (bytes) chosen: more than is added while a piece is played
 
 struct edit_play {
     bool made;
@@ -19,7 +20,6 @@ static struct {
     edit_play play;
     edit_player player;
     char name[PAGE_INPUT], record[PAGE_INPUT];
-    size_t room; ///< (bytes)
 } e;
 
 // of a scene with another one in it, which is not made here; the library of WebAssembly has none
@@ -102,16 +102,30 @@ bool page_edit_proved(void)
 
 // --- what is played
 
-// Room for a second performance, which an exchange needs for a moment: a copy that comes back must find
-// it there, and no rest of one in it, or copies would differ by that.
-static void make_room(size_t more)
+// Room for a second performance, which an exchange needs for a moment: a copy that comes back must
+// find it there ...
+static void make_room(void)
 {
-    size_t used = (size_t)__builtin_wasm_memory_size(0) * WASM_PAGE;
-    e.room = e.room ? e.room : used;
-    char *room = malloc(e.room + more);
-    if (room)
-        memset(room, 0, e.room + more);
+    void *volatile room = malloc((size_t)__builtin_wasm_memory_size(0) * WASM_PAGE + SPARE);
     free(room);
+}
+
+// ... and no rest of one in it, or copies would differ by that: what is free at the end is zero
+static void clear_room(void)
+{
+    uintptr_t end = (uintptr_t)__builtin_wasm_memory_size(0) * WASM_PAGE, at = 0;
+    void **first = NULL, **volatile part;
+    while (at + 3 * (uintptr_t)PART < end && (part = malloc(PART))) {
+        memset(part, 0, PART);
+        *part = first;
+        first = part;
+        at = (uintptr_t)part;
+    }
+    while ((part = first)) {
+        first = *part;
+        *part = NULL;
+        free(part);
+    }
 }
 
 static char *text_to_play(void)
@@ -131,7 +145,7 @@ bool page_piece_begin(void)
     e.player = (edit_player){.name = e.name, .options = &e.session.take, .to = stdout};
     bool good = text && edit_player_begin(&e.player, text, line ? e.record : NULL, page_reason());
     free(text);
-    make_room(SPARE);
+    make_room();
     fflush(stdout);
     return good;
 }
@@ -146,7 +160,7 @@ int page_piece_exchange(void)
     char *text = text_to_play();
     bool late = false, good = text && edit_player_exchange(&e.player, text, &late, page_reason());
     free(text);
-    make_room(0);
+    clear_room();
     fflush(stdout);
     return good ? 1 : late ? -1 : 0;
 }

@@ -2,6 +2,7 @@
 // port to the audio thread, shows what it tells as the stream of any live performer, and turns what
 // the user does into the commands that Pure Data has.
 import * as THREE from "./three.js";
+import { Channel } from "./channel.js";
 import { readFrame } from "./stream.js";
 
 const $ = id => document.getElementById(id);
@@ -15,6 +16,10 @@ const RATE = 48000, // (Hz), on every device: the same bits everywhere
 const DEFLATE = "deflate-raw",
     bytesOf = new TextEncoder();
 
+// bytes as letters
+const lettersOf = bytes => btoa(Array.from(bytes, b => String.fromCharCode(b)).join("")),
+    bytesFrom = letters => Uint8Array.from(atob(letters), c => c.charCodeAt(0));
+
 const noteName = key => `${NOTES[key % 12]}${Math.floor(key / 12) - 1}`;
 
 async function squeeze(bytes, stream) {
@@ -24,24 +29,24 @@ async function squeeze(bytes, stream) {
 // a score as the part of an address after the #
 export async function linkOf(text) {
     const bytes = await squeeze(bytesOf.encode(text), new CompressionStream(DEFLATE));
-    return `#s=${btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "")}`;
+    return `#s=${lettersOf(bytes).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "")}`;
 }
 
 export async function textOf(hash) {
     if (hash.length > LONGEST) throw new Error("too long");
-    const letters = atob(hash.slice(3).replace(/-/g, "+").replace(/_/g, "/")),
-        bytes = Uint8Array.from(letters, c => c.charCodeAt(0));
+    const bytes = bytesFrom(hash.slice(3).replace(/-/g, "+").replace(/_/g, "/"));
     return new TextDecoder().decode(await squeeze(bytes, new DecompressionStream(DEFLATE)));
 }
 
 // `on` has: frame, the handlers of a Stream; fresh(): another piece begins; drums(): those that are seen;
-// ray(press); scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
+// ray(press); plays(): a playback is shown; edit(connect): the piece to which this opens a channel; scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
 export class Studio {
     constructor(files, sound, liveSound, on) {
         ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.queue = []));
         ((this.plays = false), (this.said = []), (this.past = []), (this.names = ""));
         this.embedded = new URLSearchParams(location.search).has("embed");
         const [[, wasm], ...pieces] = files;
+        this.wasm = wasm;
         ((this.pieces = pieces.map(([name]) => name)), (this.name = ""), (this.ready = false));
         this.texts = new Map(pieces); // as they are in the files
         this.journal = this.remembered();
@@ -63,6 +68,9 @@ export class Studio {
             if (text !== null) return this.load("link.txt", bytesOf.encode(text));
             this.tell("this link holds no score", true);
         }
+        const { base } = this.journal;
+        this.resumes = !!base?.open;
+        if (base?.open) return this.load(base.name, bytesFrom(base.bytes));
         if (await this.restore()) return;
         this.load(this.pieces[0] ?? "");
     }
@@ -73,7 +81,7 @@ export class Studio {
     remembered() {
         try {
             const all = JSON.parse((!this.embedded && localStorage.getItem(JOURNAL)) || "{}");
-            return { name: String(all.name ?? ""), text: all.text && typeof all.text === "object" ? all.text : {} };
+            return { name: String(all.name ?? ""), text: all.text && typeof all.text === "object" ? all.text : {}, base: all.base };
         } catch {
             return { name: "", text: {} };
         }
@@ -84,9 +92,13 @@ export class Studio {
         try {
             localStorage.setItem(JOURNAL, JSON.stringify(this.journal));
         } catch {
-            if (!this.unkept) this.tell("this browser keeps no changes: save the score as a file", true);
-            this.unkept = true;
+            this.lose();
         }
+    }
+
+    lose() {
+        if (!this.unkept) this.tell("this browser keeps no changes: save the score as a file", true);
+        this.unkept = true;
     }
 
     // the score that was on the stand when the page ended, as it was changed
@@ -112,6 +124,29 @@ export class Studio {
         const beat = on && this.beat > 0 ? [`seek ${this.beat}`] : [];
         this.typed();
         this.load(this.journal.name, bytesOf.encode($("p-text").value), true, beat);
+    }
+
+    // Changes the piece on the stand where it is seen, from what it was before all changes if it is still what they
+    // have led to, so that undo goes back to that. What has begun here goes on after the page's end.
+    edit() {
+        const { journal, name } = this,
+            text = $("p-text").value;
+        if (!this.ready) return;
+        this.worker.postMessage({ runs: false });
+        if (journal.base?.name !== name || !(journal.base.open || journal.base.led === text))
+            journal.base = { name, bytes: lettersOf(text ? bytesOf.encode(text) : this.bytes) };
+        ((journal.base.open = this.edits = true), this.remember());
+        const all = new Map([...this.texts, [name, bytesFrom(journal.base.bytes)]]);
+        this.on.edit(() => new Channel(this.wasm, [...all], name, () => this.lose()));
+    }
+
+    // and comes back with the score
+    edited(bytes) {
+        const { base, text } = this.journal;
+        ((this.edits = base.open = false), this.worker.postMessage({ runs: true }));
+        if (bytes) base.led = text[base.name] = new TextDecoder().decode(bytes);
+        this.remember();
+        if (bytes) this.load(base.name, bytes);
     }
 
     forgetChanges() {
@@ -192,6 +227,8 @@ export class Studio {
         this.playing(!!play);
         $("p-piece").value = this.pieces.includes(name) ? name : "";
         $("p-piece").options[0].text = this.pieces.includes(name) || !name ? "a piece" : name;
+        if (this.resumes) this.edit();
+        this.resumes = false;
         this.tell(loaded ? `${loaded} is on the stand` : "a performer without a score");
     }
 
@@ -270,6 +307,7 @@ export class Studio {
     }
 
     press(e) {
+        if (this.on.plays()) return;
         const caster = new THREE.Raycaster(),
             ray = this.on.ray(e);
         caster.set(ray.origin, ray.direction);
@@ -288,7 +326,7 @@ export class Studio {
 
     key(e) {
         const hand = HITS[e.key?.toLowerCase()];
-        if (e.ctrlKey || e.metaKey || e.altKey || e.repeat || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
+        if (this.on.plays() || e.ctrlKey || e.metaKey || e.altKey || e.repeat || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
         if (hand) this.hit(hand);
         else if (e.key === " " && !/^(BUTTON|SUMMARY)$/.test(e.target.tagName)) this.toggle();
         else return;
@@ -346,6 +384,7 @@ export class Studio {
         $("p-piece").onchange = e => e.target.value && this.choose(e.target.value);
         click("p-play", () => this.toggle());
         click("p-open", () => $("p-file").click());
+        click("p-edit", () => this.edit());
         click("p-link", () => this.copyLink().catch(error => this.tell(error.message, true)));
         $("p-file").onchange = e => [...e.target.files].forEach(file => this.open(file));
         $("p-midi").hidden = !navigator.requestMIDIAccess;

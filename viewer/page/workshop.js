@@ -130,22 +130,21 @@ class Workshop {
         else this.ask("page_edit_line", line);
     }
 
-    // plays the text that was ordered; from a copy, if only strokes have changed
+    // plays the text that was ordered; from a copy, if only strokes have changed. How long before the change plans
+    // rest on it is not known: as long as the last time, or a little less.
     begin() {
         const { from, text } = this.order,
             { list } = this.copies ?? { list: [] };
         ((this.order = null), (this.played = text), (this.focus = Math.max(0, from)));
-        while (from >= 0 && list.length) {
-            if (list[list.length - 1].at > from + HEADROOM && list.length > 1) {
-                this.copies.drop();
-                continue;
-            }
+        const until = from + HEADROOM - (this.tries ?? 0) * APART;
+        for (this.tries = Math.max(0, (this.tries ?? 0) - 1); from >= 0 && list.length; this.copies.drop()) {
+            if (list[list.length - 1].at > until && list.length > 1) continue;
             this.copies.restore();
             this.player.files.bytes.set(TEXT, text);
             const done = this.player.calls.page_piece_exchange();
             if (done === 0) return this.failed();
             if (done > 0) return this.resume();
-            this.copies.drop();
+            this.tries++;
         }
         this.start(text);
     }
