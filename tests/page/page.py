@@ -181,6 +181,29 @@ def test_a_score_that_is_dropped_plays():
     assert browser.run("return [...document.getElementById('p-drum').options].map(o => o.value)") == ["low", "high"]
 
 
+def test_what_plays_goes_on_while_another_piece_loads():
+    browser.run("viewer.studio.choose('improvisation.txt')")
+    strikes(3)
+    seen = browser.run(
+        """
+        const { studio } = viewer, seen = [];
+        studio.choose("tide.txt");
+        return new Promise(done => {
+            const look = setInterval(() => {
+                const { playing, played } = viewer.liveSound.nodes.get("page").told;
+                if (studio.coming) return seen.push([studio.name, playing, played]);
+                clearInterval(look);
+                done(seen);
+            }, 10);
+        });
+        """
+    )
+    assert all(name == "improvisation.txt" for name, _, _ in seen), seen
+    assert seen[-1][2] > seen[0][2], seen
+    assert browser.wait("return viewer.studio.name === 'tide.txt' && [...viewer.drums.values()].some(d => d.name === 'low')")
+    return f"{(seen[-1][2] - seen[0][2]) / 48000:.2f} s of sound meanwhile"
+
+
 def test_a_midi_file_that_is_dropped_plays():
     with open("patches/pieces/zarathustra.mid", "rb") as file:
         drop(("zarathustra.mid", file.read()))

@@ -1,5 +1,5 @@
-// The performer inside the page: starts the Worker that computes it (worker.js), hands the Worker a
-// port to the audio thread, shows what it tells as the stream of any live performer, and turns what
+// The performer inside the page: starts the Worker that computes it (worker.js), and another one for each piece,
+// which takes over once it has loaded, so that nothing stands still meanwhile; hands the Worker a port to the audio thread, shows what it tells as the stream of any live performer, and turns what
 // the user does into the commands that Pure Data has.
 import * as THREE from "./three.js";
 import { Channel } from "./channel.js";
@@ -42,7 +42,7 @@ export async function textOf(hash) {
 // ray(press); plays(): a playback is shown; edit(connect): the piece to which this opens a channel; scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
 export class Studio {
     constructor(files, sound, liveSound, on) {
-        ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.queue = []));
+        ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.worker = this.coming = null));
         ((this.plays = false), (this.said = []), (this.past = []), (this.names = ""));
         this.embedded = new URLSearchParams(location.search).has("embed");
         const [[, wasm], ...pieces] = files;
@@ -50,19 +50,14 @@ export class Studio {
         ((this.pieces = pieces.map(([name]) => name)), (this.name = ""), (this.ready = false));
         this.texts = new Map(pieces); // as they are in the files
         this.journal = this.remembered();
-        const source = window.himcScripts.get("worker.js"),
-            address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-        this.worker = new Worker(address);
-        this.worker.onmessage = e => this.hear(e.data);
-        this.worker.onerror = e => this.tell(e.message, true);
-        this.worker.postMessage({ begin: { wasm, files: pieces, rate: RATE } });
+        this.address = URL.createObjectURL(new Blob([window.himcScripts.get("worker.js")], { type: "text/javascript" }));
         this.controls();
         document.body.classList.add("studio");
         this.begin().catch(error => this.tell(error.message, true));
     }
 
     async begin() {
-        this.worker.postMessage({ runs: true });
+        this.module = await WebAssembly.compile(this.wasm).catch(() => null); // once, for all Workers
         if (location.hash.startsWith("#s=")) {
             const text = await textOf(location.hash).catch(() => null);
             if (text !== null) return this.load("link.txt", bytesOf.encode(text));
@@ -132,18 +127,18 @@ export class Studio {
         const { journal, name } = this,
             text = $("p-text").value;
         if (!this.ready) return;
-        this.worker.postMessage({ runs: false });
+        this.worker?.postMessage({ runs: false });
         if (journal.base?.name !== name || !(journal.base.open || journal.base.led === text))
             journal.base = { name, bytes: lettersOf(text ? bytesOf.encode(text) : this.bytes) };
         ((journal.base.open = this.edits = true), this.remember());
         const all = new Map([...this.texts, [name, bytesFrom(journal.base.bytes)]]);
-        this.on.edit(() => new Channel(this.wasm, [...all], name, () => this.lose()));
+        this.on.edit(() => new Channel(this.module ?? this.wasm, [...all], name, () => this.lose()));
     }
 
     // and comes back with the score
     edited(bytes) {
         const { base, text } = this.journal;
-        ((this.edits = base.open = false), this.worker.postMessage({ runs: true }));
+        ((this.edits = base.open = false), this.worker?.postMessage({ runs: true }));
         if (bytes) base.led = text[base.name] = new TextDecoder().decode(bytes);
         this.remember();
         if (bytes) this.load(base.name, bytes);
@@ -165,32 +160,38 @@ export class Studio {
 
     // the device is open: sound goes from the Worker to the audio thread, past this page
     async listen() {
-        if (this.listens) return;
+        const { worker } = this;
+        if (this.listens || !worker || this.sound.context?.state === "closed") return;
         this.listens = true;
         this.on.hold(true);
         const port = await this.liveSound.feed("page").catch(error => this.tell(`no sound: ${error.message}`, true));
         this.on.hold(false);
         this.listens = !!port;
-        if (port) this.worker.postMessage({ port }, [port]);
+        if (port) worker.postMessage({ port }, [port]);
+    }
+
+    // the Worker that has loaded a piece is the performer from now on
+    async takeOver({ worker }) {
+        this.worker?.terminate();
+        Object.assign(this, { worker, coming: null, listens: false });
+        if (this.sound.context) await this.listen();
+        worker.postMessage({ runs: !this.edits });
     }
 
     // --- what the Worker tells
 
-    hear({ frame, loaded, failed, line, saved, bytes, name }) {
-        if (frame) readFrame(frame, this.handlers);
-        else if (saved) this.save(saved, bytes);
-        else if (loaded !== undefined) this.fresh(loaded);
+    hear({ frame, loaded, failed, line, saved, bytes, unread }, from) {
+        if (unread) ((this.module = null), this.send(from)); // a browser that hands no module on
+        else if (frame) readFrame(frame, this.handlers);
+        else if (saved) (this.texts.set(saved, bytes), this.save(saved, bytes));
+        else if (loaded !== undefined) (this.takeOver(from), this.fresh(from));
         else if (line !== undefined) this.answered(line, failed);
         else if (failed) {
-            this.asked(name);
-            this.failed(name && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
+            const { name } = from,
+                loads = from === this.coming;
+            if (loads) (from.worker.terminate(), (this.coming = null));
+            this.failed(loads && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
         }
-    }
-
-    // what was asked of the Worker under that name, the oldest
-    asked(name) {
-        const at = this.queue.findIndex(one => one.name === name);
-        return at < 0 ? {} : this.queue.splice(0, at + 1)[at];
     }
 
     get handlers() {
@@ -215,9 +216,8 @@ export class Studio {
         this.load(this.pieces[0] ?? "");
     }
 
-    fresh(loaded) {
-        const { bytes, play } = this.asked(loaded),
-            name = this.draft === undefined ? loaded : this.journal.name; // a draft keeps its name
+    fresh({ name: loaded, bytes, play }) {
+        const name = this.draft === undefined ? loaded : this.journal.name; // a draft keeps its name
         ((this.name = name), (this.ready = true), (this.names = ""), (this.bytes = bytes), (this.beat = 0));
         $("p-drum").replaceChildren();
         this.on.fresh();
@@ -267,15 +267,25 @@ export class Studio {
     // --- what the user does
 
     say(line) {
-        this.worker.postMessage({ say: line.trim().replace(/;$/, "") });
+        this.worker?.postMessage({ say: line.trim().replace(/;$/, "") });
     }
 
     // a piece of the page, or a file; `play`: at once, after these commands
     load(name, bytes = null, play = false, first = []) {
         if (bytes && !this.texts.has(name)) this.texts.set(name, bytes);
         bytes ??= this.texts.get(name);
-        this.queue.push({ name, bytes, play });
-        this.worker.postMessage({ load: { name, bytes, then: play ? [...first, "play"] : [] } });
+        this.coming?.worker.terminate(); // the newest is meant
+        const worker = new Worker(this.address),
+            from = (this.coming = { worker, name, bytes, play, then: play ? [...first, "play"] : [] });
+        worker.onmessage = e => this.hear(e.data, from);
+        worker.onerror = e => this.hear({ failed: e.message }, from);
+        this.send(from);
+    }
+
+    send({ worker, name, bytes, then }) {
+        const { module, wasm, texts } = this;
+        worker.postMessage({ begin: { module, wasm: module ? null : wasm, files: [...texts], rate: RATE } });
+        worker.postMessage({ load: { name, bytes, then } });
     }
 
     // as it was changed here, if it was
@@ -403,7 +413,7 @@ export class Studio {
         click("p-use", () => this.use());
         click("p-here", () => this.use(true));
         click("p-undo", () => this.forgetChanges());
-        $("p-form").onsubmit = e => (e.preventDefault(), this.send());
+        $("p-form").onsubmit = e => (e.preventDefault(), this.sayLine());
         $("p-line").onkeydown = e => this.recall(e);
         click("p-copy", () => navigator.clipboard?.writeText($("p-line").value.replace(/([,;$])/g, "\\$1")));
         $("stage").addEventListener("pointerdown", e => !e.button && this.press(e), true);
@@ -424,7 +434,7 @@ export class Studio {
         this.outside = text => parent.postMessage({ himc: text }, "*");
     }
 
-    send() {
+    sayLine() {
         const line = $("p-line").value.trim();
         if (!line) return;
         this.past.push(line);

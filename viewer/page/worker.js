@@ -223,8 +223,9 @@ class Player {
         postMessage(message, transfer);
     }
 
-    begin({ wasm, files, rate }) {
-        this.engine = new Engine(new WebAssembly.Module(wasm), rate);
+    begin({ module, wasm, files, rate }) {
+        if (this.engine) return;
+        this.engine = new Engine(module ?? new WebAssembly.Module(wasm), rate);
         for (const [name, bytes] of files) this.engine.files.bytes.set(name, bytes);
         setInterval(() => this.guarded(() => this.tick()), TICK);
     }
@@ -247,7 +248,7 @@ class Player {
 
     // the audio thread has played so many samples, and had none so often
     asks({ read, missed }) {
-        if (missed > this.missed) this.ahead = Math.min(MOST, this.ahead + MORE);
+        if (missed > this.missed && this.asked > 0) this.ahead = Math.min(MOST, this.ahead + MORE);
         ((this.asked = performance.now()), (this.played = read), (this.missed = missed));
         this.fill();
     }
@@ -285,7 +286,7 @@ class Player {
         const { engine } = this;
         if (bytes) engine.files.bytes.set(name, bytes);
         const failed = engine.load(name);
-        if (failed) return this.tell({ failed, name });
+        if (failed) return this.tell({ failed });
         this.loaded = true;
         this.tell({ loaded: name });
         for (const line of then ?? []) this.say(line);
@@ -320,6 +321,7 @@ class Player {
 
 if (typeof WorkerGlobalScope !== "undefined" && self instanceof WorkerGlobalScope) {
     const player = new Player();
+    onmessageerror = () => player.engine ?? postMessage({ unread: true });
     onmessage = e => {
         try {
             player.hear(e.data);

@@ -245,7 +245,7 @@ if (typeof WorkerGlobalScope !== "undefined" && self instanceof WorkerGlobalScop
         guarded(() => {
             if (line !== undefined) return workshop?.line(line);
             workshop = new Workshop(
-                new WebAssembly.Module(begin.wasm),
+                begin.wasm instanceof WebAssembly.Module ? begin.wasm : new WebAssembly.Module(begin.wasm),
                 begin.files,
                 bytes => postMessage({ bytes }, [bytes.buffer]),
                 (name, bytes) => postMessage({ written: { name, text: bytes && text.decode(bytes) } }),
