@@ -521,7 +521,7 @@ PAGE_ROOM := -DHIMC_DRUM_RING=1024 -DHIMC_EARS_LINE=8192 -DHIMC_ROOM_LINE=3424 -
 $(BUILD)/page/engine.wasm: $(TABLE) FORCE
 	$(Q)tools/build/page.sh $(BUILD)/page/parts
 	+$(Q)$(MAKE) page-here BUILD=$(BUILD)/page CC="clang-16 --target=wasm32-wasi" CXX="clang++-16 --target=wasm32-wasi -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1" \
-	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -DHIMC_NO_SNDFILE $(PAGE_ROOM) -D_WASI_EMULATED_GETPID -isystem $(abspath $(BUILD))/page/parts/include" ARCH= SANITIZE= CFLAGS="-msimd128 -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
+	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -DHIMC_NO_SNDFILE $(PAGE_ROOM) -D_WASI_EMULATED_GETPID -isystem $(abspath $(BUILD))/page/parts/include" ARCH= SANITIZE= CFLAGS="-msimd128 -mbulk-memory -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
 	    LDFLAGS="-O0 -Wl,-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table
 PAGE_LEFT_OUT := $(addprefix $(BUILD)/lib/,drum/loader.o system/thread.o system/udp.o)
 PAGE_TOOLS := cli edit_journal edit_player edit_session edit_text live scene scene_record

@@ -605,7 +605,8 @@ const shownDrums = () => [...drums.values()].filter(d => d.group.visible);
 
 // a page of `himc share` brings its scene, that of `make page` a performer; any other asks the program that
 // serves it
-if (window.himcFiles)
+if (window.himcFiles) {
+    if (stage.software) (stage.simplify(4), stage.resize(view)); // the performer needs the processor, too
     studio = new Studio(window.himcFiles, sound, liveSound, {
         frame: live,
         fresh: () => (forget(), panel.forget()),
@@ -617,7 +618,8 @@ if (window.himcFiles)
         ray: e => view.ray(e),
         scene: async file => play(new Uint8Array(await file.arrayBuffer()), file.name),
     });
-else if (window.himcScene) {
+    if (stage.step) studio.tell("no graphics card: drawn with fewer points, one light and no shadows");
+} else if (window.himcScene) {
     document.body.classList.add("shared");
     play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
 } else {
