@@ -24,7 +24,6 @@
 #define NAME_PART 100               // of a name in the folder for states (bytes); chosen
 #define SCORES 100                  // kept beside a journal; chosen
 
-
 uint64_t edit_hash(uint64_t sum, const void *bytes, size_t size)
 {
     const unsigned char *b = bytes;
@@ -55,7 +54,8 @@ static bool choose_path(edit_journal *j, const char *source, const char *name, b
 
 static bool open_own(const char *path, bool fresh, FILE **stream, himc_error *error)
 {
-    *stream = fopen(path, fresh ? "w+bx" : "r+b");
+    int file = himc_system_open(path, O_RDWR | (fresh ? O_CREAT | O_EXCL : 0));
+    *stream = file < 0 ? NULL : fdopen(file, "r+b");
     return *stream || errno == (fresh ? EEXIST : ENOENT) ||
            himc_error_set(error, "%.300s: %s", path, strerror(errno));
 }

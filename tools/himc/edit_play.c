@@ -166,11 +166,10 @@ static void close_ends(const edit_play *play, bool own)
 static void play_from_start(const edit_play *of, int turn, const char *text, const char *record)
 {
     himc_error error;
-    player p = {.of = of,
-                .turn = turn,
-                .piece = {.name = of->name,
-                          .options = of->options,
-                          .to = fdopen(of->frames[1], "wb")}};
+    player p = {
+        .of = of,
+        .turn = turn,
+        .piece = {.name = of->name, .options = of->options, .to = fdopen(of->frames[1], "wb")}};
     for (const edit_play *play = all; play; play = play->next)
         close_ends(play, play == of);
     signal(SIGCHLD, SIG_IGN);

@@ -319,7 +319,8 @@ static void restore(edit_session *s, const char *text)
     himc_error error = {""};
     // a take that was sent stands under another path each time
     bool nameless = s->sent && cli_is_take(s->source);
-    if (!edit_journal_open(&s->journal, s->source, s->name, s->sent, nameless ? "" : text, &error)) {
+    if (!edit_journal_open(&s->journal, s->source, s->name, s->sent, nameless ? "" : text,
+                           &error)) {
         unkept(s, &error);
         return;
     }

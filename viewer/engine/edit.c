@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { WASM_PAGE = 65536, PART = 65536 }; // (bytes)
-enum { SPARE = 4 << 20 };                 // (bytes) chosen: more than is added while a piece is played
+enum { SPARE = 4 << 20 }; // (bytes) chosen: more than is added while a piece is played
 
 struct edit_play {
     bool made;
