@@ -514,14 +514,18 @@ $(BUILD)/himc.html: $(PAGE_MAKER) $(BUILD)/page/engine.wasm $(PAGE_PIECES)
 	$(call say,make)
 	$(Q)$< $@ $(filter-out $<,$^)
 
+# a page plays at 48 kHz in short blocks, and has no deadline: rings are as short as that needs, heads are made when
+# their changes come. The samples are the same; what is copied for an edit is a third.
+PAGE_ROOM := -DHIMC_DRUM_RING=1024 -DHIMC_EARS_LINE=8192 -DHIMC_ROOM_LINE=3424 -DMOST_SPARES=1
 # clang-16 runs Debian's wasm-opt, if that is installed, without SIMD, and fails: hence -O0
 $(BUILD)/page/engine.wasm: $(TABLE) FORCE
 	$(Q)tools/build/page.sh $(BUILD)/page/parts
 	+$(Q)$(MAKE) page-here BUILD=$(BUILD)/page CC="clang-16 --target=wasm32-wasi" CXX="clang++-16 --target=wasm32-wasi -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1" \
-	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -D_WASI_EMULATED_GETPID -isystem $(abspath $(BUILD))/page/parts/include" ARCH= SANITIZE= CFLAGS="-msimd128 -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
+	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -DHIMC_NO_SNDFILE $(PAGE_ROOM) -D_WASI_EMULATED_GETPID -isystem $(abspath $(BUILD))/page/parts/include" ARCH= SANITIZE= CFLAGS="-msimd128 -mbulk-memory -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
 	    LDFLAGS="-O0 -Wl,-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table
 PAGE_LEFT_OUT := $(addprefix $(BUILD)/lib/,drum/loader.o system/thread.o system/udp.o)
-page-here: $(BUILD)/viewer/engine/engine.o $(BUILD)/tools/himc/live.o $(BUILD)/tools/himc/cli.o $(BUILD)/viewer/scene.o $(BUILD)/viewer/scene_encode.o $(filter-out $(PAGE_LEFT_OUT),$(LIB_O))
+PAGE_TOOLS := cli edit_journal edit_player edit_session edit_text live scene scene_record
+page-here: $(patsubst %,$(BUILD)/viewer/%.o,engine/engine engine/edit scene scene_encode) $(PAGE_TOOLS:%=$(BUILD)/tools/himc/%.o) $(filter-out $(PAGE_LEFT_OUT),$(LIB_O))
 	$(Q)$(CXX) $(LDFLAGS) $^ $(BUILD)/parts/parts.o -lwasi-emulated-getpid -o $(BUILD)/engine.new
 	$(Q)cmp -s $(BUILD)/engine.new $(BUILD)/engine.wasm || cp $(BUILD)/engine.new $(BUILD)/engine.wasm
 

@@ -42,6 +42,8 @@
     SCRIPT(FILE, worklet)                                                  \
     SCRIPT(FILE, worker)                                                   \
     SCRIPT(FILE, studio)                                                   \
+    SCRIPT(FILE, channel)                                                  \
+    SCRIPT(FILE, workshop)                                                 \
     SCRIPT(FILE, spectrum)                                                 \
     SCRIPT(FILE, piece)                                                    \
     SCRIPT(FILE, edit)                                                     \

@@ -62,7 +62,9 @@ HIMC_RT bool himc_drum_strike_at(himc_drum *drum, int delay, double x, double y,
 HIMC_RT void himc_drum_advance(himc_drum *drum, int n, const double *force, const double *x,
                                const double *y);
 
+#ifndef HIMC_DRUM_RING
 #define HIMC_DRUM_RING 32768 ///< samples that can be read back
+#endif
 
 /// Has the drum heard by two ears at the usual place while no performer has it, as the performer's
 /// `listener usual` does; at first it is heard by its pickups. False with the reason: no memory.

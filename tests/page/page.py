@@ -40,6 +40,18 @@ return new Promise(done => {
     worker.postMessage({ wasm: files[0][1], pieces });
 });
 """
+EDITS = """
+const [name, code, edits] = arguments;
+const source = [himcScripts.get("worker.js"), "onmessage = null;", himcScripts.get("workshop.js"), code].join("\\n"),
+    files = [...himcFiles],
+    worker = new Worker(URL.createObjectURL(new Blob([`${source}
+onmessage = ({ data: [wasm, name, bytes, edits] }) => postMessage(editsOf(new WebAssembly.Module(wasm), name, bytes, edits, 7));`])));
+return new Promise(done => {
+    worker.onmessage = e => done(e.data);
+    worker.onerror = e => done({ failed: e.message });
+    worker.postMessage([files[0][1], name, files.find(([n]) => n === name)[1], edits]);
+});
+"""
 DROP = """
 const all = new DataTransfer();
 for (const [name, letters] of arguments[0])
@@ -169,6 +181,29 @@ def test_a_score_that_is_dropped_plays():
     assert browser.run("return [...document.getElementById('p-drum').options].map(o => o.value)") == ["low", "high"]
 
 
+def test_what_plays_goes_on_while_another_piece_loads():
+    browser.run("viewer.studio.choose('improvisation.txt')")
+    strikes(3)
+    seen = browser.run(
+        """
+        const { studio } = viewer, seen = [];
+        studio.choose("tide.txt");
+        return new Promise(done => {
+            const look = setInterval(() => {
+                const { playing, played } = viewer.liveSound.nodes.get("page").told;
+                if (studio.coming) return seen.push([studio.name, playing, played]);
+                clearInterval(look);
+                done(seen);
+            }, 10);
+        });
+        """
+    )
+    assert all(name == "improvisation.txt" for name, _, _ in seen), seen
+    assert seen[-1][2] > seen[0][2], seen
+    assert browser.wait("return viewer.studio.name === 'tide.txt' && [...viewer.drums.values()].some(d => d.name === 'low')")
+    return f"{(seen[-1][2] - seen[0][2]) / 48000:.2f} s of sound meanwhile"
+
+
 def test_a_midi_file_that_is_dropped_plays():
     with open("patches/pieces/zarathustra.mid", "rb") as file:
         drop(("zarathustra.mid", file.read()))
@@ -295,6 +330,100 @@ def test_a_page_around_it_gives_commands_and_hears_the_answers():
     assert browser.wait("return said.some(one => one.text.startsWith('one.txt'))", 60)
     browser.run("tell('solo tune nonsense')")
     assert browser.wait("return said.some(one => one.wrong && one.text.includes('tune'))", 60)
+
+
+def test_a_piece_that_was_edited_sounds_as_its_text_from_the_start():
+    """Bit by bit; and with all changes taken back as at first."""
+    open_page()
+    with open("tests/page/edits.js") as file:
+        code = file.read()
+    said = []
+    for name, edits in [("improvisation.txt", 200), ("tide.txt", 40)] if LONG else [("improvisation.txt", 8)]:
+        got = browser.run(EDITS, name, code, edits)
+        assert "failed" not in got, got
+        assert all(e["text"].startswith("nothing to ") for e in got["events"]), got["events"]
+        assert got["first"] != got["edited"] and got["edited"] == got["fresh"] and got["reverted"] == got["first"], got
+        took = got["took"]
+        said.append(f"{name} {len(took)} edits, {took[len(took) // 2]} ms, {got['size']}")
+    return ", ".join(said)
+
+
+# opens the editor, and chooses a stroke
+CHOSEN = """
+const { piece } = viewer.editor;
+viewer.playback.play(false);
+viewer.editor.choose(piece.scene.strikes.find(s => s.beat === arguments[0]));
+return viewer.editor.chosen.statement.words;
+"""
+
+
+def open_editor():
+    if not browser.run("return viewer.studio.edits"):
+        click("p-edit")
+    assert browser.wait("return viewer.editor?.piece.sound?.arrived > 5"), browser.run("return heard.told")
+
+
+def change(beat, dynamic):
+    """Changes a stroke, and waits until it is heard."""
+    browser.run(CHOSEN, beat)
+    browser.run("viewer.editor.heard.length = 0; viewer.editor.commit({ dynamic: arguments[0] })", dynamic)
+    assert browser.wait("return viewer.editor.heard.length"), browser.run("return document.getElementById('note').textContent")
+    return browser.run("return viewer.editor.chosen.statement.words")
+
+
+def test_the_editor_in_the_page_changes_a_stroke_that_the_score_then_has():
+    browser.run("localStorage.clear()")
+    open_page()
+    before = browser.run("return document.getElementById('p-text').value")
+    open_editor()
+    words = change(4, 0.91)
+    assert " 0.91" in words, words
+    click("e-undo")
+    assert browser.wait("return viewer.editor.chosen.statement.words.includes(' mp')"), browser.run("return viewer.editor.chosen.statement.words")
+    click("e-redo")
+    assert browser.wait("return viewer.editor.chosen.statement.words.includes(' 0.91')")
+    browser.run("return viewer.actions.live()")
+    assert browser.wait("return document.getElementById('p-text').value.includes(' 0.91')")
+    after = browser.run("return document.getElementById('p-text').value")
+    changed = [pair for pair in zip(before.split(";"), after.split(";"), strict=True) if pair[0] != pair[1]]
+    assert len(changed) == 1 and " ".join(changed[0][1].split()) == words, changed
+    open_editor()  # and undo still goes back from there
+    click("e-undo")
+    assert browser.wait("return viewer.editor.piece.text.undo === 0")
+
+
+def test_reload_second_tab_and_crash_lose_no_edit():
+    browser.run("localStorage.clear()")
+    open_page()
+    open_editor()
+    words = change(4, 0.83)
+    open_page()
+    open_editor()
+    assert browser.run(CHOSEN, 4) == words
+    # another tab takes over, with all that was changed
+    first = browser.call("GET", browser.session + "/window")
+    second = browser.call("POST", browser.session + "/window/new", {"type": "tab"})["handle"]
+    browser.call("POST", browser.session + "/window", {"handle": second})
+    open_page()
+    open_editor()
+    assert browser.run(CHOSEN, 4) == words
+    other = change(6, 0.37)
+    browser.call("POST", browser.session + "/window", {"handle": first})
+    assert browser.wait("return document.getElementById('e-said').textContent.startsWith('Another page edits')")
+    click("e-here")
+    assert browser.wait("return viewer.editor.piece.text?.undo === 2 && viewer.editor.piece.sound?.arrived > 5")
+    assert [browser.run(CHOSEN, beat) for beat in (4, 6)] == [words, other]
+    # the Worker ends while a change is on its way
+    browser.run(CHOSEN, 2)
+    browser.run("viewer.editor.commit({ dynamic: 0.29 }); setTimeout(() => viewer.editor.piece.socket.end(0), arguments[0])", 30)
+    assert browser.wait("return document.getElementById('e-said').textContent.startsWith('The editor has stopped')")
+    click("e-here")
+    assert browser.wait("return viewer.editor.piece.text?.undo >= 2 && viewer.editor.piece.sound?.arrived > 5")
+    assert [browser.run(CHOSEN, beat) for beat in (4, 6)] == [words, other]
+    browser.call("POST", browser.session + "/window", {"handle": second})
+    browser.call("DELETE", browser.session + "/window")
+    browser.call("POST", browser.session + "/window", {"handle": first})
+    browser.run("localStorage.clear()")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the page's module links with, compiled to WebAssembly from Debian's sources into DIR: expat and zlib's inflate.
+# What the page's module links with, compiled to WebAssembly from Debian's sources into DIR: expat and zlib.
 #   tools/build/page.sh DIR
 set -eu
 tools=$(cd "${0%/*}" && pwd)
@@ -26,7 +26,7 @@ for file in xmlparse xmltok xmlrole; do
         "$(ls expat/expat/lib/$file.c expat/lib/$file.c 2>/dev/null)" -o "$file.o"
 done
 cp "$(ls -d expat/expat/lib expat/lib 2>/dev/null | head -n 1)"/expat*.h zlib/zlib.h zlib/zconf.h include
-for file in adler32 crc32 inflate inffast inftrees zutil; do
+for file in adler32 compress crc32 deflate inflate inffast inftrees trees zutil; do
     compile -Izlib "zlib/$file.c" -o "$file.o"
 done
-wasm-ld-16 -r xml*.o adler32.o crc32.o inflate.o inffast.o inftrees.o zutil.o -o parts.o
+wasm-ld-16 -r xml*.o adler32.o compress.o crc32.o deflate.o inflate.o inffast.o inftrees.o trees.o zutil.o -o parts.o

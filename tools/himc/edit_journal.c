@@ -23,7 +23,6 @@
 #define LARGEST ((size_t)128 << 20) // of a journal (bytes); chosen: twice a score
 #define NAME_PART 100               // of a name in the folder for states (bytes); chosen
 #define SCORES 100                  // kept beside a journal; chosen
-enum { OURS_ONLY = 0700 };
 
 uint64_t edit_hash(uint64_t sum, const void *bytes, size_t size)
 {
@@ -42,6 +41,33 @@ static bool hash_file(const char *path, uint64_t *sum, himc_error *error)
         *sum = edit_hash(*sum, bytes, got);
     return file && fclose(file) == 0;
 }
+
+#ifdef __wasi__ // a page keeps its files itself (viewer/page/workshop.js), and says who edits
+
+static bool choose_path(edit_journal *j, const char *source, const char *name, bool sent,
+                        himc_error *error)
+{
+    (void)source, (void)sent, (void)error;
+    snprintf(j->path, sizeof j->path, "%.*s-%016" PRIx64 ".himc-edit", NAME_PART, name, j->hash);
+    return true;
+}
+
+static bool open_own(const char *path, bool fresh, FILE **stream, himc_error *error)
+{
+    int file = himc_system_open(path, O_RDWR | (fresh ? O_CREAT | O_EXCL : 0));
+    *stream = file < 0 ? NULL : fdopen(file, "r+b");
+    return *stream || errno == (fresh ? EEXIST : ENOENT) ||
+           himc_error_set(error, "%.300s: %s", path, strerror(errno));
+}
+
+static bool hold(edit_journal *j, bool fresh, himc_error *error)
+{
+    return open_own(j->path, fresh, &j->stream, error);
+}
+
+#else
+
+enum { OURS_ONLY = 0700 };
 
 // makes the folder and those it is in; true if it is there
 static bool make_folders(char *path)
@@ -136,6 +162,8 @@ static bool hold(edit_journal *j, bool fresh, himc_error *error)
     j->stream = NULL;
     return himc_error_set(error, "another program edits it");
 }
+
+#endif
 
 // true if a journal of this text has been cut short before its first change
 static bool has_begun(const edit_journal *j, const char *bytes, size_t size)

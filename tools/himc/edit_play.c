@@ -12,10 +12,8 @@
 #define _GNU_SOURCE // MAP_ANONYMOUS
 #include "edit_play.h"
 #include "cli.h"
-#include "edit_journal.h"
-#include "performance/research.h"
+#include "edit_player.h"
 #include "plan/score.h"
-#include "scene_record.h"
 
 #include <errno.h>
 #include <math.h>
@@ -29,10 +27,6 @@
 #include <unistd.h>
 
 enum {
-    RATE = 48000, // (Hz)
-    EARS = 2,
-    BLOCK = 64,
-    CELL = RATE / 5,  // CLI_CELL, where a piece may end
     COPIES = 100,     // that wait
     PATIENCE = 30000, // for a frame of a process that lives (ms); chosen: a loaded machine
     LARGEST = 1 << 26 // of a frame (bytes)
@@ -64,68 +58,18 @@ static edit_play *all;
 /// A process that plays.
 typedef struct player {
     const edit_play *of;
-    himc_performance *performance;
-    scene_record *record;
-    FILE *to;
+    edit_player piece;
     int turn, copies;
-    cli_ending ending;
 } player;
 
 // --- in the process that plays
 
-static void put_frame(FILE *to, const char *kind, const void *bytes, uint32_t size)
-{
-    fwrite(kind, 4, 1, to);
-    fwrite(&size, sizeof size, 1, to);
-    fwrite(bytes, 1, size, to);
-}
-
-static void put_text(FILE *to, const char *kind, const char *text)
-{
-    put_frame(to, kind, text, (uint32_t)strlen(text));
-}
-
 // the last frame of this process
 static void leave(player *p, const char *kind, const char *text)
 {
-    put_text(p->to, kind, text);
-    fflush(p->to);
+    edit_player_put(&p->piece, kind, text, strlen(text));
+    fflush(p->piece.to);
     _exit(0);
-}
-
-static void take_events(player *p)
-{
-    himc_event event;
-    while (himc_performance_event(p->performance, &event)) {
-        scene_record_event(p->record, &event);
-        p->ending.done |= event.kind == HIMC_EVENT_DONE;
-    }
-}
-
-// the time of a cell, and all that happens in it, as frames
-static void play_cell(player *p)
-{
-    struct {
-        uint32_t first, sum[2];
-        int16_t sample[EARS * CELL];
-    } sound = {.first = (uint32_t)p->ending.samples};
-    uint64_t sum = UINT64_C(0xcbf29ce484222325);
-    for (int at = 0; at < CELL; at += BLOCK) {
-        float out[EARS * BLOCK];
-        himc_performance_process(p->performance, BLOCK, NULL);
-        p->ending.cell_peak =
-            fmax(p->ending.cell_peak, cli_mix(p->performance, p->ending.samples, BLOCK, EARS, out));
-        p->ending.samples += BLOCK;
-        take_events(p);
-        scene_record_block(p->record, NULL, BLOCK);
-        sum = edit_hash(sum, out, sizeof out);
-        for (int i = 0; i < EARS * BLOCK; i++)
-            sound.sample[EARS * at + i] = (int16_t)lrint(32767 * fmax(-1, fmin(1, out[i])));
-    }
-    sound.sum[0] = (uint32_t)sum, sound.sum[1] = (uint32_t)(sum >> 32);
-    scene_record_flush(p->record);
-    put_frame(p->to, "pcm ", &sound, sizeof sound);
-    fflush(p->to);
 }
 
 static bool read_all(int from, void *to, size_t size)
@@ -149,36 +93,13 @@ typedef struct order {
     uint32_t size; // of the text, with its final 0
 } order;
 
-static bool load(player *p, const char *text, const char *record, himc_error *error)
-{
-    himc_performance_config config = himc_performance_default();
-    himc_score *score = himc_score_parse(text, p->of->name, NULL, error);
-    bool drums = score && cli_first_drum(score);
-    himc_score_free(score);
-    p->performance = score ? himc_performance_new(&config, error) : NULL;
-    if (!p->performance)
-        return false;
-    himc_performance_make_drums(p->performance, true);
-    himc_performance_take_options(p->performance, p->of->options);
-    return (drums || cli_add_drum(p->performance, RATE, error)) &&
-           cli_tell(p->performance, CLI_LISTENER, NULL, error) &&
-           himc_performance_load_text(p->performance, text, p->of->name, error) &&
-           cli_tell(p->performance, "loop 0", NULL, error) &&
-           (!record || cli_tell(p->performance, "record", record, error));
-}
-
 // plays on with another text, or says why not
 static void resume(player *p, const char *text)
 {
     himc_error error;
-    double time = (double)p->ending.samples / RATE;
-    player fresh = {.of = p->of};
-    if (!load(&fresh, text, NULL, &error))
-        leave(p, "fail", error.text);
-    if (!himc_performance_exchange_strokes(p->performance, fresh.performance))
-        leave(p, "late", "");
-    himc_performance_free(fresh.performance);
-    put_frame(p->to, "from", &time, sizeof time);
+    bool late;
+    if (!edit_player_exchange(&p->piece, text, &late, &error))
+        leave(p, late ? "late" : "fail", late ? "" : error.text);
 }
 
 // a copy of this process waits here for ever; returns in its children, with new orders
@@ -208,26 +129,23 @@ static void leave_copy(player *p)
     if (child > 0)
         wait_as_copy(p);
     else if (child == 0)
-        put_frame(p->to, "copy", &me, sizeof me);
+        edit_player_put(&p->piece, "copy", &me, sizeof me);
     p->copies++;
 }
 
 static void play_on(player *p)
 {
-    while (!cli_is_over(&p->ending, RATE)) {
+    while (!edit_player_is_over(&p->piece)) {
         if (atomic_load(p->of->turn) != p->turn)
             leave(p, "bye!", "");
         double next = p->of->apart * p->copies; // the first one waits before `play`
-        if (p->copies < COPIES && (double)p->ending.samples >= next * RATE)
+        if (p->copies < COPIES && (double)p->piece.ending.samples >= next * EDIT_RATE)
             leave_copy(p);
-        play_cell(p);
+        edit_player_cell(&p->piece);
     }
-    scene_record_end(p->record, NULL);
-    fflush(p->to); // which ends this process if nobody wants the recording any more
     himc_error error;
-    if (!himc_performance_end_recording(p->performance, &error))
+    if (!edit_player_end(&p->piece, &error))
         cli_say("himc edit: %s\n", error.text);
-    himc_performance_free(p->performance);
     leave(p, "over", "");
 }
 
@@ -248,33 +166,22 @@ static void close_ends(const edit_play *play, bool own)
 static void play_from_start(const edit_play *of, int turn, const char *text, const char *record)
 {
     himc_error error;
-    double start = 0;
-    player p = {.of = of, .turn = turn, .to = fdopen(of->frames[1], "wb")};
+    player p = {
+        .of = of,
+        .turn = turn,
+        .piece = {.name = of->name, .options = of->options, .to = fdopen(of->frames[1], "wb")}};
     for (const edit_play *play = all; play; play = play->next)
         close_ends(play, play == of);
     signal(SIGCHLD, SIG_IGN);
     signal(SIGPIPE, SIG_DFL); // nobody listens any more
-    if (!p.to)
+    if (!p.piece.to)
         _exit(1);
-    if (!load(&p, text, record, &error))
+    if (!edit_player_begin(&p.piece, text, record, &error))
         leave(&p, "fail", error.text);
-    put_frame(p.to, "from", &start, sizeof start);
-    scene_record_config config = {.performance = p.performance,
-                                  .stream = p.to,
-                                  .source = of->name,
-                                  .name = "himc",
-                                  .rate = RATE,
-                                  .bare = true};
-    p.record = scene_record_begin(&config, &error);
-    if (!p.record)
-        leave(&p, "fail", error.text);
-    himc_performance_on_tick(p.performance, scene_record_tick, p.record);
-    himc_performance_on_motion(p.performance, scene_record_row, p.record);
-    scene_record_flush(p.record);
-    fflush(p.to);
+    fflush(p.piece.to);
     if (!record)
         leave_copy(&p);
-    if (!cli_tell(p.performance, "play", NULL, &error))
+    if (!cli_tell(p.piece.performance, "play", NULL, &error))
         leave(&p, "fail", error.text);
     play_on(&p);
 }

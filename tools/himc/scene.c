@@ -10,12 +10,16 @@
 
 #include <errno.h>
 #include <math.h>
-#include <sndfile.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
+#ifdef HIMC_NO_SNDFILE // in a page, which plays the sound itself
+typedef void SNDFILE;
+#else
+#include <sndfile.h>
+#endif
 
 enum {
     ROWS = 1024,     // in a chunk; chosen: 4 s, long against what a chunk costs beside its rows
@@ -272,6 +276,25 @@ void scene_head(scene_writer *s, int drum, double time, const scene_ring *ring)
 
 // --- sound
 
+#ifdef HIMC_NO_SNDFILE
+
+static bool open_sound(const scene_writer *s, himc_error *error)
+{
+    return himc_error_set(error, "the scene's sound at %d Hz: no library for it", s->config.rate);
+}
+
+static void sf_close(SNDFILE *file)
+{
+    (void)file;
+}
+
+void scene_sound(scene_writer *s, const float *frames, int n)
+{
+    (void)s, (void)frames, (void)n;
+}
+
+#else
+
 static sf_count_t sound_size(void *user)
 {
     return (sf_count_t)((bytes *)user)->size;
@@ -335,6 +358,8 @@ void scene_sound(scene_writer *s, const float *frames, int n)
     if (sf_writef_float(s->file, frames, n) != n)
         s->sound.failed = true;
 }
+
+#endif
 
 // --- the whole
 

@@ -167,6 +167,11 @@ const char *page_error(void)
     return e.error.text;
 }
 
+himc_error *page_reason(void)
+{
+    return &e.error;
+}
+
 bool page_load(double rate)
 {
     himc_performance *p = cli_load(e.input[0] ? e.input : NULL, rate, CLI_LISTENER, &e.error);

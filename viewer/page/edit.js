@@ -27,6 +27,8 @@ const GRAB = [16, 28], // a press this near takes a handle, by mouse, by finger 
     AGAIN = 1000, // before the channel is opened again (ms)
     PUSHED = "#9cf29c", // the path of a segment that is pushed
     FAMILY = ["legato", "tenuto", "accent", "vertical-accent", "staccato"];
+// the same of an editor inside the page
+const STOPPED = "The editor has stopped. Your changes are kept: it brings them again.";
 const round = (v, digits = 4) => +v.toFixed(digits);
 const ENDED = {
     taken: "Another page edits this piece now. It has all that was changed here.",
@@ -115,16 +117,29 @@ export class Editor {
     // a line that stays until another takes its place; `ended` if nothing can be changed any more
     state(text, ended = "") {
         $("e-said").textContent = text;
-        ($("e-state").hidden = !text), ($("e-here").hidden = ended !== "taken");
+        ($("e-state").hidden = !text), ($("e-here").hidden = ended !== "taken" && !(ended && this.inside));
         for (const part of $("edit").children) part.inert = !!ended && part.id !== "e-state";
         if (!this.on.playback() && ended) this.on.note(text, true);
     }
 
     ended(why) {
         if (why === "refused" && !this.reachable) why = "lost";
-        ((this.waiting = null), (this.later = []), (this.ends = why), this.state(ENDED[why], why));
+        ((this.waiting = null), (this.later = []), (this.ends = why));
+        this.state(this.inside && why === "lost" ? STOPPED : ENDED[why], why);
         this.choose(null);
         if (why === "lost") setTimeout(() => this.reachable && this.again(), AGAIN);
+    }
+
+    // the performer is in this page
+    get inside() {
+        return typeof this.piece.key === "function";
+    }
+
+    // what is edited is shown no more; resolves to its text, null if that is not known
+    async leave() {
+        document.body.classList.remove("editing", "take", "chosen");
+        (this.choose(null), this.state(""));
+        return this.piece.socket.leave();
     }
 
     // whether a change can be made now; else the page says why not
@@ -150,8 +165,9 @@ export class Editor {
         else if (this.ends === "lost") this.again();
     }
 
-    // edits again, from where the page is
-    again() {
+    // edits again, from where the page is; or another piece
+    again(key = this.piece.key) {
+        this.piece.key = key;
         if (this.piece.socket.readyState >= WebSocket.CLOSING) this.piece.open();
     }
 

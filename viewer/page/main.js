@@ -121,10 +121,12 @@ const actions = {
     mute: () => (sound.setVolume(sound.volume ? 0 : 1), sound.wake() && playback?.resound()),
     live() {
         if (!playback || !(stream || studio)) return;
+        const left = studio?.edits && editor.leave().then(score => studio.edited(score));
         playback = null;
         close();
         setLift(0);
         panel.open(null);
+        return left;
     },
 };
 const panel = new Panel(actions);
@@ -453,7 +455,7 @@ async function drop(files) {
         capture = files.find(file => /\.(bvh|c3d|trc|txt|mid)$/i.test(file.name)),
         bytes = async file => new Uint8Array(await file.arrayBuffer());
     if (studio && !/\.himc$/i.test(first.name)) {
-        if (playback) actions.live();
+        if (playback) await actions.live();
         return files.forEach(file => studio.open(file));
     }
     if (capture && !editor)
@@ -603,17 +605,21 @@ const shownDrums = () => [...drums.values()].filter(d => d.group.visible);
 
 // a page of `himc share` brings its scene, that of `make page` a performer; any other asks the program that
 // serves it
-if (window.himcFiles)
+if (window.himcFiles) {
+    if (stage.software) (stage.simplify(4), stage.resize(view)); // the performer needs the processor, too
     studio = new Studio(window.himcFiles, sound, liveSound, {
         frame: live,
         fresh: () => (forget(), panel.forget()),
         drums: shownDrums,
         hold: yes => (held = yes),
+        edit: connect => (editor ? editor.again(connect) : edit(connect)),
+        plays: () => !!playback,
         wide: () => !phone.matches,
         ray: e => view.ray(e),
         scene: async file => play(new Uint8Array(await file.arrayBuffer()), file.name),
     });
-else if (window.himcScene) {
+    if (stage.step) studio.tell("no graphics card: drawn with fewer points, one light and no shadows");
+} else if (window.himcScene) {
     document.body.classList.add("shared");
     play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));
 } else {

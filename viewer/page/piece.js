@@ -1,6 +1,6 @@
-// A piece under edit: the channel to `himc edit` behind himc-viewer, the scene that grows by what
-// comes over it, and its sound, which plays while more of it is computed. docs/viewer.md has the
-// messages. Times in seconds.
+// A piece under edit: the channel to `himc edit` behind himc-viewer, or to the same inside this page
+// (channel.js), the scene that grows by what comes over it, and its sound, which plays while more of it
+// is computed. docs/viewer.md has the messages. Times in seconds.
 import { Scene, inflate } from "./scene.js";
 
 const EARS = 2,
@@ -115,6 +115,7 @@ class PieceSound {
 // `on` is told: begun(piece), cut(piece, time), grown(piece), over(piece), text(event), trouble(text, the
 // line that it answers, if any), restored(line), unkept(line), saved(name, bytes), ended(why), which is "taken", "refused" or "lost"
 export class Piece {
+    // `key` is that of himc-viewer's channel, or opens another one
     constructor(key, sound, on) {
         ((this.on = on), (this.device = sound), (this.rest = new Uint8Array()));
         ((this.scene = null), (this.sound = null), (this.text = null));
@@ -124,7 +125,8 @@ export class Piece {
 
     // asks to edit; whichever page does so last edits
     open() {
-        const socket = (this.socket = new WebSocket(`ws://${location.host}/edit/${this.key}`, "edit"));
+        const { key } = this,
+            socket = (this.socket = typeof key === "function" ? key() : new WebSocket(`ws://${location.host}/edit/${key}`, "edit"));
         let opened = false;
         this.rest = new Uint8Array();
         socket.binaryType = "arraybuffer";

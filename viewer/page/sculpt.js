@@ -3,6 +3,9 @@
 // gradient of the distance, skin weights follow the distance to the solids of each bone.
 import * as THREE from "./three.js";
 
+const BLOCK = 4, // cells
+    TRUST = 0.5; // a distance is at least so much of itself; chosen: parts change the distances of solids
+
 // distance to a cone with round ends (Quilez, "Round cone", 2018)
 export function cone(bone, a, ra, b, rb) {
     const ba = b.map((v, i) => v - a[i]);
@@ -106,15 +109,18 @@ function mesh(distance, box, h) {
     const d = new Float32Array(nx * ny * nz),
         cell = new Int32Array(nx * ny * nz).fill(-1);
     const at = (i, j, k) => (k * ny + j) * nx + i;
-    for (let k = 0; k < nz; k++)
-        for (let j = 0; j < ny; j++)
-            for (let i = 0; i < nx;) {
-                const v = distance(box.min.x + i * h, box.min.y + j * h, box.min.z + k * h);
-                d[at(i, j, k)] = v;
-                // far from the surface the next points are far from it too: skip them
-                const skip = Math.max(1, Math.floor(((Math.abs(v) - 0.03) / h) * 0.5));
-                for (let s = 1; s < skip && i + s < nx; s++) d[at(i + s, j, k)] = v;
-                i += skip;
+    // a block far from the surface is wholly on one side of it
+    const half = (BLOCK - 1) / 2,
+        far = (half * Math.sqrt(3) * h) / TRUST;
+    for (let k = 0; k < nz; k += BLOCK)
+        for (let j = 0; j < ny; j += BLOCK)
+            for (let i = 0; i < nx; i += BLOCK) {
+                const v = distance(box.min.x + (i + half) * h, box.min.y + (j + half) * h, box.min.z + (k + half) * h),
+                    beyond = Math.abs(v) > far;
+                for (let c = k; c < Math.min(nz, k + BLOCK); c++)
+                    for (let b = j; b < Math.min(ny, j + BLOCK); b++)
+                        for (let a = i; a < Math.min(nx, i + BLOCK); a++)
+                            d[at(a, b, c)] = beyond ? v : distance(box.min.x + a * h, box.min.y + b * h, box.min.z + c * h);
             }
     const corners = [
         [0, 0, 0],
@@ -141,12 +147,15 @@ function mesh(distance, box, h) {
         [3, 7],
     ];
     const position = [],
-        index = [];
+        index = [],
+        offsets = corners.map(c => at(...c));
     for (let k = 0; k < nz - 1; k++)
         for (let j = 0; j < ny - 1; j++)
             for (let i = 0; i < nx - 1; i++) {
-                const v = corners.map(c => d[at(i + c[0], j + c[1], k + c[2])]);
-                if (v.every(u => u > 0) || v.every(u => u <= 0)) continue;
+                const from = at(i, j, k),
+                    outside = d[from] > 0;
+                if (offsets.every(o => d[from + o] > 0 === outside)) continue;
+                const v = offsets.map(o => d[from + o]);
                 let count = 0,
                     x = 0,
                     y = 0,

@@ -4,7 +4,8 @@ import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
 
 const LATE_FRAME = 28, // (ms); chosen: below 36 frames/s motion is visibly uneven
-    LATE_FRAMES = 40; // before a step; chosen: about a second, so that one pause changes nothing
+    LATE_FRAMES = 40, // before a step; chosen: about a second, so that one pause changes nothing
+    LATEST = 10; // frames that a very late one counts for
 
 // takes an object away for ever, with what it holds of the graphics card
 export function discard(object) {
@@ -230,10 +231,17 @@ export class Stage {
         view.resize();
     }
 
+    // true where no graphics card draws
+    get software() {
+        const gl = this.renderer.getContext(),
+            info = gl.getExtension("WEBGL_debug_renderer_info");
+        return !!info && /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+    }
+
     // if the frame rate stays low, lowers the quality by one step; `frame` is the last frame's time
     // (ms)
     adapt(frame, view) {
-        this.late = frame > LATE_FRAME ? (this.late || 0) + 1 : Math.max(0, (this.late || 0) - 2);
+        this.late = frame > LATE_FRAME ? (this.late || 0) + Math.min(LATEST, Math.floor(frame / LATE_FRAME)) : Math.max(0, (this.late || 0) - 2);
         if (this.late < LATE_FRAMES || this.step === 4) return;
         this.late = 0;
         this.simplify((this.step || 0) + 1);

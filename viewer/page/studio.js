@@ -1,7 +1,8 @@
-// The performer inside the page: starts the Worker that computes it (worker.js), hands the Worker a
-// port to the audio thread, shows what it tells as the stream of any live performer, and turns what
+// The performer inside the page: starts the Worker that computes it (worker.js), and another one for each piece,
+// which takes over once it has loaded, so that nothing stands still meanwhile; hands the Worker a port to the audio thread, shows what it tells as the stream of any live performer, and turns what
 // the user does into the commands that Pure Data has.
 import * as THREE from "./three.js";
+import { Channel } from "./channel.js";
 import { readFrame } from "./stream.js";
 
 const $ = id => document.getElementById(id);
@@ -15,6 +16,10 @@ const RATE = 48000, // (Hz), on every device: the same bits everywhere
 const DEFLATE = "deflate-raw",
     bytesOf = new TextEncoder();
 
+// bytes as letters
+const lettersOf = bytes => btoa(Array.from(bytes, b => String.fromCharCode(b)).join("")),
+    bytesFrom = letters => Uint8Array.from(atob(letters), c => c.charCodeAt(0));
+
 const noteName = key => `${NOTES[key % 12]}${Math.floor(key / 12) - 1}`;
 
 async function squeeze(bytes, stream) {
@@ -24,45 +29,43 @@ async function squeeze(bytes, stream) {
 // a score as the part of an address after the #
 export async function linkOf(text) {
     const bytes = await squeeze(bytesOf.encode(text), new CompressionStream(DEFLATE));
-    return `#s=${btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "")}`;
+    return `#s=${lettersOf(bytes).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "")}`;
 }
 
 export async function textOf(hash) {
     if (hash.length > LONGEST) throw new Error("too long");
-    const letters = atob(hash.slice(3).replace(/-/g, "+").replace(/_/g, "/")),
-        bytes = Uint8Array.from(letters, c => c.charCodeAt(0));
+    const bytes = bytesFrom(hash.slice(3).replace(/-/g, "+").replace(/_/g, "/"));
     return new TextDecoder().decode(await squeeze(bytes, new DecompressionStream(DEFLATE)));
 }
 
 // `on` has: frame, the handlers of a Stream; fresh(): another piece begins; drums(): those that are seen;
-// ray(press); scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
+// ray(press); plays(): a playback is shown; edit(connect): the piece to which this opens a channel; scene(file): to show one; hold(yes): to draw nothing; wide(): there is room for all controls
 export class Studio {
     constructor(files, sound, liveSound, on) {
-        ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.queue = []));
+        ((this.on = on), (this.sound = sound), (this.liveSound = liveSound), (this.worker = this.coming = null));
         ((this.plays = false), (this.said = []), (this.past = []), (this.names = ""));
         this.embedded = new URLSearchParams(location.search).has("embed");
         const [[, wasm], ...pieces] = files;
+        this.wasm = wasm;
         ((this.pieces = pieces.map(([name]) => name)), (this.name = ""), (this.ready = false));
         this.texts = new Map(pieces); // as they are in the files
         this.journal = this.remembered();
-        const source = window.himcScripts.get("worker.js"),
-            address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-        this.worker = new Worker(address);
-        this.worker.onmessage = e => this.hear(e.data);
-        this.worker.onerror = e => this.tell(e.message, true);
-        this.worker.postMessage({ begin: { wasm, files: pieces, rate: RATE } });
+        this.address = URL.createObjectURL(new Blob([window.himcScripts.get("worker.js")], { type: "text/javascript" }));
         this.controls();
         document.body.classList.add("studio");
         this.begin().catch(error => this.tell(error.message, true));
     }
 
     async begin() {
-        this.worker.postMessage({ runs: true });
+        this.module = await WebAssembly.compile(this.wasm).catch(() => null); // once, for all Workers
         if (location.hash.startsWith("#s=")) {
             const text = await textOf(location.hash).catch(() => null);
             if (text !== null) return this.load("link.txt", bytesOf.encode(text));
             this.tell("this link holds no score", true);
         }
+        const { base } = this.journal;
+        this.resumes = !!base?.open;
+        if (base?.open) return this.load(base.name, bytesFrom(base.bytes));
         if (await this.restore()) return;
         this.load(this.pieces[0] ?? "");
     }
@@ -73,7 +76,7 @@ export class Studio {
     remembered() {
         try {
             const all = JSON.parse((!this.embedded && localStorage.getItem(JOURNAL)) || "{}");
-            return { name: String(all.name ?? ""), text: all.text && typeof all.text === "object" ? all.text : {} };
+            return { name: String(all.name ?? ""), text: all.text && typeof all.text === "object" ? all.text : {}, base: all.base };
         } catch {
             return { name: "", text: {} };
         }
@@ -84,9 +87,13 @@ export class Studio {
         try {
             localStorage.setItem(JOURNAL, JSON.stringify(this.journal));
         } catch {
-            if (!this.unkept) this.tell("this browser keeps no changes: save the score as a file", true);
-            this.unkept = true;
+            this.lose();
         }
+    }
+
+    lose() {
+        if (!this.unkept) this.tell("this browser keeps no changes: save the score as a file", true);
+        this.unkept = true;
     }
 
     // the score that was on the stand when the page ended, as it was changed
@@ -114,6 +121,29 @@ export class Studio {
         this.load(this.journal.name, bytesOf.encode($("p-text").value), true, beat);
     }
 
+    // Changes the piece on the stand where it is seen, from what it was before all changes if it is still what they
+    // have led to, so that undo goes back to that. What has begun here goes on after the page's end.
+    edit() {
+        const { journal, name } = this,
+            text = $("p-text").value;
+        if (!this.ready) return;
+        this.worker?.postMessage({ runs: false });
+        if (journal.base?.name !== name || !(journal.base.open || journal.base.led === text))
+            journal.base = { name, bytes: lettersOf(text ? bytesOf.encode(text) : this.bytes) };
+        ((journal.base.open = this.edits = true), this.remember());
+        const all = new Map([...this.texts, [name, bytesFrom(journal.base.bytes)]]);
+        this.on.edit(() => new Channel(this.module ?? this.wasm, [...all], name, () => this.lose()));
+    }
+
+    // and comes back with the score
+    edited(bytes) {
+        const { base, text } = this.journal;
+        ((this.edits = base.open = false), this.worker?.postMessage({ runs: true }));
+        if (bytes) base.led = text[base.name] = new TextDecoder().decode(bytes);
+        this.remember();
+        if (bytes) this.load(base.name, bytes);
+    }
+
     forgetChanges() {
         const text = this.texts.get(this.name);
         delete this.journal.text[this.name];
@@ -130,32 +160,38 @@ export class Studio {
 
     // the device is open: sound goes from the Worker to the audio thread, past this page
     async listen() {
-        if (this.listens) return;
+        const { worker } = this;
+        if (this.listens || !worker || this.sound.context?.state === "closed") return;
         this.listens = true;
         this.on.hold(true);
         const port = await this.liveSound.feed("page").catch(error => this.tell(`no sound: ${error.message}`, true));
         this.on.hold(false);
         this.listens = !!port;
-        if (port) this.worker.postMessage({ port }, [port]);
+        if (port) worker.postMessage({ port }, [port]);
+    }
+
+    // the Worker that has loaded a piece is the performer from now on
+    async takeOver({ worker }) {
+        this.worker?.terminate();
+        Object.assign(this, { worker, coming: null, listens: false });
+        if (this.sound.context) await this.listen();
+        worker.postMessage({ runs: !this.edits });
     }
 
     // --- what the Worker tells
 
-    hear({ frame, loaded, failed, line, saved, bytes, name }) {
-        if (frame) readFrame(frame, this.handlers);
-        else if (saved) this.save(saved, bytes);
-        else if (loaded !== undefined) this.fresh(loaded);
+    hear({ frame, loaded, failed, line, saved, bytes, unread }, from) {
+        if (unread) ((this.module = null), this.send(from)); // a browser that hands no module on
+        else if (frame) readFrame(frame, this.handlers);
+        else if (saved) (this.texts.set(saved, bytes), this.save(saved, bytes));
+        else if (loaded !== undefined) (this.takeOver(from), this.fresh(from));
         else if (line !== undefined) this.answered(line, failed);
         else if (failed) {
-            this.asked(name);
-            this.failed(name && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
+            const { name } = from,
+                loads = from === this.coming;
+            if (loads) (from.worker.terminate(), (this.coming = null));
+            this.failed(loads && !failed.startsWith(name) ? `${name}: ${failed}` : failed);
         }
-    }
-
-    // what was asked of the Worker under that name, the oldest
-    asked(name) {
-        const at = this.queue.findIndex(one => one.name === name);
-        return at < 0 ? {} : this.queue.splice(0, at + 1)[at];
     }
 
     get handlers() {
@@ -180,9 +216,8 @@ export class Studio {
         this.load(this.pieces[0] ?? "");
     }
 
-    fresh(loaded) {
-        const { bytes, play } = this.asked(loaded),
-            name = this.draft === undefined ? loaded : this.journal.name; // a draft keeps its name
+    fresh({ name: loaded, bytes, play }) {
+        const name = this.draft === undefined ? loaded : this.journal.name; // a draft keeps its name
         ((this.name = name), (this.ready = true), (this.names = ""), (this.bytes = bytes), (this.beat = 0));
         $("p-drum").replaceChildren();
         this.on.fresh();
@@ -192,6 +227,8 @@ export class Studio {
         this.playing(!!play);
         $("p-piece").value = this.pieces.includes(name) ? name : "";
         $("p-piece").options[0].text = this.pieces.includes(name) || !name ? "a piece" : name;
+        if (this.resumes) this.edit();
+        this.resumes = false;
         this.tell(loaded ? `${loaded} is on the stand` : "a performer without a score");
     }
 
@@ -230,15 +267,25 @@ export class Studio {
     // --- what the user does
 
     say(line) {
-        this.worker.postMessage({ say: line.trim().replace(/;$/, "") });
+        this.worker?.postMessage({ say: line.trim().replace(/;$/, "") });
     }
 
     // a piece of the page, or a file; `play`: at once, after these commands
     load(name, bytes = null, play = false, first = []) {
         if (bytes && !this.texts.has(name)) this.texts.set(name, bytes);
         bytes ??= this.texts.get(name);
-        this.queue.push({ name, bytes, play });
-        this.worker.postMessage({ load: { name, bytes, then: play ? [...first, "play"] : [] } });
+        this.coming?.worker.terminate(); // the newest is meant
+        const worker = new Worker(this.address),
+            from = (this.coming = { worker, name, bytes, play, then: play ? [...first, "play"] : [] });
+        worker.onmessage = e => this.hear(e.data, from);
+        worker.onerror = e => this.hear({ failed: e.message }, from);
+        this.send(from);
+    }
+
+    send({ worker, name, bytes, then }) {
+        const { module, wasm, texts } = this;
+        worker.postMessage({ begin: { module, wasm: module ? null : wasm, files: [...texts], rate: RATE } });
+        worker.postMessage({ load: { name, bytes, then } });
     }
 
     // as it was changed here, if it was
@@ -270,6 +317,7 @@ export class Studio {
     }
 
     press(e) {
+        if (this.on.plays()) return;
         const caster = new THREE.Raycaster(),
             ray = this.on.ray(e);
         caster.set(ray.origin, ray.direction);
@@ -288,7 +336,7 @@ export class Studio {
 
     key(e) {
         const hand = HITS[e.key?.toLowerCase()];
-        if (e.ctrlKey || e.metaKey || e.altKey || e.repeat || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
+        if (this.on.plays() || e.ctrlKey || e.metaKey || e.altKey || e.repeat || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
         if (hand) this.hit(hand);
         else if (e.key === " " && !/^(BUTTON|SUMMARY)$/.test(e.target.tagName)) this.toggle();
         else return;
@@ -346,6 +394,7 @@ export class Studio {
         $("p-piece").onchange = e => e.target.value && this.choose(e.target.value);
         click("p-play", () => this.toggle());
         click("p-open", () => $("p-file").click());
+        click("p-edit", () => this.edit());
         click("p-link", () => this.copyLink().catch(error => this.tell(error.message, true)));
         $("p-file").onchange = e => [...e.target.files].forEach(file => this.open(file));
         $("p-midi").hidden = !navigator.requestMIDIAccess;
@@ -364,7 +413,7 @@ export class Studio {
         click("p-use", () => this.use());
         click("p-here", () => this.use(true));
         click("p-undo", () => this.forgetChanges());
-        $("p-form").onsubmit = e => (e.preventDefault(), this.send());
+        $("p-form").onsubmit = e => (e.preventDefault(), this.sayLine());
         $("p-line").onkeydown = e => this.recall(e);
         click("p-copy", () => navigator.clipboard?.writeText($("p-line").value.replace(/([,;$])/g, "\\$1")));
         $("stage").addEventListener("pointerdown", e => !e.button && this.press(e), true);
@@ -385,7 +434,7 @@ export class Studio {
         this.outside = text => parent.postMessage({ himc: text }, "*");
     }
 
-    send() {
+    sayLine() {
         const line = $("p-line").value.trim();
         if (!line) return;
         this.past.push(line);

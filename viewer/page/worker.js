@@ -1,7 +1,7 @@
 // The performer in a page of its own: the library as WebAssembly (viewer/engine), in a Worker. A plain
 // script: a page that is one file makes the Worker of its text, and the tests run it without a browser.
 //
-// The library finds its files in memory; of the calls of WASI it uses these fifteen, and no clock, no
+// The library finds its files in memory; of the calls of WASI it uses these sixteen, and no clock, no
 // chance, no network. Sound goes straight to the audio thread, over a port that the page hands on; all
 // else to the page, as frames of the viewer's stream.
 const OK = 0,
@@ -22,6 +22,8 @@ class Files {
     constructor() {
         ((this.bytes = new Map()), (this.open = new Map()), (this.memory = null));
         this.said = ""; // on the standard output and error
+        // called with bytes for the standard output; with what is in a file that is on the disk, null: removed
+        this.told = this.written = null;
     }
 
     view() {
@@ -67,9 +69,10 @@ class Files {
             fd_fdstat_set_flags: () => OK,
             fd_filestat_get: of((file, at) => this.about(at, file.size, FILE)),
             fd_filestat_set_size: of((file, size) => this.resize(file, Number(size))),
+            fd_sync: of(file => this.write(file)),
             fd_close: fd => {
                 const file = this.open.get(fd);
-                if (file?.writes) this.bytes.set(file.name, file.bytes.slice(0, file.size));
+                if (file?.writes) this.write(file);
                 return this.open.delete(fd) || fd <= ROOT ? OK : BADF;
             },
             fd_seek: of((file, by, whence, at) => {
@@ -91,7 +94,8 @@ class Files {
                     all = this.parts(parts, count),
                     size = all.reduce((sum, part) => sum + part.length, 0);
                 if (!file && fd >= ROOT) return BADF;
-                if (!file) this.said += all.map(part => text.decode(part.slice())).join("");
+                if (fd === 1 && this.told) for (const part of all) this.told(part);
+                else if (!file) this.said += all.map(part => text.decode(part.slice())).join("");
                 else {
                     if (file.at + size > file.size) this.resize(file, file.at + size);
                     for (const part of all) (file.bytes.set(part, file.at), (file.at += part.length));
@@ -121,11 +125,21 @@ class Files {
                 this.bytes.set(this.name(to, length), this.bytes.get(name));
                 return this.bytes.delete(name) ? OK : NOENT;
             },
-            path_unlink_file: (_, at, size) => (this.bytes.delete(this.name(at, size)) ? OK : NOENT),
+            path_unlink_file: (_, at, size) => {
+                const name = this.name(at, size);
+                this.written?.(name, null);
+                return this.bytes.delete(name) ? OK : NOENT;
+            },
             proc_exit: status => {
                 throw new Error(`the performer has ended (${status})${this.said ? `: ${this.said}` : ""}`);
             },
         };
+    }
+
+    write(file) {
+        this.bytes.set(file.name, file.bytes.slice(0, file.size));
+        this.written?.(file.name, this.bytes.get(file.name));
+        return OK;
     }
 
     resize(file, size) {
@@ -160,6 +174,11 @@ class Engine {
         const memory = new Uint8Array(this.files.memory.buffer),
             at = this.calls.page_error();
         return text.decode(memory.slice(at, memory.indexOf(0, at)));
+    }
+
+    call(name, words) {
+        this.input(words);
+        return this.calls[name]();
     }
 
     // each returns why not, or ""
@@ -204,8 +223,9 @@ class Player {
         postMessage(message, transfer);
     }
 
-    begin({ wasm, files, rate }) {
-        this.engine = new Engine(new WebAssembly.Module(wasm), rate);
+    begin({ module, wasm, files, rate }) {
+        if (this.engine) return;
+        this.engine = new Engine(module ?? new WebAssembly.Module(wasm), rate);
         for (const [name, bytes] of files) this.engine.files.bytes.set(name, bytes);
         setInterval(() => this.guarded(() => this.tick()), TICK);
     }
@@ -228,7 +248,7 @@ class Player {
 
     // the audio thread has played so many samples, and had none so often
     asks({ read, missed }) {
-        if (missed > this.missed) this.ahead = Math.min(MOST, this.ahead + MORE);
+        if (missed > this.missed && this.asked > 0) this.ahead = Math.min(MOST, this.ahead + MORE);
         ((this.asked = performance.now()), (this.played = read), (this.missed = missed));
         this.fill();
     }
@@ -266,7 +286,7 @@ class Player {
         const { engine } = this;
         if (bytes) engine.files.bytes.set(name, bytes);
         const failed = engine.load(name);
-        if (failed) return this.tell({ failed, name });
+        if (failed) return this.tell({ failed });
         this.loaded = true;
         this.tell({ loaded: name });
         for (const line of then ?? []) this.say(line);
@@ -301,6 +321,7 @@ class Player {
 
 if (typeof WorkerGlobalScope !== "undefined" && self instanceof WorkerGlobalScope) {
     const player = new Player();
+    onmessageerror = () => player.engine ?? postMessage({ unread: true });
     onmessage = e => {
         try {
             player.hear(e.data);

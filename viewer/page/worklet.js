@@ -22,18 +22,20 @@ class Live extends AudioWorkletProcessor {
         ((this.written = 0), (this.read = 0), (this.next = null), (this.rate = 48000));
         ((this.least = Infinity), (this.looked = 0), (this.old = 0), (this.fade = 0));
         ((this.begun = false), (this.missed = 0), (this.peak = 0), (this.told = 0));
-        ((this.feeder = null), (this.blocks = 0));
+        ((this.feeder = null), (this.blocks = 0), (this.origin = 0));
         this.port.onmessage = e => (e.data.feed ? this.feed(e.data.feed) : this.push(e.data));
     }
 
+    // from now on; what waits is played first
     feed(port) {
-        this.feeder = port;
-        port.onmessage = e => this.push(e.data);
+        this.feeder?.close();
+        ((this.feeder = port), (this.origin = this.written));
+        port.onmessage = e => port === this.feeder && this.push(e.data);
     }
 
     // begins once enough is there
     fed(waits) {
-        if (this.blocks++ % ASKED === 0) this.feeder.postMessage({ read: this.read, missed: this.missed });
+        if (this.blocks++ % ASKED === 0) this.feeder.postMessage({ read: this.read - this.origin, missed: this.missed });
         this.begun ||= waits >= this.behind;
     }
 

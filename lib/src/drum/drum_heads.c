@@ -25,7 +25,9 @@
 // a gliss whose beat is past by more, after `seek`, has arrived; chosen: a stick on the head delays
 // it by less
 #define GLISS_LATE 0.5 // (beats)
-#define MOST_SPARES 48 // of a drum, under 1 MB each; chosen: two octaves, sounding and damped
+#ifndef MOST_SPARES
+#define MOST_SPARES 48 // of a drum, some 2 MB each; chosen: two octaves, sounding and damped
+#endif
 
 typedef struct head_change {
     double beat;

@@ -46,7 +46,9 @@ typedef struct himc_ear_paths {
 /// The paths from the head at `frame` to the ears of a listener.
 himc_ear_paths himc_ears_trace(const himc_listener *listener, const himc_head_frame *frame);
 
+#ifndef HIMC_EARS_LINE
 #define HIMC_EARS_LINE 32768 ///< (samples) the longest path, 35 m, at 192 kHz, and more
+#endif
 
 /// A path in samples: four weights of a fractional delay, the gain in them.
 typedef struct himc_ear_tap {

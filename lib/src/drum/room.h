@@ -19,8 +19,10 @@ typedef struct himc_walls {
     }
 
 #define HIMC_ROOM_LINES 32
-#define HIMC_ROOM_RUN 32     ///< (samples) at a time; chosen: less than the shortest delay at 8 kHz
+#define HIMC_ROOM_RUN 32 ///< (samples) at a time; chosen: less than the shortest delay at 8 kHz
+#ifndef HIMC_ROOM_LINE
 #define HIMC_ROOM_LINE 13696 ///< (samples) more than the longest delay at 192 kHz
+#endif
 #define HIMC_ROOM_EMPTY INT32_MAX
 
 /// What a change of the room changes.

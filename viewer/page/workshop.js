@@ -1,0 +1,255 @@
+// A piece under edit, inside the page: what `himc edit` does in processes (tools/himc/edit.c), done with
+// instances of the module. Follows worker.js in a Worker of its own, and in the tests.
+//
+// One instance has the text. Another plays it, and leaves a copy of its memory behind every second: the last
+// copy as a whole, of each earlier one only the pages of 4 kB in which it differs from the next. After a change
+// the last copy before it comes back, takes the new strokes in place of the old ones, and plays on; one whose
+// plan may rest on them already refuses, and the one before is asked. So all that follows is, bit by bit,
+// what a playing from the start would be. Where memory is short, copies far from the last change go.
+const WORD = 4,
+    PAGE = 4096 / WORD, // (words)
+    APART = 1, // (s) of the piece between two copies
+    CELL = 0.2, // (s) played at a time
+    ROOM = 120 << 20, // of what the copies differ in (bytes), and less ...
+    ALL = 190 << 20, // ... where a memory and its last copy are larger; chosen: 300 MB with the page
+    FOCUS = 4, // (s) copies get rarer from here on
+    HEADROOM = 2, // (s) a piece may begin so much later than its first beat
+    TEXT = "himc-text"; // PAGE_TEXT of viewer/engine/engine.h
+
+// the memory of an instance as it was
+class Copies {
+    constructor(memory) {
+        ((this.memory = memory), (this.image = new Int32Array(0)));
+        this.list = []; // { at (s), pages that the next one has otherwise: [index, words] }
+    }
+
+    get size() {
+        return this.list.reduce((sum, copy) => sum + copy.pages.size * PAGE * WORD, 0);
+    }
+
+    // the memory as it is now is that at a time
+    add(at) {
+        const now = new Int32Array(this.memory.buffer),
+            last = this.list[this.list.length - 1];
+        if (now.length > this.image.length) {
+            const { image } = this;
+            (this.image = new Int32Array(now.length)).set(image);
+        }
+        this.differing(now, (i, page) => {
+            last?.pages.set(i, this.image.slice(i, i + PAGE));
+            this.image.set(page, i);
+        });
+        this.list.push({ at, pages: new Map() });
+    }
+
+    // calls with the pages in which it differs from the last copy; others stay untouched, and, empty, cost nothing
+    differing(now, use) {
+        const { image } = this;
+        for (let at = 0; at < now.length; at += PAGE) {
+            let i = at;
+            const end = at + PAGE;
+            while (i < end && now[i] === image[i]) i++;
+            if (i < end) use(at, now.subarray(at, end));
+        }
+    }
+
+    // the last copy is the memory again
+    restore() {
+        const now = new Int32Array(this.memory.buffer);
+        if (now.length > this.image.length) now.fill(0, this.image.length);
+        this.differing(now.subarray(0, this.image.length), (i, page) => page.set(this.image.subarray(i, i + PAGE)));
+    }
+
+    // the one before is the last
+    drop() {
+        this.list.pop();
+        const last = this.list[this.list.length - 1];
+        for (const [at, words] of last?.pages ?? []) this.image.set(words, at);
+        last?.pages.clear();
+    }
+
+    // until there is room, without those whose absence costs least
+    thin(room, focus) {
+        for (const { list } = this; list.length > 3 && this.size > room;) {
+            const cost = i => (list[i + 1].at - list[i - 1].at) / (FOCUS + Math.abs(list[i].at - focus));
+            let least = 1;
+            for (let i = 2; i < list.length - 1; i++) if (cost(i) < cost(least)) least = i;
+            const [gone] = list.splice(least, 1),
+                { pages } = list[least - 1];
+            for (const [at, words] of gone.pages) if (!pages.has(at)) pages.set(at, words);
+        }
+    }
+}
+
+// `tell` is given chunks; `written(name, bytes)` what is in a file that has to last, null: nothing
+class Workshop {
+    constructor(module, files, tell, written) {
+        Object.assign(this, { module, files, tell, lines: [], order: null, player: null, copies: null });
+        ((this.time = 0), (this.focus = 0), (this.over = true));
+        this.session = this.instance(chunk => this.hear(chunk));
+        this.session.files.written = (name, bytes) => name.endsWith(".himc-edit") && written(name, bytes);
+    }
+
+    instance(told) {
+        const engine = new Engine(this.module, 48000);
+        for (const [name, bytes] of this.files) engine.files.bytes.set(name, bytes);
+        engine.files.told = chunks(told);
+        return engine;
+    }
+
+    open(name) {
+        this.name = name;
+        if (this.ask("page_edit_open", name)) this.line("hello");
+    }
+
+    // what the text's instance says; orders to play are for here
+    hear(chunk) {
+        const view = new DataView(chunk.buffer);
+        if (text.decode(chunk.subarray(0, 4)) === "play") this.order = { from: view.getFloat64(8, true), text: chunk.slice(16) };
+        else this.tell(chunk);
+    }
+
+    line(line) {
+        if (!this.ended) this.lines.push(line);
+    }
+
+    // true if there is something to do
+    get busy() {
+        return !!this.order || !this.over || this.lines.length > 0;
+    }
+
+    // a part of it, some hundredths of a second long
+    work() {
+        if (this.order) this.begin();
+        else if (this.lines.length && this.session.calls.page_edit_proved()) this.obey(this.lines.shift());
+        else if (!this.over) this.cell();
+    }
+
+    obey(line) {
+        if (line.startsWith("take ")) this.save(line.slice(5));
+        else this.ask("page_edit_line", line);
+    }
+
+    // plays the text that was ordered; from a copy, if only strokes have changed. How long before the change plans
+    // rest on it is not known: as long as the last time, or a little less.
+    begin() {
+        const { from, text } = this.order,
+            { list } = this.copies ?? { list: [] };
+        ((this.order = null), (this.played = text), (this.focus = Math.max(0, from)));
+        const until = from + HEADROOM - (this.tries ?? 0) * APART;
+        for (this.tries = Math.max(0, (this.tries ?? 0) - 1); from >= 0 && list.length; this.copies.drop()) {
+            if (list[list.length - 1].at > until && list.length > 1) continue;
+            this.copies.restore();
+            this.player.files.bytes.set(TEXT, text);
+            const done = this.player.calls.page_piece_exchange();
+            if (done === 0) return this.failed();
+            if (done > 0) return this.resume();
+            this.tries++;
+        }
+        this.start(text);
+    }
+
+    resume() {
+        ((this.time = this.copies.list[this.copies.list.length - 1].at), (this.over = false));
+        if (this.time === 0) this.player.calls.page_piece_start();
+    }
+
+    start(text) {
+        this.player = this.copies = null; // before the next one: they are large
+        this.player = this.instance(this.tell);
+        this.player.files.bytes.set(TEXT, text);
+        if (!this.player.call("page_piece_begin", this.name)) return this.failed();
+        this.copies = new Copies(this.player.files.memory);
+        this.copies.add(0);
+        this.resume();
+    }
+
+    failed() {
+        this.over = true;
+        this.ask("page_edit_hear", `fail${this.player.error}`);
+    }
+
+    // the text's instance; once it cannot go on there is nothing to do any more
+    ask(call, words) {
+        if (this.session.call(call, words)) return true;
+        Object.assign(this, { lines: [], order: null, over: true, ended: true });
+        return false;
+    }
+
+    cell() {
+        const { copies, player } = this,
+            { list } = copies;
+        if (this.time >= list[list.length - 1].at + APART - CELL / 2) {
+            copies.add(this.time);
+            copies.thin(Math.min(ROOM, ALL - 2 * player.files.memory.buffer.byteLength), this.focus);
+        }
+        this.over = !player.calls.page_piece_cell();
+        this.time += CELL;
+        this.ask("page_edit_hear", "pcm ");
+        if (!this.over || !player.calls.page_piece_end()) return; // which a copy knows nothing of
+        this.tell(chunk("over"));
+        this.ask("page_edit_hear", "over");
+    }
+
+    // the motion as a take, played for it alone
+    save(name) {
+        const engine = this.instance(() => {});
+        engine.files.bytes.set(TEXT, this.played);
+        const good = engine.call("page_piece_begin", `${this.name}\n${name}`) && engine.calls.page_piece_start();
+        while (good && engine.calls.page_piece_cell());
+        if (good && engine.calls.page_piece_end()) this.tell(chunk("file", [...bytesOf.encode(name.padEnd(64, "\0")), ...engine.files.bytes.get(name)]));
+        else this.tell(chunk("edit", bytesOf.encode(JSON.stringify({ event: "refused", text: engine.error }))));
+    }
+}
+
+// calls with whole chunks of what comes in parts
+function chunks(use) {
+    let rest = new Uint8Array();
+    return bytes => {
+        const all = new Uint8Array(rest.length + bytes.length);
+        (all.set(rest), all.set(bytes, rest.length));
+        let at = 0;
+        for (let size; at + 8 <= all.length; at += size) {
+            size = 8 + new DataView(all.buffer).getUint32(at + 4, true);
+            if (at + size > all.length) break;
+            use(all.slice(at, at + size));
+        }
+        rest = all.slice(at);
+    };
+}
+
+function chunk(kind, bytes = []) {
+    const all = new Uint8Array(8 + bytes.length);
+    all.set(bytesOf.encode(kind));
+    new DataView(all.buffer).setUint32(4, bytes.length, true);
+    all.set(bytes, 8);
+    return all;
+}
+
+// --- in the Worker
+
+if (typeof WorkerGlobalScope !== "undefined" && self instanceof WorkerGlobalScope) {
+    let workshop = null,
+        runs = false;
+    const { port1, port2 } = new MessageChannel(); // gives way to messages
+    const guarded = act => {
+        try {
+            act();
+        } catch (error) {
+            ((workshop = null), postMessage({ ended: error.message }));
+        }
+        if (!runs && workshop?.busy) ((runs = true), port1.postMessage(0));
+    };
+    port2.onmessage = () => ((runs = false), guarded(() => workshop?.busy && workshop.work()));
+    onmessage = ({ data: { begin, line } }) =>
+        guarded(() => {
+            if (line !== undefined) return workshop?.line(line);
+            workshop = new Workshop(
+                begin.wasm instanceof WebAssembly.Module ? begin.wasm : new WebAssembly.Module(begin.wasm),
+                begin.files,
+                bytes => postMessage({ bytes }, [bytes.buffer]),
+                (name, bytes) => postMessage({ written: { name, text: bytes && text.decode(bytes) } }),
+            );
+            workshop.open(begin.name);
+        });
+}
