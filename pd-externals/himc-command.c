@@ -261,19 +261,21 @@ void himc_tilde_restore(t_himc *x)
     free(state);
 }
 
-/* Reports that nothing plays while DSP is off. True for a hit: it is left out, and `missed` is
-sent. */
+/* Reports that nothing plays while DSP is off. True for a hit or a note: it is left out, and
+`missed` is sent. */
 static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 {
-    const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke : NULL;
+    static const himc_stroke any = {.hand = HIMC_HAND_ANY};
+    bool note = command->id == HIMC_COMMAND_NOTE && command->atom[1].number > 0;
+    const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke : note ? &any : NULL;
     bool plays = hit || command->id == HIMC_COMMAND_PLAY || command->id == HIMC_COMMAND_TARGET ||
                  command->id == HIMC_COMMAND_PUSH;
-    if (!plays || !silence_holds(&x->x_silence, hit ? "hit" : NULL) || !hit)
+    if (!plays || !silence_holds(&x->x_silence, note ? "note" : hit ? "hit" : NULL) || !hit)
         return false;
     himc_drum *drum = himc_performance_drum(x->x_performance, 0);
     t_atom atom[3];
     SETFLOAT(atom, -1);
-    SETSYMBOL(atom + 1, gensym(command->atom[0].symbol));
+    SETSYMBOL(atom + 1, gensym(note ? "any" : command->atom[0].symbol));
     SETSYMBOL(atom + 2, gensym(hit->drum[0] || !drum ? hit->drum : himc_drum_name(drum)));
     outlet_anything(x->x_messages, gensym("missed"), 3, atom);
     return true;
@@ -287,6 +289,15 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return saved_switch(&x->x_saves, argc, argv, error);
     if (s == &s_bang)
         s = gensym("play");
+    t_atom note[2];
+    if (argc > 0 && argv->a_type == A_FLOAT && (s == &s_float || s == &s_list)) {
+        s = gensym("note"); /* a key, as [notein] sends it */
+        if (argc == 1) {
+            note[0] = *argv;
+            SETFLOAT(note + 1, x->x_velocity);
+            argc = 2, argv = note;
+        }
+    }
     if (argc > 0 && argv->a_type == A_SYMBOL && himc_tilde_has_drum(x, s->s_name))
         return (command_from_pd(&command, HIMC_DRUM, argv->a_w.w_symbol, argc - 1, argv + 1,
                                 error) ||

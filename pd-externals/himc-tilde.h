@@ -22,6 +22,7 @@ typedef struct t_himc {
     t_canvas *x_canvas;
     t_clock *x_clock;
     t_outlet *x_messages;
+    t_float x_velocity; /* of a key that comes as a number alone */
 
     himc_performance *x_performance;
     t_player x_player;

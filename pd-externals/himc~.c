@@ -2,8 +2,10 @@
 [membrane~ DRUM].
 
 inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
+         a number 0 .. 127, or a list of two: a MIDI key and its velocity, as `note` plays it
 inlets   with -signals: target of the left stick's tip, x y z, and of the right one's (m, signals);
          while its three inlets are 0 a stick has no target
+inlet    the last: velocity of keys that come as a number alone, 0 .. 127, as [notein] gives it
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
          missed BEAT HAND DRUM   a stroke is not played; BEAT -1: a hit
@@ -19,6 +21,8 @@ a ring. Nothing is sent from perform: a clock sends it at the start of the next 
 #include "saved-state.h"
 
 #include <stdlib.h>
+
+#define VELOCITY_USUAL 80 /* mf */
 
 static t_class *himc_tilde_class;
 
@@ -198,6 +202,8 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     x->x_saves = saves;
     for (int i = 0; signals && i < COORDINATES; i++)
         inlet_new(&x->x_obj, &x->x_obj.ob_pd, &s_signal, &s_signal);
+    floatinlet_new(&x->x_obj, &x->x_velocity);
+    x->x_velocity = VELOCITY_USUAL;
     outlet_new(&x->x_obj, &s_signal);
     outlet_new(&x->x_obj, &s_signal);
     x->x_messages = outlet_new(&x->x_obj, NULL);

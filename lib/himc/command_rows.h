@@ -102,6 +102,10 @@ HIMC_COMMAND_ROW(
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
                  "that suits better, on one drum in turns")
+HIMC_COMMAND_ROW(NOTE, note, PERFORMER, NOW, HIMC_AFTER_STROKES, "PITCH VELOCITY [NUANCE]",
+                 "plays a MIDI note as `hit any` does, on the drum or bar that sounds it, on the "
+                 "instrument of that General MIDI key, or on the nearest pitch; VELOCITY 0 ends it, "
+                 "as `noteoff` says")
 HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [PART] [DRUM] | "
@@ -197,6 +201,9 @@ HIMC_SETTING_ROW(
     "has every hit land exactly so long after its message, 150 by default, as strong "
     "as that allows; auto: 330, so that all but vertical accents from f on are as strong as "
     "written; 0: each as soon as it can")
+
+HIMC_SETTING_ROW(NOTEOFF, noteoff, AT_SAMPLE, "ring|damp", word, noteoff, "ring", NOTHING,
+                 "the end of a `note`: damp lays a hand on what rings, ring lets it ring")
 
 HIMC_COMMAND_ROW(
     PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",

@@ -243,6 +243,8 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     }
     if (row->receiver != HIMC_PERFORMER)
         return himc_error_set(error, "a drum's command, not the performer's");
+    if (command->id == HIMC_COMMAND_NOTE)
+        return himc_performance_note(p, command, delay, error);
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates
     if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE || on_beat)
         return act(p, command, error);

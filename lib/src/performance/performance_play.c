@@ -4,6 +4,10 @@
 #include "base/format.h"
 #include "base/head_frame.h"
 #include "capture/take.h"
+#include "drum/membrane_state.h"
+#include "head/idiophone.h"
+#include "head/two_heads.h"
+#include "midi/part.h"
 #include "plan/ornament.h"
 #include "plan/score.h"
 #include "plan/sticking.h"
@@ -18,6 +22,8 @@
 // chosen: a stroke so little out of reach is played
 #define OUT_OF_REACH 0.01 // (m)
 #define BEHIND (-0.2)     // forward over sideways: further back is behind the performer
+
+#define QUARTER_TONE 0.5 // a pitch is a MIDI key's within that (semitones)
 
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
@@ -234,6 +240,112 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
         himc_statistics_hit(&p->statistics, latency);
     himc_motion_replan(p->motion);
     return true;
+}
+
+static double midi_key(double hz)
+{
+    return 69 + 12 * log2(hz / 440); // A4
+}
+
+// How far a MIDI key is from what a drum sounds (semitones), infinite of one without a pitch. A
+// keyboard has the key or its octaves, and `part` becomes the bar.
+static double key_distance(himc_drum *drum, int key, char part[HIMC_PART_SIZE])
+{
+    const himc_shape *shape = &himc_membrane_config_of(himc_drum_membrane(drum))->shape;
+    double least = INFINITY, hz;
+    if (!shape->body && !shape->shell)
+        return fabs(midi_key(himc_drum_pitch(drum)) - key);
+    for (int i = 0; shape->body && i < shape->body->parts; i++) {
+        const char *name = shape->body->part[i].name;
+        double way = himc_note_frequency(name, &hz) ? fabs(midi_key(hz) - key) : INFINITY;
+        if (way < least && lround(way) % 12 == 0) {
+            least = way;
+            himc_format(part, HIMC_PART_SIZE, "%s", name);
+        }
+    }
+    return least;
+}
+
+// the instrument of a key of General MIDI's drum channel, of that name or else of that kind, and
+// its stroke; -1: there is none
+static int kit_drum(const performance_drums *drums, int key, himc_stroke *stroke, midi_stroke *note)
+{
+    midi_part kit = {.choice = MIDI_DRUMS, .stroke = note, .count = 1};
+    *note = (midi_stroke){.key = key, .spot = HIMC_SPOT_NORMAL};
+    himc_midi_kit(&kit);
+    if (note->head < 0)
+        return -1;
+    midi_head *head = &kit.head[note->head];
+    head->made[strcspn(head->made, " ")] = '\0'; // its kind, without a size
+    int found = himc_drums_find(drums, head->name);
+    for (int i = 0; i < drums->count && found < 0; i++) {
+        const himc_shape *s =
+            &himc_membrane_config_of(himc_drum_membrane(drums->slot[i].drum))->shape;
+        const char *kind = s->body ? s->body->name : s->shell ? s->shell->name : "";
+        found = strcmp(kind, head->made) == 0 ? i : -1;
+    }
+    stroke->spot = note->spot;
+    stroke->hand = note->foot ? HIMC_FOOT : HIMC_HAND_ANY;
+    himc_format(stroke->part, sizeof stroke->part, "%s", note->part);
+    return found;
+}
+
+// the drum of a MIDI key; -1 with the reason if there is none
+static int find_key(const himc_performance *p, int key, himc_stroke *stroke, midi_stroke *note,
+                    himc_error *error)
+{
+    const performance_drums *drums = &p->drums;
+    char part[HIMC_PART_SIZE] = "", nearest[HIMC_PART_SIZE] = "";
+    double least = INFINITY;
+    int found = drums->count == 1 ? 0 : -1;
+    for (int i = 0; i < drums->count; i++) {
+        double way = key_distance(drums->slot[i].drum, key, part);
+        if (way < least) {
+            least = way;
+            found = i;
+            memcpy(nearest, part, sizeof part);
+        }
+    }
+    int of_kit = least > QUARTER_TONE ? kit_drum(drums, key, stroke, note) : -1;
+    if (of_kit >= 0)
+        return of_kit;
+    *note = (midi_stroke){.key = key};
+    *stroke = (himc_stroke){.hand = HIMC_HAND_ANY, .spot = HIMC_SPOT_NORMAL};
+    memcpy(stroke->part, nearest, sizeof nearest);
+    if (found < 0)
+        himc_error_set(error, "note: %d%s%s: no drum has that pitch, no instrument that key", key,
+                       himc_midi_key_sound(key)[0] ? ", " : "", himc_midi_key_sound(key));
+    return found;
+}
+
+bool himc_performance_note(himc_performance *p, const himc_command *c, int delay, himc_error *error)
+{
+    himc_command hit = {.id = HIMC_COMMAND_HIT}, pedal;
+    midi_stroke note;
+    double velocity = c->atom[1].number, latency = p->settings.latency * p->clock.sample_rate;
+    int index, after = delay + (int)latency - himc_clock_ahead(&p->clock);
+    if (!himc_performance_ensure_drum(p, "", HIMC_SPOT_NORMAL, &index, error))
+        return false;
+    index = find_key(p, (int)lround(c->atom[0].number), &hit.stroke, &note, error);
+    if (index < 0)
+        return velocity == 0; // what did not sound ends without a word
+    drum_slot *slot = &p->drums.slot[index];
+    slot->keys = velocity > 0 ? slot->keys + 1 : slot->keys > 0 ? slot->keys - 1 : 0;
+    bool lays = velocity == 0 && slot->keys == 0 && p->settings.noteoff == HIMC_NOTEOFF_DAMP;
+    if (velocity > 0 || lays)
+        himc_drum_lay(slot->drum, after > 0 ? after : 0, lays);
+    if (velocity == 0)
+        return true;
+    if (himc_drum_hats(slot->drum) && note.pedal != MIDI_AS_IT_IS) {
+        himc_atom pressed = {HIMC_ATOM_NUMBER, note.pedal == MIDI_CLOSE, NULL};
+        if (!himc_command_parse(&pedal, HIMC_DRUM, "pedal", &pressed, 1, error) ||
+            !himc_drum_command(slot->drum, &pedal, error))
+            return false;
+    }
+    hit.stroke.nuance = c->count > 2 ? (himc_nuance)c->choice[2] : HIMC_LEGATO;
+    hit.stroke.dynamic = himc_midi_dynamic(velocity, 0);
+    himc_format(hit.stroke.drum, sizeof hit.stroke.drum, "%s", himc_drum_name(slot->drum));
+    return himc_performance_command(p, &hit, delay, error);
 }
 
 bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *error)

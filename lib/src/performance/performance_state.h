@@ -176,6 +176,9 @@ HIMC_RT void himc_performance_name_drum(const himc_performance *p, himc_stroke *
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum);
 himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
+/// The command `note`.
+bool himc_performance_note(himc_performance *p, const himc_command *command, int delay,
+                           himc_error *error);
 /// How many units it would add; -1 with the reason.
 int himc_performance_count_units(const himc_command *command, const himc_take_options *options,
                                  himc_error *error);
