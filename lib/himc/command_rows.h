@@ -122,10 +122,12 @@ HIMC_COMMAND_ROW(
     AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
     "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, pedal, "
     "damp, muffle, decay or glide; or pushes the performer")
-HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
-                 "sets the tempo, 100 by default, from that beat or from now on")
-HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
-                 "1: the score begins again after its last whole beat")
+HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT] | BPM BPM LENGTH [BEAT]",
+                 "sets the tempo, 100 by default, from that beat or from now on; or moves it evenly "
+                 "to another in LENGTH beats")
+HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH | FROM TO",
+                 "1: the score begins again after its last whole beat; FROM TO: its beats from one "
+                 "up to the other are repeated; 0: the round under way is the last")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
                  "forgets the score and all queued strokes")
 HIMC_COMMAND_ROW(PLAY, play, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",

@@ -33,7 +33,7 @@ static const char *const plates[] = {HIMC_PLATES(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
-    {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
+    {"BEAT|FROM|TO", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
     {"HAND", "hit", HIMC_ARGUMENT_WORD, 0, 0, "", hit_hands},
     {"HAND", "stroke", HIMC_ARGUMENT_WORD, 0, 0, "", stroke_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
@@ -113,7 +113,7 @@ static const himc_argument arguments[] = {
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
     {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},
     {"SEED", NULL, HIMC_ARGUMENT_COUNT, 0, HIMC_SEED_MAX, "", NULL},
-    {"LENGTH", "roll", HIMC_ARGUMENT_NUMBER, 0.05, 1000, "beats", NULL},
+    {"LENGTH", "roll|tempo|cresc", HIMC_ARGUMENT_NUMBER, 0.05, 1000, "beats", NULL},
     {"LENGTH|WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
     {"CHANNELS|CHANNEL", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},
     {"ELEVATION", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_ELEVATION_MAX, "rad", NULL},

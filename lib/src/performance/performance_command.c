@@ -6,6 +6,7 @@
 #include "base/argument.h"
 #include "performance/performance_state.h"
 
+#define LEAST_LOOP 0.1     // chosen: a stroke of one hand at 150 beats a minute (beats)
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
 
 // a setting, and what follows from its change
@@ -124,6 +125,7 @@ static bool carry_out(himc_performance *p, const himc_command *c, himc_error *er
 static bool act_on_score(himc_performance *p, const himc_command *c, himc_error *error)
 {
     const himc_atom *atom = c->atom;
+    himc_tempo_ramp ramp;
     himc_planner *planner = p->motion->planner;
     switch (c->id) {
     case HIMC_COMMAND_STROKE:
@@ -141,11 +143,19 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
     case HIMC_COMMAND_NUDGE: return himc_performance_nudge(p->motion->track, c, error);
     case HIMC_COMMAND_TEMPO:
         himc_motion_replan(p->motion);
-        return c->count == 1
-                   ? himc_performance_set_tempo(p, atom[0].number, error)
-                   : himc_planner_add_tempo(
-                         planner, &(himc_tempo_change){atom[1].number, atom[0].number}, error);
-    case HIMC_COMMAND_LOOP: himc_planner_loop(planner, step_time(p), atom[0].number != 0); break;
+        ramp = himc_score_read_tempo(c);
+        return c->count == 1 ? himc_performance_set_tempo(p, atom[0].number, error)
+                             : himc_planner_add_tempo(planner, &ramp, error);
+    case HIMC_COMMAND_LOOP:
+        if (c->count == 1) {
+            himc_planner_loop(planner, step_time(p), atom[0].number != 0);
+            break;
+        }
+        if (!himc_check_range("loop: TO", atom[1].number, atom[0].number + LEAST_LOOP, 1e6,
+                              "beats", error))
+            return false;
+        himc_planner_loop_beats(planner, step_time(p), atom[0].number, atom[1].number);
+        break;
     case HIMC_COMMAND_SEEK: himc_planner_seek(planner, step_time(p), atom[0].number); break;
     case HIMC_COMMAND_CLEAR:
         himc_planner_clear(planner);

@@ -127,6 +127,14 @@ static void tell_push(const planned_push *push, const himc_line_sink *to)
     himc_state_end(&line, to);
 }
 
+static void tell_loop(const himc_planner *planner, const himc_line_sink *to)
+{
+    double beats[] = {himc_planner_loop_begin(planner), himc_planner_length(planner)},
+           on = himc_planner_is_looped(planner);
+    bool some = himc_planner_loops_beats(planner);
+    himc_state_tell(to, "loop", NULL, some ? 2 : 1, some ? beats : &on);
+}
+
 // what is told, in this order
 typedef enum dump_part {
     NAMES,
@@ -194,8 +202,7 @@ static int tell_item(const himc_performance *p, dump_part part, int i, const him
         return count;
     }
     case LOOP:
-        himc_state_tell(to, "loop", NULL, 1,
-                        (double[]){himc_planner_is_looped(p->motion->planner)});
+        tell_loop(p->motion->planner, to);
         return 1;
     case PUSHES:
         if (i < p->body->planned_count)

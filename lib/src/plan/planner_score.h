@@ -72,6 +72,7 @@ typedef struct planner_score {
     bool loop;
     bool empties; ///< the loop turns without strokes: with the first ones it begins again
     double count; ///< then, until it begins: time of beat 0 of the beats before; else NaN (s)
+    double from, to; ///< beats that the loop repeats; `to` infinite: all
     int rounds;   ///< without loop: the last round to be played
     int starts;   ///< of the transport, so far
     int past;     ///< rounds of the loop played before round 0
@@ -158,6 +159,14 @@ HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
                                        const planner_place *place);
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
                                            const planner_place *place);
+
+/// The beats that a loop repeats, and the first stroke of a hand there.
+HIMC_RT double himc_planner_loop_end(const planner_score *score);
+HIMC_RT int himc_planner_loop_first(const planner_score *score, const planner_part *part);
+/// That round of a loop of some beats is the last: the hands will play what follows them.
+HIMC_RT void himc_planner_score_leave_loop(planner_score *score, int last);
+/// True if a round plays what is at that beat: a loop repeats only some beats.
+HIMC_RT bool himc_planner_loop_has(const planner_score *score, int round, double beat);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);

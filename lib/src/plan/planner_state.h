@@ -134,6 +134,8 @@ struct himc_planner {
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
     planner_clear clear;
+    himc_tempo_ramp ramp; ///< under way in a loop, whose rounds are shorter; `beat` of all rounds
+    int ramp_steps;       ///< of it that have begun
     int hits;        ///< since the last `clear` or change of `human`
     double changed;  ///< plans are others from here on than when last rehearsed (s)
     double now;      ///< of the last advance (s)
@@ -162,6 +164,10 @@ HIMC_RT void himc_planner_vary(const himc_planner *planner, timed_stroke *stroke
 /// Where a hand rests (m): over its drum or, out of its reach, over the first one
 /// in reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
+
+// planner.c, which himc_planner_advance calls
+/// The next step of `ramp`, if it is due.
+HIMC_RT void himc_planner_follow_ramp(himc_planner *planner);
 
 // planner_motion.c
 /// Drums, reach or first strokes have changed: the hands rest elsewhere.

@@ -15,11 +15,13 @@
 #include "base/text.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 // chosen: more than a day of drumming, and small enough for any machine's memory
 #define SCORE_LINES_MAX 10000
+#define RAMP_STEPS 4 // of a ramp of tempo, in a beat; chosen: strokes are rarely between
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 #define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 14 a second
 
@@ -78,16 +80,53 @@ void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_ch
     ++*count;
 }
 
+himc_tempo_ramp himc_score_read_tempo(const himc_command *c)
+{
+    bool ramp = c->form == 1;
+    int at = ramp ? 3 : 1;
+    return (himc_tempo_ramp){.beat = c->count > at ? c->atom[at].number : -1,
+                             .from = c->atom[0].number,
+                             .to = c->atom[ramp].number,
+                             .length = ramp ? c->atom[2].number : 0};
+}
+
+int himc_score_ramp_steps(const himc_tempo_ramp *ramp)
+{
+    return (int)ceil(ramp->length * RAMP_STEPS);
+}
+
+double himc_score_ramp_bpm(const himc_tempo_ramp *ramp, int step)
+{
+    double way = (ramp->to - ramp->from) / himc_score_ramp_steps(ramp);
+    double a = ramp->from + way * step, b = a + way;
+    return a == b ? a : (b - a) / log(b / a);
+}
+
+void himc_score_insert_ramp(himc_tempo_change *tempi, int *count, const himc_tempo_ramp *ramp)
+{
+    int steps = himc_score_ramp_steps(ramp), kept = 0;
+    for (int i = 0; i < *count; i++) // all but what is within
+        if (tempi[i].beat <= ramp->beat || tempi[i].beat >= ramp->beat + ramp->length)
+            tempi[kept++] = tempi[i];
+    *count = kept;
+    for (int i = 0; i < steps; i++)
+        himc_score_insert_tempo(tempi, count,
+                                (himc_tempo_change){ramp->beat + ramp->length * i / steps,
+                                                    himc_score_ramp_bpm(ramp, i)});
+    himc_score_insert_tempo(tempi, count,
+                            (himc_tempo_change){ramp->beat + ramp->length, ramp->to});
+}
+
 static bool add_tempo(reader *r)
 {
     himc_score *score = r->score;
-    const himc_atom *atom = r->now.command.atom;
-    double beat = r->now.command.count > 1 ? atom[1].number : 0;
-    if (!himc_array_grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi,
-                         r->error))
-        return false;
-    himc_score_insert_tempo(score->tempi, &score->tempo_count,
-                            (himc_tempo_change){beat, atom[0].number});
+    himc_tempo_ramp ramp = himc_score_read_tempo(&r->now.command);
+    ramp.beat = fmax(ramp.beat, 0);
+    while (r->tempo_room <= score->tempo_count + himc_score_ramp_steps(&ramp))
+        if (!himc_array_grow(&score->tempi, r->tempo_room, &r->tempo_room, sizeof *score->tempi,
+                             r->error))
+            return false;
+    himc_score_insert_ramp(score->tempi, &score->tempo_count, &ramp);
     return score->tempo_count <= SCORE_LINES_MAX ||
            himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
 }
