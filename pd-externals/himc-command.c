@@ -281,6 +281,59 @@ static bool himc_tilde_waits(t_himc *x, const himc_command *command)
     return true;
 }
 
+/* A key with its velocity, or alone as the left outlet of [notein] gives it, or a byte of
+[midirealtimein]: the command's name and atoms; NULL for a byte that asks for nothing. */
+static t_symbol *himc_tilde_midi(t_himc *x, int *argc, t_atom **argv, t_atom own[2])
+{
+    enum { TICK = 248, START = 250, CONTINUE, STOP };
+    int byte = (int)(*argv)->a_w.w_float;
+    if (byte < TICK) {
+        own[0] = **argv;
+        SETFLOAT(own + 1, x->x_velocity);
+        *argv = *argc == 1 ? own : *argv;
+        *argc = *argc == 1 ? 2 : *argc;
+        return gensym("note");
+    }
+    *argv = own;
+    *argc = byte != TICK;
+    if (byte != TICK && (byte < START || byte > STOP))
+        return NULL;
+    SETSYMBOL(own, gensym(byte == START ? "start" : byte == STOP ? "stop" : "continue"));
+    return gensym("clock");
+}
+
+/* gliss DRUM PITCH BEATS: DRUM gliss PITCH SECONDS, at the tempo now. */
+static bool himc_tilde_gliss(t_himc *x, const himc_command *asked, himc_error *error)
+{
+    double seconds = asked->atom[2].number * 60 / himc_performance_measure(x->x_performance).bpm;
+    himc_atom atoms[] = {asked->atom[1], {HIMC_ATOM_NUMBER, seconds, NULL}};
+    himc_command gliss;
+    return himc_command_parse(&gliss, HIMC_DRUM, "gliss", atoms, 2, error) &&
+           himc_tilde_command_drum(x, asked->atom[0].symbol, &gliss, error);
+}
+
+/* WHAT VALUE, from the lines of all values. */
+static bool himc_tilde_get(t_himc *x, const char *what, himc_error *error)
+{
+    t_answer all = {NULL}, known = {NULL};
+    bool found = false;
+    size_t length = strlen(what);
+    himc_performance_describe(x->x_performance, HIMC_DESCRIBE_VALUES, answer_line, &all);
+    for (char *line = all.a_text, *end; line && (end = strchr(line, '\n')); line = end + 1) {
+        *end = '\0';
+        if (strncmp(line, what, length) != 0 || (line[length] && line[length] != ' '))
+            continue;
+        found = true;
+        answer_line(&known, line + length);
+    }
+    free(all.a_text);
+    answer_send(&known, x->x_messages, what);
+    return found || himc_error_set(error,
+                                   "get: WHAT: %s, expected a setting, tempo, beat, state, drums, "
+                                   "loop, room, listener or mute",
+                                   what);
+}
+
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
@@ -289,15 +342,11 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         return saved_switch(&x->x_saves, argc, argv, error);
     if (s == &s_bang)
         s = gensym("play");
-    t_atom note[2];
-    if (argc > 0 && argv->a_type == A_FLOAT && (s == &s_float || s == &s_list)) {
-        s = gensym("note"); /* a key, as [notein] sends it */
-        if (argc == 1) {
-            note[0] = *argv;
-            SETFLOAT(note + 1, x->x_velocity);
-            argc = 2, argv = note;
-        }
-    }
+    t_atom midi[2];
+    if (argc > 0 && argv->a_type == A_FLOAT && (s == &s_float || s == &s_list))
+        s = himc_tilde_midi(x, &argc, &argv, midi);
+    if (!s)
+        return true;
     if (argc > 0 && argv->a_type == A_SYMBOL && himc_tilde_has_drum(x, s->s_name))
         return (command_from_pd(&command, HIMC_DRUM, argv->a_w.w_symbol, argc - 1, argv + 1,
                                 error) ||
@@ -314,6 +363,12 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         himc_performance_describe(x->x_performance, HIMC_DESCRIBE_INFO, himc_tilde_line, x);
         return true;
     }
+    if (command.id == HIMC_COMMAND_GET) {
+        himc_tilde_resolve(x, false);
+        return himc_tilde_get(x, command.atom[0].symbol, error);
+    }
+    if (command.id == HIMC_COMMAND_DRUM_GLISS) /* of [membrane~ DRUM], as its own command */
+        return himc_tilde_gliss(x, &command, error);
     if (command.id == HIMC_COMMAND_DUMP && command.count == 0) {
         himc_tilde_resolve(x, false);
         t_answer answer = {NULL};

@@ -36,6 +36,8 @@ typedef struct t_himc {
     bool x_spoilt, x_told;       /* a target was not a number; the user has been told */
     t_sample *x_in[COORDINATES]; /* targets of the tips (m) */
     t_sample *x_out[HIMC_HANDS];
+    t_sample *x_phasor, *x_beat; /* phase of a beat that leads, and of the performer's own */
+    double x_led, x_phase;       /* the last of them */
     double x_force[HIMC_HANDS][FORCE_RING];
 
     himc_loader *x_loader; /* for commands that take long, of messages and of the network */

@@ -112,6 +112,9 @@ HIMC_COMMAND_ROW(
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [PART] [DRUM]",
     "adds a roll, from one dynamic to another: single strokes of both hands, or, as drummers "
     "play it, strokes that bounce once (double) or until the next (press)")
+HIMC_COMMAND_ROW(CRESC, cresc, PERFORMER, NOW, 0, "BEAT LENGTH DYNAMIC DYNAMIC",
+                 "moves the dynamic of strokes and rolls that have `-` for theirs evenly from one "
+                 "to another, which then holds; as a message before them")
 HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with a grace note by the other hand")
 HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
@@ -122,6 +125,9 @@ HIMC_COMMAND_ROW(
     AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
     "moves a drum's pedal or lays a hand on it at a beat: tune, gliss, tension, pedal, "
     "damp, muffle, decay or glide; or pushes the performer")
+HIMC_COMMAND_ROW(DRUM_GLISS, gliss, PERFORMER, NOW, HIMC_NOT_IN_SCORE,
+                 "DRUM HZ LENGTH | DRUM NOTE LENGTH",
+                 "moves a drum's pedal evenly to that pitch in LENGTH beats, now")
 HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT] | BPM BPM LENGTH [BEAT]",
                  "sets the tempo, 100 by default, from that beat or from now on; or moves it evenly "
                  "to another in LENGTH beats")
@@ -144,6 +150,10 @@ HIMC_COMMAND_ROW(NUDGE, nudge, PERFORMER, NOW, 0, "HAND TIME SPAN X Y Z",
                  "before and after; strikes stay strikes")
 HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
                  "cuts strokes out of a take and plays them instead of the built-in ones")
+HIMC_COMMAND_ROW(CLOCK, clock, PERFORMER, AT_SAMPLE, HIMC_NOT_IN_SCORE,
+                 "[PHASE] | start|continue|stop",
+                 "a tick of MIDI's clock, 24 a beat, its start, going on and stop; or where in its "
+                 "beat a phasor is: tempo and beat follow, as `sync` says")
 HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",
                  "moves a drumstick's tip to a point; it follows a stream of targets")
 
@@ -204,6 +214,11 @@ HIMC_SETTING_ROW(
     "as that allows; auto: 330, so that all but vertical accents from f on are as strong as "
     "written; 0: each as soon as it can")
 
+HIMC_SETTING_ROW(SYNC, sync, AT_SAMPLE, "midi|phase|off", word, sync, "midi", NOTHING,
+                 "midi: tempo and beat follow the ticks of `clock`; phase: its PHASE, in Pure Data "
+                 "the signal of the last inlet; off: none")
+HIMC_SETTING_ROW(SUBDIVIDE, subdivide, AT_SAMPLE, "PARTS", numbers, subdivide, "1", NOTHING,
+                 "tells so many parts of each beat: `beat 2.5`")
 HIMC_SETTING_ROW(NOTEOFF, noteoff, AT_SAMPLE, "ring|damp", word, noteoff, "ring", NOTHING,
                  "the end of a `note`: damp lays a hand on what rings, ring lets it ring")
 
@@ -220,6 +235,9 @@ HIMC_COMMAND_ROW(MUTE, mute, PERFORMER, AT_SAMPLE, 0, "SWITCH",
                  "1: silences all drums, which play on unheard")
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
                  "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
+HIMC_COMMAND_ROW(GET, get, PERFORMER, HOST, HIMC_NOT_IN_SCORE, "WHAT",
+                 "answers with a setting, as the command that sets it, or with tempo, beat, state, "
+                 "drums, loop, room, listener, mute")
 HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")
 HIMC_COMMAND_ROW(DUMP, dump, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
                  "answers with the state as commands that make it again, or writes it to a file, "

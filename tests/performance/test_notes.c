@@ -210,7 +210,7 @@ static void test_beats_that_repeat_are_equal_strokes(void)
         TEST_ASSERT_TRUE(i == before || h.strike[i].beat <= 4 || h.strike[i].beat == h.strike[i - 1].beat + 0.5);
     TEST_ASSERT_GREATER_THAN_INT(before + 13, h.strikes);
     TEST_ASSERT_FALSE(session_try(p, "loop 4 2"));
-    TEST_ASSERT_EQUAL_STRING("loop: TO: 2 beats, expected 4.1 .. 1e+06", error.text);
+    TEST_ASSERT_EQUAL_STRING("loop: TO: 2 beats, expected 4.1 .. 1e+06 beats", error.text);
     heard_free(&h);
     himc_performance_free(p);
 }

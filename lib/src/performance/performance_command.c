@@ -4,6 +4,7 @@
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
 /// cannot be carried out changes nothing and gives the reason in one line.
 #include "base/argument.h"
+#include "base/format.h"
 #include "performance/performance_state.h"
 
 #define LEAST_LOOP 0.1     // chosen: a stroke of one hand at 150 beats a minute (beats)
@@ -133,6 +134,8 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
     case HIMC_COMMAND_FLAM:
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF: return himc_performance_add_stroke(p, &c->stroke, error);
+    case HIMC_COMMAND_CLOCK: return himc_performance_clock(p, c, error);
+    case HIMC_COMMAND_CRESC: return himc_dynamics_add(&p->written.dynamics, c, error);
     case HIMC_COMMAND_HIT: return himc_performance_hit(p, &c->stroke, error);
     case HIMC_COMMAND_PLAY: return himc_performance_play(p, error);
     case HIMC_COMMAND_STOP: himc_performance_stop(p); return true;
@@ -161,6 +164,7 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
         himc_planner_clear(planner);
         himc_feet_clear(&p->motion->feet);
         himc_text_clear(&p->written.score);
+        p->written.dynamics.count = 0;
         himc_drums_drop_heads(&p->drums);
         himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
         break;
@@ -190,6 +194,7 @@ static bool act(himc_performance *p, const himc_command *c, himc_error *error)
         return himc_performance_find_drum(p, c->atom[0].symbol) || carry_out(p, c, error);
     case HIMC_COMMAND_INFO: // the host answers, with himc_performance_describe; also without a file
     case HIMC_COMMAND_DUMP: return c->count == 0 || carry_out(p, c, error);
+    case HIMC_COMMAND_GET:
     case HIMC_COMMAND_SUBSCRIBE:
     case HIMC_COMMAND_UNSUBSCRIBE:
     case HIMC_COMMAND_LISTEN:
@@ -253,6 +258,15 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     }
     if (row->receiver != HIMC_PERFORMER)
         return himc_error_set(error, "a drum's command, not the performer's");
+    if (command->id == HIMC_COMMAND_DRUM_GLISS) {
+        double seconds = command->atom[2].number * 60 / himc_performance_measure(p).bpm;
+        himc_atom atoms[] = {command->atom[1], {HIMC_ATOM_NUMBER, seconds, NULL}};
+        himc_command gliss;
+        if (!himc_command_parse(&gliss, HIMC_DRUM, "gliss", atoms, 2, error))
+            return false;
+        himc_format(gliss.drum, sizeof gliss.drum, "%s", command->atom[0].symbol);
+        return himc_performance_command(p, &gliss, delay, error);
+    }
     if (command->id == HIMC_COMMAND_NOTE)
         return himc_performance_note(p, command, delay, error);
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates

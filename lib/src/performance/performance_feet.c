@@ -104,6 +104,7 @@ static bool launch(performance_feet *feet, const foot_stroke *s, performance_dru
         feet->told[kick] = *s;
         feet->launched++;
         *last = (foot_last){at, s->drum + 1};
+        himc_events_prepare(events, at, HIMC_FOOT, himc_drum_name(drum));
         return true;
     }
     himc_strike missed = {

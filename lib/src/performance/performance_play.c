@@ -23,6 +23,12 @@
 #define OUT_OF_REACH 0.01 // (m)
 #define BEHIND (-0.2)     // forward over sideways: further back is behind the performer
 
+// a clock that is followed; chosen
+#define SYNC_STEP 0.012  // it is not looked at sooner again (s): 200 beats a minute of MIDI
+#define SYNC_GAP 1.0     // after that it is another one (s)
+#define SYNC_LEAST 6     // looks from which its tempo is known
+#define SYNC_SAME 0.003  // so little another tempo is the same: 1.5 ms in half a second
+
 #define QUARTER_TONE 0.5 // a pitch is a MIDI key's within that (semitones)
 
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
@@ -112,8 +118,10 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *written
     return true;
 }
 
-bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *asked, himc_error *error)
 {
+    himc_stroke own = *asked, *stroke = &own;
+    himc_dynamics_give(&p->written.dynamics, stroke);
     if (!himc_written_room(&p->written.score, "stroke", error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_put_stroke(p, stroke, error))
@@ -203,7 +211,9 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     himc_stroke own = *stroke;
     himc_hit asked = {.stroke = &own};
     himc_planner *planner = p->motion->planner;
-    if (!check_stroke(stroke, true, error))
+    own.beat = fmax(himc_motion_score_beat(p->motion, step_time(p)), 0);
+    himc_dynamics_give(&p->written.dynamics, &own);
+    if (!check_stroke(&own, true, error))
         return false;
     // to the hands that no take moves
     double now = step_time(p);
@@ -355,6 +365,71 @@ bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *err
     himc_planner_tempo(p->motion->planner, step_time(p), bpm);
     himc_motion_replan(p->motion);
     return true;
+}
+
+// the score's beat through all rounds of a loop
+static double total_beat(const himc_performance *p, double t)
+{
+    const himc_planner *planner = p->motion->planner;
+    double round = himc_planner_length(planner) - himc_planner_loop_begin(planner);
+    return himc_planner_beat(planner, t) + (double)himc_planner_round(planner, t) * round;
+}
+
+// Sees the clock at its beat: the tempo becomes the clock's, and so much faster or slower that the
+// beats meet within one.
+static bool see_clock(himc_performance *p, double t, bool absolute, himc_error *error)
+{
+    performance_sync *s = &p->sync;
+    long first = s->count < SYNC_TICKS ? 0 : s->count - SYNC_TICKS, last = s->count - 1;
+    double since = last < 0 ? INFINITY : t - s->seen[last % SYNC_TICKS].time;
+    if (since < SYNC_STEP)
+        return true;
+    if (since > SYNC_GAP)
+        first = s->count = 0;
+    double beats = s->beat - s->seen[first % SYNC_TICKS].beat,
+           seconds = t - s->seen[first % SYNC_TICKS].time;
+    bool known = s->count >= SYNC_LEAST && beats > 0;
+    s->seen[s->count % SYNC_TICKS].time = t;
+    s->seen[s->count++ % SYNC_TICKS].beat = s->beat;
+    if (!known)
+        return true;
+    double ahead = himc_planner_beat(p->motion->planner, t) < 0 ? 0 : s->beat - total_beat(p, t);
+    if (!absolute)
+        ahead -= round(ahead);
+    double bpm = 60 * beats / seconds * (1 + fmin(fmax(ahead, -0.5), 0.5)),
+           now = himc_planner_bpm(p->motion->planner, t);
+    bpm = fmin(fmax(bpm, HIMC_BPM_MIN), HIMC_BPM_MAX);
+    return fabs(bpm - now) < SYNC_SAME * now || himc_performance_set_tempo(p, bpm, error);
+}
+
+bool himc_performance_clock(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    enum { START, CONTINUE, STOP };
+    performance_sync *s = &p->sync;
+    bool phase = c->form == 0 && c->count > 0;
+    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
+    double t = (double)sample / p->clock.sample_rate;
+    if (p->settings.sync != (phase ? HIMC_SYNC_PHASE : HIMC_SYNC_MIDI))
+        return true;
+    if (c->form == 0 && !phase) {
+        s->beat += 1.0 / SYNC_TICKS;
+        return see_clock(p, t, true, error);
+    }
+    if (phase) {
+        double way = c->atom[0].number - s->beat;
+        s->beat += way - round(way);
+        return see_clock(p, t, false, error);
+    }
+    if (c->choice[0] == STOP) {
+        himc_performance_stop(p);
+        return true;
+    }
+    if (c->choice[0] == START) {
+        s->beat = -1.0 / SYNC_TICKS; // the next tick is beat 0
+        s->count = 0;
+        himc_planner_seek(p->motion->planner, step_time(p), 0);
+    }
+    return himc_performance_play(p, error);
 }
 
 bool himc_performance_play(himc_performance *p, himc_error *error)

@@ -686,6 +686,11 @@ double himc_planner_beat(const himc_planner *planner, double t)
     return himc_planner_score_round_at(score, t) == 0 ? fmax(beat, score->beat) : beat;
 }
 
+double himc_planner_bpm(const himc_planner *planner, double t)
+{
+    return himc_planner_score_bpm(&planner->score, fmax(himc_planner_beat(planner, t), 0));
+}
+
 long himc_planner_round(const himc_planner *planner, double t)
 {
     return (long)planner->score.past + himc_planner_score_round_at(&planner->score, t);

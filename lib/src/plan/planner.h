@@ -240,6 +240,8 @@ HIMC_RT double himc_planner_yields(const himc_planner *planner, himc_hand hand, 
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
 /// begins again; when the score is over it goes on until `play`, `stop`, `seek` or `loop`.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
+/// Tempo at time `t` (beats per minute).
+HIMC_RT double himc_planner_bpm(const himc_planner *planner, double t);
 /// Round of the loop at time `t` since it began to play, from 0.
 HIMC_RT long himc_planner_round(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.

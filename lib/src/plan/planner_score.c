@@ -172,6 +172,11 @@ static int changes_to(const planner_score *score, double beat)
     return past;
 }
 
+double himc_planner_score_bpm(const planner_score *score, double beat)
+{
+    return score->tempi[changes_to(score, beat) - 1].bpm;
+}
+
 bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm)
 {
     int past = changes_to(score, beat);

@@ -132,6 +132,7 @@ void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *temp
 /// One tempo up to the first change after `beat`; in a loop that plays, only in place of the one
 /// valid at `beat`: the others are for later rounds.
 HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
+HIMC_RT double himc_planner_score_bpm(const planner_score *score, double beat);
 /// True if that would change nothing while playing.
 HIMC_RT bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm);
 /// Moves the origin so that `beat` is at `t`.
