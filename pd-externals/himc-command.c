@@ -106,7 +106,6 @@ static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
     if (!osc)
         return false;
     x->x_osc = osc;
-    himc_performance_on_tick(x->x_performance, himc_osc_tick, osc);
     clock_delay(x->x_network, NETWORK_PERIOD);
     return true;
 }
@@ -267,7 +266,9 @@ static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 {
     static const himc_stroke any = {.hand = HIMC_HAND_ANY};
     bool note = command->id == HIMC_COMMAND_NOTE && command->atom[1].number > 0;
-    const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke : note ? &any : NULL;
+    const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke
+                             : note                          ? &any
+                                                             : NULL;
     bool plays = hit || command->id == HIMC_COMMAND_PLAY || command->id == HIMC_COMMAND_TARGET ||
                  command->id == HIMC_COMMAND_PUSH;
     if (!plays || !silence_holds(&x->x_silence, note ? "note" : hit ? "hit" : NULL) || !hit)
@@ -300,6 +301,32 @@ static t_symbol *himc_tilde_midi(t_himc *x, int *argc, t_atom **argv, t_atom own
         return NULL;
     SETSYMBOL(own, gensym(byte == START ? "start" : byte == STOP ? "stop" : "continue"));
     return gensym("clock");
+}
+
+/* pose ARRAY: x y z (m) of the joint of each segment to its parent, and of both tips. */
+static bool himc_tilde_pose(t_himc *x, int argc, t_atom *argv, himc_error *error)
+{
+    t_garray *array;
+    int size;
+    t_word *points = array_find(&array, &size, argc, argv, POSE_NUMBERS, "pose", error);
+    if (!points)
+        return false;
+    for (int i = 0; i < POSE_NUMBERS; i++)
+        points[i].w_float = (t_float)x->x_pose[i];
+    garray_redraw(array);
+    return true;
+}
+
+void himc_tilde_body(void *object, const himc_tick *tick)
+{
+    t_himc *x = object;
+    if (x->x_osc)
+        himc_osc_tick(x->x_osc, tick);
+    for (int i = 0; i < HIMC_SEGMENTS + HIMC_HANDS; i++) {
+        int hand = i - HIMC_SEGMENTS;
+        himc_vec3 at = hand < 0 ? tick->body->origin[i] : tick->body->tip[hand];
+        memcpy(x->x_pose + 3 * i, (double[]){at.x, at.y, at.z}, 3 * sizeof(double));
+    }
 }
 
 /* gliss DRUM PITCH BEATS: DRUM gliss PITCH SECONDS, at the tempo now. */
@@ -338,6 +365,8 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
 {
     himc_command command;
     himc_tilde_restore(x);
+    if (s == gensym("pose"))
+        return himc_tilde_pose(x, argc, argv, error);
     if (s == gensym("save"))
         return saved_switch(&x->x_saves, argc, argv, error);
     if (s == &s_bang)

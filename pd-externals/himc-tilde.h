@@ -4,11 +4,13 @@ graph), himc-drums.c (the drums it finds by name), himc-command.c (its commands)
 #define HIMC_TILDE_H
 
 #include "drum-link.h"
+#include "himc/body.h"
 #include "himc/osc.h"
 #include "silence.h"
 
 #define FORCE_RING HIMC_DRUM_RING
-#define COORDINATES 6 /* of both tips: left x y z, right x y z */
+#define POSE_NUMBERS (3 * (HIMC_SEGMENTS + HIMC_HANDS)) /* places of joints and tips */
+#define COORDINATES 6                                   /* of both tips: left x y z, right x y z */
 
 typedef struct t_himc_drum {
     const char *d_name;
@@ -43,8 +45,9 @@ typedef struct t_himc {
     himc_loader *x_loader; /* for commands that take long, of messages and of the network */
     t_clock *x_load;       /* looks for what it has loaded */
 
-    himc_osc *x_osc;    /* NULL until `subscribe` or `listen` */
-    t_clock *x_network; /* looks for commands from there */
+    double x_pose[POSE_NUMBERS]; /* at the last task tick (m) */
+    himc_osc *x_osc;             /* NULL until `subscribe` or `listen` */
+    t_clock *x_network;          /* looks for commands from there */
     t_silence x_silence;
 
     bool x_saves;   /* its state in the patch */
@@ -73,6 +76,8 @@ int himc_tilde_block(void *player);
 
 /* Any message to the inlet. */
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv);
+/* A task tick: to the network, and kept for `pose`. */
+void himc_tilde_body(void *object, const himc_tick *tick);
 /* Writes the object into a patch, with its state if it keeps it there. */
 void himc_tilde_save(t_gobj *object, t_binbuf *to);
 /* The message that himc_tilde_save has written. */

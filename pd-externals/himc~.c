@@ -233,6 +233,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
         return NULL;
     }
     x->x_player.p_himc = x;
+    himc_performance_on_tick(x->x_performance, himc_tilde_body, x);
     x->x_player.p_block = himc_tilde_block;
     x->x_rate = config.sample_rate;
     x->x_count = argc;

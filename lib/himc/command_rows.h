@@ -102,10 +102,11 @@ HIMC_COMMAND_ROW(
 HIMC_COMMAND_ROW(HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
                  "plays a stroke so long after the message as `latency` says; any: with the hand "
                  "that suits better, on one drum in turns")
-HIMC_COMMAND_ROW(NOTE, note, PERFORMER, NOW, HIMC_AFTER_STROKES, "PITCH VELOCITY [NUANCE]",
-                 "plays a MIDI note as `hit any` does, on the drum or bar that sounds it, on the "
-                 "instrument of that General MIDI key, or on the nearest pitch; VELOCITY 0 ends it, "
-                 "as `noteoff` says")
+HIMC_COMMAND_ROW(
+    NOTE, note, PERFORMER, NOW, HIMC_AFTER_STROKES, "PITCH VELOCITY [NUANCE]",
+    "plays a MIDI note as `hit any` does, on the drum or bar that sounds it, on the "
+    "instrument of that General MIDI key, or on the nearest pitch; VELOCITY 0 ends it, "
+    "as `noteoff` says")
 HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [PART] [DRUM] | "
@@ -128,9 +129,10 @@ HIMC_COMMAND_ROW(
 HIMC_COMMAND_ROW(DRUM_GLISS, gliss, PERFORMER, NOW, HIMC_NOT_IN_SCORE,
                  "DRUM HZ LENGTH | DRUM NOTE LENGTH",
                  "moves a drum's pedal evenly to that pitch in LENGTH beats, now")
-HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT] | BPM BPM LENGTH [BEAT]",
-                 "sets the tempo, 100 by default, from that beat or from now on; or moves it evenly "
-                 "to another in LENGTH beats")
+HIMC_COMMAND_ROW(
+    TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT] | BPM BPM LENGTH [BEAT]",
+    "sets the tempo, 100 by default, from that beat or from now on; or moves it evenly "
+    "to another in LENGTH beats")
 HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH | FROM TO",
                  "1: the score begins again after its last whole beat; FROM TO: its beats from one "
                  "up to the other are repeated; 0: the round under way is the last")

@@ -106,12 +106,12 @@ bool himc_performance_set_rate(himc_performance *performance, double sample_rate
 
 /// The kinds of events.
 typedef enum himc_event_kind {
-    HIMC_EVENT_STRIKE, ///< a contact ended
-    HIMC_EVENT_BEAT,   ///< a whole beat began
-    HIMC_EVENT_DONE,   ///< the score's last contact has ended, or the take; no beat follows
-    HIMC_EVENT_NOTE,   ///< a line for the user: a stroke given up, a target out of reach
+    HIMC_EVENT_STRIKE,  ///< a contact ended
+    HIMC_EVENT_BEAT,    ///< a whole beat began
+    HIMC_EVENT_DONE,    ///< the score's last contact has ended, or the take; no beat follows
+    HIMC_EVENT_NOTE,    ///< a line for the user: a stroke given up, a target out of reach
     HIMC_EVENT_PREPARE, ///< the gesture of a stroke begins: hand, drum and time, of its contact
-    HIMC_EVENT_MISSED  ///< a stroke is not played: told as soon as it is known
+    HIMC_EVENT_MISSED   ///< a stroke is not played: told as soon as it is known
 } himc_event_kind;
 
 /// A contact of a stick with a drum.

@@ -18,7 +18,8 @@ static void test_a_note_plays_the_drum_that_sounds_it(void)
     static const struct {
         int key;
         const char *drum;
-    } notes[] = {{45, "second"}, {40, "low"}, {55, "high"}, {50, "third"}, {90, "high"}, {46, "second"}};
+    } notes[] = {{45, "second"}, {40, "low"},  {55, "high"},
+                 {50, "third"},  {90, "high"}, {46, "second"}};
     himc_performance *p = four_timpani();
     heard h = {0};
     for (int i = 0; i < 6; i++) {
@@ -55,7 +56,10 @@ static void test_keys_of_a_kit_are_those_of_general_midi(void)
     static const struct {
         int key;
         const char *drum, *nuance;
-    } notes[] = {{36, "kick", "legato"}, {38, "snare", "accent"}, {42, "hats", "legato"}, {49, "crash", "legato"}};
+    } notes[] = {{36, "kick", "legato"},
+                 {38, "snare", "accent"},
+                 {42, "hats", "legato"},
+                 {49, "crash", "legato"}};
     himc_performance *p = session_new();
     heard h = {0};
     session_do(p, "setup kit");
@@ -158,7 +162,8 @@ static void test_a_ramp_of_tempo_is_even_and_strokes_land_on_its_beats(void)
     play_beats(13, "tempo 60 120 8", NULL, 9, &h);
     TEST_ASSERT_EQUAL_INT(13, h.strikes);
     for (int i = 1; i < 13; i++)
-        TEST_ASSERT_DOUBLE_WITHIN(0.002, ramp(i) - ramp(i - 1), h.strike[i].time - h.strike[i - 1].time);
+        TEST_ASSERT_DOUBLE_WITHIN(0.002, ramp(i) - ramp(i - 1),
+                                  h.strike[i].time - h.strike[i - 1].time);
     heard_free(&h);
     play_beats(13, "tempo 60 120 8 2", NULL, 11, &h);
     TEST_ASSERT_EQUAL_INT(13, h.strikes);
@@ -190,7 +195,10 @@ static void test_beats_that_repeat_are_equal_strokes(void)
     session_do(p, "tempo 120");
     for (int i = 0; i < 16; i++)
         session_do(p, "stroke %g %s %s %s", 0.5 * i, i % 2 ? "left" : "right",
-                   i % 3 ? "legato" : "accent", i < 4 || i > 11 ? "ff" : i % 2 ? "p" : "mf");
+                   i % 3 ? "legato" : "accent",
+                   i < 4 || i > 11 ? "ff"
+                   : i % 2         ? "p"
+                                   : "mf");
     session_do(p, "roll 12 1 single p");
     session_do(p, "loop 2 4");
     session_do(p, "play");
@@ -209,7 +217,8 @@ static void test_beats_that_repeat_are_equal_strokes(void)
     TEST_ASSERT_TRUE(h.strike[h.strikes - 1].beat > 12);
     TEST_ASSERT_EQUAL_INT(1, h.dones);
     for (int i = before; i < h.strikes && h.strike[i].beat < 8; i++)
-        TEST_ASSERT_TRUE(i == before || h.strike[i].beat <= 4 || h.strike[i].beat == h.strike[i - 1].beat + 0.5);
+        TEST_ASSERT_TRUE(i == before || h.strike[i].beat <= 4 ||
+                         h.strike[i].beat == h.strike[i - 1].beat + 0.5);
     TEST_ASSERT_GREATER_THAN_INT(before + 13, h.strikes);
     TEST_ASSERT_FALSE(session_try(p, "loop 4 2"));
     TEST_ASSERT_EQUAL_STRING("loop: TO: 2 beats, expected 4.1 .. 1e+06 beats", error.text);
@@ -226,7 +235,9 @@ static void test_strokes_without_a_dynamic_follow_a_crescendo(void)
         for (int i = 0; i < 7; i++)
             snprintf(text + strlen(text), 60, "stroke %d right legato -; ", i);
         if (file)
-            session_score(p, "/tmp/himc-cresc.txt", strcat(text, "roll 8 2 single -; cresc 1 4 pp ff; cresc 8 2 f pp; play;"));
+            session_score(
+                p, "/tmp/himc-cresc.txt",
+                strcat(text, "roll 8 2 single -; cresc 1 4 pp ff; cresc 8 2 f pp; play;"));
         else {
             session_do(p, "drum kettle");
             session_do(p, "tempo 60");
@@ -296,10 +307,26 @@ static const char *get(himc_performance *p, const char *what)
 static void test_every_setting_can_be_asked_for_and_answers_what_was_set(void)
 {
     static const char *const set[] = {
-        "latency 200", "tempo 87.5", "noteoff damp", "sync off", "subdivide 3", "human 0.5 7",
-        "grip french servo", "coupling one-way", "mode id", "damping 0.25", "alive 1",
-        "weights 1 2 3 4", "law feedforward", "room 1.5 900", "mute 1", "loop 2 6",
-        "listener 1 2 0.5 0.25", "limits euler", "player 1.75 80", "stance seated",
+        "latency 200",
+        "tempo 87.5",
+        "noteoff damp",
+        "sync off",
+        "subdivide 3",
+        "human 0.5 7",
+        "grip french servo",
+        "coupling one-way",
+        "mode id",
+        "damping 0.25",
+        "alive 1",
+        "weights 1 2 3 4",
+        "law feedforward",
+        "room 1.5 900",
+        "mute 1",
+        "loop 2 6",
+        "listener 1 2 0.5 0.25",
+        "limits euler",
+        "player 1.75 80",
+        "stance seated",
     };
     himc_performance *p = four_timpani();
     for (size_t i = 0; i < sizeof set / sizeof *set; i++) {
@@ -413,7 +440,6 @@ static void test_tempo_and_beats_follow_a_clock(void)
         heard_free(&h);
     }
 }
-
 
 int main(void)
 {

@@ -529,7 +529,7 @@ bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
         run = himc_drum_until_gliss(drum, himc_drum_until_launch(drum, run));
         uint64_t now = drum->time + (uint64_t)made.count;
         if (now < drum->laid_until) // under a hand, sample by sample
-            run = now >= drum->laid_from                 ? 0
+            run = now >= drum->laid_from                  ? 0
                   : drum->laid_from - now < (uint64_t)run ? (int)(drum->laid_from - now)
                                                           : run;
         run = himc_contact_clear(drum->membrane, all, count, run);

@@ -154,8 +154,8 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
             himc_planner_loop(planner, step_time(p), atom[0].number != 0);
             break;
         }
-        if (!himc_check_range("loop: TO", atom[1].number, atom[0].number + LEAST_LOOP, 1e6,
-                              "beats", error))
+        if (!himc_check_range("loop: TO", atom[1].number, atom[0].number + LEAST_LOOP, 1e6, "beats",
+                              error))
             return false;
         himc_planner_loop_beats(planner, step_time(p), atom[0].number, atom[1].number);
         break;

@@ -201,9 +201,7 @@ static int tell_item(const himc_performance *p, dump_part part, int i, const him
                             (double[]){tempo->bpm, tempo->beat});
         return count;
     }
-    case LOOP:
-        tell_loop(p->motion->planner, to);
-        return 1;
+    case LOOP: tell_loop(p->motion->planner, to); return 1;
     case PUSHES:
         if (i < p->body->planned_count)
             tell_push(&p->body->planned[i], to);

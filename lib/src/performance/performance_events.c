@@ -9,8 +9,7 @@
 
 static bool has_strike(himc_event_kind kind)
 {
-    return kind == HIMC_EVENT_STRIKE || kind == HIMC_EVENT_MISSED ||
-           kind == HIMC_EVENT_PREPARE;
+    return kind == HIMC_EVENT_STRIKE || kind == HIMC_EVENT_MISSED || kind == HIMC_EVENT_PREPARE;
 }
 
 // bytes in the ring

@@ -64,12 +64,12 @@ typedef struct performance_motion {
     bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
-    bool over;                  ///< played to its end: its time goes on until `play` or `stop`
-    long last_beat, last_round; ///< that have been reported, the beat in its parts
-    double subdivide;           ///< so many parts of a beat are reported
+    bool over;                   ///< played to its end: its time goes on until `play` or `stop`
+    long last_beat, last_round;  ///< that have been reported, the beat in its parts
+    double subdivide;            ///< so many parts of a beat are reported
     double prepared[HIMC_HANDS]; ///< time of the last stroke whose gesture was reported (s)
-    bool counted;               ///< the last one was before a cleared loop begins again
-    double calm;                ///< no beat begins and no end comes before, if nothing changes (s)
+    bool counted;                ///< the last one was before a cleared loop begins again
+    double calm;                 ///< no beat begins and no end comes before, if nothing changes (s)
 } performance_motion;
 
 /// Motion from time 0 without a body: himc_motion_build gives it one. NULL without memory.

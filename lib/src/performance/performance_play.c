@@ -24,10 +24,10 @@
 #define BEHIND (-0.2)     // forward over sideways: further back is behind the performer
 
 // a clock that is followed; chosen
-#define SYNC_STEP 0.012  // it is not looked at sooner again (s): 200 beats a minute of MIDI
-#define SYNC_GAP 1.0     // after that it is another one (s)
-#define SYNC_LEAST 6     // looks from which its tempo is known
-#define SYNC_SAME 0.003  // so little another tempo is the same: 1.5 ms in half a second
+#define SYNC_STEP 0.012 // it is not looked at sooner again (s): 200 beats a minute of MIDI
+#define SYNC_GAP 1.0    // after that it is another one (s)
+#define SYNC_LEAST 6    // looks from which its tempo is known
+#define SYNC_SAME 0.003 // so little another tempo is the same: 1.5 ms in half a second
 
 #define QUARTER_TONE 0.5 // a pitch is a MIDI key's within that (semitones)
 

@@ -18,7 +18,8 @@
 
 bool himc_planner_score_init(planner_score *score)
 {
-    *score = (planner_score){.tempi = malloc(sizeof *score->tempi), .tempo_count = 1, .until = -1, .to = HUGE_VAL};
+    *score = (planner_score){
+        .tempi = malloc(sizeof *score->tempi), .tempo_count = 1, .until = -1, .to = HUGE_VAL};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_planner_score_clear(score, (himc_hand)hand);
     if (score->tempi)
@@ -445,9 +446,10 @@ double himc_planner_score_gap(const planner_score *score, himc_hand hand, int ro
         least = last >= 0 ? gap(score, part->list[last].stroke.beat, beat)
                           : gap(score, part->list[part->count - 1].stroke.beat, length) +
                                 gap(score, score->from, beat);
-        least = fmin(least, next < part->count ? gap(score, beat, part->list[next].stroke.beat)
-                                               : gap(score, beat, length) +
-                                                     gap(score, score->from, part->list[0].stroke.beat));
+        least = fmin(least, next < part->count
+                                ? gap(score, beat, part->list[next].stroke.beat)
+                                : gap(score, beat, length) +
+                                      gap(score, score->from, part->list[0].stroke.beat));
     }
     himc_planner_roll_near(score, hand, round, beat, &before, &after);
     if (before >= 0)
@@ -498,10 +500,9 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
     if (beat < 0 && walk->round > -score->past) {
         walk->before = himc_planner_score_total_beat(score, --walk->round, 0);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            walk->at[hand] = himc_planner_part_after(&score->part[hand],
-                                                     himc_planner_loop_end(score), true);
-        walk->rolls =
-            himc_planner_roll_walk(score, walk->round, himc_planner_loop_end(score));
+            walk->at[hand] =
+                himc_planner_part_after(&score->part[hand], himc_planner_loop_end(score), true);
+        walk->rolls = himc_planner_roll_walk(score, walk->round, himc_planner_loop_end(score));
         beat = beat_back(score, walk);
     }
     if (beat < 0)

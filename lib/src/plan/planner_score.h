@@ -70,13 +70,13 @@ typedef struct planner_score {
     double origin; ///< time of beat 0 while playing or over (s)
     double beat;   ///< where play begins or began
     bool loop;
-    bool empties; ///< the loop turns without strokes: with the first ones it begins again
-    double count; ///< then, until it begins: time of beat 0 of the beats before; else NaN (s)
+    bool empties;    ///< the loop turns without strokes: with the first ones it begins again
+    double count;    ///< then, until it begins: time of beat 0 of the beats before; else NaN (s)
     double from, to; ///< beats that the loop repeats; `to` infinite: all
-    int rounds;   ///< without loop: the last round to be played
-    int starts;   ///< of the transport, so far
-    int past;     ///< rounds of the loop played before round 0
-    double until; ///< last beat of what the score has beside strokes, -1: none
+    int rounds;      ///< without loop: the last round to be played
+    int starts;      ///< of the transport, so far
+    int past;        ///< rounds of the loop played before round 0
+    double until;    ///< last beat of what the score has beside strokes, -1: none
     const himc_head_frame *drum; ///< places of all drums; borrowed; NULL: all in one place
 } planner_score;
 

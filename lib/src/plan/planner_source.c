@@ -31,8 +31,8 @@ static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
     // as written, also if it lands beside that
     const timed_stroke *planned = himc_planner_current_planned(&planner->hand[hand], t);
     if (planned)
-        next.lead = planned->goal.gesture.rise + planned->goal.gesture.dwell +
-                    planned->goal.gesture.down;
+        next.lead =
+            planned->goal.gesture.rise + planned->goal.gesture.dwell + planned->goal.gesture.down;
     next.spot = planned ? planned->stroke.spot : HIMC_SPOT_NORMAL;
     strcpy(next.nuance, himc_nuance_name(current.nuance));
     next.yields = himc_planner_yields(planner, hand, t);

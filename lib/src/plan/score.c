@@ -32,10 +32,10 @@ typedef struct reader {
     int stroke_room, tempo_room, line_room, change_room, order_room;
     himc_score_line now; ///< the current statement
     himc_dynamics dynamics;
-    const char *name;    ///< of the file
-    const char *folder;  ///< of the files that it names; NULL: any
-    bool setup;          ///< it is a set-up, which may not name another
-    int setup_line;      ///< of the score's only one; 0: it has none yet
+    const char *name;   ///< of the file
+    const char *folder; ///< of the files that it names; NULL: any
+    bool setup;         ///< it is a set-up, which may not name another
+    int setup_line;     ///< of the score's only one; 0: it has none yet
     himc_error *error;
 } reader;
 
@@ -115,8 +115,7 @@ void himc_score_insert_ramp(himc_tempo_change *tempi, int *count, const himc_tem
         himc_score_insert_tempo(tempi, count,
                                 (himc_tempo_change){ramp->beat + ramp->length * i / steps,
                                                     himc_score_ramp_bpm(ramp, i)});
-    himc_score_insert_tempo(tempi, count,
-                            (himc_tempo_change){ramp->beat + ramp->length, ramp->to});
+    himc_score_insert_tempo(tempi, count, (himc_tempo_change){ramp->beat + ramp->length, ramp->to});
 }
 
 bool himc_dynamics_add(himc_dynamics *d, const himc_command *c, himc_error *error)
