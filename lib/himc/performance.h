@@ -139,8 +139,9 @@ typedef struct himc_event {
     bool refused; ///< of HIMC_EVENT_NOTE: a command that could not be carried out on its sample
     double beat;  ///< of HIMC_EVENT_BEAT ...
     double time;  ///< ... and when it began (s, as of a strike)
-    /// Of HIMC_EVENT_STRIKE, in part of HIMC_EVENT_PREPARE, and of HIMC_EVENT_MISSED: as planned, velocity, force, impulse and
-    /// duration 0, the beat NaN of a hit.
+    /// Of HIMC_EVENT_STRIKE; of HIMC_EVENT_PREPARE time, hand and drum alone; and of
+    /// HIMC_EVENT_MISSED: as planned, velocity, force, impulse and duration 0, the beat NaN of a
+    /// hit.
     himc_strike strike;
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE; of _MISSED, why
 } himc_event;

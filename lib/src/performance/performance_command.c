@@ -237,9 +237,28 @@ static himc_job *state_job(himc_performance *p, const char *state, himc_error *e
 const himc_runner himc_performance_runner = {takes_long, himc_performance_command, job_of,
                                              state_job, drum_of};
 
+// True if a command stands for another one: a note for a hit, if anything, or a gliss in beats for
+// the drum's in seconds; `good` tells if it could.
+static bool becomes(himc_performance *p, const himc_command *c, int delay, himc_command *other,
+                    bool *good, himc_error *error)
+{
+    himc_atom atoms[] = {c->atom[1], {HIMC_ATOM_NUMBER, 0, NULL}};
+    if (c->id == HIMC_COMMAND_NOTE) {
+        other->id = HIMC_COMMAND_HIT;
+        *good = himc_performance_note(p, c, delay, &other->stroke, error);
+    } else if (c->id == HIMC_COMMAND_DRUM_GLISS) {
+        atoms[1].number = c->atom[2].number * 60 / himc_performance_measure(p).bpm;
+        *good = himc_command_parse(other, HIMC_DRUM, "gliss", atoms, 2, error);
+        himc_format(other->drum, sizeof other->drum, "%s", c->atom[0].symbol);
+    }
+    return c->id == HIMC_COMMAND_NOTE || c->id == HIMC_COMMAND_DRUM_GLISS;
+}
+
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
                               himc_error *error)
 {
+    himc_command other = {.count = 0};
+    bool can = false;
     const himc_command_row *row = himc_command_table((int)command->id);
     if (!row)
         return himc_error_set(error, "command %d: not from the parser", (int)command->id);
@@ -256,19 +275,11 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
                         : himc_drum_command(drum, command, error);
         return good || himc_error_prefix(error, "%s", command->drum);
     }
+    if (becomes(p, command, delay, &other, &can, error))
+        return can && ((!other.drum[0] && !other.stroke.drum[0]) ||
+                        himc_performance_command(p, &other, delay, error));
     if (row->receiver != HIMC_PERFORMER)
         return himc_error_set(error, "a drum's command, not the performer's");
-    if (command->id == HIMC_COMMAND_DRUM_GLISS) {
-        double seconds = command->atom[2].number * 60 / himc_performance_measure(p).bpm;
-        himc_atom atoms[] = {command->atom[1], {HIMC_ATOM_NUMBER, seconds, NULL}};
-        himc_command gliss;
-        if (!himc_command_parse(&gliss, HIMC_DRUM, "gliss", atoms, 2, error))
-            return false;
-        himc_format(gliss.drum, sizeof gliss.drum, "%s", command->atom[0].symbol);
-        return himc_performance_command(p, &gliss, delay, error);
-    }
-    if (command->id == HIMC_COMMAND_NOTE)
-        return himc_performance_note(p, command, delay, error);
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates
     if (delay <= 0 || row->when != HIMC_WHEN_AT_SAMPLE || on_beat)
         return act(p, command, error);

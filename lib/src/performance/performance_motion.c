@@ -455,6 +455,7 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
     m->body.shells.count = drums->count;
     for (int i = 0; i < drums->count; i++)
         m->body.shells.head[i] = *himc_drums_frame(drums, i);
+    himc_planner_follow_ramp(m->planner);
     himc_planner_advance(m->planner, t);
     himc_motion_stir(m);
     if (s->alive && !m->track) { // hands lie on heads that are damped; a take shows its own

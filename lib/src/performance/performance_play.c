@@ -328,15 +328,16 @@ static int find_key(const himc_performance *p, int key, himc_stroke *stroke, mid
     return found;
 }
 
-bool himc_performance_note(himc_performance *p, const himc_command *c, int delay, himc_error *error)
+bool himc_performance_note(himc_performance *p, const himc_command *c, int delay, himc_stroke *hit,
+                           himc_error *error)
 {
-    himc_command hit = {.id = HIMC_COMMAND_HIT}, pedal;
+    himc_command pedal;
     midi_stroke note;
     double velocity = c->atom[1].number, latency = p->settings.latency * p->clock.sample_rate;
     int index, after = delay + (int)latency - himc_clock_ahead(&p->clock);
     if (!himc_performance_ensure_drum(p, "", HIMC_SPOT_NORMAL, &index, error))
         return false;
-    index = find_key(p, (int)lround(c->atom[0].number), &hit.stroke, &note, error);
+    index = find_key(p, (int)lround(c->atom[0].number), hit, &note, error);
     if (index < 0)
         return velocity == 0; // what did not sound ends without a word
     drum_slot *slot = &p->drums.slot[index];
@@ -352,10 +353,10 @@ bool himc_performance_note(himc_performance *p, const himc_command *c, int delay
             !himc_drum_command(slot->drum, &pedal, error))
             return false;
     }
-    hit.stroke.nuance = c->count > 2 ? (himc_nuance)c->choice[2] : HIMC_LEGATO;
-    hit.stroke.dynamic = himc_midi_dynamic(velocity, 0);
-    himc_format(hit.stroke.drum, sizeof hit.stroke.drum, "%s", himc_drum_name(slot->drum));
-    return himc_performance_command(p, &hit, delay, error);
+    hit->nuance = c->count > 2 ? (himc_nuance)c->choice[2] : HIMC_LEGATO;
+    hit->dynamic = himc_midi_dynamic(velocity, 0);
+    himc_format(hit->drum, sizeof hit->drum, "%s", himc_drum_name(slot->drum));
+    return true;
 }
 
 bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *error)

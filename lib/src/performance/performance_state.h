@@ -192,9 +192,9 @@ himc_job *himc_performance_units_job(himc_performance *p, const himc_command *co
                                      himc_error *error);
 /// The command `clock`.
 bool himc_performance_clock(himc_performance *p, const himc_command *command, himc_error *error);
-/// The command `note`.
+/// The command `note`; what it plays becomes `hit`, if anything: it has a drum then.
 bool himc_performance_note(himc_performance *p, const himc_command *command, int delay,
-                           himc_error *error);
+                           himc_stroke *hit, himc_error *error);
 /// How many units it would add; -1 with the reason.
 int himc_performance_count_units(const himc_command *command, const himc_take_options *options,
                                  himc_error *error);

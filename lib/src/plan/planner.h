@@ -197,6 +197,8 @@ HIMC_RT bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, h
 /// The hand goes from there to where it rests; false if a stroke takes it away anyway.
 HIMC_RT bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand);
 
+/// The next step of a ramp of tempo in a loop, if it is due; call it before each advance.
+HIMC_RT void himc_planner_follow_ramp(himc_planner *planner);
 /// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
 /// backwards). Call at least every task period.
 HIMC_RT void himc_planner_advance(himc_planner *planner, double t);

@@ -683,7 +683,6 @@ void himc_planner_advance(himc_planner *planner, double t)
 {
     planner->now = fmax(planner->now, t);
     planner->begun = true;
-    himc_planner_follow_ramp(planner);
     if (planner->score.empties)
         fill_loop(planner);
     double now = planner->now;

@@ -656,6 +656,11 @@ double himc_planner_score_length(const planner_score *score)
     return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
 }
 
+double himc_planner_loop_end(const planner_score *score)
+{
+    return isfinite(score->to) ? score->to : himc_planner_score_length(score);
+}
+
 double himc_planner_score_round_length(const planner_score *score)
 {
     return himc_planner_score_seconds(score, himc_planner_loop_end(score)) -

@@ -4,8 +4,8 @@
 /// While playing, beat b is at the time origin + S(b), S being the sum of 60/bpm over the tempo
 /// map. A change of tempo at beat b replaces the map up to b and moves the origin so that b stays
 /// where it is. In a loop with rounds from F to L, beat b of round k is at origin +
-/// k (S(L) - S(F)) + S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
-/// strictly, so every time has one beat.
+/// k (S(L) - S(F)) + S(b); the round under way becomes round 0 when tempo or score change.
+/// Invariant: S grows strictly, so every time has one beat.
 #include "base/array.h"
 #include "plan/planner_roll.h"
 #include "plan/score.h"
@@ -396,22 +396,6 @@ bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
 double himc_planner_score_last_beat(const planner_score *score)
 {
     return fmax(himc_planner_roll_last_beat(score), score->until);
-}
-
-double himc_planner_loop_end(const planner_score *score)
-{
-    return isfinite(score->to) ? score->to : himc_planner_score_length(score);
-}
-
-int himc_planner_loop_first(const planner_score *score, const planner_part *part)
-{
-    return himc_planner_part_after(part, score->from, true);
-}
-
-bool himc_planner_loop_has(const planner_score *score, int round, double beat)
-{
-    bool more = score->loop || round < score->rounds; // the last round plays on
-    return (round <= 0 || beat >= score->from) && (!more || beat < score->to);
 }
 
 int himc_planner_score_round_at(const planner_score *score, double t)

@@ -161,13 +161,8 @@ HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
                                            const planner_place *place);
 
-/// The beats that a loop repeats, and the first stroke of a hand there.
-HIMC_RT double himc_planner_loop_end(const planner_score *score);
-HIMC_RT int himc_planner_loop_first(const planner_score *score, const planner_part *part);
 /// That round of a loop of some beats is the last: the hands will play what follows them.
 HIMC_RT void himc_planner_score_leave_loop(planner_score *score, int last);
-/// True if a round plays what is at that beat: a loop repeats only some beats.
-HIMC_RT bool himc_planner_loop_has(const planner_score *score, int round, double beat);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
@@ -204,6 +199,10 @@ HIMC_RT double himc_planner_score_beat_at(const planner_score *score, double t);
 HIMC_RT double himc_planner_score_seconds(const planner_score *score, double beat);
 /// The first stroke after `beat`, or with `from` the first at it or after it.
 HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool from);
+/// The first stroke of a hand that a loop repeats.
+HIMC_RT int himc_planner_loop_first(const planner_score *score, const planner_part *part);
+/// True if a round plays what is at that beat: a loop repeats only some beats.
+HIMC_RT bool himc_planner_loop_has(const planner_score *score, int round, double beat);
 /// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
 HIMC_RT int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke);
 /// Time from a stroke to the nearest one of its hand (s); infinite without one.
@@ -214,6 +213,8 @@ bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b);
 
 /// The whole beat after the last stroke, or at or after all else that the score has.
 HIMC_RT double himc_planner_score_length(const planner_score *score);
+/// The beat at which a loop begins again.
+HIMC_RT double himc_planner_loop_end(const planner_score *score);
 /// Length of a round of the loop (s).
 HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 

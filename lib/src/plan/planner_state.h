@@ -165,10 +165,6 @@ HIMC_RT void himc_planner_vary(const himc_planner *planner, timed_stroke *stroke
 /// in reach.
 HIMC_RT himc_vec3 himc_planner_rest_place(const himc_planner *planner, himc_hand hand);
 
-// planner.c, which himc_planner_advance calls
-/// The next step of `ramp`, if it is due.
-HIMC_RT void himc_planner_follow_ramp(himc_planner *planner);
-
 // planner_motion.c
 /// Drums, reach or first strokes have changed: the hands rest elsewhere.
 HIMC_RT void himc_planner_rest_again(himc_planner *planner);
