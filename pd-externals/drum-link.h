@@ -224,9 +224,8 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
         argc--, argv++;
     }
     if (s == &s_list || s == &s_float)
-        return himc_error_set(
-            error, "a number: expected a message that begins with a word, as [%s(",
-            receiver == HIMC_PERFORMER ? "hit right legato mf" : "strike 0.1 0 2");
+        return himc_error_set(error, "a number: expected a message that begins with a word, as "
+                                     "[strike 0.1 0 2(");
     for (; count < argc && count < 2 * HIMC_COMMAND_ATOMS; count++) {
         const t_atom *a = argv + count;
         if (a->a_type == A_FLOAT)
