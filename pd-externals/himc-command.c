@@ -286,9 +286,9 @@ static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 [midirealtimein]: the command's name and atoms; NULL for a byte that asks for nothing. */
 static t_symbol *himc_tilde_midi(t_himc *x, int *argc, t_atom **argv, t_atom own[2])
 {
-    enum { TICK = 248, START = 250, CONTINUE, STOP };
+    enum { TICK = 248, START = 250, CONTINUE, STOP, LAST = 255 };
     int byte = (int)(*argv)->a_w.w_float;
-    if (byte < TICK) {
+    if (byte < TICK || byte > LAST) {
         own[0] = **argv;
         SETFLOAT(own + 1, x->x_velocity);
         *argv = *argc == 1 ? own : *argv;
