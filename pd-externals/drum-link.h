@@ -224,9 +224,8 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
         argc--, argv++;
     }
     if (s == &s_list || s == &s_float)
-        return himc_error_set(
-            error, "a number: expected a message that begins with a word, as [%s(",
-            receiver == HIMC_PERFORMER ? "hit right legato mf" : "strike 0.1 0 2");
+        return himc_error_set(error, "a number: expected a message that begins with a word, as "
+                                     "[strike 0.1 0 2(");
     for (; count < argc && count < 2 * HIMC_COMMAND_ATOMS; count++) {
         const t_atom *a = argv + count;
         if (a->a_type == A_FLOAT)
@@ -236,6 +235,21 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
                 HIMC_ATOM_SYMBOL, 0, a->a_type == A_SYMBOL ? a->a_w.w_symbol->s_name : "(pointer)"};
     }
     return himc_command_parse(command, receiver, s->s_name, atom, count, error);
+}
+
+/* The points of Pd's array ARRAY, of `least` at least; NULL with the reason. After a change
+garray_redraw shows them. */
+static inline t_word *array_find(t_garray **array, int *size, int argc, const t_atom *argv,
+                                 int least, const char *command, himc_error *error)
+{
+    t_word *points = NULL;
+    t_symbol *name = argc == 1 && argv->a_type == A_SYMBOL ? argv->a_w.w_symbol : &s_;
+    *array = (t_garray *)pd_findbyclass(name, garray_class);
+    if (*array && garray_getfloatwords(*array, size, &points) && *size >= least)
+        return points;
+    himc_error_set(error, "%s: %s: no array of %d points or more, expected %s ARRAY", command,
+                   name->s_name, least, command);
+    return NULL;
 }
 
 /* Takes a flag off the front of an object's arguments. */

@@ -106,7 +106,6 @@ static bool himc_tilde_open(t_himc *x, int port, himc_error *error)
     if (!osc)
         return false;
     x->x_osc = osc;
-    himc_performance_on_tick(x->x_performance, himc_osc_tick, osc);
     clock_delay(x->x_network, NETWORK_PERIOD);
     return true;
 }
@@ -261,32 +260,122 @@ void himc_tilde_restore(t_himc *x)
     free(state);
 }
 
-/* Reports that nothing plays while DSP is off. True for a hit: it is left out, and `missed` is
-sent. */
+/* Reports that nothing plays while DSP is off. True for a hit or a note: it is left out, and
+`missed` is sent. */
 static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 {
-    const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke : NULL;
+    static const himc_stroke any = {.hand = HIMC_HAND_ANY};
+    bool note = command->id == HIMC_COMMAND_NOTE && command->atom[1].number > 0;
+    const himc_stroke *hit = command->id == HIMC_COMMAND_HIT ? &command->stroke
+                             : note                          ? &any
+                                                             : NULL;
     bool plays = hit || command->id == HIMC_COMMAND_PLAY || command->id == HIMC_COMMAND_TARGET ||
                  command->id == HIMC_COMMAND_PUSH;
-    if (!plays || !silence_holds(&x->x_silence, hit ? "hit" : NULL) || !hit)
+    if (!plays || !silence_holds(&x->x_silence, note ? "note" : hit ? "hit" : NULL) || !hit)
         return false;
     himc_drum *drum = himc_performance_drum(x->x_performance, 0);
     t_atom atom[3];
     SETFLOAT(atom, -1);
-    SETSYMBOL(atom + 1, gensym(command->atom[0].symbol));
+    SETSYMBOL(atom + 1, gensym(note ? "any" : command->atom[0].symbol));
     SETSYMBOL(atom + 2, gensym(hit->drum[0] || !drum ? hit->drum : himc_drum_name(drum)));
     outlet_anything(x->x_messages, gensym("missed"), 3, atom);
     return true;
+}
+
+/* A key with its velocity, or alone as the left outlet of [notein] gives it, or a byte of
+[midirealtimein]: the command's name and atoms; NULL for a byte that asks for nothing. */
+static t_symbol *himc_tilde_midi(t_himc *x, int *argc, t_atom **argv, t_atom own[2])
+{
+    enum { TICK = 248, START = 250, CONTINUE, STOP, LAST = 255 };
+    int byte = (int)(*argv)->a_w.w_float;
+    if (byte < TICK || byte > LAST) {
+        own[0] = **argv;
+        SETFLOAT(own + 1, x->x_velocity);
+        *argv = *argc == 1 ? own : *argv;
+        *argc = *argc == 1 ? 2 : *argc;
+        return gensym("note");
+    }
+    *argv = own;
+    *argc = byte != TICK;
+    if (byte != TICK && (byte < START || byte > STOP))
+        return NULL;
+    SETSYMBOL(own, gensym(byte == START ? "start" : byte == STOP ? "stop" : "continue"));
+    return gensym("clock");
+}
+
+/* pose ARRAY: x y z (m) of the joint of each segment to its parent, and of both tips. */
+static bool himc_tilde_pose(t_himc *x, int argc, t_atom *argv, himc_error *error)
+{
+    t_garray *array;
+    int size;
+    t_word *points = array_find(&array, &size, argc, argv, POSE_NUMBERS, "pose", error);
+    if (!points)
+        return false;
+    for (int i = 0; i < POSE_NUMBERS; i++)
+        points[i].w_float = (t_float)x->x_pose[i];
+    garray_redraw(array);
+    return true;
+}
+
+void himc_tilde_body(void *object, const himc_tick *tick)
+{
+    t_himc *x = object;
+    if (x->x_osc)
+        himc_osc_tick(x->x_osc, tick);
+    for (int i = 0; i < HIMC_SEGMENTS + HIMC_HANDS; i++) {
+        int hand = i - HIMC_SEGMENTS;
+        himc_vec3 at = hand < 0 ? tick->body->origin[i] : tick->body->tip[hand];
+        memcpy(x->x_pose + 3 * i, (double[]){at.x, at.y, at.z}, 3 * sizeof(double));
+    }
+}
+
+/* gliss DRUM PITCH BEATS: DRUM gliss PITCH SECONDS, at the tempo now. */
+static bool himc_tilde_gliss(t_himc *x, const himc_command *asked, himc_error *error)
+{
+    double seconds = asked->atom[2].number * 60 / himc_performance_measure(x->x_performance).bpm;
+    himc_atom atoms[] = {asked->atom[1], {HIMC_ATOM_NUMBER, seconds, NULL}};
+    himc_command gliss;
+    return himc_command_parse(&gliss, HIMC_DRUM, "gliss", atoms, 2, error) &&
+           himc_tilde_command_drum(x, asked->atom[0].symbol, &gliss, error);
+}
+
+/* WHAT VALUE, from the lines of all values. */
+static bool himc_tilde_get(t_himc *x, const char *what, himc_error *error)
+{
+    t_answer all = {NULL}, known = {NULL};
+    bool found = false;
+    size_t length = strlen(what);
+    himc_performance_describe(x->x_performance, HIMC_DESCRIBE_VALUES, answer_line, &all);
+    for (char *line = all.a_text, *end; line && (end = strchr(line, '\n')); line = end + 1) {
+        *end = '\0';
+        if (strncmp(line, what, length) != 0 || (line[length] && line[length] != ' '))
+            continue;
+        found = true;
+        answer_line(&known, line + length);
+    }
+    free(all.a_text);
+    answer_send(&known, x->x_messages, what);
+    return found || himc_error_set(error,
+                                   "get: WHAT: %s, expected a setting, tempo, beat, state, drums, "
+                                   "loop, room, listener or mute",
+                                   what);
 }
 
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)
 {
     himc_command command;
     himc_tilde_restore(x);
+    if (s == gensym("pose"))
+        return himc_tilde_pose(x, argc, argv, error);
     if (s == gensym("save"))
         return saved_switch(&x->x_saves, argc, argv, error);
     if (s == &s_bang)
         s = gensym("play");
+    t_atom midi[2];
+    if (argc > 0 && argv->a_type == A_FLOAT && (s == &s_float || s == &s_list))
+        s = himc_tilde_midi(x, &argc, &argv, midi);
+    if (!s)
+        return true;
     if (argc > 0 && argv->a_type == A_SYMBOL && himc_tilde_has_drum(x, s->s_name))
         return (command_from_pd(&command, HIMC_DRUM, argv->a_w.w_symbol, argc - 1, argv + 1,
                                 error) ||
@@ -303,6 +392,12 @@ static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, h
         himc_performance_describe(x->x_performance, HIMC_DESCRIBE_INFO, himc_tilde_line, x);
         return true;
     }
+    if (command.id == HIMC_COMMAND_GET) {
+        himc_tilde_resolve(x, false);
+        return himc_tilde_get(x, command.atom[0].symbol, error);
+    }
+    if (command.id == HIMC_COMMAND_DRUM_GLISS) /* of [membrane~ DRUM], as its own command */
+        return himc_tilde_gliss(x, &command, error);
     if (command.id == HIMC_COMMAND_DUMP && command.count == 0) {
         himc_tilde_resolve(x, false);
         t_answer answer = {NULL};

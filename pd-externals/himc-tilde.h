@@ -4,11 +4,13 @@ graph), himc-drums.c (the drums it finds by name), himc-command.c (its commands)
 #define HIMC_TILDE_H
 
 #include "drum-link.h"
+#include "himc/body.h"
 #include "himc/osc.h"
 #include "silence.h"
 
 #define FORCE_RING HIMC_DRUM_RING
-#define COORDINATES 6 /* of both tips: left x y z, right x y z */
+#define POSE_NUMBERS (3 * (HIMC_SEGMENTS + HIMC_HANDS)) /* places of joints and tips */
+#define COORDINATES 6                                   /* of both tips: left x y z, right x y z */
 
 typedef struct t_himc_drum {
     const char *d_name;
@@ -22,6 +24,7 @@ typedef struct t_himc {
     t_canvas *x_canvas;
     t_clock *x_clock;
     t_outlet *x_messages;
+    t_float x_velocity; /* of a key that comes as a number alone */
 
     himc_performance *x_performance;
     t_player x_player;
@@ -35,13 +38,16 @@ typedef struct t_himc {
     bool x_spoilt, x_told;       /* a target was not a number; the user has been told */
     t_sample *x_in[COORDINATES]; /* targets of the tips (m) */
     t_sample *x_out[HIMC_HANDS];
+    t_sample *x_phasor, *x_beat; /* phase of a beat that leads, and of the performer's own */
+    double x_led, x_phase;       /* the last of them */
     double x_force[HIMC_HANDS][FORCE_RING];
 
     himc_loader *x_loader; /* for commands that take long, of messages and of the network */
     t_clock *x_load;       /* looks for what it has loaded */
 
-    himc_osc *x_osc;    /* NULL until `subscribe` or `listen` */
-    t_clock *x_network; /* looks for commands from there */
+    double x_pose[POSE_NUMBERS]; /* at the last task tick (m) */
+    himc_osc *x_osc;             /* NULL until `subscribe` or `listen` */
+    t_clock *x_network;          /* looks for commands from there */
     t_silence x_silence;
 
     bool x_saves;   /* its state in the patch */
@@ -70,6 +76,8 @@ int himc_tilde_block(void *player);
 
 /* Any message to the inlet. */
 void himc_tilde_anything(t_himc *x, t_symbol *s, int argc, t_atom *argv);
+/* A task tick: to the network, and kept for `pose`. */
+void himc_tilde_body(void *object, const himc_tick *tick);
 /* Writes the object into a patch, with its state if it keeps it there. */
 void himc_tilde_save(t_gobj *object, t_binbuf *to);
 /* The message that himc_tilde_save has written. */

@@ -2,12 +2,18 @@
 [membrane~ DRUM].
 
 inlet    commands, one message each: stroke hit tempo play stop score take ... (himc/command.h)
+         a number 0 .. 127, or a list of two: a MIDI key and its velocity, as `note` plays it
+         a number from 248 on: a byte of [midirealtimein], for `clock`
 inlets   with -signals: target of the left stick's tip, x y z, and of the right one's (m, signals);
          while its three inlets are 0 a stick has no target
+inlets   the last two: velocity of keys that come as a number alone, 0 .. 127, as [notein] gives it;
+         phase of another's beat, 0 .. 1, for `sync phase` (signal)
 outlets  contact force of the left stick (N), of the right stick (N), messages:
          strike TIME HAND DRUM X Y VELOCITY FORCE DURATION   a contact has ended (s, m, m/s, N, s)
+         prepare TIME HAND DRUM   the gesture of a stroke begins that touches at TIME (s)
          missed BEAT HAND DRUM   a stroke is not played; BEAT -1: a hit
-         beat N   done   info ...
+         beat N   done   info ...   WHAT VALUE   the answer to `get WHAT`
+         phase of the beat, 0 .. 1 (signal)
 
 Glue only: commands go to a himc_performance with the sample on which they arrived; those that take
 long, by a file, are loaded in another thread while the sound goes on (himc/loader.h). Each block
@@ -19,6 +25,8 @@ a ring. Nothing is sent from perform: a clock sends it at the start of the next 
 #include "saved-state.h"
 
 #include <stdlib.h>
+
+#define VELOCITY_USUAL 80 /* mf */
 
 static t_class *himc_tilde_class;
 
@@ -39,17 +47,45 @@ static void himc_tilde_follow(t_himc *x)
         clock_delay(x->x_clock, 0);
 }
 
+/* The phasor of the last inlet at the block's beginning; without one it is 0 all the time. */
+static void himc_tilde_sync(t_himc *x)
+{
+    himc_command clock = {.id = HIMC_COMMAND_CLOCK, .count = 1};
+    double phase = *x->x_phasor;
+    if (phase == x->x_led || !(phase >= 0 && phase <= 1))
+        return;
+    x->x_led = phase;
+    clock.atom[0].number = phase;
+    himc_performance_command(x->x_performance, &clock, 0, NULL);
+}
+
+/* Phase of the beat, even over the block; a jump is one. */
+static void himc_tilde_phase(t_himc *x)
+{
+    double beat = fmax(himc_performance_measure(x->x_performance).beat, 0);
+    double phase = beat - floor(beat), way = phase - x->x_phase;
+    way -= floor(way);
+    double from = way < 0.5 ? x->x_phase : phase, step = way < 0.5 ? way / x->x_stream.s_length : 0;
+    for (int i = 0; i < x->x_stream.s_length; i++) {
+        double now = from + (i + 1) * step;
+        x->x_beat[i] = (t_sample)(now - floor(now));
+    }
+    x->x_phase = phase;
+}
+
 static t_int *himc_tilde_perform(t_int *w)
 {
     t_himc *x = (t_himc *)w[1];
     t_stream *s = &x->x_stream;
     watch_begin();
     himc_tilde_follow(x);
+    himc_tilde_sync(x);
     stream_begin(s, himc_performance_time(x->x_performance));
     himc_tilde_advance(&x->x_player, s->s_count + (uint64_t)s->s_length);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; i < s->s_length; i++)
             x->x_out[hand][i] = (t_sample)x->x_force[hand][(s->s_count + (uint64_t)i) % FORCE_RING];
+    himc_tilde_phase(x);
     s->s_count += (uint64_t)s->s_length;
     stream_end(s);
     watch_end();
@@ -59,7 +95,7 @@ static t_int *himc_tilde_perform(t_int *w)
 static void himc_tilde_dsp(t_himc *x, t_signal **sp)
 {
     himc_error error;
-    t_signal **out = sp + (x->x_signals ? COORDINATES : 0);
+    t_signal **in = sp + (x->x_signals ? COORDINATES : 0), **out = in + 1;
     if (sp[0]->s_n > FORCE_RING) {
         pd_error(x, "himc~: block size: %d samples, expected 1 .. %d", sp[0]->s_n, FORCE_RING);
     } else if (sp[0]->s_sr != x->x_rate &&
@@ -69,8 +105,10 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         x->x_rate = sp[0]->s_sr;
         for (int i = 0; x->x_signals && i < COORDINATES; i++)
             x->x_in[i] = sp[i]->s_vec;
+        x->x_phasor = in[0]->s_vec;
         for (int hand = 0; hand < HIMC_HANDS; hand++)
             x->x_out[hand] = out[hand]->s_vec;
+        x->x_beat = out[HIMC_HANDS]->s_vec;
         stream_restart(&x->x_stream, sp[0]);
         himc_tilde_restore(x);
         himc_tilde_resolve(x, true);
@@ -81,7 +119,7 @@ static void himc_tilde_dsp(t_himc *x, t_signal **sp)
         dsp_add(himc_tilde_perform, 1, x);
         return;
     }
-    for (int hand = 0; hand < HIMC_HANDS; hand++)
+    for (int hand = 0; hand <= HIMC_HANDS; hand++)
         dsp_add_zero(out[hand]->s_vec, out[hand]->s_n);
 }
 
@@ -106,6 +144,12 @@ static void himc_tilde_send(t_himc *x, const himc_event *event)
     case HIMC_EVENT_BEAT:
         SETFLOAT(atom, (t_float)event->beat);
         outlet_anything(x->x_messages, gensym("beat"), 1, atom);
+        break;
+    case HIMC_EVENT_PREPARE:
+        SETFLOAT(atom, (t_float)strike->time);
+        SETSYMBOL(atom + 1, gensym(himc_hand_name(strike->hand)));
+        SETSYMBOL(atom + 2, gensym(strike->drum));
+        outlet_anything(x->x_messages, gensym("prepare"), 3, atom);
         break;
     case HIMC_EVENT_MISSED:
         SETFLOAT(atom, isfinite(strike->beat) ? (t_float)strike->beat : -1);
@@ -189,6 +233,7 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
         return NULL;
     }
     x->x_player.p_himc = x;
+    himc_performance_on_tick(x->x_performance, himc_tilde_body, x);
     x->x_player.p_block = himc_tilde_block;
     x->x_rate = config.sample_rate;
     x->x_count = argc;
@@ -198,9 +243,13 @@ static void *himc_tilde_new(t_symbol *s, int argc, t_atom *argv)
     x->x_saves = saves;
     for (int i = 0; signals && i < COORDINATES; i++)
         inlet_new(&x->x_obj, &x->x_obj.ob_pd, &s_signal, &s_signal);
+    floatinlet_new(&x->x_obj, &x->x_velocity);
+    inlet_new(&x->x_obj, &x->x_obj.ob_pd, &s_signal, &s_signal);
+    x->x_velocity = VELOCITY_USUAL;
     outlet_new(&x->x_obj, &s_signal);
     outlet_new(&x->x_obj, &s_signal);
     x->x_messages = outlet_new(&x->x_obj, NULL);
+    outlet_new(&x->x_obj, &s_signal);
     return x;
 }
 

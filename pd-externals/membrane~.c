@@ -1,4 +1,4 @@
-/* [membrane~ [-save] [NAME [INCHES [CHANNELS]]]]: a drum: a membrane that [himc~ NAME], a
+/* [membrane~ [-save] [-m] [NAME [INCHES [CHANNELS]]]]: a drum: a membrane that [himc~ NAME], a
 signal or a message strikes.
 
 inlets   force at the spot (N, signal or float) and commands: tune radius mallet strike ...
@@ -6,7 +6,8 @@ inlets   force at the spot (N, signal or float) and commands: tune radius mallet
          performer, signal or float)
 outlets  sound, of two ears in front of it or of its performer's `listener`: the left one and the
          right one, or both in one of 1 channel; behind them pickups 3 to CHANNELS; after
-         `pickup` or `listener off` all pickups; displacement under the spot (m); messages:
+         `pickup` or `listener off` all pickups; with -m all of them in one signal of several
+         channels, from Pd 0.54 on; displacement under the spot (m); messages:
          strike TIME X Y VELOCITY FORCE DURATION   a `strike` of its own has ended (s, m, m/s, N, s)
          touch TIME X Y VELOCITY PLACE PITCH       a blow begins: distance from the centre
                                                    per radius, the principal mode's frequency (Hz)
@@ -21,6 +22,7 @@ Glue only. Without a performer the object advances its drum itself. With one, th
 head and sticks together, so the inlet's force plays on a second head beside it (layer.h), and the
 displacement outlet follows x and y from block to block. Further performers play guests: drums that
 take the same commands and are heard with it. */
+#include "channels.h"
 #include "drum-link.h"
 #include "layer.h"
 #include "saved-state.h"
@@ -31,7 +33,10 @@ take the same commands and are heard with it. */
 
 #define GUESTS (DRUM_LINK_PLAYERS - 1) /* performers beside the first */
 
+#define DRAWN_MOST 1000 /* points of a head in an array; chosen: 10 ms of a head of 2000 modes */
+
 static t_class *membrane_class;
+static t_set_channels *membrane_set_channels; /* NULL: this Pd has none */
 
 typedef struct t_membrane {
     t_object x_obj;
@@ -41,6 +46,7 @@ typedef struct t_membrane {
     t_symbol *x_queue;  /* that it is bound to while another has its name, and after; or NULL */
     t_clock *x_clock;
     t_outlet *x_messages;
+    bool x_multi;       /* all channels are in one signal of several */
     t_canvas *x_canvas; /* presets are beside its patch */
     int x_channels;
     bool x_saves; /* its state in the patch */
@@ -57,6 +63,7 @@ typedef struct t_membrane {
     t_stream x_stream;
     double x_before; /* what it has played before Pd last built its graph (s) */
     t_sample *x_in[3];
+    double x_spot[2]; /* where the force acts at the end of a block (m) */
     t_sample *x_out[LAYER_OUTS];
     bool x_watched; /* the displacement's outlet is connected */
 
@@ -169,6 +176,8 @@ static void membrane_play(t_membrane *x, int n, double in[3][LAYER_CHUNK],
         himc_drum_advance(drum, n, in[0], in[1], in[2]);
         layer_read(drum, x->x_channels, x->x_stream.s_count, n, out);
     }
+    x->x_spot[0] = in[1][n - 1];
+    x->x_spot[1] = in[2][n - 1];
     x->x_stream.s_count += (uint64_t)n;
 }
 
@@ -231,11 +240,17 @@ static t_int *membrane_perform(t_int *w)
     return w + 2;
 }
 
+/* Outlets of sound. */
+static int membrane_sounds(const t_membrane *x)
+{
+    return x->x_multi ? 1 : x->x_channels;
+}
+
 /* The graph is built anew after each change of a connection. */
 static void membrane_notice_connections(t_membrane *x)
 {
     t_outlet *outlet;
-    x->x_watched = obj_starttraverseoutlet(&x->x_obj, &outlet, x->x_channels) != NULL;
+    x->x_watched = obj_starttraverseoutlet(&x->x_obj, &outlet, membrane_sounds(x)) != NULL;
     himc_drum_watch(x->x_link.l_drum, x->x_watched);
     himc_drum_watch(x->x_layer.l_drum, x->x_watched);
     for (int i = 0; i < x->x_guests; i++)
@@ -246,6 +261,8 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
 {
     himc_error error;
     membrane_notice_connections(x);
+    for (int k = 0; membrane_set_channels && k <= membrane_sounds(x); k++)
+        membrane_set_channels(&sp[3 + k], x->x_multi && k == 0 ? x->x_channels : 1);
     bool driven = himc_drum_get_driver(x->x_link.l_drum).performer != NULL;
     if (sp[0]->s_n > HIMC_DRUM_RING) {
         pd_error(x, "membrane~: %s: block size: %d samples, expected 1 .. %d",
@@ -256,8 +273,9 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
     } else {
         for (int k = 0; k < 3; k++)
             x->x_in[k] = sp[k]->s_vec;
-        for (int k = 0; k <= x->x_channels; k++)
-            x->x_out[k] = sp[3 + k]->s_vec;
+        for (int k = 0; k < x->x_channels; k++)
+            x->x_out[k] = x->x_multi ? sp[3]->s_vec + k * sp[0]->s_n : sp[3 + k]->s_vec;
+        x->x_out[x->x_channels] = sp[3 + membrane_sounds(x)]->s_vec;
         if (x->x_stream.s_count > 0)
             x->x_before += (double)x->x_stream.s_count / x->x_stream.s_rate;
         stream_restart(&x->x_stream, sp[0]);
@@ -275,8 +293,8 @@ static void membrane_dsp(t_membrane *x, t_signal **sp)
         dsp_add(membrane_perform, 1, x);
         return;
     }
-    for (int k = 0; k <= x->x_channels; k++)
-        dsp_add_zero(sp[3 + k]->s_vec, sp[3 + k]->s_n);
+    for (int k = 0; k <= membrane_sounds(x); k++)
+        dsp_add_zero(sp[3 + k]->s_vec, sp[3 + k]->s_n * (x->x_multi && k == 0 ? x->x_channels : 1));
 }
 
 static void membrane_send(t_membrane *x, const char *selector, const double value[6])
@@ -562,16 +580,44 @@ static bool membrane_is_named(const t_membrane *x, t_symbol *s, int argc, const 
            strcmp(word, "save") == 0;
 }
 
+/* head ARRAY: the head's displacement now (m) along its diameter, from the performer's side on. */
+static bool membrane_draw(t_membrane *x, int argc, t_atom *argv, himc_error *error)
+{
+    t_garray *array;
+    int size;
+    t_word *points = array_find(&array, &size, argc, argv, 2, "head", error);
+    if (!points)
+        return false;
+    if (size > DRAWN_MOST)
+        return himc_error_set(error, "head: %d points, expected 2 .. %d", size, DRAWN_MOST);
+    himc_drum *drum = x->x_link.l_drum;
+    himc_membrane *head = himc_drum_membrane(drum);
+    double radius = himc_drum_head_frame(drum)->radius;
+    for (int i = 0; i < size; i++) {
+        himc_membrane_watch(head, radius * (2.0 * i / (size - 1) - 1), 0);
+        points[i].w_float = (t_float)himc_membrane_watched(head);
+    }
+    himc_membrane_watch(head, x->x_spot[0], x->x_spot[1]);
+    garray_redraw(array);
+    return true;
+}
+
 static void membrane_anything(t_membrane *x, t_symbol *s, int argc, t_atom *argv)
 {
     himc_error error;
+    bool good;
     if (membrane_is_named(x, s, argc, argv)) {
         s = argv->a_w.w_symbol;
         argc--;
         argv++;
     }
-    if (!(s == gensym("save") ? saved_switch(&x->x_saves, argc, argv, &error)
-                              : membrane_command(x, s, argc, argv, &error)))
+    if (s == gensym("save"))
+        good = saved_switch(&x->x_saves, argc, argv, &error);
+    else if (s == gensym("head"))
+        good = membrane_draw(x, argc, argv, &error);
+    else
+        good = membrane_command(x, s, argc, argv, &error);
+    if (!good)
         membrane_refuses(x, error.text);
 }
 
@@ -715,10 +761,16 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     double rate = sys_getsr();
     t_layer layer = {.l_level = 1};
     himc_drum *drum = NULL;
-    bool saves = take_flag(&argc, &argv, "-save");
+    bool saves = take_flag(&argc, &argv, "-save"), multi = take_flag(&argc, &argv, "-m");
+    saves |= take_flag(&argc, &argv, "-save");
     himc_loader *loader = himc_loader_new(&error);
-    if (loader && membrane_arguments(argc, argv, &wish, &error))
+    if (loader && membrane_arguments(argc, argv, &wish, &error)) {
+        if (multi && !membrane_set_channels) {
+            pd_error(NULL, "membrane~: -m: Pd has several channels in a signal from 0.54 on: one");
+            wish.w_channels = 1;
+        }
         drum = membrane_make(&wish, rate, &layer, &error);
+    }
     if (!drum) {
         himc_loader_free(loader);
         pd_error(NULL, "membrane~: %s%s%s", wish.w_name ? wish.w_name : "", wish.w_name ? ": " : "",
@@ -739,6 +791,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     x->x_load = clock_new(x, (t_method)membrane_load);
     x->x_canvas = canvas_getcurrent();
     x->x_channels = (int)wish.w_channels;
+    x->x_multi = multi;
     x->x_saves = saves;
     saved_bind(&x->x_obj.ob_pd);
     x->x_clock = clock_new(x, (t_method)membrane_tick);
@@ -750,7 +803,7 @@ static void *membrane_new(t_symbol *s, int argc, t_atom *argv)
     himc_stroke_spot(&normal, himc_drum_head_frame(drum)->radius, &spot_x, &spot_y);
     signalinlet_new(&x->x_obj, (t_float)spot_x);
     signalinlet_new(&x->x_obj, 0);
-    for (int k = 0; k <= x->x_channels; k++)
+    for (int k = 0; k <= membrane_sounds(x); k++)
         outlet_new(&x->x_obj, &s_signal);
     x->x_messages = outlet_new(&x->x_obj, NULL);
     if (wish.w_name)
@@ -779,9 +832,11 @@ EXPORTED void membrane_tilde_setup(void);
 
 void membrane_tilde_setup(void)
 {
+    membrane_set_channels = pd_find_function("signal_setmultiout");
     membrane_class =
         class_new(gensym(DRUM_LINK_CLASS), (t_newmethod)membrane_new, (t_method)membrane_free,
-                  sizeof(t_membrane), CLASS_DEFAULT, A_GIMME, A_NULL);
+                  sizeof(t_membrane), membrane_set_channels ? CLASS_OF_CHANNELS : CLASS_DEFAULT,
+                  A_GIMME, A_NULL);
     if (!membrane_class)
         return; /* a Pd of another float size has refused it and said so */
     CLASS_MAINSIGNALIN(membrane_class, t_membrane, x_force);

@@ -67,15 +67,16 @@ typedef enum himc_ornament {
     HIMC_ROLL_PRESS   ///< so that each stroke bounces on until the next
 } himc_ornament;
 
-#define HIMC_BUZZ (-1) ///< bounces of a stroke: as many as fit
-#define HIMC_DEAD (-2) ///< no bounce: the fingers keep the mallet on the head
+#define HIMC_BUZZ (-1)              ///< bounces of a stroke: as many as fit
+#define HIMC_DYNAMIC_FOLLOWS (-1.0) ///< dynamic of a stroke: as `cresc` says there, else mf
+#define HIMC_DEAD (-2)              ///< no bounce: the fingers keep the mallet on the head
 
 /// One stroke, as written in a score.
 typedef struct himc_stroke {
     double beat;               ///< (beats), 0 or more; ignored by `hit`
     himc_hand hand;            ///< the hand that strikes
     himc_nuance nuance;        ///< way of playing
-    double dynamic;            ///< 0 (ppp) .. 1 (fff); the eight names are k/7
+    double dynamic;            ///< 0 (ppp) .. 1 (fff), the eight names are k/7; or the next
     himc_spot spot;            ///< default HIMC_SPOT_NORMAL
     double x;                  ///< of HIMC_SPOT_XY: from the centre away from the performer (m)
     double y;                  ///< and to the left (m)
@@ -131,9 +132,10 @@ typedef enum himc_command_id {
 
 /// What himc_drum_describe and himc_performance_describe tell.
 typedef enum himc_description {
-    HIMC_DESCRIBE_INFO, ///< a few lines for a person: `info`
-    HIMC_DESCRIBE_STATE ///< all settings, each line a command: `dump`. Carried out in their order
-                        ///< by a new object they make the same state, bit by bit
+    HIMC_DESCRIBE_INFO,   ///< a few lines for a person: `info`
+    HIMC_DESCRIBE_VALUES, ///< of a performer, what `get` asks for: each line a word and its value
+    HIMC_DESCRIBE_STATE   ///< all settings, each line a command: `dump`. Carried out in their order
+                          ///< by a new object they make the same state, bit by bit
 } himc_description;
 
 #define HIMC_COMMAND_ATOMS 8 ///< most atoms of a command

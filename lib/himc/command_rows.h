@@ -103,11 +103,19 @@ HIMC_COMMAND_ROW(
     HIT, hit, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, HIMC_ROW_STROKE,
     "plays a stroke `latency` after the message; any: with the better hand, on one drum in turns")
 HIMC_COMMAND_ROW(
+    NOTE, note, PERFORMER, NOW, HIMC_AFTER_STROKES, "PITCH VELOCITY [NUANCE]",
+    "plays a MIDI note as `hit any` does, on the drum or bar that sounds it, on the "
+    "instrument of that General MIDI key, or on the nearest pitch; VELOCITY 0 ends it, "
+    "as `noteoff` says")
+HIMC_COMMAND_ROW(
     ROLL, roll, PERFORMER, NOW, 0,
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC DYNAMIC [SPOT] [PART] [DRUM] | "
     "BEAT LENGTH " HIMC_ROW_ROLL " DYNAMIC [SPOT] [PART] [DRUM]",
     "adds a roll, from one dynamic to another: single strokes, or strokes that bounce once "
     "(double) or until the next (press)")
+HIMC_COMMAND_ROW(CRESC, cresc, PERFORMER, NOW, 0, "BEAT LENGTH DYNAMIC DYNAMIC",
+                 "moves the dynamic of strokes and rolls that have `-` for theirs evenly from one "
+                 "to another, which then holds; as a message before them")
 HIMC_COMMAND_ROW(FLAM, flam, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
                  "adds a stroke with a grace note by the other hand")
 HIMC_COMMAND_ROW(DRAG, drag, PERFORMER, NOW, 0, "BEAT " HIMC_ROW_STROKE,
@@ -118,10 +126,16 @@ HIMC_COMMAND_ROW(
     AT, at, PERFORMER, NOW, 0, "BEAT DRUM COMMAND [...] | BEAT push SEGMENT [...]",
     "changes a drum at a beat by tune, gliss, tension, pedal, damp, muffle, decay or glide; or "
     "pushes the performer")
-HIMC_COMMAND_ROW(TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT]",
-                 "sets the tempo, from that beat or from now on; 100 by default")
-HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH",
-                 "1: the score begins again after its last whole beat")
+HIMC_COMMAND_ROW(DRUM_GLISS, gliss, PERFORMER, NOW, HIMC_NOT_IN_SCORE,
+                 "DRUM HZ LENGTH | DRUM NOTE LENGTH",
+                 "moves a drum's pedal evenly to that pitch in LENGTH beats, now")
+HIMC_COMMAND_ROW(
+    TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT] | BPM BPM LENGTH [BEAT]",
+    "sets the tempo, 100 by default, from that beat or from now on; or moves it evenly "
+    "to another in LENGTH beats")
+HIMC_COMMAND_ROW(LOOP, loop, PERFORMER, NOW, 0, "SWITCH | FROM TO",
+                 "1: the score begins again after its last whole beat; FROM TO: its beats from one "
+                 "up to the other are repeated; 0: the round under way is the last")
 HIMC_COMMAND_ROW(CLEAR, clear, PERFORMER, NOW, HIMC_AFTER_STROKES, "",
                  "forgets the score and all queued strokes")
 HIMC_COMMAND_ROW(PLAY, play, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "",
@@ -138,6 +152,10 @@ HIMC_COMMAND_ROW(
     "moves a tip of the take by that way at that time, smoothly within SPAN before and after")
 HIMC_COMMAND_ROW(UNITS, units, PERFORMER, NOW, 0, "clear | FILE NUANCE [SPOT]",
                  "plays strokes cut out of a take instead of the built-in ones")
+HIMC_COMMAND_ROW(CLOCK, clock, PERFORMER, AT_SAMPLE, HIMC_NOT_IN_SCORE,
+                 "[PHASE] | start|continue|stop",
+                 "a tick of MIDI's clock, 24 a beat, its start, going on and stop; or where in its "
+                 "beat a phasor is: tempo and beat follow, as `sync` says")
 HIMC_COMMAND_ROW(TARGET, target, PERFORMER, AT_SAMPLE, HIMC_AFTER_STROKES, "HAND X Y Z",
                  "moves a drumstick's tip to a point, or along a stream of points")
 
@@ -199,6 +217,14 @@ HIMC_SETTING_ROW(
     "each hit lands so long after its message, 150 by default, as strong as that allows; auto: "
     "330; 0: as soon as it can")
 
+HIMC_SETTING_ROW(SYNC, sync, AT_SAMPLE, "midi|phase|off", word, sync, "midi", NOTHING,
+                 "midi: tempo and beat follow the ticks of `clock`; phase: its PHASE, in Pure Data "
+                 "the signal of the last inlet; off: none")
+HIMC_SETTING_ROW(SUBDIVIDE, subdivide, AT_SAMPLE, "PARTS", numbers, subdivide, "1", NOTHING,
+                 "tells so many parts of each beat: `beat 2.5`")
+HIMC_SETTING_ROW(NOTEOFF, noteoff, AT_SAMPLE, "ring|damp", word, noteoff, "ring", NOTHING,
+                 "the end of a `note`: damp lays a hand on what rings, ring lets it ring")
+
 HIMC_COMMAND_ROW(PUSH, push, PERFORMER, AT_SAMPLE, HIMC_AT_BEAT, "SEGMENT FX FY FZ SECONDS [ALONG]",
                  "pushes a segment for a time, at its centre of mass or ALONG m from its joint")
 HIMC_COMMAND_ROW(
@@ -212,6 +238,9 @@ HIMC_COMMAND_ROW(
 HIMC_COMMAND_ROW(MUTE, mute, PERFORMER, AT_SAMPLE, 0, "SWITCH", "1: silences all drums")
 HIMC_COMMAND_ROW(RECORD, record, PERFORMER, NOW, HIMC_WRITES_FILE, "stop | FILE",
                  "records the motion; `stop` writes it as a take, .bvh .c3d or .trc")
+HIMC_COMMAND_ROW(GET, get, PERFORMER, HOST, HIMC_NOT_IN_SCORE, "WHAT",
+                 "answers with a setting, as the command that sets it, or with tempo, beat, state, "
+                 "drums, loop, room, listener, mute")
 HIMC_COMMAND_ROW(INFO, info, PERFORMER, HOST, 0, "", "describes the state in a few lines")
 HIMC_COMMAND_ROW(DUMP, dump, PERFORMER, NOW, HIMC_NOT_IN_SCORE | HIMC_WRITES_FILE, "[FILE]",
                  "answers with the state as commands, or writes it to a file, which is a score")

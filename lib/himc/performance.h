@@ -106,11 +106,12 @@ bool himc_performance_set_rate(himc_performance *performance, double sample_rate
 
 /// The kinds of events.
 typedef enum himc_event_kind {
-    HIMC_EVENT_STRIKE, ///< a contact ended
-    HIMC_EVENT_BEAT,   ///< a whole beat began
-    HIMC_EVENT_DONE,   ///< the score's last contact has ended, or the take; no beat follows
-    HIMC_EVENT_NOTE,   ///< a line for the user: a stroke given up, a target out of reach
-    HIMC_EVENT_MISSED  ///< a stroke is not played: told as soon as it is known
+    HIMC_EVENT_STRIKE,  ///< a contact ended
+    HIMC_EVENT_BEAT,    ///< a whole beat began
+    HIMC_EVENT_DONE,    ///< the score's last contact has ended, or the take; no beat follows
+    HIMC_EVENT_NOTE,    ///< a line for the user: a stroke given up, a target out of reach
+    HIMC_EVENT_PREPARE, ///< the gesture of a stroke begins: hand, drum and time, of its contact
+    HIMC_EVENT_MISSED   ///< a stroke is not played: told as soon as it is known
 } himc_event_kind;
 
 /// A contact of a stick with a drum.
@@ -138,8 +139,9 @@ typedef struct himc_event {
     bool refused; ///< of HIMC_EVENT_NOTE: a command that could not be carried out on its sample
     double beat;  ///< of HIMC_EVENT_BEAT ...
     double time;  ///< ... and when it began (s, as of a strike)
-    /// Of HIMC_EVENT_STRIKE, and of HIMC_EVENT_MISSED: as planned, velocity, force, impulse and
-    /// duration 0, the beat NaN of a hit.
+    /// Of HIMC_EVENT_STRIKE; of HIMC_EVENT_PREPARE time, hand and drum alone; and of
+    /// HIMC_EVENT_MISSED: as planned, velocity, force, impulse and duration 0, the beat NaN of a
+    /// hit.
     himc_strike strike;
     char text[sizeof((himc_error *)0)->text]; ///< of HIMC_EVENT_NOTE; of _MISSED, why
 } himc_event;
@@ -270,6 +272,8 @@ typedef struct himc_performance_stats {
     double reserve;               ///< largest torque of a joint over its strength: the reserve is
                                   ///< used above 1; 0 without strengths ...
     int reserve_joint;            ///< ... and the joint
+    double beat;                  ///< of the score now, of a take second; -1 while stopped
+    double bpm;                   ///< the tempo now (beats per minute)
     int hits;                     ///< accepted hits
     double hit_latency;           ///< of the last hit, from its command to its planned contact (s)
     double longest_latency;       ///< of all hits (s)

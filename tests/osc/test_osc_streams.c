@@ -97,6 +97,14 @@ static void test_info_over_osc_is_answered_and_listen_refused(void)
     play(0.02);
     TEST_ASSERT_TRUE(count("/himc/info") >= 3);
     TEST_ASSERT_EQUAL_INT(0, count("/himc/error"));
+    forget();
+    say("/himc/get", "latency");
+    play(0.02);
+    TEST_ASSERT_EQUAL_INT(1, count("/himc/info"));
+    say("/himc/get", "late");
+    play(0.02);
+    TEST_ASSERT_EQUAL_STRING("get: WHAT: late, expected a setting, tempo, beat, state or drums",
+                             last_error());
     say("/himc/listen", "9000");
     play(0.02);
     TEST_ASSERT_EQUAL_STRING("listen: not over the network", last_error());

@@ -61,6 +61,7 @@ done <<'LIST'
 10-two-at-one-drum 4 8 kettle
 11-a-kit 6 20 kick hats snare
 12-marimba 6 8 marimba
+13-time-and-notes 8 12 low second third high
 pieces/tide 14 7 low second third
 LIST
 

@@ -23,6 +23,9 @@ static const char *const nuances[] = {"legato",          "tenuto",   "accent",
 static const char *const spots[] = {"center",  "normal", "rim",   "crossstick",
                                     "rimshot", "click",  "shell", NULL};
 const char *const himc_dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
+// the last: as the command `cresc` says
+static const char *const stroke_dynamics[] = {"ppp", "pp", "p",   "mp", "mf",
+                                              "f",   "ff", "fff", "-",  NULL};
 
 #define WORD(word) word,
 static const char *const listed[] = {HIMC_LISTS(WORD) NULL};
@@ -33,12 +36,13 @@ static const char *const plates[] = {HIMC_PLATES(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
-    {"BEAT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
+    {"BEAT|FROM|TO", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
     {"HAND", "hit", HIMC_ARGUMENT_WORD, 0, 0, "", hit_hands},
     {"HAND", "stroke", HIMC_ARGUMENT_WORD, 0, 0, "", stroke_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
-    {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", himc_dynamics},
+    {"DYNAMIC", "cresc", HIMC_ARGUMENT_NUMBER, 0, 1, "", himc_dynamics},
+    {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", stroke_dynamics},
     {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
     {"SETUP", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", setups},
     {"BAR", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", bars},
@@ -98,6 +102,9 @@ static const himc_argument arguments[] = {
     {"RADIUS", NULL, HIMC_ARGUMENT_NUMBER, HIMC_RADIUS_MIN, HIMC_RADIUS_MAX, "m", NULL},
     {"TENSION", NULL, HIMC_ARGUMENT_NUMBER, HIMC_TENSION_MIN, HIMC_TENSION_MAX, "N/m", NULL},
     {"DENSITY", NULL, HIMC_ARGUMENT_NUMBER, 0.01, HIMC_DENSITY_MAX, "kg/m^2", NULL},
+    {"PHASE", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
+    {"PARTS", NULL, HIMC_ARGUMENT_COUNT, 1, 24, "", NULL},
+    {"WHAT", NULL, HIMC_ARGUMENT_TEXT, 1, HIMC_NAME_SIZE - 1, "", NULL},
     {"COUNT", NULL, HIMC_ARGUMENT_COUNT, 1, 2000, "", NULL},
     {"T60", NULL, HIMC_ARGUMENT_NUMBER, 0.01, 100, "s", NULL},
     {"SIGMA0", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_SIGMA0_MAX, "1/s", NULL},
@@ -113,12 +120,13 @@ static const himc_argument arguments[] = {
     {"AMOUNT", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", NULL},
     {"DB", NULL, HIMC_ARGUMENT_NUMBER, -60, 24, "dB", NULL},
     {"SEED", NULL, HIMC_ARGUMENT_COUNT, 0, HIMC_SEED_MAX, "", NULL},
-    {"LENGTH", "roll", HIMC_ARGUMENT_NUMBER, 0.05, 1000, "beats", NULL},
+    {"LENGTH", "roll|tempo|cresc|gliss", HIMC_ARGUMENT_NUMBER, 0.05, 1000, "beats", NULL},
     {"LENGTH|WIDTH", NULL, HIMC_ARGUMENT_NUMBER, 0.05, 1.4, "m", NULL},
     {"CHANNELS|CHANNEL", NULL, HIMC_ARGUMENT_COUNT, 1, HIMC_PICKUPS, "", NULL},
     {"ELEVATION", NULL, HIMC_ARGUMENT_NUMBER, 0, HIMC_ELEVATION_MAX, "rad", NULL},
     {"DISTANCE", NULL, HIMC_ARGUMENT_NUMBER, HIMC_PICKUP_DISTANCE_MIN, HIMC_PICKUP_DISTANCE_MAX,
      "m", NULL},
+    {"PITCH|VELOCITY", "note", HIMC_ARGUMENT_NUMBER, 0, 127, "", NULL},
     {"VELOCITY", NULL, HIMC_ARGUMENT_NUMBER, HIMC_STRIKE_VELOCITY_MIN, HIMC_STRIKE_VELOCITY_MAX,
      "m/s", NULL},
 };

@@ -276,6 +276,7 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
         if (atoms[i].kind != HIMC_ATOM_SYMBOL)
             continue;
         bool pitch = out->id == HIMC_COMMAND_TUNE || out->id == HIMC_COMMAND_GLISS ||
+                     out->id == HIMC_COMMAND_DRUM_GLISS ||
                      (out->id == HIMC_COMMAND_INSTRUMENT && i > 1);
         if (pitch && himc_note_frequency(atoms[i].symbol, &hz)) {
             out->atom[i].number = hz;
@@ -290,6 +291,8 @@ static void store(himc_command *out, const himc_atom *atoms, int count, const re
 
 static double read_dynamic(const himc_command *c, int i)
 {
+    if (c->choice[i] > 7) // "-"
+        return HIMC_DYNAMIC_FOLLOWS;
     return c->choice[i] >= 0 ? c->choice[i] / 7.0 : c->atom[i].number; // word 7 is fff
 }
 

@@ -18,6 +18,7 @@ typedef struct himc_source_contact {
 typedef struct himc_source_stroke {
     bool any;       ///< as of the contact
     double time;    ///< of contact (s)
+    double lead;    ///< its gesture begins so long before (s)
     int drum;       ///< slot
     double x, y;    ///< on the head (m)
     himc_spot spot; ///< of a score

@@ -466,7 +466,8 @@ static void step_once(himc_drum *drum, himc_stick **all, int given, double *cons
     int count = given + himc_drum_add_mallets(drum, all + given);
     unsigned known[2 * HIMC_STICKS];
     double pressing = 0;
-    drum->hold = 0;
+    uint64_t now = drum->time + (uint64_t)made->count;
+    drum->hold = now >= drum->laid_from && now < drum->laid_until;
     for (int k = 0; k < count; k++)
         known[k] = all[k]->contacts;
     himc_contact_step(drum->membrane, all, count);
@@ -526,6 +527,11 @@ bool himc_drum_advance_sticks(himc_drum *drum, int n, himc_stick *const *sticks,
         while (alone && run < most && force_at(o, at + run) == 0 && !moves_at(drum, o, at + run))
             run++;
         run = himc_drum_until_gliss(drum, himc_drum_until_launch(drum, run));
+        uint64_t now = drum->time + (uint64_t)made.count;
+        if (now < drum->laid_until) // under a hand, sample by sample
+            run = now >= drum->laid_from                  ? 0
+                  : drum->laid_from - now < (uint64_t)run ? (int)(drum->laid_from - now)
+                                                          : run;
         run = himc_contact_clear(drum->membrane, all, count, run);
         near = near || run == 0;
         if (run > 0) {

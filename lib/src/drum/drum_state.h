@@ -83,7 +83,8 @@ struct himc_drum {
     double fader; ///< of all drums of its performer (factor)
     double level; ///< of the drum's own sound: on its way to the product, or to 0
     himc_stroke_noise noise;
-    double hold; ///< damp by sticks that are kept on the head
+    uint64_t laid_from, laid_until; ///< samples in which a hand lies on it, as a note ends
+    double hold;                    ///< damp by that, and by sticks that are kept on the head
     double
         nearness[HIMC_PICKUPS]; ///< 1/distance of a pickup in the air, as its noise is heard (1/m)
     himc_listener listener;     ///< of its performer, or `alone`

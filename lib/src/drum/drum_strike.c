@@ -31,6 +31,7 @@ static const himc_mallet_head plate = {
 #define PLATE_EDGE 0.95   // per radius
 #define PRESS 25.0        // of the foot on each place, of its speed (N s/m) ...
 #define PRESS_EASES 0.03  // ... falling in this time (s) ...
+#define LAID_TIME 0.15    // a hand lies on a head that rings (s); chosen: 90 dB at HIMC_DAMP
 #define PRESS_TIME 0.15   // ... until it lets go (s) ...
 #define PRESS_LIFT 20.0   // ... and lifts the plate (m/s^2)
 #define PRESS_HOLD 0.75   // of `damp`: 50 1/s
@@ -236,6 +237,17 @@ void himc_drum_launch_shaft(himc_drum *drum, himc_stick *stick)
         add_mallet(drum, head, -out * himc_membrane_head(drum->membrane)->radius, 0,
                    stick->shaft * stick->impact, DRUM_NOT_TOLD);
     stick->shaft = 0;
+}
+
+void himc_drum_lay(himc_drum *drum, int delay, bool hand)
+{
+    uint64_t at = drum->time + (uint64_t)delay;
+    if (hand) {
+        drum->laid_from = at;
+        drum->laid_until = at + (uint64_t)(LAID_TIME * drum->rate);
+    } else if (at < drum->laid_until) {
+        drum->laid_until = at;
+    }
 }
 
 bool himc_drum_hats(const himc_drum *drum)

@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#define MOVED 0.03 // a stroke that comes so much later is another gesture (s); chosen
+
 static contact_scene scene_of(himc_performance *p)
 {
     return (contact_scene){.clock = &p->clock,
@@ -106,15 +108,29 @@ static void watch(himc_performance *p, double t)
     himc_performance_tell_misses(p);
     if (himc_motion_is_calm(p->motion, t))
         return;
-    long beat = himc_motion_beat(p->motion, t);
+    double beat = himc_motion_beat(p->motion, t);
     if (beat >= 0)
         himc_events_add(&p->events,
-                        &(himc_event){.kind = HIMC_EVENT_BEAT, .beat = (double)beat, .time = t});
+                        &(himc_event){.kind = HIMC_EVENT_BEAT, .beat = beat, .time = t});
     if (!himc_contacts_any(&p->contacts) && himc_motion_done(p->motion, t)) {
         tell_planner_notes(p);
         himc_events_add(&p->events, &(himc_event){.kind = HIMC_EVENT_DONE});
     }
     himc_motion_foresee(p->motion, himc_clock_next_tick(&p->clock));
+}
+
+// strokes whose gesture begins, once each; one that is moved is told again
+static void tell_gestures(himc_performance *p, double t)
+{
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        himc_source_stroke s = himc_motion_stroke(p->motion, &p->drums, (himc_hand)hand, t);
+        double *told = &p->motion->prepared[hand];
+        if (!s.any || t < s.time - s.lead || t > s.time || s.time < *told + MOVED)
+            continue;
+        *told = s.time;
+        himc_events_prepare(&p->events, s.time, (himc_hand)hand,
+                            himc_drum_name(p->drums.slot[s.drum].drum));
+    }
 }
 
 static void performance_step(himc_performance *p)
@@ -155,6 +171,7 @@ static void performance_step(himc_performance *p)
     himc_contacts_release(&p->contacts, &scene, t);
     step_body(p, n, t, h, tick);
     if (tick) {
+        tell_gestures(p, t);
         himc_performance_tell_tick(p, t);
         // a joint faster than any person's, whatever the cause; once
         if (himc_statistics_too_fast(&p->statistics, &joint, &rate))

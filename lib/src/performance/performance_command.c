@@ -4,8 +4,10 @@
 /// the step at its sample; the others may allocate or read files, and act at once. A command that
 /// cannot be carried out changes nothing and gives the reason in one line.
 #include "base/argument.h"
+#include "base/format.h"
 #include "performance/performance_state.h"
 
+#define LEAST_LOOP 0.1     // chosen: a stroke of one hand at 150 beats a minute (beats)
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
 
 // a setting, and what follows from its change
@@ -124,6 +126,7 @@ static bool carry_out(himc_performance *p, const himc_command *c, himc_error *er
 static bool act_on_score(himc_performance *p, const himc_command *c, himc_error *error)
 {
     const himc_atom *atom = c->atom;
+    himc_tempo_ramp ramp;
     himc_planner *planner = p->motion->planner;
     switch (c->id) {
     case HIMC_COMMAND_STROKE:
@@ -131,6 +134,8 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
     case HIMC_COMMAND_FLAM:
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF: return himc_performance_add_stroke(p, &c->stroke, error);
+    case HIMC_COMMAND_CLOCK: return himc_performance_clock(p, c, error);
+    case HIMC_COMMAND_CRESC: return himc_dynamics_add(&p->written.dynamics, c, error);
     case HIMC_COMMAND_HIT: return himc_performance_hit(p, &c->stroke, error);
     case HIMC_COMMAND_PLAY: return himc_performance_play(p, error);
     case HIMC_COMMAND_STOP: himc_performance_stop(p); return true;
@@ -141,16 +146,25 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
     case HIMC_COMMAND_NUDGE: return himc_performance_nudge(p->motion->track, c, error);
     case HIMC_COMMAND_TEMPO:
         himc_motion_replan(p->motion);
-        return c->count == 1
-                   ? himc_performance_set_tempo(p, atom[0].number, error)
-                   : himc_planner_add_tempo(
-                         planner, &(himc_tempo_change){atom[1].number, atom[0].number}, error);
-    case HIMC_COMMAND_LOOP: himc_planner_loop(planner, step_time(p), atom[0].number != 0); break;
+        ramp = himc_score_read_tempo(c);
+        return c->count == 1 ? himc_performance_set_tempo(p, atom[0].number, error)
+                             : himc_planner_add_tempo(planner, &ramp, error);
+    case HIMC_COMMAND_LOOP:
+        if (c->count == 1) {
+            himc_planner_loop(planner, step_time(p), atom[0].number != 0);
+            break;
+        }
+        if (!himc_check_range("loop: TO", atom[1].number, atom[0].number + LEAST_LOOP, 1e6, "beats",
+                              error))
+            return false;
+        himc_planner_loop_beats(planner, step_time(p), atom[0].number, atom[1].number);
+        break;
     case HIMC_COMMAND_SEEK: himc_planner_seek(planner, step_time(p), atom[0].number); break;
     case HIMC_COMMAND_CLEAR:
         himc_planner_clear(planner);
         himc_feet_clear(&p->motion->feet);
         himc_text_clear(&p->written.score);
+        p->written.dynamics.count = 0;
         himc_drums_drop_heads(&p->drums);
         himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
         break;
@@ -180,6 +194,7 @@ static bool act(himc_performance *p, const himc_command *c, himc_error *error)
         return himc_performance_find_drum(p, c->atom[0].symbol) || carry_out(p, c, error);
     case HIMC_COMMAND_INFO: // the host answers, with himc_performance_describe; also without a file
     case HIMC_COMMAND_DUMP: return c->count == 0 || carry_out(p, c, error);
+    case HIMC_COMMAND_GET:
     case HIMC_COMMAND_SUBSCRIBE:
     case HIMC_COMMAND_UNSUBSCRIBE:
     case HIMC_COMMAND_LISTEN:
@@ -222,9 +237,28 @@ static himc_job *state_job(himc_performance *p, const char *state, himc_error *e
 const himc_runner himc_performance_runner = {takes_long, himc_performance_command, job_of,
                                              state_job, drum_of};
 
+// True if a command stands for another one: a note for a hit, if anything, or a gliss in beats for
+// the drum's in seconds; `good` tells if it could.
+static bool becomes(himc_performance *p, const himc_command *c, int delay, himc_command *other,
+                    bool *good, himc_error *error)
+{
+    himc_atom atoms[] = {c->atom[1], {HIMC_ATOM_NUMBER, 0, NULL}};
+    if (c->id == HIMC_COMMAND_NOTE) {
+        other->id = HIMC_COMMAND_HIT;
+        *good = himc_performance_note(p, c, delay, &other->stroke, error);
+    } else if (c->id == HIMC_COMMAND_DRUM_GLISS) {
+        atoms[1].number = c->atom[2].number * 60 / himc_performance_measure(p).bpm;
+        *good = himc_command_parse(other, HIMC_DRUM, "gliss", atoms, 2, error);
+        himc_format(other->drum, sizeof other->drum, "%s", c->atom[0].symbol);
+    }
+    return c->id == HIMC_COMMAND_NOTE || c->id == HIMC_COMMAND_DRUM_GLISS;
+}
+
 bool himc_performance_command(himc_performance *p, const himc_command *command, int delay,
                               himc_error *error)
 {
+    himc_command other = {.count = 0};
+    bool can = false;
     const himc_command_row *row = himc_command_table((int)command->id);
     if (!row)
         return himc_error_set(error, "command %d: not from the parser", (int)command->id);
@@ -241,6 +275,9 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
                         : himc_drum_command(drum, command, error);
         return good || himc_error_prefix(error, "%s", command->drum);
     }
+    if (becomes(p, command, delay, &other, &can, error))
+        return can && ((!other.drum[0] && !other.stroke.drum[0]) ||
+                        himc_performance_command(p, &other, delay, error));
     if (row->receiver != HIMC_PERFORMER)
         return himc_error_set(error, "a drum's command, not the performer's");
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates

@@ -29,6 +29,7 @@ typedef struct drum_slot {
     himc_head_frame seen;   ///< where its head was when ...
     himc_head_axes axes;    ///< ... its axes were found
     himc_drum_heads *heads; ///< owned; its changes in the score, NULL for none
+    int keys;               ///< of `note` that are held
     int waited;             ///< ticks that a change has waited for a stick to leave the head
 } drum_slot;
 

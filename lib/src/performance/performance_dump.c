@@ -27,7 +27,7 @@ bool himc_written_room(himc_text_lines *lines, const char *command, himc_error *
 
 static void add_dynamic(himc_state_line *line, double dynamic)
 {
-    const char *const *words = himc_argument_find("DYNAMIC", "stroke")->words;
+    const char *const *words = himc_argument_find("DYNAMIC", "cresc")->words;
     for (int k = 0; words[k]; k++)
         if (dynamic == k / 7.0) {
             himc_state_word(line, words[k]);
@@ -127,6 +127,14 @@ static void tell_push(const planned_push *push, const himc_line_sink *to)
     himc_state_end(&line, to);
 }
 
+static void tell_loop(const himc_planner *planner, const himc_line_sink *to)
+{
+    double beats[] = {himc_planner_loop_begin(planner), himc_planner_length(planner)},
+           on = himc_planner_is_looped(planner);
+    bool some = himc_planner_loops_beats(planner);
+    himc_state_tell(to, "loop", NULL, some ? 2 : 1, some ? beats : &on);
+}
+
 // what is told, in this order
 typedef enum dump_part {
     NAMES,
@@ -193,10 +201,7 @@ static int tell_item(const himc_performance *p, dump_part part, int i, const him
                             (double[]){tempo->bpm, tempo->beat});
         return count;
     }
-    case LOOP:
-        himc_state_tell(to, "loop", NULL, 1,
-                        (double[]){himc_planner_is_looped(p->motion->planner)});
-        return 1;
+    case LOOP: tell_loop(p->motion->planner, to); return 1;
     case PUSHES:
         if (i < p->body->planned_count)
             tell_push(&p->body->planned[i], to);
@@ -229,12 +234,35 @@ static void dump(const himc_performance *p, const himc_line_sink *to)
         ;
 }
 
+// what changes by itself, and the settings
+static void tell_values(const himc_performance *p, const himc_line_sink *to)
+{
+    himc_performance_stats now = himc_performance_measure(p);
+    himc_state_line drums = himc_state_begin("drums");
+    bool prepares = himc_planner_is_preparing(p->motion->planner, step_time(p));
+    himc_state_tell(to, "beat", NULL, 1, &now.beat);
+    himc_state_tell(to, "tempo", NULL, 1, &now.bpm);
+    himc_state_tell(to, "state",
+                    !p->motion->playing ? "stopped"
+                    : prepares          ? "preparing"
+                                        : "playing",
+                    0, NULL);
+    for (int i = 0; i < p->drums.count; i++)
+        himc_state_word(&drums, himc_drum_name(p->drums.slot[i].drum));
+    himc_state_end(&drums, to);
+    tell_item(p, RATES, 0, to);
+    tell_item(p, SETTINGS, 0, to);
+    tell_item(p, LOOP, 0, to);
+}
+
 void himc_performance_describe(const himc_performance *p, himc_description what,
                                void (*line)(void *, const char *), void *user)
 {
     himc_line_sink to = {line, user};
     if (what == HIMC_DESCRIBE_STATE)
         dump(p, &to);
+    else if (what == HIMC_DESCRIBE_VALUES)
+        tell_values(p, &to);
     else
         himc_performance_inform(p, to);
 }

@@ -9,7 +9,7 @@
 
 static bool has_strike(himc_event_kind kind)
 {
-    return kind == HIMC_EVENT_STRIKE || kind == HIMC_EVENT_MISSED;
+    return kind == HIMC_EVENT_STRIKE || kind == HIMC_EVENT_MISSED || kind == HIMC_EVENT_PREPARE;
 }
 
 // bytes in the ring
@@ -69,6 +69,13 @@ void himc_events_missed(performance_events *e, const himc_strike *missed, const 
     himc_format(event.text, sizeof event.text, "%s", why);
     event.strike.planned_x = missed->x;
     event.strike.planned_y = missed->y;
+    himc_events_add(e, &event);
+}
+
+void himc_events_prepare(performance_events *e, double time, himc_hand hand, const char *drum)
+{
+    himc_event event = {.kind = HIMC_EVENT_PREPARE, .strike = {.time = time, .hand = hand}};
+    himc_format(event.strike.drum, sizeof event.strike.drum, "%s", drum);
     himc_events_add(e, &event);
 }
 

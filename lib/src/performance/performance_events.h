@@ -32,6 +32,9 @@ HIMC_RT void himc_events_note_as(performance_events *events, note_kind kind, con
 /// been. `why` in a few words.
 HIMC_RT void himc_events_missed(performance_events *events, const himc_strike *missed,
                                 const char *drum, const char *why);
+/// Adds the beginning of a gesture; `time` of its contact (s).
+HIMC_RT void himc_events_prepare(performance_events *events, double time, himc_hand hand,
+                                 const char *drum);
 /// Takes the oldest event; false if there is none.
 HIMC_RT bool himc_events_take(performance_events *events, himc_event *event);
 

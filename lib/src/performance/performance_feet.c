@@ -104,6 +104,7 @@ static bool launch(performance_feet *feet, const foot_stroke *s, performance_dru
         feet->told[kick] = *s;
         feet->launched++;
         *last = (foot_last){at, s->drum + 1};
+        himc_events_prepare(events, at, HIMC_FOOT, himc_drum_name(drum));
         return true;
     }
     himc_strike missed = {
@@ -133,15 +134,16 @@ int himc_feet_play(performance_feet *feet, performance_drums *drums, const himc_
     double t = himc_score_seconds(tempi, count, now);
     // after a jump from the beat of this tick on
     double from = fabs(feet->played_to - now) < SAME_COURSE ? feet->played_to : now;
-    bool round = next < now; // a loop ends on a whole beat, and begins again at 0
-    double end = floor(now) + 1, to = round ? end : next;
-    double t_end = himc_score_seconds(tempi, count, end);
+    bool round = next < now; // a loop begins again
+    double end = himc_planner_length(planner), to = round ? end : next;
+    double begin = himc_planner_loop_begin(planner);
+    double turned = himc_score_seconds(tempi, count, end) - himc_score_seconds(tempi, count, begin);
     for (int i = 0; i < feet->count; i++) {
         const foot_stroke *s = &feet->stroke[i];
-        bool again = round && s->beat < next;
+        bool again = round && s->beat < next && s->beat >= begin;
         if (!again && !(s->beat >= from && s->beat < to))
             continue;
-        double at = himc_score_seconds(tempi, count, s->beat) + (again ? t_end : 0);
+        double at = himc_score_seconds(tempi, count, s->beat) + (again ? turned : 0);
         missed += !launch(feet, s, drums, time, fmax(at - t, 0), events);
     }
     feet->played_to = next;

@@ -77,6 +77,8 @@ performance_motion *himc_motion_new(himc_error *error)
     m->body.posture.level = planning.rest[HIMC_RIGHT].z - REST_HEIGHT;
     choose_sources(m, false);
     m->last_beat = m->feet.played_to = -1;
+    m->subdivide = 1;
+    m->prepared[HIMC_LEFT] = m->prepared[HIMC_RIGHT] = -INFINITY;
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         m->answered[hand] = -INFINITY;
     return m;
@@ -453,6 +455,7 @@ void himc_motion_read_task(performance_motion *m, const performance_settings *s,
     m->body.shells.count = drums->count;
     for (int i = 0; i < drums->count; i++)
         m->body.shells.head[i] = *himc_drums_frame(drums, i);
+    himc_planner_follow_ramp(m->planner);
     himc_planner_advance(m->planner, t);
     himc_motion_stir(m);
     if (s->alive && !m->track) { // hands lie on heads that are damped; a take shows its own
@@ -711,9 +714,10 @@ static double counted_beat(const performance_motion *m, double t)
     return prepares ? himc_planner_count(m->planner, t) : himc_planner_beat(m->planner, t);
 }
 
+// the part of a beat, counted in parts
 static long whole_beat(const performance_motion *m, double t)
 {
-    double beat = counted_beat(m, t);
+    double beat = counted_beat(m, t) * m->subdivide;
     bool counts = himc_motion_plays_score(m) && !m->over && beat >= 0;
     return counts ? (long)floor(beat + BEAT_ROUNDING) : -1;
 }
@@ -729,7 +733,7 @@ double himc_motion_score_beat(const performance_motion *m, double t)
 static bool begins_beat(const performance_motion *m, double t)
 {
     long whole = whole_beat(m, t);
-    double beat = counted_beat(m, t);
+    double beat = counted_beat(m, t) * m->subdivide;
     bool within = beat - floor(beat + BEAT_ROUNDING) >= BEAT_BEGINNING;
     bool other = whole != m->last_beat && (m->last_beat >= 0 || whole < 0 || !within);
     return other || himc_planner_round(m->planner, t) > m->last_round ||
@@ -761,14 +765,14 @@ void himc_motion_stir(performance_motion *m)
     m->calm = -INFINITY;
 }
 
-long himc_motion_beat(performance_motion *m, double t)
+double himc_motion_beat(performance_motion *m, double t)
 {
     long whole = whole_beat(m, t);
     bool begun = begins_beat(m, t);
     m->last_beat = whole;
     m->counted = himc_planner_is_preparing(m->planner, t);
     m->last_round = himc_planner_round(m->planner, t);
-    return begun ? whole : -1;
+    return begun ? (double)whole / m->subdivide : -1;
 }
 
 bool himc_motion_done(performance_motion *m, double t)

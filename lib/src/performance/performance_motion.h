@@ -64,10 +64,12 @@ typedef struct performance_motion {
     bool out_of_reach[HIMC_HANDS]; ///< the last live target was refused or out of reach
     double answered[HIMC_HANDS];   ///< planned time of the last stroke struck or given up (s)
     bool playing;
-    bool over;                  ///< played to its end: its time goes on until `play` or `stop`
-    long last_beat, last_round; ///< that have been reported
-    bool counted;               ///< the last one was before a cleared loop begins again
-    double calm;                ///< no beat begins and no end comes before, if nothing changes (s)
+    bool over;                   ///< played to its end: its time goes on until `play` or `stop`
+    long last_beat, last_round;  ///< that have been reported, the beat in its parts
+    double subdivide;            ///< so many parts of a beat are reported
+    double prepared[HIMC_HANDS]; ///< time of the last stroke whose gesture was reported (s)
+    bool counted;                ///< the last one was before a cleared loop begins again
+    double calm;                 ///< no beat begins and no end comes before, if nothing changes (s)
 } performance_motion;
 
 /// Motion from time 0 without a body: himc_motion_build gives it one. NULL without memory.
@@ -192,8 +194,8 @@ HIMC_RT void himc_motion_foresee(performance_motion *motion, double next);
 HIMC_RT double himc_motion_score_beat(const performance_motion *motion, double t);
 /// Something may have changed: nothing is foreseen.
 HIMC_RT void himc_motion_stir(performance_motion *motion);
-/// The whole beat that has begun at `t` since the last call, or -1.
-HIMC_RT long himc_motion_beat(performance_motion *motion, double t);
+/// The beat, or the part of one, that has begun at `t` since the last call, or -1.
+HIMC_RT double himc_motion_beat(performance_motion *motion, double t);
 /// True once everything has been played at `t`.
 HIMC_RT bool himc_motion_done(performance_motion *motion, double t);
 

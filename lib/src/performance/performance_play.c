@@ -4,6 +4,10 @@
 #include "base/format.h"
 #include "base/head_frame.h"
 #include "capture/take.h"
+#include "drum/membrane_state.h"
+#include "head/idiophone.h"
+#include "head/two_heads.h"
+#include "midi/part.h"
 #include "plan/ornament.h"
 #include "plan/score.h"
 #include "plan/sticking.h"
@@ -18,6 +22,14 @@
 // chosen: a stroke so little out of reach is played
 #define OUT_OF_REACH 0.01 // (m)
 #define BEHIND (-0.2)     // forward over sideways: further back is behind the performer
+
+// a clock that is followed; chosen
+#define SYNC_STEP 0.012 // it is not looked at sooner again (s): 200 beats a minute of MIDI
+#define SYNC_GAP 1.0    // after that it is another one (s)
+#define SYNC_LEAST 6    // looks from which its tempo is known
+#define SYNC_SAME 0.003 // so little another tempo is the same: 1.5 ms in half a second
+
+#define QUARTER_TONE 0.5 // a pitch is a MIDI key's within that (semitones)
 
 #define LATEST_BEAT 1e9 // beats are exact to 1e-7 up to here
 
@@ -106,8 +118,10 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *written
     return true;
 }
 
-bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error)
+bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *asked, himc_error *error)
 {
+    himc_stroke own = *asked, *stroke = &own;
+    himc_dynamics_give(&p->written.dynamics, stroke);
     if (!himc_written_room(&p->written.score, "stroke", error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_put_stroke(p, stroke, error))
@@ -197,7 +211,9 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     himc_stroke own = *stroke;
     himc_hit asked = {.stroke = &own};
     himc_planner *planner = p->motion->planner;
-    if (!check_stroke(stroke, true, error))
+    own.beat = fmax(himc_motion_score_beat(p->motion, step_time(p)), 0);
+    himc_dynamics_give(&p->written.dynamics, &own);
+    if (!check_stroke(&own, true, error))
         return false;
     // to the hands that no take moves
     double now = step_time(p);
@@ -236,6 +252,113 @@ bool himc_performance_hit(himc_performance *p, const himc_stroke *stroke, himc_e
     return true;
 }
 
+static double midi_key(double hz)
+{
+    return 69 + 12 * log2(hz / 440); // A4
+}
+
+// How far a MIDI key is from what a drum sounds (semitones), infinite of one without a pitch. A
+// keyboard has the key or its octaves, and `part` becomes the bar.
+static double key_distance(himc_drum *drum, int key, char part[HIMC_PART_SIZE])
+{
+    const himc_shape *shape = &himc_membrane_config_of(himc_drum_membrane(drum))->shape;
+    double least = INFINITY, hz;
+    if (!shape->body && !shape->shell)
+        return fabs(midi_key(himc_drum_pitch(drum)) - key);
+    for (int i = 0; shape->body && i < shape->body->parts; i++) {
+        const char *name = shape->body->part[i].name;
+        double way = himc_note_frequency(name, &hz) ? fabs(midi_key(hz) - key) : INFINITY;
+        if (way < least && lround(way) % 12 == 0) {
+            least = way;
+            himc_format(part, HIMC_PART_SIZE, "%s", name);
+        }
+    }
+    return least;
+}
+
+// the instrument of a key of General MIDI's drum channel, of that name or else of that kind, and
+// its stroke; -1: there is none
+static int kit_drum(const performance_drums *drums, int key, himc_stroke *stroke, midi_stroke *note)
+{
+    midi_part kit = {.choice = MIDI_DRUMS, .stroke = note, .count = 1};
+    *note = (midi_stroke){.key = key, .spot = HIMC_SPOT_NORMAL};
+    himc_midi_kit(&kit);
+    if (note->head < 0)
+        return -1;
+    midi_head *head = &kit.head[note->head];
+    head->made[strcspn(head->made, " ")] = '\0'; // its kind, without a size
+    int found = himc_drums_find(drums, head->name);
+    for (int i = 0; i < drums->count && found < 0; i++) {
+        const himc_shape *s =
+            &himc_membrane_config_of(himc_drum_membrane(drums->slot[i].drum))->shape;
+        const char *kind = s->body ? s->body->name : s->shell ? s->shell->name : "";
+        found = strcmp(kind, head->made) == 0 ? i : -1;
+    }
+    stroke->spot = note->spot;
+    stroke->hand = note->foot ? HIMC_FOOT : HIMC_HAND_ANY;
+    himc_format(stroke->part, sizeof stroke->part, "%s", note->part);
+    return found;
+}
+
+// the drum of a MIDI key; -1 with the reason if there is none
+static int find_key(const himc_performance *p, int key, himc_stroke *stroke, midi_stroke *note,
+                    himc_error *error)
+{
+    const performance_drums *drums = &p->drums;
+    char part[HIMC_PART_SIZE] = "", nearest[HIMC_PART_SIZE] = "";
+    double least = INFINITY;
+    int found = drums->count == 1 ? 0 : -1;
+    for (int i = 0; i < drums->count; i++) {
+        double way = key_distance(drums->slot[i].drum, key, part);
+        if (way < least) {
+            least = way;
+            found = i;
+            memcpy(nearest, part, sizeof part);
+        }
+    }
+    int of_kit = least > QUARTER_TONE ? kit_drum(drums, key, stroke, note) : -1;
+    if (of_kit >= 0)
+        return of_kit;
+    *note = (midi_stroke){.key = key};
+    *stroke = (himc_stroke){.hand = HIMC_HAND_ANY, .spot = HIMC_SPOT_NORMAL};
+    memcpy(stroke->part, nearest, sizeof nearest);
+    if (found < 0)
+        himc_error_set(error, "note: %d%s%s: no drum has that pitch, no instrument that key", key,
+                       himc_midi_key_sound(key)[0] ? ", " : "", himc_midi_key_sound(key));
+    return found;
+}
+
+bool himc_performance_note(himc_performance *p, const himc_command *c, int delay, himc_stroke *hit,
+                           himc_error *error)
+{
+    himc_command pedal;
+    midi_stroke note;
+    double velocity = c->atom[1].number, latency = p->settings.latency * p->clock.sample_rate;
+    int index, after = delay + (int)latency - himc_clock_ahead(&p->clock);
+    if (!himc_performance_ensure_drum(p, "", HIMC_SPOT_NORMAL, &index, error))
+        return false;
+    index = find_key(p, (int)lround(c->atom[0].number), hit, &note, error);
+    if (index < 0)
+        return velocity == 0; // what did not sound ends without a word
+    drum_slot *slot = &p->drums.slot[index];
+    slot->keys = velocity > 0 ? slot->keys + 1 : slot->keys > 0 ? slot->keys - 1 : 0;
+    bool lays = velocity == 0 && slot->keys == 0 && p->settings.noteoff == HIMC_NOTEOFF_DAMP;
+    if (velocity > 0 || lays)
+        himc_drum_lay(slot->drum, after > 0 ? after : 0, lays);
+    if (velocity == 0)
+        return true;
+    if (himc_drum_hats(slot->drum) && note.pedal != MIDI_AS_IT_IS) {
+        himc_atom pressed = {HIMC_ATOM_NUMBER, note.pedal == MIDI_CLOSE, NULL};
+        if (!himc_command_parse(&pedal, HIMC_DRUM, "pedal", &pressed, 1, error) ||
+            !himc_drum_command(slot->drum, &pedal, error))
+            return false;
+    }
+    hit->nuance = c->count > 2 ? (himc_nuance)c->choice[2] : HIMC_LEGATO;
+    hit->dynamic = himc_midi_dynamic(velocity, 0);
+    himc_format(hit->drum, sizeof hit->drum, "%s", himc_drum_name(slot->drum));
+    return true;
+}
+
 bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *error)
 {
     if (!himc_check_range("tempo", bpm, 1, 1000, "beats per minute", error))
@@ -243,6 +366,71 @@ bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *err
     himc_planner_tempo(p->motion->planner, step_time(p), bpm);
     himc_motion_replan(p->motion);
     return true;
+}
+
+// the score's beat through all rounds of a loop
+static double total_beat(const himc_performance *p, double t)
+{
+    const himc_planner *planner = p->motion->planner;
+    double round = himc_planner_length(planner) - himc_planner_loop_begin(planner);
+    return himc_planner_beat(planner, t) + (double)himc_planner_round(planner, t) * round;
+}
+
+// Sees the clock at its beat: the tempo becomes the clock's, and so much faster or slower that the
+// beats meet within one.
+static bool see_clock(himc_performance *p, double t, bool absolute, himc_error *error)
+{
+    performance_sync *s = &p->sync;
+    long first = s->count < SYNC_TICKS ? 0 : s->count - SYNC_TICKS, last = s->count - 1;
+    double since = last < 0 ? INFINITY : t - s->seen[last % SYNC_TICKS].time;
+    if (since < SYNC_STEP)
+        return true;
+    if (since > SYNC_GAP)
+        first = s->count = 0;
+    double beats = s->beat - s->seen[first % SYNC_TICKS].beat,
+           seconds = t - s->seen[first % SYNC_TICKS].time;
+    bool known = s->count >= SYNC_LEAST && beats > 0;
+    s->seen[s->count % SYNC_TICKS].time = t;
+    s->seen[s->count++ % SYNC_TICKS].beat = s->beat;
+    if (!known)
+        return true;
+    double ahead = himc_planner_beat(p->motion->planner, t) < 0 ? 0 : s->beat - total_beat(p, t);
+    if (!absolute)
+        ahead -= round(ahead);
+    double bpm = 60 * beats / seconds * (1 + fmin(fmax(ahead, -0.5), 0.5)),
+           now = himc_planner_bpm(p->motion->planner, t);
+    bpm = fmin(fmax(bpm, HIMC_BPM_MIN), HIMC_BPM_MAX);
+    return fabs(bpm - now) < SYNC_SAME * now || himc_performance_set_tempo(p, bpm, error);
+}
+
+bool himc_performance_clock(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    enum { START, CONTINUE, STOP };
+    performance_sync *s = &p->sync;
+    bool phase = c->form == 0 && c->count > 0;
+    int64_t sample = p->queue.acting >= 0 ? p->queue.acting : p->clock.played;
+    double t = (double)sample / p->clock.sample_rate;
+    if (p->settings.sync != (phase ? HIMC_SYNC_PHASE : HIMC_SYNC_MIDI))
+        return true;
+    if (c->form == 0 && !phase) {
+        s->beat += 1.0 / SYNC_TICKS;
+        return see_clock(p, t, true, error);
+    }
+    if (phase) {
+        double way = c->atom[0].number - s->beat;
+        s->beat += way - round(way);
+        return see_clock(p, t, false, error);
+    }
+    if (c->choice[0] == STOP) {
+        himc_performance_stop(p);
+        return true;
+    }
+    if (c->choice[0] == START) {
+        s->beat = -1.0 / SYNC_TICKS; // the next tick is beat 0
+        s->count = 0;
+        himc_planner_seek(p->motion->planner, step_time(p), 0);
+    }
+    return himc_performance_play(p, error);
 }
 
 bool himc_performance_play(himc_performance *p, himc_error *error)

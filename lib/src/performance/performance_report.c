@@ -40,6 +40,8 @@ himc_performance_stats himc_performance_measure(const himc_performance *p)
     const performance_clock *c = &p->clock;
     himc_performance_stats s = himc_statistics_told(&p->statistics);
     s.seconds = fmax((double)c->played, 0) / c->sample_rate;
+    s.beat = himc_motion_score_beat(p->motion, s.seconds);
+    s.bpm = himc_planner_bpm(p->motion->planner, s.seconds);
     s.limit_hits = himc_body_limit_hits(p->body);
     for (int j = 0; j < HIMC_JOINTS; j++) {
         double strength = p->settings.control.strength[j];

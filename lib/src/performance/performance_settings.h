@@ -29,6 +29,12 @@ typedef enum himc_stance {
     HIMC_STANCE_STANDING ///< he stands on his feet
 } himc_stance;
 
+/// In the order of the words of `sync`.
+typedef enum himc_sync { HIMC_SYNC_MIDI, HIMC_SYNC_PHASE, HIMC_SYNC_OFF } himc_sync;
+
+/// In the order of the words of `noteoff`.
+typedef enum himc_noteoff { HIMC_NOTEOFF_RING, HIMC_NOTEOFF_DAMP } himc_noteoff;
+
 /// In the order of the words of `coupling`.
 typedef enum himc_coupling { HIMC_COUPLING_TWO_WAY, HIMC_COUPLING_ONE_WAY } himc_coupling;
 
@@ -47,6 +53,9 @@ typedef struct performance_settings {
     himc_human human;
     bool alive;     ///< head, weight and breath follow the music
     double latency; ///< of a hit, from its message to its contact; 0: as soon as it can (s)
+    himc_sync sync;
+    double subdivide; ///< parts of a beat that are told
+    himc_noteoff noteoff;
     himc_coupling coupling;
     bool bend; ///< `id` bends a take's arms to its tips, else it follows them as captured
     captured_player captured;

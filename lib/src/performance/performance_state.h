@@ -31,6 +31,7 @@
 #include "performance/performance_queue.h"
 #include "performance/performance_settings.h"
 #include "performance/performance_statistics.h"
+#include "plan/score.h"
 
 /// The host's settings; `reset` keeps them.
 typedef struct performance_host {
@@ -53,9 +54,21 @@ typedef struct performance_recording {
 typedef struct performance_written {
     himc_text_lines score;     ///< strokes, ornaments and changes of heads
     himc_text_lines units;     ///< the commands `units`
+    himc_dynamics dynamics;    ///< of strokes to come; they are written with theirs
     char take[HIMC_PATH_SIZE]; ///< the file of the take; "" without one
     himc_command take_command; ///< that has loaded it; without atoms if it came from memory
 } performance_written;
+
+#define SYNC_TICKS 24 // of a beat of MIDI
+
+/// The clock that tempo and beat follow.
+typedef struct performance_sync {
+    double beat; ///< of it
+    struct {
+        double time, beat; ///< (s, beats)
+    } seen[SYNC_TICKS];    ///< a ring of the last `count`
+    long count;
+} performance_sync;
 
 struct himc_performance {
     himc_runner runner; ///< the first, for loader.c; a score's lines are carried out by it, too
@@ -63,6 +76,7 @@ struct himc_performance {
     performance_settings settings;
     performance_clock clock;
     performance_queue queue;
+    performance_sync sync;
     performance_drums drums;
     performance_motion *motion;
     performance_body *body;
@@ -176,6 +190,11 @@ HIMC_RT void himc_performance_name_drum(const himc_performance *p, himc_stroke *
 void himc_performance_add_ornament(himc_performance *p, const himc_stroke *stroke, int drum);
 himc_job *himc_performance_units_job(himc_performance *p, const himc_command *command,
                                      himc_error *error);
+/// The command `clock`.
+bool himc_performance_clock(himc_performance *p, const himc_command *command, himc_error *error);
+/// The command `note`; what it plays becomes `hit`, if anything: it has a drum then.
+bool himc_performance_note(himc_performance *p, const himc_command *command, int delay,
+                           himc_stroke *hit, himc_error *error);
 /// How many units it would add; -1 with the reason.
 int himc_performance_count_units(const himc_command *command, const himc_take_options *options,
                                  himc_error *error);

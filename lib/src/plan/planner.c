@@ -358,15 +358,47 @@ bool himc_planner_set_tempi(himc_planner *planner, const himc_tempo_change *temp
     return true;
 }
 
-bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *tempo,
-                            himc_error *error)
+static double total_beat(const planner_score *score, double t)
 {
-    int count = planner->score.tempo_count;
-    himc_tempo_change *all = malloc(((size_t)count + 1) * sizeof *all);
+    return himc_planner_score_total_beat(score, himc_planner_score_round_at(score, t),
+                                         himc_planner_score_beat_at(score, t));
+}
+
+void himc_planner_follow_ramp(himc_planner *planner)
+{
+    himc_tempo_ramp ramp = planner->ramp;
+    int steps = himc_score_ramp_steps(&ramp);
+    if (steps == 0)
+        return;
+    double done = (total_beat(&planner->score, planner->now) - ramp.beat) / ramp.length;
+    int now = planner->score.playing ? (int)fmin(floor(done * steps), steps) : steps;
+    if (now < planner->ramp_steps)
+        return;
+    double bpm = now < steps ? himc_score_ramp_bpm(&ramp, now) : ramp.to;
+    himc_planner_tempo(planner, planner->now, bpm);
+    planner->ramp = now < steps ? ramp : (himc_tempo_ramp){.length = 0};
+    planner->ramp_steps = now + 1;
+}
+
+bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_ramp *asked, himc_error *error)
+{
+    const planner_score *score = &planner->score;
+    himc_tempo_ramp ramp = *asked;
+    int count = score->tempo_count;
+    if (ramp.beat < 0 && score->playing && score->loop) {
+        ramp.beat = total_beat(score, planner->now);
+        planner->ramp = ramp;
+        planner->ramp_steps = 0;
+        return true;
+    }
+    himc_tempo_change *all =
+        malloc(((size_t)count + (size_t)himc_score_ramp_steps(&ramp) + 1) * sizeof *all);
     if (!all)
         return himc_error_set(error, "tempo: out of memory");
-    memcpy(all, planner->score.tempi, (size_t)count * sizeof *all);
-    himc_score_insert_tempo(all, &count, *tempo);
+    if (ramp.beat < 0)
+        ramp.beat = fmax(himc_planner_beat(planner, planner->now + PLANNER_AHEAD), score->beat);
+    memcpy(all, score->tempi, (size_t)count * sizeof *all);
+    himc_score_insert_ramp(all, &count, &ramp);
     bool good = himc_planner_set_tempi(planner, all, count, error);
     free(all);
     return good;
@@ -562,9 +594,32 @@ void himc_planner_seek(himc_planner *planner, double t, double beat)
     start(planner, t, true);
 }
 
+void himc_planner_loop_beats(himc_planner *planner, double t, double from, double to)
+{
+    planner_score *score = &planner->score;
+    if (!isfinite(t))
+        return;
+    rebase(planner, t);
+    himc_planner_cut_both(planner, t);
+    before_change(planner, t);
+    bool past = score->playing && himc_planner_score_beat_at(score, t) >= to;
+    score->from = from;
+    score->to = to;
+    score->loop = true;
+    score->over = false;
+    score->rounds = 0;
+    himc_planner_score_keep(score);
+    if (past)
+        himc_planner_seek(planner, t, from);
+    else
+        himc_planner_replan(planner, t);
+}
+
 void himc_planner_loop(himc_planner *planner, double t, bool on)
 {
     planner_score *score = &planner->score;
+    if (on && isfinite(score->to))
+        himc_planner_loop_beats(planner, t, 0, HUGE_VAL);
     if (!isfinite(t) || score->loop == on)
         return;
     himc_planner_cut_both(planner, t);
@@ -575,6 +630,8 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
         for (int i = 0; i < planner->hand[hand].planned_count; i++)
             if (planner->hand[hand].planned[i].place.round > rounds)
                 rounds = planner->hand[hand].planned[i].place.round;
+    if (!on && isfinite(score->to))
+        himc_planner_score_leave_loop(score, rounds);
     score->over = score->over && !on;
     score->rounds = rounds;
     score->loop = on;
@@ -588,6 +645,7 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
     if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
         return;
     double beat = himc_planner_score_beat_at(score, t);
+    planner->ramp.length = 0;
     if (himc_planner_score_has_tempo(score, beat, bpm))
         return;
     rebase(planner, t);
@@ -598,7 +656,12 @@ void himc_planner_tempo(himc_planner *planner, double t, double bpm)
 
 double himc_planner_length(const himc_planner *planner)
 {
-    return himc_planner_score_length(&planner->score);
+    return himc_planner_loop_end(&planner->score);
+}
+
+double himc_planner_loop_begin(const himc_planner *planner)
+{
+    return planner->score.from;
 }
 
 double himc_planner_next_start(const himc_planner *planner, double t)
@@ -620,8 +683,12 @@ double himc_planner_beat(const himc_planner *planner, double t)
     if (!score->playing && !score->over)
         return -1;
     double beat = himc_planner_score_beat_at(score, t);
-    return t < score->origin + himc_planner_score_round_length(score) ? fmax(beat, score->beat)
-                                                                      : beat;
+    return himc_planner_score_round_at(score, t) == 0 ? fmax(beat, score->beat) : beat;
+}
+
+double himc_planner_bpm(const himc_planner *planner, double t)
+{
+    return himc_planner_score_bpm(&planner->score, fmax(himc_planner_beat(planner, t), 0));
 }
 
 long himc_planner_round(const himc_planner *planner, double t)
@@ -633,7 +700,7 @@ bool himc_planner_is_preparing(const himc_planner *planner, double t)
 {
     const planner_score *score = &planner->score;
     return score->playing && !score->empties && score->past == 0 &&
-           t < score->origin + himc_planner_score_round_length(score) &&
+           himc_planner_score_round_at(score, t) == 0 &&
            himc_planner_score_beat_at(score, t) < score->beat - BEAT_ROUNDING;
 }
 
@@ -677,6 +744,11 @@ const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *co
 {
     *count = planner->score.tempo_count;
     return planner->score.tempi;
+}
+
+bool himc_planner_loops_beats(const himc_planner *planner)
+{
+    return planner->score.loop && isfinite(planner->score.to);
 }
 
 bool himc_planner_is_looped(const himc_planner *planner)

@@ -13,6 +13,7 @@
 #include "himc/score.h"
 #include "capture/units.h"
 #include "plan/human.h"
+#include "plan/score.h"
 
 /// The body that is to follow the plan, as it is now. Its owner writes it, the planner only reads.
 typedef struct himc_planned_body {
@@ -141,18 +142,24 @@ HIMC_RT void himc_planner_seek(himc_planner *planner, double t, double beat);
 /// If `on`, the score and its tempo map begin again at its length. If not, the round under way is
 /// the last.
 HIMC_RT void himc_planner_loop(himc_planner *planner, double t, bool on);
-/// The whole beat after the last stroke, or at or after himc_planner_last_until, at which a loop
-/// begins again; 0 if the score is empty.
+/// The same of the beats from one up to another (infinite: all). Beyond them it goes to the first.
+HIMC_RT void himc_planner_loop_beats(himc_planner *planner, double t, double from, double to);
+/// The whole beat after the last stroke, or at or after himc_planner_last_until, or else the one
+/// that is asked for, at which a loop begins again; 0 if the score is empty.
 HIMC_RT double himc_planner_length(const himc_planner *planner);
+/// The beat with which a loop begins again.
+HIMC_RT double himc_planner_loop_begin(const himc_planner *planner);
 /// First beat for another score that shall follow this one: its length, or a later beat if that is
 /// past, too near to prepare for at `t`, or so near to the last stroke that it could not be one.
 HIMC_RT double himc_planner_next_start(const himc_planner *planner, double t);
 /// The tempo map (*count), borrowed.
 HIMC_RT const himc_tempo_change *himc_planner_tempi(const himc_planner *planner, int *count);
 HIMC_RT bool himc_planner_is_looped(const himc_planner *planner);
-/// Adds a change to the tempo map, or replaces that on its beat; as himc_planner_set_tempi.
-bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_change *tempo,
-                            himc_error *error);
+/// True if it repeats some beats alone.
+HIMC_RT bool himc_planner_loops_beats(const himc_planner *planner);
+/// Adds a ramp or a change to the tempo map, or replaces that on its beats; as
+/// himc_planner_set_tempi.
+bool himc_planner_add_tempo(himc_planner *planner, const himc_tempo_ramp *ramp, himc_error *error);
 /// Appends a tempo map (copied) that holds from `beat` on; later changes of the old one are
 /// dropped.
 bool himc_planner_append_tempi(himc_planner *planner, const himc_tempo_change *tempi, int count,
@@ -190,6 +197,8 @@ HIMC_RT bool himc_planner_lay(himc_planner *planner, double t, himc_hand hand, h
 /// The hand goes from there to where it rests; false if a stroke takes it away anyway.
 HIMC_RT bool himc_planner_lift(himc_planner *planner, double t, himc_hand hand);
 
+/// The next step of a ramp of tempo in a loop, if it is due; call it before each advance.
+HIMC_RT void himc_planner_follow_ramp(himc_planner *planner);
 /// Drops past strokes and plans at least 30 ms (in practice whole strokes) beyond `t` (s, never
 /// backwards). Call at least every task period.
 HIMC_RT void himc_planner_advance(himc_planner *planner, double t);
@@ -233,6 +242,8 @@ HIMC_RT double himc_planner_yields(const himc_planner *planner, himc_hand hand, 
 /// Beat at time `t`; negative when stopped. Before the first beat it is that beat; in a loop it
 /// begins again; when the score is over it goes on until `play`, `stop`, `seek` or `loop`.
 HIMC_RT double himc_planner_beat(const himc_planner *planner, double t);
+/// Tempo at time `t` (beats per minute).
+HIMC_RT double himc_planner_bpm(const himc_planner *planner, double t);
 /// Round of the loop at time `t` since it began to play, from 0.
 HIMC_RT long himc_planner_round(const himc_planner *planner, double t);
 /// True between `play` or `seek` and the first beat, while the first stroke is being prepared.

@@ -33,6 +33,17 @@ int himc_planner_part_after(const planner_part *part, double beat, bool from)
     return low;
 }
 
+int himc_planner_loop_first(const planner_score *score, const planner_part *part)
+{
+    return himc_planner_part_after(part, score->from, true);
+}
+
+bool himc_planner_loop_has(const planner_score *score, int round, double beat)
+{
+    bool more = score->loop || round < score->rounds; // the last round plays on
+    return (round <= 0 || beat >= score->from) && (!more || beat < score->to);
+}
+
 int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke)
 {
     int at = himc_planner_part_after(part, stroke->beat, false);

@@ -180,7 +180,7 @@ static const planner_stroke *listed_after(const planner_score *score, int i, int
     const planner_part *part = &score->part[hand];
     int at = himc_planner_part_after(part, end - END_ROUNDING, true);
     if (at == part->count && goes_on(score, in_round)) {
-        at = 0;
+        at = himc_planner_loop_first(score, part);
         turned = himc_planner_score_round_length(score);
     }
     const himc_stroke *s = at < part->count ? &part->list[at].stroke : NULL;
@@ -559,7 +559,8 @@ bool himc_planner_roll_due(const planner_score *score, himc_hand hand, planner_p
             at->number = own_number(&g, hand, at->number);
             for (; at->number < g.count; at->number += 2) {
                 due->stroke = stroke_at(score, at->roll, &g, at->number);
-                if (is_left_out(score, at->roll, at->round, &due->stroke))
+                if (!himc_planner_loop_has(score, at->round, due->stroke.beat) ||
+                    is_left_out(score, at->roll, at->round, &due->stroke))
                     continue;
                 due->drum = himc_planner_roll_drum(score, at->roll, due->stroke.hand);
                 due->place = *at;
@@ -655,9 +656,15 @@ double himc_planner_score_length(const planner_score *score)
     return fmax(floor(himc_planner_roll_last_beat(score)) + 1, ceil(score->until));
 }
 
+double himc_planner_loop_end(const planner_score *score)
+{
+    return isfinite(score->to) ? score->to : himc_planner_score_length(score);
+}
+
 double himc_planner_score_round_length(const planner_score *score)
 {
-    return himc_planner_score_seconds(score, himc_planner_score_length(score));
+    return himc_planner_score_seconds(score, himc_planner_loop_end(score)) -
+           himc_planner_score_seconds(score, score->from);
 }
 
 /// The last roll that begins at or before a beat, -1 if there is none.

@@ -3,9 +3,9 @@
 /// Strokes are kept for each hand, sorted by beat, since a hand only ever asks for its next one.
 /// While playing, beat b is at the time origin + S(b), S being the sum of 60/bpm over the tempo
 /// map. A change of tempo at beat b replaces the map up to b and moves the origin so that b stays
-/// where it is. In a loop with rounds of length L, beat b of round k is at origin + k S(L) +
-/// S(b); the round under way becomes round 0 when tempo or score change. Invariant: S grows
-/// strictly, so every time has one beat.
+/// where it is. In a loop with rounds from F to L, beat b of round k is at origin +
+/// k (S(L) - S(F)) + S(b); the round under way becomes round 0 when tempo or score change.
+/// Invariant: S grows strictly, so every time has one beat.
 #include "base/array.h"
 #include "plan/planner_roll.h"
 #include "plan/score.h"
@@ -18,7 +18,8 @@
 
 bool himc_planner_score_init(planner_score *score)
 {
-    *score = (planner_score){.tempi = malloc(sizeof *score->tempi), .tempo_count = 1, .until = -1};
+    *score = (planner_score){
+        .tempi = malloc(sizeof *score->tempi), .tempo_count = 1, .until = -1, .to = HUGE_VAL};
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         himc_planner_score_clear(score, (himc_hand)hand);
     if (score->tempi)
@@ -172,6 +173,11 @@ static int changes_to(const planner_score *score, double beat)
     return past;
 }
 
+double himc_planner_score_bpm(const planner_score *score, double beat)
+{
+    return score->tempi[changes_to(score, beat) - 1].bpm;
+}
+
 bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm)
 {
     int past = changes_to(score, beat);
@@ -228,6 +234,8 @@ void himc_planner_score_start(planner_score *score, double t)
     score->playing = true;
     score->over = score->goes_on = score->empties = false;
     score->count = NAN;
+    if (score->loop && score->beat >= score->to)
+        score->beat = score->from;
     score->starts++;
     score->rounds = score->past = 0;
     himc_planner_score_hold(score, t, score->beat);
@@ -267,16 +275,57 @@ void himc_planner_score_go(planner_score *score, himc_hand hand, planner_place p
     *(place.roll < 0 ? &part->listed : &part->rolls) = place;
 }
 
+/// The stroke at a place of its list or after it that the loop plays; false if there is none.
+static bool find_listed(const planner_score *score, const planner_part *part, int *number,
+                        int *round)
+{
+    int first = himc_planner_loop_first(score, part);
+    for (int turn = 0; turn < 2; turn++) {
+        if (*round > 0 && *number < first)
+            *number = first;
+        if (*number < part->count &&
+            himc_planner_loop_has(score, *round, part->list[*number].stroke.beat))
+            return score->loop || *round <= score->rounds;
+        *number = 0;
+        ++*round;
+    }
+    return false;
+}
+
+void himc_planner_score_leave_loop(planner_score *score, int last)
+{
+    planner_due due;
+    bool lists[HIMC_HANDS], rolls[HIMC_HANDS]; // in this round
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planner_part *part = &score->part[hand];
+        planner_place *own = &part->listed;
+        lists[hand] = find_listed(score, part, &own->number, &own->round) && own->round <= last;
+        rolls[hand] = himc_planner_roll_due(score, (himc_hand)hand, &part->rolls, &due) &&
+                      part->rolls.round <= last;
+    }
+    score->loop = false;
+    score->rounds = last;
+    double end = himc_planner_score_seconds(score, score->to - BEAT_ROUNDING);
+    for (int hand = 0; hand < HIMC_HANDS; hand++) {
+        planner_part *part = &score->part[hand];
+        if (!lists[hand])
+            part->listed =
+                (planner_place){-1, himc_planner_part_after(part, score->to, true), last};
+        if (!rolls[hand])
+            himc_planner_roll_from(score, (himc_hand)hand, last, end);
+    }
+}
+
 /// The stroke of its list `ahead` strokes after the next of a hand.
 static bool list_next(const planner_score *score, himc_hand hand, int ahead, planner_due *due)
 {
     const planner_part *part = &score->part[hand];
-    if (part->count == 0)
-        return false;
-    long at = (long)part->listed.number + ahead;
-    int number = (int)(at % part->count), round = part->listed.round + (int)(at / part->count);
-    if (!score->loop && round > score->rounds)
-        return false;
+    int number = part->listed.number, round = part->listed.round;
+    for (;; number++)
+        if (!find_listed(score, part, &number, &round))
+            return false;
+        else if (ahead-- == 0)
+            break;
     *due = (planner_due){.stroke = part->list[number].stroke,
                          .drum = part->list[number].drum,
                          .place = {-1, number, round}};
@@ -352,16 +401,17 @@ double himc_planner_score_last_beat(const planner_score *score)
 int himc_planner_score_round_at(const planner_score *score, double t)
 {
     double length = himc_planner_score_round_length(score);
+    double begin = score->origin + himc_planner_score_seconds(score, score->from);
     bool repeats = score->loop || score->rounds > 0;
-    if (!repeats || !(length > 0) || t < score->origin)
+    if (!repeats || !(length > 0) || t < begin)
         return 0;
-    double round = fmin(floor((t - score->origin) / length + ROUND_ROUNDING), MOST_ROUNDS);
+    double round = fmin(floor((t - begin) / length + ROUND_ROUNDING), MOST_ROUNDS);
     return score->loop ? (int)round : (int)fmin(round, score->rounds);
 }
 
 double himc_planner_score_total_beat(const planner_score *score, int round, double beat)
 {
-    return beat + ((double)score->past + round) * himc_planner_score_length(score);
+    return beat + ((double)score->past + round) * (himc_planner_loop_end(score) - score->from);
 }
 
 double himc_planner_score_period(const planner_score *score, double beat)
@@ -376,13 +426,14 @@ double himc_planner_score_gap(const planner_score *score, himc_hand hand, int ro
     if (part->count > 0) {
         int last = himc_planner_part_after(part, beat, true) - 1,
             next = himc_planner_part_after(part, beat, false);
-        double length = himc_planner_score_length(score);
+        double length = himc_planner_loop_end(score);
         least = last >= 0 ? gap(score, part->list[last].stroke.beat, beat)
                           : gap(score, part->list[part->count - 1].stroke.beat, length) +
-                                gap(score, 0, beat);
-        least = fmin(least, next < part->count ? gap(score, beat, part->list[next].stroke.beat)
-                                               : gap(score, beat, length) +
-                                                     gap(score, 0, part->list[0].stroke.beat));
+                                gap(score, score->from, beat);
+        least = fmin(least, next < part->count
+                                ? gap(score, beat, part->list[next].stroke.beat)
+                                : gap(score, beat, length) +
+                                      gap(score, score->from, part->list[0].stroke.beat));
     }
     himc_planner_roll_near(score, hand, round, beat, &before, &after);
     if (before >= 0)
@@ -433,8 +484,9 @@ bool himc_planner_score_back(const planner_score *score, planner_walk *walk, pla
     if (beat < 0 && walk->round > -score->past) {
         walk->before = himc_planner_score_total_beat(score, --walk->round, 0);
         for (int hand = 0; hand < HIMC_HANDS; hand++)
-            walk->at[hand] = score->part[hand].count;
-        walk->rolls = himc_planner_roll_walk(score, walk->round, HUGE_VAL);
+            walk->at[hand] =
+                himc_planner_part_after(&score->part[hand], himc_planner_loop_end(score), true);
+        walk->rolls = himc_planner_roll_walk(score, walk->round, himc_planner_loop_end(score));
         beat = beat_back(score, walk);
     }
     if (beat < 0)

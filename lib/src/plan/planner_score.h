@@ -70,12 +70,13 @@ typedef struct planner_score {
     double origin; ///< time of beat 0 while playing or over (s)
     double beat;   ///< where play begins or began
     bool loop;
-    bool empties; ///< the loop turns without strokes: with the first ones it begins again
-    double count; ///< then, until it begins: time of beat 0 of the beats before; else NaN (s)
-    int rounds;   ///< without loop: the last round to be played
-    int starts;   ///< of the transport, so far
-    int past;     ///< rounds of the loop played before round 0
-    double until; ///< last beat of what the score has beside strokes, -1: none
+    bool empties;    ///< the loop turns without strokes: with the first ones it begins again
+    double count;    ///< then, until it begins: time of beat 0 of the beats before; else NaN (s)
+    double from, to; ///< beats that the loop repeats; `to` infinite: all
+    int rounds;      ///< without loop: the last round to be played
+    int starts;      ///< of the transport, so far
+    int past;        ///< rounds of the loop played before round 0
+    double until;    ///< last beat of what the score has beside strokes, -1: none
     const himc_head_frame *drum; ///< places of all drums; borrowed; NULL: all in one place
 } planner_score;
 
@@ -131,6 +132,7 @@ void himc_planner_score_take_tempi(planner_score *score, himc_tempo_change *temp
 /// One tempo up to the first change after `beat`; in a loop that plays, only in place of the one
 /// valid at `beat`: the others are for later rounds.
 HIMC_RT void himc_planner_score_set_tempo(planner_score *score, double beat, double bpm);
+HIMC_RT double himc_planner_score_bpm(const planner_score *score, double beat);
 /// True if that would change nothing while playing.
 HIMC_RT bool himc_planner_score_has_tempo(const planner_score *score, double beat, double bpm);
 /// Moves the origin so that `beat` is at `t`.
@@ -158,6 +160,9 @@ HIMC_RT void himc_planner_score_settle(planner_score *score, himc_hand hand,
                                        const planner_place *place);
 HIMC_RT bool himc_planner_score_is_settled(const planner_score *score, himc_hand hand,
                                            const planner_place *place);
+
+/// That round of a loop of some beats is the last: the hands will play what follows them.
+HIMC_RT void himc_planner_score_leave_loop(planner_score *score, int last);
 
 /// Last beat of the score, -1 if it is empty.
 HIMC_RT double himc_planner_score_last_beat(const planner_score *score);
@@ -194,6 +199,10 @@ HIMC_RT double himc_planner_score_beat_at(const planner_score *score, double t);
 HIMC_RT double himc_planner_score_seconds(const planner_score *score, double beat);
 /// The first stroke after `beat`, or with `from` the first at it or after it.
 HIMC_RT int himc_planner_part_after(const planner_part *part, double beat, bool from);
+/// The first stroke of a hand that a loop repeats.
+HIMC_RT int himc_planner_loop_first(const planner_score *score, const planner_part *part);
+/// True if a round plays what is at that beat: a loop repeats only some beats.
+HIMC_RT bool himc_planner_loop_has(const planner_score *score, int round, double beat);
 /// Where a stroke comes in its hand's list: grace notes before the stroke on their beat.
 HIMC_RT int himc_planner_part_place(const planner_part *part, const himc_stroke *stroke);
 /// Time from a stroke to the nearest one of its hand (s); infinite without one.
@@ -204,6 +213,8 @@ bool himc_planner_score_same(const himc_stroke *a, const himc_stroke *b);
 
 /// The whole beat after the last stroke, or at or after all else that the score has.
 HIMC_RT double himc_planner_score_length(const planner_score *score);
+/// The beat at which a loop begins again.
+HIMC_RT double himc_planner_loop_end(const planner_score *score);
 /// Length of a round of the loop (s).
 HIMC_RT double himc_planner_score_round_length(const planner_score *score);
 

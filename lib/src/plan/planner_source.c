@@ -30,6 +30,9 @@ static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
     himc_head_frame_spot(&planner->drum[next.drum], &current, &next.x, &next.y);
     // as written, also if it lands beside that
     const timed_stroke *planned = himc_planner_current_planned(&planner->hand[hand], t);
+    if (planned)
+        next.lead =
+            planned->goal.gesture.rise + planned->goal.gesture.dwell + planned->goal.gesture.down;
     next.spot = planned ? planned->stroke.spot : HIMC_SPOT_NORMAL;
     strcpy(next.nuance, himc_nuance_name(current.nuance));
     next.yields = himc_planner_yields(planner, hand, t);

@@ -134,11 +134,13 @@ struct himc_planner {
     planner_notes notes;
     planner_hand hand[HIMC_HANDS];
     planner_clear clear;
-    int hits;        ///< since the last `clear` or change of `human`
-    double changed;  ///< plans are others from here on than when last rehearsed (s)
-    double now;      ///< of the last advance (s)
-    double hastened; ///< strokes up to here may have lost their time to a new tempo (s)
-    bool begun;      ///< it has been advanced: the tips cannot be put elsewhere any more
+    himc_tempo_ramp ramp; ///< under way in a loop, whose rounds are shorter; `beat` of all rounds
+    int ramp_steps;       ///< of it that have begun
+    int hits;             ///< since the last `clear` or change of `human`
+    double changed;       ///< plans are others from here on than when last rehearsed (s)
+    double now;           ///< of the last advance (s)
+    double hastened;      ///< strokes up to here may have lost their time to a new tempo (s)
+    bool begun;           ///< it has been advanced: the tips cannot be put elsewhere any more
 };
 
 // planner_goal.c

@@ -15,11 +15,14 @@
 #include "base/text.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 // chosen: more than a day of drumming, and small enough for any machine's memory
 #define SCORE_LINES_MAX 10000
+#define MEZZOFORTE (4.0 / 7)
+#define RAMP_STEPS 4 // of a ramp of tempo, in a beat; chosen: strokes are rarely between
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" // some editors begin a file with it
 #define LONGEST_ROLL 180.0             // (s) chosen: under 3000 strokes at 14 a second
 
@@ -28,10 +31,11 @@ typedef struct reader {
     himc_score *score;
     int stroke_room, tempo_room, line_room, change_room, order_room;
     himc_score_line now; ///< the current statement
-    const char *name;    ///< of the file
-    const char *folder;  ///< of the files that it names; NULL: any
-    bool setup;          ///< it is a set-up, which may not name another
-    int setup_line;      ///< of the score's only one; 0: it has none yet
+    himc_dynamics dynamics;
+    const char *name;   ///< of the file
+    const char *folder; ///< of the files that it names; NULL: any
+    bool setup;         ///< it is a set-up, which may not name another
+    int setup_line;     ///< of the score's only one; 0: it has none yet
     himc_error *error;
 } reader;
 
@@ -78,16 +82,85 @@ void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_ch
     ++*count;
 }
 
+himc_tempo_ramp himc_score_read_tempo(const himc_command *c)
+{
+    bool ramp = c->form == 1;
+    int at = ramp ? 3 : 1;
+    return (himc_tempo_ramp){.beat = c->count > at ? c->atom[at].number : -1,
+                             .from = c->atom[0].number,
+                             .to = c->atom[ramp].number,
+                             .length = ramp ? c->atom[2].number : 0};
+}
+
+int himc_score_ramp_steps(const himc_tempo_ramp *ramp)
+{
+    return (int)ceil(ramp->length * RAMP_STEPS);
+}
+
+double himc_score_ramp_bpm(const himc_tempo_ramp *ramp, int step)
+{
+    double way = (ramp->to - ramp->from) / himc_score_ramp_steps(ramp);
+    double a = ramp->from + way * step, b = a + way;
+    return a == b ? a : (b - a) / log(b / a);
+}
+
+void himc_score_insert_ramp(himc_tempo_change *tempi, int *count, const himc_tempo_ramp *ramp)
+{
+    int steps = himc_score_ramp_steps(ramp), kept = 0;
+    for (int i = 0; i < *count; i++) // all but what is within
+        if (tempi[i].beat <= ramp->beat || tempi[i].beat >= ramp->beat + ramp->length)
+            tempi[kept++] = tempi[i];
+    *count = kept;
+    for (int i = 0; i < steps; i++)
+        himc_score_insert_tempo(tempi, count,
+                                (himc_tempo_change){ramp->beat + ramp->length * i / steps,
+                                                    himc_score_ramp_bpm(ramp, i)});
+    himc_score_insert_tempo(tempi, count, (himc_tempo_change){ramp->beat + ramp->length, ramp->to});
+}
+
+bool himc_dynamics_add(himc_dynamics *d, const himc_command *c, himc_error *error)
+{
+    double level[2];
+    if (d->count == HIMC_CRESCENDI)
+        return himc_error_set(error, "cresc: one too many, expected %d", HIMC_CRESCENDI);
+    for (int i = 0; i < 2; i++)
+        level[i] = c->choice[2 + i] >= 0 ? c->choice[2 + i] / 7.0 : c->atom[2 + i].number;
+    d->cresc[d->count].beat = c->atom[0].number;
+    d->cresc[d->count].length = c->atom[1].number;
+    d->cresc[d->count].from = level[0];
+    d->cresc[d->count++].to = level[1];
+    return true;
+}
+
+static double dynamic_at(const himc_dynamics *d, double own, double beat)
+{
+    double level = MEZZOFORTE, begun = -1;
+    for (int i = 0; i < d->count; i++)
+        if (d->cresc[i].beat <= beat && d->cresc[i].beat >= begun) {
+            begun = d->cresc[i].beat;
+            level = d->cresc[i].from + (d->cresc[i].to - d->cresc[i].from) *
+                                           fmin((beat - begun) / d->cresc[i].length, 1);
+        }
+    return own == HIMC_DYNAMIC_FOLLOWS ? level : own;
+}
+
+void himc_dynamics_give(const himc_dynamics *d, himc_stroke *stroke)
+{
+    stroke->dynamic = dynamic_at(d, stroke->dynamic, stroke->beat);
+    if (stroke->ornament >= HIMC_ROLL_SINGLE)
+        stroke->last_dynamic = dynamic_at(d, stroke->last_dynamic, stroke->beat + stroke->length);
+}
+
 static bool add_tempo(reader *r)
 {
     himc_score *score = r->score;
-    const himc_atom *atom = r->now.command.atom;
-    double beat = r->now.command.count > 1 ? atom[1].number : 0;
-    if (!himc_array_grow(&score->tempi, score->tempo_count, &r->tempo_room, sizeof *score->tempi,
-                         r->error))
-        return false;
-    himc_score_insert_tempo(score->tempi, &score->tempo_count,
-                            (himc_tempo_change){beat, atom[0].number});
+    himc_tempo_ramp ramp = himc_score_read_tempo(&r->now.command);
+    ramp.beat = fmax(ramp.beat, 0);
+    while (r->tempo_room <= score->tempo_count + himc_score_ramp_steps(&ramp))
+        if (!himc_array_grow(&score->tempi, r->tempo_room, &r->tempo_room, sizeof *score->tempi,
+                             r->error))
+            return false;
+    himc_score_insert_ramp(score->tempi, &score->tempo_count, &ramp);
     return score->tempo_count <= SCORE_LINES_MAX ||
            himc_error_set(r->error, "tempo: one too many, expected %d", SCORE_LINES_MAX);
 }
@@ -281,6 +354,7 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     case HIMC_COMMAND_FLAM:
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF: return add_stroke(r);
+    case HIMC_COMMAND_CRESC: return himc_dynamics_add(&r->dynamics, c, r->error);
     case HIMC_COMMAND_TEMPO: return add_tempo(r);
     case HIMC_COMMAND_SETUP:
         if (r->setup)
@@ -424,6 +498,7 @@ static bool sort_by_beat(reader *r)
             *order = -1 - (k - strokes);
         } else {
             score->strokes[k] = old.strokes[i];
+            himc_dynamics_give(&r->dynamics, &score->strokes[k]);
             score->stroke_lines[k] = old.stroke_lines[i];
             *order = k;
         }

@@ -16,6 +16,36 @@ himc_score *himc_score_parse(const char *text, const char *name, const char *fol
 /// The lines that a checked `setup` stands for, as a score without strokes; NULL with the reason.
 himc_score *himc_score_of_setup(const himc_command *setup, himc_error *error);
 
+/// A tempo that moves evenly over the beats.
+typedef struct himc_tempo_ramp {
+    double beat;     ///< where it begins; below 0: now
+    double from, to; ///< (beats per minute)
+    double length;   ///< (beats); 0: it is one tempo
+} himc_tempo_ramp;
+
+/// What a checked `tempo` asks for.
+himc_tempo_ramp himc_score_read_tempo(const himc_command *command);
+HIMC_RT int himc_score_ramp_steps(const himc_tempo_ramp *ramp);
+/// The tempo of a step (beats per minute): it takes as long as the even motion does.
+HIMC_RT double himc_score_ramp_bpm(const himc_tempo_ramp *ramp, int step);
+/// Puts a ramp into a tempo map of *count, which has room for its steps and one more.
+void himc_score_insert_ramp(himc_tempo_change *tempi, int *count, const himc_tempo_ramp *ramp);
+#define HIMC_CRESCENDI 256 ///< of a score; chosen: one in each of some hundred bars
+
+/// The dynamics of strokes that have none of their own.
+typedef struct himc_dynamics {
+    struct {
+        double beat, length; ///< (beats)
+        double from, to;     ///< 0 .. 1
+    } cresc[HIMC_CRESCENDI];
+    int count;
+} himc_dynamics;
+
+/// The command `cresc`; false with the reason if there are too many.
+bool himc_dynamics_add(himc_dynamics *dynamics, const himc_command *cresc, himc_error *error);
+/// Gives a stroke or a roll its dynamic at its beat.
+void himc_dynamics_give(const himc_dynamics *dynamics, himc_stroke *stroke);
+
 /// Puts a change into a tempo map of *count that has room for it, or in place of that on its beat.
 void himc_score_insert_tempo(himc_tempo_change *tempi, int *count, himc_tempo_change change);
 

@@ -17,6 +17,7 @@
 #include <string.h>
 
 // the cut around a strike; chosen: a contact of 7 ms and a frame at 250 Hz on both sides
+#define LEAD 0.25             // a gesture of a take is told so long before its contact (s); chosen
 #define CUT_TIME 0.0125       // after a strike's lowest point, and at most before it (s)
 #define LONGEST_APPROACH 0.03 // the approach is carried on at most so long (s)
 #define AIRBORNE_HEIGHT 0.05  // no strike is so high above the head (m)
@@ -405,7 +406,8 @@ static himc_source_stroke stroke(const void *source, himc_hand hand, double t)
 {
     const himc_track *track = source;
     const bridge *b = current(track, hand, t - track->start);
-    himc_source_stroke next = {.beat = NAN, .speed = b ? b->speed : NAN, .nuance = "none"};
+    himc_source_stroke next = {
+        .lead = LEAD, .beat = NAN, .speed = b ? b->speed : NAN, .nuance = "none"};
     next.any = himc_track_current(track, hand, t - track->start, &next.time, &next.x, &next.y);
     next.time += track->start;
     return next;
