@@ -22,7 +22,7 @@ static const char *const nuances[] = {"legato",          "tenuto",   "accent",
                                       "vertical-accent", "staccato", NULL};
 static const char *const spots[] = {"center",  "normal", "rim",   "crossstick",
                                     "rimshot", "click",  "shell", NULL};
-const char *const himc_dynamics[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
+const char *const himc_dynamic_words[] = {"ppp", "pp", "p", "mp", "mf", "f", "ff", "fff", NULL};
 // the last: as the command `cresc` says
 static const char *const stroke_dynamics[] = {"ppp", "pp", "p",   "mp", "mf",
                                               "f",   "ff", "fff", "-",  NULL};
@@ -41,7 +41,7 @@ static const himc_argument arguments[] = {
     {"HAND", "stroke", HIMC_ARGUMENT_WORD, 0, 0, "", stroke_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},
     {"NUANCE", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", nuances},
-    {"DYNAMIC", "cresc", HIMC_ARGUMENT_NUMBER, 0, 1, "", himc_dynamics},
+    {"DYNAMIC", "cresc", HIMC_ARGUMENT_NUMBER, 0, 1, "", himc_dynamic_words},
     {"DYNAMIC", NULL, HIMC_ARGUMENT_NUMBER, 0, 1, "", stroke_dynamics},
     {"INSTRUMENT", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", instruments},
     {"SETUP", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", setups},

@@ -23,7 +23,7 @@ typedef struct himc_argument {
 } himc_argument;
 
 /// The words of a dynamic, in sevenths from ppp to fff; NULL after the last.
-extern const char *const himc_dynamics[9];
+extern const char *const himc_dynamic_words[9];
 
 /// The argument of that name in that context. Borrowed, static; NULL if there is none.
 const himc_argument *himc_argument_find(const char *name, const char *context);

@@ -374,7 +374,7 @@ static const char *dynamic_word(char word[16], double dynamic)
 {
     int step = (int)lround(7 * dynamic);
     if (fabs(dynamic - step / 7.0) < 0.01)
-        return himc_dynamics[step];
+        return himc_dynamic_words[step];
     himc_format(word, 16, "%.3g", dynamic);
     return word;
 }

@@ -228,7 +228,7 @@ bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
         return true;
     }
     for (int i = 0; i < 8; i++)
-        if (strcmp(name, himc_dynamics[i]) == 0) {
+        if (strcmp(name, himc_dynamic_words[i]) == 0) {
             *value = i / 7.0;
             return true;
         }

@@ -207,7 +207,7 @@ static void put_dynamic(writer *w, long *at, long to, int step)
 {
     move(w, at, to);
     PUT(w, "<direction><direction-type><dynamics><%s/></dynamics></direction-type></direction>\n",
-        himc_dynamics[step]);
+        himc_dynamic_words[step]);
     w->step = step;
 }
 
