@@ -456,7 +456,7 @@ static void test_every_form_of_every_command_is_accepted(void)
 static void test_errors_name_field_value_and_allowed_values(void)
 {
     refused(perform("stroke 1 left legato 1.7"),
-            "stroke: DYNAMIC: 1.7, expected ppp pp p mp mf f ff fff or 0 .. 1");
+            "stroke: DYNAMIC: 1.7, expected ppp pp p mp mf f ff fff - or 0 .. 1");
     refused(perform("stroke 1 left legatto f"),
             "stroke: NUANCE: legatto, expected legato tenuto accent vertical-accent staccato");
     refused(perform("stroke 1 left"),
@@ -470,7 +470,8 @@ static void test_errors_name_field_value_and_allowed_values(void)
             "spot, not `dead` of strokes, no command of the performer");
     refused(perform("stroke x left legato f"), "stroke: BEAT: x, expected 0 .. 1e+06");
     refused(perform("mode idd"), "mode: idd, expected himc id ik");
-    refused(perform("tempo 90 1 2"), "tempo: 2 is one atom too many, expected tempo BPM [BEAT]");
+    refused(perform("tempo 90 1 2 3 4"),
+            "tempo: 4 is one atom too many, expected tempo BPM [BEAT] | BPM BPM LENGTH [BEAT]");
     refused(perform("play 1"), "play: 1 is one atom too many, expected play");
     refused(perform("rate task 5"), "rate: HZ: 5, expected 50 .. 2000 Hz");
     refused(drum("radius 0"), "radius: RADIUS: 0, expected 0.05 .. 1 m");

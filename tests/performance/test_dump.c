@@ -23,6 +23,10 @@ static bool is_no_setting(himc_command_id id)
     case HIMC_COMMAND_FLAM:
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF:
+    case HIMC_COMMAND_NOTE:
+    case HIMC_COMMAND_CLOCK:
+    case HIMC_COMMAND_DRUM_GLISS:
+    case HIMC_COMMAND_GET:
     case HIMC_COMMAND_SCORE:
     case HIMC_COMMAND_TAKE:
     case HIMC_COMMAND_UNITS:
