@@ -182,8 +182,10 @@ def test_a_score_that_is_dropped_plays():
 
 
 def test_what_plays_goes_on_while_another_piece_loads():
-    browser.run("viewer.studio.choose('improvisation.txt')")
+    browser.run("document.body.dispatchEvent(new PointerEvent('pointerdown', { bubbles: true }))")  # opens the device
+    browser.run("heard.strikes.length = 0; viewer.studio.choose('improvisation.txt')")
     strikes(3)
+    assert browser.wait("return viewer.liveSound.nodes.get('page')?.told?.playing")
     seen = browser.run(
         """
         const { studio } = viewer, seen = [];
