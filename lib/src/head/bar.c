@@ -65,8 +65,9 @@ typedef struct bar_row {
 #define STEEL 2.0e11, 7850, 7.7e10
 #define BRASS 1.0e11, 8500, 3.7e10
 
-#define VIBRAPHONE 2 // of the rows; tubes have dampers, too
-#define FELT 40.0    // that they take (1/s); chosen: T60 = .17 s
+#define VIBRAPHONE 2   // of the rows; tubes have dampers, too; ...
+#define GLOCKENSPIEL 3 // ... in a case
+#define FELT 40.0      // that they take (1/s); chosen: T60 = .17 s
 
 // In the order of HIMC_BARS (himc/command_rows.h). Mallets: yarn, plastic, cord, brass, rawhide.
 // Losses of a tube as recorded: T60 8.1, 3.7, 1.7 s at 1402, 2043, 2768 Hz.
@@ -145,7 +146,7 @@ static const bar_row rows[] = {
      0,
      250,
      800,
-     {.stiffness = 3e10, .exponent = 2, .mass = 0.12}},
+     {.stiffness = 1.2e10, .exponent = 2, .mass = 0.1}},
 };
 
 // a bar as it is being tuned
@@ -387,6 +388,7 @@ static himc_idiophone *make(const bar_row *row, const char *name, double low, do
     body->mallet = row->mallet;
     body->dampers = row->tube || row == &rows[VIBRAPHONE] ? FELT : 0;
     body->pedal_lifts = true;
+    body->cased = row == &rows[GLOCKENSPIEL];
     if (row->tube)
         body->principal = low;
     lay_out(body, row->tube ? TUBES_APART : GAP);
