@@ -69,18 +69,19 @@ static double own_of(double pull, double h)
     return (1 - cos(sqrt(square) * h)) / (MASS * square);
 }
 
-// F of one point at compression c that would change by b without it; g is its compliance
-static double solve(double c, double b, double g, double h)
+// F of one point at compression c that would change by b without it; g is its compliance, and
+// `softer` is 1/(1 + g (k/2 + eta/h))
+static double solve(double c, double b, double g, double loss, double softer)
 {
-    double k = STIFFNESS, loss = LOSS / h;
+    double k = STIFFNESS;
     if (!(c > 0 || c + b > 0))
         return 0;
     if (c <= 0) { // it lands: r^2 = b r - g (k (c + r)^2/2 + loss (c + r) r)
-        double a = 1 + g * (0.5 * k + loss), half = 0.5 * (b - g * c * (k + loss));
-        double r = (half + sqrt(fmax(half * half - 0.5 * a * g * k * c * c, 0))) / a;
+        double half = 0.5 * (b - g * c * (k + loss));
+        double r = (half + sqrt(fmax(half * half - 0.5 * g * k * c * c / softer, 0))) * softer;
         return r < b ? (b - r) / g : 0;
     }
-    double force = (k * c + (0.5 * k + loss) * b) / (1 + g * (0.5 * k + loss));
+    double force = (k * c + (0.5 * k + loss) * b) * softer;
     if (c + b - g * force >= 0)
         return force > 0 ? force : 0;
     // it leaves: r = -s, s^2 + (b + g loss c) s = g k c^2/2
@@ -91,8 +92,10 @@ static double solve(double c, double b, double g, double h)
 
 void himc_wires_solve(himc_wires *w, double pull, double h, himc_wires_matrix g, const double *b)
 {
-    double rest = MASS * pull, own = own_of(pull, h), free[HIMC_WIRES];
+    double rest = MASS * pull, own = own_of(pull, h), loss = LOSS / h;
+    double free[HIMC_WIRES], softer[HIMC_WIRES];
     for (int i = 0; i < HIMC_WIRES; i++) {
+        softer[i] = 1 / (1 + (g[i][i] + own) * (0.5 * STIFFNESS + loss));
         free[i] = b[i];
         for (int j = 0; j < HIMC_WIRES; j++)
             free[i] -= g[i][j] * w->force[j];
@@ -101,12 +104,13 @@ void himc_wires_solve(himc_wires *w, double pull, double h, himc_wires_matrix g,
         double change = 0;
         for (int i = 0; i < HIMC_WIRES; i++) {
             double gi = g[i][i] + own, alone = free[i] + g[i][i] * w->force[i] + gi * rest;
-            double force = solve(rest / STIFFNESS + w->pressed[i], alone, gi, h) - rest;
+            double c = rest / STIFFNESS + w->pressed[i];
+            double force = solve(c, alone, gi, loss, softer[i]) - rest;
             double more = force - w->force[i];
             if (more == 0) // it flies
                 continue;
             w->force[i] = force;
-            for (int j = 0; j < HIMC_WIRES; j++)
+            for (int j = 0; j < HIMC_WIRES; j++) // g is symmetric
                 free[j] -= g[i][j] * more;
             change = fabs(more) > change ? fabs(more) : change;
         }
