@@ -47,7 +47,7 @@ const himc_setup himc_setups[] = {
     {"multi", "instrument snare snare 14; snare place .46 .06 .82;"
               "instrument timpano timpano 29; timpano place .66 -.56 .85; timpano tune A2;"
               "instrument tom tom 12; tom place .58 .46 .86;"
-              "instrument blocks temple-blocks; blocks place .7 .02 .94;"
+              "instrument blocks temple-blocks; blocks place .58 .02 1;"
               "instrument crash crash 18; crash place .22 .86 .92 .2;"
               "instrument triangle triangle; triangle place .8 .32 1.15;"
               "instrument tam-tam tam-tam 32; tam-tam place .08 -.94 .85;"},
