@@ -9,8 +9,8 @@
 /// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; a thin one would have 2.756 : 5.404.
 /// Torsion is left out: a blow on the axis does not excite it.
 ///
-/// A tubular bell is a beam, too, of a tube's section: modes 4, 5, 6 sound one tone, an octave below
-/// the fourth, 2 : 2.89 : 3.87 of C5. It hangs, and is struck on the cap at its top, which is all
+/// A tubular bell is a beam of a tube's section: modes 4, 5, 6 sound one tone, an octave below the
+/// fourth, 2 : 2.89 : 3.87 of C5. It hangs, and is struck on the cap at its top, which is all
 /// that is laid out of it; but all of it sounds, each mode by the mean of all directions.
 ///
 /// Losses are S0 + b omega + S1 omega^2, found on recorded T60: of a marimba's lowest modes, 131,

@@ -7,7 +7,7 @@
 /// plate's mass. g is 1 on the bow, 3 at the free edge; the bell, thick and bent, moves with the
 /// high ones.
 ///
-/// Sound. A mode of mean square speed v^2 radiates 2 rho c A sigma v^2, and loses as much. Below the
+/// Sound. A mode of mean square speed v^2 radiates 2 rho c A sigma v^2 and loses that. Below the
 /// coincidence frequency f_c = c^2 sqrt(rho h/B)/(2 pi) waves in the plate are shorter than in air;
 /// only the edge radiates, as in a wall (Maidanik 1962, remembered)
 ///     P c/(4 pi^2 A f_c) ((1 - s^2) ln((1 + s)/(1 - s)) + 2 s)/(1 - s^2)^1.5,   s^2 = f/f_c,

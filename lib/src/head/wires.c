@@ -8,7 +8,7 @@
 /// with r. All is counted from rest, where F = F0 and c = F0/k, so a head at rest has wires at
 /// rest: head and point feel P = F - F0, and what is stored is
 ///     U(r) = V(F0/k + r) - V(F0/k) - F0 r >= 0,   P r >= U(r1) - U(r0).
-/// Its wire is under tension, which is what pulls it, as the head bends it by a/u^2 = BENT: alone, a
+/// Its wire is under tension, which pulls it, as the head bends it by a/u^2 = BENT: alone, a
 /// point swings about its rest with u, so far flights are as short as near ones, and loud strokes
 /// rattle no longer than soft ones.
 ///
