@@ -68,10 +68,10 @@
     LIST("temple-blocks") \
     LIST("triangle")      \
     LIST("agogo")         \
-    LIST("cowbell")       \
-    LIST("tubular-bell")
+    LIST("cowbell")
 // bars that are computed (lib/src/head/bar.c)
-#define HIMC_BARS(BAR) BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel")
+#define HIMC_BARS(BAR) \
+    BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel") BAR("tubular-bell")
 // drums with a shell (lib/src/head/two_heads.c)
 #define HIMC_SHELLS(SHELL) \
     SHELL("snare")         \
@@ -87,7 +87,7 @@
     PLATE("crash") PLATE("ride") PLATE("china") PLATE("splash") PLATE("hi-hat") PLATE("tam-tam")
 // the set-ups that the library has (lib/src/base/setups.c)
 #define HIMC_SETUPS(SETUP) \
-    SETUP("kit") SETUP("timpani") SETUP("multi") SETUP("xylophone") SETUP("marimba")
+    SETUP("kit") SETUP("timpani") SETUP("multi") SETUP("xylophone") SETUP("marimba") SETUP("bells")
 // the words of `instrument`
 #define HIMC_INSTRUMENTS(WORD) \
     WORD("timpano") HIMC_BARS(WORD) HIMC_LISTS(WORD) HIMC_SHELLS(WORD) HIMC_PLATES(WORD)

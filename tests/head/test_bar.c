@@ -50,6 +50,20 @@ static void test_bars_are_tuned_within_2_cents(void)
         }
 }
 
+// recorded 2 : 2.93 : 3.97 of another tube, with T60 8.1, 3.7, 1.7 s at 1402, 2043, 2768 Hz
+static void test_a_tubular_bell_sounds_an_octave_below_its_fourth_mode(void)
+{
+    static const double of_pitch[] = {2, 2.89, 3.87};
+    bar("tubular-bell", 523.2511);
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(0.01 * of_pitch[i], of_pitch[i],
+                                  mode(3 + i).frequency / 523.2511);
+    bar("tubular-bell", 698.4565);
+    TEST_ASSERT_TRUE(fabs(log(t60(3) / 8.1)) < log(1.5) && fabs(log(t60(4) / 3.7)) < log(1.5) &&
+                     fabs(log(t60(5) / 1.7)) < log(1.5));
+    check_dump("tube", 8);
+}
+
 static void test_a_marimba_rings_as_recorded(void)
 {
     static const double hz[] = {131, 370, 739}, seconds[] = {2.2, 1.5, 0.9},
@@ -133,10 +147,10 @@ static void test_each_bar_of_a_keyboard_sounds_alone(void)
 // an octave, and its last, narrow bars
 static void test_each_note_of_each_keyboard_is_struck_on_its_bar(void)
 {
-    static const char *const made[] = {"marimba 987.767 2093.005", "xylophone 1975.533 4186.009",
-                                       "vibraphone 659.255 1396.913",
-                                       "glockenspiel 1975.533 4186.009"};
-    for (int k = 0; k < 4; k++) {
+    static const char *const made[] = {
+        "marimba 987.767 2093.005", "xylophone 1975.533 4186.009", "vibraphone 659.255 1396.913",
+        "glockenspiel 1975.533 4186.009", "tubular-bell 261.626 554.365"};
+    for (int k = 0; k < 5; k++) {
         char text[80];
         snprintf(text, sizeof text, "shape bar %s", made[k]);
         done(text);
@@ -209,6 +223,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_steel_bar_of_180_by_8_5_mm_has_1_2_716_5_21);
     RUN_TEST(test_bars_are_tuned_within_2_cents);
+    RUN_TEST(test_a_tubular_bell_sounds_an_octave_below_its_fourth_mode);
     RUN_TEST(test_a_marimba_rings_as_recorded);
     RUN_TEST(test_contacts_last_as_those_of_their_mallets);
     RUN_TEST(test_the_energy_of_bars_never_grows);

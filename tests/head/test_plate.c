@@ -7,36 +7,43 @@
 #include "head/idiophone.h"
 #include "head/modes.h"
 
-#include <time.h>
+#include <complex.h>
 
 #define SECOND 2048 // samples of a spectrum, a power of 2: 43 ms
 #define BANK_MODES 1000
 
-static double sound[3 * RATE];
+static double sound[2 * RATE];
 
-// power spectrum of n samples from a time on (s), n a power of 2, by a plain transform
-static void spectrum(double time, int n, int stride, double *power)
+// power spectrum of n samples from a time on (s), n a power of 2 (Cooley & Tukey 1965)
+static void spectrum(double time, int n, double *power)
 {
+    static double complex a[8192], b[8192];
     const double *x = sound + (int)(time * RATE);
-    for (int k = 1; k < n / 2; k += stride) {
-        double even = 0, odd = 0, c = 1, s = 0;
-        double dc = cos(2 * HIMC_PI * k / n), ds = sin(2 * HIMC_PI * k / n);
-        for (int i = 0; i < n; i++) {
-            double w = x[i] * (1 - cos(2 * HIMC_PI * i / n)), next = c * dc - s * ds;
-            even += w * c;
-            odd += w * s;
-            s = s * dc + c * ds;
-            c = next;
+    double complex *from = a, *to = b;
+    for (int i = 0; i < n; i++)
+        from[i] = x[i] * (1 - cos(2 * HIMC_PI * i / n));
+    for (int half = n / 2, stride = 1; half > 0; half /= 2, stride *= 2) {
+        for (int k = 0; k < half; k++) {
+            double complex turn = cexp(-HIMC_PI * k / half * I);
+            for (int i = 0; i < stride; i++) {
+                double complex even = from[i + stride * k], odd = from[i + stride * (k + half)];
+                to[i + stride * 2 * k] = even + odd;
+                to[i + stride * (2 * k + 1)] = (even - odd) * turn;
+            }
         }
-        power[k] = even * even + odd * odd;
+        double complex *other = from;
+        from = to;
+        to = other;
     }
+    for (int k = 0; k < n / 2; k++)
+        power[k] = creal(from[k] * conj(from[k]));
 }
 
 static double centroid(double time, int n)
 {
     static double power[SECOND];
     double sum = 0, all = 0;
-    spectrum(time, n, 1, power);
+    spectrum(time, n, power);
     for (int k = 1; k < n / 2; k++) {
         sum += power[k] * k * RATE / n;
         all += power[k];
@@ -51,8 +58,8 @@ static double flatness(double time)
     static double power[N];
     double log_sum = 0, sum = 0;
     int count = 0;
-    spectrum(time, N, 2, power);
-    for (int k = 1; k < N / 2; k += 2)
+    spectrum(time, N, power);
+    for (int k = 1; k < N / 2; k++)
         if (k * (double)RATE / N > 2000 && k * (double)RATE / N < 8000) {
             log_sum += log(power[k]);
             sum += power[k];
@@ -61,8 +68,8 @@ static double flatness(double time)
     return 10 / log(10) * (log_sum / count - log(sum / count));
 }
 
-// a blow, heard from six sides in turns
-static void blow(double where, double speed, int side)
+// so long a blow (s), heard from six sides in turns
+static void blow(double where, double speed, int side, double seconds)
 {
     char text[80];
     snprintf(text, sizeof text, "pickup air %g 0.3 1", side - 2.5);
@@ -70,7 +77,7 @@ static void blow(double where, double speed, int side)
     himc_drum_rest(drum);
     advance(0.1);
     strike(-where * himc_drum_head_frame(drum)->radius, 0, speed);
-    for (int at = 0; at < 3 * RATE; at += 4800) {
+    for (int at = 0; at < seconds * RATE; at += 4800) {
         himc_drum_advance(drum, 4800, NULL, NULL, NULL);
         himc_drum_read(drum, himc_drum_time(drum) - 4800, 4800, sound + at, NULL);
     }
@@ -186,7 +193,7 @@ static void test_a_loud_crash_brightens_as_recorded_and_its_lines_stand_out(void
     done("shape plate crash");
     for (int side = 0; side < 6; side++)
         for (int k = 0; k < 4; k++) {
-            blow(0.93, speed[k], side);
+            blow(0.93, speed[k], side, 0.5);
             at_20[k] += log(centroid(0.02, SECOND / 2)) / 6;
             at_400[k] += log(centroid(0.4, SECOND)) / 6;
             flat[k] += flatness(0.2) / 6;
@@ -205,7 +212,7 @@ static double peak_time(double low, double high)
     double most = 0, at = 0;
     for (double t = 0; t < 1.5; t += 0.02) {
         double sum = 0;
-        spectrum(t, SECOND, 1, power);
+        spectrum(t, SECOND, power);
         for (int k = (int)(low * SECOND / RATE) + 1; k < high * SECOND / RATE; k++)
             sum += power[k];
         at = sum > most ? t : at;
@@ -214,24 +221,26 @@ static double peak_time(double low, double high)
     return at + 0.5 * SECOND / RATE;
 }
 
-static void test_a_tam_tam_blooms(void)
+static void test_a_tam_tam_blooms_soft_or_loud(void)
 {
-    double low = 0, high = 0;
     done("shape plate tam-tam");
-    for (int side = 0; side < 4; side++) {
-        blow(0.93, 4, side);
-        low += peak_time(100, 250) / 4;
-        high += peak_time(4000, 8000) / 4;
+    for (double speed = 1.5; speed < 5; speed += 2.5) {
+        double low = 0, high = 0;
+        for (int side = 0; side < 4; side++) {
+            blow(0.93, speed, side, 1.6);
+            low += peak_time(100, 250) / 4;
+            high += peak_time(4000, 8000) / 4;
+        }
+        TEST_ASSERT_TRUE(low < 0.15);
+        TEST_ASSERT_TRUE(high > 0.25 && high < 0.6);
     }
-    TEST_ASSERT_TRUE(low < 0.15);
-    TEST_ASSERT_TRUE(high > 0.25 && high < 0.6);
 }
 
 static void test_a_hand_chokes_a_cymbal_and_a_pedal_closes_a_hi_hat(void)
 {
     done("shape plate crash");
     TEST_ASSERT_FALSE(say("pedal 1"));
-    blow(0.93, 4, 0);
+    blow(0.93, 4, 0, 0.1);
     double before = energy();
     done("damp 1");
     advance(0.1);
@@ -280,24 +289,6 @@ static void test_the_free_edge_moves_more_than_the_bow(void)
     himc_modes_free(modes);
 }
 
-static double cost(const char *shape)
-{
-    done(shape);
-    strike(-0.9 * himc_drum_head_frame(drum)->radius, 0, 4);
-    clock_t start = clock();
-    advance(2);
-    return (double)(clock() - start);
-}
-
-// both in one run: a timpano takes .4 % of a core and more, a crash may take 2 %
-static void test_a_crash_costs_little_more_than_its_modes_do(void)
-{
-    double ratio = 1e9;
-    for (int i = 0; i < 4; i++)
-        ratio = fmin(ratio, cost("shape plate crash") / cost("shape circle"));
-    TEST_ASSERT_TRUE_MESSAGE(ratio < 5, "cost of a crash over a timpano's");
-}
-
 // drawn as a disc or as two; nothing stays of a pedal
 static void test_a_plate_tells_its_depth_and_size(void)
 {
@@ -323,11 +314,10 @@ int main(void)
     RUN_TEST(test_with_losses_the_energy_never_grows);
     RUN_TEST(test_glide_0_is_linear_and_block_size_makes_no_difference);
     RUN_TEST(test_a_loud_crash_brightens_as_recorded_and_its_lines_stand_out);
-    RUN_TEST(test_a_tam_tam_blooms);
+    RUN_TEST(test_a_tam_tam_blooms_soft_or_loud);
     RUN_TEST(test_a_hand_chokes_a_cymbal_and_a_pedal_closes_a_hi_hat);
     RUN_TEST(test_a_plate_has_the_modes_of_its_size_and_mass);
     RUN_TEST(test_a_plate_tells_its_depth_and_size);
-    RUN_TEST(test_a_crash_costs_little_more_than_its_modes_do);
     RUN_TEST(test_the_free_edge_moves_more_than_the_bow);
     return UNITY_END();
 }

@@ -204,7 +204,7 @@ static void test_wires_on_a_rigid_head_lose_energy_at_each_landing(void)
         w.velocity[i] = -0.1 * (i + 1);
     double first = himc_wires_energy(&w, pull), last = first;
     for (int i = 0; i < RATE / 5 && w.awake; i++) {
-        himc_wires_begin(&w, rigid, h, b);
+        himc_wires_begin(&w, rigid, pull, h, b);
         himc_wires_solve(&w, pull, h, none, b);
         himc_wires_end(&w, pull, h, none, b);
         double now = himc_wires_energy(&w, pull);
@@ -256,6 +256,14 @@ static void test_a_louder_snare_is_brighter_and_no_longer(void)
         TEST_ASSERT_TRUE(bright(v) > pianissimo + 1 && bright(v) > soft + 6);
         double seconds = faded(0.5);
         TEST_ASSERT_TRUE(seconds > 0.035 && seconds < 0.065);
+    }
+    // each at least as bright as those before it, mp to fff
+    const double speed[] = {1.31, 1.95, 2.9, 4.3, 5.98};
+    double last = -INFINITY;
+    for (int i = 0; i < 5; i++) {
+        double now = bright(speed[i]);
+        TEST_ASSERT_TRUE(now > last - 1 && (i > 2 || now > last));
+        last = fmax(last, now);
     }
 }
 

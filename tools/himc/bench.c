@@ -77,8 +77,14 @@ static const bench_drum drum[] = {
     {"drum_auto_ms", "a drum as made, with its noise", {"modes auto", "glide 1", "noise 1"}, 4},
     {"drum_1000_ms", "a head of 1000 modes, air, glide", {"modes 1000", "glide 1", "noise 0"}, 4},
     {"silent_ms", "a silent one of 200 modes", {"modes 200", "glide 1", "noise 0"}, 0},
+    {"snare_ms", "a snare, its wires on", {"shape shell snare", "wires 250", "modes auto"}, 4},
+    {"crash_ms", "a crash of 18 inches", {"shape plate crash", "modes auto", "glide 1"}, 4},
+    {"marimba_ms",
+     "a marimba of three octaves",
+     {"shape bar marimba C3 B5", "modes auto", "glide 1"},
+     4},
 };
-enum { DRUM_200, DRUM_NO_GLIDE, DRUM_AUTO, DRUM_1000, SILENT, DRUMS };
+enum { DRUM_200, DRUM_NO_GLIDE, DRUM_AUTO, DRUM_1000, SILENT, SNARE, CRASH, MARIMBA, DRUMS };
 
 /// Median of the runs.
 typedef struct figures {

@@ -52,7 +52,7 @@ static bool read_part(const char *word, midi_choice *part, himc_error *error)
     return !word || *part != MIDI_ANY ||
            himc_error_set(error,
                           "--part: \"%s\", expected timpani drums marimba xylophone vibraphone "
-                          "glockenspiel",
+                          "glockenspiel tubular-bell",
                           word);
 }
 
@@ -148,7 +148,7 @@ const cli_call cli_import = {
     "MusicXML: .musicxml and .mxl, score-partwise.\n"
     "\n"
     "PART: timpani (program 48 of General MIDI and tracks of that name), drums (channel 10),\n"
-    "marimba, xylophone, vibraphone, glockenspiel (programs 13, 14, 12, 10).\n"
+    "marimba, xylophone, vibraphone, glockenspiel, tubular-bell (programs 13, 14, 12, 10, 15).\n"
     "CURVE: `notation`, as notation programs write them, 16 ppp .. 112 ff in equal steps; or\n"
     "`square:DB`, the square law of synthesisers over a range of 1 .. 80 dB; `square` is 22.",
     options,

@@ -47,12 +47,14 @@ const himc_setup himc_setups[] = {
     {"multi", "instrument snare snare 14; snare place .46 .06 .82;"
               "instrument timpano timpano 29; timpano place .66 -.56 .85; timpano tune A2;"
               "instrument tom tom 12; tom place .58 .46 .86;"
-              "instrument blocks temple-blocks; blocks place .7 .02 .94;"
+              "instrument blocks temple-blocks; blocks place .58 .02 1;"
               "instrument crash crash 18; crash place .22 .86 .92 .2;"
               "instrument triangle triangle; triangle place .8 .32 1.15;"
               "instrument tam-tam tam-tam 32; tam-tam place .08 -.94 .85;"},
     {"xylophone", "instrument xylophone xylophone F4 C7; xylophone place .45 0 .87;"},
     {"marimba", "instrument marimba marimba C3 C6; marimba place .5 0 .87;"},
+    // the caps, as high as both hands reach over
+    {"bells", "instrument bells tubular-bell C4 F5; bells place .55 0 1.25;"},
 };
 
 bool himc_setup_find(const char *text, const char *name, const char **made, int *length,

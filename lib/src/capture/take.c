@@ -219,24 +219,12 @@ int himc_take_side(const char *plain, const char *const *words, char rest[TAKE_N
     return -1;
 }
 
-// uniform in (0, 1]
-static double uniform(uint64_t *state)
-{
-    return ldexp((double)(himc_random_bits(state) >> 11) + 1, -53);
-}
-
-static double normal(uint64_t *state)
-{
-    double radius = sqrt(-2 * log(uniform(state)));
-    return radius * cos(2 * HIMC_PI * uniform(state));
-}
-
 void himc_take_add_noise(himc_take *take, double deviation, uint64_t seed)
 {
     for (size_t i = 0; i < (size_t)take->frames * (size_t)take->points; i++) {
         himc_vec3 *x = &take->x[i];
-        x->x += deviation * normal(&seed);
-        x->y += deviation * normal(&seed);
-        x->z += deviation * normal(&seed);
+        x->x += deviation * himc_random_normal(&seed);
+        x->y += deviation * himc_random_normal(&seed);
+        x->z += deviation * himc_random_normal(&seed);
     }
 }

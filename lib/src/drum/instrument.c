@@ -20,7 +20,7 @@ enum {
 };
 
 // a bar, if no pitch is given, sounds that (Hz), in the order of HIMC_BARS; chosen: mid range
-static const double usual[BARS] = {261.6256, 523.2511, 261.6256, 1046.502};
+static const double usual[BARS] = {261.6256, 523.2511, 261.6256, 1046.502, 523.2511};
 
 // of the timpani that an orchestra has, that in the middle of whose range a pitch (Hz) is
 static double inches_for(double hz)

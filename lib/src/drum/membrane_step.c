@@ -144,7 +144,7 @@ void himc_membrane_begin_wires(himc_membrane *m, double h, double *b)
 {
     double under[HIMC_WIRES];
     read_under(m, under);
-    himc_wires_begin(&m->wires, under, h, b);
+    himc_wires_begin(&m->wires, under, m->model->config.head.wires, h, b);
 }
 
 void himc_membrane_end_wires(himc_membrane *m, double h, const double *b)

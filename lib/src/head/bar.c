@@ -1,5 +1,5 @@
-/// bar.c: bars of marimba, xylophone, vibraphone, glockenspiel; one, or a row of naturals with one
-/// of accidentals behind it.
+/// bar.c: bars of marimba, xylophone, vibraphone, glockenspiel, and tubular bells; one, or a row of
+/// naturals with one of accidentals behind it.
 ///
 /// A bar is a beam that bends, shears and turns (Timoshenko 1921), free at its ends, of thickness
 ///     h(x) = h0 (1 - d (1 - |2 x/(c L)|^3)),  |2 x| < c L,
@@ -9,6 +9,10 @@
 /// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; a thin one would have 2.756 : 5.404.
 /// Torsion is left out: a blow on the axis does not excite it.
 ///
+/// A tubular bell is a beam of a tube's section: modes 4, 5, 6 sound one tone, an octave below the
+/// fourth, 2 : 2.89 : 3.87 of C5. It hangs, and is struck on the cap at its top, which is all
+/// that is laid out of it; but all of it sounds, each mode by the mean of all directions.
+///
 /// Losses are S0 + b omega + S1 omega^2, found on recorded T60: of a marimba's lowest modes, 131,
 /// 370 and 739 Hz, 2.07, 1.35 and 0.99 s. Sizes, mallets, and that resonators send
 /// 0.3 of what a bar of wood loses and 0.6 of one of metal, which loses little itself: chosen.
@@ -16,6 +20,7 @@
 
 #include "base/argument.h"
 #include "base/linear.h"
+#include "head/air.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,9 +30,14 @@
 #define HALF 35 // elements of half a bar; chosen: mode 7 is exact to 0.1 %
 #define POINTS (2 * HALF + 1)
 #define FREE (2 * HALF + 1) // unknowns of a half: displacement and rotation at each node, less one
-#define MODES 7             // of a bar; chosen: the seventh of C4 is at 9 kHz
+#define MODES 7             // of a bar; chosen: the seventh of C4 is at 9 kHz; ...
+#define MODES_OF_TUBE 14    // ... of a tube
+#define STRIKE 3            // the mode of a tube that is an octave over what is heard
+#define CAP 3               // elements that are struck; chosen: 5 cm of C5
+#define TUBES_APART 0.02    // (m); chosen
 #define HIGHEST 20000.0     // (Hz) no mode above is kept
-#define SHEAR (5.0 / 6)     // of a rectangular section
+#define SHEAR (5.0 / 6)     // of a rectangular section, ...
+#define SHEAR_OF_TUBE 0.5   // ... of a thin round one
 #define CUT 0.62            // c; chosen: as bars look
 #define DEEPEST 0.92        // of h0; chosen: no bar is thinner
 #define STEPS 40            // most of a search; it takes eight
@@ -38,11 +48,12 @@
 
 // A kind of bar. Size at f: at `from`, times (from/f)^exponent.
 typedef struct bar_row {
-    double young, density, shear;        // (Pa, kg/m^3, Pa)
-    double from;                         // (Hz)
-    double thickness, thinner;           // h0 there (m), and the exponent
-    double width, narrower;              // (m)
-    double ratio;                        // of mode 2; 0: not undercut
+    double young, density, shear; // (Pa, kg/m^3, Pa)
+    double from;                  // (Hz)
+    double thickness, thinner;    // h0 there, or a tube's wall (m), and the exponent
+    double width, narrower;       // (m)
+    double ratio;                 // of mode 2; 0: not undercut
+    bool tube;
     double constant, hysteresis, square; // of the decay
     double share;                        // of what mode 1 loses, sent by its resonator
     double low, high;                    // pitches that are made (Hz)
@@ -52,11 +63,14 @@ typedef struct bar_row {
 #define ROSEWOOD 2.0e10, 1080, 1.35e9
 #define ALUMINIUM 7.0e10, 2700, 2.6e10
 #define STEEL 2.0e11, 7850, 7.7e10
+#define BRASS 1.0e11, 8500, 3.7e10
 
-#define VIBRAPHONE 2 // of the rows: ...
-#define FELT 40.0    // ... what its dampers take (1/s); chosen: T60 = .17 s
+#define VIBRAPHONE 2   // of the rows; tubes have dampers, too; ...
+#define GLOCKENSPIEL 3 // ... in a case
+#define FELT 40.0      // that they take (1/s); chosen: T60 = .17 s
 
-// In the order of HIMC_BARS (himc/command_rows.h). Mallets: yarn, plastic, cord, brass.
+// In the order of HIMC_BARS (himc/command_rows.h). Mallets: yarn, plastic, cord, brass, rawhide.
+// Losses of a tube as recorded: T60 8.1, 3.7, 1.7 s at 1402, 2043, 2768 Hz.
 static const bar_row rows[] = {
     {ROSEWOOD,
      131,
@@ -65,6 +79,7 @@ static const bar_row rows[] = {
      0.060,
      0.22,
      4,
+     false,
      2.4,
      8e-4,
      9e-8,
@@ -79,6 +94,7 @@ static const bar_row rows[] = {
      0.038,
      0,
      3,
+     false,
      3,
      6.5e-3,
      2e-7,
@@ -93,6 +109,7 @@ static const bar_row rows[] = {
      0.045,
      0.25,
      4,
+     false,
      0.5,
      4e-5,
      6e-9,
@@ -107,6 +124,7 @@ static const bar_row rows[] = {
      0.026,
      0,
      0,
+     false,
      0.3,
      6e-5,
      4.5e-9,
@@ -114,6 +132,21 @@ static const bar_row rows[] = {
      390,
      4200,
      {.stiffness = 6e9, .exponent = 1.6, .mass = 0.018, .relaxation = 10e-6}},
+    {BRASS,
+     523,
+     0.0015,
+     0,
+     0.038,
+     0,
+     0,
+     true,
+     0.2,
+     0,
+     1.2e-8,
+     0,
+     250,
+     800,
+     {.stiffness = 1.2e10, .exponent = 2, .mass = 0.1}},
 };
 
 // a bar as it is being tuned
@@ -130,10 +163,15 @@ static void add_element(bar *b, bool odd, int i)
     const bar_row *r = b->row;
     double l = 0.5 * b->length / HALF, out = 2 * (i + 0.5) * l / (CUT * b->length);
     double h = b->thickness * (out < 1 ? 1 - b->depth * (1 - out * out * out) : 1);
-    double area = b->width * h, bending = r->young * area * h * h / 12;
-    double phi = 12 * bending / (SHEAR * r->shear * area * l * l),
+    double hollow = b->width - 2 * h, area = b->width * h, turning = h * h / 12; // gyration^2
+    if (r->tube) {
+        area = HIMC_PI * h * (b->width - h);
+        turning = (b->width * b->width + hollow * hollow) / 16;
+    }
+    double bending = r->young * area * turning;
+    double phi = 12 * bending / ((r->tube ? SHEAR_OF_TUBE : SHEAR) * r->shear * area * l * l),
            s = bending / (l * l * l * (1 + phi));
-    double mass = r->density * area * l / 420, turn = r->density * area * h * h / 12 / (30 * l);
+    double mass = r->density * area * l / 420, turn = r->density * area * turning / (30 * l);
     const double k[4][4] = {{12, 6 * l, -12, 6 * l},
                             {6 * l, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l},
                             {-12, -6 * l, 12, -6 * l},
@@ -182,13 +220,19 @@ static double frequency(const bar *b, int i)
     return sqrt(fmax(b->lambda[i % 2][i / 2 + 1], 0)) / (2 * HIMC_PI);
 }
 
+// that is heard
+static double pitch(const bar *b)
+{
+    return b->row->tube ? 0.5 * frequency(b, STRIKE) : frequency(b, 0);
+}
+
 // Finds the length at which mode 1 sounds there, about as 1/L^2; `ratio`: of mode 2 then.
 static bool find_length(bar *b, double hz, double *ratio, himc_error *error)
 {
     for (int i = 0; i < STEPS; i++) {
         if (!solve(b, error))
             return false;
-        double off = frequency(b, 0) / hz;
+        double off = pitch(b) / hz;
         *ratio = frequency(b, 1) / frequency(b, 0);
         if (fabs(off - 1) < EXACT)
             return true;
@@ -238,6 +282,24 @@ static void find_shape(const bar *b, int i, double *shape)
     }
 }
 
+// Of a mode of a tube at 1 m per acceleration (Pa s^2/m): the root mean square of all directions of
+// what idiophone.c says of a strip.
+static double pressure(const bar *b, double omega, const double *shape)
+{
+    enum { DIRECTIONS = 24 };
+    double wave = omega / HIMC_AIR_SPEED, step = b->length / (POINTS - 1), sum = 0;
+    for (int k = 0; k < DIRECTIONS; k++) {
+        double even = 0, odd = 0, along = wave * step * (k + 0.5) / DIRECTIONS; // of a sphere
+        for (int i = 0; i < POINTS; i++) {
+            even += shape[i] * step * cos(along * i);
+            odd += shape[i] * step * sin(along * i);
+        }
+        sum += (even * even + odd * odd) / DIRECTIONS;
+    }
+    return HIMC_AIR_DENSITY * b->width / (2 * HIMC_PI) * fmin(1, HIMC_PI / 8 * wave * b->width) *
+           sqrt(sum);
+}
+
 // the note that is nearest
 static void name_part(himc_part *part, double hz)
 {
@@ -256,15 +318,19 @@ static bool add_bar(himc_idiophone *body, bar *b, double hz, himc_error *error)
     b->width = r->width * pow(r->from / hz, r->narrower);
     if (!tune(b, hz, error))
         return false;
-    part = (himc_part){.length = b->length, .width = b->width};
+    int modes = r->tube ? MODES_OF_TUBE : MODES, from = r->tube ? POINTS - 1 - CAP : 0;
+    part =
+        (himc_part){.length = b->length * (r->tube ? CAP / (POINTS - 1.0) : 1), .width = b->width};
     name_part(&part, hz);
     if (!himc_idiophone_add_part(body, &part, error))
         return false;
-    for (int i = 0; i < MODES && frequency(b, i) < HIGHEST; i++) {
+    for (int i = 0; i < modes && frequency(b, i) < HIGHEST; i++) {
         himc_partial mode = {
             .frequency = frequency(b, i), .mass = 1, .share = i == 0 ? r->share : 0};
         find_shape(b, i, shape);
-        if (!himc_idiophone_add_mode(body, mode, shape, POINTS, error))
+        if (r->tube)
+            mode.pressure = pressure(b, 2 * HIMC_PI * frequency(b, i), shape);
+        if (!himc_idiophone_add_mode(body, mode, shape + from, POINTS - from, error))
             return false;
     }
     return true;
@@ -277,7 +343,7 @@ static bool is_natural(const himc_part *part)
 
 // The low bars are on the left; an accidental is behind the gap that it belongs to. In each row the
 // middles of the bars are in a line.
-static void lay_out(himc_idiophone *body)
+static void lay_out(himc_idiophone *body, double gap)
 {
     double y = 0, reach[2] = {0};
     for (int i = 0; i < body->parts; i++) {
@@ -286,13 +352,13 @@ static void lay_out(himc_idiophone *body)
         *of_row = fmax(*of_row, p->length / 2);
         if (is_natural(p)) {
             p->y = y - p->width / 2;
-            y -= p->width + GAP;
+            y -= p->width + gap;
         } else {
-            p->y = y + GAP / 2;
+            p->y = y + gap / 2;
         }
     }
     for (int i = 0; i < body->parts; i++)
-        body->part[i].x = is_natural(&body->part[i]) ? 0 : reach[0] + reach[1] + GAP;
+        body->part[i].x = is_natural(&body->part[i]) ? 0 : reach[0] + reach[1] + gap;
 }
 
 // of bars from a pitch to another in semitones
@@ -320,9 +386,12 @@ static himc_idiophone *make(const bar_row *row, const char *name, double low, do
     body->hysteresis = row->hysteresis;
     body->square = row->square;
     body->mallet = row->mallet;
-    body->dampers = row == &rows[VIBRAPHONE] ? FELT : 0;
+    body->dampers = row->tube || row == &rows[VIBRAPHONE] ? FELT : 0;
     body->pedal_lifts = true;
-    lay_out(body);
+    body->cased = row == &rows[GLOCKENSPIEL];
+    if (row->tube)
+        body->principal = low;
+    lay_out(body, row->tube ? TUBES_APART : GAP);
     himc_idiophone_finish(body);
     return body;
 }

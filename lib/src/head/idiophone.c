@@ -7,10 +7,11 @@
 /// Sound. A strip of width b that no baffle surrounds is a dipole while k b is small: far away, in
 /// the direction th from its normal,
 ///     p = rho b/(2 pi R) |int phi exp(i k x sin th) dx| min(1, pi k b/8) q'',
-/// by the air that it carries along, rho pi b^2/4 per length; wider, it sounds as in a wall. Of the
-/// lowest mode, whose ends move against its middle, that is nearly nothing. It is heard by its
-/// resonator, a tube tuned to it, which takes part of the mode's loss d and sends a share s of all
-/// that is lost, s 2 d E = 4 pi R^2 <p^2>/(rho c), as a point does,
+/// by the air that it carries along, rho pi b^2/4 per length; wider, or, as of a glockenspiel,
+/// close over the bottom of its case, it sounds as in a wall. Of the lowest mode, whose ends move
+/// against its middle, that is nearly nothing. It is heard by its resonator, a tube tuned to it,
+/// which takes part of the mode's loss d and sends a share s of all that is lost, s 2 d E = 4 pi
+/// R^2 <p^2>/(rho c), as a point does,
 ///     p = sqrt(s d m rho c/(2 pi)) q'/R,
 /// a quarter of a period from what drives it. So bars that have one energy are equally loud.
 #include "head/idiophone.h"
@@ -269,7 +270,8 @@ static void strip(const himc_idiophone *body, const himc_partial *m, double scal
         *even += part * cos(phase);
         *odd += part * sin(phase);
     }
-    double loud = HIMC_AIR_DENSITY * width / (2 * HIMC_PI) * fmin(1, HIMC_PI / 8 * wave * width);
+    double around = body->cased ? 1 : fmin(1, HIMC_PI / 8 * wave * width);
+    double loud = HIMC_AIR_DENSITY * width / (2 * HIMC_PI) * around;
     *even *= loud;
     *odd *= loud;
 }

@@ -48,6 +48,7 @@ struct himc_idiophone {
     himc_mallet_head mallet;
     double dampers;   ///< all that its pedal lays on its modes (1/s); 0: it has no pedal
     bool pedal_lifts; ///< a pressed pedal lifts them
+    bool cased;       ///< no air goes around its bars
     int row;          ///< in the table of its kind, if that asks
 };
 

@@ -121,35 +121,5 @@ const himc_listed himc_lists[] = {
                 "mode 2110 0.15 0.1 0.6 -0.5 1\n"
                 "pressure 0.00027\n"
                 "mode 3340 0.1 0.1 -0.7 0.3 1\n"},
-    // A tube of brass, 1.12 m x 38 x 1.5 mm: a free Timoshenko beam; modes 4, 5, 6 sound one tone,
-    // an octave below the fourth: C5. Losses .2 + 1.2e-8 omega^2, as recorded: T60 8.1, 3.7, 1.7 s
-    // at 1402, 2043, 2768 Hz. The hammer strikes the cap, over the last 56 mm.
-    {"tubular-bell", "pitch 523.25\n"
-                     "mallet 6e9 2 0.25\n"
-                     "surface top bar 0.056 0.038\n"
-                     "pressure 3.7e-05\n"
-                     "mode 125.13 33.3 0.4136 -0.769 -0.884 -1\n"
-                     "pressure 0.00024\n"
-                     "mode 339.75 27.1 0.422 0.611 0.806 1\n"
-                     "pressure 0.00071\n"
-                     "mode 651.51 17.2 0.4343 0.46 0.731 1\n"
-                     "pressure 0.00087\n"
-                     "mode 1046.5 9.61 0.4506 -0.312 -0.657 -1\n"
-                     "pressure 0.001\n"
-                     "mode 1510.2 5.39 0.4706 -0.167 -0.585 -1\n"
-                     "pressure 0.0011\n"
-                     "mode 2027.4 3.22 0.4941 -0.026 -0.513 -1\n"
-                     "pressure 0.00056\n"
-                     "mode 2583.4 2.05 0.5209 0.11 -0.441 -1\n"
-                     "pressure 0.00073\n"
-                     "mode 3164.8 1.4 0.5508 0.241 -0.37 -1\n"
-                     "pressure 0.00099\n"
-                     "mode 3759.9 1 0.5837 -0.363 0.298 1\n"
-                     "pressure 0.0012\n"
-                     "mode 4358.7 0.751 0.6196 -0.475 0.226 1\n"
-                     "pressure 0.0013\n"
-                     "mode 4953.3 0.584 0.6584 -0.574 0.153 1\n"
-                     "pressure 0.0012\n"
-                     "mode 5537.4 0.469 0.7 -0.658 0.0797 1\n"},
     {0},
 };

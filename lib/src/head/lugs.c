@@ -35,7 +35,7 @@
 static void find_phases(int seed, double *phase)
 {
     uint64_t state = (uint64_t)seed, bits = himc_random_bits(&state);
-    double part = ldexp((double)(himc_random_bits(&state) >> 11), -53);
+    double part = himc_random_uniform(&state);
     double turn = (bits & 4 ? 1 : -1) * HIMC_PI * (1 + part) / 3;
     phase[0] = bits & 1 ? 0 : HIMC_PI;
     phase[1] = turn;

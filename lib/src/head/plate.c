@@ -7,17 +7,23 @@
 /// plate's mass. g is 1 on the bow, 3 at the free edge; the bell, thick and bent, moves with the
 /// high ones.
 ///
-/// Sound. A mode of mean square speed v^2 radiates rho c A sigma v^2; far away its pressure is that
-/// of a random direction, sqrt(2) cos(k_air a cos(elevation) cos(az - az_i) + phase), times a
-/// log-normal level: lines stand out. While the radius a is less than 1/k_air, the air flows around
-/// the edge: times k_air a/sqrt(1 + (k_air a)^2). A flat crash in a wall has sigma .008 at 2 kHz
-/// and .016 at 8 (Maidanik 1962, remembered); a bowed one sends more, at most what it loses.
+/// Sound. A mode of mean square speed v^2 radiates 2 rho c A sigma v^2 and loses that. Below the
+/// coincidence frequency f_c = c^2 sqrt(rho h/B)/(2 pi) waves in the plate are shorter than in air;
+/// only the edge radiates, as in a wall (Maidanik 1962, remembered)
+///     P c/(4 pi^2 A f_c) ((1 - s^2) ln((1 + s)/(1 - s)) + 2 s)/(1 - s^2)^1.5,   s^2 = f/f_c,
+/// and without a wall, around the whole and around each edge, that times (Oppenheimer & Dubowsky
+/// 1997, remembered)
+///     x/(1 + x),  x = 53 (f^2 A/c^2)^2;   y/(1 + y),  y = 49 s^2.
+/// As a cymbal is thin at its edge and thick at its bell, f_c is spread: 1/sigma = 1/that + 1/PEAK.
+/// Far away the pressure is that of a random direction, sqrt(2) cos(k_air a cos(elevation)
+/// cos(az - az_i) + phase), times a log-normal level: lines stand out.
 ///
-/// What is guessed: everything about the modes but their density, sigma, the bell, the spreads,
-/// what a splash has in common with a crash. Fitted on figures of recordings whose mallets and
-/// rooms are unknown: rate and E_0 of a crash, its T60 (9, 6.5, 5.2, 3 s at 1, 2, 4, 8 kHz); T60 of
-/// china and hi-hat, which is one plate here, whose pedal only damps it. The tam-tam's are from
-/// what is known of its bloom, .3 to 1 s. A stick's click and the sway on the stand are left out.
+/// What is guessed: everything about the modes but their density, the bell, the spreads, PEAK, what
+/// a splash has in common with a crash. Fitted on figures of recordings whose mallets and rooms are
+/// unknown: rate and E_0 of a crash, the losses in bronze and felt (with those by sound a crash
+/// then has T60 9, 7, 5, 3 s at 1, 2, 4, 8 kHz) and of china and hi-hat, which is one plate here,
+/// whose pedal only damps it. The tam-tam's are from what is known of its bloom, .3 to 1 s. A
+/// stick's click and the sway on the stand are left out.
 #include "head/idiophone.h"
 
 #include "bank/bank.h"
@@ -35,21 +41,23 @@
 #define POISSON 0.34
 #define BRONZE 8700.0
 #define FIRST 1.8  // mean distances of two modes below the lowest; chosen
-#define MIDDLE 0.8 // of its part of the frequencies that a mode may have; chosen
+#define MIDDLE 0.4 // of its part of the frequencies that a mode may have: neighbours repel; chosen
 
-#define AT_EDGE 3.0     // g there
-#define EDGE_FROM 0.8   // it grows to that from here ...
-#define EDGE_TO 0.92    // ... to here, per radius: where a shaft meets it; chosen
-#define BELL 0.2        // per radius; chosen
-#define STIFF 1000.0    // (Hz) below which a bell hardly moves; chosen
-#define EFFICIENCY 0.03 // sigma; chosen: at 2 kHz half of what a crash loses is sent
-#define LEVELS 1.0      // spread of sound (neper) ...
-#define LOSSES 0.4      // ... and of decay, ln 1/s; chosen: as many lines as recorded
+#define AT_EDGE 3.0   // g there
+#define EDGE_FROM 0.8 // it grows to that from here ...
+#define EDGE_TO 0.92  // ... to here, per radius: where a shaft meets it; chosen
+#define BELL 0.2      // per radius; chosen
+#define STIFF 1000.0  // (Hz) below which a bell hardly moves; chosen
+#define PEAK 0.08     // of sigma; chosen: a ride, whose f_c is low, is no louder than a crash
+#define LEVELS 0.85   // spread of sound (neper) ...
+#define EVEN 1000.0   // (Hz) well below which sound has none; chosen
+#define LOSSES 0.4    // ... and of decay, ln 1/s; chosen: as many lines as recorded
 
 // In the order of HIMC_PLATES (himc/command_rows.h).
 typedef struct plate_row {
     double inches, thickness;        // usual ones (inches, mm)
-    double t60, corner, slope;       // of a mode at f: t60 (1 + f/corner)^-slope (s, Hz)
+    double constant, rising;         // losses beside the sound's (1/s, per kHz)
+    double bowed;                    // of sigma, by its bow
     double highest;                  // (Hz) no mode is above
     double spots[HIMC_SPOT_RIM + 1]; // per radius
     himc_cascade cascade;
@@ -58,11 +66,11 @@ typedef struct plate_row {
 
 #define STICK                                                                                 \
     {                                                                                         \
-        .stiffness = 4e9, .exponent = 1.5, .mass = 0.018, .radius = 0.008, .relaxation = 2e-6 \
+        .stiffness = 4e9, .exponent = 1.5, .mass = 0.016, .radius = 0.008, .relaxation = 2e-6 \
     }
 #define TIP                                                                                   \
     {                                                                                         \
-        .stiffness = 4e9, .exponent = 1.5, .mass = 0.010, .radius = 0.008, .relaxation = 2e-6 \
+        .stiffness = 4e9, .exponent = 1.5, .mass = 0.008, .radius = 0.008, .relaxation = 2e-6 \
     }
 #define BEATER                                                           \
     {                                                                    \
@@ -78,12 +86,12 @@ typedef struct plate_row {
     }
 
 static const plate_row rows[] = {
-    {18, 1.2, 10.5, 3000, 0.95, 18000, AT_THE_EDGE, {8, 240, 0.03}, STICK},
-    {20, 2.1, 10.5, 3000, 0.95, 18000, ON_THE_BOW, {8, 240, 0.03}, TIP},
-    {18, 1.0, 16, 400, 0.95, 18000, AT_THE_EDGE, {80, 240, 0.015}, STICK},
-    {10, 0.8, 5, 3000, 0.95, 18000, AT_THE_EDGE, {8, 240, 0.006}, STICK},
-    {14, 1.3, 12, 400, 0.75, 18000, ON_THE_BOW, {50, 240, 0.01}, STICK},
-    {38, 2.8, 38, 250, 0.95, 14000, AT_THE_EDGE, {20, 300, 0.15}, BEATER},
+    {18, 1.2, 0.55, 0.04, 0.006, 18000, AT_THE_EDGE, {10, 240, 0.1}, STICK},
+    {20, 2.1, 0.8, 0.3, 0.003, 18000, ON_THE_BOW, {8, 240, 0.03}, TIP},
+    {18, 1.0, 0.5, 0.8, 0, 18000, AT_THE_EDGE, {160, 240, 0.015}, STICK},
+    {10, 0.8, 2.5, 0.1, 0, 18000, AT_THE_EDGE, {100, 240, 0.006}, TIP},
+    {14, 1.3, 1.0, 0.2, 0.003, 18000, ON_THE_BOW, {50, 240, 0.01}, STICK},
+    {38, 2.8, 0.8, 0.35, 0, 14000, AT_THE_EDGE, {20, 300, 0.15}, BEATER},
 };
 
 #define HAT 4       // of these
@@ -93,38 +101,49 @@ static const plate_row rows[] = {
 // of a mode, in the body's list of shapes
 enum { WAVE_X, WAVE_Y, PHASE, LEVEL, AZIMUTH, PHASE_IN_AIR, NUMBERS };
 
-static double uniform(uint64_t *state)
+// rho h/B of waves: omega = k^2/slow (s/m^2)
+static double slowness(double thickness)
 {
-    return ldexp((double)(himc_random_bits(state) >> 11), -53);
+    double bending = YOUNG * pow(thickness, 3) / (12 * (1 - POISSON * POISSON));
+    return sqrt(BRONZE * thickness / bending);
 }
 
-static double normal(uint64_t *state)
+// sigma
+static double efficiency(const plate_row *row, double f, double radius, double thickness)
 {
-    double size = sqrt(-2 * log(1 - uniform(state)));
-    return size * cos(2 * HIMC_PI * uniform(state));
+    double c = HIMC_AIR_SPEED, coincidence = c * c * slowness(thickness) / (2 * HIMC_PI);
+    double square = fmin(f / coincidence, 1 - 1e-6), s = sqrt(square), b = 1 - square;
+    double edge = c / (2 * HIMC_PI * HIMC_PI * radius * coincidence) *
+                  (b * log((1 + s) / (1 - s)) + 2 * s) / pow(b, 1.5);
+    double around = f * radius / c, whole = 53 * pow(HIMC_PI * around * around, 2);
+    double low = (edge * 49 * square / (1 + 49 * square) + row->bowed) * whole / (1 + whole);
+    return low * PEAK / (low + PEAK);
 }
 
 static bool add_modes(himc_idiophone *body, const plate_row *row, double thickness, uint64_t seed,
                       himc_error *error)
 {
-    double bending = YOUNG * pow(thickness, 3) / (12 * (1 - POISSON * POISSON));
-    double slow = sqrt(BRONZE * thickness / bending), numbers[NUMBERS] = {0};
+    double slow = slowness(thickness), numbers[NUMBERS] = {0};
     double area = HIMC_PI * body->radius * body->radius, apart = 2 / (area * slow);
     for (int i = 0; i < HIMC_MODES_MAX; i++) {
-        double at = i + FIRST + 0.5 + MIDDLE * (uniform(&seed) - 0.5), f = at * apart;
-        double t60 = row->t60 * pow(1 + f / row->corner, -row->slope);
+        double at = i + FIRST + 0.5 + MIDDLE * (himc_random_uniform(&seed) - 0.5), f = at * apart;
+        double loss = row->constant + row->rising * 1e-3 * f +
+                      HIMC_AIR_DENSITY * HIMC_AIR_SPEED *
+                          efficiency(row, f, body->radius, thickness) / (BRONZE * thickness);
         double wave = body->radius * sqrt(2 * HIMC_PI * f * slow);
-        double direction = 2 * HIMC_PI * uniform(&seed), phase = 2 * HIMC_PI * uniform(&seed);
+        double direction = 2 * HIMC_PI * himc_random_uniform(&seed),
+               phase = 2 * HIMC_PI * himc_random_uniform(&seed);
         if (i % 2 == 0) { // two share a wave
             numbers[WAVE_X] = wave * cos(direction);
             numbers[WAVE_Y] = wave * sin(direction);
             numbers[PHASE] = phase;
         }
-        numbers[LEVEL] = exp(LEVELS * normal(&seed) - LEVELS * LEVELS); // its mean square is 1
-        numbers[AZIMUTH] = 2 * HIMC_PI * uniform(&seed);
-        numbers[PHASE_IN_AIR] = 2 * HIMC_PI * uniform(&seed);
+        numbers[LEVEL] =
+            exp(LEVELS * himc_random_normal(&seed) - LEVELS * LEVELS); // its mean square is 1
+        numbers[AZIMUTH] = 2 * HIMC_PI * himc_random_uniform(&seed);
+        numbers[PHASE_IN_AIR] = 2 * HIMC_PI * himc_random_uniform(&seed);
         himc_partial mode = {.frequency = f,
-                             .loss = log(1000) / t60 * exp(-LOSSES * normal(&seed)),
+                             .loss = loss * exp(-LOSSES * himc_random_normal(&seed)),
                              .mass = BRONZE * thickness * area};
         if (i > 0 && f > row->highest)
             break;
@@ -222,9 +241,11 @@ static pickup_weights far(const himc_pickup *pickup, const himc_head *head, cons
     const double *n = modes->shape.body->shape + modes->shape.body->mode[index].first;
     double omega = 2 * HIMC_PI * mode->frequency, x = omega / HIMC_AIR_SPEED * head->radius;
     double angle = x * cos(pickup->elevation) * cos(pickup->azimuth - n[AZIMUTH]) + n[PHASE_IN_AIR];
-    // per speed: the root of rho c A sigma v^2 rho c/(4 pi R^2)
-    double loud = HIMC_AIR_DENSITY * HIMC_AIR_SPEED * 0.5 * head->radius * sqrt(EFFICIENCY) *
-                  n[LEVEL] * sqrt(2) * cos(angle) * x / sqrt(1 + x * x);
+    // per speed: the root of 2 rho c A sigma v^2 rho c/(4 pi R^2)
+    double sigma = efficiency(&rows[modes->shape.body->row], mode->frequency, head->radius,
+                              1e-3 * modes->shape.body->pitches[1]);
+    double loud =
+        HIMC_AIR_DENSITY * HIMC_AIR_SPEED * head->radius * sqrt(sigma) * n[LEVEL] * cos(angle);
     double gain = loud / (omega * HIMC_PICKUP_PRESSURE * pickup->distance);
     pickup_weights w = himc_pickup_form(mode);
     return (pickup_weights){.displacement = gain * w.displacement,

@@ -46,32 +46,26 @@ static double modes_below(double z)
     return 0.25 * z * z - 0.5 * z;
 }
 
-// uniform in [0, 1)
-static double uniform(uint64_t *state)
-{
-    return ldexp((double)(himc_random_bits(state) >> 11), -53);
-}
-
 void himc_statistical_list(himc_statistical *list, double from, double to, int count)
 {
     uint64_t state = SEED;
     list->count = count;
     for (int i = 0; i < count; i++)
         list->mode[i] = (himc_statistical_mode){
-            .zero = zero_at(from, to, count, i + uniform(&state)),
+            .zero = zero_at(from, to, count, i + himc_random_uniform(&state)),
             .count = modes_below(zero_at(from, to, count, i + 1)) -
                      modes_below(zero_at(from, to, count, i)),
         };
     for (int k = 0; k < count / 4; k++) {
         double zero = zero_at(from, to, count, 4 * k + 2),
-               direction = 2 * HIMC_PI * uniform(&state);
+               direction = 2 * HIMC_PI * himc_random_uniform(&state);
         list->wave[k] = (himc_statistical_wave){
             .zero = zero,
             .x = zero * cos(direction),
             .y = zero * sin(direction),
-            .phase = 2 * HIMC_PI * uniform(&state),
-            .azimuth = 2 * HIMC_PI * uniform(&state),
-            .phase_in_air = 2 * HIMC_PI * uniform(&state),
+            .phase = 2 * HIMC_PI * himc_random_uniform(&state),
+            .azimuth = 2 * HIMC_PI * himc_random_uniform(&state),
+            .phase_in_air = 2 * HIMC_PI * himc_random_uniform(&state),
         };
     }
 }

@@ -66,7 +66,7 @@ static const double spots[] = {
 // Chosen, by the distance to single strokes of free collections of samples, whose makers, mallets
 // and rooms are not known; hand drums by their usual pitch.
 const himc_shell himc_shell_rows[] = {
-    {"snare", 0.178, 0.14, 3000, 0.36, 8, 8e-7, 0, 0, 0.83, 0.306, 1.25, 0.31, 0.35, 250, &stick},
+    {"snare", 0.178, 0.14, 3000, 0.36, 11, 8e-7, 0, 0, 0.83, 0.306, 3, 0.31, 0.35, 250, &stick},
     {"tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 1.18, 0.75, 1, 1, 2, 0, &stick},
     {"concert-tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 0, 0, 0, 0, 2, 0, &stick},
     {"bass-drum", 0.457, 0.45, 2600, 0.42, 2, 4e-7, 1, 0, 0.77, 0.857, 1, 1, 0.7, 0, &felt},

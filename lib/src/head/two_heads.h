@@ -83,8 +83,8 @@ HIMC_RT void himc_wires_rest(himc_wires *wires, const double *displacement);
 HIMC_RT void himc_wires_follow(himc_wires *wires, const double *displacement);
 /// A step of length `h` (s) in which the head alone would come there: the changes `b` of the
 /// compressions (m).
-HIMC_RT void himc_wires_begin(const himc_wires *wires, const double *displacement, double h,
-                              double *b);
+HIMC_RT void himc_wires_begin(const himc_wires *wires, const double *displacement, double pull,
+                              double h, double *b);
 /// Finds the forces, beginning with those of the last step; `g` are the head's compliances (m/N).
 HIMC_RT void himc_wires_solve(himc_wires *wires, double pull, double h, himc_wires_matrix g,
                               const double *b);

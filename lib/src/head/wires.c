@@ -8,8 +8,9 @@
 /// with r. All is counted from rest, where F = F0 and c = F0/k, so a head at rest has wires at
 /// rest: head and point feel P = F - F0, and what is stored is
 ///     U(r) = V(F0/k + r) - V(F0/k) - F0 r >= 0,   P r >= U(r1) - U(r0).
-/// Its wire is under tension: alone, a point swings about its rest with u, so far flights are as
-/// short as near ones, and loud strokes rattle no longer than soft ones.
+/// Its wire is under tension, which pulls it, as the head bends it by a/u^2 = BENT: alone, a
+/// point swings about its rest with u, so far flights are as short as near ones, and loud strokes
+/// rattle no longer than soft ones.
 ///
 /// A step. Without change of force point i would come r = b_i nearer; forces make of it
 ///     r_i = b_i - sum_j G_ij P_j,   G = that of the head + (i = j) (1 - cos u h)/(m u^2),
@@ -28,10 +29,10 @@
 
 // chosen: a usual set of 20 weighs so much, and the places are without symmetry
 #define MASS (0.0085 / HIMC_WIRES) // of a point (kg)
-#define OWN 350.0          // u (rad/s), 56 Hz; chosen, as MASS: they rattle as long when loud
-#define STIFFNESS 1.5e5    // k (N/m); chosen, as eta
-#define LOSS 1.0           // eta (N s/m)
-#define ROUNDS 30          // most of a step; chosen: 3 to 5 are usual
+#define BENT 6e-4                  // (m) chosen, as MASS: louder is brighter up to ff
+#define STIFFNESS 3e5              // k (N/m); chosen, as eta
+#define LOSS 1.0                   // eta (N s/m)
+#define ROUNDS 30                  // most of a step; chosen: 3 to 5 are usual
 #define ENOUGH 1e-6        // of F0, a change of forces that ends it; chosen: losses are larger
 #define STILL 1e-3         // of F0: less is 60 dB softer than the rattle; chosen
 #define STILL_SAMPLES 1024 // chosen: longer than a period of any head
@@ -53,32 +54,34 @@ void himc_wires_follow(himc_wires *w, const double *displacement)
         w->height[i] = displacement[i] + w->pressed[i];
 }
 
-void himc_wires_begin(const himc_wires *w, const double *displacement, double h, double *b)
+void himc_wires_begin(const himc_wires *w, const double *displacement, double pull, double h,
+                      double *b)
 {
-    double turn = OWN * h;
+    double u = sqrt(pull / BENT), c = cos(u * h), s = sin(u * h) / u;
     for (int i = 0; i < HIMC_WIRES; i++)
-        b[i] = cos(turn) * w->height[i] + sin(turn) / OWN * w->velocity[i] - displacement[i] -
-               w->pressed[i];
+        b[i] = c * w->height[i] + s * w->velocity[i] - displacement[i] - w->pressed[i];
 }
 
 // how far a newton moves a point in a step (m/N)
-static double own_of(double h)
+static double own_of(double pull, double h)
 {
-    return (1 - cos(OWN * h)) / (MASS * OWN * OWN);
+    double square = pull / BENT;
+    return (1 - cos(sqrt(square) * h)) / (MASS * square);
 }
 
-// F of one point at compression c that would change by b without it; g is its compliance
-static double solve(double c, double b, double g, double h)
+// F of one point at compression c that would change by b without it; g is its compliance, and
+// `softer` is 1/(1 + g (k/2 + eta/h))
+static double solve(double c, double b, double g, double loss, double softer)
 {
-    double k = STIFFNESS, loss = LOSS / h;
+    double k = STIFFNESS;
     if (!(c > 0 || c + b > 0))
         return 0;
     if (c <= 0) { // it lands: r^2 = b r - g (k (c + r)^2/2 + loss (c + r) r)
-        double a = 1 + g * (0.5 * k + loss), half = 0.5 * (b - g * c * (k + loss));
-        double r = (half + sqrt(fmax(half * half - 0.5 * a * g * k * c * c, 0))) / a;
+        double half = 0.5 * (b - g * c * (k + loss));
+        double r = (half + sqrt(fmax(half * half - 0.5 * g * k * c * c / softer, 0))) * softer;
         return r < b ? (b - r) / g : 0;
     }
-    double force = (k * c + (0.5 * k + loss) * b) / (1 + g * (0.5 * k + loss));
+    double force = (k * c + (0.5 * k + loss) * b) * softer;
     if (c + b - g * force >= 0)
         return force > 0 ? force : 0;
     // it leaves: r = -s, s^2 + (b + g loss c) s = g k c^2/2
@@ -89,8 +92,10 @@ static double solve(double c, double b, double g, double h)
 
 void himc_wires_solve(himc_wires *w, double pull, double h, himc_wires_matrix g, const double *b)
 {
-    double rest = MASS * pull, own = own_of(h), free[HIMC_WIRES];
+    double rest = MASS * pull, own = own_of(pull, h), loss = LOSS / h;
+    double free[HIMC_WIRES], softer[HIMC_WIRES];
     for (int i = 0; i < HIMC_WIRES; i++) {
+        softer[i] = 1 / (1 + (g[i][i] + own) * (0.5 * STIFFNESS + loss));
         free[i] = b[i];
         for (int j = 0; j < HIMC_WIRES; j++)
             free[i] -= g[i][j] * w->force[j];
@@ -99,12 +104,13 @@ void himc_wires_solve(himc_wires *w, double pull, double h, himc_wires_matrix g,
         double change = 0;
         for (int i = 0; i < HIMC_WIRES; i++) {
             double gi = g[i][i] + own, alone = free[i] + g[i][i] * w->force[i] + gi * rest;
-            double force = solve(rest / STIFFNESS + w->pressed[i], alone, gi, h) - rest;
+            double c = rest / STIFFNESS + w->pressed[i];
+            double force = solve(c, alone, gi, loss, softer[i]) - rest;
             double more = force - w->force[i];
             if (more == 0) // it flies
                 continue;
             w->force[i] = force;
-            for (int j = 0; j < HIMC_WIRES; j++)
+            for (int j = 0; j < HIMC_WIRES; j++) // g is symmetric
                 free[j] -= g[i][j] * more;
             change = fabs(more) > change ? fabs(more) : change;
         }
@@ -115,14 +121,15 @@ void himc_wires_solve(himc_wires *w, double pull, double h, himc_wires_matrix g,
 
 void himc_wires_end(himc_wires *w, double pull, double h, himc_wires_matrix g, const double *b)
 {
-    double rest = MASS * pull, largest = 0, own = own_of(h), c = cos(OWN * h), s = sin(OWN * h);
+    double rest = MASS * pull, largest = 0, own = own_of(pull, h);
+    double u = sqrt(pull / BENT), c = cos(u * h), s = sin(u * h);
     for (int i = 0; i < HIMC_WIRES; i++) {
         double by = own * w->force[i], height = w->height[i], velocity = w->velocity[i];
         w->pressed[i] += b[i] - by;
         for (int j = 0; j < HIMC_WIRES; j++)
             w->pressed[i] -= g[i][j] * w->force[j];
-        w->height[i] = c * height + s / OWN * velocity - by;
-        w->velocity[i] = c * velocity - OWN * s * height - s / OWN * w->force[i] / MASS;
+        w->height[i] = c * height + s / u * velocity - by;
+        w->velocity[i] = c * velocity - u * s * height - s / u * w->force[i] / MASS;
         largest = fabs(w->force[i]) > largest ? fabs(w->force[i]) : largest;
     }
     w->still = largest < STILL * rest ? w->still + 1 : 0;
@@ -135,7 +142,7 @@ double himc_wires_energy(const himc_wires *w, double pull)
     double rest = MASS * pull, at_rest = rest / STIFFNESS, energy = 0;
     for (int i = 0; i < HIMC_WIRES && w->awake; i++) {
         double r = w->pressed[i], v = w->velocity[i];
-        energy += 0.5 * MASS * (v * v + OWN * OWN * w->height[i] * w->height[i]) +
+        energy += 0.5 * MASS * (v * v + pull / BENT * w->height[i] * w->height[i]) +
                   (r > -at_rest ? 0.5 * STIFFNESS * r * r : -rest * (r + 0.5 * at_rest));
     }
     return energy;

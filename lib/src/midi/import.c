@@ -43,8 +43,8 @@ double himc_midi_dynamic(double velocity, double range)
 
 // which notes
 
-static const char *const names[MIDI_CHOICES] = {"",          "timpani",    "drums",       "marimba",
-                                                "xylophone", "vibraphone", "glockenspiel"};
+static const char *const names[MIDI_CHOICES] = {
+    "", "timpani", "drums", "marimba", "xylophone", "vibraphone", "glockenspiel", "tubular-bell"};
 
 const char *himc_midi_choice_name(midi_choice choice)
 {

@@ -1,4 +1,4 @@
-/// keyboard.c: marimba, xylophone, vibraphone, glockenspiel: which bar a note is.
+/// keyboard.c: marimba, xylophone, vibraphone, glockenspiel, tubular bells: which bar a note is.
 ///
 /// The instrument has the bars from the lowest to the highest note, an octave at least; a note
 /// beyond what is built is moved by octaves.
@@ -18,6 +18,7 @@ static const struct {
     [MIDI_XYLOPHONE - FIRST] = {"xylophone", 13, 65, 108, .045},
     [MIDI_VIBRAPHONE - FIRST] = {"vibraphone", 11, 53, 89, .05},
     [MIDI_GLOCKENSPIEL - FIRST] = {"glockenspiel", 9, 79, 108, .034},
+    [MIDI_TUBULAR_BELL - FIRST] = {"tubular-bell", 14, 60, 77, .058},
 };
 
 midi_choice himc_midi_program_choice(int program)
@@ -66,7 +67,9 @@ void himc_midi_keyboard(midi_part *part)
     }
     const char *name = boards[part->choice - FIRST].name;
     midi_head *head = &part->head[part->heads++];
-    *head = (midi_head){.name = name, .x = .45, .z = .87, .key = MIDI_UNTUNED};
+    bool hangs = part->choice == MIDI_TUBULAR_BELL; // as in the set-ups
+    *head = (midi_head){
+        .name = name, .x = hangs ? .55 : .45, .z = hangs ? 1.25 : .87, .key = MIDI_UNTUNED};
     char low_name[HIMC_NOTE_SIZE], high_name[HIMC_NOTE_SIZE];
     himc_midi_key_name(low_name, first);
     himc_midi_key_name(high_name, last);

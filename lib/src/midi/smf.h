@@ -16,6 +16,7 @@ typedef enum midi_choice {
     MIDI_XYLOPHONE,    ///< program 14
     MIDI_VIBRAPHONE,   ///< program 12
     MIDI_GLOCKENSPIEL, ///< program 10
+    MIDI_TUBULAR_BELL, ///< program 15
     MIDI_CHOICES
 } midi_choice;
 

@@ -26,7 +26,7 @@ static const struct {
     // what begins as another one comes first
     {"drum timbale|high timbale", MIDI_DRUMS, 65},
     {"low timbale", MIDI_DRUMS, 66},
-    {"röhrenglocke|tubular", MIDI_ANY, 0},
+    {"röhrenglocke|tubular", MIDI_TUBULAR_BELL, 0},
     {"schellen|tambour de basque|tambourin|tamburin|tamburell", MIDI_DRUMS, 54},
     {"timp|pauk|kettle|timbal", MIDI_TIMPANI, 0},
     {"marimb", MIDI_MARIMBA, 0},

@@ -359,8 +359,8 @@ static int take_items(writer *w)
 
 static void put_part_list(const writer *w)
 {
-    static const char *const names[] = {"",          "Timpani",    "Percussion",  "Marimba",
-                                        "Xylophone", "Vibraphone", "Glockenspiel"};
+    static const char *const names[] = {"",          "Timpani",    "Percussion",   "Marimba",
+                                        "Xylophone", "Vibraphone", "Glockenspiel", "Tubular Bells"};
     static const char *const drums[] = {"", "low", "second", "third", "high"};
     bool used[MIDI_KEY_COUNT] = {false};
     PUT(w, "<score-part id=\"P%d\"><part-name>%s</part-name>\n", (int)w->choice, names[w->choice]);

@@ -48,8 +48,9 @@ static void add(writer *w, double beat, uint8_t status, uint8_t key, double velo
 static void add_stroke(writer *w, const midi_note *n, double seconds, double dynamic)
 {
     static const uint8_t channel[] = {
-        [MIDI_TIMPANI] = 0,   [MIDI_DRUMS] = 9,      [MIDI_MARIMBA] = 1,
-        [MIDI_XYLOPHONE] = 2, [MIDI_VIBRAPHONE] = 3, [MIDI_GLOCKENSPIEL] = 4};
+        [MIDI_TIMPANI] = 0,     [MIDI_DRUMS] = 9,      [MIDI_MARIMBA] = 1,
+        [MIDI_XYLOPHONE] = 2,   [MIDI_VIBRAPHONE] = 3, [MIDI_GLOCKENSPIEL] = 4,
+        [MIDI_TUBULAR_BELL] = 5};
     const midi_file *f = w->file;
     uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : BASS_DRUM;
     double end = himc_score_beat(f->tempi, f->tempo_count, seconds + SHORT);
@@ -146,7 +147,8 @@ static void put_part(himc_text_lines *out, writer *w, midi_choice choice)
                 [MIDI_MARIMBA] = {"Marimba", 0xc1, 12},
                 [MIDI_XYLOPHONE] = {"Xylophone", 0xc2, 13},
                 [MIDI_VIBRAPHONE] = {"Vibraphone", 0xc3, 11},
-                [MIDI_GLOCKENSPIEL] = {"Glockenspiel", 0xc4, 9}};
+                [MIDI_GLOCKENSPIEL] = {"Glockenspiel", 0xc4, 9},
+                [MIDI_TUBULAR_BELL] = {"Tubular Bells", 0xc5, 14}};
     const char *name = part[choice].name;
     long now = 0;
     w->count = 0;
