@@ -336,6 +336,14 @@ test-midi: deps ## plays MIDI files of two games and holds what is struck agains
 	@$(MAKE) $(PROGRAM)
 	tests/midi/evaluate.py $(PROGRAM) $(MIDI_SECONDS) $$(tests/midi/fetch.sh build/midi) tests/midi/*.mid patches/pieces/*.mid
 
+# how much of each file is played (s)
+MUSIC_SECONDS ?= 20
+benchmark-music: deps ## 66 public MIDI and MusicXML files, imported and played: F1 of their notes, loudness, round trips (ten minutes)
+	@$(MAKE) $(PROGRAM)
+	@tools/research/music/fetch.sh $(BUILD)/music
+	@test -d $(BUILD)/music/venv || { python3 -m venv $(BUILD)/music/venv && $(BUILD)/music/venv/bin/pip -q install mido==1.3.3 music21==10.5.1; }
+	@$(BUILD)/music/venv/bin/python tools/research/music/benchmark.py $(PROGRAM) $(MUSIC_SECONDS) $(BUILD)/music tools/research/music/files.txt
+
 test-python: deps ## the Python package, built and installed into build/python: against the program, docs/data.md, the notebook
 	@tools/build/deps.sh tools/build/deps-python.txt
 	@build/python/bin/python -c 'import cffi, setuptools as s; assert int(s.__version__.split(".")[0]) >= 77' 2>/dev/null || \

@@ -44,6 +44,24 @@ typedef struct himc_load_target {
 /// error, the others are counted, and `done` of the last one tells their number.
 bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
                          const himc_command *command, himc_error *error);
+
+// From another thread than the host's, without a lock: a program whose audio callback is the host
+// posts its commands, and the callback calls himc_loader_run before each block:
+//
+//     himc_loader_post(loader, performance, "hit right legato f", &error);     control thread
+//     while (himc_loader_refused(loader, &error)) ...                          control thread
+//     himc_loader_run(loader); himc_performance_read(performance, frames, 2, n);     callback
+
+#define HIMC_LOADER_POSTS 256 ///< commands that may wait for himc_loader_run
+
+/// Checks a performer's command, also DRUM COMMAND ..., and hands it to the next himc_loader_run,
+/// which carries out the posted ones in their order, after all that waits already. False with the
+/// reason: the text is no command, or HIMC_LOADER_POSTS wait. One thread at a time may post.
+bool himc_loader_post(himc_loader *loader, himc_performance *performance, const char *text,
+                      himc_error *error);
+/// For the thread that posts: takes the oldest reason why a posted command was not carried out.
+/// False if there is none. Of more than 64 the first are kept, and their number is the last line.
+HIMC_RT bool himc_loader_refused(himc_loader *loader, himc_error *error);
 /// Carries out the lines that `dump` has told (HIMC_DESCRIBE_STATE), each with a `;`, at once and
 /// after all that waits: all of them, or none and false with the reason. A performer's are a score.
 bool himc_loader_restore(himc_loader *loader, const himc_load_target *target, const char *state,

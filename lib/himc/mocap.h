@@ -223,8 +223,6 @@ void himc_recording_free(himc_recording *recording);
 HIMC_RT bool himc_recording_add(himc_recording *recording, const himc_body_state *state);
 /// Number of frames kept.
 HIMC_RT int himc_recording_frames(const himc_recording *recording);
-/// Path of the file, owned by the recording.
-const char *himc_recording_path(const himc_recording *recording);
 /// Writes the file; the recording can continue. False with the reason.
 bool himc_recording_write(const himc_recording *recording, himc_error *error);
 

@@ -63,7 +63,12 @@ bool himc_performance_hear_as(himc_performance *performance, const himc_performa
 /// that it does not have are silent).
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
 
-// The commands `stroke`, `hit`, `tempo`, `play` and `stop` for C programs: they act now.
+/// Carries out a command given as text, now: "stroke 0 right legato mf", "tempo 120", "play", also
+/// DRUM COMMAND ..., "kettle tune 110". May allocate or read a file. False, and nothing changed,
+/// with the reason. From another thread than the one that plays: himc_loader_post (loader.h).
+bool himc_performance_send(himc_performance *performance, const char *text, himc_error *error);
+
+// The commands `stroke` and `hit` for programs that have no text: they act now.
 
 /// Adds a stroke to the score: beat 0 .. 1e9, dynamic 0 .. 1, x and y -1 .. 1 m. May allocate.
 /// False if a field is out of its range, there is no drum of that name, the hand has another stroke
@@ -76,15 +81,6 @@ bool himc_performance_add_stroke(himc_performance *performance, const himc_strok
 /// counts it.
 bool himc_performance_hit(himc_performance *performance, const himc_stroke *stroke,
                           himc_error *error);
-/// Sets the tempo (1 .. 1000 beats per minute, else false) from now to the next change in the
-/// score.
-HIMC_RT bool himc_performance_set_tempo(himc_performance *performance, double bpm,
-                                        himc_error *error);
-/// Plays the score from the current beat, or the take from its beginning. Allocates only if there
-/// is no drum yet; false if there is no memory for one.
-bool himc_performance_play(himc_performance *performance, himc_error *error);
-/// Stops the score or the take; the sticks come to rest.
-HIMC_RT void himc_performance_stop(himc_performance *performance);
 
 /// Sets a live target (m) for a tip, like the command `target`, for signals. Call it once a block,
 /// with the block's last sample of each coordinate: blocks of 64 samples give 750 Hz, more than the
@@ -95,6 +91,11 @@ HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand ha
 /// its entries may be NULL. The sound is in the drums (himc_drum_read).
 HIMC_RT void himc_performance_process(himc_performance *performance, int n,
                                       double *const force[HIMC_HANDS]);
+/// Plays `n` samples and gives the sum of all drums as `frames` (n, channels), interleaved: 1
+/// channel is all that is heard, of more the first two are the ears, or each a pickup; 0 .. 8,
+/// further ones are silent. Returns the largest magnitude. Full scale is 1, and may be exceeded.
+HIMC_RT double himc_performance_read(himc_performance *performance, float *frames, int channels,
+                                     int n);
 /// Samples played since the last realign.
 HIMC_RT uint64_t himc_performance_time(const himc_performance *performance);
 /// Counts samples from 0 again, here and in all drums; the performance goes on.

@@ -242,21 +242,6 @@ static void take_events(session *s)
     }
 }
 
-static void add_channel(session *s, int channel, int channels, int n, float *out)
-{
-    double heard[BLOCK], sum[BLOCK] = {0};
-    himc_drum *drum;
-    for (int d = 0; (drum = himc_performance_drum(s->performance, d)); d++) {
-        himc_drum_read_channel(drum, channel, s->samples, n, heard);
-        for (int i = 0; i < n; i++)
-            sum[i] += heard[i];
-    }
-    for (int i = 0; i < n; i++) {
-        out[i * channels + channel] = (float)sum[i];
-        s->peak = fmax(s->peak, fabs(sum[i]));
-    }
-}
-
 // plays n samples into out (n x channels)
 static void session_process(session *s, size_t n, int channels, float *out)
 {
@@ -266,9 +251,8 @@ static void session_process(session *s, size_t n, int channels, float *out)
     s->peak = 0;
     for (size_t done = 0; done < n;) {
         int count = n - done < BLOCK ? (int)(n - done) : BLOCK;
-        himc_performance_process(s->performance, count, NULL);
-        for (int channel = 0; channel < channels; channel++)
-            add_channel(s, channel, channels, count, out + done * (size_t)channels);
+        float *to = out + done * (size_t)channels;
+        s->peak = fmax(s->peak, himc_performance_read(s->performance, to, channels, count));
         s->samples += (uint64_t)count;
         done += (size_t)count;
         take_events(s);

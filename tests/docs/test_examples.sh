@@ -35,6 +35,15 @@ for program in hello target drum take; do
     check test_${program}_builds_with_the_shared_library build $program "$CC" -std=c17
 done
 check test_hello_builds_as_cxx build hello-cxx "$CXX" -x c++ -std=c++17
+# where PortAudio is, with a sound card that plays to nowhere; without any it ends with one line
+if pkg-config --exists portaudio-2.0; then
+    link="$link $(pkg-config --cflags --libs portaudio-2.0)"
+    printf 'pcm.!default {type null}\nctl.!default {type null}\n' >"$dir/.asoundrc"
+    check test_live_builds build live "$CC" -std=c17
+    printf 'hit third legato f\nhit right legato f nowhere\nquit\n' | HOME="$dir" "$dir/live" >"$dir/live.said" 2>"$dir/live.log"
+    check test_live_tells_refused_commands_or_that_there_is_no_sound_card [ "$(grep -c 'nowhere: \|third, ' "$dir/live.said")" = 2 -o \
+        "$(grep -c '^PortAudio: ' "$dir/live.log")" = 1 ]
+fi
 link="$(flags static --static) -lm"
 check test_hello_builds_with_the_static_library build hello-static "$CC" -std=c17
 check test_hello_builds_as_cxx_with_the_static_library build hello-cxx-static "$CXX" -x c++ -std=c++17

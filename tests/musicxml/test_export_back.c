@@ -249,6 +249,17 @@ static void test_spots_without_a_key_are_told_and_come_back_normal(void)
     TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[3].spot);
 }
 
+// `timbales` alone are the French timpani
+static void test_a_timbale_is_a_drum_also_under_another_name(void)
+{
+    parse("instrument high-timbale timbale 13; instrument t timbale 14;"
+          "stroke 0 right legato f high-timbale; stroke 1 left legato f t;");
+    for (int i = 0; i < 2; i++)
+        TEST_ASSERT_EQUAL_INT(MIDI_DRUMS, notes.notes[i].choice);
+    read_back(himc_music_import);
+    TEST_ASSERT_EQUAL(2, count);
+}
+
 static void test_a_score_without_strokes_is_refused(void)
 {
     score = himc_score_parse("drum kettle;", "words", NULL, &error);
@@ -269,6 +280,7 @@ int main(void)
     RUN_TEST(test_a_roll_is_a_roll_after_midi);
     RUN_TEST(test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s);
     RUN_TEST(test_spots_without_a_key_are_told_and_come_back_normal);
+    RUN_TEST(test_a_timbale_is_a_drum_also_under_another_name);
     RUN_TEST(test_a_score_without_strokes_is_refused);
     return UNITY_END();
 }

@@ -13,14 +13,14 @@
 static osc_subscriptions table;
 static osc_network network;
 static osc_counters counters;
-static osc_ring lines;
+static system_ring lines;
 static himc_error error;
 
 void setUp(void)
 {
     memset(&table, 0, sizeof table);
     memset(&counters, 0, sizeof counters);
-    TEST_ASSERT_TRUE(himc_osc_ring_init(&lines, HIMC_OSC_LINE, 64));
+    TEST_ASSERT_TRUE(himc_ring_init(&lines, HIMC_OSC_LINE, 64));
     TEST_ASSERT_TRUE(himc_osc_network_open(&network, NULL, -1, &counters, &error));
     table.network = &network;
     table.counts = &counters;
@@ -30,7 +30,7 @@ void setUp(void)
 void tearDown(void)
 {
     himc_osc_network_close(&network);
-    himc_osc_ring_free(&lines);
+    himc_ring_free(&lines);
 }
 
 // by that host itself, or by the user of this machine
@@ -65,7 +65,7 @@ static void test_a_strangers_subscription_ends_after_a_minute_unless_renewed(voi
     TEST_ASSERT_EQUAL_INT(1, subscribed_at(129));
     TEST_ASSERT_EQUAL_INT(0, subscribed_at(130));
     TEST_ASSERT_EQUAL_STRING("192.0.2.1:9001: not subscribed again within 60 s, forgotten",
-                             himc_osc_ring_peek(&lines));
+                             himc_ring_peek(&lines));
 }
 
 static void test_subscriptions_of_this_machine_of_its_user_and_of_allowed_hosts_stay(void)

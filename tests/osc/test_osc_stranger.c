@@ -1,7 +1,7 @@
 // OSC from strangers: packets they cannot make us send, malformed ones, floods.
 #include "osc_ear.h"
 #include "osc/network.h"
-#include "osc/ring.h"
+#include "system/ring.h"
 
 #include "allocations.h"
 
@@ -347,21 +347,21 @@ static void test_refusals_are_told_once_and_sent_to_their_subscribers(void)
 // as when the network thread stands still
 static void test_a_full_ring_is_counted_and_blocks_no_call(void)
 {
-    osc_ring ring = {0};
+    system_ring ring = {0};
     int *slot;
-    TEST_ASSERT_TRUE(himc_osc_ring_init(&ring, sizeof(int), 4));
+    TEST_ASSERT_TRUE(himc_ring_init(&ring, sizeof(int), 4));
     for (int i = 0; i < 6; i++)
-        if ((slot = himc_osc_ring_slot(&ring))) {
+        if ((slot = himc_ring_slot(&ring))) {
             *slot = i;
-            himc_osc_ring_push(&ring);
+            himc_ring_push(&ring);
         }
     TEST_ASSERT_EQUAL_INT(2, (int)ring.lost);
     for (int i = 0; i < 4; i++) {
-        TEST_ASSERT_EQUAL_INT(i, *(const int *)himc_osc_ring_peek(&ring));
-        himc_osc_ring_pop(&ring);
+        TEST_ASSERT_EQUAL_INT(i, *(const int *)himc_ring_peek(&ring));
+        himc_ring_pop(&ring);
     }
-    TEST_ASSERT_NULL(himc_osc_ring_peek(&ring));
-    himc_osc_ring_free(&ring);
+    TEST_ASSERT_NULL(himc_ring_peek(&ring));
+    himc_ring_free(&ring);
 }
 
 static uint32_t seed;

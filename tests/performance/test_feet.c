@@ -142,7 +142,7 @@ static void test_a_foot_s_strokes_are_as_far_apart_as_one_plays_them(void)
     load("setup kit; tempo 60; stroke 0 foot legato f kick; stroke 0 foot legato f hats;"
          "stroke 0.02 foot legato f kick; stroke 0.04 foot legato f kick;"
          "stroke 0.12 foot legato f kick; stroke 1 foot legato f kick;");
-    himc_performance_play(performance, NULL);
+    himc_performance_send(performance, "play", NULL);
     for (int i = 0; i < 400; i++) {
         himc_performance_process(performance, 480, NULL);
         while (himc_performance_event(performance, &event)) {
@@ -166,7 +166,7 @@ static void test_the_way_to_another_pedal_takes_time(void)
     load("instrument a kick 22; a place .8 .3 .1 .8; instrument b kick 22; b place .8 -.3 .1 .8;"
          "tempo 60; stroke 0 foot legato f a; stroke .15 foot legato f b;"
          "stroke .5 foot legato f b;");
-    himc_performance_play(performance, NULL);
+    himc_performance_send(performance, "play", NULL);
     for (int i = 0; i < 200; i++) {
         himc_performance_process(performance, 480, NULL);
         while (himc_performance_event(performance, &event)) {
@@ -196,7 +196,7 @@ static void test_a_foot_s_strike_has_its_beat(void)
     double beat = NAN;
     load("instrument kick kick 22; tempo 60; stroke 0 foot legato f kick;"
          "stroke 1.5 foot legato f kick;");
-    himc_performance_play(performance, NULL);
+    himc_performance_send(performance, "play", NULL);
     for (int i = 0; i < 300; i++) {
         himc_performance_process(performance, 480, NULL);
         while (himc_performance_event(performance, &event))

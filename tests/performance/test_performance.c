@@ -562,19 +562,19 @@ static void sound_of(himc_performance *p, double *sound)
     himc_performance_free(p);
 }
 
-static void test_calls_for_C_programs_equal_the_commands_of_the_same_name(void)
+static void test_strokes_and_texts_of_C_programs_equal_commands(void)
 {
     static double typed[RATE], told[RATE];
     const himc_stroke stroke = {
         .beat = 1, .hand = HIMC_LEFT, .nuance = HIMC_ACCENT, .dynamic = 1, .spot = HIMC_SPOT_RIM};
     himc_stroke hit = {.hand = HIMC_RIGHT, .dynamic = 0.5, .spot = HIMC_SPOT_XY, .x = 0.125};
     himc_performance *a = new_performance(), *b = new_performance();
-    TEST_ASSERT_TRUE(himc_performance_set_tempo(a, 90, &error));
+    TEST_ASSERT_TRUE(himc_performance_send(a, "tempo 90", &error));
     TEST_ASSERT_TRUE(himc_performance_add_stroke(a, &stroke, &error));
-    TEST_ASSERT_TRUE(himc_performance_play(a, &error));
+    TEST_ASSERT_TRUE(himc_performance_send(a, "play", &error));
     TEST_ASSERT_TRUE(himc_performance_hit(a, &hit, &error));
     himc_performance_process(a, RATE, NULL);
-    himc_performance_stop(a);
+    TEST_ASSERT_TRUE(himc_performance_send(a, "stop", &error));
     command(b, "tempo 90");
     command(b, "stroke 1 left accent fff rim");
     command(b, "play");
@@ -607,7 +607,7 @@ static void test_calls_for_C_programs_refuse_what_is_out_of_range(void)
     himc_stroke early = good;
     early.beat = -1;
     TEST_ASSERT_FALSE(himc_performance_add_stroke(p, &early, &error));
-    TEST_ASSERT_FALSE(himc_performance_set_tempo(p, 0, &error));
+    TEST_ASSERT_FALSE(himc_performance_send(p, "tempo 0", &error));
     TEST_ASSERT_NULL(himc_performance_drum(p, 0));
     himc_performance_free(p);
 }
@@ -709,7 +709,7 @@ int main(void)
     RUN_TEST(test_realign_does_not_disturb_the_sound);
     RUN_TEST(test_stick_and_body_tip_stay_together_and_the_plan_joins_the_tip);
     RUN_TEST(test_a_late_stroke_is_not_counted_as_played);
-    RUN_TEST(test_calls_for_C_programs_equal_the_commands_of_the_same_name);
+    RUN_TEST(test_strokes_and_texts_of_C_programs_equal_commands);
     RUN_TEST(test_calls_for_C_programs_refuse_what_is_out_of_range);
     RUN_TEST(test_real_stroke_strikes_the_drum_from_its_bead_alone);
     RUN_TEST(test_commands_that_are_not_the_performers_or_too_far_ahead_are_refused);

@@ -115,7 +115,7 @@ static void test_a_source_is_played_to_its_end_and_stopped(void)
     session_play(p, 0.5, &h);
     wheel w = {.level = 2};
     p->motion->piece = (hand_source){&wheel_source, &w};
-    TEST_ASSERT_TRUE_MESSAGE(himc_performance_play(p, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_send(p, "play", &error), error.text);
     session_play(p, (TURNS - 1) * PERIOD, &h);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.5, w.began);
     TEST_ASSERT_TRUE(himc_vec3_length(w.from) > 0.1);
@@ -124,7 +124,7 @@ static void test_a_source_is_played_to_its_end_and_stopped(void)
     TEST_ASSERT_FALSE(p->motion->over);
     session_play(p, 1.1 * PERIOD, &h);
     TEST_ASSERT_TRUE(p->motion->over);
-    himc_performance_stop(p);
+    session_do(p, "stop");
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.5 + (TURNS + 0.1) * PERIOD, w.stopped);
     heard_free(&h);
     himc_performance_free(p);

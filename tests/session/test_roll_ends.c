@@ -64,6 +64,22 @@ static const himc_strike *last_of(const heard *h)
     return &h->strike[h->strikes - 1];
 }
 
+// from bar to bar as from drum to drum: the written hand plays the note, the roll ends before it
+static void test_a_roll_on_a_bar_ends_early_enough_for_a_leap_to_another_bar(void)
+{
+    static const char *const leap[] = {"stroke 3 left legato mf C5 xylophone",
+                                       "stroke 3 right legato mf C7 xylophone",
+                                       "stroke 3 left legato mf G5 xylophone"};
+    for (int k = 0; k < 3; k++) {
+        heard h = play_new(4, (const char *[]){"setup xylophone", "tempo 120",
+                                               "roll 1 2 single mf C6 xylophone", leap[k], NULL});
+        TEST_ASSERT_GREATER_THAN(10, h.strikes);
+        TEST_ASSERT_EQUAL_INT(k == 1 ? HIMC_RIGHT : HIMC_LEFT, last_of(&h)->hand);
+        TEST_ASSERT_EQUAL_DOUBLE(3, last_of(&h)->beat);
+        heard_free(&h);
+    }
+}
+
 // hands need 0.18 s from drum to drum, and have 0.17 s from stroke to stroke
 static void test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes(void)
 {
@@ -543,6 +559,7 @@ static void test_the_line_about_softer_strokes_counts_all_that_are(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_roll_on_a_bar_ends_early_enough_for_a_leap_to_another_bar);
     RUN_TEST(test_a_roll_that_goes_to_another_drum_and_back_has_all_its_strokes);
     RUN_TEST(test_a_roll_ends_in_grace_notes_as_they_are_without_it);
     RUN_TEST(test_a_double_roll_is_even_up_to_a_drag);

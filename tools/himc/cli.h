@@ -128,10 +128,6 @@ himc_performance *cli_load(const char *source, double rate, const char *listener
 /// The displacement of drums is not wanted. cli_load does this.
 void cli_unwatch(himc_performance *performance);
 
-/// The sum of all drums over `n` (1 .. CLI_BLOCK) samples from `start`, as `out` (n, channels).
-/// Returns the largest magnitude.
-double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out);
-
 /// How far a piece played offline is from its end. Zero at first.
 typedef struct cli_ending {
     bool done;              ///< the performer has come to rest: set it at HIMC_EVENT_DONE

@@ -40,9 +40,8 @@ void edit_player_cell(edit_player *p)
     uint64_t sum = UINT64_C(0xcbf29ce484222325);
     for (int at = 0; at < CELL; at += BLOCK) {
         float out[EARS * BLOCK];
-        himc_performance_process(p->performance, BLOCK, NULL);
-        p->ending.cell_peak =
-            fmax(p->ending.cell_peak, cli_mix(p->performance, p->ending.samples, BLOCK, EARS, out));
+        double peak = himc_performance_read(p->performance, out, EARS, BLOCK);
+        p->ending.cell_peak = fmax(p->ending.cell_peak, peak);
         p->ending.samples += BLOCK;
         take_events(p);
         scene_record_block(p->record, NULL, BLOCK);

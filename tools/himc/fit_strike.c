@@ -100,10 +100,8 @@ static bool blow(const fit_drum *d, int mallet, int dynamic, double rate, spectr
     himc_performance *p = heard ? perform(d, mallet, dynamic, rate, error) : NULL;
     partials_sound sound = {.tracks = 0};
     bool good = heard || himc_error_set(error, "out of memory");
-    for (size_t at = 0; p && at < frames; at += BLOCK) {
-        himc_performance_process(p, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
-        cli_mix(p, at, BLOCK, 2, heard + 2 * at);
-    }
+    if (p)
+        himc_performance_read(p, heard, 2, (int)frames);
     good = good && p && partials_add(&sound, heard, frames, 2, rate, "the drum made", error);
     *out = (spectrum){{0}};
     for (int i = 0; i < sound.tracks; i++)

@@ -5,7 +5,6 @@
 
 #define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest; chosen
 #define SILENCE 1e-4     // of the peak: 80 dB
-#define MIXED 256        // samples at once; chosen: 4 kB of the stack
 
 static bool load(himc_performance *p, const char *source, double rate, const char *listener,
                  himc_error *error)
@@ -41,38 +40,6 @@ void cli_unwatch(himc_performance *performance)
     himc_drum *drum;
     for (int d = 0; (drum = himc_performance_drum(performance, d)); d++)
         himc_drum_watch(drum, false);
-}
-
-// up to MIXED samples of a channel; returns their peak
-static double mix(himc_performance *performance, uint64_t start, int n, int channel, int channels,
-                  float *out)
-{
-    double heard[MIXED], sum[MIXED] = {0}, peak = 0;
-    himc_drum *drum;
-    for (int d = 0; (drum = himc_performance_drum(performance, d)); d++) {
-        if (channels == 1)
-            himc_drum_read(drum, start, n, heard, NULL);
-        else
-            himc_drum_read_channel(drum, channel, start, n, heard);
-        for (int i = 0; i < n; i++)
-            sum[i] += heard[i];
-    }
-    for (int i = 0; i < n; i++) {
-        out[i * channels + channel] = (float)sum[i];
-        peak = fmax(peak, fabs(sum[i]));
-    }
-    return peak;
-}
-
-double cli_mix(himc_performance *performance, uint64_t start, int n, int channels, float *out)
-{
-    double peak = 0;
-    for (int at = 0; at < n; at += MIXED)
-        for (int channel = 0; channel < channels; channel++)
-            peak =
-                fmax(peak, mix(performance, start + (uint64_t)at, n - at < MIXED ? n - at : MIXED,
-                               channel, channels, out + at * channels));
-    return peak;
 }
 
 bool cli_is_over(cli_ending *e, int rate)

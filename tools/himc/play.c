@@ -105,8 +105,7 @@ static bool play_block(himc_performance *p, PaStream *stream, outcome *o, himc_e
     float out[EARS * BLOCK];
     himc_event event;
     double start = cli_now();
-    himc_performance_process(p, BLOCK, NULL);
-    double loudest = cli_mix(p, o->samples, BLOCK, EARS, out);
+    double loudest = himc_performance_read(p, out, EARS, BLOCK);
     o->peak = fmax(o->peak, loudest);
     o->quiet = loudest > SILENCE * o->peak ? 0 : o->quiet + BLOCK;
     o->samples += BLOCK;

@@ -368,9 +368,8 @@ static void take_row(void *user, const himc_motion_row *row)
 static void play_block(rendering *r, int n)
 {
     static float out[HEARD_BY_TWO * BLOCK_MAX]; // too large for a small stack
-    himc_performance_process(r->performance, n, (double *[HIMC_HANDS]){NULL, NULL});
-    r->ending.cell_peak =
-        fmax(r->ending.cell_peak, cli_mix(r->performance, r->ending.samples, n, r->channels, out));
+    double peak = himc_performance_read(r->performance, out, r->channels, n);
+    r->ending.cell_peak = fmax(r->ending.cell_peak, peak);
     errno = 0;
     if (r->sound && sf_writef_float(r->sound, out, n) != n)
         r->failed = errno ? errno : EIO;

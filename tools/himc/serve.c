@@ -54,7 +54,6 @@ typedef struct server {
     himc_loader *loader;
     cli_file file;
     scene_record *record; ///< NULL without --scene
-    uint64_t samples;
 } server;
 
 static void on_tick(void *user, const himc_tick *tick)
@@ -66,11 +65,9 @@ static void on_tick(void *user, const himc_tick *tick)
 }
 
 // both ears, or one pickup for both
-static void record_block(server *s)
+static void record_block(server *s, float *out)
 {
-    float out[2 * BLOCK];
     bool one = true;
-    cli_mix(s->performance, s->samples, BLOCK, 2, out);
     for (int i = 0; i < BLOCK; i++)
         one &= out[2 * i + 1] == 0;
     for (int i = 0; one && i < BLOCK; i++)
@@ -81,11 +78,12 @@ static void record_block(server *s)
 static void play_block(server *s)
 {
     char line[HIMC_OSC_LINE];
+    float out[2 * BLOCK];
     himc_event event;
     double start = cli_now();
     himc_loader_run(s->loader);
     himc_osc_receive(s->osc, s->performance, COMMANDS_A_BLOCK);
-    himc_performance_process(s->performance, BLOCK, (double *[HIMC_HANDS]){NULL, NULL});
+    himc_performance_read(s->performance, out, 2, BLOCK);
     while (himc_performance_event(s->performance, &event)) {
         himc_osc_event(s->osc, &event);
         if (s->record)
@@ -94,8 +92,7 @@ static void play_block(server *s)
             fprintf(stderr, "himc serve: %s\n", event.text);
     }
     if (s->record)
-        record_block(s);
-    s->samples += BLOCK;
+        record_block(s, out);
     himc_osc_publish(s->osc, s->performance, cli_now() - start);
     while (himc_osc_line(s->osc, line))
         fprintf(stderr, "himc serve: %s\n", line);

@@ -234,10 +234,8 @@ const float *page_play(int samples, double wall)
     if (fabs(wall - e.told) > SILENT_APART && wall > 0)
         e.told = wall;
     for (int at = 0; at < samples; at += BLOCK) {
-        himc_performance_process(e.performance, BLOCK, NULL);
-        e.ending.cell_peak = fmax(
-            e.ending.cell_peak, cli_mix(e.performance, himc_performance_time(e.performance) - BLOCK,
-                                        BLOCK, EARS, e.sound + EARS * at));
+        double peak = himc_performance_read(e.performance, e.sound + EARS * at, EARS, BLOCK);
+        e.ending.cell_peak = fmax(e.ending.cell_peak, peak);
         look();
         e.ending.samples += BLOCK;
         e.told += BLOCK / e.rate;

@@ -220,6 +220,8 @@ bool himc_take_can_save(const char *path, himc_error *error);
 /// The recording so far as a take, to be freed by the caller; NULL if there are no frames or no
 /// memory.
 himc_take *himc_recording_take(const himc_recording *recording, himc_error *error);
+/// Path of the file, owned by the recording.
+const char *himc_recording_path(const himc_recording *recording);
 /// True if no file or a recording has that path. A score may not record over any other file: it may
 /// come from somebody else.
 bool himc_recording_may_replace(const char *path, himc_error *error);

@@ -7,16 +7,20 @@
 /// The lock is for sleeping and waking alone. The helper may lose the processor while it holds it,
 /// so the host only tries it: if the helper could not be woken, the next himc_loader_run tries
 /// again. Only himc_loader_finish and himc_loader_free wait.
+///
+/// Commands of another thread come by a ring, the reasons of those refused go back by another.
 #define _POSIX_C_SOURCE 200809L
 #include "himc/loader.h"
 #include "base/array.h"
 #include "drum/drum_performer.h"
+#include "system/ring.h"
 #include "system/thread.h"
 
 #include <stdatomic.h>
 #include <string.h>
 
 #define WAITING_LOADS 256 // chosen: a page of a patch, sent at once
+#define REFUSALS 64       // chosen: a page of a terminal
 #define SHORT_AT_ONCE 8   // short commands in one run; chosen: 10 us each at most
 
 typedef enum loader_stage { IDLE, PREPARING, PREPARED, FREEING } loader_stage;
@@ -25,6 +29,11 @@ typedef struct waiting_load {
     himc_load_target target; ///< its drum is retained
     himc_command command;
 } waiting_load;
+
+typedef struct waiting_post {
+    himc_performance *performance;
+    himc_command command;
+} waiting_post;
 
 struct himc_loader {
     waiting_load queue[WAITING_LOADS]; ///< a ring; the first is under way
@@ -38,9 +47,10 @@ struct himc_loader {
     bool stop;                 ///< under the lock
     bool asleep;               ///< the helper has work and could not be woken; the host's
     _Atomic loader_stage stage;
-    himc_job *job;    ///< the helper's while PREPARING or FREEING, else the host's
-    bool good;        ///< it was prepared ...
-    himc_error error; ///< ... or why not
+    system_ring posts, refusals; ///< of waiting_post, from another thread; of himc_error, to it
+    himc_job *job;               ///< the helper's while PREPARING or FREEING, else the host's
+    bool good;                   ///< it was prepared ...
+    himc_error error;            ///< ... or why not
 };
 
 static loader_stage stage_of(himc_loader *loader)
@@ -99,11 +109,24 @@ static void hand_over(himc_loader *loader, loader_stage stage)
     wake(loader);
 }
 
+static void free_rings(himc_loader *loader)
+{
+    himc_ring_free(&loader->posts);
+    himc_ring_free(&loader->refusals);
+    free(loader);
+}
+
 himc_loader *himc_loader_new(himc_error *error)
 {
     himc_loader *loader = himc_new(sizeof *loader, "loader", error);
     if (!loader)
         return NULL;
+    if (!himc_ring_init(&loader->posts, sizeof(waiting_post), HIMC_LOADER_POSTS) ||
+        !himc_ring_init(&loader->refusals, sizeof(himc_error), REFUSALS)) {
+        free_rings(loader);
+        himc_error_set(error, "loader: out of memory");
+        return NULL;
+    }
     pthread_mutex_init(&loader->lock, NULL);
     pthread_cond_init(&loader->work, NULL);
     pthread_cond_init(&loader->done, NULL);
@@ -135,7 +158,7 @@ void himc_loader_free(himc_loader *loader)
     pthread_cond_destroy(&loader->work);
     pthread_cond_destroy(&loader->done);
     pthread_mutex_destroy(&loader->lock);
-    free(loader);
+    free_rings(loader);
 }
 
 // the first command is carried out, or refused; tells it, and what was dropped, after the last
@@ -217,8 +240,35 @@ static void install(himc_loader *loader)
     }
 }
 
+static void tell_poster(void *user, const char *why)
+{
+    himc_loader *loader = user;
+    himc_error *slot = why ? himc_ring_slot(&loader->refusals) : NULL;
+    if (!slot)
+        return;
+    himc_error_set(slot, "%s", why);
+    himc_ring_push(&loader->refusals);
+}
+
+// at most SHORT_AT_ONCE of the posted commands, as far as there is room for those that wait
+static void take_posts(himc_loader *loader)
+{
+    const waiting_post *post;
+    for (int i = 0; i < SHORT_AT_ONCE && loader->count < WAITING_LOADS &&
+                    (post = himc_ring_peek(&loader->posts));
+         i++) {
+        himc_error why;
+        const himc_load_target target = {
+            .performance = post->performance, .done = tell_poster, .user = loader};
+        if (!himc_loader_command(loader, &target, &post->command, &why))
+            tell_poster(loader, why.text);
+        himc_ring_pop(&loader->posts);
+    }
+}
+
 bool himc_loader_run(himc_loader *loader)
 {
+    take_posts(loader);
     wake(loader);
     loader_stage stage = stage_of(loader);
     if (stage == PREPARED)
@@ -226,12 +276,12 @@ bool himc_loader_run(himc_loader *loader)
     for (int i = 0; stage == IDLE && loader->count > 0 && i < SHORT_AT_ONCE; i++)
         if (!begin_first(loader))
             break;
-    return loader->count > 0;
+    return himc_loader_busy(loader);
 }
 
 bool himc_loader_busy(const himc_loader *loader)
 {
-    return loader->count > 0;
+    return loader->count > 0 || himc_ring_peek(&loader->posts);
 }
 
 void himc_loader_finish(himc_loader *loader)
@@ -266,6 +316,34 @@ bool himc_loader_command(himc_loader *loader, const himc_load_target *asked,
     if (target->drum)
         himc_drum_retain(target->drum);
     return true;
+}
+
+bool himc_loader_post(himc_loader *loader, himc_performance *performance, const char *text,
+                      himc_error *error)
+{
+    himc_command command;
+    if (!himc_command_parse_text(&command, HIMC_PERFORMER, text, error))
+        return false;
+    waiting_post *post = himc_ring_slot(&loader->posts);
+    if (!post)
+        return himc_error_set(error, "%d commands wait: this one is not taken", HIMC_LOADER_POSTS);
+    post->performance = performance;
+    himc_command_copy(&post->command, &command);
+    himc_ring_push(&loader->posts);
+    return true;
+}
+
+bool himc_loader_refused(himc_loader *loader, himc_error *error)
+{
+    const himc_error *oldest = himc_ring_peek(&loader->refusals);
+    long lost = oldest ? 0 : himc_ring_lost(&loader->refusals);
+    if (oldest) {
+        himc_error_set(error, "%s", oldest->text);
+        himc_ring_pop(&loader->refusals);
+    } else if (lost > 0) {
+        himc_error_set(error, "%ld further commands were refused", lost);
+    }
+    return oldest || lost > 0;
 }
 
 bool himc_loader_restore(himc_loader *loader, const himc_load_target *target, const char *state,

@@ -130,11 +130,11 @@ const char *himc_midi_key_sound(int key)
 
 void himc_midi_join(midi_part *part)
 {
-    int last[MIDI_KEY_COUNT];
+    int last[2][MIDI_KEY_COUNT]; // by hand, by foot: a hi-hat may be struck as it is closed
     memset(last, -1, sizeof last);
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
-        int *before = &last[part->choice != MIDI_DRUMS || s->head < 0 ? s->key : s->head];
+        int *before = &last[s->foot][part->choice != MIDI_DRUMS || s->head < 0 ? s->key : s->head];
         if (s->fate != MIDI_PLAYED)
             continue;
         midi_stroke *first = *before >= 0 ? &part->stroke[*before] : NULL;

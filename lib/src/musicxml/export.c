@@ -60,7 +60,8 @@ static void add_head(exporter *x, const char *name, const char *kind, double siz
         return;
     *h = (head){.name = name, .kind = kind, .choice = MIDI_TIMPANI, .key = USUAL_KEY};
     if (strcmp(kind, "timpano") != 0) {
-        h->choice = himc_music_instrument(kind, &key);
+        bool timbale = strcmp(kind, "timbale") == 0; // alone the French timpani
+        h->choice = himc_music_instrument(timbale ? "drum timbale" : kind, &key);
         h->key = himc_midi_key_of(name, HIMC_SPOT_NORMAL, false);
         h->key = h->key < 0 ? key : h->key;
         if (h->choice == MIDI_ANY && h->key >= 0)

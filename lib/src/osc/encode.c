@@ -14,7 +14,7 @@
 #include "osc/encode.h"
 #include "himc/body.h"
 #include "osc/message.h"
-#include "osc/ring.h"
+#include "osc/counters.h"
 
 #include <math.h>
 #include <stdarg.h>

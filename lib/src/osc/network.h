@@ -4,7 +4,7 @@
 #define HIMC_OSC_NETWORK_H
 
 #include "himc/base.h"
-#include "osc/ring.h"
+#include "osc/counters.h"
 
 /// Address and port of a host, as the network numbers them.
 typedef struct osc_address {

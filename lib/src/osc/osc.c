@@ -105,11 +105,11 @@ static void take_message(void *object, osc_verdict verdict, himc_command *comman
     } else if (!himc_osc_command_admit(command, osc->files, &why)) {
         refuse(osc, s->address, why.text);
     } else {
-        osc_order *slot = himc_osc_ring_slot(&osc->orders);
+        osc_order *slot = himc_ring_slot(&osc->orders);
         if (slot) {
             slot->from = *s->address;
             himc_command_copy(&slot->command, command);
-            himc_osc_ring_push(&osc->orders);
+            himc_ring_push(&osc->orders);
         }
         himc_osc_add(&osc->counts, slot ? COUNT_COMMANDS : COUNT_FREQUENT, 1);
     }
@@ -173,7 +173,7 @@ bool himc_osc_step(himc_osc *osc)
     himc_osc_counts counts;
     bool flood = take_packets(osc);
     himc_osc_subscribe_found(&osc->subscriptions, himc_osc_now(osc));
-    for (int i = 0; i < RECORDS && (r = himc_osc_ring_peek(&osc->records)); i++) {
+    for (int i = 0; i < RECORDS && (r = himc_ring_peek(&osc->records)); i++) {
         switch (r->kind) {
         case RECORD_STATE:
             counts = himc_osc_count(osc);
@@ -182,7 +182,7 @@ bool himc_osc_step(himc_osc *osc)
         case RECORD_LINE: send_answer(osc, &r->line); break;
         case RECORD_CHANGE: subscribe(osc, &r->change); break;
         }
-        himc_osc_ring_pop(&osc->records);
+        himc_ring_pop(&osc->records);
     }
     himc_osc_forget(&osc->subscriptions, himc_osc_now(osc));
     return flood;
@@ -246,9 +246,9 @@ static bool prepare(himc_osc *osc, const himc_osc_config *config, himc_error *er
     s->counts = &osc->counts;
     s->lines = &osc->lines;
     // chosen: commands of half a second of 1000 points; the host reads the lines after each block
-    if (!himc_osc_ring_init(&osc->records, sizeof(osc_record), RECORDS) ||
-        !himc_osc_ring_init(&osc->orders, sizeof(osc_order), 512) ||
-        !himc_osc_ring_init(&osc->lines, HIMC_OSC_LINE, 64))
+    if (!himc_ring_init(&osc->records, sizeof(osc_record), RECORDS) ||
+        !himc_ring_init(&osc->orders, sizeof(osc_order), 512) ||
+        !himc_ring_init(&osc->lines, HIMC_OSC_LINE, 64))
         return himc_error_set(error, "osc: out of memory");
     osc->host.loader = config->loader;
     if (config->files) {
@@ -299,12 +299,12 @@ static void stop_thread(himc_osc *osc)
 
 static void put_change(himc_osc *osc, const osc_change *change)
 {
-    osc_record *r = himc_osc_ring_slot(&osc->records);
+    osc_record *r = himc_ring_slot(&osc->records);
     if (!r)
         return;
     r->kind = RECORD_CHANGE;
     r->change = *change;
-    himc_osc_ring_push(&osc->records);
+    himc_ring_push(&osc->records);
 }
 
 himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_error *error)
@@ -325,7 +325,7 @@ himc_osc *himc_osc_reopen(himc_osc *old, const himc_osc_config *config, himc_err
                                           .from = one->to,
                                           .expires = one->expires});
     const osc_record *r;
-    for (; (r = himc_osc_ring_peek(&old->records)); himc_osc_ring_pop(&old->records))
+    for (; (r = himc_ring_peek(&old->records)); himc_ring_pop(&old->records))
         if (r->kind == RECORD_CHANGE)
             put_change(osc, &r->change);
     osc->host.strikes = old->host.strikes;
@@ -342,9 +342,9 @@ void himc_osc_free(himc_osc *osc)
         himc_loader_finish(osc->host.loader);
     himc_osc_subscriptions_free(&osc->subscriptions);
     himc_osc_network_close(&osc->network);
-    himc_osc_ring_free(&osc->records);
-    himc_osc_ring_free(&osc->orders);
-    himc_osc_ring_free(&osc->lines);
+    himc_ring_free(&osc->records);
+    himc_ring_free(&osc->orders);
+    himc_ring_free(&osc->lines);
     free(osc->files);
     free(osc);
 }

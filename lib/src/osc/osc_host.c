@@ -22,7 +22,7 @@
 
 static osc_state *begin(himc_osc *osc, int kind, double time)
 {
-    osc_record *r = himc_osc_ring_slot(&osc->records);
+    osc_record *r = himc_ring_slot(&osc->records);
     if (!r)
         return NULL;
     r->kind = RECORD_STATE;
@@ -34,7 +34,7 @@ static osc_state *begin(himc_osc *osc, int kind, double time)
 
 static void end(himc_osc *osc)
 {
-    himc_osc_ring_push(&osc->records);
+    himc_ring_push(&osc->records);
 }
 
 static void put(float out[3], himc_vec3 v)
@@ -219,7 +219,7 @@ void himc_osc_publish(himc_osc *osc, himc_performance *performance, double busy)
 
 bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *error)
 {
-    osc_record *r = himc_osc_ring_slot(&osc->records);
+    osc_record *r = himc_ring_slot(&osc->records);
     if (!r)
         return himc_error_set(error, "too many subscriptions at once: this one is dropped");
     r->kind = RECORD_CHANGE;
@@ -236,8 +236,8 @@ bool himc_osc_command(himc_osc *osc, const himc_command *command, himc_error *er
 static void answer(void *object, const char *line)
 {
     osc_sender *s = object;
-    bool full = s->lines > 0 && himc_osc_ring_room(&s->osc->records) <= 64;
-    osc_record *r = s->cut ? NULL : himc_osc_ring_slot(&s->osc->records);
+    bool full = s->lines > 0 && himc_ring_room(&s->osc->records) <= 64;
+    osc_record *r = s->cut ? NULL : himc_ring_slot(&s->osc->records);
     s->cut = full || !r;
     if (!r)
         return;
@@ -340,7 +340,7 @@ void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
     const osc_order *order = NULL;
     double spent = 0;
     const double block = 2e-4; // no further command in a block once they took so long (s); chosen
-    for (int i = 0; dump->tells || (i < most && (order = himc_osc_ring_peek(&osc->orders)));) {
+    for (int i = 0; dump->tells || (i < most && (order = himc_ring_peek(&osc->orders)));) {
         if (h->loading || spent > block || !himc_osc_afford(&h->work, himc_osc_now(osc), 0))
             return;
         double start = himc_osc_now(osc);
@@ -350,7 +350,7 @@ void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
             dump->tells = more && !dump->from.cut;
         } else {
             obey(osc, performance, order);
-            himc_osc_ring_pop(&osc->orders);
+            himc_ring_pop(&osc->orders);
             i++;
         }
         double took = himc_osc_now(osc) - start;
@@ -361,10 +361,10 @@ void himc_osc_receive(himc_osc *osc, himc_performance *performance, int most)
 
 bool himc_osc_line(himc_osc *osc, char line[HIMC_OSC_LINE])
 {
-    const char *oldest = himc_osc_ring_peek(&osc->lines);
+    const char *oldest = himc_ring_peek(&osc->lines);
     if (!oldest)
         return false;
     memcpy(line, oldest, HIMC_OSC_LINE);
-    himc_osc_ring_pop(&osc->lines);
+    himc_ring_pop(&osc->lines);
     return true;
 }

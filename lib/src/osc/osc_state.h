@@ -1,12 +1,12 @@
 /// osc_state.h: what a himc_osc has, and which of its two sides owns what.
 ///
 /// osc_host.c is the host's side and alone writes `host`; osc.c is the network's, and begins and
-/// ends both. Between them are the rings and the counters (ring.h), and nothing else.
+/// ends both. Between them are the rings and the counters, and nothing else.
 #ifndef HIMC_OSC_STATE_H
 #define HIMC_OSC_STATE_H
 
 #include "osc/decode.h"
-#include "osc/ring.h"
+#include "system/ring.h"
 #include "osc/stepped.h"
 #include "osc/subscribe.h"
 #include "performance/describe.h"
@@ -80,7 +80,7 @@ typedef struct osc_host {
 
 struct himc_osc {
     osc_clock clock;
-    osc_ring records, orders, lines;
+    system_ring records, orders, lines;
     osc_counters counts;
     osc_host host;
 

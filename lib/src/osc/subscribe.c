@@ -29,16 +29,16 @@
 #define UNKNOWN_DRUM 110.0  // (Hz) chosen: A2, for vmc
 #define OF_A_HOST 32        // subscriptions of a stranger; chosen: four receivers of all streams
 
-void himc_osc_tell(osc_ring *lines, const char *format, ...)
+void himc_osc_tell(system_ring *lines, const char *format, ...)
 {
-    char *line = himc_osc_ring_slot(lines);
+    char *line = himc_ring_slot(lines);
     if (!line)
         return;
     va_list args;
     va_start(args, format);
     himc_line_print(line, HIMC_OSC_LINE, format, args);
     va_end(args);
-    himc_osc_ring_push(lines);
+    himc_ring_push(lines);
 }
 
 // --- changes of the table

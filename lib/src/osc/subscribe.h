@@ -6,6 +6,7 @@
 
 #include "osc/encode.h"
 #include "osc/network.h"
+#include "system/ring.h"
 
 #define SUBSCRIPTIONS 256 // chosen: 50 receivers of all kinds
 #define LOOKUPS 8         // chosen: names looked up at once
@@ -110,7 +111,7 @@ typedef struct osc_subscriptions {
 
     osc_network *network; ///< borrowed, as are the next two
     osc_counters *counts; ///< of the whole himc_osc
-    osc_ring *lines;      ///< for the user of this machine
+    system_ring *lines;   ///< for the user of this machine
     osc_subscription subscription[SUBSCRIPTIONS];
     osc_allowance allowance[SUBSCRIPTIONS];
     struct osc_pending {
@@ -155,6 +156,7 @@ const osc_subscription *himc_osc_errors_next(const osc_subscriptions *s,
 void himc_osc_forget(osc_subscriptions *s, double now);
 
 /// A line for the user of this machine.
-void himc_osc_tell(osc_ring *lines, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void himc_osc_tell(system_ring *lines, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 #endif

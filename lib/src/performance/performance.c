@@ -5,8 +5,10 @@
 /// does not depend on the block size.
 #include "performance/performance_state.h"
 
+#include <math.h>
 #include <string.h>
 
+#define MIXED 256  // samples read at once; chosen: 4 kB of the stack
 #define MOVED 0.03 // a stroke that comes so much later is another gesture (s); chosen
 
 static contact_scene scene_of(himc_performance *p)
@@ -200,6 +202,39 @@ void himc_performance_process(himc_performance *p, int n, double *const force[HI
         done += count;
     }
     himc_drums_catch_up(&p->drums);
+}
+
+// up to MIXED samples of a channel, from `start`; returns their peak
+static double mix(const himc_performance *p, uint64_t start, int n, int channel, int channels,
+                  float *out)
+{
+    double heard[MIXED], sum[MIXED] = {0}, peak = 0;
+    for (int d = 0; d < p->drums.count && channel < HIMC_PICKUPS; d++) {
+        if (channels == 1)
+            himc_drum_read(p->drums.slot[d].drum, start, n, heard, NULL);
+        else
+            himc_drum_read_channel(p->drums.slot[d].drum, channel, start, n, heard);
+        for (int i = 0; i < n; i++)
+            sum[i] += heard[i];
+    }
+    for (int i = 0; i < n; i++) {
+        out[i * channels + channel] = (float)sum[i];
+        peak = fmax(peak, fabs(sum[i]));
+    }
+    return peak;
+}
+
+double himc_performance_read(himc_performance *p, float *frames, int channels, int n)
+{
+    double peak = 0;
+    for (int at = 0; at < n; at += MIXED) {
+        int count = n - at < MIXED ? n - at : MIXED;
+        uint64_t start = himc_performance_time(p);
+        himc_performance_process(p, count, NULL);
+        for (int channel = 0; channel < channels; channel++)
+            peak = fmax(peak, mix(p, start, count, channel, channels, frames + at * channels));
+    }
+    return peak;
 }
 
 himc_performance *himc_performance_new(const himc_performance_config *config, himc_error *error)

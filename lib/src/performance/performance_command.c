@@ -299,6 +299,13 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     return true;
 }
 
+bool himc_performance_send(himc_performance *p, const char *text, himc_error *error)
+{
+    himc_command command;
+    return himc_command_parse_text(&command, HIMC_PERFORMER, text, error) &&
+           himc_performance_command(p, &command, 0, error);
+}
+
 static bool run_waiting(himc_performance *p, const himc_command *command, himc_error *error)
 {
     himc_drums_catch_up(&p->drums);

@@ -4,6 +4,7 @@
 
 #include "base/format.h"
 #include "body/dynamics.h"
+#include "capture/take.h"
 #include "control/tracking_error.h"
 
 #include <stdlib.h>

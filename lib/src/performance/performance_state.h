@@ -183,6 +183,10 @@ himc_job *himc_performance_change_job(himc_performance *p, const himc_command *c
 HIMC_RT void himc_performance_tell_misses(himc_performance *p);
 /// himc_performance_add_stroke, but nothing is written, and the beat may be any.
 bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *stroke, himc_error *error);
+// the commands `tempo BPM`, `play`, `stop`
+bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *error);
+bool himc_performance_play(himc_performance *p, himc_error *error);
+void himc_performance_stop(himc_performance *p);
 /// Writes the name of drum `drum` (below 0: none) into a stroke that is no roll, for lines.
 HIMC_RT void himc_performance_name_drum(const himc_performance *p, himc_stroke *stroke, int drum);
 /// Adds the strokes of an ornament but its own (ornament.h), on drum `drum`; a note tells how many

@@ -149,11 +149,11 @@ int himc_planner_roll_drum(const planner_score *score, int roll, himc_hand hand)
     return roll_of(score, roll, hand)->drum;
 }
 
-/// The way from a roll to a stroke on another drum (m).
+/// The way from a roll to a stroke on another drum or bar (m).
 static himc_vec3 way_to(const planner_score *score, const planner_roll *from,
                         const himc_stroke *stroke, int drum)
 {
-    if (!score->drum || drum == from->drum)
+    if (!score->drum || (drum == from->drum && strcmp(stroke->part, from->stroke.part) == 0))
         return (himc_vec3){0, 0, 0};
     return himc_vec3_sub(spot_of(score, stroke, drum), spot_of(score, &from->stroke, from->drum));
 }

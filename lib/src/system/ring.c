@@ -4,13 +4,13 @@
 /// release of `written` makes the contents of a slot visible to the reader that acquires it; the
 /// release of `read` does the same for the reuse of the slot. A full ring refuses and counts the
 /// record, so the host never waits; the oldest records are kept.
-#include "osc/ring.h"
+#include "system/ring.h"
 
 #include <stdlib.h>
 
 #define CACHE_LINE 64 // (bytes) slots begin on one, so that the two threads rarely share a line
 
-bool himc_osc_ring_init(osc_ring *ring, size_t slot, size_t count)
+bool himc_ring_init(system_ring *ring, size_t slot, size_t count)
 {
     ring->slot = (slot + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
     ring->count = count;
@@ -18,13 +18,13 @@ bool himc_osc_ring_init(osc_ring *ring, size_t slot, size_t count)
     return ring->data != NULL;
 }
 
-void himc_osc_ring_free(osc_ring *ring)
+void himc_ring_free(system_ring *ring)
 {
     free(ring->data);
     ring->data = NULL;
 }
 
-void *himc_osc_ring_slot(osc_ring *ring)
+void *himc_ring_slot(system_ring *ring)
 {
     size_t written = atomic_load_explicit(&ring->written, memory_order_relaxed);
     if (written - atomic_load_explicit(&ring->read, memory_order_acquire) == ring->count) {
@@ -34,19 +34,19 @@ void *himc_osc_ring_slot(osc_ring *ring)
     return ring->data + written % ring->count * ring->slot;
 }
 
-size_t himc_osc_ring_room(const osc_ring *ring)
+size_t himc_ring_room(const system_ring *ring)
 {
     size_t written = atomic_load_explicit(&ring->written, memory_order_relaxed);
     return ring->count - (written - atomic_load_explicit(&ring->read, memory_order_acquire));
 }
 
-void himc_osc_ring_push(osc_ring *ring)
+void himc_ring_push(system_ring *ring)
 {
     size_t written = atomic_load_explicit(&ring->written, memory_order_relaxed);
     atomic_store_explicit(&ring->written, written + 1, memory_order_release);
 }
 
-const void *himc_osc_ring_peek(osc_ring *ring)
+const void *himc_ring_peek(const system_ring *ring)
 {
     size_t read = atomic_load_explicit(&ring->read, memory_order_relaxed);
     if (atomic_load_explicit(&ring->written, memory_order_acquire) == read)
@@ -54,8 +54,13 @@ const void *himc_osc_ring_peek(osc_ring *ring)
     return ring->data + read % ring->count * ring->slot;
 }
 
-void himc_osc_ring_pop(osc_ring *ring)
+void himc_ring_pop(system_ring *ring)
 {
     size_t read = atomic_load_explicit(&ring->read, memory_order_relaxed);
     atomic_store_explicit(&ring->read, read + 1, memory_order_release);
+}
+
+long himc_ring_lost(system_ring *ring)
+{
+    return atomic_exchange_explicit(&ring->lost, 0, memory_order_relaxed);
 }
