@@ -50,4 +50,9 @@ void partials_sound_free(partials_sound *sound);
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
 
+/// How fast the pair of partials near a frequency decays (1/s; `due`: about), and its relative
+/// standard uncertainty, 1 and more if nothing is known. False with the reason, without memory.
+bool partials_ring(const partials_sound *sound, double frequency, double due, double *decay,
+                   double *part, himc_error *error);
+
 #endif
