@@ -57,15 +57,9 @@ static void name_drum(const char *path, char *name, size_t size)
         snprintf(name, size, "fitted");
 }
 
-static bool write_file(const char *path, const char *text, himc_error *error)
+static void put(const void *text, FILE *out)
 {
-    cli_file file;
-    if (!cli_file_open(&file, path, error))
-        return false;
-    fputs(text, file.stream);
-    bool good = cli_file_close(&file, error) && cli_file_keep(&file, error);
-    cli_file_drop(&file);
-    return good;
+    fputs(text, out);
 }
 
 static void beside(const char *path, const char *what, char *out, size_t size)
@@ -89,7 +83,7 @@ static bool write_drum(fit *f, const char *path, himc_error *error)
         f->name, d->inches, f->name, d->constant, d->square, f->name, d->tune, f->name,
         fit_mallets[d->mallet], fit_dynamics[d->dynamic]);
     beside(path, "head", f->beside, sizeof f->beside);
-    return write_file(f->beside, head, error) && write_file(path, text, error);
+    return cli_write(f->beside, put, head, error) && cli_write(path, put, text, error);
 }
 
 static bool write_list(fit *f, const char *path, himc_error *error)
@@ -104,7 +98,7 @@ static bool write_list(fit *f, const char *path, himc_error *error)
         text, sizeof text,
         "comment made by himc fit;\ninstrument %s modes %s;\ntempo 60;\nstroke 1 right legato mf;\n",
         f->name, f->beside);
-    return write_file(path, text, error);
+    return cli_write(path, put, text, error);
 }
 
 static bool hear_again(fit *f, himc_error *error)

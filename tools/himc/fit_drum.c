@@ -54,9 +54,9 @@ static const struct {
 // usual losses, which a drum has where nothing else is known (himc_head_default)
 #define USUAL_CONSTANT 0.3
 #define USUAL_SQUARE 5e-8
-#define USUAL_WITHIN 0.5 // chosen
-#define SUREST 0.03      // of a decay, relative; chosen: beats of a pair that stay unresolved
-#define LONGER 1.3       // a partial rings longer than the room by this, or its decay is not used
+#define USUAL_WITHIN 0.35 // chosen
+#define SUREST 0.04       // of a decay, relative; chosen: beats of a pair that stay unresolved
+#define LONGER 1.3        // a partial rings longer than the room by this, or its decay is not used
 
 static bool tell(himc_drum *drum, himc_error *error, const char *format, double a, double b)
 {

@@ -12,9 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RATE 8000 // of the model's samples (Hz); chosen: strokes and speeds are heard by no one
-#define BLOCK 512
-
 static bool keep_asked(lesson *l, himc_performance *p, const himc_event *event, himc_error *error)
 {
     const himc_strike *s = &event->strike;
@@ -66,9 +63,9 @@ static bool play_score(lesson *l, himc_performance *p, double most, himc_error *
     himc_event event = {.kind = HIMC_EVENT_BEAT};
     bool good = cli_tell(p, "mode ik", NULL, error) && cli_tell(p, "human 0", NULL, error) &&
                 cli_tell(p, "loop 0", NULL, error) && cli_tell(p, "play", NULL, error);
-    for (uint64_t n = 0; good && event.kind != HIMC_EVENT_DONE && (double)n < most * RATE;
-         n += BLOCK) {
-        himc_performance_process(p, BLOCK, NULL);
+    for (uint64_t n = 0; good && event.kind != HIMC_EVENT_DONE && (double)n < most * LESSON_RATE;
+         n += LESSON_BLOCK) {
+        himc_performance_process(p, LESSON_BLOCK, NULL);
         while (good && event.kind != HIMC_EVENT_DONE && himc_performance_event(p, &event))
             good = keep_asked(l, p, &event, error);
     }
@@ -85,7 +82,7 @@ static bool ask(lesson *l, himc_error *error)
     for (int i = 0; i < score->stroke_count; i++)
         last = fmax(last, score->strokes[i].beat + score->strokes[i].length);
     last = himc_score_seconds(score->tempi, score->tempo_count, last);
-    himc_performance *p = cli_load(l->score, RATE, NULL, error);
+    himc_performance *p = cli_load(l->score, LESSON_RATE, NULL, error);
     l->asked = malloc(LESSON_MOST * sizeof *l->asked);
     bool good = p && (l->asked || himc_error_set(error, "out of memory")) &&
                 play_score(l, p, last + 30, error);
@@ -173,19 +170,6 @@ static const cli_option options[] = {
     {0},
 };
 
-static bool write_file(const lesson *l, const char *path, void (*write)(const lesson *, FILE *),
-                       himc_error *error)
-{
-    cli_file file = {0};
-    bool good = !path || cli_file_open(&file, path, error);
-    if (path && good) {
-        write(l, file.stream);
-        good = cli_file_close(&file, error) && cli_file_keep(&file, error);
-    }
-    cli_file_drop(&file);
-    return good;
-}
-
 static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *error)
 {
     himc_take_options how;
@@ -209,7 +193,7 @@ static void tell(const lesson *l)
     double seconds, decibels;
     lesson_scatter(l, &seconds, &decibels);
     printf("%d of %d strokes matched, %.1f BPM, %.1f ms and %.1f dB off (RMS)\n", l->matched,
-           l->asked_count, l->bpm * l->tempo.mean, 1e3 * seconds, decibels);
+           l->due, l->bpm * l->tempo.mean, 1e3 * seconds, decibels);
     for (int k = 0; k < l->faults && k < LESSON_NAMED; k++)
         printf("%d. %s\n", k + 1, l->fault[k].what);
     if (!l->faults)
@@ -231,8 +215,8 @@ static int run(const cli_arguments *arguments)
                cli_ending_is("--csv", value[CSV], ".csv", &error) &&
                cli_apart(value[OUT], files, 2, &error) && cli_apart(value[CSV], files, 3, &error) &&
                read_sources(l, arguments, &error) &&
-               write_file(l, value[OUT], lesson_page, &error) &&
-               write_file(l, value[CSV], lesson_csv, &error);
+               cli_write(value[OUT], lesson_page, l, &error) &&
+               cli_write(value[CSV], lesson_csv, l, &error);
     }
     bool piped = cli_is_standard(value[OUT]) || cli_is_standard(value[CSV]);
     if (good && value[JSON])

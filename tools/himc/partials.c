@@ -36,6 +36,7 @@
 #define PAIR 10.0          // (Hz) around a pair of a drum's modes ...
 #define PAIR_SECONDS 5.0   // ... in a window at most so long ...
 #define PAIR_PART 0.5      // ... or so much of T60, at least 1 s ...
+#define OVERLAP 2.0        // windows that overlap count as one
 #define FACTOR 1.4         // (ln) a decay this far from that which is due is another's
 #define PAIR_LEAST 20      // ... of so many decimated samples or more
 #define AROUND_PART 0.12   // ... so much of the frequency
@@ -61,7 +62,7 @@ typedef struct band {
 } band;
 
 typedef struct pole {
-    double frequency, decay, level, phase;
+    double frequency, decay, level;
 } pole;
 
 static bool band_open(band *b, double centre, double width, const partials_sound *sound)
@@ -141,7 +142,7 @@ static int find_poles(band *b, const partials_sound *sound, double start, int sp
     *outcome = himc_linear_exponentials(b->samples, b->tracks, b->z, most, CLEAR, p, c, &found);
     for (int k = 0; *outcome == HIMC_LINEAR_SOLVED && k < found; k++) {
         double size = hypot(p[2 * k], p[2 * k + 1]), aside = atan2(p[2 * k + 1], p[2 * k]);
-        pole q = {b->centre + aside * rate / (2 * HIMC_PI), -log(size) * rate, 0, 0};
+        pole q = {b->centre + aside * rate / (2 * HIMC_PI), -log(size) * rate, 0};
         double power = 0, since = (double)from / sound->rate;
         for (int i = 0; i < b->tracks; i++) {
             const double *a = &c[2 * (i * found + k)];
@@ -151,8 +152,6 @@ static int find_poles(band *b, const partials_sound *sound, double start, int sp
             log(1000) / q.decay < T60_LEAST || !(power > 0))
             continue;
         q.level = 10 * log10(4 * power / sound->tracks) + 20 * q.decay * since / log(10);
-        q.phase = remainder(atan2(c[2 * k + 1], c[2 * k]) - 2 * HIMC_PI * q.frequency * since,
-                            2 * HIMC_PI);
         out[kept++] = q;
     }
     return kept;
@@ -196,8 +195,7 @@ static bool make_partial(const pole *p, pole later[WINDOWS][ORDER], const int *c
     *out = (partial){.frequency = f,
                      .t60 = log(1000) / exp(d),
                      .frequency_error = sqrt(fmax(0, ff / n - f * f) * n / (n - 1.0)),
-                     .level = p->level,
-                     .phase = p->phase};
+                     .level = p->level};
     out->t60_error = out->t60 * sqrt(fmax(0, dd / n - d * d) * n / (n - 1.0));
     out->energy = out->level + 10 * log10(out->t60);
     return true;
@@ -397,29 +395,32 @@ bool partials_ring(const partials_sound *sound, double frequency, double due, do
                    double *part, himc_error *error)
 {
     band b = {0};
-    *part = INFINITY;
-    *decay = due;
     if (!band_open(&b, frequency, PAIR, sound)) {
         band_close(&b);
         return himc_error_set(error, "out of memory");
     }
-    double rate = sound->rate / b.step;
+    double rate = sound->rate / b.step, sum = 0, weights = 0;
+    double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / due));
     for (double start = 0.15; start < 2; start += 0.4) {
         size_t from = (size_t)(start * sound->rate) + (size_t)b.half;
-        if (!band_fill(&b, sound, from,
-                       (int)(fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / due)) * rate),
-                       PAIR_LEAST))
+        double best = INFINITY, found = 0;
+        if (!band_fill(&b, sound, from, (int)(span * rate), PAIR_LEAST))
             break;
         double least = 0.2 * rate / b.samples, most = fmin(2.5, 0.008 * frequency); // half apart
         for (double half = 0; half<most; half += half> 0 ? 0.3 : least) {
             double at[3] = {0, half, log(due)};
             double left = sqrt(go_down(&b, rate, at, least) * (half > 0 ? 2 : 1));
-            if (left < *part && fabs(at[0]) < 0.3 * PAIR && fabs(at[2] - log(due)) < FACTOR) {
-                *part = left;
-                *decay = exp(at[2]);
+            bool other = fabs(at[0]) > 0.3 * PAIR || fabs(at[2] - log(due)) > FACTOR;
+            if (left < best && !other) {
+                best = left;
+                found = at[2];
             }
         }
+        sum += found / (best * best);
+        weights += 1 / (best * best);
     }
+    *decay = weights > 0 ? exp(sum / weights) : due;
+    *part = weights > 0 ? sqrt(OVERLAP / weights) : INFINITY;
     band_close(&b);
     return true;
 }

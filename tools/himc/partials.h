@@ -18,7 +18,6 @@ typedef struct partial {
     double t60;             ///< (s)
     double t60_error;       ///< (s)
     double level;           ///< at the onset, of all channels (dB re the sound's peak)
-    double phase;           ///< at the onset, of the first channel (rad)
     double energy;          ///< 10 lg of what it has over all time (dB)
     double clear; ///< by which that, or its level after 1 s, stands out of its neighbours' (dB)
 } partial;
