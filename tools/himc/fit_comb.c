@@ -1,9 +1,10 @@
 /// fit_comb.c: at which tuning a timpano's modes stand out of a recording's spectrum.
 ///
 /// A room blurs lines and adds poles of its own, but what it answers is what the drum has sent: the
-/// spectrum of the first .7 s is highest near the drum's modes. For each tuning the levels near nine
-/// modes are summed, as they stand out of the median within a tenth of the frequency. The ratios of
-/// the modes depend on size and tuning by the air; they are made at a few tunings and interpolated.
+/// spectrum of the first .7 s is highest near the drum's modes. For each tuning the levels near
+/// nine modes are summed, as they stand out of the median within a tenth of the frequency. The
+/// ratios of the modes depend on size and tuning by the air; they are made at a few tunings and
+/// interpolated.
 #include "fit_drum.h"
 
 #include "base/order.h"

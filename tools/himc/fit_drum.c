@@ -1,20 +1,16 @@
-/// fit_drum.c: each size of timpano, tuned to each strong partial, is set beside what was found.
+/// fit_drum.c: each size of timpano, tuned as the spectrum suggests (fit_comb.c), is set beside the
+/// partials found.
 ///
 /// The air over the head makes the ratios of (1,1) .. (6,1) depend on the drum's size at a pitch: a
 /// size more is 1 % of (2,1), 1.5 % of (3,1), 2 % of (4,1), and a partial is found within a tenth
 /// of that. So the size whose own modes fit best is the drum's; all of its partials tune it. What
-/// the air takes follows from both; the losses S0 and S1 are the rest, by least squares. A room
-/// that rings longer than a partial hides its decay, which then counts less.
+/// the air takes follows from both; the losses S0 and S1 are the rest, by least squares over the
+/// decays in narrow bands around the drum's own modes (partials_ring). A partial that rings no
+/// longer than the room is not used: the room would hold it up.
 #include "fit_drum.h"
 
-#include "himc/drum.h"
-#include "himc/membrane.h"
-
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
-#define RATE 48000.0
 #define LOWER 0.87 // tunings this far beyond the usual ones are tried
 #define HIGHER 1.15
 #define NEAR 0.015      // a partial this near a mode may be it (per frequency) ...
@@ -36,13 +32,10 @@
 #define FINE_UP_TO 3.6
 #define TUNINGS 2       // rounds
 #define TAKEN_OUT 0.008 // per frequency, on either side of a mode
-#define SECOND 45.0     // (dB) of the comb of a second drum, ...
-#define SECOND_PART 0.6 // ... and per that of the first; chosen by sums of two recordings
-#define UNLIKELY 20.0   // (dB) a drum that is so much less likely than another is not it
-
-const char *const fit_mallets[] = {"soft", "medium", "hard", "wood", NULL};
-const char *const fit_dynamics[] = {"p", "mp", "mf", "f", "ff", NULL};
-const double fit_speeds[] = {1.3, 2, 2.9, 3.9, 5.1}; // of legato strokes
+#define TAKEN_LINE 3.0  // (Hz) more: a line's width
+#define ANOTHER 0.04    // per frequency: another tuning
+#define SECOND 45.0 // (dB) of the comb of a second drum; chosen: of single drums 17 to 40 are left
+#define UNLIKELY 20.0 // (dB) a drum that is so much less likely than another is not it
 
 // what players tune them to: F3 to C4, D3 to A3, A2 to F3, F2 to C#3, C2 to A2 (Hz)
 static const struct {
@@ -51,55 +44,9 @@ static const struct {
 #define SIZES (sizeof sizes / sizeof *sizes)
 #define OUTSIDE 30.0 // an octave beyond them is less likely by so much (dB)
 
-// usual losses, which a drum has where nothing else is known (himc_head_default)
-#define USUAL_CONSTANT 0.3
-#define USUAL_SQUARE 5e-8
 #define USUAL_WITHIN 0.35 // chosen
 #define SUREST 0.04       // of a decay, relative; chosen: beats of a pair that stay unresolved
 #define LONGER 1.3        // a partial rings longer than the room by this, or its decay is not used
-
-static bool tell(himc_drum *drum, himc_error *error, const char *format, double a, double b)
-{
-    char text[128];
-    himc_command command;
-    snprintf(text, sizeof text, format, a, b);
-    return himc_command_parse_text(&command, HIMC_DRUM, text, error) &&
-           himc_drum_command(drum, &command, error);
-}
-
-himc_drum *fit_drum_make(const fit_drum *d, int mallet, double rate, himc_error *error)
-{
-    char felt[32];
-    snprintf(felt, sizeof felt, "mallet %s", fit_mallets[mallet]);
-    himc_drum *drum = himc_drum_new("fit", d->inches, rate, error);
-    if (drum && tell(drum, error, "decay %.9g %.9g", d->constant, d->square) &&
-        tell(drum, error, "tune %.9g", d->tune, 0) && tell(drum, error, felt, 0, 0))
-        return drum;
-    himc_drum_release(drum);
-    return NULL;
-}
-
-fit_drum fit_drum_usual(double inches, double tune)
-{
-    return (fit_drum){
-        .inches = inches, .tune = tune, .constant = USUAL_CONSTANT, .square = USUAL_SQUARE};
-}
-
-int fit_drum_modes(const fit_drum *drum, fit_mode modes[FIT_MODES], himc_error *error)
-{
-    himc_drum *made = fit_drum_make(drum, 0, RATE, error);
-    int count = 0;
-    for (int i = 0; made && count < FIT_MODES; i++) {
-        himc_mode mode = himc_membrane_mode(himc_drum_membrane(made), i);
-        if (!(mode.mass > 0))
-            break;
-        if (mode.m >= 0)
-            modes[count++] =
-                (fit_mode){mode.m, mode.n, mode.sine, mode.frequency, log(1000) / mode.decay};
-    }
-    himc_drum_release(made);
-    return count;
-}
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -229,14 +176,15 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
         for (int m = 1; m <= (n == 1 ? FIT_ORDERS : 4); m++) {
             double f, decay, part;
             double air = pair_of(none, count, m, n, &f), load = pair_of(one, count, m, n, &f) - air;
-            double due = air + load * (USUAL_CONSTANT + USUAL_SQUARE * pow(2 * HIMC_PI * f, 2));
+            double due =
+                air + load * (FIT_USUAL_CONSTANT + FIT_USUAL_SQUARE * pow(2 * HIMC_PI * f, 2));
             if (!(air > 0) || log(1000) / due < LONGER * partials->room)
                 continue;
             if (!partials_ring(sound, f, due, &decay, &part, error))
                 return false;
             double known = decay * hypot(part, SUREST);
-            double a = load * USUAL_CONSTANT / known, y = (decay - air) / known;
-            double b = load * USUAL_SQUARE * pow(2 * HIMC_PI * f, 2) / known;
+            double a = load * FIT_USUAL_CONSTANT / known, y = (decay - air) / known;
+            double b = load * FIT_USUAL_SQUARE * pow(2 * HIMC_PI * f, 2) / known;
             aa += a * a;
             ab += a * b;
             bb += b * b;
@@ -248,8 +196,8 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
         s1 = by / bb;
     if (s1 < 0)
         s0 = ay / aa;
-    d->constant = USUAL_CONSTANT * fmax(s0, 0);
-    d->square = USUAL_SQUARE * fmax(s1, 0);
+    d->constant = FIT_USUAL_CONSTANT * fmax(s0, 0);
+    d->square = FIT_USUAL_SQUARE * fmax(s1, 0);
     return true;
 }
 
@@ -355,7 +303,7 @@ bool fit_drum_second(const fit_drum *drum, const fit_spectrum *spectrum, fit_dru
     for (int k = 0; k < FIT_LINES; k++) {
         double f = FIT_LOWEST * exp(FIT_FINE * k);
         for (int i = 0; i < count; i++)
-            if (fabs(f / modes[i].frequency - 1) < TAKEN_OUT)
+            if (fabs(f - modes[i].frequency) < TAKEN_OUT * f + TAKEN_LINE)
                 rest.level[k] = 0;
     }
     *second = (fit_drum){.comb = -INFINITY};
@@ -363,9 +311,10 @@ bool fit_drum_second(const fit_drum *drum, const fit_spectrum *spectrum, fit_dru
         fit_drum best[FIT_TUNINGS];
         if (!fit_comb(&rest, sizes[s].inches, sizes[s].low, sizes[s].high, best, error))
             return false;
-        if (best[0].comb > second->comb)
-            *second = best[0];
+        for (int i = 0; i < FIT_TUNINGS; i++)
+            if (best[i].comb > second->comb && fabs(best[i].tune / drum->tune - 1) > ANOTHER)
+                *second = best[i];
     }
-    *sounds = second->comb > fmax(SECOND, SECOND_PART * drum->comb);
+    *sounds = second->comb > SECOND;
     return count > 0;
 }

@@ -30,7 +30,9 @@ typedef struct fit_mode {
 } fit_mode;
 #define FIT_MODES 80
 
-/// One with usual losses.
+/// One with usual losses (himc_head_default).
+#define FIT_USUAL_CONSTANT 0.3
+#define FIT_USUAL_SQUARE 5e-8
 fit_drum fit_drum_usual(double inches, double tune);
 
 /// Its modes (m, n), rising in frequency; how many, or 0 with the reason.

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define FASTEST 12.0 // (m/s) chosen: of drummers' tips about 10 are measured
+
 static bool keep_asked(lesson *l, himc_performance *p, const himc_event *event, himc_error *error)
 {
     const himc_strike *s = &event->strike;
@@ -132,7 +134,7 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
 {
     himc_take_tip tips[HIMC_HANDS];
     himc_strike_survey seen;
-    int from[HIMC_HANDS] = {0, 0};
+    int from[HIMC_HANDS] = {0, 0}, fast = 0;
     if (!himc_take_tips(take, options, tips, error))
         return himc_take_name_error(l->take, error);
     if (!himc_take_strikes(take, tips, &seen))
@@ -141,8 +143,11 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
     l->played = calloc((size_t)seen.count + 1, sizeof *l->played);
     for (int h = 0; h < HIMC_HANDS; h++)
         l->seen[h] = tips[h].present;
+    if (seen.count > LESSON_MOST)
+        cli_say("note: %s: %d strikes, the first %d are used\n", l->take, seen.count, LESSON_MOST);
     for (int k = 0; l->played && k < seen.count && k < LESSON_MOST; k++) {
         lesson_played *p = &l->played[l->count++];
+        fast += seen.strikes[k].velocity > FASTEST;
         *p = (lesson_played){.strike = seen.strikes[k],
                              .of = -1,
                              .roll = -1,
@@ -155,6 +160,10 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
         follow_tip(l, &tips[p->strike.hand], from[p->strike.hand], p);
         from[p->strike.hand] = p->strike.frame;
     }
+    if (seen.count > 0 && 2 * fast > seen.count)
+        cli_say("note: %s: most strikes are faster than %g m/s, expected slower ones: is its unit "
+                "of length right?\n",
+                l->take, FASTEST);
     l->length = seen.count ? seen.strikes[seen.count - 1].time - seen.strikes[0].time : 0;
     free(seen.strikes);
     return (l->played || himc_error_set(error, "out of memory")) &&
@@ -170,6 +179,14 @@ static const cli_option options[] = {
     {0},
 };
 
+// what the reader doubted or repaired: units, gaps
+static void tell_note(void *user, const char *line)
+{
+    const lesson *l = user;
+    if (!strncmp(line, "note: ", 6))
+        cli_say("note: %s: %s\n", l->take, line + 6);
+}
+
 static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *error)
 {
     himc_take_options how;
@@ -182,8 +199,10 @@ static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *
     himc_take *take = himc_take_load(l->take, &how, error);
     bool good =
         take && hear(l, take, &how, error) && lesson_match(l, error) && lesson_judge(l, error);
-    if (good)
+    if (good) {
+        himc_take_describe(take, &how, tell_note, l);
         lesson_body(l, take, &how);
+    }
     himc_take_free(take);
     return good;
 }

@@ -99,9 +99,6 @@ typedef struct lesson {
 
 /// Gives each asked stroke its played one. False: nothing matches.
 bool lesson_match(lesson *l, himc_error *error);
-/// A fault, if it is beyond its threshold by more than `bound` u; else NULL. Its text is left empty.
-lesson_fault *lesson_add(lesson *l, const char *kind, double effect, double u, double bound,
-                         double threshold);
 /// Time, level and place of each stroke, rolls, and the faults, the largest first. False: no
 /// memory.
 bool lesson_judge(lesson *l, himc_error *error);

@@ -159,8 +159,9 @@ static void fit(const double *x, const double *y, int n, int terms, double p[3],
         u[i] = sqrt(ss / (n > terms ? n - terms : 1) * m[i][3 + i] * (1 + rho) / (1 - rho));
 }
 
-lesson_fault *lesson_add(lesson *l, const char *kind, double effect, double u, double bound,
-                         double threshold)
+// a fault, if it is beyond its threshold by more than `bound` u; its text is empty
+static lesson_fault *add_fault(lesson *l, const char *kind, double effect, double u, double bound,
+                               double threshold)
 {
     double excess = (fabs(effect) - bound * u) / threshold;
     if (!(excess >= 1) || l->faults == LESSON_FAULTS)
@@ -200,7 +201,7 @@ static bool left_out(lesson *l, const course *c, int k, bool jumps)
             last = i;
             count++;
         }
-    lesson_fault *f = count < PHRASE ? NULL : lesson_add(l, "skip", count, 0, 0, 0.01);
+    lesson_fault *f = count < PHRASE ? NULL : add_fault(l, "skip", count, 0, 0, 0.01);
     if (!f)
         return false;
     for (int i = first; i <= last; i++)
@@ -243,7 +244,7 @@ static void find_waits(lesson *l, course *c)
         c->segment[k] = ++segment;
         const lesson_asked *a = &l->asked[l->played[c->stroke[k]].of];
         lesson_fault *f =
-            lesson_add(l, "wait", 1e3 * (after - before), 1e3 * own, SURE, 1e3 * jnd(c->interval));
+            add_fault(l, "wait", 1e3 * (after - before), 1e3 * own, SURE, 1e3 * jnd(c->interval));
         if (!f)
             continue;
         snprintf(f->what, sizeof f->what,
@@ -279,7 +280,7 @@ static void judge_tempo(lesson *l, course *c)
         c->bend = p[2];
         c->half = half;
     }
-    lesson_fault *f = lesson_add(l, "tempo", change, own, SURE, JND_TEMPO);
+    lesson_fault *f = add_fault(l, "tempo", change, own, SURE, JND_TEMPO);
     if (!f)
         return;
     snprintf(f->what, sizeof f->what,
@@ -388,7 +389,7 @@ static void tell_group(lesson *l, const quantity *q, difference d)
         d.effect[0] = -d.effect[0];
     }
     double shown = q->scale * (q->axes > 1 ? d.size : d.effect[0]);
-    lesson_fault *f = lesson_add(l, q->kind, shown, q->scale * d.u, SURE, q->scale * q->threshold);
+    lesson_fault *f = add_fault(l, q->kind, shown, q->scale * d.u, SURE, q->scale * q->threshold);
     if (!f)
         return;
     name_group(l, d.kind, d.id, who, sizeof who);
@@ -471,7 +472,7 @@ static void judge_even(lesson *l, course *c, const quantity *q)
     // the local beat follows the strokes a little
     double sd = q->scale * sqrt(fmax(0, sum - camera * camera) * c->n / (c->n - FEWEST));
     double most = time ? 1e3 * fmax(UNEVEN, UNEVEN_SHARE * c->interval) : UNEVEN_LEVEL;
-    lesson_fault *f = lesson_add(l, "even", sd, below(sd, c->n - FEWEST) / SURE, SURE, most);
+    lesson_fault *f = add_fault(l, "even", sd, below(sd, c->n - FEWEST) / SURE, SURE, most);
     if (!f)
         return;
     snprintf(f->what, sizeof f->what, "Your strokes are uneven in %s: %.1f %s about your own %s",
@@ -518,8 +519,8 @@ static void judge_singles(lesson *l, course *c, const quantity *q)
         count += c->scratch[k] - SINGLE * own > q->threshold;
     lesson_fault *f = c->n < 2 * FEWEST || which < 0
                           ? NULL
-                          : lesson_add(l, q->kind, q->scale * worst, q->scale * own, SINGLE,
-                                       q->scale * q->threshold);
+                          : add_fault(l, q->kind, q->scale * worst, q->scale * own, SINGLE,
+                                      q->scale * q->threshold);
     if (!f)
         return;
     const lesson_asked *a = &l->asked[l->played[c->stroke[which]].of];
@@ -568,8 +569,8 @@ static void judge_roll(lesson *l, lesson_roll *r, const double *t, const double 
     r->spread = sqrt(louder / (n - 1));
     bool gallops = fabs(late) - SURE * r->u_gallop > JND_TIME;
     lesson_fault *f =
-        gallops ? lesson_add(l, "roll", 1e3 * late, 1e3 * r->u_gallop, SURE, 1e3 * JND_TIME)
-                : lesson_add(l, "roll", 1e3 * r->uneven, 1e3 * r->u, SURE, 1e3 * JND_TIME);
+        gallops ? add_fault(l, "roll", 1e3 * late, 1e3 * r->u_gallop, SURE, 1e3 * JND_TIME)
+                : add_fault(l, "roll", 1e3 * r->uneven, 1e3 * r->u, SURE, 1e3 * JND_TIME);
     if (!f)
         return;
     snprintf(f->what, sizeof f->what, "The roll at %.1f s %s: %s %.1f ms %s", t[0],
@@ -650,7 +651,7 @@ static void judge_missing(lesson *l)
     }
     const int count[] = {alone, l->extra};
     for (int k = 0; k < 2; k++) {
-        lesson_fault *f = lesson_add(l, k ? "extra" : "missing", count[k], 0, 0, 0.01);
+        lesson_fault *f = add_fault(l, k ? "extra" : "missing", count[k], 0, 0, 0.01);
         if (!f)
             continue;
         snprintf(f->what, sizeof f->what, "%d stroke%s %s: %s", count[k], count[k] > 1 ? "s" : "",
@@ -676,7 +677,7 @@ static void judge_hands(lesson *l)
             snprintf(beats + used, sizeof beats - used, "%s%g", used ? ", " : "", a->beat);
         count++;
     }
-    lesson_fault *f = lesson_add(l, "hand", count, 0, 0, 0.01);
+    lesson_fault *f = add_fault(l, "hand", count, 0, 0, 0.01);
     if (!f)
         return;
     if (count > 0.9 * l->matched)

@@ -8,8 +8,8 @@
 ///     + OTHER for each hand that differs
 ///
 /// or, for a phrase left out or played again, JUMP + MORE for each such event, whatever the time.
-/// So the offset does not matter, and a wait costs LEAP once. All is done once more with the score's
-/// hands exchanged, which costs EXCHANGED. The tempo r begins with each of a
+/// So the offset does not matter, and a wait costs LEAP once. All is done once more with the
+/// score's hands exchanged, which costs EXCHANGED. The tempo r begins with each of a
 /// grid of values and follows the played intervals along the path. Rolls have no events: their
 /// number of strokes is the player's.
 #include "lesson.h"
