@@ -305,6 +305,7 @@ bool fit_drum_second(const fit_drum *drum, const fit_spectrum *spectrum, fit_dru
         for (int i = 0; i < count; i++)
             if (fabs(f - modes[i].frequency) < TAKEN_OUT * f + TAKEN_LINE)
                 rest.level[k] = 0;
+        rest.mean += (rest.level[k] - spectrum->level[k]) / FIT_LINES;
     }
     *second = (fit_drum){.comb = -INFINITY};
     for (size_t s = 0; s < SIZES && count > 0; s++) {
