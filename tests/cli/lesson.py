@@ -15,6 +15,7 @@ HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
 SHARED = os.environ.get("HIMC_SHARED", "../shared")
 LONG = os.environ.get("HIMC_LONG")
 RATES = (60, 120, 250)
+FIRST_SEED = int(os.environ.get("HIMC_SEED", "0"))  # of takes that were never used for tuning
 folder = tempfile.TemporaryDirectory(prefix="himc-lesson-")
 
 
@@ -35,9 +36,10 @@ def lesson(score, take, *options):
     return done.returncode, done.stdout, done.stderr
 
 
-def judged(fault, rate, seed):
-    planted = lesson_takes.make(path("take.csv"), fault, rate, seed)
-    status, out, err = lesson(SCORE, path("take.csv"), "--json", "--up", "z", "--csv", path("strokes.csv"))
+def judged(fault, rate, seed, short=0):
+    planted = lesson_takes.make(path("take.csv"), fault, rate, seed, short)
+    score = path("short.txt", lesson_takes.exercise(short)[0]) if short else SCORE
+    status, out, err = lesson(score, path("take.csv"), "--json", "--up", "z", "--csv", path("strokes.csv"))
     assert status == 0, err
     return planted, json.loads(out)
 
@@ -48,7 +50,7 @@ def refused(text, *arguments):
 
 
 def test_planted_faults_are_named():
-    cases = [(fault, rate, seed) for fault in lesson_takes.FAULTS for rate in RATES for seed in range(6)]
+    cases = [(fault, rate, seed) for fault in lesson_takes.FAULTS for rate in RATES for seed in range(FIRST_SEED, FIRST_SEED + 6)]
     cases = cases if LONG else [(fault, RATES[i % 3], 0) for i, fault in enumerate(lesson_takes.FAULTS)]
     unnamed = []
     for case in cases:
@@ -60,7 +62,7 @@ def test_planted_faults_are_named():
 
 
 def test_nothing_is_invented():
-    cases = [(rate, seed) for rate in RATES for seed in range(36 if LONG else 2)]
+    cases = [(rate, seed) for rate in RATES for seed in range(FIRST_SEED, FIRST_SEED + (36 if LONG else 2))]
     false = []
     for rate, seed in cases:
         _, told = judged("none", rate, seed)
@@ -69,6 +71,22 @@ def test_nothing_is_invented():
         assert told["matched"] == told["asked"], (rate, seed, told)
     assert len(false) <= 0.02 * len(cases), false
     return f"{len(false)} of {len(cases)} {false}"
+
+
+def test_faults_of_short_exercises_are_named():
+    cases = [(fault, rate, seed, short) for fault in lesson_takes.SHORT for short in (16, 32) for rate in RATES for seed in range(FIRST_SEED, FIRST_SEED + 4)]
+    unnamed, false = [], []
+    for case in cases if LONG else cases[::12]:
+        planted, told = judged(*case)
+        if not lesson_takes.is_named(planted, told["faults"]):
+            unnamed.append((case, [f["what"] for f in told["faults"][:3]]))
+    nothing = [("none", rate, seed, short) for short in (16, 32) for rate in RATES for seed in range(FIRST_SEED, FIRST_SEED + (20 if LONG else 1))]
+    for case in nothing:
+        told = judged(*case)[1]
+        if told["faults"] or told["matched"] != told["asked"]:
+            false.append((case, [f["what"] for f in told["faults"]]))
+    assert len(unnamed) <= 0.05 * len(cases if LONG else cases[::12]) and len(false) <= 0.02 * len(nothing), (unnamed, false)
+    return f"{len(unnamed)} unnamed, {len(false)} of {len(nothing)} invented {unnamed} {false}"
 
 
 def test_times_are_those_of_the_take():

@@ -93,6 +93,33 @@ def plan(strokes, fault, draw):
     return {hand: sorted(list_) for hand, list_ in strikes.items()}, planted
 
 
+def exercise(count):
+    """(text, strokes) of even strokes, hand to hand"""
+    strokes = [dict(beat=1 + i, hand=HANDS[(i + 1) % 2], nuance="legato", spot="normal", run=False) for i in range(count)]
+    return "tempo 120;\n" + "".join(f"stroke {s['beat']} {s['hand']} legato mf;\n" for s in strokes), strokes
+
+
+SHORT = ("pause", "skip", "exchanged", "sticking", "uneven", "loudness", "drag late")
+
+
+def plan_short(strokes, fault, draw):
+    """Strikes of an exercise, and what has been planted."""
+    beat, start, shift, middle = 0.5 * draw.uniform(0.9, 1.1), draw.uniform(0.8, 2), 0, len(strokes) // 2
+    strikes, planted = {hand: [] for hand in HANDS}, {"fault": fault, "beat": strokes[middle]["beat"]}
+    for k, s in enumerate(strokes):
+        other = fault == "exchanged" or fault == "sticking" and k == middle
+        hand = HANDS[s["hand"] == "left"] if other else s["hand"]
+        shift += 2 if fault == "pause" and k == middle else 0
+        if fault == "skip" and middle - 2 <= k < middle + 3:
+            shift -= 0.7 * beat  # hesitates, then goes on
+            continue
+        t = start + shift + beat * s["beat"] * (1 + (0.035 * s["beat"] / strokes[-1]["beat"] if "drag" in fault else 0))
+        t += draw.gauss(0, 0.06 if fault == "uneven" else 0.006) + (0.03 if "late" in fault and hand == "right" else 0)
+        speed = 2.9 * 10 ** (draw.gauss(0, 6 if fault == "loudness" else 0.9) / 20)
+        strikes[hand].append((t, max(speed, 0.8), BASE["normal"] + draw.gauss(0, 0.007), (0.015 if hand == "left" else -0.015) + draw.gauss(0, 0.006)))
+    return {hand: sorted(list_) for hand, list_ in strikes.items()}, planted
+
+
 CONTACT, REBOUND = 0.006, 0.45  # (s), share of the speed
 
 
@@ -172,13 +199,21 @@ def is_named(planted, faults):
             return True
         if fault in ("single", "missing", "wait") and beat in what and kind == {"single": "time"}.get(fault, fault):
             return True
-        if fault in ("roll", "extra") and kind == fault:
+        if fault in ("roll", "extra", "skip") and kind == fault:
+            return True
+        if fault == "pause" and kind == "wait" and beat in what and abs(effect - 2000) < 60:
+            return True
+        if fault in ("exchanged", "sticking") and kind == "hand" and (fault in what if fault == "exchanged" else beat in what):
+            return True
+        if kind == "even" and {"uneven": "in time", "loudness": "in loudness"}.get(fault, "-") in what:
+            return True
+        if fault == "drag late" and kind == "time" and "right behind the left" in what and abs(abs(effect) - 30) < 10:
             return True
     return False
 
 
-def make(path, fault, rate, seed):
+def make(path, fault, rate, seed, short=0):
     draw = random.Random(f"{fault} {rate} {seed}")
-    strikes, planted = plan(score()[1], fault, draw)
+    strikes, planted = plan_short(exercise(short)[1], fault, draw) if short else plan(score()[1], fault, draw)
     write(path, strikes, rate, draw)
     return planted

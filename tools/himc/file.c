@@ -111,6 +111,19 @@ void cli_file_drop(cli_file *file)
     forget(file->temp);
 }
 
+bool cli_write(const char *path, void (*write)(const void *, FILE *), const void *from,
+               himc_error *error)
+{
+    cli_file file = {0};
+    bool good = !path || cli_file_open(&file, path, error);
+    if (path && good) {
+        write(from, file.stream);
+        good = cli_file_close(&file, error) && cli_file_keep(&file, error);
+    }
+    cli_file_drop(&file);
+    return good;
+}
+
 // the folder that a file is or will be in; returns the file's own name
 static const char *folder_of(const char *path, char folder[PATH_MAX])
 {

@@ -1,23 +1,18 @@
-/// fit_drum.c: each size of timpano, tuned to each strong partial, is set beside what was found.
+/// fit_drum.c: each size of timpano, tuned as the spectrum suggests (fit_comb.c), is set beside the
+/// partials found.
 ///
 /// The air over the head makes the ratios of (1,1) .. (6,1) depend on the drum's size at a pitch: a
 /// size more is 1 % of (2,1), 1.5 % of (3,1), 2 % of (4,1), and a partial is found within a tenth
 /// of that. So the size whose own modes fit best is the drum's; all of its partials tune it. What
-/// the air takes follows from both; the losses S0 and S1 are the rest, by least squares. A room
-/// that rings longer than a partial hides its decay, which then counts less.
+/// the air takes follows from both; the losses S0 and S1 are the rest, by least squares over the
+/// decays in narrow bands around the drum's own modes (partials_ring). A partial that rings no
+/// longer than the room is not used: the room would hold it up.
 #include "fit_drum.h"
 
-#include "himc/drum.h"
-#include "himc/membrane.h"
-
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
-#define RATE 48000.0
-#define LOWEST 55.0     // of (1,1) (Hz)
-#define HIGHEST 290.0   // (Hz)
-#define STRONGEST 10    // partials that may be (1,1)
+#define LOWER 0.87 // tunings this far beyond the usual ones are tried
+#define HIGHER 1.15
 #define NEAR 0.015      // a partial this near a mode may be it (per frequency) ...
 #define CLOSE 0.004     // ... and at this distance counts half
 #define CLEAREST 25.0   // (dB) more counts no more
@@ -35,11 +30,12 @@
 #define STEP 0.0002
 #define SEARCHED 25 // steps either way
 #define FINE_UP_TO 3.6
-#define TUNINGS 3 // rounds
-
-const char *const fit_mallets[] = {"soft", "medium", "hard", "wood", NULL};
-const char *const fit_dynamics[] = {"p", "mp", "mf", "f", "ff", NULL};
-const double fit_speeds[] = {1.3, 2, 2.9, 3.9, 5.1}; // of legato strokes
+#define TUNINGS 2       // rounds
+#define TAKEN_OUT 0.008 // per frequency, on either side of a mode
+#define TAKEN_LINE 3.0  // (Hz) more: a line's width
+#define ANOTHER 0.04    // per frequency: another tuning
+#define SECOND 45.0 // (dB) of the comb of a second drum; chosen: of single drums 17 to 40 are left
+#define UNLIKELY 20.0 // (dB) a drum that is so much less likely than another is not it
 
 // what players tune them to: F3 to C4, D3 to A3, A2 to F3, F2 to C#3, C2 to A2 (Hz)
 static const struct {
@@ -48,46 +44,9 @@ static const struct {
 #define SIZES (sizeof sizes / sizeof *sizes)
 #define OUTSIDE 30.0 // an octave beyond them is less likely by so much (dB)
 
-// usual losses, which a drum has where nothing else is known (himc_head_default)
-#define USUAL_CONSTANT 0.3
-#define USUAL_SQUARE 5e-8
-
-static bool tell(himc_drum *drum, himc_error *error, const char *format, double a, double b)
-{
-    char text[128];
-    himc_command command;
-    snprintf(text, sizeof text, format, a, b);
-    return himc_command_parse_text(&command, HIMC_DRUM, text, error) &&
-           himc_drum_command(drum, &command, error);
-}
-
-himc_drum *fit_drum_make(const fit_drum *d, int mallet, double rate, himc_error *error)
-{
-    char felt[32];
-    snprintf(felt, sizeof felt, "mallet %s", fit_mallets[mallet]);
-    himc_drum *drum = himc_drum_new("fit", d->inches, rate, error);
-    if (drum && tell(drum, error, "decay %.9g %.9g", d->constant, d->square) &&
-        tell(drum, error, "tune %.9g", d->tune, 0) && tell(drum, error, felt, 0, 0))
-        return drum;
-    himc_drum_release(drum);
-    return NULL;
-}
-
-int fit_drum_modes(const fit_drum *drum, fit_mode modes[FIT_MODES], himc_error *error)
-{
-    himc_drum *made = fit_drum_make(drum, 0, RATE, error);
-    int count = 0;
-    for (int i = 0; made && count < FIT_MODES; i++) {
-        himc_mode mode = himc_membrane_mode(himc_drum_membrane(made), i);
-        if (!(mode.mass > 0))
-            break;
-        if (mode.m >= 0)
-            modes[count++] =
-                (fit_mode){mode.m, mode.n, mode.sine, mode.frequency, log(1000) / mode.decay};
-    }
-    himc_drum_release(made);
-    return count;
-}
+#define USUAL_WITHIN 0.35 // chosen
+#define SUREST 0.04       // of a decay, relative; chosen: beats of a pair that stay unresolved
+#define LONGER 1.3        // a partial rings longer than the room by this, or its decay is not used
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -168,7 +127,7 @@ static bool match(const partials_list *partials, fit_drum *d, himc_error *error)
     int count = fit_drum_modes(d, modes, error);
     if (count == 0)
         return false;
-    double sum = 0, weights = 0, squares = 0;
+    double sum = 0, weights = 0;
     assign(partials, modes, count, d);
     for (int k = 0; k < 2 * FIT_ORDERS; k++) {
         if (d->of[k] < 0)
@@ -177,38 +136,32 @@ static bool match(const partials_list *partials, fit_drum *d, himc_error *error)
         const partial *p = &partials->row[d->of[k]];
         double part = fmax(p->frequency_error / p->frequency, 0.0005);
         double w = likeness(p, mode) * worth(p) / (1 + pow(part / 0.001, 2));
-        double apart = log(p->frequency / mode->frequency);
-        sum += w * apart;
-        squares += w * apart * apart;
+        sum += w * log(p->frequency / mode->frequency);
         weights += w;
     }
-    d->score = judge(partials, modes, count, d);
-    d->cents = weights > 0 ? 1200 / log(2) * sqrt(squares / weights) : 0;
     d->tune *= weights > 0 ? exp(sum / weights) : 1; // of the next round
     return true;
 }
 
-// in the order of weight
-static int strongest(const partials_list *partials, int *out)
+// mean decay of the pair (m,n) of the drum's modes, 0 without it; and its frequencies
+static double pair_of(const fit_mode *modes, int count, int m, int n, double *frequency)
 {
-    int count = 0;
-    for (int i = 0; i < partials->count; i++) {
-        const partial *p = &partials->row[i];
-        int k = count;
-        if (p->frequency < LOWEST || p->frequency > HIGHEST || worth(p) == 0)
-            continue;
-        for (; k > 0 && weight(partials, i) > weight(partials, out[k - 1]); k--)
-            if (k < STRONGEST)
-                out[k] = out[k - 1];
-        if (k < STRONGEST)
-            out[k] = i;
-        count += count < STRONGEST;
-    }
-    return count;
+    double decay = 0, sum = 0;
+    int found = 0;
+    for (int i = 0; i < count; i++)
+        if (modes[i].m == m && modes[i].n == n) {
+            decay += log(1000) / modes[i].t60;
+            sum += modes[i].frequency;
+            found++;
+        }
+    *frequency = found ? sum / found : 0;
+    return found ? decay / found : 0;
 }
 
-// S0 and S1 of least squares, drawn to the usual ones as if each were known within itself
-static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *error)
+// S0 and S1 of least squares, drawn to the usual ones as if each were known within half of itself.
+// What a room may hold up is not used.
+static bool find_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+                        himc_error *error)
 {
     fit_mode none[FIT_MODES], one[FIT_MODES];
     fit_drum bare = *d, lossy = *d;
@@ -218,31 +171,33 @@ static bool find_losses(const partials_list *partials, fit_drum *d, himc_error *
     if (count == 0 || fit_drum_modes(&lossy, one, error) == 0)
         return false;
     // unknowns in units of the usual ones
-    double aa = 1, ab = 0, bb = 1, ay = 1, by = 1;
-    for (int k = 0; k < 2 * FIT_ORDERS; k++) {
-        const fit_mode *mode = member(none, count, k);
-        if (d->of[k] < 0 || !mode)
-            continue;
-        const partial *p = &partials->row[d->of[k]];
-        double decay = log(1000) / p->t60, air = log(1000) / mode->t60;
-        double load = log(1000) / one[mode - none].t60 - air;
-        double hidden = 0.4 / (1 + pow(p->t60 / fmax(partials->room, 1e-3), 3));
-        double known = decay * sqrt(pow(p->t60_error / p->t60, 2) + hidden * hidden + 0.03 * 0.03);
-        double a = load * USUAL_CONSTANT / known, y = (decay - air) / known;
-        double b = load * USUAL_SQUARE * pow(2 * HIMC_PI * mode->frequency, 2) / known;
-        aa += a * a;
-        ab += a * b;
-        bb += b * b;
-        ay += a * y;
-        by += b * y;
-    }
+    double aa = 1 / (USUAL_WITHIN * USUAL_WITHIN), ab = 0, bb = aa, ay = aa, by = aa;
+    for (int n = 1; n <= 2; n++)
+        for (int m = 1; m <= (n == 1 ? FIT_ORDERS : 4); m++) {
+            double f, decay, part;
+            double air = pair_of(none, count, m, n, &f), load = pair_of(one, count, m, n, &f) - air;
+            double due =
+                air + load * (FIT_USUAL_CONSTANT + FIT_USUAL_SQUARE * pow(2 * HIMC_PI * f, 2));
+            if (!(air > 0) || log(1000) / due < LONGER * partials->room)
+                continue;
+            if (!partials_ring(sound, f, due, &decay, &part, error))
+                return false;
+            double known = decay * hypot(part, SUREST);
+            double a = load * FIT_USUAL_CONSTANT / known, y = (decay - air) / known;
+            double b = load * FIT_USUAL_SQUARE * pow(2 * HIMC_PI * f, 2) / known;
+            aa += a * a;
+            ab += a * b;
+            bb += b * b;
+            ay += a * y;
+            by += b * y;
+        }
     double det = aa * bb - ab * ab, s0 = (ay * bb - by * ab) / det, s1 = (by * aa - ay * ab) / det;
     if (s0 < 0)
         s1 = by / bb;
     if (s1 < 0)
         s0 = ay / aa;
-    d->constant = USUAL_CONSTANT * fmax(s0, 0);
-    d->square = USUAL_SQUARE * fmax(s1, 0);
+    d->constant = FIT_USUAL_CONSTANT * fmax(s0, 0);
+    d->square = FIT_USUAL_SQUARE * fmax(s1, 0);
     return true;
 }
 
@@ -288,6 +243,7 @@ static bool refine(const partials_list *partials, fit_drum *d, himc_error *error
     }
     int count = fit_drum_modes(d, modes, error);
     assign(partials, modes, count, d);
+    d->score = judge(partials, modes, count, d);
     return count > 0;
 }
 
@@ -309,31 +265,57 @@ static int add_choice(fit_drum *choice, int count, const fit_drum *d)
     return count < FIT_CHOICES ? count + 1 : count;
 }
 
-int fit_drum_find(const partials_list *partials, fit_drum choice[FIT_CHOICES], himc_error *error)
+int fit_drum_find(const partials_sound *sound, const fit_spectrum *spectrum,
+                  const partials_list *partials, fit_drum choice[FIT_CHOICES], himc_error *error)
 {
-    int candidates[STRONGEST], count = 0;
-    int first = strongest(partials, candidates);
-    for (size_t s = 0; s < SIZES; s++)
-        for (int i = 0; i < first; i++) {
-            double tune = partials->row[candidates[i]].frequency;
-            fit_drum d = {.inches = sizes[s].inches,
-                          .tune = tune,
-                          .constant = USUAL_CONSTANT,
-                          .square = USUAL_SQUARE};
-            for (int round = 0; round < TUNINGS; round++) {
-                tune = d.tune;
+    int count = 0;
+    for (size_t s = 0; s < SIZES; s++) {
+        fit_drum best[FIT_TUNINGS];
+        if (!fit_comb(spectrum, sizes[s].inches, LOWER * sizes[s].low, HIGHER * sizes[s].high, best,
+                      error))
+            return 0;
+        for (int i = 0; i < FIT_TUNINGS; i++) {
+            fit_drum d = best[i];
+            for (int round = 0; round < TUNINGS; round++)
                 if (!match(partials, &d, error))
                     return 0;
-            }
-            d.tune = tune; // that `of` belongs to
-            d.score -=
-                OUTSIDE * fmax(0, fmax(log2(tune / sizes[s].high), log2(sizes[s].low / tune)));
+            if (!refine(partials, &d, error))
+                return 0;
+            double outside = fmax(log2(d.tune / sizes[s].high), log2(sizes[s].low / d.tune));
+            d.score += d.comb - OUTSIDE * fmax(0, outside);
             count = add_choice(choice, count, &d);
         }
+    }
+    while (count > 0 && choice[count - 1].score < choice[0].score - UNLIKELY)
+        count--;
     for (int i = 0; i < count; i++)
-        if (!refine(partials, &choice[i], error) || !find_losses(partials, &choice[i], error))
+        if (!find_losses(sound, partials, &choice[i], error))
             return 0;
-    if (count == 0)
-        himc_error_set(error, "no partial is clear of the noise, expected a stroke that rings");
     return count;
+}
+
+bool fit_drum_second(const fit_drum *drum, const fit_spectrum *spectrum, fit_drum *second,
+                     bool *sounds, himc_error *error)
+{
+    fit_mode modes[FIT_MODES];
+    fit_spectrum rest = *spectrum;
+    int count = fit_drum_modes(drum, modes, error);
+    for (int k = 0; k < FIT_LINES; k++) {
+        double f = FIT_LOWEST * exp(FIT_FINE * k);
+        for (int i = 0; i < count; i++)
+            if (fabs(f - modes[i].frequency) < TAKEN_OUT * f + TAKEN_LINE)
+                rest.level[k] = 0;
+        rest.mean += (rest.level[k] - spectrum->level[k]) / FIT_LINES;
+    }
+    *second = (fit_drum){.comb = -INFINITY};
+    for (size_t s = 0; s < SIZES && count > 0; s++) {
+        fit_drum best[FIT_TUNINGS];
+        if (!fit_comb(&rest, sizes[s].inches, sizes[s].low, sizes[s].high, best, error))
+            return false;
+        for (int i = 0; i < FIT_TUNINGS; i++)
+            if (best[i].comb > second->comb && fabs(best[i].tune / drum->tune - 1) > ANOTHER)
+                *second = best[i];
+    }
+    *sounds = second->comb > SECOND;
+    return count > 0;
 }

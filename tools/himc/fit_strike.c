@@ -20,7 +20,7 @@
 #define DYNAMICS 5
 #define MIDDLE 2
 #define FINALISTS 2 // drums whose blows are tried at all dynamics
-#define LIKELY 0.02 // (dB of the spectrum per dB of the partials) chosen
+#define LIKELY 0.08 // (dB of the spectrum per dB of the partials) chosen
 #define HEARD 1.1   // (s) a beat, and as long as a stroke must be
 #define BLOCK 1024
 #define MALLETS 4
@@ -144,12 +144,17 @@ static bool try_blows(const spectrum *found, const spectrum *noise, double rate,
             return false;
         double here = apart(found, noise, &made);
         if (here < d->distance) {
-            d->next = mallet == d->mallet ? d->next : d->distance;
+            if (mallet != d->mallet) {
+                d->next = d->distance;
+                d->other = d->mallet;
+            }
             d->distance = here;
             d->mallet = mallet;
             d->dynamic = dynamic;
-        } else if (mallet != d->mallet)
-            d->next = fmin(d->next, here);
+        } else if (mallet != d->mallet && here < d->next) {
+            d->next = here;
+            d->other = mallet;
+        }
     }
     return true;
 }
@@ -173,7 +178,7 @@ bool fit_drum_strike(const partials_sound *sound, const fit_drum *choice, int co
     for (int i = 0; i < count; i++) {
         fit_drum d = choice[i];
         d.distance = d.next = INFINITY;
-        d.mallet = -1;
+        d.mallet = d.other = -1;
         if (!try_blows(&found, &noise, sound->rate, MIDDLE, MIDDLE + 1, &d, error))
             return false;
         int k = kept < FINALISTS ? kept++ : FINALISTS;

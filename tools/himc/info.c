@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bool json; // with --json lines are pairs of an array, ["name", "text"]
@@ -174,7 +175,8 @@ static bool describe_score(const char *path, himc_error *error)
 
 static const cli_option options[] = {
     CLI_TAKE_OPTIONS,
-    {"json", 0, NULL, "the lines as one JSON array of [name, text]"},
+    {"json", 0, NULL,
+     "the lines as one JSON array of [name, text]; of a take each strike: s, hand, m/s, m"},
     {"analog", 0, "F.csv",
      "writes the samples of a C3D's analog channels: time_s and each channel"},
     {0}};
@@ -228,6 +230,25 @@ static bool write_analog(const himc_take *take, const char *path, himc_error *er
     return good;
 }
 
+// each strike of a take, with --json: time (s), hand, speed (m/s), place (m)
+static bool list_strikes(himc_take *take, const himc_take_options *take_options, himc_error *error)
+{
+    himc_take_tip tips[HIMC_HANDS];
+    himc_strike_survey seen;
+    himc_error none;
+    if (!json || !himc_take_tips(take, take_options, tips, &none)) // a take may have no tips
+        return true;
+    if (!himc_take_strikes(take, tips, &seen))
+        return himc_error_set(error, "out of memory");
+    for (int i = 0; i < seen.count; i++) {
+        const himc_take_strike *s = &seen.strikes[i];
+        tell("strike %.5f %s %.4f %.4f %.4f %.4f", s->time, himc_hand_name(s->hand), s->velocity,
+             s->x.x, s->x.y, s->x.z);
+    }
+    free(seen.strikes);
+    return true;
+}
+
 static bool describe_take(const char *path, const himc_take_options *take_options,
                           const char *analog, himc_error *error)
 {
@@ -245,7 +266,8 @@ static bool describe_take(const char *path, const himc_take_options *take_option
         return false;
     }
     himc_take_describe(take, take_options, print_line, NULL);
-    bool described = describe_player(take, take_options, error);
+    bool described =
+        describe_player(take, take_options, error) && list_strikes(take, take_options, error);
     himc_take_free(take);
     return described;
 }

@@ -15,6 +15,8 @@
 #define LESSON_ROLLS 64   ///< chosen
 #define LESSON_LIMBS 4    ///< shares of shoulder, elbow, wrist with grip, trunk
 #define LESSON_MOST 20000 ///< strokes of a lesson; chosen: an hour
+#define LESSON_RATE 8000  ///< of the model's samples (Hz); chosen: its sound is heard by no one
+#define LESSON_BLOCK 512
 
 /// A stroke of the score, as the model plays it.
 typedef struct lesson_asked {
@@ -24,6 +26,7 @@ typedef struct lesson_asked {
     himc_vec3 x;  ///< in the world (m)
     double speed; ///< of the model's impact (m/s)
     int by;       ///< index of the played stroke; -1: missing
+    bool skipped; ///< missing with a whole phrase
 } lesson_asked;
 
 /// A strike of the take. Figures that need an asked stroke are NaN without one.
@@ -56,15 +59,14 @@ typedef struct lesson_roll {
 
 /// A mean, or any estimate, with its standard uncertainty.
 typedef struct lesson_figure {
-    double mean, u, spread; ///< spread: standard deviation of the strokes
-    int count;
+    double mean, u;
 } lesson_figure;
 
 /// Something worth practising.
 typedef struct lesson_fault {
-    char kind[16];                       ///< time level spot tempo wait roll missing extra
-    char what[160];                      ///< in plain words
-    char how[96];                        ///< of which strokes
+    char kind[16];  ///< time level spot tempo wait skip roll missing extra hand even elbow
+    char what[160]; ///< in plain words
+    char how[96];   ///< of which strokes
     double effect, u, spread, threshold; ///< in `unit`; u is a standard uncertainty
     const char *unit, *source;           ///< source of the threshold
     double excess; ///< (|effect| less its 99 % bound) over the threshold; 1 and more is named
@@ -74,6 +76,7 @@ typedef struct lesson {
     const char *score, *take;
     lesson_asked *asked;
     int asked_count, missing;
+    int due; ///< asked of the hands that the take shows
     lesson_played *played;
     int count, matched, extra;
     lesson_roll roll[LESSON_ROLLS];
@@ -85,6 +88,8 @@ typedef struct lesson {
     double level;            ///< mean of all, against the score's dynamics (dB)
     double lead[HIMC_HANDS]; ///< of a hand named for its time; rolls are judged without it (s)
     double length;           ///< of the played strokes (s)
+    int turn;                ///< places are read with the take turned by this (degrees) ...
+    bool turn_sure;          ///< ... which fits much better than another right angle
     bool body, torques;      ///< shares and torques are known
     double bent[HIMC_HANDS]; ///< share of the time with the wrist beyond 15 degrees
     double work[HIMC_HANDS]; ///< of an arm's joints, a stroke (J)
@@ -102,8 +107,9 @@ void lesson_scatter(const lesson *l, double *seconds, double *decibels);
 /// Shares of the joints, wrist and torques, of takes that show whole arms.
 void lesson_body(lesson *l, himc_take *take, const himc_take_options *options);
 
-void lesson_page(const lesson *l, FILE *out);
-void lesson_csv(const lesson *l, FILE *out);
+/// `l` is a lesson.
+void lesson_page(const void *l, FILE *out);
+void lesson_csv(const void *l, FILE *out);
 void lesson_json(const lesson *l, FILE *out);
 
 #endif

@@ -10,8 +10,6 @@
 
 #include <math.h>
 
-#define RATE 8000
-#define BLOCK 512
 #define BENT 0.966 // cos 15 degrees
 
 // group of a joint: its index in an arm, the grip with the wrist, all else with the trunk
@@ -76,18 +74,18 @@ static bool play_take(lesson *l, himc_take *take, himc_player *player,
 {
     himc_performance_config config = himc_performance_default();
     himc_error error;
-    config.sample_rate = config.physics_rate = RATE;
+    config.sample_rate = config.physics_rate = LESSON_RATE;
     himc_performance *p = himc_performance_new(&config, &error);
     himc_event event = {.kind = HIMC_EVENT_BEAT};
     if (p)
         himc_performance_take_options(p, options);
-    bool good = p && cli_add_drum(p, RATE, &error) &&
+    bool good = p && cli_add_drum(p, LESSON_RATE, &error) &&
                 himc_performance_play_player(p, take, player, l->take, &error) &&
                 cli_tell(p, "mode id", NULL, &error) && cli_tell(p, "play", NULL, &error);
     if (good)
         himc_performance_on_motion(p, keep_torques, l);
     while (good && event.kind != HIMC_EVENT_DONE) {
-        himc_performance_process(p, BLOCK, NULL);
+        himc_performance_process(p, LESSON_BLOCK, NULL);
         while (event.kind != HIMC_EVENT_DONE && himc_performance_event(p, &event)) {
         }
     }

@@ -20,6 +20,7 @@
 #define SINGLE 4.0 // standard deviations of a single stroke; chosen: 1 of 16000 is further off
 #define WINDOW 16  // chosen: strokes of the local line
 #define FEWEST 4   // chosen: strokes of a group
+#define PHRASE 3   // chosen: so many missing strokes in a row are a phrase left out
 
 // Thresholds of listeners, and where no one has published any, what himc itself counts as right.
 #define JND_TIME 0.006  // (s), and
@@ -36,6 +37,13 @@ static const char place_source[] =
 #define JND_TEMPO 2.0 // (%)
 static const char tempo_source[] =
     "listeners notice a drift of about 2 %, several studies cited by Dahl and Madison 2005";
+#define UNEVEN 0.02       // (s), and
+#define UNEVEN_SHARE 0.04 // of the interval
+static const char even_source[] =
+    "chosen: 4 % of the interval, 20 ms or more; trained tappers vary by about 2 %: Repp 2005";
+#define UNEVEN_LEVEL 2.0 // (dB)
+static const char even_level_source[] =
+    "chosen: 2 dB, five times what listeners notice in the laboratory: Miller 1947";
 static const char none_source[] =
     "a stroke too few or too many is always heard; no threshold is published";
 
@@ -49,7 +57,8 @@ typedef struct course {
     int n;
     int *stroke, *segment; // of played strokes; waits divide segments
     double *asked, *played, *weight, *value[3], *scratch;
-    double interval; // median asked (s)
+    double interval;   // median asked (s)
+    double bend, half; // of a tempo that changes: bend u^2 (s), u from -1 to 1 within half (s)
 } course;
 
 static double median(double *x, int n)
@@ -64,6 +73,12 @@ static double spread(const course *c, const double *x)
     for (int k = 0; k < c->n; k++)
         c->scratch[k] = fabs(x[k]);
     return 1.4826 * median(c->scratch, c->n);
+}
+
+static double bent(const course *c, double asked)
+{
+    double u = c->bend != 0 ? (asked - c->asked[0]) / c->half - 1 : 0;
+    return c->bend * u * u;
 }
 
 /// The player's beat at an asked time, by the line through the nearest strokes of the segment.
@@ -85,10 +100,11 @@ static double beat_at(const course *c, double asked, int segment)
     for (int k = low; k < high; k++) {
         double d = c->asked[k] - asked, t = fabs(d) / h, w = 1 - t * t * t;
         w = w * w * w * c->weight[k] + 1e-9;
-        s += w, x += w * d, y += w * c->played[k], xx += w * d * d, xy += w * d * c->played[k];
+        double straight = c->played[k] - bent(c, c->asked[k]);
+        s += w, x += w * d, y += w * straight, xx += w * d * d, xy += w * d * straight;
     }
     double det = s * xx - x * x;
-    return det > 1e-9 * s * s ? (xx * y - x * xy) / det : y / s;
+    return bent(c, asked) + (det > 1e-9 * s * s ? (xx * y - x * xy) / det : y / s);
 }
 
 static void find_beat(course *c)
@@ -143,9 +159,9 @@ static void fit(const double *x, const double *y, int n, int terms, double p[3],
         u[i] = sqrt(ss / (n > terms ? n - terms : 1) * m[i][3 + i] * (1 + rho) / (1 - rho));
 }
 
-/// A fault, if it is beyond its threshold; `bound`: of so many u.
-static lesson_fault *add(lesson *l, const char *kind, double effect, double u, double bound,
-                         double threshold)
+// a fault, if it is beyond its threshold by more than `bound` u; its text is empty
+static lesson_fault *add_fault(lesson *l, const char *kind, double effect, double u, double bound,
+                               double threshold)
 {
     double excess = (fabs(effect) - bound * u) / threshold;
     if (!(excess >= 1) || l->faults == LESSON_FAULTS)
@@ -164,15 +180,44 @@ static void explain(lesson_fault *f, double spread_, const char *unit, const cha
     f->spread = spread_, f->unit = unit, f->source = source;
 }
 
-/// Waits and jumps: an interval that is too long or too short, and all strokes after it with it.
-static void find_waits(lesson *l, course *c)
+// played over asked intervals, the middle one; over some strokes, as hands may differ
+static double slope_of(const course *c)
 {
-    int n = 0, lag = c->n < 12 ? 1 : 6; // chosen: over some strokes, as hands may differ
+    int n = 0, lag = c->n < 48 ? 1 + c->n / 12 : 6; // chosen
     for (int k = lag; k < c->n; k++)
         if (c->asked[k] - c->asked[k - lag] > 0.04)
             c->scratch[n++] =
                 (c->played[k] - c->played[k - lag]) / (c->asked[k] - c->asked[k - lag]);
-    double slope = median(c->scratch, n), *e = c->value[0];
+    return median(c->scratch, n);
+}
+
+// a phrase left out before matched stroke k is named; true if the beat begins again after it
+static bool left_out(lesson *l, const course *c, int k, bool jumps)
+{
+    int first = -1, last = -1, count = 0;
+    for (int i = l->played[c->stroke[k - 1]].of + 1; i < l->played[c->stroke[k]].of; i++)
+        if (l->seen[l->asked[i].hand] && l->asked[i].by < 0) {
+            first = first < 0 ? i : first;
+            last = i;
+            count++;
+        }
+    lesson_fault *f = count < PHRASE ? NULL : add_fault(l, "skip", count, 0, 0, 0.01);
+    if (!f)
+        return false;
+    for (int i = first; i <= last; i++)
+        l->asked[i].skipped = l->asked[i].by < 0;
+    snprintf(f->what, sizeof f->what, "You leave out beats %g to %g: %d strokes",
+             l->asked[first].beat, l->asked[last].beat, count);
+    snprintf(f->how, sizeof f->how, "%s", jumps ? "played on without them" : "their time passes");
+    explain(f, 0, "strokes", none_source);
+    f->threshold = 1;
+    return jumps;
+}
+
+/// Waits and jumps: an interval that is too long or too short, and all strokes after it with it.
+static void find_waits(lesson *l, course *c)
+{
+    double slope = slope_of(c), *e = c->value[0];
     for (int k = 0; k < c->n; k++)
         e[k] = k ? c->played[k] - c->played[k - 1] - slope * (c->asked[k] - c->asked[k - 1]) : 0;
     double own = fmax(spread(c, e), 0.5 / l->rate);
@@ -180,6 +225,10 @@ static void find_waits(lesson *l, course *c)
     for (int k = 0; k < c->n; k++) {
         double before = 0, after = 0;
         c->segment[k] = segment;
+        if (k && left_out(l, c, k, fabs(e[k]) > 6 * own + 2 * jnd(c->interval))) {
+            c->segment[k] = ++segment;
+            continue;
+        }
         if (k < 3 || k + 3 > c->n || fabs(e[k]) < 6 * own + 2 * jnd(c->asked[k] - c->asked[k - 1]))
             continue;
         for (int i = 1; i <= 3; i++) {
@@ -195,7 +244,7 @@ static void find_waits(lesson *l, course *c)
         c->segment[k] = ++segment;
         const lesson_asked *a = &l->asked[l->played[c->stroke[k]].of];
         lesson_fault *f =
-            add(l, "wait", 1e3 * (after - before), 1e3 * own, SURE, 1e3 * jnd(c->interval));
+            add_fault(l, "wait", 1e3 * (after - before), 1e3 * own, SURE, 1e3 * jnd(c->interval));
         if (!f)
             continue;
         snprintf(f->what, sizeof f->what,
@@ -212,21 +261,26 @@ static void judge_tempo(lesson *l, course *c)
 {
     double p[3], u[3], jump = 0;
     double half = 0.5 * (c->asked[c->n - 1] - c->asked[0]) + 1e-9;
-    fit(c->asked, c->played, c->n, 2, p, u);
-    l->tempo = (lesson_figure){half / p[1], half / p[1] * u[1] / p[1], 0, c->n};
-    double *t = c->value[1], slope = p[1] / half;
+    double *t = c->value[1], slope = slope_of(c);
     for (int k = 0; k < c->n; k++) {
-        l->played[c->stroke[k]].steady =
-            c->played[k] - p[0] - p[1] * ((c->asked[k] - c->asked[0]) / half - 1);
         if (k && c->segment[k] > c->segment[k - 1])
             jump += c->played[k] - c->played[k - 1] - slope * (c->asked[k] - c->asked[k - 1]);
         t[k] = c->played[k] - jump;
     }
+    fit(c->asked, t, c->n, 2, p, u);
+    l->tempo = (lesson_figure){half / p[1], half / p[1] * u[1] / p[1]};
+    for (int k = 0; k < c->n; k++)
+        l->played[c->stroke[k]].steady =
+            t[k] - p[0] - p[1] * ((c->asked[k] - c->asked[0]) / half - 1);
     if (c->n < 3 * FEWEST)
         return;
     fit(c->asked, t, c->n, 3, p, u);
     double change = 100 * ((p[1] - 2 * p[2]) / (p[1] + 2 * p[2]) - 1), own = 400 * u[2] / p[1];
-    lesson_fault *f = add(l, "tempo", change, own, SURE, JND_TEMPO);
+    if (fabs(p[2]) > SURE * u[2]) { // else the local line follows
+        c->bend = p[2];
+        c->half = half;
+    }
+    lesson_fault *f = add_fault(l, "tempo", change, own, SURE, JND_TEMPO);
     if (!f)
         return;
     snprintf(f->what, sizeof f->what,
@@ -335,7 +389,7 @@ static void tell_group(lesson *l, const quantity *q, difference d)
         d.effect[0] = -d.effect[0];
     }
     double shown = q->scale * (q->axes > 1 ? d.size : d.effect[0]);
-    lesson_fault *f = add(l, q->kind, shown, q->scale * d.u, SURE, q->scale * q->threshold);
+    lesson_fault *f = add_fault(l, q->kind, shown, q->scale * d.u, SURE, q->scale * q->threshold);
     if (!f)
         return;
     name_group(l, d.kind, d.id, who, sizeof who);
@@ -393,6 +447,40 @@ static bool judge_groups(lesson *l, course *c, const quantity *q)
     return group != NULL;
 }
 
+// a standard deviation less its lower 99 % bound, by the chi-square of Wilson and Hilferty (1931)
+static double below(double sd, double free)
+{
+    return sd * (1 - pow(1 - 2 / (9 * free) + 2.33 * sqrt(2 / (9 * free)), -1.5));
+}
+
+/// Unevenness of all strokes, once the differences of groups are taken away.
+static void judge_even(lesson *l, course *c, const quantity *q)
+{
+    bool time = q->scale > 1;
+    if (c->n < 2 * FEWEST)
+        return;
+    for (int k = 0; k < c->n; k++)
+        c->value[2][k] = c->value[0][k];
+    double middle = median(c->value[2], c->n), sum = 0;
+    for (int k = 0; k < c->n; k++)
+        c->value[2][k] = fabs(c->value[0][k] - middle);
+    qsort(c->value[2], (size_t)c->n, sizeof *c->value[2], himc_order_doubles);
+    int used = c->n - 1 - c->n / 16; // the furthest are judged alone
+    for (int k = 0; k < used; k++)
+        sum += pow(c->value[2][k], 2) / used;
+    double camera = time ? 0.5 / l->rate : l->played[0].u_level;
+    // the local beat follows the strokes a little
+    double sd = q->scale * sqrt(fmax(0, sum - camera * camera) * c->n / (c->n - FEWEST));
+    double most = time ? 1e3 * fmax(UNEVEN, UNEVEN_SHARE * c->interval) : UNEVEN_LEVEL;
+    lesson_fault *f = add_fault(l, "even", sd, below(sd, c->n - FEWEST) / SURE, SURE, most);
+    if (!f)
+        return;
+    snprintf(f->what, sizeof f->what, "Your strokes are uneven in %s: %.1f %s about your own %s",
+             time ? "time" : "loudness", sd, q->unit, time ? "beat" : "mean");
+    snprintf(f->how, sizeof f->how, "standard deviation of %d strokes", c->n);
+    explain(f, sd, q->unit, time ? even_source : even_level_source);
+}
+
 // a displaced stroke is heard against its neighbours; the first and the last have one alone
 static void against_neighbours(course *c)
 {
@@ -429,10 +517,10 @@ static void judge_singles(lesson *l, course *c, const quantity *q)
     own = hypot(own, q->axes > 1 ? 0 : q->scale > 1 ? p->u_time : p->u_level);
     for (int k = 0; k < c->n; k++)
         count += c->scratch[k] - SINGLE * own > q->threshold;
-    lesson_fault *f =
-        c->n < 2 * FEWEST || which < 0
-            ? NULL
-            : add(l, q->kind, q->scale * worst, q->scale * own, SINGLE, q->scale * q->threshold);
+    lesson_fault *f = c->n < 2 * FEWEST || which < 0
+                          ? NULL
+                          : add_fault(l, q->kind, q->scale * worst, q->scale * own, SINGLE,
+                                      q->scale * q->threshold);
     if (!f)
         return;
     const lesson_asked *a = &l->asked[l->played[c->stroke[which]].of];
@@ -473,17 +561,16 @@ static void judge_roll(lesson *l, lesson_roll *r, const double *t, const double 
     double frame = 1 / (l->rate * sqrt(12)), free = n - 3, sd = sqrt(ss / free);
     double late = count[0] && count[1] ? even[1] / count[1] - even[0] / count[0] : 0;
     double rest = sqrt(fmax(0, ss - late * late * count[0] * count[1] / n) / (free - 1));
-    // lower 99 % bound of a standard deviation, by the chi-square of Wilson and Hilferty (1931)
-    double chi = pow(1 - 2 / (9 * free) + 2.33 * sqrt(2 / (9 * free)), 1.5);
     r->rate = half / p[1];
     r->uneven = sqrt(fmax(0, sd * sd - frame * frame / 4));
-    r->u = r->uneven * (1 - 1 / chi) / SURE;
+    r->u = below(r->uneven, free) / SURE;
     r->gallop = late;
     r->u_gallop = rest * sqrt(1.0 / fmax(1, count[0]) + 1.0 / fmax(1, count[1]));
     r->spread = sqrt(louder / (n - 1));
     bool gallops = fabs(late) - SURE * r->u_gallop > JND_TIME;
-    lesson_fault *f = gallops ? add(l, "roll", 1e3 * late, 1e3 * r->u_gallop, SURE, 1e3 * JND_TIME)
-                              : add(l, "roll", 1e3 * r->uneven, 1e3 * r->u, SURE, 1e3 * JND_TIME);
+    lesson_fault *f =
+        gallops ? add_fault(l, "roll", 1e3 * late, 1e3 * r->u_gallop, SURE, 1e3 * JND_TIME)
+                : add_fault(l, "roll", 1e3 * r->uneven, 1e3 * r->u, SURE, 1e3 * JND_TIME);
     if (!f)
         return;
     snprintf(f->what, sizeof f->what, "The roll at %.1f s %s: %s %.1f ms %s", t[0],
@@ -540,11 +627,15 @@ static void judge_rolls(lesson *l, const course *c)
 static void judge_missing(lesson *l)
 {
     char beats[2][64] = {"", ""};
+    int alone = 0; // missing, but not with a phrase
     for (int k = 0; k < l->asked_count; k++) {
         const lesson_asked *a = &l->asked[k];
         if (a->by >= 0 || !l->seen[a->hand])
             continue;
         l->missing++;
+        if (a->skipped)
+            continue;
+        alone++;
         size_t used = strlen(beats[0]);
         snprintf(beats[0] + used, sizeof beats[0] - used, "%s%s at beat %g", used ? ", " : "",
                  himc_hand_name(a->hand), a->beat);
@@ -558,9 +649,9 @@ static void judge_missing(lesson *l)
         snprintf(beats[1] + used, sizeof beats[1] - used, "%s%s at %.2f s", used ? ", " : "",
                  himc_hand_name(p->strike.hand), p->strike.time);
     }
-    const int count[] = {l->missing, l->extra};
+    const int count[] = {alone, l->extra};
     for (int k = 0; k < 2; k++) {
-        lesson_fault *f = add(l, k ? "extra" : "missing", count[k], 0, 0, 0.01);
+        lesson_fault *f = add_fault(l, k ? "extra" : "missing", count[k], 0, 0, 0.01);
         if (!f)
             continue;
         snprintf(f->what, sizeof f->what, "%d stroke%s %s: %s", count[k], count[k] > 1 ? "s" : "",
@@ -570,6 +661,36 @@ static void judge_missing(lesson *l)
         explain(f, 0, count[k] > 1 ? "strokes" : "stroke", none_source);
         f->threshold = 1;
     }
+}
+
+// strokes of the other hand than the score's
+static void judge_hands(lesson *l)
+{
+    char beats[80] = "";
+    int count = 0;
+    for (int k = 0; k < l->asked_count; k++) {
+        const lesson_asked *a = &l->asked[k];
+        if (a->by < 0 || l->played[a->by].strike.hand == a->hand)
+            continue;
+        size_t used = strlen(beats);
+        if (used < sizeof beats - 10)
+            snprintf(beats + used, sizeof beats - used, "%s%g", used ? ", " : "", a->beat);
+        count++;
+    }
+    lesson_fault *f = add_fault(l, "hand", count, 0, 0, 0.01);
+    if (!f)
+        return;
+    if (count > 0.9 * l->matched)
+        snprintf(f->what, sizeof f->what,
+                 "The hands are exchanged: %d of %d strokes are played by the other hand", count,
+                 l->matched);
+    else
+        snprintf(f->what, sizeof f->what, "%d stroke%s played by the other hand: beat %s", count,
+                 count > 1 ? "s are" : " is", beats);
+    snprintf(f->how, sizeof f->how, "%d strokes matched; or the take names its sticks otherwise",
+             l->matched);
+    explain(f, 0, count > 1 ? "strokes" : "stroke", "the score names the hand");
+    f->threshold = 1;
 }
 
 static bool new_course(const lesson *l, course *c)
@@ -637,13 +758,16 @@ static double place(const lesson *l, course *c, int turn)
 static void measure(lesson *l, course *c)
 {
     int turn = 0;
-    double least = 0.9 * place(l, c, 0); // chosen: the take's own direction is likelier
+    double least = 0.9 * place(l, c, 0), next = INFINITY; // chosen: its own direction is likelier
     for (int k = 1; k < 4; k++) {
         double sum = place(l, c, k);
+        next = fmin(next, fmax(sum, least));
         if (sum < least)
             least = sum, turn = k;
     }
     place(l, c, turn);
+    l->turn = 90 * turn;
+    l->turn_sure = next > 1.25 * least; // chosen
     for (int k = 0; k < c->n; k++) {
         lesson_played *p = &l->played[c->stroke[k]];
         p->off = c->value[0][k];
@@ -677,6 +801,8 @@ bool lesson_judge(lesson *l, himc_error *error)
             c.value[1][k] = p->aside.y;
         }
         good = judge_groups(l, &c, &quantities[q]);
+        if (good && q < 2)
+            judge_even(l, &c, &quantities[q]);
         if (good && q == 0)
             against_neighbours(&c);
         if (good)
@@ -685,6 +811,7 @@ bool lesson_judge(lesson *l, himc_error *error)
     if (good) {
         judge_rolls(l, &c);
         judge_missing(l);
+        judge_hands(l);
     }
     free(c.asked);
     free(c.stroke);

@@ -7,7 +7,9 @@
 ///     + GAP for each event left out between   s = 30 ms + 0.08 r D
 ///     + OTHER for each hand that differs
 ///
-/// So the offset does not matter, and a wait costs LEAP once. The tempo r begins with each of a
+/// or, for a phrase left out or played again, JUMP + MORE for each such event, whatever the time.
+/// So the offset does not matter, and a wait costs LEAP once. All is done once more with the
+/// score's hands exchanged, which costs EXCHANGED. The tempo r begins with each of a
 /// grid of values and follows the played intervals along the path. Rolls have no events: their
 /// number of strokes is the player's.
 #include "lesson.h"
@@ -20,6 +22,9 @@
 #define TOGETHER 0.035 // (s)
 #define LEAP 14.0
 #define GAP 6.0
+#define JUMP 20.0
+#define MORE 0.7
+#define EXCHANGED 8.0
 #define ROLLED 0.02 // for a played event that a roll may contain
 #define OTHER 3.0
 #define BACK 4 // steps back: up to BACK - 1 events left out in a row; in a roll ...
@@ -46,24 +51,19 @@ static int add_event(event *e, int count, double time, himc_hand hand, int strok
     return count + 1;
 }
 
-static int hands_differ(const lesson *l, const event *a, const event *b)
-{
-    int n = 0;
-    for (int h = 0; h < HIMC_HANDS; h++)
-        n += l->seen[h] && (a->stroke[h] < 0) != (b->stroke[h] < 0);
-    return n;
-}
-
 typedef struct cell {
     double cost, tempo;
-    int i, j; // predecessor, -1: none
+    int i, j;    // predecessor, -1: none
+    double jump; // least cost of a jump from here on, and where it begins
+    int from_i, from_j;
 } cell;
 
 typedef struct table {
     const lesson *l;
     const event *asked, *played;
     int n, m, band;
-    cell *cell; // (n x (2 band + 1))
+    bool exchanged; // the player's left is the score's right
+    cell *cell;     // (n x (2 band + 1))
 } table;
 
 static cell *at(const table *t, int i, int j)
@@ -72,6 +72,12 @@ static cell *at(const table *t, int i, int j)
     return j < 0 || j >= t->m || k < 0 || k > 2 * t->band
                ? NULL
                : &t->cell[(size_t)i * (size_t)(2 * t->band + 1) + (size_t)k];
+}
+
+// of so many events left out at one end
+static double beside(int count)
+{
+    return fmin(GAP * count, JUMP + MORE * count);
 }
 
 static void try_from(const table *t, int i, int j, int from_i, int from_j, double left_out,
@@ -86,9 +92,31 @@ static void try_from(const table *t, int i, int j, int from_i, int from_j, doubl
            cost = from->cost + left_out + fmin(z * z, LEAP);
     if (cost >= to->cost)
         return;
-    *to = (cell){cost, from->tempo, from_i, from_j};
+    *to = (cell){.cost = cost, .tempo = from->tempo, .i = from_i, .j = from_j};
     if (fabs(played / due - 1) < 0.25)
         to->tempo *= 1 + FOLLOW * (played / due - 1);
+}
+
+static int hands_differ(const table *t, const event *a, const event *b)
+{
+    int n = 0;
+    for (int h = 0; h < HIMC_HANDS; h++)
+        n += t->l->seen[h] && (a->stroke[t->exchanged ? !h : h] < 0) != (b->stroke[h] < 0);
+    return n;
+}
+
+// where a jump from (i, j) or before it begins at the least cost
+static void keep_jump(const table *t, int i, int j, cell *c)
+{
+    c->jump = c->cost;
+    c->from_i = i, c->from_j = j;
+    for (int side = 0; side < 2; side++) {
+        const cell *before = at(t, i - side, j - !side);
+        if (before && i >= side && before->jump + MORE < c->jump) {
+            c->jump = before->jump + MORE;
+            c->from_i = before->from_i, c->from_j = before->from_j;
+        }
+    }
 }
 
 static void fill(const table *t, int i, int j, double tempo)
@@ -96,7 +124,7 @@ static void fill(const table *t, int i, int j, double tempo)
     cell *c = at(t, i, j);
     if (!c)
         return;
-    *c = (cell){GAP * (i + j), tempo, -1, -1};
+    *c = (cell){.cost = beside(i) + beside(j), .tempo = tempo, .i = -1, .j = -1};
     bool rolled = false;
     for (int a = i - 1; a >= 0 && a >= i - BACK; a--) {
         rolled |= t->asked[a + 1].after_roll;
@@ -104,7 +132,14 @@ static void fill(const table *t, int i, int j, double tempo)
         for (int b = j - 1; b >= 0 && b >= j - back; b--)
             try_from(t, i, j, a, b, GAP * (i - a - 1) + (rolled ? ROLLED : GAP) * (j - b - 1), c);
     }
-    c->cost += OTHER * hands_differ(t->l, &t->asked[i], &t->played[j]);
+    const cell *jump = i > 0 ? at(t, i - 1, j - 1) : NULL;
+    if (jump && jump->jump + JUMP < c->cost)
+        *c = (cell){.cost = jump->jump + JUMP,
+                    .tempo = at(t, jump->from_i, jump->from_j)->tempo,
+                    .i = jump->from_i,
+                    .j = jump->from_j};
+    c->cost += OTHER * hands_differ(t, &t->asked[i], &t->played[j]);
+    keep_jump(t, i, j, c);
 }
 
 // the last cell of the best path in that tempo, and its cost
@@ -116,12 +151,13 @@ static double best_path(const table *t, double tempo, int *last_i, int *last_j)
         for (int j = middle - t->band; j <= middle + t->band; j++) {
             fill(t, i, j, tempo);
             const cell *c = at(t, i, j);
-            double cost = c ? c->cost + GAP * (t->n - 1 - i + t->m - 1 - j) : INFINITY;
+            double cost = c ? c->cost + beside(t->n - 1 - i) + beside(t->m - 1 - j) : INFINITY;
             if (cost < best)
                 best = cost, *last_i = i, *last_j = j;
         }
     }
-    return best + 4 * fabs(log2(tempo)); // chosen: the score's tempo is likelier
+    // chosen: the score's tempo is likelier
+    return best + 4 * fabs(log2(tempo)) + (t->exchanged ? EXCHANGED : 0);
 }
 
 static void join(lesson *l, int asked, int played)
@@ -137,12 +173,14 @@ static void join_path(lesson *l, const table *t, int i, int j)
     while (i >= 0) {
         const event *a = &t->asked[i], *p = &t->played[j];
         const cell *c = at(t, i, j);
-        for (int h = 0; h < HIMC_HANDS; h++)
-            if (a->stroke[h] >= 0 && p->stroke[h] >= 0)
-                join(l, a->stroke[h], p->stroke[h]);
-        for (int h = 0; h < HIMC_HANDS; h++)
-            if (a->stroke[h] >= 0 && a->stroke[!h] < 0 && p->stroke[h] < 0 && l->seen[h])
-                join(l, a->stroke[h], p->stroke[!h]);
+        bool both = a->stroke[0] >= 0 && a->stroke[1] >= 0;
+        for (int h = 0; h < HIMC_HANDS; h++) {
+            int own = t->exchanged && !both ? !h : h; // a chord has no exchanged hands
+            if (a->stroke[h] >= 0 && p->stroke[own] >= 0)
+                join(l, a->stroke[h], p->stroke[own]);
+            else if (a->stroke[h] >= 0 && !both && l->seen[h])
+                join(l, a->stroke[h], p->stroke[!own]);
+        }
         i = c->i, j = c->j;
     }
 }
@@ -191,11 +229,15 @@ bool lesson_match(lesson *l, himc_error *error)
     bool good = asked && played && make_table(l, &t, asked, played);
     double best = INFINITY, tempo = 1;
     int i = -1, j = -1;
-    for (int k = 0; good && t.n > 0 && k <= TEMPI; k++) {
-        double tried = k < TEMPI ? exp2(2.0 * k / (TEMPI - 1) - 1) : tempo,
+    bool exchanged = false, both = l->seen[0] && l->seen[1];
+    for (int k = 0; good && t.n > 0 && k <= 2 * TEMPI; k++) { // the last: the best once more
+        if (k % TEMPI == 0 && k / TEMPI == 1 && !both)
+            k = 2 * TEMPI;
+        t.exchanged = k < 2 * TEMPI ? k >= TEMPI : exchanged;
+        double tried = k < 2 * TEMPI ? exp2(2.0 * (k % TEMPI) / (TEMPI - 1) - 1) : tempo,
                cost = best_path(&t, tried, &i, &j);
         if (cost < best)
-            best = cost, tempo = tried;
+            best = cost, tempo = tried, exchanged = t.exchanged;
     }
     if (good)
         join_path(l, &t, i, j);
@@ -205,12 +247,11 @@ bool lesson_match(lesson *l, himc_error *error)
     if (!good)
         return himc_error_set(error, "out of memory");
     join_chords(l);
-    int due = 0;
     for (int k = 0; k < l->asked_count; k++)
-        due += l->seen[l->asked[k].hand];
+        l->due += l->seen[l->asked[k].hand];
     // chosen: with fewer no figure could be trusted
-    return (l->matched >= 3 && 2 * l->matched >= due) ||
+    return (l->matched >= 3 && 2 * l->matched >= l->due) ||
            himc_error_set(error,
                           "%s does not match %s: %d of %d strokes found, expected 3 and half",
-                          l->take, l->score, l->matched, due);
+                          l->take, l->score, l->matched, l->due);
 }

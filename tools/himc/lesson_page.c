@@ -106,7 +106,7 @@ static void put_head(const lesson *l, FILE *out)
         out,
         "</h1><p>%d of %d strokes found, %d missing, %d too many. Tempo %.1f ± %.1f BPM; the "
         "score has %g. On the whole you play %.1f dB %s than the model at the score's dynamics.",
-        l->matched, l->asked_count, l->missing, l->extra, l->bpm * l->tempo.mean,
+        l->matched, l->due, l->missing, l->extra, l->bpm * l->tempo.mean,
         SURE * l->bpm * l->tempo.u, l->bpm, fabs(l->level), l->level < 0 ? "softer" : "louder");
     for (int h = 0; h < HIMC_HANDS; h++)
         if (!l->seen[h])
@@ -150,10 +150,19 @@ static void put_mark(FILE *out, double x, double y, double r, himc_hand hand, co
             style);
 }
 
+// of the player's clock from the score's (s)
+static double offset(const lesson_played *p, const lesson_asked *a, double slope)
+{
+    return p->strike.time - p->off - slope * a->time;
+}
+
 // of one line: asked strokes, in the player's tempo, above the played ones, larger if faster
 static void put_line(const lesson *l, double from, double loudest, FILE *out)
 {
-    double scale = (WIDE - LEFT - 6) / LINE, latest = 0, slope = 1 / l->tempo.mean;
+    double scale = (WIDE - LEFT - 6) / LINE, latest = NAN, slope = 1 / l->tempo.mean;
+    for (int k = 0; k < l->asked_count && !isfinite(latest); k++) // before the first match
+        if (l->asked[k].by >= 0)
+            latest = offset(&l->played[l->asked[k].by], &l->asked[k], slope);
     fprintf(out, "<svg viewBox='0 0 %g 84'><text y=26>left</text><text y=62>right</text>", WIDE);
     for (int s = 0; s <= (int)LINE; s++)
         fprintf(out, "<path d='M%.1f 4V72' stroke='#ddd'/><text x=%.1f y=82>%g s</text>",
@@ -161,7 +170,7 @@ static void put_line(const lesson *l, double from, double loudest, FILE *out)
     for (int k = 0; k < l->asked_count; k++) {
         const lesson_asked *a = &l->asked[k];
         const lesson_played *p = a->by < 0 ? NULL : &l->played[a->by];
-        latest = p ? p->strike.time - p->off - slope * a->time : latest;
+        latest = p ? offset(p, a, slope) : latest;
         double t = latest + slope * a->time - from, y = a->hand == HIMC_LEFT ? 14 : 50;
         if (t < 0 || t >= LINE || !l->seen[a->hand])
             continue;
@@ -192,6 +201,8 @@ static void put_timeline(const lesson *l, FILE *out)
     for (int k = 0; k < LINES && k * LINE <= l->length + 1; k++)
         put_line(l, first + k * LINE, loudest, out);
     fputs("</div>", out);
+    if (l->length + 1 >= LINES * LINE)
+        fprintf(out, "<p><small>Here are the first %g s; --csv has all.</small></p>", LINES * LINE);
 }
 
 // one hand's times (ms, early above) or levels (dB) over time; `band`: the threshold
@@ -315,9 +326,12 @@ static void put_table(const lesson *l, FILE *out)
     fprintf(
         out,
         "<h2>All strokes</h2><p><small>A stroke's own uncertainty: ± %.1f ms (95 %%) by the frame "
-        "rate of %.0f Hz. Places are measured from the median of the take.%s</small></p>"
+        "rate of %.0f Hz. Places are measured from the median of the take, which is read %s%d°%s.%s</small></p>"
         "<div class=t><table><tr><th>beat<th>hand",
         SURE * 1e3 * l->played[0].u_time, l->rate,
+        l->turn ? "as if turned by " : "in its own direction, ", l->turn,
+        l->turn_sure ? ", which fits the score best"
+                     : "; another direction fits nearly as well, so places are unsure",
         l->asked_count > SHOWN ? " Here are the first; --csv has all." : "");
     for (const column *c = columns; c < columns + COLUMNS; c++)
         if (c->shown)
@@ -341,8 +355,9 @@ static void put_table(const lesson *l, FILE *out)
     fputs("</table></div></html>\n", out);
 }
 
-void lesson_page(const lesson *l, FILE *out)
+void lesson_page(const void *of, FILE *out)
 {
+    const lesson *l = of;
     put_head(l, out);
     put_faults(l, out);
     put_timeline(l, out);
@@ -367,8 +382,9 @@ static void put_row(const lesson_asked *a, const lesson_played *p, FILE *out)
     }
 }
 
-void lesson_csv(const lesson *l, FILE *out)
+void lesson_csv(const void *of, FILE *out)
 {
+    const lesson *l = of;
     fputs("state,hand,nuance,beat,asked_s,asked_speed_m_s", out);
     for (int k = 0; k < COLUMNS; k++)
         fprintf(out, ",%s", columns[k].csv);
@@ -386,9 +402,9 @@ void lesson_json(const lesson *l, FILE *out)
     fprintf(
         out,
         "{\"asked\": %d, \"matched\": %d, \"missing\": %d, \"extra\": %d, \"rate_hz\": %g, \"tempo_bpm\": "
-        "%.3f, \"tempo_uncertainty_bpm\": %.3f, \"level_db\": %.3f, \"faults\": [",
-        l->asked_count, l->matched, l->missing, l->extra, l->rate, l->bpm * l->tempo.mean,
-        l->bpm * l->tempo.u, l->level);
+        "%.3f, \"tempo_uncertainty_bpm\": %.3f, \"level_db\": %.3f, \"turned_deg\": %d, \"turned_sure\": %s, \"faults\": [",
+        l->due, l->matched, l->missing, l->extra, l->rate, l->bpm * l->tempo.mean,
+        l->bpm * l->tempo.u, l->level, l->turn, l->turn_sure ? "true" : "false");
     for (int k = 0; k < l->faults; k++) {
         const lesson_fault *f = &l->fault[k];
         fprintf(out, "%s{\"kind\": \"%s\", \"what\": ", k ? ", " : "", f->kind);

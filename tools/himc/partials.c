@@ -33,6 +33,12 @@
 #define DECAYS_DIFFER 0.35 // of ln T60
 #define LATE 1.0           // (s) chosen: of a timpano's blow its lasting partials are left
 #define AROUND 60.0        // (Hz) neighbours on either side, or ...
+#define PAIR 10.0          // (Hz) around a pair of a drum's modes ...
+#define PAIR_SECONDS 5.0   // ... in a window at most so long ...
+#define PAIR_PART 0.5      // ... or so much of T60, at least 1 s ...
+#define OVERLAP 2.0        // windows that overlap count as one
+#define FACTOR 1.4         // (ln) a decay this far from that which is due is another's
+#define PAIR_LEAST 20      // ... of so many decimated samples or more
 #define AROUND_PART 0.12   // ... so much of the frequency
 
 // windows that are compared: `first` (s) after the onset (the contact is over), each `next` later
@@ -56,13 +62,13 @@ typedef struct band {
 } band;
 
 typedef struct pole {
-    double frequency, decay, level, phase;
+    double frequency, decay, level;
 } pole;
 
-static bool band_open(band *b, double low, const partials_sound *sound)
+static bool band_open(band *b, double centre, double width, const partials_sound *sound)
 {
-    b->width = low < WIDE_FROM ? NARROW : WIDE;
-    b->centre = low + 0.5 * b->width;
+    b->width = width;
+    b->centre = centre;
     double transition = TRANSITION * b->width, stop = 0.5 * (b->width + transition), sum = 0;
     b->half = (int)(TAPS * sound->rate / transition);
     b->step = (int)fmax(1, sound->rate / (b->width + 2 * transition));
@@ -104,7 +110,7 @@ static void band_sample(const band *b, const double *x, double angle, double out
 }
 
 // fills z from a track's sample `from` on; false if the tracks are too short
-static bool band_fill(band *b, const partials_sound *sound, size_t from, int span)
+static bool band_fill(band *b, const partials_sound *sound, size_t from, int span, int least)
 {
     double turn = -2 * HIMC_PI * b->centre / sound->rate;
     size_t shortest = sound->length[0];
@@ -113,7 +119,7 @@ static bool band_fill(band *b, const partials_sound *sound, size_t from, int spa
     long room = ((long)shortest - (long)from - b->half) / b->step;
     b->samples = room < span ? (int)room : span;
     b->tracks = sound->tracks;
-    if (b->samples < SPAN_LEAST)
+    if (b->samples < least)
         return false;
     for (int i = 0; i < sound->tracks; i++)
         for (int n = 0; n < b->samples; n++)
@@ -130,13 +136,13 @@ static int find_poles(band *b, const partials_sound *sound, double start, int sp
     double p[2 * ORDER], c[2 * ORDER * PARTIALS_TRACKS], rate = sound->rate / b->step;
     int found = 0, kept = 0;
     size_t from = (size_t)(start * sound->rate) + (size_t)b->half;
-    if (!band_fill(b, sound, from, span))
+    if (!band_fill(b, sound, from, span, SPAN_LEAST))
         return 0;
     int most = b->samples / 4 < ORDER ? b->samples / 4 : ORDER;
     *outcome = himc_linear_exponentials(b->samples, b->tracks, b->z, most, CLEAR, p, c, &found);
     for (int k = 0; *outcome == HIMC_LINEAR_SOLVED && k < found; k++) {
         double size = hypot(p[2 * k], p[2 * k + 1]), aside = atan2(p[2 * k + 1], p[2 * k]);
-        pole q = {b->centre + aside * rate / (2 * HIMC_PI), -log(size) * rate, 0, 0};
+        pole q = {b->centre + aside * rate / (2 * HIMC_PI), -log(size) * rate, 0};
         double power = 0, since = (double)from / sound->rate;
         for (int i = 0; i < b->tracks; i++) {
             const double *a = &c[2 * (i * found + k)];
@@ -146,8 +152,6 @@ static int find_poles(band *b, const partials_sound *sound, double start, int sp
             log(1000) / q.decay < T60_LEAST || !(power > 0))
             continue;
         q.level = 10 * log10(4 * power / sound->tracks) + 20 * q.decay * since / log(10);
-        q.phase = remainder(atan2(c[2 * k + 1], c[2 * k]) - 2 * HIMC_PI * q.frequency * since,
-                            2 * HIMC_PI);
         out[kept++] = q;
     }
     return kept;
@@ -191,8 +195,7 @@ static bool make_partial(const pole *p, pole later[WINDOWS][ORDER], const int *c
     *out = (partial){.frequency = f,
                      .t60 = log(1000) / exp(d),
                      .frequency_error = sqrt(fmax(0, ff / n - f * f) * n / (n - 1.0)),
-                     .level = p->level,
-                     .phase = p->phase};
+                     .level = p->level};
     out->t60_error = out->t60 * sqrt(fmax(0, dd / n - d * d) * n / (n - 1.0));
     out->energy = out->level + 10 * log10(out->t60);
     return true;
@@ -204,10 +207,11 @@ static bool find_in_band(const partials_sound *sound, double low, const windows 
     band b = {0};
     pole found[WINDOWS][ORDER];
     int count[WINDOWS] = {0};
-    himc_linear outcome = band_open(&b, low, sound) ? HIMC_LINEAR_SOLVED : HIMC_LINEAR_NO_MEMORY;
+    *width = low < WIDE_FROM ? NARROW : WIDE;
+    himc_linear outcome = band_open(&b, low + 0.5 * *width, *width, sound) ? HIMC_LINEAR_SOLVED
+                                                                           : HIMC_LINEAR_NO_MEMORY;
     for (int w = 0; w < WINDOWS && outcome != HIMC_LINEAR_NO_MEMORY; w++)
         count[w] = find_poles(&b, sound, set->first + w * set->next, set->span, found[w], &outcome);
-    *width = b.width;
     band_close(&b);
     if (outcome == HIMC_LINEAR_NO_MEMORY)
         return himc_error_set(error, "out of memory");
@@ -318,5 +322,105 @@ bool partials_find(const partials_sound *sound, double highest, partials_list *o
         }
     merge(out);
     compare_neighbours(out);
+    return true;
+}
+
+/// Two damped sinusoids of one decay in a narrow band, by least squares in all channels: with the
+/// amplitudes solved for, `at` is the middle, half the difference (Hz) and ln of the decay (1/s).
+/// Returns the share of the energy that they leave.
+static double left_by(const band *b, double rate, const double at[3])
+{
+    double turn[2][2], gram = 0, cross[2] = {0}, power[2] = {1, 0}, left = 0, all = 0;
+    double product[PARTIALS_TRACKS][2][2] = {{{0}}}, of[2][2] = {{1, 0}, {1, 0}};
+    for (int k = 0; k < 2; k++) {
+        double angle = 2 * HIMC_PI * (at[0] + (k ? -at[1] : at[1])) / rate;
+        turn[k][0] = exp(-exp(at[2]) / rate) * cos(angle);
+        turn[k][1] = exp(-exp(at[2]) / rate) * sin(angle);
+    }
+    for (int n = 0; n < b->samples; n++) {
+        gram += of[0][0] * of[0][0] + of[0][1] * of[0][1];
+        cross[0] += of[0][0] * of[1][0] + of[0][1] * of[1][1];
+        cross[1] += of[0][0] * of[1][1] - of[0][1] * of[1][0];
+        for (int c = 0; c < b->tracks; c++) {
+            const double *z = &b->z[2 * (c * b->samples + n)];
+            all += z[0] * z[0] + z[1] * z[1];
+            for (int k = 0; k < 2; k++) {
+                product[c][k][0] += of[k][0] * z[0] + of[k][1] * z[1];
+                product[c][k][1] += of[k][0] * z[1] - of[k][1] * z[0];
+            }
+        }
+        for (int k = 0; k < 2; k++) {
+            power[0] = of[k][0] * turn[k][0] - of[k][1] * turn[k][1];
+            of[k][1] = of[k][0] * turn[k][1] + of[k][1] * turn[k][0];
+            of[k][0] = power[0];
+        }
+    }
+    double det = gram * gram - cross[0] * cross[0] - cross[1] * cross[1];
+    left = all;
+    for (int c = 0; c < b->tracks; c++) {
+        const double *p = product[c][0], *q = product[c][1];
+        double pp = p[0] * p[0] + p[1] * p[1], qq = q[0] * q[0] + q[1] * q[1];
+        // Re(conj(p) cross q)
+        double pq = (p[0] * q[0] + p[1] * q[1]) * cross[0] - (p[0] * q[1] - p[1] * q[0]) * cross[1];
+        left -= at[1] == 0 ? pp / gram : (gram * (pp + qq) - 2 * pq) / det;
+    }
+    return fmax(left, 0) / (all + 1e-30);
+}
+
+// goes down in steps that halve
+static double go_down(const band *b, double rate, double at[3], double least)
+{
+    double step[3] = {0.1, 0.1, 0.2}, here = left_by(b, rate, at);
+    for (int round = 0; round < 40 && step[2] > 1e-3; round++) {
+        bool better = false;
+        for (int k = 0; k < 6; k++) {
+            double next[3] = {at[0], at[1], at[2]};
+            if (k / 2 == 1 && at[1] == 0)
+                continue;
+            next[k / 2] += k % 2 ? step[k / 2] : -step[k / 2];
+            double there = next[1] > 0 && next[1] < least ? INFINITY : left_by(b, rate, next);
+            if (there < here) {
+                memcpy(at, next, sizeof next);
+                here = there;
+                better = true;
+            }
+        }
+        for (int k = 0; k < 3 && !better; k++)
+            step[k] *= 0.5;
+    }
+    return here;
+}
+
+bool partials_ring(const partials_sound *sound, double frequency, double due, double *decay,
+                   double *part, himc_error *error)
+{
+    band b = {0};
+    if (!band_open(&b, frequency, PAIR, sound)) {
+        band_close(&b);
+        return himc_error_set(error, "out of memory");
+    }
+    double rate = sound->rate / b.step, sum = 0, weights = 0;
+    double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / due));
+    for (double start = 0.15; start < 2; start += 0.4) {
+        size_t from = (size_t)(start * sound->rate) + (size_t)b.half;
+        double best = INFINITY, found = 0;
+        if (!band_fill(&b, sound, from, (int)(span * rate), PAIR_LEAST))
+            break;
+        double least = 0.2 * rate / b.samples, most = fmin(2.5, 0.008 * frequency); // half apart
+        for (double half = 0; half<most; half += half> 0 ? 0.3 : least) {
+            double at[3] = {0, half, log(due)};
+            double left = sqrt(go_down(&b, rate, at, least) * (half > 0 ? 2 : 1));
+            bool other = fabs(at[0]) > 0.3 * PAIR || fabs(at[2] - log(due)) > FACTOR;
+            if (left < best && !other) {
+                best = left;
+                found = at[2];
+            }
+        }
+        sum += found / (best * best);
+        weights += 1 / (best * best);
+    }
+    *decay = weights > 0 ? exp(sum / weights) : due;
+    *part = weights > 0 ? sqrt(OVERLAP / weights) : INFINITY;
+    band_close(&b);
     return true;
 }

@@ -18,7 +18,6 @@ typedef struct partial {
     double t60;             ///< (s)
     double t60_error;       ///< (s)
     double level;           ///< at the onset, of all channels (dB re the sound's peak)
-    double phase;           ///< at the onset, of the first channel (rad)
     double energy;          ///< 10 lg of what it has over all time (dB)
     double clear; ///< by which that, or its level after 1 s, stands out of its neighbours' (dB)
 } partial;
@@ -49,5 +48,10 @@ void partials_sound_free(partials_sound *sound);
 /// All partials up to `highest` (Hz). False with the reason, without memory.
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
+
+/// How fast the pair of partials near a frequency decays (1/s; `due`: about), and its relative
+/// standard uncertainty, 1 and more if nothing is known. False with the reason, without memory.
+bool partials_ring(const partials_sound *sound, double frequency, double due, double *decay,
+                   double *part, himc_error *error);
 
 #endif
