@@ -168,8 +168,8 @@ static void push_off_drums(field *f, const himc_capsule capsule[HIMC_SEGMENTS],
 // arms are not folded up, least of all those that avoid something
 static void unfold(field *f, const himc_avoidance *a, const himc_capsule capsule[HIMC_SEGMENTS])
 {
-    bool active = false;
-    for (int i = 0; i < HIMC_AVOIDANCE_PARTS; i++)
+    bool active = false; // what unfolds an arm turns its hand aside only
+    for (int i = 0; i < HIMC_HANDS * (HIMC_ARM_ANGLES - 1); i++)
         active = active || fabs(a->goal[i]) > AVOIDS;
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_vec3 way =

@@ -162,7 +162,8 @@ static void find_skin(const himc_shape *shape, const himc_head *usual, drum_skin
     head->decay_constant = calf ? as_said("SIGMA0", CALF_CONSTANT) : usual->decay_constant;
     head->decay_square = calf ? as_said("SIGMA1", CALF_SQUARE) : usual->decay_square;
     if (head->density != before)
-        head->tension = as_said("TENSION", himc_head_tension(head, shape, hz));
+        head->tension = himc_argument_usual(as_said("TENSION", himc_head_tension(head, shape, hz)),
+                                            usual->tension);
 }
 
 bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const himc_command *c,
