@@ -326,6 +326,9 @@ static void test_a_dump_sent_back_line_by_line_makes_the_same_performance(void)
         session_do(p, "engine tree"); // ODE's bits also depend on what it did before
         session_do(p, "drum low 29");
         session_do(p, "drum high 23");
+        // without a place they stand clear of the others as those stood then, which no dump tells
+        session_do(p, "low place 0.4 0.5 0.85");
+        session_do(p, "high place 0.4 -0.5 0.85");
         for (int i = 0; i < 6; i++) {
             random_setting(&command, HIMC_DRUM, &seed);
             session_drum_command(p, i % 2 ? "low" : "high", &command);

@@ -482,6 +482,8 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
         himc_state_word(&line, shape->body->name);
     if (shape->shell)
         himc_state_word(&line, shape->shell->name);
+    if (shape->shell && shape->width > 0) // it decides in which order the modes are
+        himc_state_numbers(&line, 1, (double[]){shape->width / 0.0254});
     for (int i = 0; shape->body && i < 2 && shape->body->pitches[i] > 0; i++)
         himc_state_numbers(&line, 1, &shape->body->pitches[i]);
     himc_state_numbers(&line, shape->length > 0 ? 2 : 0, (double[]){shape->length, shape->width});

@@ -99,6 +99,7 @@ static void free_written(performance_written *written)
 {
     free(written->score.bytes);
     free(written->units.bytes);
+    free(written->dynamics.cresc);
 }
 
 himc_performance *himc_performance_make(const himc_performance_config *config, himc_error *error)

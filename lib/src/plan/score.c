@@ -121,14 +121,14 @@ void himc_score_insert_ramp(himc_tempo_change *tempi, int *count, const himc_tem
 bool himc_dynamics_add(himc_dynamics *d, const himc_command *c, himc_error *error)
 {
     double level[2];
-    if (d->count == HIMC_CRESCENDI)
-        return himc_error_set(error, "cresc: one too many, expected %d", HIMC_CRESCENDI);
+    if (d->count == SCORE_LINES_MAX)
+        return himc_error_set(error, "cresc: one too many, expected %d", SCORE_LINES_MAX);
+    if (!himc_array_grow(&d->cresc, d->count, &d->room, sizeof *d->cresc, error))
+        return false;
     for (int i = 0; i < 2; i++)
         level[i] = c->choice[2 + i] >= 0 ? c->choice[2 + i] / 7.0 : c->atom[2 + i].number;
-    d->cresc[d->count].beat = c->atom[0].number;
-    d->cresc[d->count].length = c->atom[1].number;
-    d->cresc[d->count].from = level[0];
-    d->cresc[d->count++].to = level[1];
+    d->cresc[d->count++] =
+        (struct himc_cresc){c->atom[0].number, c->atom[1].number, level[0], level[1]};
     return true;
 }
 
@@ -567,6 +567,7 @@ static himc_score *read_score(reader *r, const char *text, const himc_command *s
     good = setup ? add_setup(r, setup)
                  : (read_all(r, text) && sort_by_beat(r) && check_playable(r)) ||
                        himc_error_prefix(r->error, "%s:%d", r->name, r->now.line);
+    free(r->dynamics.cresc);
     if (good)
         return r->score;
     himc_score_free(r->score);

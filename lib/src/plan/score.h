@@ -30,18 +30,17 @@ HIMC_RT int himc_score_ramp_steps(const himc_tempo_ramp *ramp);
 HIMC_RT double himc_score_ramp_bpm(const himc_tempo_ramp *ramp, int step);
 /// Puts a ramp into a tempo map of *count, which has room for its steps and one more.
 void himc_score_insert_ramp(himc_tempo_change *tempi, int *count, const himc_tempo_ramp *ramp);
-#define HIMC_CRESCENDI 256 ///< of a score; chosen: one in each of some hundred bars
 
-/// The dynamics of strokes that have none of their own.
+/// The dynamics of strokes that have none of their own; free `cresc`.
 typedef struct himc_dynamics {
-    struct {
+    struct himc_cresc {
         double beat, length; ///< (beats)
         double from, to;     ///< 0 .. 1
-    } cresc[HIMC_CRESCENDI];
-    int count;
+    } * cresc;
+    int count, room;
 } himc_dynamics;
 
-/// The command `cresc`; false with the reason if there are too many.
+/// The command `cresc`; false with the reason.
 bool himc_dynamics_add(himc_dynamics *dynamics, const himc_command *cresc, himc_error *error);
 /// Gives a stroke or a roll its dynamic at its beat.
 void himc_dynamics_give(const himc_dynamics *dynamics, himc_stroke *stroke);
