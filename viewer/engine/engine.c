@@ -152,6 +152,7 @@ static void take_events(void)
             break;
         case HIMC_EVENT_NOTE: tell_line(event.refused ? "refused" : "note", event.text); break;
         case HIMC_EVENT_MISSED: tell_line("missed", event.text); break;
+        case HIMC_EVENT_PREPARE: break; // the picture shows it
         }
 }
 
