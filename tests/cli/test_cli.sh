@@ -343,7 +343,7 @@ done
 check test_help_of_info_is_of_the_call_and_of_both_messages [ "$("$himc" help info | grep -c -e '^usage: himc info' -e '^info$' -e '^DRUM info$')" = 3 ]
 for word in $("$himc" help commands | sed -n 's/^  \([a-z]*\) .*/\1/p' | sort -u); do # but with two receivers, or for two words
     "$himc" help "$word" | sed -n 's/^      \([A-Z][A-Z0-9]*\) .*/\1/p' | sort | uniq -d | sed "s/^/$word /"
-done | grep -vxE '(rate|gain|preset|dump|mute) .*' >out
+done | grep -vxE '(rate|gain|gliss|preset|dump|mute) .*' >out
 check test_help_lists_each_argument_once [ "$(cat out)" = "" ]
 
 # what render makes
