@@ -16,7 +16,7 @@ const char himc_setup_kit[] = "instrument snare snare 14; snare place .52 .02 .7
 
 const char himc_setup_around[] =
     "instrument low-floor tom 18; low-floor place .12 -.66 .7;"
-    "instrument mid-tom tom 14; mid-tom place .77 -.32 .86;"
+    "instrument mid-tom tom 14; mid-tom place .78 -.36 .86;"
     "instrument china china 18; china place .5 -.86 1.05 .3;"
     "instrument splash splash 10; splash place .95 .12 1.1 .3;"
     "instrument crash-16 crash 16; crash-16 place .7 .64 1.1 .3;"
