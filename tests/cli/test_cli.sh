@@ -471,7 +471,7 @@ check test_simulated_sticks_are_near_the_captured \
 check test_bench_succeeds_and_says_nothing_on_stderr [ "$?$(cat err)" = 0 ]
 check test_bench_has_the_keys_of_the_contract [ "$(cat out | grep -o '"[a-z0-9_]*":' | tr -d '":' | grep -v '^bank_avx' | tr '\n' ' ')" = \
     "step_us engine_step_us step_ratio modes_per_core performers_per_core four_drums_percent worst_block_percent bank_base_modes alone_us limits_us four_drums_us drum_200_ms \
-drum_200_no_glide_ms drum_auto_ms drum_1000_ms silent_ms " ]
+drum_200_no_glide_ms drum_auto_ms drum_1000_ms silent_ms snare_ms crash_ms marimba_ms " ]
 check test_bench_is_one_object_of_numbers [ "$(grep -cx '{\("[a-z0-9_]*": [0-9.]*[,}] *\)*' out)" = 1 ]
 check test_step_ratio_is_that_of_the_steps \
     true_that "($(number step_us) / $(number engine_step_us) / $(number step_ratio) - 1) ^ 2 < 1e-4"
