@@ -25,9 +25,10 @@ WARNINGS = -Wall -Wextra -Wpedantic -Wshadow
 HOW      = $(OPTIMIZE) $(WARNINGS) -fvisibility=hidden -fno-semantic-interposition -ffp-contract=off -fPIC $(SANITIZE) \
            -Ilib -Ilib/src -MMD -MP $(CPPFLAGS) $(CFLAGS)
 COMPILE  = $(CC) -std=c17 -Wmissing-prototypes $(HOW)
-# Eigen, which linear.cpp alone knows; the two checks need a C++ run time of their own
+# Eigen, which linear.cpp alone knows; the names of its templates would be 40 MB of each program; the two checks need a C++ run
+# time of their own
 comma := ,
-COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW) $(if $(findstring clang,$(CXX)),-fno-sanitize=function$(comma)vptr)
+COMPILE_CXX = $(CXX) -std=c++17 -isystem $(EIGEN) $(HOW) $(if $(findstring -g0,$(HOW)),,-g1) $(if $(findstring clang,$(CXX)),-fno-sanitize=function$(comma)vptr)
 LINK     = $(CC) $(SANITIZE) $(LDFLAGS)
 UNITY    = -DUNITY_INCLUDE_DOUBLE= -isystem $(UNITY_DIR)
 # what the library needs, and what the program needs beside it

@@ -54,13 +54,16 @@ bool himc_loader_command(himc_loader *loader, const himc_load_target *target,
 
 #define HIMC_LOADER_POSTS 256 ///< commands that may wait for himc_loader_run
 
-/// Checks a performer's command, also DRUM COMMAND ..., and hands it to the next himc_loader_run,
-/// which carries out the posted ones in their order, after all that waits already. False with the
-/// reason: the text is no command, or HIMC_LOADER_POSTS wait. One thread at a time may post.
+/// Checks a performer's command, also DRUM COMMAND ..., and leaves it to himc_loader_run, whose
+/// next calls carry out the posted ones in their order, a few in each, after all that waits;
+/// `performance` is borrowed until then. `info` and `dump` tell nothing: himc_performance_describe
+/// does. False with the reason: the text is no command, or HIMC_LOADER_POSTS wait. One thread at a
+/// time may post.
 bool himc_loader_post(himc_loader *loader, himc_performance *performance, const char *text,
                       himc_error *error);
 /// For the thread that posts: takes the oldest reason why a posted command was not carried out.
-/// False if there is none. Of more than 64 the first are kept, and their number is the last line.
+/// False if there is none. At most 64 reasons wait; further ones are counted, and a last line tells
+/// how many they are.
 HIMC_RT bool himc_loader_refused(himc_loader *loader, himc_error *error);
 /// Carries out the lines that `dump` has told (HIMC_DESCRIBE_STATE), each with a `;`, at once and
 /// after all that waits: all of them, or none and false with the reason. A performer's are a score.
@@ -70,7 +73,7 @@ bool himc_loader_restore(himc_loader *loader, const himc_load_target *target, co
 /// allocate: it carries short commands out, and makes what the helper works on. True while commands
 /// wait.
 bool himc_loader_run(himc_loader *loader);
-/// True while commands wait.
+/// True while commands wait. For the thread of himc_loader_run.
 HIMC_RT bool himc_loader_busy(const himc_loader *loader);
 /// Carries out all that waits, at once.
 void himc_loader_finish(himc_loader *loader);

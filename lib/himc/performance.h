@@ -64,8 +64,9 @@ bool himc_performance_hear_as(himc_performance *performance, const himc_performa
 void himc_performance_make_drums(himc_performance *performance, bool make_drums);
 
 /// Carries out a command given as text, now: "stroke 0 right legato mf", "tempo 120", "play", also
-/// DRUM COMMAND ..., "kettle tune 110". May allocate or read a file. False, and nothing changed,
-/// with the reason. From another thread than the one that plays: himc_loader_post (loader.h).
+/// DRUM COMMAND ..., "kettle tune 110". May allocate or read a file. `info` and `dump` tell nothing:
+/// himc_performance_describe does. False, and nothing changed, with the reason. From another thread
+/// than the one that plays: himc_loader_post (loader.h).
 bool himc_performance_send(himc_performance *performance, const char *text, himc_error *error);
 
 // The commands `stroke` and `hit` for programs that have no text: they act now.
@@ -91,9 +92,10 @@ HIMC_RT void himc_performance_target(himc_performance *performance, himc_hand ha
 /// its entries may be NULL. The sound is in the drums (himc_drum_read).
 HIMC_RT void himc_performance_process(himc_performance *performance, int n,
                                       double *const force[HIMC_HANDS]);
-/// Plays `n` samples and gives the sum of all drums as `frames` (n, channels), interleaved: 1
-/// channel is all that is heard, of more the first two are the ears, or each a pickup; 0 .. 8,
-/// further ones are silent. Returns the largest magnitude. Full scale is 1, and may be exceeded.
+/// Plays `n` samples and gives the sum of all drums as `frames` (n, channels), interleaved. Without
+/// channels it only plays, and `frames` may be NULL; 1 is all that is heard; of more the first two
+/// are the ears, or each is a pickup, and from the ninth on they are silent. Returns the largest
+/// magnitude in `frames`. Full scale is 1, and may be exceeded.
 HIMC_RT double himc_performance_read(himc_performance *performance, float *frames, int channels,
                                      int n);
 /// Samples played since the last realign.
@@ -108,7 +110,7 @@ bool himc_performance_set_rate(himc_performance *performance, double sample_rate
 /// The kinds of events.
 typedef enum himc_event_kind {
     HIMC_EVENT_STRIKE,  ///< a contact ended
-    HIMC_EVENT_BEAT,    ///< a whole beat began
+    HIMC_EVENT_BEAT,    ///< a beat began, or a part of one (`subdivide`)
     HIMC_EVENT_DONE,    ///< the score's last contact has ended, or the take; no beat follows
     HIMC_EVENT_NOTE,    ///< a line for the user: a stroke given up, a target out of reach
     HIMC_EVENT_PREPARE, ///< the gesture of a stroke begins: hand, drum and time, of its contact
@@ -273,7 +275,7 @@ typedef struct himc_performance_stats {
     double reserve;               ///< largest torque of a joint over its strength: the reserve is
                                   ///< used above 1; 0 without strengths ...
     int reserve_joint;            ///< ... and the joint
-    double beat;                  ///< of the score now, of a take second; -1 while stopped
+    double beat;                  ///< of the score, or second of the take, now; -1 while stopped
     double bpm;                   ///< the tempo now (beats per minute)
     int hits;                     ///< accepted hits
     double hit_latency;           ///< of the last hit, from its command to its planned contact (s)

@@ -111,6 +111,31 @@ static void test_commands_posted_while_another_thread_plays_all_act_in_their_ord
     callback_free(&c);
 }
 
+static void test_an_instrument_that_was_posted_is_there_for_the_next_command(void)
+{
+    callback c = callback_new();
+    TEST_ASSERT_TRUE_MESSAGE(post(&c, "setup kit"), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(post(&c, "snare tune 220"), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(post(&c, "snare wires 0"), error.text);
+    himc_loader_finish(c.loader);
+    bool refused = himc_loader_refused(c.loader, &error);
+    TEST_ASSERT_FALSE_MESSAGE(refused, error.text);
+    callback_free(&c);
+}
+
+static void test_one_run_changes_one_head_at_most(void)
+{
+    callback c = callback_new();
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_TRUE(post(&c, i == 1 ? "kettle tension 3000" : "kettle tension 4000"));
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_TRUE(himc_loader_busy(c.loader));
+        himc_loader_run(c.loader);
+    }
+    TEST_ASSERT_FALSE(himc_loader_busy(c.loader));
+    callback_free(&c);
+}
+
 static void test_a_full_queue_is_told_and_takes_again_after_a_run(void)
 {
     callback c = callback_new();
@@ -161,6 +186,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_posted_commands_give_the_sound_of_the_same_commands_sent);
     RUN_TEST(test_commands_posted_while_another_thread_plays_all_act_in_their_order);
+    RUN_TEST(test_an_instrument_that_was_posted_is_there_for_the_next_command);
+    RUN_TEST(test_one_run_changes_one_head_at_most);
     RUN_TEST(test_a_full_queue_is_told_and_takes_again_after_a_run);
     RUN_TEST(test_what_is_no_command_is_refused_where_it_is_posted);
     RUN_TEST(test_refusals_come_back_in_order_and_those_beyond_64_are_counted);

@@ -103,8 +103,10 @@ static void test_info_over_osc_is_answered_and_listen_refused(void)
     TEST_ASSERT_EQUAL_INT(1, count("/himc/info"));
     say("/himc/get", "late");
     play(0.02);
-    TEST_ASSERT_EQUAL_STRING("get: WHAT: late, expected a setting, tempo, beat, state or drums",
-                             last_error());
+    TEST_ASSERT_EQUAL_STRING(
+        "get: WHAT: late, expected a setting, tempo, beat, state, drums, loop, "
+        "room, listener or mute",
+        last_error());
     say("/himc/listen", "9000");
     play(0.02);
     TEST_ASSERT_EQUAL_STRING("listen: not over the network", last_error());

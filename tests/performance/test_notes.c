@@ -80,6 +80,32 @@ static void test_keys_of_a_kit_are_those_of_general_midi(void)
     himc_performance_free(p);
 }
 
+static void test_a_higher_tom_key_never_sounds_a_larger_tom(void)
+{
+    static const int keys[] = {41, 43, 45, 47, 48, 50};
+    himc_performance *p = session_new();
+    heard h = {0};
+    int alike = 0;
+    session_do(p, "setup kit");
+    double last = INFINITY;
+    for (int i = 0; i < 6; i++) {
+        session_do(p, "note %d 90", keys[i]);
+        session_play(p, 0.8, &h);
+        TEST_ASSERT_TRUE(h.strikes > i);
+        double inches = 0;
+        for (int d = 0; himc_performance_drum(p, d); d++)
+            if (strcmp(himc_drum_name(himc_performance_drum(p, d)), h.strike[h.strikes - 1].drum) ==
+                0)
+                inches = himc_drum_inches(himc_performance_drum(p, d));
+        TEST_ASSERT_TRUE(inches <= last);
+        alike += inches == last;
+        last = inches;
+    }
+    TEST_ASSERT_TRUE(alike < 4); // three toms and more
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 static void test_a_note_on_a_marimba_lands_on_its_bar(void)
 {
     himc_performance *p = session_new();
@@ -397,9 +423,9 @@ static void test_parts_of_a_beat_are_told(void)
     himc_performance_free(p);
 }
 
-// a clock of that tempo, which begins at 0.5 s, by ticks or by the phase of a phasor; returns the
-// strikes and the tempo of the performer
-static double follow(double bpm, bool phase, heard *h)
+// a clock of that tempo, which begins at 0.5 s, by ticks or by the phase of a phasor, and a
+// performer who plays from `play_at` (ms) on; returns the strikes and the tempo of the performer
+static double follow(double bpm, bool phase, int play_at, heard *h)
 {
     himc_performance *p = four_timpani();
     double tick = 60 / bpm / 24;
@@ -410,8 +436,8 @@ static double follow(double bpm, bool phase, heard *h)
         session_do(p, "stroke %d %s legato mf second", i, i % 2 ? "left" : "right");
     for (int i = 0; i < 48000 * 12 / 48; i++) { // ms by ms
         double t = i * 0.001 - 0.5;
-        if (i == 499)
-            session_do(p, phase ? "play" : "clock start");
+        if (i == play_at)
+            session_do(p, phase || play_at > 499 ? "play" : "clock start");
         if (t >= 0 && phase && i % 3 == 0)
             session_do(p, "clock %.7f", t * bpm / 60 - floor(t * bpm / 60));
         for (; t >= 0 && !phase && ticks * tick <= t; ticks++)
@@ -431,7 +457,7 @@ static void test_tempo_and_beats_follow_a_clock(void)
         double bpm = k < 2 ? 90 : 144;
         bool phase = k % 2;
         heard h = {0};
-        TEST_ASSERT_DOUBLE_WITHIN(0.5, bpm, follow(bpm, phase, &h));
+        TEST_ASSERT_DOUBLE_WITHIN(0.5, bpm, follow(bpm, phase, 499, &h));
         TEST_ASSERT_GREATER_THAN_INT(12, h.strikes);
         for (int i = h.strikes - 8; i < h.strikes; i++) { // on the clock's beats
             double beat = (h.strike[i].time - 0.5) * bpm / 60;
@@ -441,12 +467,24 @@ static void test_tempo_and_beats_follow_a_clock(void)
     }
 }
 
+static void test_a_performer_may_begin_while_a_clock_runs(void)
+{
+    heard h = {0};
+    TEST_ASSERT_DOUBLE_WITHIN(1, 120, follow(120, false, 5200, &h));
+    for (int i = h.strikes - 4; i < h.strikes; i++) { // on the clock's beats
+        double beat = (h.strike[i].time - 0.5) * 2;
+        TEST_ASSERT_DOUBLE_WITHIN(0.03, round(beat), beat);
+    }
+    heard_free(&h);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_note_plays_the_drum_that_sounds_it);
     RUN_TEST(test_a_louder_velocity_is_a_harder_stroke);
     RUN_TEST(test_keys_of_a_kit_are_those_of_general_midi);
+    RUN_TEST(test_a_higher_tom_key_never_sounds_a_larger_tom);
     RUN_TEST(test_a_note_on_a_marimba_lands_on_its_bar);
     RUN_TEST(test_the_end_of_a_note_damps_its_drum_where_that_is_asked_for);
     RUN_TEST(test_a_ramp_of_tempo_is_even_and_strokes_land_on_its_beats);
@@ -458,5 +496,6 @@ int main(void)
     RUN_TEST(test_a_gesture_is_told_before_its_strike);
     RUN_TEST(test_parts_of_a_beat_are_told);
     RUN_TEST(test_tempo_and_beats_follow_a_clock);
+    RUN_TEST(test_a_performer_may_begin_while_a_clock_runs);
     return UNITY_END();
 }

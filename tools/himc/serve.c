@@ -83,7 +83,7 @@ static void play_block(server *s)
     double start = cli_now();
     himc_loader_run(s->loader);
     himc_osc_receive(s->osc, s->performance, COMMANDS_A_BLOCK);
-    himc_performance_read(s->performance, out, 2, BLOCK);
+    himc_performance_read(s->performance, out, s->record ? 2 : 0, BLOCK);
     while (himc_performance_event(s->performance, &event)) {
         himc_osc_event(s->osc, &event);
         if (s->record)

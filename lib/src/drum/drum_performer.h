@@ -74,7 +74,7 @@ HIMC_RT bool himc_drum_kick(himc_drum *drum, int delay, double x, double y, doub
 /// Before a stick in the air strikes there: at a spot beyond the rim it meets hoop, shell or
 /// another stick, and gets that contact's head and place; of a rim shot its shaft will, too.
 HIMC_RT void himc_drum_meet(const himc_drum *drum, himc_spot spot, himc_stick *stick);
-/// Lays a hand on the head `delay` samples from now, until it is silent; or lifts it then.
+/// Lays a hand on the head `delay` >= 0 samples from now, for 0.15 s; or lifts it then.
 HIMC_RT void himc_drum_lay(himc_drum *drum, int delay, bool hand);
 /// Whether a pedal closes it, as a hi-hat.
 HIMC_RT bool himc_drum_hats(const himc_drum *drum);

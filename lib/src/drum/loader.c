@@ -109,7 +109,7 @@ static void hand_over(himc_loader *loader, loader_stage stage)
     wake(loader);
 }
 
-static void free_rings(himc_loader *loader)
+static void free_memory(himc_loader *loader)
 {
     himc_ring_free(&loader->posts);
     himc_ring_free(&loader->refusals);
@@ -123,7 +123,7 @@ himc_loader *himc_loader_new(himc_error *error)
         return NULL;
     if (!himc_ring_init(&loader->posts, sizeof(waiting_post), HIMC_LOADER_POSTS) ||
         !himc_ring_init(&loader->refusals, sizeof(himc_error), REFUSALS)) {
-        free_rings(loader);
+        free_memory(loader);
         himc_error_set(error, "loader: out of memory");
         return NULL;
     }
@@ -158,7 +158,7 @@ void himc_loader_free(himc_loader *loader)
     pthread_cond_destroy(&loader->work);
     pthread_cond_destroy(&loader->done);
     pthread_mutex_destroy(&loader->lock);
-    free_rings(loader);
+    free_memory(loader);
 }
 
 // the first command is carried out, or refused; tells it, and what was dropped, after the last
@@ -250,11 +250,12 @@ static void tell_poster(void *user, const char *why)
     himc_ring_push(&loader->refusals);
 }
 
-// at most SHORT_AT_ONCE of the posted commands, as far as there is room for those that wait
+// at most SHORT_AT_ONCE of the posted commands, while none waits: it may make the next one's drum
 static void take_posts(himc_loader *loader)
 {
     const waiting_post *post;
-    for (int i = 0; i < SHORT_AT_ONCE && loader->count < WAITING_LOADS &&
+    bool head = false; // one change of a head takes as long as all others
+    for (int i = 0; i < SHORT_AT_ONCE && loader->count == 0 && !head &&
                     (post = himc_ring_peek(&loader->posts));
          i++) {
         himc_error why;
@@ -262,6 +263,7 @@ static void take_posts(himc_loader *loader)
             .performance = post->performance, .done = tell_poster, .user = loader};
         if (!himc_loader_command(loader, &target, &post->command, &why))
             tell_poster(loader, why.text);
+        head = himc_command_table((int)post->command.id)->marks & HIMC_CHANGES_HEAD;
         himc_ring_pop(&loader->posts);
     }
 }

@@ -82,7 +82,7 @@ HIMC_RT void himc_wires_rest(himc_wires *wires, const double *displacement);
 /// The head has been moved between two steps: they keep their compression.
 HIMC_RT void himc_wires_follow(himc_wires *wires, const double *displacement);
 /// A step of length `h` (s) in which the head alone would come there: the changes `b` of the
-/// compressions (m).
+/// compressions (m); `pull` > 0 (m/s^2).
 HIMC_RT void himc_wires_begin(const himc_wires *wires, const double *displacement, double pull,
                               double h, double *b);
 /// Finds the forces, beginning with those of the last step; `g` are the head's compliances (m/N).

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum how { BY_HAND, BY_FOOT, CLOSED, OPENED, PEDALLED };
@@ -148,6 +149,14 @@ void himc_midi_join(midi_part *part)
     }
 }
 
+double himc_midi_split_size(char *made)
+{
+    char *end = made + strcspn(made, " ");
+    double size = atof(end);
+    *end = '\0';
+    return size;
+}
+
 // what a set-up makes of that name, and where; false if it has none
 static bool find(const char *setup, midi_head *head)
 {
@@ -164,7 +173,7 @@ static bool find(const char *setup, midi_head *head)
     return true;
 }
 
-// the instrument of a set-up with that name, or else the first of the same kind, and its place
+// the instrument of a set-up with that name, or else that of its kind nearest in size; its place
 static bool find_own(const himc_score *setup, midi_head *head)
 {
     midi_head usual = *head;
@@ -172,15 +181,22 @@ static bool find_own(const himc_score *setup, midi_head *head)
     double *place[] = {&head->x, &head->y, &head->z, &head->tilt};
     if (!find(himc_setup_kit, &usual) && !find(himc_setup_around, &usual))
         return false;
-    usual.made[strcspn(usual.made, " ")] = '\0'; // without a size
-    for (int named = 1; named >= 0 && !own; named--)
-        for (int i = 0; i < setup->line_count && !own; i++) {
-            const himc_command *c = &setup->lines[i].command;
-            int word = named ? 0 : 1;
-            if (c->id == HIMC_COMMAND_INSTRUMENT && !setup->lines[i].drum[0] &&
-                strcmp(c->atom[word].symbol, named ? head->name : usual.made) == 0)
-                own = c->atom[0].symbol;
+    double inches = himc_midi_split_size(usual.made), least = HUGE_VAL;
+    for (int i = 0; i < setup->line_count; i++) {
+        const himc_command *c = &setup->lines[i].command;
+        if (c->id != HIMC_COMMAND_INSTRUMENT || setup->lines[i].drum[0])
+            continue;
+        bool named = strcmp(c->atom[0].symbol, head->name) == 0,
+             alike = strcmp(c->atom[1].symbol, usual.made) == 0;
+        double size = c->count > 2 ? c->atom[2].number : inches, away = named ? -1
+                                                                        : alike
+                                                                            ? fabs(size - inches)
+                                                                            : HUGE_VAL;
+        if (away < least) {
+            least = away;
+            own = c->atom[0].symbol;
         }
+    }
     if (!own)
         return false;
     head->name = own;

@@ -128,6 +128,8 @@ bool himc_midi_tune(midi_part *part, himc_error *error);
 
 /// kit.c: gives each stroke of the drum channel its instrument.
 void himc_midi_kit(midi_part *part);
+/// Cuts "tom 14" to "tom" and returns 14 (inches); 0 without a size.
+double himc_midi_split_size(char *made);
 /// What the report says of a key of the drum channel, "" if it is played as written; returns its
 /// notes.
 int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);

@@ -65,13 +65,13 @@ static bool is_yes(const xml_node *node, const char *attribute)
     return himc_xml_has(node, attribute, "yes");
 }
 
-// by the names first, then by the MIDI instrument
 // a whole number, within limits that no score reaches
 static int whole(const xml_node *node, const char *name, int otherwise)
 {
     return (int)lround(fmin(fmax(himc_xml_number(node, name, otherwise), -1000), 1000));
 }
 
+// by the names first, then by the MIDI instrument
 static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
 {
     instrument *made = &r->instrument[r->instruments++];

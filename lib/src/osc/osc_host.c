@@ -310,7 +310,7 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
         himc_performance_describe(performance, HIMC_DESCRIBE_VALUES, answer_value, &asked);
         good = asked.found || himc_error_set(&error,
                                              "get: WHAT: %s, expected a setting, tempo, "
-                                             "beat, state or drums",
+                                             "beat, state, drums, loop, room, listener or mute",
                                              asked.what);
     } else if (id == HIMC_COMMAND_DUMP) {
         h->dump = (osc_dump){

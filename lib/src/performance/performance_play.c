@@ -276,8 +276,8 @@ static double key_distance(himc_drum *drum, int key, char part[HIMC_PART_SIZE])
     return least;
 }
 
-// the instrument of a key of General MIDI's drum channel, of that name or else of that kind, and
-// its stroke; -1: there is none
+// the instrument of a key of General MIDI's drum channel, of that name or else of its kind the one
+// nearest in size, and its stroke; -1: there is none
 static int kit_drum(const performance_drums *drums, int key, himc_stroke *stroke, midi_stroke *note)
 {
     midi_part kit = {.choice = MIDI_DRUMS, .stroke = note, .count = 1};
@@ -286,13 +286,17 @@ static int kit_drum(const performance_drums *drums, int key, himc_stroke *stroke
     if (note->head < 0)
         return -1;
     midi_head *head = &kit.head[note->head];
-    head->made[strcspn(head->made, " ")] = '\0'; // its kind, without a size
-    int found = himc_drums_find(drums, head->name);
-    for (int i = 0; i < drums->count && found < 0; i++) {
+    double inches = himc_midi_split_size(head->made), least = INFINITY;
+    int named = himc_drums_find(drums, head->name), found = named;
+    for (int i = 0; i < drums->count && named < 0; i++) {
         const himc_shape *s =
             &himc_membrane_config_of(himc_drum_membrane(drums->slot[i].drum))->shape;
         const char *kind = s->body ? s->body->name : s->shell ? s->shell->name : "";
-        found = strcmp(kind, head->made) == 0 ? i : -1;
+        double away = fabs(himc_drum_inches(drums->slot[i].drum) - inches);
+        if (strcmp(kind, head->made) == 0 && away < least) {
+            least = away;
+            found = i;
+        }
     }
     stroke->spot = note->spot;
     stroke->hand = note->foot ? HIMC_FOOT : HIMC_HAND_ANY;
@@ -395,7 +399,7 @@ static bool see_clock(himc_performance *p, double t, bool absolute, himc_error *
     if (!known)
         return true;
     double ahead = himc_planner_beat(p->motion->planner, t) < 0 ? 0 : s->beat - total_beat(p, t);
-    if (!absolute)
+    if (!absolute || fabs(ahead) > 1) // it began elsewhere: the same place in a beat
         ahead -= round(ahead);
     double bpm = 60 * beats / seconds * (1 + fmin(fmax(ahead, -0.5), 0.5)),
            now = himc_planner_bpm(p->motion->planner, t);

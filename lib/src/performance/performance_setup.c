@@ -83,7 +83,7 @@ static void begin(himc_performance *p, const made_parts *parts)
     himc_text_clear(&p->written.score);
     himc_text_clear(&p->written.units);
     p->written.dynamics.count = 0;
-    p->sync = (performance_sync){.count = 0};
+    p->sync = (performance_sync){.beat = -1.0 / SYNC_TICKS}; // the first tick is beat 0
     p->motion = parts->motion;
     p->body = parts->body;
     himc_body_account(p->body, p->host.on_motion != NULL);

@@ -332,7 +332,7 @@ def round_trip(program, score, folder):
 
 
 def evaluate(program, seconds, path):
-    """A row of the table, or None if the file has no such part."""
+    """A row of the table."""
     with tempfile.TemporaryDirectory() as folder:
         is_midi = path.lower().endswith(".mid")
         notes = midi_notes(path) if is_midi else xml_notes(path)
@@ -436,9 +436,8 @@ def main():
     rows = []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for row in pool.map(lambda path: evaluate(program, seconds, path), listed(folder, names, word)):
-            if row:
-                show(row)
-                rows.append(row)
+            show(row)
+            rows.append(row)
     levels = [e for row in rows for e in row["level"]]
     print("files %d notes %d playable %d F1 %s of-all %s loudness_db %.2f" % (
         len(rows), sum(r["notes"] for r in rows), sum(r["asked"] for r in rows),
