@@ -58,7 +58,8 @@ typedef struct t_drum_link {
 /* True if a drum can have that name: to [himc~] a message that begins with it is for the drum. */
 static inline bool drum_name_check(const char *name, himc_error *error)
 {
-    static const char *const own[] = {"comment", "save", "state", "dsp", "list"};
+    static const char *const own[] = {"comment", "save", "state", "dsp",
+                                      "list",    "head", "pose",  "bang"};
     himc_command drum;
     himc_atom word = {HIMC_ATOM_SYMBOL, 0, name};
     bool taken = himc_command_find(HIMC_PERFORMER, name) != NULL;

@@ -277,7 +277,9 @@ static bool himc_tilde_waits(t_himc *x, const himc_command *command)
     t_atom atom[3];
     SETFLOAT(atom, -1);
     SETSYMBOL(atom + 1, gensym(note ? "any" : command->atom[0].symbol));
-    SETSYMBOL(atom + 2, gensym(hit->drum[0] || !drum ? hit->drum : himc_drum_name(drum)));
+    SETSYMBOL(atom + 2, gensym(note                    ? "any"
+                               : hit->drum[0] || !drum ? hit->drum
+                                                       : himc_drum_name(drum)));
     outlet_anything(x->x_messages, gensym("missed"), 3, atom);
     return true;
 }
@@ -287,8 +289,8 @@ static bool himc_tilde_waits(t_himc *x, const himc_command *command)
 static t_symbol *himc_tilde_midi(t_himc *x, int *argc, t_atom **argv, t_atom own[2])
 {
     enum { TICK = 248, START = 250, CONTINUE, STOP, LAST = 255 };
-    int byte = (int)(*argv)->a_w.w_float;
-    if (byte < TICK || byte > LAST) {
+    t_float byte = (*argv)->a_w.w_float;
+    if (*argc > 1 || !(byte >= TICK && byte <= LAST)) {
         own[0] = **argv;
         SETFLOAT(own + 1, x->x_velocity);
         *argv = *argc == 1 ? own : *argv;

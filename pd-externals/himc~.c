@@ -47,11 +47,12 @@ static void himc_tilde_follow(t_himc *x)
         clock_delay(x->x_clock, 0);
 }
 
-/* The phasor of the last inlet at the block's beginning; without one it is 0 all the time. */
+/* The phasor of the last inlet at the block's end, which the performer has been brought to; without
+one it is 0 all the time. */
 static void himc_tilde_sync(t_himc *x)
 {
     himc_command clock = {.id = HIMC_COMMAND_CLOCK, .count = 1};
-    double phase = *x->x_phasor;
+    double phase = x->x_phasor[x->x_stream.s_length - 1];
     if (phase == x->x_led || !(phase >= 0 && phase <= 1))
         return;
     x->x_led = phase;
@@ -59,7 +60,7 @@ static void himc_tilde_sync(t_himc *x)
     himc_performance_command(x->x_performance, &clock, 0, NULL);
 }
 
-/* Phase of the beat, even over the block; a jump is one. */
+/* Phase of the beat, interpolated over the block; a jump of half a beat or more is not. */
 static void himc_tilde_phase(t_himc *x)
 {
     double beat = fmax(himc_performance_measure(x->x_performance).beat, 0);
@@ -79,9 +80,9 @@ static t_int *himc_tilde_perform(t_int *w)
     t_stream *s = &x->x_stream;
     watch_begin();
     himc_tilde_follow(x);
-    himc_tilde_sync(x);
     stream_begin(s, himc_performance_time(x->x_performance));
     himc_tilde_advance(&x->x_player, s->s_count + (uint64_t)s->s_length);
+    himc_tilde_sync(x);
     for (int hand = 0; hand < HIMC_HANDS; hand++)
         for (int i = 0; i < s->s_length; i++)
             x->x_out[hand][i] = (t_sample)x->x_force[hand][(s->s_count + (uint64_t)i) % FORCE_RING];

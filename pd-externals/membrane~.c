@@ -577,7 +577,7 @@ static bool membrane_is_named(const t_membrane *x, t_symbol *s, int argc, const 
         return false;
     const char *word = argv->a_w.w_symbol->s_name;
     return !himc_command_find(HIMC_DRUM, s->s_name) || himc_command_find(HIMC_DRUM, word) ||
-           strcmp(word, "save") == 0;
+           strcmp(word, "save") == 0 || strcmp(word, "head") == 0;
 }
 
 /* head ARRAY: the head's displacement now (m) along its diameter, from the performer's side on. */

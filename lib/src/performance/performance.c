@@ -127,7 +127,7 @@ static void tell_gestures(himc_performance *p, double t)
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_source_stroke s = himc_motion_stroke(p->motion, &p->drums, (himc_hand)hand, t);
         double *told = &p->motion->prepared[hand];
-        if (!s.any || t < s.time - s.lead || t > s.time || s.time < *told + MOVED)
+        if (!s.any || t < s.time - s.lead || t > s.time || fabs(s.time - *told) < MOVED)
             continue;
         *told = s.time;
         himc_events_prepare(&p->events, s.time, (himc_hand)hand,

@@ -277,7 +277,7 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     }
     if (becomes(p, command, delay, &other, &can, error))
         return can && ((!other.drum[0] && !other.stroke.drum[0]) ||
-                        himc_performance_command(p, &other, delay, error));
+                       himc_performance_command(p, &other, delay, error));
     if (row->receiver != HIMC_PERFORMER)
         return himc_error_set(error, "a drum's command, not the performer's");
     bool on_beat = command->id == HIMC_COMMAND_TEMPO && command->count > 1; // and it allocates
@@ -290,7 +290,8 @@ bool himc_performance_command(himc_performance *p, const himc_command *command, 
     // drums for waiting commands are made now, not in the audio callback
     int index;
     bool hits = command->id == HIMC_COMMAND_HIT;
-    if ((hits || command->id == HIMC_COMMAND_PLAY) &&
+    bool starts = command->id == HIMC_COMMAND_CLOCK && command->form != 0;
+    if ((hits || starts || command->id == HIMC_COMMAND_PLAY) &&
         !himc_performance_ensure_drum(p, hits ? command->stroke.drum : "",
                                       hits ? command->stroke.spot : HIMC_SPOT_NORMAL, &index,
                                       error))

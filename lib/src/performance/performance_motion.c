@@ -775,6 +775,15 @@ double himc_motion_beat(performance_motion *m, double t)
     return begun ? (double)whole / m->subdivide : -1;
 }
 
+void himc_motion_subdivide(performance_motion *m, double parts, double t)
+{
+    bool begun = m->last_beat >= 0, other = parts != m->subdivide;
+    m->subdivide = parts;
+    if (other && begun)
+        m->last_beat = whole_beat(m, t);
+    himc_motion_stir(m);
+}
+
 bool himc_motion_done(performance_motion *m, double t)
 {
     if (!is_over(m, t))

@@ -196,6 +196,8 @@ HIMC_RT double himc_motion_score_beat(const performance_motion *motion, double t
 HIMC_RT void himc_motion_stir(performance_motion *motion);
 /// The beat, or the part of one, that has begun at `t` since the last call, or -1.
 HIMC_RT double himc_motion_beat(performance_motion *motion, double t);
+/// From `t` on so many parts of a beat are reported; the one that runs has been.
+HIMC_RT void himc_motion_subdivide(performance_motion *motion, double parts, double t);
 /// True once everything has been played at `t`.
 HIMC_RT bool himc_motion_done(performance_motion *motion, double t);
 

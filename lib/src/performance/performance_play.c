@@ -309,10 +309,11 @@ static int find_key(const himc_performance *p, int key, himc_stroke *stroke, mid
                     himc_error *error)
 {
     const performance_drums *drums = &p->drums;
-    char part[HIMC_PART_SIZE] = "", nearest[HIMC_PART_SIZE] = "";
+    char part[HIMC_PART_SIZE], nearest[HIMC_PART_SIZE] = "";
     double least = INFINITY;
     int found = drums->count == 1 ? 0 : -1;
     for (int i = 0; i < drums->count; i++) {
+        part[0] = '\0';
         double way = key_distance(drums->slot[i].drum, key, part);
         if (way < least) {
             least = way;
@@ -365,7 +366,7 @@ bool himc_performance_note(himc_performance *p, const himc_command *c, int delay
 
 bool himc_performance_set_tempo(himc_performance *p, double bpm, himc_error *error)
 {
-    if (!himc_check_range("tempo", bpm, 1, 1000, "beats per minute", error))
+    if (!himc_check_range("tempo", bpm, HIMC_BPM_MIN, HIMC_BPM_MAX, "beats per minute", error))
         return false;
     himc_planner_tempo(p->motion->planner, step_time(p), bpm);
     himc_motion_replan(p->motion);
@@ -426,9 +427,15 @@ bool himc_performance_clock(himc_performance *p, const himc_command *c, himc_err
         return see_clock(p, t, false, error);
     }
     if (c->choice[0] == STOP) {
+        s->halt = s->beat;
         himc_performance_stop(p);
         return true;
     }
+    if (c->choice[0] == CONTINUE && !isnan(s->halt)) { // ticks in between do not count
+        s->beat = s->halt;
+        s->count = 0;
+    }
+    s->halt = NAN;
     if (c->choice[0] == START) {
         s->beat = -1.0 / SYNC_TICKS; // the next tick is beat 0
         s->count = 0;

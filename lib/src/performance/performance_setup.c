@@ -83,7 +83,8 @@ static void begin(himc_performance *p, const made_parts *parts)
     himc_text_clear(&p->written.score);
     himc_text_clear(&p->written.units);
     p->written.dynamics.count = 0;
-    p->sync = (performance_sync){.beat = -1.0 / SYNC_TICKS}; // the first tick is beat 0
+    p->sync =
+        (performance_sync){.beat = -1.0 / SYNC_TICKS, .halt = NAN}; // the first tick is beat 0
     p->motion = parts->motion;
     p->body = parts->body;
     himc_body_account(p->body, p->host.on_motion != NULL);
@@ -168,7 +169,7 @@ void himc_performance_adopt(himc_performance *p, const performance_settings *s)
 {
     const himc_controller *controller = &p->body->controller;
     p->settings = *s;
-    p->motion->subdivide = s->subdivide;
+    himc_motion_subdivide(p->motion, s->subdivide, step_time(p));
     // the gains of the joints as they were asked for, for this body
     for (int j = 0; j < HIMC_JOINTS; j++) {
         const asked_gain *asked = &s->gain[j];

@@ -64,6 +64,7 @@ typedef struct performance_written {
 /// The clock that tempo and beat follow.
 typedef struct performance_sync {
     double beat; ///< of it
+    double halt; ///< its beat when it was stopped, NAN: it was not
     struct {
         double time, beat; ///< (s, beats)
     } seen[SYNC_TICKS];    ///< a ring of the last `count`

@@ -370,7 +370,11 @@ void himc_planner_follow_ramp(himc_planner *planner)
     int steps = himc_score_ramp_steps(&ramp);
     if (steps == 0)
         return;
-    double done = (total_beat(&planner->score, planner->now) - ramp.beat) / ramp.length;
+    double beat = total_beat(&planner->score, planner->now),
+           past = ramp.length * fmax(planner->ramp_steps - 1, 0) / steps;
+    if (beat < ramp.beat + past) // after `seek` it goes on from what has been reached
+        planner->ramp.beat = ramp.beat = beat - past;
+    double done = (beat - ramp.beat) / ramp.length;
     int now = planner->score.playing ? (int)fmin(floor(done * steps), steps) : steps;
     if (now < planner->ramp_steps)
         return;
@@ -642,7 +646,7 @@ void himc_planner_loop(himc_planner *planner, double t, bool on)
 void himc_planner_tempo(himc_planner *planner, double t, double bpm)
 {
     planner_score *score = &planner->score;
-    if (!isfinite(t) || !(bpm >= 1 && bpm <= 1000))
+    if (!isfinite(t) || !(bpm >= HIMC_BPM_MIN && bpm <= HIMC_BPM_MAX))
         return;
     double beat = himc_planner_score_beat_at(score, t);
     planner->ramp.length = 0;
