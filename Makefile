@@ -527,8 +527,10 @@ $(BUILD)/himc.html: $(PAGE_MAKER) $(BUILD)/page/engine.wasm $(PAGE_PIECES)
 # their changes come. The samples are the same; what is copied for an edit is a third.
 PAGE_ROOM := -DHIMC_DRUM_RING=1024 -DHIMC_EARS_LINE=8192 -DHIMC_ROOM_LINE=3424 -DMOST_SPARES=1
 # clang-16 runs Debian's wasm-opt, if that is installed, without SIMD, and fails: hence -O0
-$(BUILD)/page/engine.wasm: $(TABLE) FORCE
-	$(Q)tools/build/page.sh $(BUILD)/page/parts
+$(BUILD)/page/parts/parts.o: tools/build/page.sh
+	$(Q)$< $(@D)
+
+$(BUILD)/page/engine.wasm: $(TABLE) $(BUILD)/page/parts/parts.o FORCE
 	+$(Q)$(MAKE) page-here BUILD=$(BUILD)/page CC="clang-16 --target=wasm32-wasi" CXX="clang++-16 --target=wasm32-wasi -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1" \
 	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -DHIMC_NO_SNDFILE $(PAGE_ROOM) -D_WASI_EMULATED_GETPID -isystem $(abspath $(BUILD))/page/parts/include" ARCH= SANITIZE= CFLAGS="-msimd128 -mbulk-memory -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
 	    LDFLAGS="-O0 -Wl,-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table

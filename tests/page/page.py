@@ -5,12 +5,13 @@ No test depends on the speed of the machine: each waits for what must come.
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 
 sys.path.insert(0, "tests/viewer")
 import report
-from browser import Browser
+from browser import Browser, Firefox
 
 BUILD, MADE = os.environ["HIMC_BUILD"], os.environ["HIMC_MADE"]
 PAGE = os.path.abspath(os.path.join(BUILD, "himc.html"))
@@ -431,6 +432,49 @@ def test_reload_second_tab_and_crash_lose_no_edit():
     browser.call("DELETE", browser.session + "/window")
     browser.call("POST", browser.session + "/window", {"handle": first})
     browser.run("localStorage.clear()")
+
+
+# the colours of a drawing at places in the scene: his chest and the middle of a head
+DRAWN = """
+const [one] = viewer.performers.values(), [drum] = viewer.drums.values(), { view, stage } = viewer,
+    at = [one.figure.place(1, [0, 0, 0.2]), drum.head.getWorldPosition(one.figure.place(1, [0, 0, 0]))];
+viewer.held = true;
+viewer.actions.camera("front"), view.settle(), viewer.step(1);
+return at.map(p => {
+    p.project(view.camera);
+    const { width, height } = stage.renderer.domElement;
+    return [...stage.renderer.pen.getImageData(((p.x + 1) * width) / 2, ((1 - p.y) * height) / 2, 1, 1).data].slice(0, 3);
+});
+"""
+
+
+def test_firefox_plays_and_edits_without_webgl_too():
+    """Without a graphics card it has no WebGL: a drawing takes the picture's place, and one line says so."""
+    global browser
+    if not shutil.which("firefox-esr"):
+        raise report.Ignored("no Firefox")
+    chromium, browser = browser, Firefox(800, 600)
+    try:
+        open_page()
+        flat = browser.run("return viewer.stage.flat")
+        said = browser.run("return viewer.studio.said.filter(s => s.text.includes('WebGL')).length")
+        assert said == flat, said
+        click("p-play")
+        struck = [s["time"] for s in strikes(4)]
+        assert struck == sorted(struck) and struck[0] < struck[3], struck
+        if flat:
+            shirt, head = browser.run(DRAWN)
+            assert shirt[2] > shirt[0] + 20 and min(head) > 150, (shirt, head)  # blue; parchment
+        browser.run("viewer.resume()")
+        open_editor()
+        words = change(4, 0.83)
+        open_page()
+        open_editor()
+        assert choose(4) == words
+    finally:
+        browser.close()
+        browser = chromium
+    return "a drawing" if flat else "with WebGL"
 
 
 if __name__ == "__main__":
