@@ -246,6 +246,10 @@ test-long: deps ## all tests at full length, and those too slow for every day
 check-long: all units $(MEASURE) $(WATCH) $(PAGE) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
+axe: ## axe-core of npm: with it the page's tests look for what shuts people out
+	@mkdir -p $(BUILD)/axe
+	@cd $(BUILD)/axe && npm pack --silent axe-core@4.10.3 && tar -xzf axe-core-4.10.3.tgz --strip-components=1 package/axe.min.js
+
 test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
 	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
 
