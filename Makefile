@@ -246,6 +246,10 @@ test-long: deps ## all tests at full length, and those too slow for every day
 check-long: all units $(MEASURE) $(WATCH) $(PAGE) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
 	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
 
+axe: ## axe-core of npm: with it the page's tests look for what shuts people out
+	@mkdir -p $(BUILD)/axe
+	@cd $(BUILD)/axe && npm pack --silent axe-core@4.10.3 && tar -xzf axe-core-4.10.3.tgz --strip-components=1 package/axe.min.js
+
 test-asan: deps ## the tests in C, and the viewer's, under the address and undefined behaviour sanitizers
 	@$(MAKE) check-asan BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
 
@@ -527,8 +531,10 @@ $(BUILD)/himc.html: $(PAGE_MAKER) $(BUILD)/page/engine.wasm $(PAGE_PIECES)
 # their changes come. The samples are the same; what is copied for an edit is a third.
 PAGE_ROOM := -DHIMC_DRUM_RING=1024 -DHIMC_EARS_LINE=8192 -DHIMC_ROOM_LINE=3424 -DMOST_SPARES=1
 # clang-16 runs Debian's wasm-opt, if that is installed, without SIMD, and fails: hence -O0
-$(BUILD)/page/engine.wasm: $(TABLE) FORCE
-	$(Q)tools/build/page.sh $(BUILD)/page/parts
+$(BUILD)/page/parts/parts.o: tools/build/page.sh
+	$(Q)$< $(@D)
+
+$(BUILD)/page/engine.wasm: $(TABLE) $(BUILD)/page/parts/parts.o FORCE
 	+$(Q)$(MAKE) page-here BUILD=$(BUILD)/page CC="clang-16 --target=wasm32-wasi" CXX="clang++-16 --target=wasm32-wasi -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1" \
 	    ROOMS="$(filter-out osc,$(ROOMS))" CPPFLAGS="-DHIMC_NO_ODE -DHIMC_NO_SNDFILE $(PAGE_ROOM) -D_WASI_EMULATED_GETPID -isystem $(abspath $(BUILD))/page/parts/include" ARCH= SANITIZE= CFLAGS="-msimd128 -mbulk-memory -fno-pic -fno-exceptions -g0 -Wno-unused-command-line-argument" \
 	    LDFLAGS="-O0 -Wl,-O3 -mexec-model=reactor -Wl,-z,stack-size=1048576 -Wl,--strip-all" TABLE=$(BUILD)/tools/research/skeleton/table

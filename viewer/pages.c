@@ -34,6 +34,7 @@
     SCRIPT(FILE, strike)                                                   \
     SCRIPT(FILE, support)                                                  \
     SCRIPT(FILE, stage)                                                    \
+    SCRIPT(FILE, sketch)                                                   \
     SCRIPT(FILE, camera)                                                   \
     SCRIPT(FILE, rows)                                                     \
     SCRIPT(FILE, scene)                                                    \

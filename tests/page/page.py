@@ -5,12 +5,13 @@ No test depends on the speed of the machine: each waits for what must come.
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 
 sys.path.insert(0, "tests/viewer")
 import report
-from browser import Browser
+from browser import Browser, Firefox
 
 BUILD, MADE = os.environ["HIMC_BUILD"], os.environ["HIMC_MADE"]
 PAGE = os.path.abspath(os.path.join(BUILD, "himc.html"))
@@ -431,6 +432,166 @@ def test_reload_second_tab_and_crash_lose_no_edit():
     browser.call("DELETE", browser.session + "/window")
     browser.call("POST", browser.session + "/window", {"handle": first})
     browser.run("localStorage.clear()")
+
+
+TAB, ENTER, RIGHT = "\ue004", "\ue007", "\ue014"  # keys, as WebDriver has them
+
+
+def press(*keys):
+    down = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+    browser.call("POST", browser.session + "/actions", {"actions": [{"type": "key", "id": "keys", "actions": down}]})
+
+
+def go_to(name):
+    """By the tab key alone."""
+    for _ in range(80):
+        if browser.run("return document.activeElement.id") == name:
+            return
+        press(TAB)
+    raise AssertionError(f"the tab key does not come to {name}")
+
+
+def test_keys_alone_play_and_edit():
+    browser.resize(1280, 720)
+    open_page()
+    go_to("p-play")
+    press(ENTER)
+    strikes(2)
+    go_to("p-edit")
+    press(ENTER)
+    assert browser.wait("return viewer.editor?.piece.sound?.arrived > 5")
+    go_to("pause")
+    browser.run("viewer.playback.play(false); viewer.editor.heard.length = 0")
+    go_to("timeline")
+    press(ENTER)
+    before = browser.run("return viewer.editor.chosen.statement.words")
+    go_to("e-dynamic")
+    press(RIGHT)
+    assert browser.wait("return viewer.editor.heard.length"), browser.run("return document.getElementById('note').textContent")
+    assert browser.run("return viewer.editor.chosen.statement.words") != before
+    go_to("e-undo")
+    press(ENTER)
+    assert browser.wait("return viewer.editor.chosen.statement.words === arguments[0]".replace("arguments[0]", json.dumps(before)))
+    go_to("live")
+    press(ENTER)
+    assert browser.wait("return !viewer.playback")
+    browser.resize(800, 600)
+    browser.run("localStorage.clear()")
+
+
+# what of the inspector of a chosen stroke is not seen, or cut, or under something else
+UNSEEN = """
+const sheet = document.getElementById("edit").getBoundingClientRect(), found = [];
+for (const e of document.querySelectorAll("#edit :is(button, input, select, output)")) {
+    const { left, right, top, bottom, width } = e.getBoundingClientRect(), name = e.id || e.textContent;
+    if (!width || e.closest("details")) continue;
+    if (left < sheet.left || right > sheet.right || top < sheet.top || bottom > sheet.bottom) found.push(`${name} is beyond the sheet`);
+    if (e.type === "number" && e.scrollWidth > e.clientWidth) found.push(`${name} is cut`);
+    const over = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+    if (over !== e && !e.contains(over) && !over?.contains(e)) found.push(`${name} is under ${over?.id}`);
+}
+return found;
+"""
+
+
+def test_each_size_of_screen_shows_the_whole_inspector_of_a_stroke():
+    try:
+        for size in ((390, 844), (844, 390), (1280, 720)):
+            browser.resize(*size)
+            open_page()
+            open_editor()
+            choose(4)
+            assert browser.wait("return document.getElementById('e-x').value")
+            found = browser.run(UNSEEN)
+            assert not found, (size, found)
+    finally:
+        browser.resize(800, 600)
+        browser.run("localStorage.clear()")
+
+
+# serious and critical faults by axe-core's rules
+FAULTS = """
+document.querySelectorAll("details").forEach(d => (d.open = true));
+return axe.run(document).then(({ violations }) => violations.filter(v => ["serious", "critical"].includes(v.impact))
+    .map(v => `${v.help}: ${v.nodes.map(n => n.target.join(" ")).join(", ")}`));
+"""
+
+
+def test_axe_core_finds_no_serious_fault():
+    """Playing, with the sheet of keys, and editing, on three sizes of screen in both colour schemes."""
+    try:
+        with open(os.path.join(BUILD, "axe", "axe.min.js")) as file:
+            axe = file.read()
+    except OSError:
+        raise report.Ignored("make axe brings axe-core, from npm") from None
+    found = {}
+
+    def look(*where):
+        browser.run(axe)
+        if faults := browser.run(FAULTS):
+            found[where] = faults
+
+    try:
+        for size in ((390, 844), (844, 390), (1280, 720)):
+            for scheme in ("dark", "light"):
+                browser.resize(*size)
+                browser.media(prefers_color_scheme=scheme)
+                open_page()
+                look(size, scheme, "play")
+                browser.run("document.body.classList.add('open', 'help')")
+                look(size, scheme, "keys")
+                browser.run("document.body.classList.remove('open', 'help')")
+                open_editor()
+                choose(4)
+                look(size, scheme, "edit")
+    finally:
+        browser.resize(800, 600)
+        browser.media()
+        browser.run("localStorage.clear()")
+    assert not found, found
+
+
+# the colours of a drawing at places in the scene: his chest and the middle of a head
+DRAWN = """
+const [one] = viewer.performers.values(), [drum] = viewer.drums.values(), { view, stage } = viewer,
+    at = [one.figure.place(1, [0, 0, 0.2]), drum.head.getWorldPosition(one.figure.place(1, [0, 0, 0]))];
+viewer.held = true;
+viewer.actions.camera("front"), view.settle(), viewer.step(1);
+return at.map(p => {
+    p.project(view.camera);
+    const { width, height } = stage.renderer.domElement;
+    return [...stage.renderer.pen.getImageData(((p.x + 1) * width) / 2, ((1 - p.y) * height) / 2, 1, 1).data].slice(0, 3);
+});
+"""
+
+
+def test_firefox_plays_and_edits_without_webgl_too():
+    """Without a graphics card it has no WebGL: a drawing takes the picture's place, and one line says so."""
+    global browser
+    if not shutil.which("firefox-esr"):
+        raise report.Ignored("no Firefox")
+    chromium, browser = browser, Firefox(800, 600)
+    try:
+        open_page()
+        flat = browser.run("return viewer.stage.flat")
+        said = browser.run("return viewer.studio.said.filter(s => s.text.includes('WebGL')).length")
+        assert said == flat, said
+        click("p-play")
+        struck = [s["time"] for s in strikes(4)]
+        assert struck == sorted(struck) and struck[0] < struck[3], struck
+        if flat:
+            shirt, head = browser.run(DRAWN)
+            assert shirt[2] > shirt[0] + 20 and min(head) > 150, (shirt, head)  # blue; parchment
+        browser.run("viewer.resume()")
+        open_editor()
+        words = change(4, 0.83)
+        open_page()
+        open_editor()
+        assert choose(4) == words
+    finally:
+        browser.close()
+        browser = chromium
+    return "a drawing" if flat else "with WebGL"
 
 
 if __name__ == "__main__":

@@ -1853,18 +1853,30 @@ def test_a_shared_page_plays_from_the_disk():
     return f"{said}, sound {off:.1f} ms off, {size * 60 / seconds / 1e6:.2f} MB a minute"
 
 
-def test_a_browser_without_webgl_is_told_so():
-    """The shared page says what is missing; it does not ask for a performer."""
+def test_a_browser_without_webgl_shows_a_drawing_and_says_so():
+    """The shared page plays; it does not ask for a performer."""
     html = os.path.join(MADE, "shared.html")
     if not os.path.exists(html):
         raise report.Ignored("no page was shared")
     plain = Browser(480, 480, ["--disable-3d-apis"])
     try:
         plain.open("file://" + os.path.abspath(html))
-        said = plain.wait("return document.getElementById('lost').innerText", 30)
+        said = plain.wait("return document.getElementById('note').innerText", 30)
         assert "WebGL" in said, said
+        assert plain.wait("return viewer.playback && viewer.joints()", 60), plain.log()
         shown = "return getComputedStyle(document.getElementById(arguments[0])).display"
-        assert plain.run(shown, "wait") == "none" and plain.run(shown, "lost") != "none"
+        assert plain.run(shown, "wait") == "none" and plain.run(shown, "lost") == "none"
+        plain.run("viewer.held = true; viewer.playback.play(false)")
+        pictures = [
+            plain.run(
+                "viewer.playback.seek(arguments[0]); viewer.step(1);"
+                "return viewer.stage.renderer.domElement.toDataURL()",
+                at,
+            )
+            for at in (1000, 1000, 7000)
+        ]
+        assert pictures[0] == pictures[1] != pictures[2]
+        assert not plain.log(), plain.log()
     finally:
         plain.close()
 

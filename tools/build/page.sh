@@ -5,7 +5,6 @@ set -eu
 tools=$(cd "${0%/*}" && pwd)
 mkdir -p "$1"
 cd "$1"
-[ ! -e parts.o ] || exit 0
 . "$tools/cross.sh"
 unpack expat
 unpack zlib

@@ -310,7 +310,7 @@ export const shirts = [
     "#8f543c",
     "#525b66",
 ];
-const COLORS = { skin: "#a98e7c", hair: "#2a211c", lips: "#9c7768", trousers: "#2b2f38", shoes: "#17181c" };
+export const COLORS = { skin: "#a98e7c", hair: "#2a211c", lips: "#9c7768", trousers: "#2b2f38", shoes: "#17181c" };
 
 let model; // geometry, the same for all performers
 function sharedModel() {

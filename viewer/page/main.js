@@ -130,6 +130,8 @@ const actions = {
     },
 };
 const panel = new Panel(actions);
+const FLAT = "no WebGL in this browser: the picture is a plain drawing, all else is as ever";
+if (stage.flat) (Object.assign(stage.renderer, { performers, drums }), panel.note(FLAT));
 
 function attempt(f) {
     try {
@@ -606,7 +608,7 @@ const shownDrums = () => [...drums.values()].filter(d => d.group.visible);
 // a page of `himc share` brings its scene, that of `make page` a performer; any other asks the program that
 // serves it
 if (window.himcFiles) {
-    if (stage.software) (stage.simplify(4), stage.resize(view)); // the performer needs the processor, too
+    if (stage.software && !stage.flat) (stage.simplify(4), stage.resize(view)); // the performer needs the processor, too
     studio = new Studio(window.himcFiles, sound, liveSound, {
         frame: live,
         fresh: () => (forget(), panel.forget()),
@@ -618,7 +620,7 @@ if (window.himcFiles) {
         ray: e => view.ray(e),
         scene: async file => play(new Uint8Array(await file.arrayBuffer()), file.name),
     });
-    if (stage.step) studio.tell("no graphics card: drawn with fewer points, one light and no shadows");
+    if (stage.software) studio.tell(stage.flat ? FLAT : "no graphics card: drawn with fewer points, one light and no shadows");
 } else if (window.himcScene) {
     document.body.classList.add("shared");
     play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));

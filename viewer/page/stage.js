@@ -2,6 +2,7 @@
 // by eye.
 import * as THREE from "./three.js";
 import { rgb, picture } from "./color.js";
+import { Sketch } from "./sketch.js";
 
 const LATE_FRAME = 28, // (ms); chosen: below 36 frames/s motion is visibly uneven
     LATE_FRAMES = 40, // before a step; chosen: about a second, so that one pause changes nothing
@@ -146,16 +147,9 @@ function curtain() {
     );
 }
 
-// without WebGL nothing can be shown, and the page says so
 function makeRenderer(canvas) {
-    try {
-        return new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: false });
-    } catch (error) {
-        document.body.classList.add("lost");
-        document.getElementById("lost").textContent =
-            "This browser has no WebGL, which the picture needs: turn its hardware acceleration on, or use another browser.";
-        throw error;
-    }
+    const context = canvas.getContext("webgl", { alpha: false, antialias: true });
+    return context ? new THREE.WebGLRenderer({ canvas, context }) : new Sketch(canvas);
 }
 
 export class Stage {
@@ -170,7 +164,8 @@ export class Stage {
         renderer.toneMappingExposure = 1.05;
         renderer.physicallyCorrectLights = true;
         this.scene = new THREE.Scene();
-        this.environment = environment(renderer);
+        this.flat = renderer instanceof Sketch; // a drawing
+        this.environment = this.flat ? null : environment(renderer);
         this.lights();
         this.floor();
         this.scene.background = rgb("#0a0707");
@@ -233,6 +228,7 @@ export class Stage {
 
     // true where no graphics card draws
     get software() {
+        if (this.flat) return true;
         const gl = this.renderer.getContext(),
             info = gl.getExtension("WEBGL_debug_renderer_info");
         return !!info && /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));

@@ -28,7 +28,7 @@ const LANES = [
         { name: "beats", share: 12 },
         { name: "strokes", share: 30 },
         { name: "height", share: 22 },
-        { name: "force", share: 14 },
+        { name: "force", share: 14, least: 100 },
         { name: "sound", share: 22 },
     ],
     MORE = [
@@ -244,7 +244,7 @@ export class Timeline {
     get shown() {
         const sits = this.playback?.scene.sits,
             fits = ({ sits: needed, least = 0 }) => (sits || !needed) && this.canvas.clientHeight >= least;
-        return this.all ? MORE.filter(fits) : LANES;
+        return (this.all ? MORE : LANES).filter(fits);
     }
 
     redraw(w, h, ratio) {
@@ -281,7 +281,7 @@ export class Timeline {
                 .find(s => (s / span) * w > 70);
         c.fillStyle = "rgba(255,255,255,0.7)";
         for (let t = Math.ceil(from / step) * step; t <= to; t += step)
-            c.fillText(`${(t / 1000).toFixed(digits(step))} s`, this.x(t) + 3, h - 4);
+            c.fillText(`${(t / 1000).toFixed(digits(step))} s`, this.x(t) + 3, Math.max(10, h - 4));
         const apart = scene.beats.length > 1 ? (this.playback.length / scene.beats.length / span) * w : w;
         c.fillStyle = "rgba(255,255,255,0.13)";
         for (const b of scene.beats)
