@@ -36,11 +36,11 @@ def lesson(score, take, *options):
     return done.returncode, done.stdout, done.stderr
 
 
-def judged(fault, rate, seed, short=0):
-    planted = lesson_takes.make(path("take.csv"), fault, rate, seed, short)
+def judged(fault, rate, seed, short=0, body=False):
+    planted = lesson_takes.make(path("take.csv"), fault, rate, seed, short, body)
     score = path("short.txt", lesson_takes.exercise(short)[0]) if short else SCORE
     status, out, err = lesson(score, path("take.csv"), "--json", "--up", "z", "--csv", path("strokes.csv"))
-    assert status == 0, err
+    assert status == 0, (fault, rate, seed, short, err)
     return planted, json.loads(out)
 
 
@@ -87,6 +87,20 @@ def test_faults_of_short_exercises_are_named():
             false.append((case, [f["what"] for f in told["faults"]]))
     assert len(unnamed) <= 0.05 * len(cases if LONG else cases[::12]) and len(false) <= 0.02 * len(nothing), (unnamed, false)
     return f"{len(unnamed)} unnamed, {len(false)} of {len(nothing)} invented {unnamed} {false}"
+
+
+def test_a_high_elbow_of_a_whole_body_is_named():
+    cases = [(rate, seed) for rate in RATES for seed in range(FIRST_SEED, FIRST_SEED + 8)]
+    unnamed, false = [], []
+    for case in cases if LONG else cases[8:9]:
+        planted, told = judged("high elbow", *case, short=16, body=True)
+        if not lesson_takes.is_named(planted, told["faults"]):
+            unnamed.append((case, planted, [f["what"] for f in told["faults"]]))
+        told = judged("none", *case, short=16, body=True)[1]
+        if told["faults"]:
+            false.append((case, [f["what"] for f in told["faults"]]))
+    assert len(unnamed) <= 0.05 * len(cases) and not false, (unnamed, false)
+    return f"{len(unnamed)} unnamed, {len(false)} invented {unnamed} {false}"
 
 
 def test_times_are_those_of_the_take():

@@ -156,7 +156,8 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
                              .level = NAN,
                              .aside = {NAN, NAN, NAN},
                              .share = {NAN, NAN, NAN, NAN},
-                             .torque = {NAN, NAN, NAN}};
+                             .torque = {NAN, NAN, NAN},
+                             .raised = NAN};
         follow_tip(l, &tips[p->strike.hand], from[p->strike.hand], p);
         from[p->strike.hand] = p->strike.frame;
     }

@@ -49,7 +49,9 @@ static const column columns[] = {
     {"trunk_share", NULL, "Trunk's (%)", AT(share[3]), 100, 0, ""},
     {"shoulder_torque_n_m", NULL, "Largest torque, shoulder (N m)", AT(torque[0]), 1, 1, ""},
     {"elbow_torque_n_m", NULL, "elbow (N m)", AT(torque[1]), 1, 1, ""},
-    {"wrist_torque_n_m", NULL, "wrist (N m)", AT(torque[2]), 1, 1, ""}};
+    {"wrist_torque_n_m", NULL, "wrist (N m)", AT(torque[2]), 1, 1, ""},
+    {"upper_arm_deg", NULL, "Upper arm at the stroke, from hanging (°)", AT(raised), 1, 0,
+     "strained beyond 45° (RULA)"}};
 #define COLUMNS (int)(sizeof columns / sizeof *columns)
 
 static double number(const lesson_played *p, const column *c)
@@ -279,7 +281,8 @@ static void put_hands(const lesson *l, FILE *out)
           out);
     for (const column *c = columns; c < columns + COLUMNS; c++) {
         double mean[HIMC_HANDS];
-        if (!c->mean || (c->at >= AT(share) && !l->body) || (c->at >= AT(torque) && !l->torques))
+        if (!c->mean || (c->at >= AT(share) && !l->body) ||
+            (c->at >= AT(torque) && c->at < AT(raised) && !l->torques))
             continue;
         fprintf(out, "<tr><td>%s", c->mean);
         bool left = put_mean(l, c, 0, &mean[0], out), right = put_mean(l, c, 1, &mean[1], out);
