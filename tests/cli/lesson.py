@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import re
 import subprocess
@@ -10,6 +11,7 @@ import tempfile
 
 import lesson_takes
 import report
+import scene
 
 HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
 SHARED = os.environ.get("HIMC_SHARED", "../shared")
@@ -132,6 +134,27 @@ def test_page_needs_nothing_else():
     assert len(page) < 4e6 and page.count("<svg") > 4 and "viewport" in page
     assert not re.search(r"https?:|<script|<link|src=|url\(|@import", page)
     assert "class=bad" in page and "missing" in page
+
+
+def test_the_model_plays_beside_the_take_in_its_body():
+    lesson_takes.make(path("take.csv"), "pause", 120, FIRST_SEED, 16, True)
+    status, _, err = lesson(path("short.txt", lesson_takes.exercise(16)[0]), path("take.csv"), "--up", "z", "--scene", path("ghost.himc"), "--csv", path("strokes.csv"))
+    assert status == 0, err
+    with open(path("ghost.himc"), "rb") as file:
+        take = scene.Scene(file.read())
+    with open(path("strokes.csv")) as file:
+        rows = [row for row in csv.DictReader(file) if row["state"] == "played"]
+    model = take.more[0]
+    strikes = [e for e in model.of("strike") if e["beat"] is not None]
+    worst = max(abs(e["time"] - 1 - float(row["played_s"]) + float(row["off_beat_s"])) for e, row in zip(strikes, rows))
+    assert len(strikes) == len(rows) == len(take.of("strike")) == 16 and worst < 0.003, (strikes, worst)  # a scene begins a second before its take
+    bodies = [{s["name"]: s["origin"] for s in shown.of("body")[-1]["segments"]} for shown in (take, model)]
+    assert all(math.dist(bodies[0][name], bodies[1][name]) < 1e-4 for name in bodies[0]), bodies
+    assert abs(math.hypot(*bodies[1]["left-forearm"]) - lesson_takes.ARM["EJC"]) < 0.005  # the player's own, not the usual one
+    assert take.of("drum")[-1]["place"] == model.of("drum")[-1]["place"]
+    with open(path("page.html")) as file:
+        assert "himc share" in file.read()
+    refused("expected", path("short.txt"), path("take.csv"), "--scene", path("ghost.txt"))
 
 
 def test_same_take_gives_the_same_page():

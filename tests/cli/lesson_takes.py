@@ -207,7 +207,7 @@ def arm(shoulder, tip, pitch, swivel, side):
     along = (a * a - b * b + far * far) / (2 * far)
     aside = math.sqrt(a * a - along * along)
     hanging = unit(add([0, 0, -1], line, line[2]))
-    outwards = unit([side * x for x in (hanging[1] * line[2] - hanging[2] * line[1], hanging[2] * line[0] - hanging[0] * line[2], hanging[0] * line[1] - hanging[1] * line[0])])
+    outwards = unit([-side * x for x in (hanging[1] * line[2] - hanging[2] * line[1], hanging[2] * line[0] - hanging[0] * line[2], hanging[0] * line[1] - hanging[1] * line[0])])
     elbow = add(add(add(shoulder, line, along), hanging, aside * math.cos(swivel)), outwards, aside * math.sin(swivel))
     return elbow, wrist, grip
 

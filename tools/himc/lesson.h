@@ -74,7 +74,7 @@ typedef struct lesson_fault {
 } lesson_fault;
 
 typedef struct lesson {
-    const char *score, *take;
+    const char *score, *take, *scene; ///< names; NULL: no scene
     lesson_asked *asked;
     int asked_count, missing;
     int due; ///< asked of the hands that the take shows
@@ -111,6 +111,10 @@ void lesson_fault_explain(lesson_fault *f, double spread, const char *unit, cons
 void lesson_scatter(const lesson *l, double *seconds, double *decibels);
 /// Shares of the joints, wrist and torques, of takes that show whole arms.
 void lesson_body(lesson *l, himc_take *take, const himc_take_options *options);
+
+/// A scene of the take, and as its ghost the model, which plays the score in the player's body on
+/// the player's beat.
+bool lesson_scene(const lesson *l, const himc_take_options *how, FILE *out, himc_error *error);
 
 /// `l` is a lesson.
 void lesson_page(const void *l, FILE *out);

@@ -130,6 +130,15 @@ static void put_faults(const lesson *l, FILE *out)
         fputs("</li>\n", out);
     }
     fputs("</ol>", out);
+    if (l->scene) {
+        fputs("<p>The model plays these bars in your body, on your beat, as a ghost beside you: "
+              "<code>himc share ",
+              out);
+        put_text(out, l->scene);
+        fputs(
+            " -o ghost.html</code> makes a page of it; in <code>himc-viewer --play</code> the key c puts the two side by side.</p>",
+            out);
+    }
     double seconds, decibels;
     lesson_scatter(l, &seconds, &decibels);
     if (!l->faults)
