@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import re
 import subprocess
@@ -10,6 +11,7 @@ import tempfile
 
 import lesson_takes
 import report
+import scene
 
 HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
 SHARED = os.environ.get("HIMC_SHARED", "../shared")
@@ -36,11 +38,11 @@ def lesson(score, take, *options):
     return done.returncode, done.stdout, done.stderr
 
 
-def judged(fault, rate, seed, short=0):
-    planted = lesson_takes.make(path("take.csv"), fault, rate, seed, short)
+def judged(fault, rate, seed, short=0, body=False):
+    planted = lesson_takes.make(path("take.csv"), fault, rate, seed, short, body)
     score = path("short.txt", lesson_takes.exercise(short)[0]) if short else SCORE
     status, out, err = lesson(score, path("take.csv"), "--json", "--up", "z", "--csv", path("strokes.csv"))
-    assert status == 0, err
+    assert status == 0, (fault, rate, seed, short, err)
     return planted, json.loads(out)
 
 
@@ -89,6 +91,20 @@ def test_faults_of_short_exercises_are_named():
     return f"{len(unnamed)} unnamed, {len(false)} of {len(nothing)} invented {unnamed} {false}"
 
 
+def test_a_high_elbow_of_a_whole_body_is_named():
+    cases = [(rate, seed) for rate in RATES for seed in range(FIRST_SEED, FIRST_SEED + 8)]
+    unnamed, false = [], []
+    for case in cases if LONG else cases[8:9]:
+        planted, told = judged("high elbow", *case, short=16, body=True)
+        if not lesson_takes.is_named(planted, told["faults"]):
+            unnamed.append((case, planted, [f["what"] for f in told["faults"]]))
+        told = judged("none", *case, short=16, body=True)[1]
+        if told["faults"]:
+            false.append((case, [f["what"] for f in told["faults"]]))
+    assert len(unnamed) <= 0.05 * len(cases) and not false, (unnamed, false)
+    return f"{len(unnamed)} unnamed, {len(false)} invented {unnamed} {false}"
+
+
 def test_times_are_those_of_the_take():
     strikes, _ = lesson_takes.plan(lesson_takes.score()[1], "none", lesson_takes.random.Random("none 250 0"))
     judged("none", 250, 0)
@@ -118,6 +134,27 @@ def test_page_needs_nothing_else():
     assert len(page) < 4e6 and page.count("<svg") > 4 and "viewport" in page
     assert not re.search(r"https?:|<script|<link|src=|url\(|@import", page)
     assert "class=bad" in page and "missing" in page
+
+
+def test_the_model_plays_beside_the_take_in_its_body():
+    lesson_takes.make(path("take.csv"), "pause", 120, FIRST_SEED, 16, True)
+    status, _, err = lesson(path("short.txt", lesson_takes.exercise(16)[0]), path("take.csv"), "--up", "z", "--scene", path("ghost.himc"), "--csv", path("strokes.csv"))
+    assert status == 0, err
+    with open(path("ghost.himc"), "rb") as file:
+        take = scene.Scene(file.read())
+    with open(path("strokes.csv")) as file:
+        rows = [row for row in csv.DictReader(file) if row["state"] == "played"]
+    model = take.more[0]
+    strikes = [e for e in model.of("strike") if e["beat"] is not None]
+    worst = max(abs(e["time"] - 1 - float(row["played_s"]) + float(row["off_beat_s"])) for e, row in zip(strikes, rows))
+    assert len(strikes) == len(rows) == len(take.of("strike")) == 16 and worst < 0.003, (strikes, worst)  # a scene begins a second before its take
+    bodies = [{s["name"]: s["origin"] for s in shown.of("body")[-1]["segments"]} for shown in (take, model)]
+    assert all(math.dist(bodies[0][name], bodies[1][name]) < 1e-4 for name in bodies[0]), bodies
+    assert abs(math.hypot(*bodies[1]["left-forearm"]) - lesson_takes.ARM["EJC"]) < 0.005  # the player's own, not the usual one
+    assert take.of("drum")[-1]["place"] == model.of("drum")[-1]["place"]
+    with open(path("page.html")) as file:
+        assert "himc share" in file.read()
+    refused("expected", path("short.txt"), path("take.csv"), "--scene", path("ghost.txt"))
 
 
 def test_same_take_gives_the_same_page():

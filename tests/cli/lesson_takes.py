@@ -114,8 +114,8 @@ def plan_short(strokes, fault, draw):
             shift -= 0.7 * beat  # hesitates, then goes on
             continue
         t = start + shift + beat * s["beat"] * (1 + (0.035 * s["beat"] / strokes[-1]["beat"] if "drag" in fault else 0))
-        t += draw.gauss(0, 0.06 if fault == "uneven" else 0.006) + (0.03 if "late" in fault and hand == "right" else 0)
-        speed = 2.9 * 10 ** (draw.gauss(0, 6 if fault == "loudness" else 0.9) / 20)
+        t += draw.gauss(0, 0.045 if fault == "uneven" else 0.006) + (0.03 if "late" in fault and hand == "right" else 0)
+        speed = 2.9 * 10 ** (draw.gauss(0, 5 if fault == "loudness" else 0.9) / 20)
         strikes[hand].append((t, max(speed, 0.8), BASE["normal"] + draw.gauss(0, 0.007), (0.015 if hand == "left" else -0.015) + draw.gauss(0, 0.006)))
     return {hand: sorted(list_) for hand, list_ in strikes.items()}, planted
 
@@ -183,6 +183,70 @@ def write(path, strikes, rate, draw, noise=0.0003):
             print(",".join(f"{v:.6f}" for v in row), file=file)
 
 
+ARM = {"SJC": None, "EJC": 0.29, "WJC": 0.26, "Grip": 0.11}  # lengths to the joint centre before it (m)
+
+
+def add(a, b, scale=1.0):
+    return [x + scale * y for x, y in zip(a, b)]
+
+
+def unit(a):
+    return [x / math.sqrt(sum(y * y for y in a)) for x in a]
+
+
+def arm(shoulder, tip, pitch, swivel, side):
+    """Elbow, wrist and grip of a seated player's arm: the stick falls towards the tip by `pitch` (rad), hand and stick are in line, and the elbow
+    is turned outwards by `swivel` (rad) from where it hangs."""
+    back = [-math.cos(pitch), 0, math.sin(pitch)]
+    grip = add(tip, back, 0.26)
+    wrist = add(grip, back, ARM["Grip"])
+    reach = add(wrist, shoulder, -1)
+    far = math.sqrt(sum(x * x for x in reach))
+    line = [x / far for x in reach]
+    a, b = ARM["EJC"], ARM["WJC"]
+    along = (a * a - b * b + far * far) / (2 * far)
+    aside = math.sqrt(a * a - along * along)
+    hanging = unit(add([0, 0, -1], line, line[2]))
+    outwards = unit([-side * x for x in (hanging[1] * line[2] - hanging[2] * line[1], hanging[2] * line[0] - hanging[0] * line[2], hanging[0] * line[1] - hanging[1] * line[0])])
+    elbow = add(add(add(shoulder, line, along), hanging, aside * math.cos(swivel)), outwards, aside * math.sin(swivel))
+    return elbow, wrist, grip
+
+
+def raised(shoulder, elbow):
+    """of an upper arm, from hanging (degrees)"""
+    return math.degrees(math.acos((shoulder[2] - elbow[2]) / ARM["EJC"]))
+
+
+def write_body(path, strikes, high, rate, draw, noise=0.001):
+    """A CSV of a seated player's joint centres and tips, z up; `high` are the hands with a raised elbow. Returns how far each upper arm is raised."""
+    origin = [draw.uniform(-0.5, 0.5), draw.uniform(-0.5, 0.5), draw.uniform(0.7, 0.8)]
+    fixed = {"MidHip": (-0.75, 0, -0.09), "Neck": (-0.72, 0, 0.44), "Head": (-0.7, 0, 0.51)}
+    last, phase = max(s[-1][0] for s in strikes.values()) + 0.8, draw.random() / rate
+    rows, angle = [[k / rate] for k in range(int(last * rate))], {}
+    names = [f"{name}_{axis}_m" for name in fixed for axis in "xyz"]
+    for row in rows:
+        row += [a + o + draw.gauss(0, noise) for x in fixed.values() for a, o in zip(x, origin)]
+    for hand in HANDS:
+        side, tip = (1 if hand == "left" else -1), Tip(strikes[hand])
+        shoulder = [-0.72, 0.18 * side, 0.4]
+        at = [BASE["normal"], 0.015 * side, 0]
+        swivel, wanted = 0.0, draw.uniform(60, 75) if hand in high else draw.uniform(15, 33)
+        while raised(shoulder, arm(shoulder, at, 0.2, swivel, side)[0]) < wanted:
+            swivel += 0.005
+        angle[hand] = wanted
+        names += [f"{hand[0].upper()}{name}_{axis}_m" for name in (*ARM, "TIP") for axis in "xyz"]
+        for row in rows:
+            x = list(tip.at(row[0] + phase))
+            points = arm(shoulder, x, 0.2 - 1.2 * x[2], swivel, side)
+            for point in (shoulder, *points, x):
+                row += [a + o + draw.gauss(0, noise if point is not x else 0.0003) for a, o in zip(point, origin)]
+    with open(path, "w") as file:
+        print("time," + ",".join(names), file=file)
+        for row in rows:
+            print(",".join(f"{v:.5f}" for v in row), file=file)
+    return angle
+
+
 def is_named(planted, faults):
     """True if one of the three faults named first is the planted one."""
     fault = planted["fault"]
@@ -207,13 +271,20 @@ def is_named(planted, faults):
             return True
         if kind == "even" and {"uneven": "in time", "loudness": "in loudness"}.get(fault, "-") in what:
             return True
+        if fault == "high elbow" and kind == "elbow" and planted["hand"] in what:
+            return abs(effect - planted["raised"]) < 5
         if fault == "drag late" and kind == "time" and "right behind the left" in what and abs(abs(effect) - 30) < 10:
             return True
     return False
 
 
-def make(path, fault, rate, seed, short=0):
+def make(path, fault, rate, seed, short=0, body=False):
     draw = random.Random(f"{fault} {rate} {seed}")
     strikes, planted = plan_short(exercise(short)[1], fault, draw) if short else plan(score()[1], fault, draw)
-    write(path, strikes, rate, draw)
+    if body:
+        planted["hand"] = draw.choice(HANDS)
+        angle = write_body(path, strikes, [planted["hand"]] if fault == "high elbow" else [], rate, draw)
+        planted["raised"] = angle[planted["hand"]]
+    else:
+        write(path, strikes, rate, draw)
     return planted

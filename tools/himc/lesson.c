@@ -156,7 +156,8 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
                              .level = NAN,
                              .aside = {NAN, NAN, NAN},
                              .share = {NAN, NAN, NAN, NAN},
-                             .torque = {NAN, NAN, NAN}};
+                             .torque = {NAN, NAN, NAN},
+                             .raised = NAN};
         follow_tip(l, &tips[p->strike.hand], from[p->strike.hand], p);
         from[p->strike.hand] = p->strike.frame;
     }
@@ -170,10 +171,12 @@ static bool hear(lesson *l, himc_take *take, const himc_take_options *options, h
            (l->count || himc_error_set(error, "%s: no strikes found in the tips", l->take));
 }
 
-enum { OUT, CSV, JSON, TAKE };
+enum { OUT, CSV, SCENE, JSON, TAKE };
 static const cli_option options[] = {
     {"output", 'o', "PAGE.html", "the page; needs no server and no network"},
     {"csv", 0, "F.csv", "a row for each stroke: asked, played, missing"},
+    {"scene", 0, "F.himc",
+     "the take and, as a ghost in the same body, the model that plays the score"},
     {"json", 0, NULL, "figures and faults as one JSON object on standard output"},
     CLI_TAKE_OPTIONS,
     {0},
@@ -207,6 +210,20 @@ static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *
     return good;
 }
 
+static bool write_scene(const lesson *l, const cli_arguments *arguments, himc_error *error)
+{
+    himc_take_options how;
+    cli_file file = {0};
+    if (!l->scene)
+        return true;
+    bool good = cli_take_options(l->take, arguments->value + TAKE, &how, error) &&
+                cli_file_open(&file, l->scene, error) &&
+                lesson_scene(l, &how, file.stream, error) && cli_file_close(&file, error) &&
+                cli_file_keep(&file, error);
+    cli_file_drop(&file);
+    return good;
+}
+
 static void tell(const lesson *l)
 {
     double seconds, decibels;
@@ -229,12 +246,14 @@ static int run(const cli_arguments *arguments)
     if (good) {
         l->score = cli_input(arguments->operand, &error);
         l->take = arguments->second;
-        const char *const files[] = {l->score, l->take, value[OUT]};
+        l->scene = value[SCENE];
+        const char *const files[] = {l->score, l->take, value[OUT], value[CSV]};
         good = l->score && cli_ending_is("-o", value[OUT], ".html", &error) &&
                cli_ending_is("--csv", value[CSV], ".csv", &error) &&
+               cli_ending_is("--scene", l->scene, ".himc", &error) &&
                cli_apart(value[OUT], files, 2, &error) && cli_apart(value[CSV], files, 3, &error) &&
-               read_sources(l, arguments, &error) &&
-               cli_write(value[OUT], lesson_page, l, &error) &&
+               cli_apart(l->scene, files, 4, &error) && read_sources(l, arguments, &error) &&
+               write_scene(l, arguments, &error) && cli_write(value[OUT], lesson_page, l, &error) &&
                cli_write(value[CSV], lesson_csv, l, &error);
     }
     bool piped = cli_is_standard(value[OUT]) || cli_is_standard(value[CSV]);

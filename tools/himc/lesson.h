@@ -43,6 +43,7 @@ typedef struct lesson_played {
     double height, path;    ///< of the tip before the stroke; length of the fall's path (m)
     double share[LESSON_LIMBS]; ///< of the fall, by each joint; NaN without a full arm
     double torque[3];           ///< largest, of shoulder, elbow, wrist (N m); NaN likewise
+    double raised;              ///< upper arm at the stroke, from hanging (degrees); NaN likewise
 } lesson_played;
 
 /// A roll of the score, or a run of equal fast strokes, and its evenness in the take.
@@ -73,7 +74,7 @@ typedef struct lesson_fault {
 } lesson_fault;
 
 typedef struct lesson {
-    const char *score, *take;
+    const char *score, *take, *scene; ///< names; NULL: no scene
     lesson_asked *asked;
     int asked_count, missing;
     int due; ///< asked of the hands that the take shows
@@ -102,10 +103,18 @@ bool lesson_match(lesson *l, himc_error *error);
 /// Time, level and place of each stroke, rolls, and the faults, the largest first. False: no
 /// memory.
 bool lesson_judge(lesson *l, himc_error *error);
+/// A fault, if it is beyond its threshold by more than `bound` u; its text is empty. Else NULL.
+lesson_fault *lesson_fault_add(lesson *l, const char *kind, double effect, double u, double bound,
+                               double threshold);
+void lesson_fault_explain(lesson_fault *f, double spread, const char *unit, const char *source);
 /// How far strokes are off the beat of the player's own tempo, and off the asked level, RMS.
 void lesson_scatter(const lesson *l, double *seconds, double *decibels);
 /// Shares of the joints, wrist and torques, of takes that show whole arms.
 void lesson_body(lesson *l, himc_take *take, const himc_take_options *options);
+
+/// A scene of the take, and as its ghost the model, which plays the score in the player's body on
+/// the player's beat.
+bool lesson_scene(const lesson *l, const himc_take_options *how, FILE *out, himc_error *error);
 
 /// `l` is a lesson.
 void lesson_page(const void *l, FILE *out);

@@ -3,14 +3,17 @@
 /// Between two frames of a fall each joint alone is turned from its first to its second rotation;
 /// the way that the tip then goes down is its share. Torques and work are those of the take played
 /// in mode `id`. The wrist is bent where hand and forearm are more than 15 degrees out of line,
-/// beyond which RULA (McAtamney and Corlett 1993) counts a wrist posture as strained.
-#include "lesson.h"
+/// beyond which RULA (McAtamney and Corlett 1993) counts a wrist posture as strained. An elbow is
+/// high where the upper arm is more than RULA's 45 degrees from hanging at the strokes of a hand.
+#include "lesson_beat.h"
 
 #include "cli.h"
 
 #include <math.h>
 
-#define BENT 0.966 // cos 15 degrees
+#define BENT 0.966      // cos 15 degrees
+#define RAISED 45.0     // (degrees)
+#define CENTRES_OFF 3.0 // (degrees) chosen: 15 mm of joint centres, over an upper arm
 
 // group of a joint: its index in an arm, the grip with the wrist, all else with the trunk
 static int limb_of(himc_hand hand, int joint)
@@ -50,6 +53,40 @@ static double bent_share(const himc_player *player, const himc_skeleton *skeleto
                                                skeleton->segment[wrist + 1].axis),
                               skeleton->segment[himc_arm_joint(hand, 1) + 1].axis) < BENT;
     return (double)bent / player->frames;
+}
+
+static double raised(const himc_player *player, const himc_skeleton *skeleton,
+                     const lesson_played *p)
+{
+    int upper = himc_arm_joint(p->strike.hand, 0) + 1, fore = himc_arm_joint(p->strike.hand, 1) + 1;
+    himc_body_state b;
+    himc_pose_to_state(skeleton, &player->pose[p->strike.frame], NULL, &b);
+    himc_vec3 arm = himc_vec3_sub(b.origin[fore], b.origin[upper]);
+    return acos(-arm.z / himc_vec3_length(arm)) * 180 / HIMC_PI;
+}
+
+static void judge_elbow(lesson *l, himc_hand hand)
+{
+    double n = 0, mean = 0, ss = 0;
+    for (const lesson_played *p = l->played; p < l->played + l->count; p++)
+        if (p->strike.hand == hand && isfinite(p->raised)) {
+            double d = p->raised - mean;
+            mean += d / ++n;
+            ss += d * (p->raised - mean);
+        }
+    double sd = n > 1 ? sqrt(ss / (n - 1)) : 0;
+    lesson_fault *f = n < LESSON_FEWEST
+                          ? NULL
+                          : lesson_fault_add(l, "elbow", mean, hypot(sd / sqrt(n), CENTRES_OFF),
+                                             LESSON_SURE, RAISED);
+    if (!f)
+        return;
+    snprintf(
+        f->what, sizeof f->what,
+        "The %s elbow is high: at the strokes the upper arm is raised %.0f degrees from hanging",
+        himc_hand_name(hand), mean);
+    snprintf(f->how, sizeof f->how, "mean of %.0f strokes", n);
+    lesson_fault_explain(f, sd, "degrees", "strained beyond 45: RULA, McAtamney and Corlett 1993");
 }
 
 static void keep_torques(void *user, const himc_motion_row *row)
@@ -111,8 +148,11 @@ void lesson_body(lesson *l, himc_take *take, const himc_take_options *options)
     for (int i = 0; i < l->count && l->body; i++)
         if (arm[l->played[i].strike.hand]) {
             share_fall(&l->played[i], player, &skeleton);
+            l->played[i].raised = raised(player, &skeleton, &l->played[i]);
             count[l->played[i].strike.hand]++;
         }
+    for (int h = 0; h < HIMC_HANDS; h++)
+        judge_elbow(l, (himc_hand)h);
     l->torques = l->body && play_take(l, take, player, options);
     for (int h = 0; h < HIMC_HANDS; h++)
         l->work[h] = l->torques && count[h] ? l->work[h] / count[h] : NAN;

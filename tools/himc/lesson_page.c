@@ -49,7 +49,9 @@ static const column columns[] = {
     {"trunk_share", NULL, "Trunk's (%)", AT(share[3]), 100, 0, ""},
     {"shoulder_torque_n_m", NULL, "Largest torque, shoulder (N m)", AT(torque[0]), 1, 1, ""},
     {"elbow_torque_n_m", NULL, "elbow (N m)", AT(torque[1]), 1, 1, ""},
-    {"wrist_torque_n_m", NULL, "wrist (N m)", AT(torque[2]), 1, 1, ""}};
+    {"wrist_torque_n_m", NULL, "wrist (N m)", AT(torque[2]), 1, 1, ""},
+    {"upper_arm_deg", NULL, "Upper arm at the stroke, from hanging (°)", AT(raised), 1, 0,
+     "strained beyond 45° (RULA)"}};
 #define COLUMNS (int)(sizeof columns / sizeof *columns)
 
 static double number(const lesson_played *p, const column *c)
@@ -128,6 +130,15 @@ static void put_faults(const lesson *l, FILE *out)
         fputs("</li>\n", out);
     }
     fputs("</ol>", out);
+    if (l->scene) {
+        fputs("<p>The model plays these bars in your body, on your beat, as a ghost beside you: "
+              "<code>himc share ",
+              out);
+        put_text(out, l->scene);
+        fputs(
+            " -o ghost.html</code> makes a page of it; in <code>himc-viewer --play</code> the key c puts the two side by side.</p>",
+            out);
+    }
     double seconds, decibels;
     lesson_scatter(l, &seconds, &decibels);
     if (!l->faults)
@@ -279,7 +290,8 @@ static void put_hands(const lesson *l, FILE *out)
           out);
     for (const column *c = columns; c < columns + COLUMNS; c++) {
         double mean[HIMC_HANDS];
-        if (!c->mean || (c->at >= AT(share) && !l->body) || (c->at >= AT(torque) && !l->torques))
+        if (!c->mean || (c->at >= AT(share) && !l->body) ||
+            (c->at >= AT(torque) && c->at < AT(raised) && !l->torques))
             continue;
         fprintf(out, "<tr><td>%s", c->mean);
         bool left = put_mean(l, c, 0, &mean[0], out), right = put_mean(l, c, 1, &mean[1], out);

@@ -1,0 +1,271 @@
+/// lesson_beat.c: the player's own beat: waits, phrases left out, a tempo that changes.
+///
+/// The beat is a robust local line through the strokes' times (LOWESS, Cleveland 1979), begun again
+/// after each wait.
+#include "lesson_beat.h"
+
+#include "base/order.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WINDOW 16 // chosen: strokes of the local line
+#define PHRASE 3  // chosen: so many missing strokes in a row are a phrase left out
+
+#define JND_SHARE 0.025 // of the interval
+const char lesson_time_source[] =
+    "listeners notice 6 ms, or 2.5 % of intervals above 240 ms: Friberg and Sundberg 1995";
+const char lesson_none_source[] =
+    "a stroke too few or too many is always heard; no threshold is published";
+#define JND_TEMPO 2.0 // (%)
+static const char tempo_source[] =
+    "listeners notice a drift of about 2 %, several studies cited by Dahl and Madison 2005";
+
+double lesson_jnd(double interval)
+{
+    return fmax(LESSON_JND_TIME, JND_SHARE * interval);
+}
+
+double lesson_median(double *x, int n)
+{
+    qsort(x, (size_t)n, sizeof *x, himc_order_doubles);
+    return n ? 0.5 * (x[n / 2] + x[(n - 1) / 2]) : 0;
+}
+
+double lesson_spread(const lesson_course *c, const double *x)
+{
+    for (int k = 0; k < c->n; k++)
+        c->scratch[k] = fabs(x[k]);
+    return 1.4826 * lesson_median(c->scratch, c->n);
+}
+
+static double bent(const lesson_course *c, double asked)
+{
+    double u = c->bend != 0 ? (asked - c->asked[0]) / c->half - 1 : 0;
+    return c->bend * u * u;
+}
+
+double lesson_beat_at(const lesson_course *c, double asked, int segment)
+{
+    int low = 0, high = c->n;
+    while (c->segment[low] < segment)
+        low++;
+    while (c->segment[high - 1] > segment)
+        high--;
+    int most = high - low < WINDOW ? high - low : WINDOW;
+    while (high - low > most)
+        if (asked - c->asked[low] > c->asked[high - 1] - asked)
+            low++;
+        else
+            high--;
+    double h = 1.1 * fmax(fabs(asked - c->asked[low]), fabs(asked - c->asked[high - 1])) + 1e-3;
+    double s = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (int k = low; k < high; k++) {
+        double d = c->asked[k] - asked, t = fabs(d) / h, w = 1 - t * t * t;
+        w = w * w * w * c->weight[k] + 1e-9;
+        double straight = c->played[k] - bent(c, c->asked[k]);
+        s += w, x += w * d, y += w * straight, xx += w * d * d, xy += w * d * straight;
+    }
+    double det = s * xx - x * x;
+    return bent(c, asked) + (det > 1e-9 * s * s ? (xx * y - x * xy) / det : y / s);
+}
+
+static void find_beat(lesson_course *c)
+{
+    for (int round = 0; round < 4; round++) {
+        for (int k = 0; k < c->n; k++)
+            c->value[0][k] = c->played[k] - lesson_beat_at(c, c->asked[k], c->segment[k]);
+        double six = 4 * lesson_spread(c, c->value[0]) + 1e-4;
+        for (int k = 0; k < c->n; k++) {
+            double r = fmin(1, fabs(c->value[0][k]) / six);
+            c->weight[k] = (1 - r * r) * (1 - r * r);
+        }
+    }
+}
+
+void lesson_fit(const double *x, const double *y, int n, int terms, double p[3], double u[3])
+{
+    double m[3][6] = {{0}}, v[3] = {0}, ss = 0, lag = 0, before = 0;
+    double low = x[0], half = 0.5 * (x[n - 1] - x[0]) + 1e-9;
+    for (int k = 0; k < n; k++) {
+        double t = (x[k] - low) / half - 1, f[3] = {1, t, t * t};
+        for (int i = 0; i < terms; i++) {
+            v[i] += f[i] * y[k];
+            for (int j = 0; j < terms; j++)
+                m[i][j] += f[i] * f[j];
+        }
+    }
+    for (int i = 0; i < terms; i++)
+        m[i][3 + i] = 1;
+    for (int i = 0; i < terms; i++) {
+        double d = m[i][i];
+        for (int j = 0; j < 6; j++)
+            m[i][j] /= d;
+        for (int k = 0; k < terms; k++)
+            for (int j = 5; j >= 0 && k != i; j--)
+                m[k][j] -= m[k][i] * m[i][j];
+    }
+    for (int i = 0; i < terms; i++) {
+        p[i] = 0;
+        for (int j = 0; j < terms; j++)
+            p[i] += m[i][3 + j] * v[j];
+    }
+    for (int k = 0; k < n; k++) {
+        double t = (x[k] - low) / half - 1,
+               r = y[k] - p[0] - t * (p[1] + (terms > 2 ? t * p[2] : 0));
+        ss += r * r, lag += k ? r * before : 0, before = r;
+    }
+    double rho = ss > 0 ? fmin(0.9, fmax(0, lag / ss)) : 0;
+    for (int i = 0; i < terms; i++)
+        u[i] = sqrt(ss / (n > terms ? n - terms : 1) * m[i][3 + i] * (1 + rho) / (1 - rho));
+}
+
+// played over asked intervals, the middle one; over some strokes, as hands may differ
+static double slope_of(const lesson_course *c)
+{
+    int n = 0, lag = c->n < 48 ? 1 + c->n / 12 : 6; // chosen
+    for (int k = lag; k < c->n; k++)
+        if (c->asked[k] - c->asked[k - lag] > 0.04)
+            c->scratch[n++] =
+                (c->played[k] - c->played[k - lag]) / (c->asked[k] - c->asked[k - lag]);
+    return lesson_median(c->scratch, n);
+}
+
+// a phrase left out before matched stroke k is named; true if the beat begins again after it
+static bool left_out(lesson *l, const lesson_course *c, int k, bool jumps)
+{
+    int first = -1, last = -1, count = 0;
+    for (int i = l->played[c->stroke[k - 1]].of + 1; i < l->played[c->stroke[k]].of; i++)
+        if (l->seen[l->asked[i].hand] && l->asked[i].by < 0) {
+            first = first < 0 ? i : first;
+            last = i;
+            count++;
+        }
+    lesson_fault *f = count < PHRASE ? NULL : lesson_fault_add(l, "skip", count, 0, 0, 0.01);
+    if (!f)
+        return false;
+    for (int i = first; i <= last; i++)
+        l->asked[i].skipped = l->asked[i].by < 0;
+    snprintf(f->what, sizeof f->what, "You leave out beats %g to %g: %d strokes",
+             l->asked[first].beat, l->asked[last].beat, count);
+    snprintf(f->how, sizeof f->how, "%s", jumps ? "played on without them" : "their time passes");
+    lesson_fault_explain(f, 0, "strokes", lesson_none_source);
+    f->threshold = 1;
+    return jumps;
+}
+
+/// Waits and jumps: an interval that is too long or too short, and all strokes after it with it.
+static void find_waits(lesson *l, lesson_course *c)
+{
+    double slope = slope_of(c), *e = c->value[0];
+    for (int k = 0; k < c->n; k++)
+        e[k] = k ? c->played[k] - c->played[k - 1] - slope * (c->asked[k] - c->asked[k - 1]) : 0;
+    double own = fmax(lesson_spread(c, e), 0.5 / l->rate);
+    int segment = 0;
+    for (int k = 0; k < c->n; k++) {
+        double before = 0, after = 0;
+        c->segment[k] = segment;
+        if (k && left_out(l, c, k, fabs(e[k]) > 6 * own + 2 * lesson_jnd(c->interval))) {
+            c->segment[k] = ++segment;
+            continue;
+        }
+        if (k < 3 || k + 3 > c->n ||
+            fabs(e[k]) < 6 * own + 2 * lesson_jnd(c->asked[k] - c->asked[k - 1]))
+            continue;
+        for (int i = 1; i <= 3; i++) {
+            before += (c->played[k - i] - c->played[k - 1] -
+                       slope * (c->asked[k - i] - c->asked[k - 1])) /
+                      3;
+            after += (c->played[k + i - 1] - c->played[k - 1] -
+                      slope * (c->asked[k + i - 1] - c->asked[k - 1])) /
+                     3;
+        }
+        if (fabs(after - before - e[k]) > 0.35 * fabs(e[k]) || fabs(before) > 0.3 * fabs(e[k]))
+            continue;
+        c->segment[k] = ++segment;
+        const lesson_asked *a = &l->asked[l->played[c->stroke[k]].of];
+        lesson_fault *f = lesson_fault_add(l, "wait", 1e3 * (after - before), 1e3 * own,
+                                           LESSON_SURE, 1e3 * lesson_jnd(c->interval));
+        if (!f)
+            continue;
+        snprintf(f->what, sizeof f->what,
+                 "You %s before beat %g: the stroke and all after it come %.0f ms %s",
+                 e[k] > 0 ? "wait" : "hurry", a->beat, fabs(f->effect),
+                 e[k] > 0 ? "late" : "early");
+        snprintf(f->how, sizeof f->how, "one interval; bound of three spreads");
+        lesson_fault_explain(f, 1e3 * own, "ms", lesson_time_source);
+    }
+}
+
+/// Mean tempo, the times off a metronome, and rushing or dragging.
+static void judge_tempo(lesson *l, lesson_course *c)
+{
+    double p[3], u[3], jump = 0;
+    double half = 0.5 * (c->asked[c->n - 1] - c->asked[0]) + 1e-9;
+    double *t = c->value[1], slope = slope_of(c);
+    for (int k = 0; k < c->n; k++) {
+        if (k && c->segment[k] > c->segment[k - 1])
+            jump += c->played[k] - c->played[k - 1] - slope * (c->asked[k] - c->asked[k - 1]);
+        t[k] = c->played[k] - jump;
+    }
+    lesson_fit(c->asked, t, c->n, 2, p, u);
+    l->tempo = (lesson_figure){half / p[1], half / p[1] * u[1] / p[1]};
+    for (int k = 0; k < c->n; k++)
+        l->played[c->stroke[k]].steady =
+            t[k] - p[0] - p[1] * ((c->asked[k] - c->asked[0]) / half - 1);
+    if (c->n < 3 * LESSON_FEWEST)
+        return;
+    lesson_fit(c->asked, t, c->n, 3, p, u);
+    double change = 100 * ((p[1] - 2 * p[2]) / (p[1] + 2 * p[2]) - 1), own = 400 * u[2] / p[1];
+    if (fabs(p[2]) > LESSON_SURE * u[2]) { // else the local line follows
+        c->bend = p[2];
+        c->half = half;
+    }
+    lesson_fault *f = lesson_fault_add(l, "tempo", change, own, LESSON_SURE, JND_TEMPO);
+    if (!f)
+        return;
+    snprintf(f->what, sizeof f->what,
+             "You %s: the tempo %s by %.1f %% from the first stroke to the last",
+             change < 0 ? "drag" : "rush", change < 0 ? "falls" : "rises", fabs(change));
+    snprintf(f->how, sizeof f->how, "%d strokes, about the score's own tempo", c->n);
+    lesson_fault_explain(f, own, "%", tempo_source);
+}
+
+bool lesson_course_new(lesson *l, lesson_course *c)
+{
+    size_t n = (size_t)l->asked_count + 1;
+    double *x = malloc(7 * n * sizeof *x);
+    int *k = malloc(2 * n * sizeof *k);
+    *c = (lesson_course){.stroke = k,
+                         .segment = k + n,
+                         .asked = x,
+                         .played = x + n,
+                         .weight = x + 2 * n,
+                         .value = {x + 3 * n, x + 4 * n, x + 5 * n},
+                         .scratch = x + 6 * n};
+    if (!x || !k)
+        return false;
+    for (int i = 0; i < l->asked_count; i++)
+        if (l->asked[i].by >= 0) {
+            c->stroke[c->n] = l->asked[i].by;
+            c->asked[c->n] = l->asked[i].time;
+            c->weight[c->n] = 1;
+            c->played[c->n++] = l->played[l->asked[i].by].strike.time;
+        }
+    int count = 0;
+    for (int i = 1; i < c->n; i++)
+        if (c->asked[i] - c->asked[i - 1] > 0.04)
+            c->scratch[count++] = c->asked[i] - c->asked[i - 1];
+    c->interval = lesson_median(c->scratch, count);
+    find_waits(l, c);
+    judge_tempo(l, c);
+    find_beat(c);
+    return true;
+}
+
+void lesson_course_free(lesson_course *c)
+{
+    free(c->asked);
+    free(c->stroke);
+}
