@@ -121,6 +121,16 @@ wrong test_a_shape_that_is_none_is_named 'kettle shape triangle;' \
 wrong test_the_range_of_this_head_is_told 'kettle tune 900;' '1: kettle: tune: 900 Hz, expected 7.75676 .. 581.205 Hz'
 printf 'stroke 1 right accent f centre;\n' >british.txt
 printf 'stroke 1 right accent f center;\n' >american.txt
+# a piece lasts until its sound is 80 dB down, or 60 if that takes long, however long metal rings
+for kind in "claves" "tubular-bell C4"; do
+    printf 'instrument thing %s;\nstroke 1 right accent f thing;\n' "$kind" >ring.txt
+    "$himc" render ring.txt -o ring.wav >out 2>&1
+    seconds="$seconds $(number seconds)"
+done
+check test_a_bell_is_heard_for_longer_than_a_clave true_that "${seconds% *} < 6 && ${seconds##* } > 12"
+check test_a_bell_ends_60_db_down true_that "$(od -An -v -w4 -t f4 -j 80 ring.wav | awk \
+    '{ x[NR] = $1 < 0 ? -$1 : $1; top = x[NR] > top ? x[NR] : top }
+    END { for (i = NR - 19199; i <= NR; i++) last = x[i] > last ? x[i] : last; print last / top }') < 0.0011"
 "$himc" render british.txt -o british.wav >out 2>&1 && "$himc" render american.txt -o american.wav >out 2>&1
 check test_centre_is_center cmp british.wav american.wav
 check test_a_piece_without_strokes_is_noted_once \

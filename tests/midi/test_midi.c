@@ -2,6 +2,7 @@
 #define _XOPEN_SOURCE 700
 #include "unity.h"
 
+#include "base/setups.h"
 #include "midi/import.h"
 #include "midi/part.h"
 #include "musicxml/score_file.h"
@@ -620,6 +621,25 @@ static void test_keyboards_are_played_on_their_bars(void)
     TEST_ASSERT_EQUAL_INT(HIMC_RIGHT, score->strokes[11 - low].hand);
 }
 
+static void test_tubular_bells_hang_where_the_set_up_has_them(void)
+{
+    builder b;
+    const char *setup = strstr(himc_setup_bells, "bells place ") + strlen("bells place ");
+    char placed[80], line[80];
+    double x, y, z;
+    begin(&b);
+    PUT(&b, 0, 0xc0, 14);
+    event(&b, 0, 0x90, 65, 90);
+    end(&b);
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(3, sscanf(setup, "%lf %lf %lf", &x, &y, &z));
+    const char *at = strstr(made.text, "tubular-bell place ");
+    TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
+    snprintf(placed, sizeof placed, "tubular-bell place %.3g %.3g %.3g", x, y, z);
+    snprintf(line, sizeof line, "%.*s", (int)strlen(placed), at);
+    TEST_ASSERT_EQUAL_STRING(placed, line);
+}
+
 // of a chord of three the softest is left out
 static void test_the_loud_notes_of_a_chord_are_played(void)
 {
@@ -918,6 +938,7 @@ int main(void)
     RUN_TEST(test_every_key_is_played_or_told);
     RUN_TEST(test_drums_are_played_on_a_set_up);
     RUN_TEST(test_keyboards_are_played_on_their_bars);
+    RUN_TEST(test_tubular_bells_hang_where_the_set_up_has_them);
     RUN_TEST(test_the_loud_notes_of_a_chord_are_played);
     RUN_TEST(test_the_part_is_chosen);
     RUN_TEST(test_a_name_stays_one_comment);

@@ -139,12 +139,11 @@ typedef struct cli_ending {
     double peak, cell_peak; ///< of the sound so far, of the cell under way: raise it
 } cli_ending;
 
-#define CLI_CELL 0.2 ///< the end is tested so often (s), so it depends on no block's size; chosen
-#define CLI_TAIL \
-    8.0 ///< no piece lasts longer after it is done (s); chosen: no timpano rings longer
+#define CLI_CELL 0.2  ///< the end is tested so often (s), so it depends on no block's size; chosen
+#define CLI_TAIL 40.0 ///< no piece lasts longer after it is done (s); chosen: no gong rings longer
 
 /// Called where a cell ends: true if nothing more can be heard. The performer is done, rests, and a
-/// whole cell stayed 80 dB below the peak, or CLI_TAIL has passed.
+/// whole cell stayed 80 dB below the peak, 60 after 8 s, or CLI_TAIL has passed.
 bool cli_is_over(cli_ending *ending, int rate);
 
 /// Time on the monotonic clock (s).

@@ -4,7 +4,9 @@
 #include <math.h>
 
 #define REST_SECONDS 2.5 // after the last contact, until the sticks are at rest; chosen
-#define SILENCE 1e-4     // of the peak: 80 dB
+#define SILENCE 1e-4     // of the peak: 80 dB, ...
+#define FAINT 1e-3       // ... and 60, enough of what still rings ...
+#define LONG 8.0         // ... after so long (s), as only metal does; chosen
 
 static bool load(himc_performance *p, const char *source, double rate, const char *listener,
                  himc_error *error)
@@ -45,12 +47,13 @@ void cli_unwatch(himc_performance *performance)
 bool cli_is_over(cli_ending *e, int rate)
 {
     e->peak = fmax(e->peak, e->cell_peak);
-    bool silent = e->cell_peak <= SILENCE * e->peak;
+    double level = e->cell_peak;
     e->cell_peak = 0;
     if (!e->done)
         return false;
     if (!e->done_at)
         e->done_at = e->samples;
     double since = (double)(e->samples - e->done_at) / rate;
+    bool silent = level <= (since < LONG ? SILENCE : FAINT) * e->peak;
     return (silent && since >= REST_SECONDS) || since >= CLI_TAIL;
 }

@@ -17,10 +17,6 @@
 
 enum { DEVICE, RATE, LATENCY, LIST };
 enum { BLOCK = 256, EARS = 2 }; // samples; chosen: 5 ms, short against the latency
-// the end, as of `himc render`: the performer is done, and what rings is 80 dB below the peak
-#define TAIL_SECONDS 8.0
-#define QUIET_SECONDS 0.2
-#define SILENCE 1e-4
 
 static const cli_option options[] = {
     {"device", 0, "N", "the sound card, a number of --list (the system's usual one)"},
@@ -94,37 +90,33 @@ static bool open_device(PaStream **stream, const char *wanted, int rate, int lat
 
 /// What a playing came to.
 typedef struct outcome {
-    uint64_t samples, done_at, quiet; ///< `quiet`: so many without any sound
-    double peak;
+    cli_ending ending;
+    bool over;
     long underruns;
     double busy; ///< time spent computing (s)
 } outcome;
 
-static bool play_block(himc_performance *p, PaStream *stream, outcome *o, himc_error *error)
+static bool play_block(himc_performance *p, PaStream *stream, int rate, outcome *o,
+                       himc_error *error)
 {
+    uint64_t cell = (uint64_t)(CLI_CELL * rate);
     float out[EARS * BLOCK];
     himc_event event;
     double start = cli_now();
     double loudest = himc_performance_read(p, out, EARS, BLOCK);
-    o->peak = fmax(o->peak, loudest);
-    o->quiet = loudest > SILENCE * o->peak ? 0 : o->quiet + BLOCK;
-    o->samples += BLOCK;
+    o->ending.cell_peak = fmax(o->ending.cell_peak, loudest);
+    o->ending.samples += BLOCK;
     while (himc_performance_event(p, &event)) {
         if (event.kind == HIMC_EVENT_NOTE)
             cli_say("note: %s\n", event.text);
-        if (event.kind == HIMC_EVENT_DONE && !o->done_at)
-            o->done_at = o->samples;
+        o->ending.done |= event.kind == HIMC_EVENT_DONE;
     }
+    if (o->ending.samples % cell < BLOCK)
+        o->over = cli_is_over(&o->ending, rate);
     o->busy += cli_now() - start;
     PaError code = Pa_WriteStream(stream, out, BLOCK);
     o->underruns += code == paOutputUnderflowed;
     return code == paOutputUnderflowed || check(code, "the sound card", error);
-}
-
-static bool is_over(const outcome *o, int rate)
-{
-    return o->done_at && ((double)o->quiet > QUIET_SECONDS * rate ||
-                          (double)(o->samples - o->done_at) > TAIL_SECONDS * rate);
 }
 
 static bool play(const cli_arguments *arguments, himc_error *error)
@@ -143,10 +135,10 @@ static bool play(const cli_arguments *arguments, himc_error *error)
                 open_device(&stream, arguments->value[DEVICE], rate, latency, error);
     signal(SIGINT, stop);
     signal(SIGTERM, stop);
-    while (good && !stopped && !is_over(&o, rate))
-        good = play_block(p, stream, &o, error);
+    while (good && !stopped && !o.over)
+        good = play_block(p, stream, rate, &o, error);
     if (stream) {
-        double seconds = (double)o.samples / rate;
+        double seconds = (double)o.ending.samples / rate;
         printf("{\"seconds\": %.3f, \"underruns\": %ld, \"latency_ms\": %.1f, \"load\": %.3f}\n",
                seconds, o.underruns, 1e3 * Pa_GetStreamInfo(stream)->outputLatency,
                seconds > 0 ? o.busy / seconds : 0);

@@ -36,6 +36,9 @@ const char himc_setup_around[] =
     "instrument tam-tam tam-tam 32; tam-tam place .08 -.94 .85;"
     "instrument temple-blocks temple-blocks; temple-blocks place .7 .02 .94;";
 
+// the caps, as high as both hands reach over
+const char himc_setup_bells[] = "instrument bells tubular-bell C4 F5; bells place .55 0 1.25;";
+
 const himc_setup himc_setups[] = {
     {"kit", himc_setup_kit},
     // four timpani around a player, the lowest at the left, tuned in the middle of their ranges
@@ -53,8 +56,7 @@ const himc_setup himc_setups[] = {
               "instrument tam-tam tam-tam 32; tam-tam place .08 -.94 .85;"},
     {"xylophone", "instrument xylophone xylophone F4 C7; xylophone place .45 0 .87;"},
     {"marimba", "instrument marimba marimba C3 C6; marimba place .5 0 .87;"},
-    // the caps, as high as both hands reach over
-    {"bells", "instrument bells tubular-bell C4 F5; bells place .55 0 1.25;"},
+    {"bells", himc_setup_bells},
 };
 
 bool himc_setup_find(const char *text, const char *name, const char **made, int *length,

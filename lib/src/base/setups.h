@@ -12,7 +12,7 @@ typedef struct himc_setup {
 /// In the order of HIMC_SETUPS (himc/command_rows.h).
 extern const himc_setup himc_setups[];
 /// A seated player's kit, also for General MIDI, and what stands around it for the rest of that.
-extern const char himc_setup_kit[], himc_setup_around[];
+extern const char himc_setup_kit[], himc_setup_around[], himc_setup_bells[];
 
 /// Where an instrument stands (m; its tilt, rad), and `made`, the words of `instrument` after its
 /// name, borrowed; false if the text does not make it.

@@ -122,11 +122,13 @@ HIMC_RT void himc_drum_go_gliss(himc_drum *drum);
 /// Of a stroke's noise a cloth all over the head takes this part; chosen: 10 dB.
 #define HIMC_MUFFLED_NOISE 0.7
 
-/// How loud the noise of a stroke with that mallet is.
+/// How loud the noise of a stroke with that mallet is: none but where a timpanist's mallet is usual,
+/// as its bands are a timpano's.
 static inline void himc_drum_find_noise(himc_drum *drum, const himc_mallet_head *mallet)
 {
     double bare = 1 - HIMC_MUFFLED_NOISE * himc_membrane_head(drum->membrane)->muffle;
-    drum->noise.amount = drum->set.noise * mallet->noise * bare;
+    bool other = himc_membrane_config_of(drum->membrane)->shape.kind->mallet;
+    drum->noise.amount = other ? 0 : drum->set.noise * mallet->noise * bare;
 }
 
 /// After the drum's place, its rate or its rays have changed: finds the ways to the listener anew.

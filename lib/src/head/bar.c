@@ -291,8 +291,9 @@ static double pressure(const bar *b, double omega, const double *shape)
     for (int k = 0; k < DIRECTIONS; k++) {
         double even = 0, odd = 0, along = wave * step * (k + 0.5) / DIRECTIONS; // of a sphere
         for (int i = 0; i < POINTS; i++) {
-            even += shape[i] * step * cos(along * i);
-            odd += shape[i] * step * sin(along * i);
+            double part = shape[i] * step * (i == 0 || i == POINTS - 1 ? 0.5 : 1);
+            even += part * cos(along * i);
+            odd += part * sin(along * i);
         }
         sum += (even * even + odd * odd) / DIRECTIONS;
     }

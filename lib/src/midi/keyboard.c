@@ -5,6 +5,7 @@
 #include "midi/part.h"
 
 #include "base/format.h"
+#include "base/setups.h"
 
 #define FIRST MIDI_MARIMBA
 
@@ -67,9 +68,12 @@ void himc_midi_keyboard(midi_part *part)
     }
     const char *name = boards[part->choice - FIRST].name;
     midi_head *head = &part->head[part->heads++];
-    bool hangs = part->choice == MIDI_TUBULAR_BELL; // as in the set-ups
-    *head = (midi_head){
-        .name = name, .x = hangs ? .55 : .45, .z = hangs ? 1.25 : .87, .key = MIDI_UNTUNED};
+    const char *made;
+    int length;
+    double place[4] = {.45, 0, .87}; // (m) of what lies
+    if (part->choice == MIDI_TUBULAR_BELL)
+        himc_setup_find(himc_setup_bells, "bells", &made, &length, place);
+    *head = (midi_head){.name = name, .x = place[0], .z = place[2], .key = MIDI_UNTUNED};
     char low_name[HIMC_NOTE_SIZE], high_name[HIMC_NOTE_SIZE];
     himc_midi_key_name(low_name, first);
     himc_midi_key_name(high_name, last);
