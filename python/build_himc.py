@@ -15,7 +15,8 @@ ffi.set_source(
     (HERE / "himc" / "session.c").read_text(),
     include_dirs=[str(ROOT / "lib"), str(ROOT / "lib" / "src")],
     extra_objects=[str(BUILD / "libhimc.a")],
-    libraries=["ode", "stdc++", "pthread", "m"],
+    depends=[str(BUILD / "libhimc.a")],  # linked anew when the library is
+    libraries=["ode", "expat", "z", "stdc++", "pthread", "m"],
     extra_compile_args=["-std=gnu17", "-O2"],
 )
 

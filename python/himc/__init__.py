@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -59,7 +60,7 @@ def _text(value: Union[None, str, Path]) -> bytes:
 
 def _finite(name: str, value: float, least: float = -math.inf) -> float:
     try:
-        number = float(value)
+        number = math.nan if isinstance(value, (str, bytes)) else float(value)
     except (TypeError, ValueError):
         number = math.nan
     if not math.isfinite(number) or number < least:
@@ -238,7 +239,7 @@ class Performance:
 
     @property
     def done(self) -> bool:
-        """All is played and at rest."""
+        """The score or the take is played to its end."""
         return self._session.done
 
     @property
@@ -289,7 +290,7 @@ def _is_take(path: str) -> bool:
 
 def _is_text(score: str) -> bool:
     words = score.split()
-    return ";" in score or len(words) > 1 and not Path(score).exists() and bool(lib.session_is_command(words[0].encode()))
+    return not os.path.exists(score) and (";" in score or len(words) > 1 and bool(lib.session_is_command(words[0].encode())))
 
 
 def render(score: Union[str, Path], rate: float = 48000, channels: int = 2, motion: bool = True, settings: Iterable[str] = (),
@@ -315,7 +316,7 @@ def _loaded(score: Union[str, Path], rate: float, channels: int, motion: bool, s
             except Error as error:  # the name of the file says nothing
                 raise Error(str(error).replace(file.name, "score")) from None
     path, take, error = str(score), _is_take(str(score)), ffi.new("himc_error *")
-    makes = 0 if take else lib.session_makes_drums(path.encode(), error)
+    makes = 0 if take else lib.session_makes_drums(_text(path), error)
     _check(makes >= 0, error)
     p = Performance(rate, channels=0, motion=motion)
     p._channels = _channels(channels, 1)

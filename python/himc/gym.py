@@ -12,6 +12,7 @@ world frame: x away from the player, y to his left, z up.
 from __future__ import annotations
 
 import functools
+import os
 from dataclasses import dataclass
 from typing import Any, Optional
 
@@ -60,11 +61,14 @@ class Snapshot:
 
 
 @functools.lru_cache(maxsize=8)
-def _reference(score: str, settings: tuple):
-    """Strokes of himc's own performer by hand, with the place of the tip at contact; and the left channel of its sound."""
+def _reference(score: str, settings: tuple, stamp: Optional[tuple]):
+    """Strokes of himc's own performer by hand, with the place of the tip at contact; and the left channel of its sound.
+    `stamp` tells a file's versions apart."""
     if _is_take(score):
         raise Error(f"score: {score}: is a take, expected a score")
     r = render(score, rate=RATE, settings=settings)
+    if r.stats["task_rate"] != round(1 / STEP):
+        raise Error(f"rate task {r.stats['task_rate']:g}: expected 250, the environment's steps in a second")
     strokes = [[], []]
     for s in r.strikes[~np.isnan(r.strikes["planned_time"])]:
         row = min(int(round(s["time"] / STEP)), len(r.motion) - 1)
@@ -72,6 +76,14 @@ def _reference(score: str, settings: tuple):
     if not any(strokes):
         raise Error("score: has no stroke that is played, expected one or more")
     return [np.array(hand, np.float64).reshape(-1, 5) for hand in strokes], r.sound[:, 0].astype(np.float64)
+
+
+def _stamp(score: str) -> Optional[tuple]:
+    """When a file was written, and its size; None of a text."""
+    if not os.path.exists(score):
+        return None
+    stat = os.stat(score)
+    return stat.st_mtime_ns, stat.st_size
 
 
 def _octaves(sound: NDArray) -> NDArray:
@@ -105,7 +117,7 @@ class Drumming(gymnasium.Env):
         if not np.isfinite(motor_noise) or motor_noise < 0:
             raise Error(f"motor_noise: {motor_noise!r}, expected 0 or more")
         self.score, self.control, self.motor_noise, self.settings = str(score), control, motor_noise, tuple(settings)
-        self.reference, self._sound = _reference(self.score, self.settings)
+        self.reference, self._sound = _reference(self.score, self.settings, _stamp(self.score))
         self.seconds = max(hand[-1, 0] for hand in self.reference if len(hand)) + 0.5
         high = np.array([STRENGTH[joint_names[j].split("-")[-1]] for j in ARMS], np.float32)[:, None].repeat(3, axis=1)
         self.action_space = {

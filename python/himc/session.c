@@ -5,6 +5,8 @@
 #include "himc/himc.h"
 #include "himc/membrane.h"
 #include "himc/mocap.h"
+#include "performance/performance_state.h"
+#include "plan/score.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -88,7 +90,7 @@ static void session_free(session *s)
 static void begin_again(session *s)
 {
     s->zero = s->samples;
-    s->row_count = s->strike_count = 0;
+    s->row_count = s->strike_count = s->missed_count = 0;
     s->done = false;
 }
 
@@ -120,7 +122,8 @@ static bool session_command(session *s, const char *text, const char *word, himc
                      : himc_command_parse_text(&command, HIMC_PERFORMER, text, error);
     double before = himc_performance_measure(s->performance).seconds;
     good = good && himc_performance_command(s->performance, &command, 0, error);
-    s->done = s->done && !good;
+    if (good && (command.id == HIMC_COMMAND_PLAY || s->performance->motion->playing))
+        s->done = false; // `play` acts on its sample, a stroke goes on at once
     if (himc_performance_measure(s->performance).seconds < before)
         begin_again(s);
     if (good && command.id == HIMC_COMMAND_INFO)
@@ -193,7 +196,7 @@ static int session_makes_drums(const char *path, himc_error *error)
     if (!score)
         return -1;
     for (int i = 0; i < score->line_count; i++)
-        makes |= score->lines[i].command.id == HIMC_COMMAND_MAKE_DRUM;
+        makes |= himc_score_makes_drum(&score->lines[i]);
     himc_score_free(score);
     return makes;
 }
@@ -240,6 +243,7 @@ static void take_events(session *s)
         if (s->strike_count < s->strike_room)
             s->strikes[s->strike_count++] = event.strike;
     }
+    s->done = s->done && !s->performance->motion->playing; // a clock may start it
 }
 
 // plays n samples into out (n x channels)

@@ -1,6 +1,7 @@
 """The environment: Gymnasium's own check, relations that a learner relies on, and the body against MuJoCo's. By `make test-python`."""
 import subprocess
 import sys
+import tempfile
 import unittest
 import warnings
 from pathlib import Path
@@ -74,6 +75,52 @@ class Environment(unittest.TestCase):
         self.assertEqual(idle["strokes"], 0)
         self.assertLess(idle["sound"], 0)
 
+    def test_five_centimetres_aside_halve_the_worth(self):
+        env, aside = (himc.gym.Drumming(PIECE, control="joints") for _ in range(2))
+        aside.reference = [asked + (0, 0, himc.gym.ASIDE, 0, 0) for asked in aside.reference]
+        there, beside = (episode(e, player())[0] for e in (env, aside))
+        self.assertAlmostEqual(beside["strokes"] / there["strokes"], 0.5, delta=0.15)
+        self.assertEqual((beside["sound"], beside["effort"]), (there["sound"], there["effort"]))
+
+    def test_who_sounds_like_the_reference_at_each_step_loses_nothing(self):
+        env, heard = himc.gym.Drumming(PIECE, control="joints"), [np.zeros(himc.gym.SAMPLES)]
+        observation, _ = env.reset()
+        act, done, actions = player(), False, []
+        while not done:
+            actions.append(act(env, observation))
+            observation, _, done, _, info = env.step(actions[-1])
+            heard.append(info["sound"][:, 0])
+        self.assertGreater(np.abs(heard).max(), 1e-3)
+        for later in (0, 1):
+            env._sound = np.roll(np.concatenate(heard), later * himc.gym.SAMPLES)
+            env.reset()
+            lost = sum(env.step(action)[4]["reward"]["sound"] for action in actions)
+            self.assertTrue(lost < -1e-3 if later else lost == 0, lost)
+
+    def test_the_strokes_to_come_are_observed(self):
+        env = himc.gym.Drumming(PIECE)
+        left, right = env.reset()[0]["strokes"]
+        self.assertEqual((left[0, 0], right[0, 0], left[1].any(), right[1].any()), (1, 1, False, False))  # one of each hand
+        self.assertAlmostEqual(right[0, 1] + himc.gym.STEP, 0.6, delta=0.01)  # beat 1 at 100 BPM
+        self.assertAlmostEqual(left[0, 1] - right[0, 1], 0.3, delta=0.01)
+        self.assertGreater(left[0, 5], right[0, 5])  # f, mf
+        self.assertGreater(left[0, 3], right[0, 3])
+        observation, after = env.step(still(env, env.reset()[0]))[0], right.copy()
+        after[0, 1] -= himc.gym.STEP
+        np.testing.assert_allclose(observation["strokes"][1], after, atol=1e-9)
+        for _ in range(190):  # until the right hand's is lost, the left one's is not
+            observation = env.step(still(env, observation))[0]
+        self.assertFalse(observation["strokes"][1].any())
+        self.assertEqual(observation["strokes"][0, 0, 0], 1)
+
+    def test_a_score_that_is_written_again_is_read_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            score, times = Path(folder) / "score.txt", []
+            for beat in (1, 2):
+                score.write_text(f"stroke {beat} right legato mf;")
+                times.append(himc.gym.Drumming(str(score)).reference[1][0, 0])
+        self.assertAlmostEqual(times[1] - times[0], 0.6, delta=0.01)
+
     def test_a_seed_gives_the_same_bits_another_one_other_noise(self):
         env = himc.gym.Drumming(PIECE, motor_noise=0.01)
         first, again, other = (episode(env, still, seed)[1] for seed in (1, 1, 2))
@@ -112,6 +159,9 @@ class Environment(unittest.TestCase):
             himc.gym.Drumming("tempo 90;")
         with self.assertRaisesRegex(himc.Error, "^motor_noise: -1, expected 0 or more$"):
             himc.gym.Drumming(PIECE, motor_noise=-1)
+        for score, settings in (("rate task 1000;" + PIECE, ()), (PIECE, ("rate task 1000",))):
+            with self.assertRaisesRegex(himc.Error, "^rate task 1000: expected 250, the environment's steps in a second$"):
+                himc.gym.Drumming(score, settings=settings)
         env = himc.gym.Drumming(PIECE)
         env.reset()
         with self.assertRaisesRegex(himc.Error, r"^action: of shape \(2, 3\), expected finite numbers of shape \(2, 3\)$"):

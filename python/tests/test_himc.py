@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(himc.__file__).parent / "bin" / "himc"
 CAPTURE = ROOT.parent / "shared/mocap/drumstroke_pearl_240hz/stroke.trc"
 PIECE = "stroke 1 right accent f; stroke 2 left tenuto mf;"
+XYLOPHONE = "instrument x xylophone; stroke 1 right accent f; stroke 2 left tenuto mf C5 x;"
 
 
 def samples(path, channels=2):
@@ -47,6 +48,13 @@ class Package(unittest.TestCase):
         self.assertEqual(r.stats["played"], 2)
         self.assertEqual([s.decode() for s in r.strikes["nuance"]], ["accent", "tenuto"])
 
+    def test_an_instrument_of_a_score_stands_alone_as_in_the_program(self):
+        (self.at / "bars.txt").write_text(XYLOPHONE)
+        self.program("render", "bars.txt", "-o", "a.wav", "--quiet")
+        r = himc.render(self.at / "bars.txt")
+        np.testing.assert_array_equal(r.sound, samples(self.at / "a.wav"))
+        self.assertEqual(set(r.strikes["drum"]), {b"x"})
+
     def test_settings_and_channels_are_those_of_the_program(self):
         self.program("render", "piece.txt", "-o", "a.wav", "--law", "printed", "--channels", "1", "--quiet")
         r = himc.render(PIECE, channels=1, motion=False, settings=["law printed"])
@@ -69,10 +77,17 @@ class Package(unittest.TestCase):
     def test_one_command_is_a_score(self):
         r = himc.render("stroke 1 right accent f")
         self.assertEqual(r.stats["played"], 1)
-        with self.assertRaisesRegex(himc.Error, "^score:1: stroke: HAND: rigt, expected left right$"):
+        with self.assertRaisesRegex(himc.Error, "^score:1: stroke: HAND: rigt, expected left right foot$"):
             himc.render("stroke 1 rigt accent f")
-        with self.assertRaisesRegex(himc.Error, "my piece.txt: cannot be read"):
-            himc.render("my piece.txt")
+        for name in ("my piece.txt", "my " + "a" * 300, "my a\0b"):
+            with self.assertRaises(himc.Error) as caught:
+                himc.render(name)
+            self.assertRegex(str(caught.exception), "cannot be read|zero byte")
+
+    def test_a_file_is_a_file_whatever_its_name(self):
+        for name in ("a;b.txt", "stroke 1 right accent f", "tempo;"):
+            (self.at / name).write_text(PIECE)
+            self.assertEqual(himc.render(self.at / name).stats["played"], 2, name)
 
     def test_motion_is_the_librarys_memory(self):
         r = himc.render(PIECE)
@@ -95,6 +110,52 @@ class Package(unittest.TestCase):
         self.assertTrue(p.drum_command("kettle", "info")[0].startswith("kettle: radius"))
         self.assertIn("mallet medium", p.drum_command("kettle", "dump"))
         self.assertEqual(p.command("tempo 90"), [])
+
+    def test_done_is_undone_by_what_plays_alone(self):
+        def wait():
+            for _ in range(50):
+                if p.done:
+                    break
+                p.process(0.1)
+            self.assertTrue(p.done)
+            return len(p.strikes)
+        p = himc.Performance(motion=False)
+        p.add_drum()
+        p.command("stroke 1 right legato mf")
+        p.command("play")
+        self.assertFalse(p.done)
+        self.assertEqual(wait(), 1)
+        for text in ("info", "dump", "tempo 90", "human 0.3", "loop 0", "latency 200", "at 5 kettle tune A2"):
+            p.command(text)
+            self.assertTrue(p.done, text)
+        with self.assertRaises(himc.Error):
+            p.command("stroke 2 both legato mf")
+        self.assertTrue(p.done)
+        p.command("stroke 4 left legato mf")  # the score goes on
+        self.assertFalse(p.done)
+        self.assertEqual(wait(), 2)
+        p.command("play")
+        self.assertFalse(p.done)
+        self.assertEqual(wait(), 4)
+
+    def test_strokes_are_struck_or_missed(self):
+        p = himc.Performance(motion=False)
+        for drum, place in (("near", "0.5 -0.2 0.8"), ("far", "0.5 1 0.8")):
+            p.add_drum(drum)
+            p.drum_command(drum, "place " + place)
+        beats = 1 + 0.08 * np.arange(8)  # faster than an arm goes there and back
+        for i, beat in enumerate(beats):
+            p.command(f"stroke {beat} right accent f {('near', 'far')[i % 2]}")
+        p.command("play")
+        p.process(3)
+        missed = p.missed
+        self.assertTrue(0 < len(missed) < len(beats))
+        self.assertEqual(len(missed), p.stats["missed"])
+        np.testing.assert_allclose(np.sort(np.r_[p.strikes["beat"], missed["beat"]]), beats, atol=1e-6)
+        np.testing.assert_allclose(missed["time"], 0.6 * missed["beat"], atol=0.005)  # at 100 BPM
+        self.assertEqual(set(missed["hand"]), {1})
+        p.command("reset")
+        self.assertEqual(len(p.missed), 0)
 
     def test_the_energy_balance_closes(self):
         e = himc.render(PIECE).motion["energy"]
@@ -162,7 +223,7 @@ class Package(unittest.TestCase):
     def test_settings_that_are_no_numbers_are_refused(self):
         nan, p = float("nan"), himc.Performance()
         for call in (lambda: p.process(nan), lambda: p.process(-1), lambda: p.add_drum("a", nan), lambda: p.add_drum("a", -1),
-                     lambda: himc.Performance(rate=nan), lambda: himc.Performance(physics=nan), lambda: himc.Performance(task=-1),
+                     lambda: himc.Performance(rate=nan), lambda: himc.Performance(rate="48000"), lambda: himc.Performance(rate=None), lambda: himc.Performance(physics=nan), lambda: himc.Performance(task=-1),
                      lambda: himc.Performance(channels=9), lambda: himc.Performance(channels=-1),
                      lambda: himc.render(PIECE, channels=0), lambda: p.take_options(up="x"),
                      lambda: p.take_options(left_tip="a" * 64), lambda: p.command("tempo 90\0"), lambda: p.add_drum("a\0b")):
@@ -229,11 +290,17 @@ class Package(unittest.TestCase):
         self.assertFalse(displacement.any())
 
     def test_modes_are_those_of_the_program(self):
-        rows = json.loads(self.program("modes", "--json").stdout)
-        mine = himc.modes()
-        self.assertEqual(len(mine), len(rows))
-        np.testing.assert_allclose(mine["frequency"], [row["frequency_hz"] for row in rows], atol=1e-5)
-        np.testing.assert_allclose(mine["t60"], [row["t60_s"] for row in rows], atol=1e-5)
+        firsts = []
+        for text in ("", "drum d 20; d tune C4; stroke 1 right accent f;", XYLOPHONE):
+            (self.at / "drum.txt").write_text(text)
+            path = [self.at / "drum.txt"] if text else []
+            rows = json.loads(self.program("modes", "--json", *path).stdout)
+            mine = himc.modes(*path)
+            self.assertEqual(len(mine), len(rows))
+            for field, key in (("m", "m"), ("n", "n"), ("frequency", "frequency_hz"), ("ratio", "ratio"), ("t60", "t60_s")):
+                np.testing.assert_allclose(mine[field], [row[key] for row in rows], atol=1e-5)
+            firsts.append(mine["frequency"][0])
+        self.assertEqual(len(set(firsts)), 3)
 
     def test_refusals_are_the_librarys_lines(self):
         with self.assertRaisesRegex(himc.Error, "a command for a drum, not for the performer"):
@@ -248,7 +315,8 @@ class Package(unittest.TestCase):
     def test_a_misspelt_spot_is_an_error_that_names_spots_and_drums(self):
         with self.assertRaises(himc.Error) as caught:
             himc.render("tempo 90;\nstroke 1 right accent f rmi;")
-        self.assertEqual(str(caught.exception), "score:2: rmi: no spot (center normal rim), no drum (kettle), did you mean rim?")
+        self.assertEqual(str(caught.exception), "score:2: rmi: no spot (center normal rim crossstick rimshot click shell), not dead, "
+                         "no drum (kettle), did you mean rim?")
         p = himc.Performance()
         p.add_drum("tom")
         with self.assertRaisesRegex(himc.Error, r"no drum \(tom\)"):
