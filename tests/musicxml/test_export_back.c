@@ -42,14 +42,14 @@ static void load(const char *path)
 {
     score = himc_score_load(path, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
-    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, false, &error), error.text);
 }
 
 static void parse(const char *words)
 {
     score = himc_score_parse(words, "words", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
-    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, &error), error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, false, &error), error.text);
     TEST_ASSERT_TRUE(himc_music_write(&text, &notes, "words"));
 }
 
@@ -147,7 +147,7 @@ static void test_pedals_come_back_as_words(void)
     midi_score made;
     TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "low tune D2;"), made.text);
-    const char *at = strstr(made.text, "low tune D#2;");
+    const char *at = strstr(made.text, "low gliss E2 0.25;");
     TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
     while (at > made.text && at[-1] != '\n')
         at--;
@@ -193,7 +193,7 @@ static void test_midi_has_each_grace_note(void)
     score = himc_score_parse("drum kettle; flam 1 right legato f; drag 2 left legato f;"
                              "ruff 3 left legato f; stroke 4 right legato f;",
                              "words", NULL, &error);
-    TEST_ASSERT_TRUE(himc_music_notes(&notes, score, &error));
+    TEST_ASSERT_TRUE(himc_music_notes(&notes, score, false, &error));
     TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
     midi_file file;
     TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, text.bytes, text.size, &error), error.text);
@@ -205,7 +205,7 @@ static void test_a_roll_is_a_roll_after_midi(void)
 {
     score = himc_score_parse("drum kettle; tempo 60; stroke 0 right legato f; roll 2 4 single p f;",
                              "words", NULL, &error);
-    TEST_ASSERT_TRUE(himc_music_notes(&notes, score, &error));
+    TEST_ASSERT_TRUE(himc_music_notes(&notes, score, false, &error));
     TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
     read_back(himc_midi_import);
     TEST_ASSERT_EQUAL(2, count);
@@ -234,19 +234,59 @@ static void test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s(void)
     }
 }
 
+static void test_a_gliss_comes_back_as_a_gliss(void)
+{
+    static const char *const lines[] = {"at 4 low gliss E2 2;", "at 9 low gliss D2 1;",
+                                        "at 9 second gliss B2 0.5;", "at 12 low gliss F2 1.5;"};
+    parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
+          "roll 4 4 single p f low; stroke 9 right legato f low; stroke 9 left legato f second;"
+          "roll 12 2 single f low;"
+          "at 4 low gliss E2 2; at 9 low gliss D2 1; at 9 second gliss B2 .5;"
+          "at 12 low gliss F2 1.5;");
+    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>gliss. D to E</words>"));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    for (int i = 0; i < 4; i++)
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, lines[i]), made.text);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "damp"), made.text); // it is heard
+    himc_midi_score_free(&made);
+    read_back(himc_music_import);
+    expect_same("gliss");
+}
+
+static void test_strokes_on_hoop_and_shell_come_back(void)
+{
+    parse(
+        "setup kit; stroke 1 left legato mf crossstick snare; stroke 2 left legato mf rimshot snare;"
+        "stroke 2.5 right legato mf snare; stroke 3 left legato mf click snare;"
+        "stroke 4 right legato mf shell tom; stroke 4 foot legato mf kick;"
+        "stroke 5 right legato f rimshot tom; stroke 6 left legato f snare;");
+    TEST_ASSERT_NULL(notes.said);
+    read_back(himc_music_import);
+    TEST_ASSERT_EQUAL(score->stroke_count, count);
+    for (int i = 0; i < count; i++) {
+        bool found = false;
+        for (int k = 0; k < count && !found; k++)
+            found = is_same(&score->strokes[i], &back[k]) &&
+                    strcmp(score->strokes[i].drum, back[k].drum) == 0 &&
+                    score->strokes[i].spot == back[k].spot;
+        TEST_ASSERT_TRUE(found);
+    }
+}
+
 static void test_spots_without_a_key_are_told_and_come_back_normal(void)
 {
     parse(
         "setup kit; stroke 1 left legato mf rim snare; stroke 2 left legato mf crossstick snare;"
         "stroke 3 left legato mf rimshot tom; drum kettle; stroke 5 left legato mf click kettle;");
-    TEST_ASSERT_EQUAL_STRING("3 spots are not written: the instrument has no key for it\n",
+    TEST_ASSERT_EQUAL_STRING("2 spots are not written: the instrument has no key for it\n",
                              notes.said);
     read_back(himc_music_import);
     TEST_ASSERT_EQUAL(4, count);
     TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[0].spot); // the timpano's part is read first
     TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[1].spot);
     TEST_ASSERT_EQUAL(HIMC_SPOT_CROSSSTICK, back[2].spot);
-    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[3].spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_RIMSHOT, back[3].spot);
 }
 
 // `timbales` alone are the French timpani
@@ -263,7 +303,7 @@ static void test_a_timbale_is_a_drum_also_under_another_name(void)
 static void test_a_score_without_strokes_is_refused(void)
 {
     score = himc_score_parse("drum kettle;", "words", NULL, &error);
-    TEST_ASSERT_FALSE(himc_music_notes(&notes, score, &error));
+    TEST_ASSERT_FALSE(himc_music_notes(&notes, score, false, &error));
     TEST_ASSERT_EQUAL_STRING("no stroke that notation has, expected a score with strokes",
                              error.text);
 }
@@ -279,6 +319,8 @@ int main(void)
     RUN_TEST(test_midi_has_each_grace_note);
     RUN_TEST(test_a_roll_is_a_roll_after_midi);
     RUN_TEST(test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s);
+    RUN_TEST(test_a_gliss_comes_back_as_a_gliss);
+    RUN_TEST(test_strokes_on_hoop_and_shell_come_back);
     RUN_TEST(test_spots_without_a_key_are_told_and_come_back_normal);
     RUN_TEST(test_a_timbale_is_a_drum_also_under_another_name);
     RUN_TEST(test_a_score_without_strokes_is_refused);

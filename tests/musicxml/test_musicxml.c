@@ -361,12 +361,11 @@ static void test_marks_of_a_note_are_its_nuance(void)
     PLAY(BAR(1, FOUR C3(4, ARTICULATION("accent")) C3(4, ARTICULATION("strong-accent"))
                     C3(4, ARTICULATION("staccato")) C3(4, ARTICULATION("tenuto")))
              BAR(2, DYNAMICS("sfz") C3(4, "") C3(12, "")));
-    const himc_nuance nuance[] = {HIMC_ACCENT, HIMC_VERTICAL_ACCENT, HIMC_STACCATO,
+    const himc_nuance nuance[] = {HIMC_ACCENT, HIMC_VERTICAL_ACCENT, HIMC_LEGATO,
                                   HIMC_TENUTO, HIMC_VERTICAL_ACCENT, HIMC_LEGATO};
     for (int i = 0; i < 6; i++)
         TEST_ASSERT_EQUAL(nuance[i], stroke(i)->nuance);
-    // an accent is a step louder
-    expect_dynamics(6, 5.0, 4.0, 4.0, 4.0, 4.0, 4.0);
+    expect_dynamics(6, 4.0, 4.0, 4.0, 4.0, 4.0, 4.0);
 }
 
 static void test_fp_is_loud_once(void)
@@ -578,6 +577,85 @@ static void test_spots_hold_until_the_next(void)
     }
 }
 
+static void test_words_and_noteheads_strike_hoop_and_shell(void)
+{
+    // until the next word, or of their note alone
+    static const struct {
+        const char *word;
+        himc_spot here, then;
+    } row[] = {{"rim shot", HIMC_SPOT_RIMSHOT, HIMC_SPOT_NORMAL},
+               {"Rimshot", HIMC_SPOT_RIMSHOT, HIMC_SPOT_NORMAL},
+               {"stick click", HIMC_SPOT_CLICK, HIMC_SPOT_NORMAL},
+               {"cross-stick", HIMC_SPOT_CROSSSTICK, HIMC_SPOT_CROSSSTICK},
+               {"side stick", HIMC_SPOT_CROSSSTICK, HIMC_SPOT_CROSSSTICK},
+               {"on rim", HIMC_SPOT_CROSSSTICK, HIMC_SPOT_CROSSSTICK},
+               {"rim shots", HIMC_SPOT_RIMSHOT, HIMC_SPOT_RIMSHOT},
+               {"on the shell", HIMC_SPOT_SHELL, HIMC_SPOT_SHELL},
+               {"near rim", HIMC_SPOT_RIM, HIMC_SPOT_RIM}};
+    for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Snare Drum") "<measure number='1'>" FOUR WORDS("%s") C3(4, "") C3(4, "")
+                     WORDS("ord.") C3(8, "") "</measure>" TAIL,
+                 row[k].word);
+        load(text);
+        TEST_ASSERT_EQUAL_MESSAGE(row[k].here, stroke(0)->spot, row[k].word);
+        TEST_ASSERT_EQUAL_MESSAGE(row[k].then, stroke(1)->spot, row[k].word);
+        TEST_ASSERT_EQUAL_MESSAGE(HIMC_SPOT_NORMAL, stroke(2)->spot, row[k].word);
+    }
+    load(HEAD PART("Snare Drum") BAR(1, FOUR C3(8, "<notehead>x</notehead>") C3(8, "")) TAIL);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_CROSSSTICK, stroke(0)->spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, stroke(1)->spot);
+    load(HEAD PART("Hi-Hat") BAR(1, FOUR C3(16, "<notehead>x</notehead>")) TAIL);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_RIM, stroke(0)->spot);
+    PLAY(BAR(1, FOUR WORDS("rim shot") C3(16, "")));
+    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, stroke(0)->spot);
+    expect_text("1 stroke is played at its usual place: the instrument has no hoop or shell");
+}
+
+static void test_a_fermata_on_a_tied_end_is_held(void)
+{
+#define HELD "<notations><fermata/></notations>"
+    PLAY(BAR(1, FOUR TEMPO(120) C3(16, "<tie type='start'/>" MARKS(3)))
+             BAR(2, C3(4, "<tie type='stop'/>" HELD) REST(12)));
+    expect_roll(0, 0, 5, 4, 4);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.0, time_between(4, 5)); // twice as long
+    PLAY(BAR(1, FOUR TEMPO(120) WORDS("secco") C3(16, "<tie type='start'/>"))
+             BAR(2, C3(4, "<tie type='stop'/>" HELD) REST(12)));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.0, time_between(4, 5));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 5 + lead(), score->changes[0].beat); // damped behind it
+}
+
+static void test_a_dot_is_a_short_note_of_the_same_loudness(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(60) C3(4, "") C3(4, ARTICULATION("staccato")) REST(8)));
+    TEST_ASSERT_EQUAL(stroke(0)->nuance, stroke(1)->nuance);
+    TEST_ASSERT_EQUAL_DOUBLE(stroke(0)->dynamic, stroke(1)->dynamic);
+    TEST_ASSERT_EQUAL(2, score->change_count);
+    TEST_ASSERT_EQUAL(HIMC_COMMAND_DAMP, score->changes[0].command.id);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.5 + lead(), score->changes[0].beat);
+}
+
+static void test_a_line_between_notes_or_words_is_a_gliss(void)
+{
+#define LINE(type) "<notations><glissando type='" type "'/></notations>"
+    PLAY(BAR(1, FOUR TEMPO(60) C3(8, LINE("start")) NOTE(D, 3, 8, LINE("stop"))));
+    expect_text("third gliss D3 2;");
+    TEST_ASSERT_EQUAL_MESSAGE(1, score->change_count, made.text); // it is not damped
+    TEST_ASSERT_EQUAL_STRING(stroke(0)->drum, stroke(1)->drum);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6, lead(), score->changes[0].beat);
+#define DASHES(type) "<direction-type><dashes type='" type "' number='1'/></direction-type>"
+    PLAY(BAR(1, FOUR TEMPO(60) C3(8, "") "<direction><direction-type><words>C muta in D</words>"
+                                         "</direction-type>" DASHES("start") "</direction>" REST(8))
+             BAR(2, REST(4) "<direction>" DASHES("stop") "</direction>" REST(12))
+                 BAR(3, NOTE(D, 3, 16, "")));
+    expect_text("third gliss D3 3;");
+    TEST_ASSERT_EQUAL(1, score->change_count);
+    PLAY(BAR(1, FOUR TEMPO(60) C3(16, MARKS(3)) "<backup><duration>8</duration></backup>" WORDS(
+                    "gliss. C to D") REST(8)));
+    expect_text("third gliss D3 0.25;"); // after the last stroke, too
+}
+
 static void test_mallets_and_cloths(void)
 {
     PLAY(BAR(1, FOUR WORDS("mit Holzschlägeln") C3(16, ""))
@@ -608,9 +686,9 @@ static void test_words_about_tuning_move_a_pedal_there(void)
                  words[k]);
         load(text);
         TEST_ASSERT_TRUE_MESSAGE(score->change_count > 0, words[k]);
-        TEST_ASSERT_EQUAL_MESSAGE(HIMC_COMMAND_TUNE, score->changes[0].command.id, words[k]);
+        TEST_ASSERT_EQUAL_MESSAGE(HIMC_COMMAND_GLISS, score->changes[0].command.id, words[k]);
         TEST_ASSERT_TRUE(score->changes[0].beat < lead() + 6);
-        TEST_ASSERT_TRUE(score->changes[0].beat > lead() + 5);
+        TEST_ASSERT_TRUE(score->changes[0].beat > lead() + 5 - 1e-3);
         TEST_ASSERT_EQUAL_STRING(stroke(0)->drum, score->changes[0].drum);
         TEST_ASSERT_EQUAL_STRING(stroke(0)->drum, stroke(2)->drum);
     }
@@ -657,7 +735,12 @@ static void test_names_in_four_languages(void)
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, row[i].made), row[i].name);
     }
     TEST_ASSERT_FALSE(import(HEAD PART("Violin") BAR(1, FOUR C3(16, "")) TAIL));
-    TEST_ASSERT_EQUAL_STRING("nothing to play: 0 notes, none of a drum (channel 10)", error.text);
+    static const char line[] =
+        "nothing to play: 1 bar without a note of timpani, drums, cymbals or "
+        "keyboard percussion";
+    TEST_ASSERT_EQUAL_STRING(line, error.text);
+    TEST_ASSERT_FALSE(import(HEAD PART("Timpani") BAR(1, FOUR REST(16)) TAIL));
+    TEST_ASSERT_EQUAL_STRING(line, error.text);
 }
 
 static void test_a_kit_is_played_by_its_instruments(void)
@@ -872,6 +955,10 @@ int main(void)
     RUN_TEST(test_damped_notes_and_notes_that_ring);
     RUN_TEST(test_sticking_is_kept);
     RUN_TEST(test_spots_hold_until_the_next);
+    RUN_TEST(test_words_and_noteheads_strike_hoop_and_shell);
+    RUN_TEST(test_a_fermata_on_a_tied_end_is_held);
+    RUN_TEST(test_a_dot_is_a_short_note_of_the_same_loudness);
+    RUN_TEST(test_a_line_between_notes_or_words_is_a_gliss);
     RUN_TEST(test_mallets_and_cloths);
     RUN_TEST(test_words_about_tuning_move_a_pedal_there);
     RUN_TEST(test_names_in_four_languages);

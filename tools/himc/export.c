@@ -188,8 +188,8 @@ static bool write_notation(const char *path, const char *out, bool midi, himc_er
     midi_file notes = {0};
     char title[64];
     himc_score *score = himc_score_load(path, error);
-    bool good =
-        score && (himc_music_notes(&notes, score, error) || himc_error_prefix(error, "%s", path));
+    bool good = score && (himc_music_notes(&notes, score, midi, error) ||
+                          himc_error_prefix(error, "%s", path));
     title_of(title, sizeof title, path);
     if (good &&
         !(midi ? himc_music_write_midi(&text, &notes) : himc_music_write(&text, &notes, title)))

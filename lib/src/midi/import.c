@@ -8,6 +8,7 @@
 #include "midi/import.h"
 
 #include "base/format.h"
+#include "base/head_frame.h"
 #include "base/text.h"
 #include "midi/part.h"
 #include "plan/gesture.h"
@@ -22,7 +23,7 @@
 #define MOST_STROKES 100000 // chosen: more than two hours of rolls
 #define MOST_CHANGES 9900   // lines of a score besides strokes are 10000
 #define GAIN (-2.5)         // (dB) chosen: zarathustra.mid has -23 LUFS, as broadcast
-#define PEDAL_STEPS 4       // of a pedal that moves, at most; chosen: heard as a slide
+#define LONGEST_GLISS 10.0  // (s) as the command `gliss` takes
 
 // as notation programs write them: ppp 16, then 33 49 64 80 96 112 up to ff, in equal steps
 double himc_midi_velocity(double dynamic)
@@ -89,20 +90,6 @@ static bool give_instruments(midi_part *part, himc_error *error)
     return true;
 }
 
-// the orders between one stroke and the next
-static void share_orders(midi_part *part)
-{
-    int next = 0;
-    for (int i = 0; i < part->count; i++) {
-        midi_stroke *s = &part->stroke[i];
-        s->order = next;
-        while (next < part->file->order_count &&
-               part->file->orders[next].seconds <= s->note->seconds + 1e-6)
-            next++;
-        s->orders = next - s->order;
-    }
-}
-
 static void take_notes(midi_part *part, const midi_options *options)
 {
     for (int i = 0; i < part->file->note_count; i++) {
@@ -117,10 +104,12 @@ static void take_notes(midi_part *part, const midi_options *options)
             continue;
         }
         part->notes += !way->extra;
+        bool beyond = choice != MIDI_DRUMS && himc_spot_is_beyond(way->spot);
+        part->hoopless += beyond;
         part->stroke[part->count++] = (midi_stroke){
             .note = note,
             .key = options->as_key > 0 ? options->as_key : note->key,
-            .spot = way->spot,
+            .spot = beyond ? HIMC_SPOT_NORMAL : way->spot,
             .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
             .end = fmax(note->off, damped),
             .roll = {way->length, written ? way->last_dynamic
@@ -159,7 +148,7 @@ static void drop_rests(midi_part *part)
 // a score has lines for so many damped strokes
 static void count_fates(midi_part *part)
 {
-    int most_damped = (MOST_CHANGES - PEDAL_STEPS * part->pedals) / 2;
+    int most_damped = (MOST_CHANGES - part->pedals) / 2;
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
         const midi_bar *bar = bar_at(part->file, s->note->beat);
@@ -191,7 +180,6 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
                               himc_midi_choice_name(part->choice));
     if (part->count > MOST_STROKES)
         return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
-    share_orders(part);
     if (!give_instruments(part, error) || !himc_midi_stick(part, error))
         return false;
     for (int i = 0; i < part->count && part->choice != MIDI_TIMPANI; i++)
@@ -263,6 +251,9 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                 "words about tuning are not followed: no drum has that pitch and time");
     report_kind(t, part->mallets, "change of mallets is not played: a score has one pair",
                 "changes of mallets are not played: a score has one pair");
+    report_kind(t, part->hoopless,
+                "stroke is played at its usual place: the instrument has no hoop or shell",
+                "strokes are played at their usual place: the instrument has no hoop or shell");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
     if (file->converted)
         himc_text_print(t, "the tempo map is not kept: beats are half seconds\n");
@@ -274,8 +265,8 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
 typedef struct change {
     double seconds;
     int head;
-    int key;          ///< tuned to it; -1: the command
-    const char *does; ///< command and number
+    const char *does;        ///< command and number; NULL: a gliss
+    const midi_pedal *pedal; ///< of a gliss
 } change;
 
 static int by_time(const void *a, const void *b)
@@ -308,8 +299,8 @@ static int list_damps(const midi_part *part, change *list)
             from = fmax(least, until - 0.25);
         if (s->note->way.ring < 0 && until - from < 0.05)
             continue;
-        list[count++] = (change){from, s->head, -1, "damp 1"};
-        list[count++] = (change){until, s->head, -1, "damp 0"};
+        list[count++] = (change){from, s->head, "damp 1", NULL};
+        list[count++] = (change){until, s->head, "damp 0", NULL};
     }
     return count;
 }
@@ -317,22 +308,17 @@ static int list_damps(const midi_part *part, change *list)
 // cloths, pedals, hi-hats; returns how many changes there are then
 static int list_orders(const midi_part *part, change *list, int count)
 {
-    int most = MOST_CHANGES - PEDAL_STEPS * part->pedals;
+    int most = MOST_CHANGES - part->pedals;
     for (int i = 0; i < part->file->order_count; i++) {
         const midi_order *o = &part->file->orders[i];
         bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
         for (int h = 0; o->kind == MIDI_MUFFLE && mine && h < part->heads; h++)
             if (part->head[h].key != -1 && count < most)
-                list[count++] = (change){o->seconds, h, -1, o->value ? "muffle 1" : "muffle 0"};
+                list[count++] = (change){o->seconds, h, o->value ? "muffle 1" : "muffle 0", NULL};
     }
-    // a pedal goes through semitones between, as an undamped drum lets hear
-    for (int k = 0; k < part->pedals; k++) {
-        const midi_pedal *p = &part->pedal[k];
-        int way = p->to - p->from, steps = abs(way) < PEDAL_STEPS ? abs(way) : PEDAL_STEPS;
-        for (int i = 1; i <= steps; i++)
-            list[count++] = (change){p->seconds + p->length * i / steps, p->head,
-                                     p->from + way * i / steps, NULL};
-    }
+    for (int k = 0; k < part->pedals; k++)
+        list[count++] =
+            (change){part->pedal[k].seconds, part->pedal[k].head, NULL, &part->pedal[k]};
     // a hi-hat's foot moves just before the stroke (s), chosen
     midi_opening last = MIDI_AS_IT_IS;
     for (int i = 0; i < part->count && count < MOST_CHANGES; i++) {
@@ -340,8 +326,8 @@ static int list_orders(const midi_part *part, change *list, int count)
         if (s->fate != MIDI_PLAYED || s->pedal == MIDI_AS_IT_IS || s->pedal == last)
             continue;
         last = s->pedal;
-        list[count++] = (change){fmax(s->note->seconds - 0.03, 0), s->head, -1,
-                                 last == MIDI_OPEN ? "pedal 0" : "pedal 1"};
+        list[count++] = (change){fmax(s->note->seconds - 0.03, 0), s->head,
+                                 last == MIDI_OPEN ? "pedal 0" : "pedal 1", NULL};
     }
     return count;
 }
@@ -359,11 +345,13 @@ static bool put_changes(himc_text_lines *t, const midi_file *file, const midi_pa
         double beat = himc_score_beat(file->tempi, file->tempo_count, c->seconds) + lead;
         const char *name = part->head[c->head].name;
         char pitch[HIMC_NOTE_SIZE];
-        himc_midi_key_name(pitch, c->key < 0 ? 0 : c->key);
-        if (c->key < 0)
-            himc_text_print(t, "at %.9g %s %s;\n", beat, name, c->does);
+        if (c->pedal)
+            himc_midi_key_name(pitch, c->pedal->to);
+        if (c->pedal)
+            himc_text_print(t, "at %.9g %s gliss %s %.4g;\n", beat, name, pitch,
+                            fmin(c->pedal->length, LONGEST_GLISS));
         else
-            himc_text_print(t, "at %.9g %s tune %s;\n", beat, name, pitch);
+            himc_text_print(t, "at %.9g %s %s;\n", beat, name, c->does);
     }
     free(list);
     return true;
@@ -484,8 +472,10 @@ static bool write_score(midi_score *made, const midi_file *file, midi_part *part
         first++;
     double wait = fmax(0, 1.0 - part->stroke[first].note->seconds);
     double lead = ceil(wait * file->tempi[0].bpm / 60);
-    const midi_stroke *final = &part->stroke[part->count - 1];
-    double last = final->note->beat + fmax(final->note->way.length, final->roll.length);
+    double off = 0; // tempi hold up to the end of the longest note
+    for (int i = 0; i < part->count; i++)
+        off = fmax(off, part->stroke[i].note->off);
+    double last = himc_score_beat(file->tempi, file->tempo_count, off);
     const char *mallets = find_mallets(part, part->stroke[first].note->beat);
     report(&said, file, part);
     put_name(&score, name);

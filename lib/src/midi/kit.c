@@ -5,6 +5,7 @@
 /// before the stroke.
 #include "midi/part.h"
 
+#include "base/head_frame.h"
 #include "base/setups.h"
 
 #include <math.h>
@@ -230,6 +231,12 @@ static int head_of(midi_part *part, const char *name)
     return part->heads++;
 }
 
+static bool has_hoop(const char *instrument)
+{
+    return strcmp(instrument, "snare") == 0 || strstr(instrument, "tom") ||
+           strstr(instrument, "floor") || strstr(instrument, "timbale");
+}
+
 void himc_midi_kit(midi_part *part)
 {
     for (int i = 0; i < part->count; i++) {
@@ -240,6 +247,8 @@ void himc_midi_kit(midi_part *part)
             s->fate = MIDI_NO_INSTRUMENT;
             continue;
         }
+        if (himc_spot_is_beyond(s->spot) && !has_hoop(key->instrument))
+            s->spot = HIMC_SPOT_NORMAL;
         s->spot = s->spot == HIMC_SPOT_NORMAL ? key->spot : s->spot;
         s->foot = key->how == BY_FOOT || key->how == PEDALLED;
         s->pedal = key->how == OPENED ? MIDI_OPEN : key->how >= CLOSED ? MIDI_CLOSE : MIDI_AS_IT_IS;

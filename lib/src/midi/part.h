@@ -72,6 +72,7 @@ typedef struct midi_pedal {
     double seconds;     ///< when it begins (s)
     double length;      ///< (s)
     int head, from, to; ///< (MIDI keys)
+    bool heard;         ///< the drum rings meanwhile
 } midi_pedal;
 
 typedef struct midi_part {
@@ -91,6 +92,7 @@ typedef struct midi_part {
     int damped;                ///< strokes
     int untuned;               ///< orders to tune that no drum can follow
     int mallets;               ///< changes of mallets that are not played
+    int hoopless;              ///< strokes beyond a head that has no hoop or shell
     int rolls, rolled;         ///< rolls, and the strokes in them
 } midi_part;
 

@@ -65,6 +65,9 @@ typedef struct midi_order {
     midi_choice choice; ///< whose part says it
     int from, value; ///< tuning: classes of pitch, 0 C .. 11 (12: of any drum); 0 or 1; a mallet,
                      ///< 0 soft .. 3 wood
+    bool glides;     ///< tuning: the drum is heard meanwhile, and goes on after a stroke here
+    double length;   ///< ... its time (s); 0: as usual
+    int line;        ///< ... as music_sign
 } midi_order;
 
 /// A file. Beats are quarter notes and the tempo map is the file's, unless `converted`.

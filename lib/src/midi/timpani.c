@@ -78,12 +78,30 @@ static int find_ordered(const midi_state *state, const midi_order *o, int *key)
     return best;
 }
 
-// drums are tuned as the words before a stroke say, if there is time; `record` (or NULL) gets the
-// pedals
-static void follow_orders(const midi_part *part, int stroke, midi_state *state, midi_part *record)
+// the orders between one stroke that is played and the next; returns how many are before the last
+static int share_orders(midi_part *part)
 {
-    const midi_stroke *s = &part->stroke[stroke];
-    for (int i = s->order; i < s->order + s->orders; i++) {
+    int next = 0;
+    for (int i = 0; i < part->count; i++) {
+        midi_stroke *s = &part->stroke[i];
+        if (s->fate != MIDI_PLAYED)
+            continue;
+        s->order = next;
+        // a gliss goes on after a stroke on its beat
+        for (const midi_order *o = part->file->orders; next < part->file->order_count; next++)
+            if (o[next].seconds > s->note->seconds + (o[next].glides ? -1e-6 : 1e-6))
+                break;
+        s->orders = next - s->order;
+    }
+    return next;
+}
+
+// drums are tuned as the orders up to a stroke say, if there is time until then (s), or as a gliss
+// goes on; `record` (or NULL) gets the pedals
+static void follow_orders(const midi_part *part, int first, int count, double until,
+                          midi_state *state, midi_part *record)
+{
+    for (int i = first; i < first + count; i++) {
         const midi_order *o = &part->file->orders[i];
         int key = 0;
         if (o->kind != MIDI_TUNING || o->choice == MIDI_DRUMS)
@@ -94,17 +112,17 @@ static void follow_orders(const midi_part *part, int stroke, midi_state *state, 
         if (drum >= 0 && o->from >= 12)
             begin = fmax(begin, pedal_begin(state, drum));
         if (drum >= 0)
-            end = begin + pedal_time(key - state->key[drum]);
-        if (o->from < 12 && begin + FASTEST_PEDAL <= s->note->seconds)
-            end = fmin(end, s->note->seconds);
-        if (drum < 0 || end > s->note->seconds) {
+            end = begin + (o->length > 0 ? o->length : pedal_time(key - state->key[drum]));
+        if (o->from < 12 && !o->glides && begin + FASTEST_PEDAL <= until)
+            end = fmin(end, until);
+        if (drum < 0 || (end > until && !o->glides)) {
             if (record)
                 record->untuned++;
             continue;
         }
         if (record && record->pedals < MOST_PEDALS && key != state->key[drum])
             record->pedal[record->pedals++] =
-                (midi_pedal){begin, end - begin, drum, state->key[drum], key};
+                (midi_pedal){begin, end - begin, drum, state->key[drum], key, o->glides};
         state->key[drum] = key;
         state->foot = end + 0.3;
     }
@@ -115,7 +133,7 @@ static void follow_orders(const midi_part *part, int stroke, midi_state *state, 
 static bool choose(const midi_part *part, int stroke, int drum, midi_state *state)
 {
     const midi_stroke *s = &part->stroke[stroke];
-    follow_orders(part, stroke, state, NULL);
+    follow_orders(part, s->order, s->orders, s->note->seconds, state, NULL);
     if (drum == OMIT) {
         state->cost += 30;
         return true;
@@ -150,6 +168,7 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
 static void find_damped(midi_part *part)
 {
     double next[DRUMS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, moves[DRUMS], any = HUGE_VAL;
+    bool heard[DRUMS] = {false}; // a gliss
     memcpy(moves, next, sizeof moves);
     int pedal = part->pedals;
     for (int i = part->count - 1; i >= 0; i--) {
@@ -158,15 +177,19 @@ static void find_damped(midi_part *part)
         if (s->fate != MIDI_PLAYED)
             continue;
         for (; pedal > 0 && part->pedal[pedal - 1].seconds >= at; pedal--)
-            moves[part->pedal[pedal - 1].head] = part->pedal[pedal - 1].seconds;
+            if (part->pedal[pedal - 1].heard)
+                heard[part->pedal[pedal - 1].head] = true;
+            else
+                moves[part->pedal[pedal - 1].head] = part->pedal[pedal - 1].seconds;
         bool early = off - at < 0.7 * (next[s->head] - at);
         bool time = next[s->head] - off > 0.3 && any - off > 0.2; // drum and hands rest so long (s)
-        s->damped = (early && time && isfinite(next[s->head])) ||
+        s->damped = (early && time && !heard[s->head] && isfinite(next[s->head])) ||
                     moves[s->head] < himc_midi_stroke_end(s) + RING_TIME;
         if (s->note->way.ring != 0)
             s->damped = s->note->way.ring < 0;
         next[s->head] = any = at;
         moves[s->head] = HUGE_VAL;
+        heard[s->head] = false;
     }
 }
 
@@ -187,13 +210,14 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
         part->moved += s->key != s->note->key;
     }
     himc_midi_join(part);
+    const int done = share_orders(part);
     bool good = drum && part->pedal && himc_midi_search(part, &now, DRUMS + 1, choose, drum);
     for (int i = 0; good && i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
         if (s->fate != MIDI_PLAYED)
             continue;
         midi_state before = now;
-        follow_orders(part, i, &now, part);
+        follow_orders(part, s->order, s->orders, s->note->seconds, &now, part);
         int from = drum[i] == OMIT ? -1 : now.key[drum[i]];
         bool pedal = from >= 0 && from != s->key;
         if (drum[i] == OMIT || (pedal && part->pedals == MOST_PEDALS)) {
@@ -209,11 +233,13 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
             if ((double)early < time - 1e-4) // beyond rounding
                 time = early = (float)FASTEST_PEDAL;
             part->pedal[part->pedals++] =
-                (midi_pedal){s->note->seconds - (double)early, time, s->head, from, s->key};
+                (midi_pedal){s->note->seconds - (double)early, time, s->head, from, s->key, false};
         }
         now = before; // choose follows the orders again
         choose(part, i, s->head, &now);
     }
+    if (good)
+        follow_orders(part, done, part->file->order_count - done, INFINITY, &now, part);
     if (good)
         find_damped(part);
     free(drum);

@@ -1,12 +1,13 @@
 /// export.c: from a score's strokes to notes, the way back of midi/import.c.
 ///
 /// A timpano's note is the pitch that its pedal has on the stroke's beat, rounded to a semitone; a
-/// pedal that moves becomes an order. Bars have their pitch, all other instruments the key of their
+/// pedal that moves becomes an order, heard if it is a gliss. Bars have their pitch, all other instruments the key of their
 /// name in the kit, else of their kind. Invariant: each stroke of the score is a note or counted.
 #include "musicxml/export.h"
 
 #include "base/array.h"
 #include "base/format.h"
+#include "base/head_frame.h"
 #include "midi/part.h"
 #include "musicxml/names.h"
 #include "plan/score.h"
@@ -34,7 +35,8 @@ typedef struct exporter {
     midi_file *file;
     head head[HIMC_DRUMS];
     int heads, note_room, order_room, lost;
-    int spots; ///< of drums, without a key
+    int spots; ///< of drums, without a key or a notehead
+    bool midi;
     himc_error *error;
 } exporter;
 
@@ -88,26 +90,54 @@ static void follow_line(exporter *x, const himc_score_line *line)
     }
 }
 
-static bool add_order(exporter *x, double beat, midi_order_kind kind, midi_choice choice, int from,
-                      int value)
+static bool add_order(exporter *x, midi_order order)
 {
     midi_file *f = x->file;
     if (!himc_array_grow(&f->orders, f->order_count, &x->order_room, sizeof *f->orders, x->error))
         return false;
-    f->orders[f->order_count++] = (midi_order){
-        beat, himc_score_seconds(f->tempi, f->tempo_count, beat), kind, choice, from, value};
+    order.seconds = himc_score_seconds(f->tempi, f->tempo_count, order.beat);
+    f->orders[f->order_count++] = order;
     return true;
+}
+
+// what a pedal has done since the last order
+static bool add_tuning(exporter *x, head *h, int key)
+{
+    int from = h->written;
+    h->written = key;
+    return h->choice != MIDI_TIMPANI || from == key ||
+           add_order(x, (midi_order){.beat = h->moved,
+                                     .kind = MIDI_TUNING,
+                                     .choice = h->choice,
+                                     .from = from % 12,
+                                     .value = key % 12});
 }
 
 static bool follow_change(exporter *x, const himc_score_line *line)
 {
     const himc_command *c = &line->command;
     head *h = find_head(x, line->drum);
+    int before = h ? h->key : 0;
     if (h && h->key == h->written)
         h->moved = line->beat;
     follow_line(x, line);
+    if (h && c->id == HIMC_COMMAND_GLISS && h->key != before) {
+        if (!add_tuning(x, h, before))
+            return false;
+        h->written = h->key;
+        return add_order(x, (midi_order){.beat = line->beat,
+                                         .kind = MIDI_TUNING,
+                                         .choice = h->choice,
+                                         .from = before % 12,
+                                         .value = h->key % 12,
+                                         .glides = true,
+                                         .length = c->atom[1].number});
+    }
     return !h || c->id != HIMC_COMMAND_MUFFLE ||
-           add_order(x, line->beat, MIDI_MUFFLE, h->choice, 0, c->atom[0].number > 0.5);
+           add_order(x, (midi_order){.beat = line->beat,
+                                     .kind = MIDI_MUFFLE,
+                                     .choice = h->choice,
+                                     .value = c->atom[0].number > 0.5});
 }
 
 static int part_key(const char *part)
@@ -132,12 +162,14 @@ static bool add_note(exporter *x, const himc_stroke *s)
         add_head(x, s->drum[0] ? s->drum : "drum", "timpano", USUAL_INCHES);
         h = &x->head[x->heads - 1];
     }
-    int key = h->choice == MIDI_DRUMS ? himc_midi_key_of(h->name, s->spot, h->open) : h->key;
+    bool told = himc_spot_is_beyond(s->spot) && !x->midi; // by its notehead
+    himc_spot struck = told ? HIMC_SPOT_NORMAL : s->spot;
+    int key = h->choice == MIDI_DRUMS ? himc_midi_key_of(h->name, struck, h->open) : h->key;
     if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
         key = PEDAL_HAT;
     key = key < 0 ? h->key : key;
-    x->spots += h->choice == MIDI_DRUMS && s->hand != HIMC_FOOT && s->spot != HIMC_SPOT_NORMAL &&
-                himc_midi_key_spot(key) != s->spot;
+    x->spots += h->choice == MIDI_DRUMS && s->hand != HIMC_FOOT && struck != HIMC_SPOT_NORMAL &&
+                himc_midi_key_spot(key) != struck;
     himc_spot spot = s->spot;
     if (spot == HIMC_SPOT_XY || (h->choice == MIDI_TIMPANI && spot > HIMC_SPOT_RIM))
         spot = HIMC_SPOT_NORMAL;
@@ -148,11 +180,8 @@ static bool add_note(exporter *x, const himc_stroke *s)
         x->lost++;
         return true;
     }
-    if (h->choice == MIDI_TIMPANI && h->key != h->written) {
-        if (!add_order(x, h->moved, MIDI_TUNING, h->choice, h->written % 12, h->key % 12))
-            return false;
-        h->written = h->key;
-    }
+    if (!add_tuning(x, h, h->key))
+        return false;
     if (!himc_array_grow(&f->notes, f->note_count, &x->note_room, sizeof *f->notes, x->error))
         return false;
     double end = s->beat + (s->ornament >= HIMC_ROLL_SINGLE ? s->length : 0);
@@ -174,7 +203,20 @@ static bool add_note(exporter *x, const himc_stroke *s)
     return true;
 }
 
-bool himc_music_notes(midi_file *file, const himc_score *score, himc_error *error)
+// changes up to a beat; a gliss there begins after the stroke
+static bool follow_changes(exporter *x, const himc_score *score, int *change, double beat)
+{
+    for (; *change < score->change_count; ++*change) {
+        const himc_score_line *line = &score->changes[*change];
+        if (line->beat > beat || (line->beat == beat && line->command.id == HIMC_COMMAND_GLISS))
+            break;
+        if (!follow_change(x, line))
+            return false;
+    }
+    return true;
+}
+
+bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_error *error)
 {
     exporter *x = calloc(1, sizeof *x);
     *file = (midi_file){0};
@@ -184,7 +226,7 @@ bool himc_music_notes(midi_file *file, const himc_score *score, himc_error *erro
     if (!good)
         himc_error_set(error, "out of memory for the notes");
     if (good) {
-        *x = (exporter){.file = file, .error = error};
+        *x = (exporter){.file = file, .midi = midi, .error = error};
         memcpy(file->tempi, score->tempi, tempi);
         file->tempo_count = score->tempo_count;
     }
@@ -192,13 +234,13 @@ bool himc_music_notes(midi_file *file, const himc_score *score, himc_error *erro
         follow_line(x, &score->lines[i]);
     for (int i = 0; i < (x ? x->heads : 0); i++)
         x->head[i].written = x->head[i].key;
-    for (int i = 0, change = 0; good && i < score->stroke_count; i++) {
-        const himc_stroke *s = &score->strokes[i];
-        for (; good && change < score->change_count && score->changes[change].beat <= s->beat;
-             change++)
-            good = follow_change(x, &score->changes[change]);
-        good = good && add_note(x, s);
-    }
+    int change = 0;
+    for (int i = 0; good && i < score->stroke_count; i++)
+        good = follow_changes(x, score, &change, score->strokes[i].beat) &&
+               add_note(x, &score->strokes[i]);
+    good = good && follow_changes(x, score, &change, INFINITY);
+    for (int i = 0; good && i < x->heads; i++)
+        good = add_tuning(x, &x->head[i], x->head[i].key);
     if (good && file->note_count == 0)
         good = himc_error_set(error, "no stroke that notation has, expected a score with strokes");
     himc_text_lines said = {0};

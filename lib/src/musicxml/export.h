@@ -5,9 +5,10 @@
 #include "base/text.h"
 #include "midi/smf.h"
 
-/// The notes of a score, each of its own part (choice) and key; `strokes` that no notation has are
-/// counted in `said`. Free with himc_midi_file_free. False with one line.
-bool himc_music_notes(midi_file *file, const himc_score *score, himc_error *error);
+/// The notes of a score, each of its own part (choice) and key, for MIDI or for MusicXML; strokes
+/// and places that it does not have are counted in `said`. Free with himc_midi_file_free. False
+/// with one line.
+bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_error *error);
 
 /// write.c: notes as MusicXML 4.0, a part for each choice; false without memory.
 bool himc_music_write(himc_text_lines *out, const midi_file *file, const char *title);

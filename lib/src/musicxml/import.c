@@ -51,6 +51,11 @@ static bool read_file(midi_file *file, const void *bytes, size_t size, himc_erro
         return false;
     bool good = himc_music_order(&m, file, error) && himc_music_tempo(&m, file, error) &&
                 himc_music_shape(&m, file, error) && tell(&m, file, error);
+    if (good && m.note_count == 0)
+        good = himc_error_set(error,
+                              "nothing to play: %d bar%s without a note of timpani, drums, "
+                              "cymbals or keyboard percussion",
+                              m.bar_count, m.bar_count == 1 ? "" : "s");
     himc_music_free(&m);
     return good;
 }

@@ -39,10 +39,14 @@ typedef struct music_note {
     midi_choice choice;
     int key;
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
-    int ring;       ///< 1, -1, or 0: not written
-    int hand;       ///< 1 + himc_hand, or 0
-    int drum;       ///< of timpani: 1 low .. 4 high; 0: not written
-    double dynamic; ///< of its own; below 0: not written
+    bool pulled;         ///< the nuance staccato, as `himc export` writes it
+    bool held;           ///< under a fermata
+    bool glides, glided; ///< a line of a glissando begins, ends here
+    himc_spot spot;      ///< of its notehead
+    int ring;            ///< 1, -1, or 0: not written
+    int hand;            ///< 1 + himc_hand, or 0
+    int drum;            ///< of timpani: 1 low .. 4 high; 0: not written
+    double dynamic;      ///< of its own; below 0: not written
     music_tremolo tremolo;
     int marks, flags; ///< strokes through the stem; flags of the note
     double ratio;     ///< of a tuplet: written length over sounding
@@ -53,6 +57,7 @@ typedef struct music_sign {
     music_place at;
     music_meaning meaning;
     double value;
+    int line; ///< of MUSIC_GLISS and its end: 1 + the number of its line; 0: none
 } music_sign;
 
 /// What is left out of the score: the reason, and bars.

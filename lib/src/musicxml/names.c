@@ -98,7 +98,16 @@ static const struct {
     {"near rim|near the rim|near edge|near the edge|at the edge|am rand|nahe am rand|"
      "au bord|près du bord|vicino al bordo|al bordo|sul bordo",
      MUSIC_SPOT, HIMC_SPOT_RIM},
-    {"normal|ord.|ordinario|gewöhnlich|normale stelle|naturale", MUSIC_SPOT, HIMC_SPOT_NORMAL},
+    {"normal|ord.|ordinario|gewöhnlich|normale stelle|naturale|on head|on the head|auf dem fell|"
+     "sur la peau|sulla pelle",
+     MUSIC_SPOT, HIMC_SPOT_NORMAL},
+    {"rim shot|rimshot|r.s.", MUSIC_SPOT_HERE, HIMC_SPOT_RIMSHOT},
+    {"rim shots|rimshots", MUSIC_SPOT, HIMC_SPOT_RIMSHOT},
+    {"cross stick|side stick|rim$|on rim|on the rim|auf dem rand|sur le cercle|sul cerchio",
+     MUSIC_SPOT, HIMC_SPOT_CROSSSTICK},
+    {"shell|on shell|on the shell|zarge|auf der zarge|sur le fût|sul fusto", MUSIC_SPOT,
+     HIMC_SPOT_SHELL},
+    {"stick click|click sticks", MUSIC_SPOT_HERE, HIMC_SPOT_CLICK},
     {"wood$|holz|bois$|legno", MUSIC_MALLET, 3},
     {"hard stick|hard mallet|harte|dures|bacchette dure", MUSIC_MALLET, 2},
     {"medium stick|medium mallet|felt|filz|feutre|feltro", MUSIC_MALLET, 1},
@@ -210,6 +219,13 @@ int himc_music_drum(const char *name)
     return 0;
 }
 
+const char *himc_music_notehead(himc_spot spot)
+{
+    static const char *const heads[HIMC_SPOT_XY + 1] = {"",        "",         "",         "x",
+                                                        "slashed", "circle-x", "triangle", ""};
+    return heads[spot];
+}
+
 bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
 {
     static const struct {
@@ -283,11 +299,11 @@ static int read_pitch(const char **at, bool german)
     return pitch;
 }
 
-// "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la"
+// "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la", "gliss. C to D"
 static int read_tunings(const char *text, int most, double *value)
 {
     static const char *const tells[] = {"muta", "mutano", "change", "umstimmen", "stimmen",
-                                        "tune", "retune", "cambia", "nach"};
+                                        "tune", "retune", "cambia", "nach",      "gliss"};
     static const char *const joins[] = {"to", "in", "en", "nach", "auf", "muta", "->", "→"};
     bool told = false;
     for (size_t i = 0; i < sizeof tells / sizeof *tells; i++) {
@@ -336,7 +352,7 @@ int himc_music_words(const char *words, int most, music_meaning *meaning, double
     }
     count = read_tunings(text, most, value);
     for (int i = 0; i < count; i++)
-        meaning[i] = MUSIC_TUNING;
+        meaning[i] = strstr(text, "gliss") ? MUSIC_GLISS : MUSIC_TUNING;
     const size_t rows = sizeof instructions / sizeof *instructions;
     for (const char *at = text; *at && count < most;) {
         size_t longest = 0, found = rows;

@@ -13,6 +13,10 @@ midi_choice himc_music_instrument(const char *name, int *key);
 /// The timpano of a name as `himc export` writes it, "second timpano": 1 low .. 4 high; else 0.
 int himc_music_drum(const char *name);
 
+/// The notehead of a drum's note at a spot beyond its head: x, a cross-stick; slashed, a rim shot;
+/// circle-x, a click; triangle, the shell. "" of the others.
+const char *himc_music_notehead(himc_spot spot);
+
 /// What a word or a sign asks for.
 typedef enum music_meaning {
     MUSIC_DYNAMIC,     ///< value: 0 .. 1
@@ -26,6 +30,7 @@ typedef enum music_meaning {
     MUSIC_TEMPO_BACK,  ///< value: 0 a tempo, 1 tempo primo
     MUSIC_FERMATA,     ///< value: length of the note (beats)
     MUSIC_SPOT,        ///< value: himc_spot
+    MUSIC_SPOT_HERE,   ///< the same, of this note alone
     MUSIC_RING,        ///< value: 1 rings on, -1 damped: this note
     MUSIC_RING_ALWAYS, ///< from here on; value 0: as usual
     MUSIC_DAMP,        ///< what sounds is damped here
@@ -34,6 +39,8 @@ typedef enum music_meaning {
     MUSIC_HAND,        ///< value: himc_hand, of the note here
     MUSIC_MEASURED,    ///< value: 1 tremolos are measured, 0 not
     MUSIC_TUNING,      ///< value: 100 from + to (classes of pitch, 0 C .. 11), from 12: any drum
+    MUSIC_GLISS,       ///< the same, heard; up to the end of its line, if it has one
+    MUSIC_GLISS_END,
     MUSIC_DA_CAPO,
     MUSIC_DAL_SEGNO,
     MUSIC_TO_CODA,

@@ -18,6 +18,7 @@
 #include <string.h>
 
 #define MOST_INSTRUMENTS 64 // of a part
+#define MOST_LINES 9        // that run at once
 #define MOST_BARS 20000     // chosen: no piece has as many
 
 typedef struct instrument {
@@ -37,6 +38,7 @@ typedef struct reader {
     double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
     double time;                     ///< length of a bar (beats)
     int transpose;                   ///< (semitones)
+    bool line[MOST_LINES];           ///< a pedal's, which has begun
     bool failed;
 } reader;
 
@@ -54,7 +56,8 @@ static void add_sign(reader *r, double beat, music_meaning meaning, double value
         r->failed = true;
         return;
     }
-    m->signs[m->sign_count] = (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value};
+    m->signs[m->sign_count] =
+        (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value, 0};
     m->sign_count++;
 }
 
@@ -188,6 +191,27 @@ static void read_wedge(reader *r, const xml_node *wedge, double beat)
         add_sign(r, beat, MUSIC_WEDGE, way);
 }
 
+// a line behind words about tuning is a pedal's
+static void read_line(reader *r, const xml_node *dashes, double beat, int first)
+{
+    const music *m = r->music;
+    const char *number = himc_xml_attribute(dashes, "number");
+    int line = number[0] ? number[0] - '0' : 1;
+    if (line < 1 || line > MOST_LINES)
+        return;
+    if (himc_xml_has(dashes, "type", "stop") && r->line[line - 1]) {
+        add_sign(r, beat, MUSIC_GLISS_END, 0);
+        m->signs[m->sign_count - 1].line = line;
+        r->line[line - 1] = false;
+    }
+    for (int i = first; i < m->sign_count && himc_xml_has(dashes, "type", "start"); i++)
+        if (m->signs[i].meaning == MUSIC_TUNING || m->signs[i].meaning == MUSIC_GLISS) {
+            m->signs[i].meaning = MUSIC_GLISS;
+            m->signs[i].line = line;
+            r->line[line - 1] = true;
+        }
+}
+
 // a picture of mallets
 static void read_percussion(reader *r, const xml_node *percussion, double beat)
 {
@@ -223,6 +247,7 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
     static const char *const jump[] = {"dacapo", "dalsegno", "tocoda", "fine", "coda", "segno"};
     for (int i = 0; i < 6; i++)
         jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
+    const int first = r->music->sign_count;
     const xml_node *type = himc_xml_child(direction, "direction-type");
     for (; type; type = himc_xml_next(type))
         for (const xml_node *d = type->child; d; d = d->next) {
@@ -240,6 +265,8 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
                 read_wedge(r, d, beat);
             else if (own && himc_xml_is(d, "percussion"))
                 read_percussion(r, d, beat);
+            else if (own && (himc_xml_is(d, "dashes") || himc_xml_is(d, "bracket")))
+                read_line(r, d, beat, first);
             else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
                 add_sign(r, beat, MUSIC_DAMP, 0);
         }
@@ -332,6 +359,7 @@ static void read_notations(reader *r, music_note *n, const xml_node *notations)
         n->tenuto |= himc_xml_is(a, "tenuto") || himc_xml_is(a, "detached-legato");
         n->staccato |= himc_xml_is(a, "staccato") || himc_xml_is(a, "staccatissimo") ||
                        himc_xml_is(a, "spiccato");
+        n->pulled |= himc_xml_is(a, "other-articulation") && strcmp(a->text, "pulled off") == 0;
     }
     const xml_node *technical = himc_xml_child(notations, "technical");
     for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next)
@@ -339,6 +367,12 @@ static void read_notations(reader *r, music_note *n, const xml_node *notations)
             n->hand = hand_of(t->text) ? hand_of(t->text) : n->hand;
     for (const xml_node *t = himc_xml_child(notations, "tied"); t; t = himc_xml_next(t))
         n->ring |= himc_xml_has(t, "type", "let-ring");
+    n->held |= himc_xml_child(notations, "fermata") != NULL;
+    for (const xml_node *g = notations->child; g; g = g->next)
+        if (himc_xml_is(g, "glissando") || himc_xml_is(g, "slide")) {
+            n->glides |= himc_xml_has(g, "type", "start");
+            n->glided |= himc_xml_has(g, "type", "stop");
+        }
     const xml_node *dynamics = himc_xml_child(notations, "dynamics");
     if (dynamics)
         read_dynamics(r, dynamics, n->at.beat);
@@ -369,6 +403,16 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
            (written >= 0 || of->key != MUSIC_NO_KEY) && (of->choice == MIDI_DRUMS || n->key < 128);
 }
 
+// of a drum with a hoop (kit.c)
+static himc_spot spot_of(const char *notehead)
+{
+    himc_spot spot = HIMC_SPOT_CROSSSTICK;
+    for (; spot < HIMC_SPOT_XY; spot++)
+        if (strcmp(notehead, himc_music_notehead(spot)) == 0)
+            return spot;
+    return HIMC_SPOT_NORMAL;
+}
+
 static void add_note(reader *r, const xml_node *note, double beat, double length)
 {
     static const char *const types[] = {"eighth", "16th", "32nd", "64th", "128th"};
@@ -377,6 +421,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
                     .length = length,
                     .voice = atoi(himc_xml_text(note, "voice")),
                     .grace = himc_xml_child(note, "grace") != NULL,
+                    .spot = spot_of(himc_xml_text(note, "notehead")),
                     .ratio = 1};
     if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
         return;
@@ -543,8 +588,8 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
 {
     // what is only printed
     static const char *const unused[] = {
-        "identification", "defaults", "credit",       "print",         "stem", "beam", "notehead",
-        "accidental",     "harmony",  "figured-bass", "staff-details", "slur", "clef", NULL};
+        "identification", "defaults",     "credit",        "print", "stem", "beam", "accidental",
+        "harmony",        "figured-bass", "staff-details", "slur",  "clef", NULL};
     xml_document document;
     *m = (music){
         .omitted = {

@@ -43,6 +43,7 @@ typedef struct shaper {
     int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
     double held;                      ///< a fermata ends (beats)
     bool attack;                      ///< of this beat
+    himc_spot here;                   ///< of this beat; HIMC_SPOT_NORMAL: as `spot`
     music_note *grace[MOST_GRACES];
     int graces;
     bool failed;
@@ -64,7 +65,9 @@ static int first_from(const music *m, double beat)
     return low;
 }
 
-static music_note *find_next(music *m, const music_note *n, bool tie)
+typedef enum joint { BY_TIE, BY_TREMOLO, BY_GLISS } joint;
+
+static music_note *find_next(music *m, const music_note *n, joint by)
 {
     double end = n->at.beat + n->length;
     int first = first_from(m, end);
@@ -72,8 +75,10 @@ static music_note *find_next(music *m, const music_note *n, bool tie)
         music_note *to = &m->notes[i];
         if (to->at.beat > end + SAME)
             break;
-        bool fits = tie ? to->key == n->key && to->tied_back
-                        : to->voice == n->voice && to->tremolo == MUSIC_PAIR_END;
+        bool fits = by == BY_TIE            ? to->key == n->key && to->tied_back
+                    : to->voice != n->voice ? false
+                    : by == BY_GLISS        ? to->glided
+                                            : to->tremolo == MUSIC_PAIR_END;
         if (fits && to->at.part == n->at.part && to->length > 0 && !to->grace)
             return to;
     }
@@ -84,7 +89,7 @@ static music_note *find_next(music *m, const music_note *n, bool tie)
 static void join_ties(music *m)
 {
     for (int i = m->note_count - 1; i >= 0; i--) {
-        music_note *n = &m->notes[i], *to = n->tied_on ? find_next(m, n, true) : NULL;
+        music_note *n = &m->notes[i], *to = n->tied_on ? find_next(m, n, BY_TIE) : NULL;
         n->rolled = n->tremolo == MUSIC_NO_TREMOLO ? 0 : n->length;
         if (n->tied_on && !to)
             n->ring = 1; // into the air
@@ -92,9 +97,12 @@ static void join_ties(music *m)
             continue;
         n->tremolo = n->tremolo ? n->tremolo : to->tremolo;
         n->marks = n->marks ? n->marks : to->marks;
-        n->rolled = to->tremolo ? n->length + to->rolled : n->rolled;
+        // a roll is held to the end of a fermata that it is tied to
+        if (to->tremolo || (to->held && n->tremolo))
+            n->rolled = n->length + (to->tremolo ? to->rolled : to->length);
         n->length += to->length;
         n->ring = to->ring;
+        n->glides |= to->glides;
         to->length = -1;
     }
 }
@@ -175,7 +183,7 @@ static void emit_measured(shaper *s, const music_note *n, double unit, midi_way 
 // two notes in turn; the second one is found behind the first
 static void emit_pair(shaper *s, music_note *n, double unit, midi_way way)
 {
-    music_note *other = find_next(s->music, n, false);
+    music_note *other = find_next(s->music, n, BY_TREMOLO);
     double all = 2 * n->length;
     while (unit / s->second < ALTERNATE && unit < n->length)
         unit *= 2;
@@ -230,14 +238,44 @@ static void emit_graces(shaper *s, const music_note *n, bool roll, midi_way *way
 static void add_order(shaper *s, midi_order_kind kind, const music_sign *sign, midi_choice choice)
 {
     midi_file *f = s->file;
-    int value = (int)sign->value, from = kind == MIDI_TUNING ? value / 100 : 0;
+    int value = (int)sign->value;
+    bool tunes = kind == MIDI_TUNING;
     if (s->failed || (s->failed = !himc_array_grow(&f->orders, f->order_count, &s->order_room,
                                                    sizeof *f->orders, s->error)))
         return;
-    f->orders[f->order_count++] =
-        (midi_order){sign->at.beat, himc_score_seconds(f->tempi, f->tempo_count, sign->at.beat),
-                     kind,          choice,
-                     from,          kind == MIDI_TUNING ? value % 100 : value};
+    f->orders[f->order_count++] = (midi_order){
+        .beat = sign->at.beat,
+        .seconds = himc_score_seconds(f->tempi, f->tempo_count, sign->at.beat),
+        .kind = kind,
+        .choice = choice,
+        .from = tunes ? value / 100 : 0,
+        .value = tunes ? value % 100 : value,
+        .glides = tunes && sign->meaning == MUSIC_GLISS,
+        .line = sign->line,
+    };
+}
+
+// the last gliss of that line ends at a beat
+static void end_gliss(shaper *s, int line, double beat)
+{
+    midi_file *f = s->file;
+    for (int i = f->order_count - 1; i >= 0; i--)
+        if (f->orders[i].glides && f->orders[i].line == line) {
+            f->orders[i].length =
+                himc_score_seconds(f->tempi, f->tempo_count, beat) - f->orders[i].seconds;
+            return;
+        }
+}
+
+// a line from a timpano's note to the next
+static void add_gliss(shaper *s, const music_note *n)
+{
+    const music_note *to = n->glides ? find_next(s->music, n, BY_GLISS) : NULL;
+    if (!to || n->choice != MIDI_TIMPANI || to->key == n->key)
+        return;
+    music_sign sign = {n->at, MUSIC_GLISS, 100 * (n->key % 12) + to->key % 12, -1};
+    add_order(s, MIDI_TUNING, &sign, n->choice);
+    end_gliss(s, -1, to->at.beat);
 }
 
 // what sounds is damped at a beat, or rings on
@@ -268,6 +306,9 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
         switch (sign->meaning) {
         case MUSIC_ATTACK: s->attack |= sign->at.beat > beat - SAME; break;
         case MUSIC_SPOT: s->spot = (himc_spot)sign->value; break;
+        case MUSIC_SPOT_HERE:
+            s->here = sign->at.beat > beat - SAME ? (himc_spot)sign->value : s->here;
+            break;
         case MUSIC_RING:
             // at a rest it is for what sounds
             if (sign->at.beat > beat - SAME)
@@ -284,7 +325,9 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
         case MUSIC_MEASURED: s->measured = (int)sign->value; break;
         case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, choice); break;
         case MUSIC_MUFFLE: add_order(s, MIDI_MUFFLE, sign, choice); break;
-        case MUSIC_TUNING: add_order(s, MIDI_TUNING, sign, choice); break;
+        case MUSIC_TUNING:
+        case MUSIC_GLISS: add_order(s, MIDI_TUNING, sign, choice); break;
+        case MUSIC_GLISS_END: end_gliss(s, sign->line, sign->at.beat); break;
         default: break;
         }
     }
@@ -311,20 +354,24 @@ static void shape_note(shaper *s, music_note *n)
     bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = s->attack || n->marcato;
     midi_way way = {.dynamic = n->dynamic >= 0 ? n->dynamic : level(s, n->at.beat),
                     .drum = n->drum,
-                    .nuance = attack        ? HIMC_VERTICAL_ACCENT
-                              : n->accent   ? HIMC_ACCENT
-                              : n->staccato ? HIMC_STACCATO
-                              : n->tenuto   ? HIMC_TENUTO
-                                            : HIMC_LEGATO,
-                    .spot = s->spot,
+                    .nuance = attack      ? HIMC_VERTICAL_ACCENT
+                              : n->accent ? HIMC_ACCENT
+                              : n->pulled ? HIMC_STACCATO
+                              : n->tenuto ? HIMC_TENUTO
+                                          : HIMC_LEGATO,
+                    .spot = n->spot != HIMC_SPOT_NORMAL   ? n->spot
+                            : s->here != HIMC_SPOT_NORMAL ? s->here
+                                                          : s->spot,
                     .hand = n->hand ? n->hand : s->hand,
                     .ring = n->ring   ? n->ring
                             : s->ring ? s->ring
                                       : s->always};
+    if (n->staccato && !n->pulled && way.ring == 0 && n->choice == MIDI_TIMPANI) {
+        way.ring = -1; // a dot: the same attack, and a hand on the head
+        n->length /= 2;
+    }
     double louder = attack ? 2 * STEP : n->accent ? STEP : 0;
     emit_graces(s, n, roll, &way);
-    if (!roll && n->accent && !attack)
-        way.dynamic = fmin(way.dynamic + STEP, 1);
     if (roll)
         emit_roll(s, n, n->at.beat + n->rolled, louder, way);
     else if (n->tremolo == MUSIC_MARKS)
@@ -333,6 +380,7 @@ static void shape_note(shaper *s, music_note *n)
         emit_pair(s, n, unit, way);
     else
         emit(s, n, n->at.beat, n->at.beat + n->length, &way);
+    add_gliss(s, n);
 }
 
 static bool shape_part(shaper *s, int part)
@@ -344,7 +392,7 @@ static bool shape_part(shaper *s, int part)
     s->held = 0;
     s->measured = -1;
     s->attack = false;
-    s->spot = HIMC_SPOT_NORMAL;
+    s->spot = s->here = HIMC_SPOT_NORMAL;
     s->levels = himc_music_levels(
         m, part, himc_midi_bpm(s->file->tempi, s->file->tempo_count, 0) / 60, &s->level_count);
     if (!s->levels)
@@ -356,6 +404,7 @@ static bool shape_part(shaper *s, int part)
         if (n->at.beat > last + SAME && last >= 0) {
             s->attack = false;
             s->ring = s->hand = 0;
+            s->here = HIMC_SPOT_NORMAL;
         }
         if (n->grace && s->graces < MOST_GRACES)
             s->grace[s->graces++] = n;
@@ -386,7 +435,9 @@ static int by_time(const void *a, const void *b)
 static int by_order(const void *a, const void *b)
 {
     const midi_order *x = a, *y = b;
-    return (x->seconds > y->seconds) - (x->seconds < y->seconds);
+    if (x->seconds != y->seconds)
+        return x->seconds < y->seconds ? -1 : 1;
+    return x->glides - y->glides;
 }
 
 bool himc_music_shape(music *m, midi_file *file, himc_error *error)

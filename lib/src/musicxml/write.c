@@ -3,12 +3,12 @@
 /// Time counts in TICKS of a quarter note. Notes that overlap stand in several voices; a note lasts
 /// up to the next one of its voice or to the bar's end, a roll as long as it is, tied over bars.
 /// Dynamics are steps: a mark where the step changes, a hairpin for a roll that moves by one at
-/// least. An accent is read back a step louder (shape.c), so it is written a step softer. Words and
-/// marks of a bar are written first, then each voice, each back from the bar's end.
+/// least. A gliss is words with a line. Words and marks of a bar are written first, then each voice, each back from the bar's end.
 #include "musicxml/export.h"
 
 #include "base/format.h"
 #include "midi/part.h"
+#include "musicxml/names.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,6 +17,7 @@
 #define TICKS 960 // of a quarter note; chosen: 0.5 ms at 120 beats a minute
 #define BAR (4 * TICKS)
 #define VOICES 4
+#define LINES 9 // of glissandi that run at once
 
 /// A note of a part.
 typedef struct item {
@@ -51,16 +52,9 @@ static long ticks_of(double beat)
     return lround(beat * TICKS);
 }
 
-// an accent is read a step louder
-static bool is_louder(const midi_way *way)
+static int step_of(double dynamic)
 {
-    return way->nuance == HIMC_ACCENT && way->length <= 0;
-}
-
-static int step_of(const midi_way *way, double dynamic)
-{
-    int step = (int)lround(7 * dynamic) - is_louder(way);
-    return step < 0 ? 0 : step;
+    return (int)lround(7 * dynamic);
 }
 
 // a type for a length of notation, with dots; else only its duration
@@ -114,6 +108,8 @@ static void put_notations(const writer *w, const item *i, bool begins, bool ties
                                         [HIMC_ACCENT] = "accent",
                                         [HIMC_VERTICAL_ACCENT] = "strong-accent",
                                         [HIMC_STACCATO] = "staccato"};
+    // of a dot alone the stroke is damped
+    static const char pulled[] = "<other-articulation>pulled off</other-articulation>";
     const midi_way *way = &i->note->way;
     bool roll = way->length > 0;
     PUT(w, "<notations>");
@@ -128,7 +124,8 @@ static void put_notations(const writer *w, const item *i, bool begins, bool ties
         PUT(w, "<technical><fingering>%s</fingering></technical>",
             way->hand == 1 + HIMC_LEFT ? "L" : "R");
     if (begins && way->nuance != HIMC_LEGATO && !roll)
-        PUT(w, "<articulations><%s/></articulations>", marks[way->nuance]);
+        PUT(w, "<articulations><%s/>%s</articulations>", marks[way->nuance],
+            way->nuance == HIMC_STACCATO ? pulled : "");
     PUT(w, "</notations>");
 }
 
@@ -137,9 +134,9 @@ static void put_note(const writer *w, const item *i, long from, long to)
     bool begins = from == i->begin, ties_on = i->note->way.length > 0 && to < i->end;
     if (begins)
         put_graces(w, i);
-    double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
+    const char *notehead = himc_music_notehead(i->note->way.spot);
     // the exact dynamic, in percent of a velocity of 90
-    PUT(w, "<note dynamics=\"%.6g\">", himc_midi_velocity(fmax(level, 0)) / 0.9);
+    PUT(w, "<note dynamics=\"%.6g\">", himc_midi_velocity(i->note->way.dynamic) / 0.9);
     put_pitch(w, i->note->key);
     PUT(w, "<duration>%ld</duration>", to - from);
     if (!begins)
@@ -149,6 +146,8 @@ static void put_note(const writer *w, const item *i, long from, long to)
     put_instrument(w, i->note);
     PUT(w, "<voice>%d</voice>", i->voice + 1);
     put_type(w, to - from);
+    if (notehead[0])
+        PUT(w, "<notehead>%s</notehead>", notehead);
     put_notations(w, i, begins, ties_on);
     PUT(w, "</note>\n");
 }
@@ -168,6 +167,25 @@ static void put_words(const writer *w, long *at, long to, const char *words)
 {
     move(w, at, to);
     PUT(w, "<direction><direction-type><words>%s</words></direction-type></direction>\n", words);
+}
+
+// where the pedal of an order comes to rest
+static long end_of(const writer *w, const midi_order *o)
+{
+    const midi_file *f = w->file;
+    double end = himc_score_beat(f->tempi, f->tempo_count, o->seconds + o->length);
+    long tick = ticks_of(o->beat), last = ticks_of(end);
+    return o->glides && last <= tick ? tick + 1 : last;
+}
+
+static void put_gliss(const writer *w, long *at, long to, int line, const char *words)
+{
+    move(w, at, to);
+    PUT(w, "<direction>");
+    if (words[0])
+        PUT(w, "<direction-type><words>gliss. %s</words></direction-type>", words);
+    PUT(w, "<direction-type><dashes type=\"%s\" number=\"%d\"/></direction-type></direction>\n",
+        words[0] ? "start" : "stop", 1 + line % LINES);
 }
 
 static void put_tempi(const writer *w, long begin, long *at)
@@ -191,15 +209,22 @@ static void put_orders(const writer *w, long begin, long *at)
                                         "F#", "G",  "Ab", "A",  "Bb", "B"};
     for (int i = 0; i < w->file->order_count; i++) {
         const midi_order *o = &w->file->orders[i];
-        long tick = ticks_of(o->beat);
+        long tick = ticks_of(o->beat), end = end_of(w, o);
+        bool here = tick >= begin && tick < begin + BAR;
         char words[40];
-        if (o->choice != w->choice || tick < begin || tick >= begin + BAR)
+        if (o->choice != w->choice)
             continue;
-        if (o->kind == MIDI_TUNING)
-            himc_format(words, sizeof words, "%s muta in %s", pitch[o->from], pitch[o->value]);
-        else
-            himc_format(words, sizeof words, "%s", o->value ? "coperto" : "scoperto");
-        put_words(w, at, tick, words);
+        himc_format(words, sizeof words, o->glides ? "%s to %s" : "%s muta in %s",
+                    o->kind == MIDI_TUNING ? pitch[o->from] : "", pitch[o->value % 12]);
+        if (here && o->glides)
+            put_gliss(w, at, tick, i, words);
+        else if (here)
+            put_words(w, at, tick,
+                      o->kind == MIDI_TUNING ? words
+                      : o->value             ? "coperto"
+                                             : "scoperto");
+        if (o->glides && end > begin && end <= begin + BAR)
+            put_gliss(w, at, end, i, "");
     }
 }
 
@@ -228,7 +253,7 @@ static int by_tick(const void *a, const void *b)
 static bool has_wedge(const item *i)
 {
     const midi_way *way = &i->note->way;
-    return way->length > 0 && step_of(way, way->dynamic) != step_of(way, way->last_dynamic);
+    return way->length > 0 && step_of(way->dynamic) != step_of(way->last_dynamic);
 }
 
 // the beginnings of a bar's notes, and where hairpins end, in order
@@ -252,7 +277,7 @@ static void put_dynamics(writer *w, int first, long begin, long *at)
     int count = list_marks(w, first, begin);
     for (const mark *m = w->marks; m < w->marks + count; m++) {
         const midi_way *way = &m->item->note->way;
-        int from = step_of(way, way->dynamic), to = step_of(way, way->last_dynamic);
+        int from = step_of(way->dynamic), to = step_of(way->last_dynamic);
         if (m->ends) {
             put_wedge(w, at, m->tick, "stop");
             put_dynamic(w, at, m->tick, to);
@@ -303,6 +328,10 @@ static void put_bars(writer *w)
     long end = 0;
     for (int k = 0; k < w->count; k++)
         end = w->items[k].end > end ? w->items[k].end : end;
+    for (int i = 0; i < w->file->order_count; i++) {
+        long last = end_of(w, &w->file->orders[i]);
+        end = w->file->orders[i].choice == w->choice && last > end ? last : end;
+    }
     for (long begin = 0, bar = 1; begin < end; begin += BAR, bar++) {
         long at = begin;
         PUT(w, "<measure number=\"%ld\">", bar);
