@@ -365,7 +365,8 @@ static void test_marks_of_a_note_are_its_nuance(void)
                                   HIMC_TENUTO, HIMC_VERTICAL_ACCENT, HIMC_LEGATO};
     for (int i = 0; i < 6; i++)
         TEST_ASSERT_EQUAL(nuance[i], stroke(i)->nuance);
-    expect_dynamics(6, 4.0, 4.0, 4.0, 4.0, 4.0, 4.0);
+    // an accent is a step louder
+    expect_dynamics(6, 5.0, 4.0, 4.0, 4.0, 4.0, 4.0);
 }
 
 static void test_fp_is_loud_once(void)

@@ -19,22 +19,9 @@ static void test_fff_is_ten_times_as_fast_as_ppp(void)
 {
     for (int n = 0; n < HIMC_NUANCES; n++) {
         double soft = himc_gesture_of((himc_nuance)n, 0).speed;
-        if (n == HIMC_ACCENT) // a step above
-            continue;
         TEST_ASSERT_DOUBLE_WITHIN(0.01, 10.008, himc_gesture_of((himc_nuance)n, 1).speed / soft);
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 7.2, himc_gesture_of((himc_nuance)n, FORTE).speed / soft);
     }
-}
-
-static void test_an_accent_is_as_fast_as_a_stroke_a_step_louder(void)
-{
-    for (int step = 0; step < 7; step++)
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, himc_gesture_of(HIMC_LEGATO, (step + 1) / 7.0).speed,
-                                  himc_gesture_of(HIMC_ACCENT, step / 7.0).speed);
-    TEST_ASSERT_TRUE(himc_gesture_of(HIMC_ACCENT, 1).speed >
-                     1.1 * himc_gesture_of(HIMC_LEGATO, 1).speed);
-    double speed = himc_gesture_of(HIMC_ACCENT, 0.3).speed;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.3, himc_gesture_dynamic_at(HIMC_ACCENT, speed));
 }
 
 static void test_no_stroke_falls_longer_than_0_3_s_or_from_more_than_0_75_m(void)
@@ -173,7 +160,6 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_fff_is_ten_times_as_fast_as_ppp);
-    RUN_TEST(test_an_accent_is_as_fast_as_a_stroke_a_step_louder);
     RUN_TEST(test_no_stroke_falls_longer_than_0_3_s_or_from_more_than_0_75_m);
     RUN_TEST(test_backswing_is_in_proportion_to_the_height);
     RUN_TEST(test_unit_at_twice_its_speed_falls_shorter_and_from_higher);

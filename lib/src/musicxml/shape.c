@@ -372,6 +372,8 @@ static void shape_note(shaper *s, music_note *n)
     }
     double louder = attack ? 2 * STEP : n->accent ? STEP : 0;
     emit_graces(s, n, roll, &way);
+    if (!roll && n->accent && !attack)
+        way.dynamic = fmin(way.dynamic + STEP, 1);
     if (roll)
         emit_roll(s, n, n->at.beat + n->rolled, louder, way);
     else if (n->tremolo == MUSIC_MARKS)

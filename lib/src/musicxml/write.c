@@ -3,7 +3,9 @@
 /// Time counts in TICKS of a quarter note. Notes that overlap stand in several voices; a note lasts
 /// up to the next one of its voice or to the bar's end, a roll as long as it is, tied over bars.
 /// Dynamics are steps: a mark where the step changes, a hairpin for a roll that moves by one at
-/// least. A gliss is words with a line. Words and marks of a bar are written first, then each voice, each back from the bar's end.
+/// least. An accent is read back a step louder (shape.c), so it is written a step softer. A gliss is
+/// words with a line. Words and marks of a bar are written first, then each voice, each back from the
+/// bar's end.
 #include "musicxml/export.h"
 
 #include "base/format.h"
@@ -52,9 +54,16 @@ static long ticks_of(double beat)
     return lround(beat * TICKS);
 }
 
-static int step_of(double dynamic)
+// an accent is read a step louder
+static bool is_louder(const midi_way *way)
 {
-    return (int)lround(7 * dynamic);
+    return way->nuance == HIMC_ACCENT && way->length <= 0;
+}
+
+static int step_of(const midi_way *way, double dynamic)
+{
+    int step = (int)lround(7 * dynamic) - is_louder(way);
+    return step < 0 ? 0 : step;
 }
 
 // a type for a length of notation, with dots; else only its duration
@@ -135,8 +144,9 @@ static void put_note(const writer *w, const item *i, long from, long to)
     if (begins)
         put_graces(w, i);
     const char *notehead = himc_music_notehead(i->note->way.spot);
+    double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
     // the exact dynamic, in percent of a velocity of 90
-    PUT(w, "<note dynamics=\"%.6g\">", himc_midi_velocity(i->note->way.dynamic) / 0.9);
+    PUT(w, "<note dynamics=\"%.6g\">", himc_midi_velocity(fmax(level, 0)) / 0.9);
     put_pitch(w, i->note->key);
     PUT(w, "<duration>%ld</duration>", to - from);
     if (!begins)
@@ -253,7 +263,7 @@ static int by_tick(const void *a, const void *b)
 static bool has_wedge(const item *i)
 {
     const midi_way *way = &i->note->way;
-    return way->length > 0 && step_of(way->dynamic) != step_of(way->last_dynamic);
+    return way->length > 0 && step_of(way, way->dynamic) != step_of(way, way->last_dynamic);
 }
 
 // the beginnings of a bar's notes, and where hairpins end, in order
@@ -277,7 +287,7 @@ static void put_dynamics(writer *w, int first, long begin, long *at)
     int count = list_marks(w, first, begin);
     for (const mark *m = w->marks; m < w->marks + count; m++) {
         const midi_way *way = &m->item->note->way;
-        int from = step_of(way->dynamic), to = step_of(way->last_dynamic);
+        int from = step_of(way, way->dynamic), to = step_of(way, way->last_dynamic);
         if (m->ends) {
             put_wedge(w, at, m->tick, "stop");
             put_dynamic(w, at, m->tick, to);

@@ -2,9 +2,7 @@
 ///
 /// Speeds of the mallet head at f come from optical captures of timpani exercises (425 strokes;
 /// legato 4.3, tenuto 4.2, accent 4.5, vertical accent 7.5, staccato 2.8 m/s, and 1.39 times that
-/// in the louder takes). Those accents are 0.4 dB louder than legato; as a musician means one, an
-/// accent has here the speed of a legato stroke a step of dynamics louder (up to f 3.8 dB, above
-/// 1.6). Heights and depths keep the differences between nuances of Bouënard, Gibet
+/// in the louder takes). Heights and depths keep the differences between nuances of Bouënard, Gibet
 /// & Wanderley 2012 (section 3): accent highest and shallow, vertical accent and staccato deep,
 /// tenuto rising weakly, staccato pulled off. Peak force grows as speed^1.1, so a speed ratio of
 /// 10 from ppp to fff gives 22 dB. The steepness s = v T/H of a fall from the height H to the speed
@@ -25,7 +23,6 @@
 
 #define FORTE_OVER_PPP 7.2  // speed ratio; with the next, 10 from ppp to fff
 #define FFF_OVER_FORTE 1.39 // speed ratio of the louder takes
-#define ACCENT (1.0 / 7)    // a step of dynamics
 
 // limits of all strokes; chosen: ppp can still be seen, fff is a raised arm and falls 1.6 times as
 // long as a legato at f
@@ -51,22 +48,10 @@ static const struct profile {
 } profile[HIMC_NUANCES] = {
     [HIMC_LEGATO] = {.38, 4.3, 2.1, .8, .00, .22, .08, 2, .85, 2.0},
     [HIMC_TENUTO] = {.42, 4.2, 1.9, .8, .02, .26, .08, 1, .45, 2.2},
-    [HIMC_ACCENT] = {.54, 4.3, 1.9, .8, .03, .26, .04, 0, .95, 1.9},
+    [HIMC_ACCENT] = {.54, 4.5, 1.9, .8, .03, .26, .04, 0, .95, 1.9},
     [HIMC_VERTICAL_ACCENT] = {.48, 7.5, 2.1, .9, .01, .22, .18, 0, .90, 2.0},
     [HIMC_STACCATO] = {.36, 2.8, 2.0, .8, .05, .24, .16, 0, .75, 0.8},
 };
-
-// of a stroke over that at f
-static double louder_at(double dynamic)
-{
-    double d = dynamic - HIMC_FORTE;
-    return d < 0 ? pow(FORTE_OVER_PPP, d / HIMC_FORTE) : pow(FFF_OVER_FORTE, d / (1 - HIMC_FORTE));
-}
-
-static double accent_of(himc_nuance nuance)
-{
-    return nuance == HIMC_ACCENT ? ACCENT : 0;
-}
 
 static double dynamic_of(double louder)
 {
@@ -82,20 +67,22 @@ double himc_gesture_dynamic(double louder)
 
 double himc_gesture_dynamic_at(himc_nuance nuance, double speed)
 {
-    return fmin(dynamic_of(speed / profile[nuance].speed) - accent_of(nuance), 1);
+    return fmin(dynamic_of(speed / profile[nuance].speed), 1);
 }
 
 himc_gesture himc_gesture_of(himc_nuance nuance, double dynamic)
 {
     const struct profile *p = &profile[nuance];
-    double louder = louder_at(dynamic);
+    double d = dynamic - HIMC_FORTE;
+    double louder =
+        d < 0 ? pow(FORTE_OVER_PPP, d / HIMC_FORTE) : pow(FFF_OVER_FORTE, d / (1 - HIMC_FORTE));
     himc_gesture g = {.dwell = p->dwell,
                       .rise = p->rise,
                       .arc = p->arc,
                       .rebound = p->rebound,
                       .rebound_time = p->rebound_time};
-    g.speed = p->speed * louder_at(dynamic + accent_of(nuance));
-    g.height = p->height * (louder < 1 ? pow(louder, p->height_exponent) : louder);
+    g.speed = p->speed * louder;
+    g.height = p->height * (d < 0 ? pow(louder, p->height_exponent) : louder);
     g.height = fmin(g.height, LONGEST_DOWN * g.speed / p->shape);
     g.height = fmax(fmin(g.height, HIGHEST_GESTURE), LOWEST_GESTURE);
     g.down = p->shape * g.height / g.speed;
