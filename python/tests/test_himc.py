@@ -74,6 +74,28 @@ class Package(unittest.TestCase):
         np.testing.assert_array_equal(np.array(table.getIndependentColumn()), rows["time_s"])
         np.testing.assert_array_equal(table.getMatrix().to_numpy(), np.array(rows.tolist())[:, 1:])
 
+    def test_a_c3d_has_places_as_points_and_forces_as_analog_channels(self):
+        try:
+            import ezc3d
+        except ImportError:
+            self.skipTest("no ezc3d")
+        for name in ("a.c3d", "a.csv"):
+            self.program("render", "piece.txt", "-o", "a.wav", "--motion", name, "--columns", "tips,forces,contact,root", "--quiet")
+        file, rows = ezc3d.c3d(str(self.at / "a.c3d")), np.genfromtxt(self.at / "a.csv", delimiter=",", names=True, deletechars="")
+        point, analog = file["parameters"]["POINT"], file["parameters"]["ANALOG"]
+        self.assertEqual(point["LABELS"]["value"], ["left_tip", "right_tip", "root_center"])
+        self.assertEqual([point["UNITS"]["value"], list(point["RATE"]["value"]), list(analog["RATE"]["value"])], [["mm"], [250], [250]])
+        units = {"N": "_n", "N m": "_n_m", "N s": "_n_s", "J": "_j", "1": ""}
+        names = [label + units[unit] for label, unit in zip(analog["LABELS"]["value"], analog["UNITS"]["value"])]
+        self.assertEqual(sorted(names), sorted(n for n in rows.dtype.names[1:] if not n.endswith("_m") or n.endswith("_n_m")))
+        for name, values in zip(names, file["data"]["analogs"][0]):
+            np.testing.assert_allclose(values, rows[name], rtol=1e-6, atol=6e-5)  # a CSV has four digits
+        self.assertGreater(rows["left_force_n"].max() + rows["right_force_n"].max(), 10)
+        for k, label in enumerate(point["LABELS"]["value"]):
+            for axis in range(3):
+                theirs, own = file["data"]["points"][axis, k], 1000 * rows[f"{label}_{'xyz'[axis]}_m"]
+                np.testing.assert_allclose(theirs[np.isfinite(own)], own[np.isfinite(own)], rtol=1e-6, atol=1e-4)
+
     def test_one_command_is_a_score(self):
         r = himc.render("stroke 1 right accent f")
         self.assertEqual(r.stats["played"], 1)

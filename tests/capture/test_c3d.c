@@ -176,6 +176,46 @@ static void test_screen_axes_give_the_up_axis(void)
     himc_take_free(take);
 }
 
+static void test_what_is_written_is_read_again_with_its_analog_channels(void)
+{
+    himc_take *take = read_maker(maker_default(C3D_INTEL, true));
+    enum { CHANNELS = 2, EACH = 3 };
+    take->analog_channels = CHANNELS;
+    take->analog_samples = EACH * take->frames;
+    take->analog_rate = EACH * take->rate;
+    free(take->analog_names);
+    free(take->analog);
+    take->analog_names = calloc(CHANNELS, sizeof *take->analog_names);
+    take->analog = calloc((size_t)(CHANNELS * take->analog_samples), sizeof *take->analog);
+    strcpy(take->analog_names[0], "left_force (N)");
+    strcpy(take->analog_names[1], "counter");
+    for (int i = 0; i < CHANNELS * take->analog_samples; i++)
+        take->analog[i] = 0.25 * i - 3;
+    char bytes[20000];
+    FILE *file = tmpfile();
+    TEST_ASSERT_TRUE_MESSAGE(himc_c3d_write(file, take, &error), error.text);
+    rewind(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    himc_take *again = himc_take_read(bytes, size, "made.c3d", NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(again, error.text);
+    TEST_ASSERT_EQUAL_INT(CHANNELS, again->analog_channels);
+    TEST_ASSERT_EQUAL_INT(take->analog_samples, again->analog_samples);
+    TEST_ASSERT_EQUAL_DOUBLE(take->analog_rate, again->analog_rate);
+    for (int i = 0; i < CHANNELS; i++)
+        TEST_ASSERT_EQUAL_STRING(take->analog_names[i], again->analog_names[i]);
+    for (int i = 0; i < CHANNELS * take->analog_samples; i++)
+        TEST_ASSERT_EQUAL_DOUBLE(take->analog[i], again->analog[i]);
+    check_places(again, 5, 1e-7);
+    take->analog_channels = 256;
+    TEST_ASSERT_FALSE(himc_c3d_write(NULL, take, &error));
+    TEST_ASSERT_EQUAL_STRING("made.c3d: 256 analog channels, expected up to 255 in a .c3d",
+                             error.text);
+    take->analog_channels = CHANNELS;
+    himc_take_free(take);
+    himc_take_free(again);
+}
+
 // makes a good file, damages it with `spoil`, and expects the reason
 static void refuses(void (*spoil)(maker *), const char *reason)
 {
@@ -625,6 +665,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_intel_floats_are_read);
+    RUN_TEST(test_what_is_written_is_read_again_with_its_analog_channels);
     RUN_TEST(test_intel_integers_are_read);
     RUN_TEST(test_dec_floats_are_read);
     RUN_TEST(test_dec_integers_are_read);

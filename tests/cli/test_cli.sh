@@ -275,7 +275,7 @@ refuses test_a_link_and_its_file_are_refused "link.csv: named twice" render piec
 ln -s piece.txt link.txt
 refuses test_score_is_not_overwritten_by_a_link "link.txt: named twice" render piece.txt -o x.wav --strokes link.txt
 refuses test_strokes_are_no_arrays "--strokes: a.npz, expected endings are .csv" render piece.txt -o x.wav --strokes a.npz
-refuses test_motion_has_two_formats "--motion: a.npy, expected endings are .csv .npz .sto .mot" \
+refuses test_motion_has_two_formats "--motion: a.npy, expected endings are .csv .npz .sto .mot .c3d" \
     render piece.txt -o x.wav --motion a.npy
 for option in "--trials 3" "--range 1-2" "--only legato" "--log x.csv"; do
     refuses "test_$(echo "${option% *}" | tr -d -)_is_not_for_own_captures" "${option% *}: not allowed with --take FILE" \

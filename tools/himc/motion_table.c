@@ -2,11 +2,13 @@
 ///
 /// In a CSV an array is a column for each item (hand, joint, segment) and component, named
 /// item_what_component_unit; in a NumPy file it is one array, rows first, named group_unit. A
-/// storage file of OpenSim has the CSV's columns.
+/// storage file of OpenSim has the CSV's columns. In a C3D places are points, all other columns
+/// are analog channels, one sample a frame.
 #define _POSIX_C_SOURCE 200809L // strtok_r
 #include "motion_table.h"
 #include "npz.h"
 
+#include "capture/take.h"
 #include "himc/body.h"
 
 #include <math.h>
@@ -159,6 +161,7 @@ motion_table_format motion_table_format_of(const char *path)
     const char *dot = path ? strrchr(path, '.') : NULL;
     return !dot                                                   ? MOTION_TABLE_CSV
            : !strcasecmp(dot, ".npz")                             ? MOTION_TABLE_NUMPY
+           : !strcasecmp(dot, ".c3d")                             ? MOTION_TABLE_C3D
            : !strcasecmp(dot, ".sto") || !strcasecmp(dot, ".mot") ? MOTION_TABLE_STORAGE
                                                                   : MOTION_TABLE_CSV;
 }
@@ -188,19 +191,24 @@ static bool choose(motion_table *t, const char *columns, himc_error *error)
     return any || himc_error_set(error, "--columns: no group (himc render --columns help)");
 }
 
+// of a column without its unit
+static void column_name(const array *a, int item, int k, char out[48])
+{
+    const char *part = a->components == 4 ? &"wxyz"[k] : a->components == 3 ? &"xyz"[k] : "";
+    snprintf(out, 48, "%s%s%s%.1s", item_name(a->per, item), a->what, a->components == 3 ? "_" : "",
+             part);
+}
+
 static void write_header(const motion_table *t, const char *time, char between)
 {
+    char name[48];
     fputs(time, t->stream);
     for (size_t i = 0; i < ARRAYS; i++)
         for (int item = 0; t->has[i] && item < items(&arrays[i]); item++)
             for (int k = 0; k < arrays[i].components; k++) {
-                const array *a = &arrays[i];
-                fprintf(t->stream, "%c%s%s", between, item_name(a->per, item), a->what);
-                if (a->components > 1)
-                    fprintf(t->stream, a->components == 4 ? "%c" : "_%c",
-                            (a->components == 4 ? "wxyz" : "xyz")[k]);
-                if (a->unit[0])
-                    fprintf(t->stream, "_%s", a->unit);
+                column_name(&arrays[i], item, k, name);
+                fprintf(t->stream, "%c%s%s%s", between, name, arrays[i].unit[0] ? "_" : "",
+                        arrays[i].unit);
             }
     fputc('\n', t->stream);
 }
@@ -316,10 +324,86 @@ static bool write_storage(const motion_table *t, himc_error *error)
     return true;
 }
 
+// "m/s" for "m_s"
+static void unit_text(const char *unit, char out[24])
+{
+    static const char *const known[][2] = {
+        {"n_m", "N m"}, {"n_s", "N s"}, {"m_s", "m/s"}, {"rad_s", "rad/s"}, {"rad_s2", "rad/s^2"},
+        {"n", "N"},     {"w", "W"},     {"j", "J"},     {"", "1"}};
+    snprintf(out, 24, "%s", unit);
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (!strcmp(unit, known[i][0]))
+            snprintf(out, 24, "%s", known[i][1]);
+}
+
+static bool is_place(const array *a)
+{
+    return a->components == 3 && !strcmp(a->unit, "m");
+}
+
+// an array's columns of all rows, from column `from` on, as points or as channels; `next` is the
+// number of points or channels before
+static void add_to_take(const motion_table *t, himc_take *take, const array *a, size_t from,
+                        int next)
+{
+    char name[48], unit[24];
+    unit_text(a->unit, unit);
+    for (int i = 0; i < (int)size_of(a); i++) {
+        column_name(a, i / a->components, i % a->components, name);
+        if (!is_place(a))
+            snprintf(take->analog_names[next + i], TAKE_NAME, "%s (%.8s)", name, unit);
+        else if (i % 3 == 0) // without "_x"
+            himc_take_set_name(take, next + i / 3, name, strlen(name) - 2);
+    }
+    for (size_t row = 0; row < t->rows; row++) {
+        const double *value = t->data + row * t->width + from;
+        if (is_place(a))
+            memcpy(himc_take_at(take, (int)row, next), value, size_of(a) * sizeof *value);
+        else
+            memcpy(take->analog + row * (size_t)take->analog_channels + next, value,
+                   size_of(a) * sizeof *value);
+    }
+}
+
+static bool write_c3d(const motion_table *t, himc_error *error)
+{
+    int count[2] = {0}; // of channels and of points
+    for (size_t i = 0; i < ARRAYS; i++)
+        if (t->has[i])
+            count[is_place(&arrays[i])] +=
+                items(&arrays[i]) * (is_place(&arrays[i]) ? 1 : arrays[i].components);
+    himc_take *take = t->failed ? NULL : calloc(1, sizeof *take);
+    if (!take || t->rows < 2)
+        return himc_error_set(error, "out of memory for the rows of a .c3d");
+    snprintf(take->file, sizeof take->file, "--motion");
+    double rate = (double)(t->rows - 1) / (t->data[(t->rows - 1) * t->width] - t->data[0]);
+    bool good = himc_take_allocate(take, rate, (int)t->rows, count[1], false, error);
+    take->analog_rate = rate;
+    take->analog_channels = count[0];
+    take->analog_samples = (int)t->rows;
+    take->analog_names = calloc((size_t)count[0] + 1, sizeof *take->analog_names);
+    take->analog = calloc(t->rows * (size_t)count[0] + 1, sizeof *take->analog);
+    good = good && ((take->analog_names && take->analog) || himc_error_set(error, "out of memory"));
+    count[0] = count[1] = 0;
+    for (size_t i = 0, from = 1; i < ARRAYS && good; i++) {
+        const array *a = &arrays[i];
+        if (!t->has[i])
+            continue;
+        add_to_take(t, take, a, from, count[is_place(a)]);
+        count[is_place(a)] += items(a) * (is_place(a) ? 1 : a->components);
+        from += size_of(a);
+    }
+    good = good && himc_c3d_write(t->stream, take, error);
+    himc_take_free(take);
+    return good;
+}
+
 bool motion_table_end(motion_table *t, himc_error *error)
 {
     if (t->format == MOTION_TABLE_CSV)
         return true;
+    if (t->format == MOTION_TABLE_C3D)
+        return write_c3d(t, error);
     if (t->format == MOTION_TABLE_STORAGE)
         return write_storage(t, error);
     size_t widest = 1, from = 1;
@@ -347,18 +431,6 @@ void motion_table_free(motion_table *t)
     if (t)
         free(t->data);
     free(t);
-}
-
-// "m/s" for "m_s"
-static void unit_text(const char *unit, char out[24])
-{
-    static const char *const known[][2] = {
-        {"n_m", "N m"}, {"n_s", "N s"}, {"m_s", "m/s"}, {"rad_s", "rad/s"}, {"rad_s2", "rad/s^2"},
-        {"n", "N"},     {"w", "W"},     {"j", "J"},     {"", "1"}};
-    snprintf(out, 24, "%s", unit);
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (!strcmp(unit, known[i][0]))
-            snprintf(out, 24, "%s", known[i][1]);
 }
 
 void motion_table_help(FILE *stream, bool markdown)

@@ -1,4 +1,4 @@
-/// motion_table.h: the rows of motion as a table: CSV, OpenSim's storage file, or one NumPy file.
+/// motion_table.h: the rows of motion as a table: CSV, OpenSim's storage file, C3D or NumPy file.
 /// One list of arrays (motion_table.c) makes the header, the names in the NumPy file, `--columns
 /// help` and the table in docs/data.md.
 #ifndef MOTION_TABLE_H
@@ -14,6 +14,7 @@ typedef struct motion_table motion_table;
 typedef enum motion_table_format {
     MOTION_TABLE_CSV,
     MOTION_TABLE_STORAGE, ///< OpenSim's .sto and .mot
+    MOTION_TABLE_C3D,     ///< .c3d
     MOTION_TABLE_NUMPY    ///< .npz
 } motion_table_format;
 

@@ -52,7 +52,7 @@ static const cli_option options[] = {
     {"channels", 0, "N",
      "2: two ears in front of the drums, or where the score has them; 1: both in one (2)"},
     {"strokes", 0, "F.csv", "a row for each contact: when, where, how fast, how hard"},
-    {"motion", 0, "F", "a row every 4 ms: .csv, .npz for NumPy, .sto or .mot for OpenSim"},
+    {"motion", 0, "F", "a row every 4 ms: .csv, .npz for NumPy, .sto .mot for OpenSim, .c3d"},
     {"columns", 0, "LIST",
      "what is in it: groups like tips,torques,energy, or all; help lists them"},
     {"scene", 0, "F.himc", "a recording for himc-viewer --play: motion, drums, strikes, sound"},
@@ -133,7 +133,7 @@ static bool check_table(const char *option, const char *path, bool motion, himc_
     return !dot || !strcasecmp(dot, ".csv") || !strcasecmp(dot, ".txt") ||
            (motion && motion_table_format_of(path) != MOTION_TABLE_CSV) ||
            himc_error_set(error, "--%s: %s, expected endings are .csv%s", option, path,
-                          motion ? " .npz .sto .mot" : "");
+                          motion ? " .npz .sto .mot .c3d" : "");
 }
 
 static bool read_job(const cli_arguments *arguments, job *out, himc_error *error)

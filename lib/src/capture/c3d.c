@@ -1,6 +1,6 @@
 /// c3d.c: C3D, the binary file of optical motion capture: a header, parameters, then per frame
-/// every point's x, y, z and a residual, and the analog samples taken during the frame, which are
-/// skipped; read and written.
+/// every point's x, y, z and a residual, and the analog samples taken during the frame; read and
+/// written.
 ///
 /// Parameters are a chain of records, groups (negative number) and parameters (positive), in any
 /// order; each gives the distance to the next, from its own place.
@@ -628,6 +628,49 @@ static void put_field(bytes *b, const char *name, unsigned value)
     put_byte(b, 0);
 }
 
+// bytes of an analog channel's name in "NAME (UNIT)", whose unit follows
+static int name_length(const char *name)
+{
+    const char *unit = strstr(name, " (");
+    return (int)(unit ? unit - name : (long)strlen(name));
+}
+
+// labels or units of the analog channels
+static void put_names(bytes *b, const himc_take *take, const char *name, bool unit)
+{
+    char text[TAKE_NAME];
+    put_head(b, 3, name, -1, TAKE_NAME, take->analog_channels);
+    for (int i = 0; i < take->analog_channels; i++) {
+        const char *whole = take->analog_names[i];
+        int length = name_length(whole), rest = (int)strlen(whole) - length - 3; // " (" and ")"
+        snprintf(text, sizeof text, "%.*s", unit ? rest > 0 ? rest : 0 : length,
+                 unit ? whole + length + (rest > 0 ? 2 : 0) : whole);
+        put_text(b, text, TAKE_NAME);
+    }
+    put_byte(b, 0);
+}
+
+static void put_analog(bytes *b, const himc_take *take)
+{
+    put_group(b, 3, "ANALOG");
+    put_head(b, 3, "USED", 2, 0, 0);
+    put_word(b, (unsigned)take->analog_channels);
+    put_byte(b, 0);
+    for (int i = 0; i < 2; i++) {
+        put_head(b, 3, i ? "RATE" : "GEN_SCALE", 4, 0, 0);
+        put_real(b, i ? take->analog_rate : 1);
+        put_byte(b, 0);
+    }
+    for (int i = 0; i < 2; i++) {
+        put_head(b, 3, i ? "OFFSET" : "SCALE", i ? 2 : 4, take->analog_channels, 0);
+        for (int k = 0; k < take->analog_channels; k++)
+            i ? put_word(b, 0) : put_real(b, 1);
+        put_byte(b, 0);
+    }
+    put_names(b, take, "LABELS", false);
+    put_names(b, take, "UNITS", true);
+}
+
 static void put_parameters(bytes *b, const himc_take *take, int blocks)
 {
     int width = 1;
@@ -654,16 +697,24 @@ static void put_parameters(bytes *b, const himc_take *take, int blocks)
     put_group(b, 2, "TRIAL");
     put_field(b, "ACTUAL_START_FIELD", 1);
     put_field(b, "ACTUAL_END_FIELD", (unsigned)take->frames);
+    if (take->analog)
+        put_analog(b, take);
     b->at = begin + (size_t)blocks * BLOCK;
 }
 
 bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
 {
-    if (take->points > MOST_LABELS)
-        return himc_error_set(error, "%s: %d points, expected up to %d in a .c3d", take->file,
-                              take->points, MOST_LABELS);
-    int blocks = 2 + (take->points * TAKE_NAME + BLOCK - 1) / BLOCK;
-    size_t before = (size_t)(1 + blocks) * BLOCK, row = 16 * (size_t)take->points;
+    int channels = take->analog ? take->analog_channels : 0,
+        each = channels ? take->analog_samples / take->frames : 0, samples = channels * each;
+    if (take->points > MOST_LABELS || channels > MOST_LABELS)
+        return himc_error_set(error, "%s: %d %s, expected up to %d in a .c3d", take->file,
+                              channels > MOST_LABELS ? channels : take->points,
+                              channels > MOST_LABELS ? "analog channels" : "points", MOST_LABELS);
+    // a channel has a label, a unit, a scale and an offset
+    int blocks =
+        2 + (take->points * TAKE_NAME + channels * (2 * TAKE_NAME + 6) + BLOCK - 1) / BLOCK;
+    size_t before = (size_t)(1 + blocks) * BLOCK;
+    size_t row = 16 * (size_t)take->points + 4 * (size_t)samples;
     unsigned char *buffer = calloc(1, before > row ? before : row);
     if (!buffer)
         return himc_error_set(error, "%s: no memory", take->file);
@@ -671,13 +722,13 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
     put_byte(&b, 2);
     put_byte(&b, 0x50);
     put_word(&b, (unsigned)take->points);
-    put_word(&b, 0);
+    put_word(&b, (unsigned)samples);
     put_word(&b, 1);
     put_word(&b, take->frames < 65535 ? (unsigned)take->frames : 65535);
     put_word(&b, 0);
     put_real(&b, -1);
     put_word(&b, (unsigned)(2 + blocks));
-    put_word(&b, 0);
+    put_word(&b, (unsigned)each);
     put_real(&b, take->rate);
     b.at = buffer + BLOCK;
     put_parameters(&b, take, blocks);
@@ -693,6 +744,8 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
             put_real(&b, mm.z);
             put_real(&b, seen ? 0 : -1);
         }
+        for (int i = 0; i < samples; i++)
+            put_real(&b, take->analog[(size_t)frame * (size_t)samples + (size_t)i]);
         fwrite(buffer, 1, row, file);
     }
     free(buffer);
