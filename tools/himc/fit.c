@@ -296,11 +296,11 @@ const cli_call cli_fit = {
     " -o DRUM.txt",
     "makes a drum of recorded strokes",
     "Each RECORDING is one stroke on the same instrument: WAV, FLAC, OGG and what else libsndfile\n"
-    "reads, up to 300 s at 8000 Hz or more, all at one rate, with 32 channels together; from the\n"
-    "onset .5 s or more, better 4 s, of which 20 s are used, without clipping. The report sets the\n"
-    "partials found, with their errors, beside those of the drum made. A timpano becomes commands\n"
-    "(size, tuning, losses, mallet), anything else a list of modes, DRUM-modes.txt, which DRUM.txt\n"
-    "names by its whole path.",
+    "reads, up to 300 s at 8000 Hz or more, all at one rate, with 32 channels together, without\n"
+    "clipping; from the onset .5 s or more, better 4 s, the first 20 s are used. The report sets\n"
+    "the partials found, with their errors, beside those of the drum made. A timpano becomes\n"
+    "commands (size, tuning, losses, mallet), anything else a list of modes, DRUM-modes.txt, which\n"
+    "DRUM.txt names by its whole path.",
     options,
     run,
 };
