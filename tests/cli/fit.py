@@ -13,7 +13,7 @@ import tempfile
 
 import report
 
-HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
+HIMC = os.path.abspath(os.path.join(os.environ["HIMC_BUILD"], "bin/himc"))
 RATE = 48000
 folder = tempfile.TemporaryDirectory(prefix="himc-fit-")
 # inches, tuning (Hz), mallet, dynamic, losses if not the usual ones
@@ -31,12 +31,12 @@ def path(name):
     return os.path.join(folder.name, name)
 
 
-def himc(*words):
-    return subprocess.run([HIMC, *words], capture_output=True, text=True)
+def himc(*words, where=None):
+    return subprocess.run([HIMC, *words], capture_output=True, text=True, cwd=where)
 
 
-def good(*words):
-    done = himc(*words)
+def good(*words, where=None):
+    done = himc(*words, where=where)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -47,9 +47,9 @@ def write_text(name, text):
     return path(name)
 
 
-def write_wave(name, samples, channels=1):
+def write_wave(name, samples, channels=1, rate=RATE):
     data = array.array("f", samples).tobytes()
-    words = (1, 3, channels, RATE, 4 * channels * RATE, 4 * channels, 32)
+    words = (1, 3, channels, rate, 4 * channels * rate, 4 * channels, 32)
     form = b"".join(n.to_bytes(size, "little") for n, size in zip((16,) + words[1:], (4, 2, 2, 4, 4, 2, 2)))
     with open(path(name), "wb") as file:
         file.write(b"RIFF" + (36 + len(data)).to_bytes(4, "little") + b"WAVEfmt " + form + b"data" + len(data).to_bytes(4, "little") + data)
@@ -163,6 +163,45 @@ def test_a_bar_becomes_a_list_of_modes():
     assert json.loads(good("render", path("bar.txt"), "-o", path("again.wav"), "--json"))["played"] == 1
 
 
+def test_a_drum_plays_wherever_it_is_called():
+    """its files are named relative to a folder with a blank; one has the name of a spot"""
+    home, away = path("my bars"), path("away")
+    for name in (os.path.join(home, "sub"), away):
+        os.makedirs(name)
+    write_wave("my bars/bar.wav", rings(BAR))
+    good("fit", "bar.wav", "-o", "sub/rim.txt", where=home)
+    again = os.path.join(home, "sub/rim.txt")
+    assert json.loads(good("render", again, "-o", path("again.wav"), "--json", where=away))["played"] == 1
+    assert abs(max(read_modes(again, away)) / BAR[-1][0] - 1) < 0.001
+
+
+def read_modes(score, where):
+    return [float(r["frequency_hz"]) for r in csv.DictReader(io.StringIO(good("modes", score, where=where))) if float(r["frequency_hz"]) < 5000]
+
+
+def test_all_recordings_are_heard():
+    """a partial that the second stroke alone excites"""
+    low, high = write_wave("low.wav", rings(BAR[:2])), write_wave("high.wav", rings(BAR[1:]))
+    for sounds, number in (([low], 2), ([high], 2), ([low, high], 3)):
+        found = json.loads(good("fit", *sounds, "-o", path("all.txt"), "--instrument", "modes", "--json"))["partials"]
+        heard = [f for f, _, _ in BAR if any(abs(p["hz"] - f) < 0.2 for p in found)]
+        assert len(heard) == number, (sounds, heard)
+    other = write_wave("other.wav", rings(BAR[1:]), rate=44100)
+    done = himc("fit", low, other, "-o", path("none.txt"))
+    assert done.returncode == 1 and "other.wav: 44100 Hz, expected 48000 Hz as the others" in done.stderr, done.stderr
+
+
+def test_no_recording_is_written_over():
+    for name in ("cp-modes.txt", "cp-head.txt", "cp.txt"):
+        sound = write_wave(name, rings(BAR))
+        before = open(sound, "rb").read()
+        done = himc("fit", name, "-o", "cp.txt", where=folder.name)
+        assert done.returncode == 1 and name + ": named twice" in done.stderr, done.stderr
+        assert open(sound, "rb").read() == before
+        os.remove(sound)
+    assert not [name for name in os.listdir(folder.name) if name.startswith("cp")]
+
+
 def refused(name, samples, words):
     done = himc("fit", write_wave(name, samples), "-o", path("none.txt"))
     assert done.returncode == 1 and done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
@@ -177,6 +216,8 @@ def test_bad_recordings_are_refused():
     refused("short.wav", stroke[: RATE // 2], "0.30 s from the stroke on")
     refused("noisy.wav", [x + rng.gauss(0, 0.03) for x in stroke], "noise at")
     refused("noise.wav", [rng.gauss(0, 0.1) for _ in stroke], "as loud at its end")
+    for bad in (math.nan, math.inf, -math.inf):
+        refused("bad.wav", stroke[:50000] + [bad] + stroke[50001:], "bad.wav: frame 50000 is not a finite number")
     write_text("text.wav", "no sound")
     done = himc("fit", path("text.wav"), "-o", path("none.txt"))
     assert done.returncode == 1 and "no sound file" in done.stderr, done.stderr

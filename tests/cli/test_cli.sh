@@ -553,6 +553,7 @@ check test_info_tells_what_of_a_midi_file_is_played [ "$(sed -n 2p out) $(sed -n
 refuses test_export_needs_an_output "no -o FILE given" export
 refuses test_export_of_another_format_is_refused "-o: piece.ogg, expected a name that ends with .musicxml, .mid or .xml" export piece.txt -o piece.ogg
 refuses test_export_of_no_stance_is_refused 'expected fixed seated standing' export --stance lying -o x.xml
+refuses test_export_of_notes_has_no_stance '--stance: seated, expected with a model alone (.xml)' export piece.txt --stance seated -o x.mid
 refuses test_export_does_not_write_over_its_setup "named twice" export still.xml -o ./still.xml
 refuses test_import_needs_an_output "no -o SCORE given" import roll.mid
 refuses test_import_does_not_write_over_its_source "named twice" import roll.mid -o ./roll.mid
@@ -578,6 +579,9 @@ check test_a_roll_of_musicxml_grows [ "$(awk -F, 'NR > 1 && $3 == "second" && $1
 check test_exported_musicxml_comes_back [ "$(head -n 1 err) $(grep -c '^\(stroke\|roll\|drag\)' again.txt)" = "8 of 8 notes for timpani are played 8" ]
 "$himc" export made.txt -o again.mid && "$himc" info again.mid >out
 check test_exported_midi_is_read [ $? = 0 ]
+printf 'instrument x triangle;\nstroke 1 right accent f x;\nstroke 2 right accent f crossstick x;\n' >two.txt
+"$himc" export two.txt -o two.musicxml 2>err && "$himc" export two.txt -o quiet.musicxml --quiet 2>quiet
+check test_quiet_export_says_nothing [ "$(grep -c 'not written' err) $(wc -c <quiet)" = "1 0" ]
 refuses test_export_of_notes_needs_a_score "no SCORE given" export -o x.musicxml
 head -c 90 scherzo.mid >cut.mid
 refuses test_a_cut_midi_file_is_refused "cut.mid: cut short: 1 of its" render cut.mid -o x.wav

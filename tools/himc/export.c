@@ -171,15 +171,10 @@ static void title_of(char *title, size_t size, const char *path)
         *c = isalnum((unsigned char)*c) || *c == '-' ? *c : ' ';
 }
 
-static bool write_bytes(const char *path, const himc_text_lines *text, himc_error *error)
+static void put_bytes(const void *from, FILE *out)
 {
-    cli_file file;
-    if (!cli_file_open(&file, path, error))
-        return false;
-    fwrite(text->bytes, 1, text->size, file.stream);
-    bool good = cli_file_close(&file, error) && cli_file_keep(&file, error);
-    cli_file_drop(&file);
-    return good;
+    const himc_text_lines *text = from;
+    fwrite(text->bytes, 1, text->size, out);
 }
 
 static bool write_notation(const char *path, const char *out, bool midi, himc_error *error)
@@ -194,9 +189,9 @@ static bool write_notation(const char *path, const char *out, bool midi, himc_er
     if (good &&
         !(midi ? himc_music_write_midi(&text, &notes) : himc_music_write(&text, &notes, title)))
         good = himc_error_set(error, "out of memory for the notes");
-    good = good && write_bytes(out, &text, error);
+    good = good && cli_write(out, put_bytes, &text, error);
     if (good && notes.said)
-        fputs(notes.said, stderr);
+        cli_say("%s", notes.said);
     free(text.bytes);
     himc_midi_file_free(&notes);
     himc_score_free(score);
@@ -223,6 +218,9 @@ static bool export(const cli_arguments *arguments, himc_error *error)
     if (midi || ends_with(out, ".musicxml")) {
         if (!path)
             return himc_error_set(error, "no SCORE given, expected one to write as notes");
+        if (stance)
+            return himc_error_set(error, "--stance: %s, expected with a model alone (.xml)",
+                                  stance);
         return (path = cli_input(path, error)) && cli_apart(out, &path, 1, error) &&
                write_notation(path, out, midi, error);
     }
@@ -259,7 +257,8 @@ const cli_call cli_export = {
     "-o F.xml: player and drums of a score or a take; without it the usual ones. Segments have\n"
     "their masses, centres and inertias and ball joints; all geoms are for looking and touch\n"
     "nothing. Sites are at the sticks' tips, the key frame `rest` is the posture before a stroke.\n"
-    "With a free joint the columns `root` of `himc render --motion` are what holds the pelvis.",
+    "With a free joint, the columns `root` of `himc render --motion` are the force and moment on\n"
+    "the pelvis.",
     options,
     run,
 };

@@ -8,7 +8,11 @@
 #include "fit_list.h"
 #include "himc/drum.h"
 
+#include "base/text.h"
+#include "system/files.h"
+
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define RADIUS_PER_INCH 0.0127 // (m) half an inch
@@ -41,7 +45,8 @@ typedef struct fit {
     fit_drum drum, second;
     bool two; // the second sounds as well
     bool list;
-    char name[HIMC_NAME_SIZE], beside[HIMC_PATH_SIZE];
+    char name[HIMC_NAME_SIZE];
+    char head[HIMC_PATH_SIZE], modes[HIMC_PATH_SIZE]; // files beside the drum's; one is written
 } fit;
 
 // the name of the drum: the file's without folder, ending and what a drum's name cannot have
@@ -53,7 +58,9 @@ static void name_drum(const char *path, char *name, size_t size)
         if ((*at >= 'a' && *at <= 'z') || (n > 0 && *at >= '0' && *at <= '9'))
             name[n++] = *at;
     name[n] = '\0';
-    if (n < 2 || himc_command_find(HIMC_PERFORMER, name) || himc_command_find(HIMC_DRUM, name))
+    himc_command command;
+    himc_atom atom = {HIMC_ATOM_SYMBOL, 0, name};
+    if (!himc_command_parse(&command, HIMC_PERFORMER, "drum", &atom, 1, NULL))
         snprintf(name, size, "fitted");
 }
 
@@ -62,12 +69,18 @@ static void put(const void *text, FILE *out)
     fputs(text, out);
 }
 
-static void beside(const char *path, const char *what, char *out, size_t size)
+// the name of a file beside DRUM.txt, which is none of the recordings
+static bool beside(const cli_arguments *a, const char *what, char out[HIMC_PATH_SIZE],
+                   himc_error *error)
 {
+    const char *path = a->value[OUT];
     size_t length = strlen(path);
     if (length > 4 && !strcmp(path + length - 4, ".txt"))
         length -= 4;
-    snprintf(out, size, "%.*s-%s.txt", (int)length, path, what);
+    if (snprintf(out, HIMC_PATH_SIZE, "%.*s-%s.txt", (int)length, path, what) >= HIMC_PATH_SIZE)
+        return himc_error_set(error, "-o: a path of %zu characters, expected up to %zu", length,
+                              HIMC_PATH_SIZE - sizeof "-modes.txt");
+    return cli_apart(out, a->repeated, a->repeats, error);
 }
 
 static bool write_drum(fit *f, const char *path, himc_error *error)
@@ -82,22 +95,28 @@ static bool write_drum(fit *f, const char *path, himc_error *error)
         "tempo 60;\nstroke 1 right legato %s;\n",
         f->name, d->inches, f->name, d->constant, d->square, f->name, d->tune, f->name,
         fit_mallets[d->mallet], fit_dynamics[d->dynamic]);
-    beside(path, "head", f->beside, sizeof f->beside);
-    return cli_write(f->beside, put, head, error) && cli_write(path, put, text, error);
+    return cli_write(f->head, put, head, error) && cli_write(path, put, text, error);
 }
 
+// names the list by its whole path: files in a score are looked for where the program runs
 static bool write_list(fit *f, const char *path, himc_error *error)
 {
     char text[3 * HIMC_PATH_SIZE];
-    beside(path, "modes", f->beside, sizeof f->beside);
-    if (strpbrk(f->beside, " ;,\\"))
-        return himc_error_set(error, "-o: %s, expected a path without space ; , and \\", path);
-    if (!fit_list(&f->sound, &f->found, f->beside, error))
+    himc_state_line line = himc_state_begin("instrument");
+    if (!fit_list(&f->sound, &f->found, f->modes, error))
         return false;
-    snprintf(
-        text, sizeof text,
-        "comment made by himc fit;\ninstrument %s modes %s;\ntempo 60;\nstroke 1 right legato mf;\n",
-        f->name, f->beside);
+    char *whole = himc_system_real_path(f->modes);
+    if (!whole || strlen(whole) >= HIMC_PATH_SIZE || strpbrk(whole, "\n\r\v\f")) {
+        free(whole);
+        return himc_error_set(error, "%s: expected a path of up to %d characters without line ends",
+                              f->modes, HIMC_PATH_SIZE - 1);
+    }
+    himc_state_word(&line, f->name);
+    himc_state_word(&line, "modes");
+    himc_state_word(&line, whole);
+    free(whole);
+    snprintf(text, sizeof text,
+             "comment made by himc fit;\n%s;\ntempo 60;\nstroke 1 right legato mf;\n", line.text);
     return cli_write(path, put, text, error);
 }
 
@@ -106,7 +125,7 @@ static bool hear_again(fit *f, himc_error *error)
     const fit_drum *d = &f->drum;
     double rate = f->sound.rate < 16000 ? 48000 : f->sound.rate;
     himc_drum *drum =
-        f->list ? fit_list_drum(f->beside, rate, error) : fit_drum_make(d, d->mallet, rate, error);
+        f->list ? fit_list_drum(f->modes, rate, error) : fit_drum_make(d, d->mallet, rate, error);
     double x = f->list ? 0 : -FIT_PLACE * RADIUS_PER_INCH * d->inches;
     bool good =
         drum && fit_hear(drum, x, fit_speeds[f->list ? 2 : d->dynamic], SECONDS, &f->again, error);
@@ -118,13 +137,14 @@ static bool hear_again(fit *f, himc_error *error)
 static bool find_drum(fit *f, const char *kind, himc_error *error)
 {
     fit_drum choice[FIT_CHOICES];
-    fit_spectrum_of(&f->sound, &f->spectrum);
-    int count = fit_drum_find(&f->sound, &f->spectrum, &f->found, choice, error);
-    if (count > 0 && !fit_drum_strike(&f->sound, choice, count, &f->drum, error))
+    int count = fit_spectrum_of(&f->sound, &f->spectrum, error)
+                    ? fit_drum_find(&f->sound, &f->spectrum, &f->found, choice, error)
+                    : 0;
+    if (count == 0 || !fit_drum_strike(&f->sound, choice, count, &f->drum, error))
         return false;
-    if (count > 0 && (kind || (f->drum.score > LEAST_SCORE && f->drum.distance < MOST_APART)))
+    if (kind || (f->drum.score > LEAST_SCORE && f->drum.distance < MOST_APART))
         return fit_drum_second(&f->drum, &f->spectrum, &f->second, &f->two, error);
-    f->list = !kind && partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
+    f->list = partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
     if (f->list)
         cli_say(
             "note: no timpano found: a list of modes (--instrument timpano makes the nearest)\n");
@@ -140,7 +160,9 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
         return himc_error_set(error, "-o: -, expected a file: a second one is named after it");
     if (kind && strcmp(kind, "timpano") && strcmp(kind, "modes"))
         return himc_error_set(error, "--instrument: %s, expected timpano or modes", kind);
-    if (!cli_ending_is("-o", out, ".txt", error) || !cli_apart(out, a->repeated, a->repeats, error))
+    if (!cli_ending_is("-o", out, ".txt", error) ||
+        !cli_apart(out, a->repeated, a->repeats, error) || !beside(a, "head", f->head, error) ||
+        !beside(a, "modes", f->modes, error))
         return false;
     for (int i = 0; i < a->repeats; i++)
         if (!partials_read(&f->sound, a->repeated[i], error))
@@ -274,9 +296,11 @@ const cli_call cli_fit = {
     " -o DRUM.txt",
     "makes a drum of recorded strokes",
     "Each RECORDING is one stroke on the same instrument: WAV, FLAC, OGG and what else libsndfile\n"
-    "reads, from its onset for .5 s or more, better 4 s, without clipping. The report sets the\n"
-    "partials found, with their errors, beside those of the drum made. A timpano becomes commands\n"
-    "(size, tuning, losses, mallet), anything else a list of modes, DRUM-modes.txt.",
+    "reads, up to 300 s at 8000 Hz or more, all at one rate, with 32 channels together, without\n"
+    "clipping; from the onset .5 s or more, better 4 s, the first 20 s are used. The report sets\n"
+    "the partials found, with their errors, beside those of the drum made. A timpano becomes\n"
+    "commands (size, tuning, losses, mallet), anything else a list of modes, DRUM-modes.txt, which\n"
+    "DRUM.txt names by its whole path.",
     options,
     run,
 };

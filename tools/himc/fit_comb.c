@@ -61,13 +61,13 @@ static bool levels(const partials_sound *sound, double from, double to, double *
     return x != NULL;
 }
 
-void fit_spectrum_of(const partials_sound *sound, fit_spectrum *out)
+bool fit_spectrum_of(const partials_sound *sound, fit_spectrum *out, himc_error *error)
 {
     static double raw[FIT_LINES], near[2 * AROUND + 1];
     memset(out, 0, sizeof *out);
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
         if (!levels(sound, spans[s].from, spans[s].to, raw))
-            return;
+            return himc_error_set(error, "out of memory");
         for (int k = 0; k < FIT_LINES; k++) {
             int low = k < AROUND ? 0 : k - AROUND, n = 0;
             for (int i = low; i <= k + AROUND && i < FIT_LINES; i++)
@@ -82,6 +82,7 @@ void fit_spectrum_of(const partials_sound *sound, fit_spectrum *out)
             out->level[k] = fmax(out->level[k], raw[i]);
         out->mean += out->level[k] / FIT_LINES;
     }
+    return true;
 }
 
 // ratios of the teeth to the tuning, at KNOTS tunings

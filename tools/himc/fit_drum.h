@@ -56,7 +56,8 @@ bool fit_hear(himc_drum *drum, double x, double speed, double seconds, partials_
 typedef struct fit_spectrum {
     double level[FIT_LINES], mean;
 } fit_spectrum;
-void fit_spectrum_of(const partials_sound *sound, fit_spectrum *out);
+/// False with the reason, without memory.
+bool fit_spectrum_of(const partials_sound *sound, fit_spectrum *out, himc_error *error);
 
 #define FIT_TUNINGS 2
 /// The tunings of a timpano from `low` to `high` (Hz) whose modes stand out most, the best first.

@@ -137,6 +137,10 @@ bool partials_add(partials_sound *sound, const float *samples, size_t frames, in
                               sound->rate);
     if (sound->tracks + channels > PARTIALS_TRACKS)
         return himc_error_set(error, "%s: more than %d channels in all", name, PARTIALS_TRACKS);
+    for (size_t i = 0; i < frames * (size_t)channels; i++)
+        if (!isfinite(samples[i]))
+            return himc_error_set(error, "%s: frame %zu is not a finite number", name,
+                                  i / (size_t)channels);
     measure(&s);
     if (!check(&s, &sound->noise, error))
         return false;
