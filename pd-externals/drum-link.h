@@ -225,8 +225,9 @@ static inline bool command_from_pd(himc_command *command, himc_receiver receiver
         argc--, argv++;
     }
     if (s == &s_list || s == &s_float)
-        return himc_error_set(error, "a number: expected a message that begins with a word, as "
-                                     "[strike 0.1 0 2(");
+        return himc_error_set(error, "%s: expected a message that begins with a word, as [%s(",
+                              argc > 0 ? "a number" : "an empty list",
+                              receiver == HIMC_DRUM ? "strike 0.1 0 2" : "hit any legato f");
     for (; count < argc && count < 2 * HIMC_COMMAND_ATOMS; count++) {
         const t_atom *a = argv + count;
         if (a->a_type == A_FLOAT)
@@ -248,8 +249,11 @@ static inline t_word *array_find(t_garray **array, int *size, int argc, const t_
     *array = (t_garray *)pd_findbyclass(name, garray_class);
     if (*array && garray_getfloatwords(*array, size, &points) && *size >= least)
         return points;
+    char given[MAXPDSTRING] = "nothing";
+    if (argc > 0)
+        atom_string(argv, given, sizeof given);
     himc_error_set(error, "%s: %s: no array of %d points or more, expected %s ARRAY", command,
-                   name->s_name, least, command);
+                   given, least, command);
     return NULL;
 }
 

@@ -356,7 +356,8 @@ static bool himc_tilde_get(t_himc *x, const char *what, himc_error *error)
         answer_line(&known, line + length);
     }
     free(all.a_text);
-    answer_send(&known, x->x_messages, what);
+    /* not as the beats that begin are told */
+    answer_send(&known, x->x_messages, strcmp(what, "beat") == 0 ? "beat-now" : what);
     return found || himc_error_set(error,
                                    "get: WHAT: %s, expected a setting, tempo, beat, state, drums, "
                                    "loop, room, listener or mute",

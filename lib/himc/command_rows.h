@@ -128,7 +128,7 @@ HIMC_COMMAND_ROW(
     "pushes the performer")
 HIMC_COMMAND_ROW(DRUM_GLISS, gliss, PERFORMER, NOW, HIMC_NOT_IN_SCORE,
                  "DRUM HZ LENGTH | DRUM NOTE LENGTH",
-                 "moves a drum's pedal evenly to that pitch in LENGTH beats, now")
+                 "moves a drum's pedal evenly to that pitch in LENGTH beats of the tempo now")
 HIMC_COMMAND_ROW(
     TEMPO, tempo, PERFORMER, AT_SAMPLE, 0, "BPM [BEAT] | BPM BPM LENGTH [BEAT]",
     "sets the tempo, 100 by default, from that beat or from now on; or moves it evenly "

@@ -1,5 +1,6 @@
 /// test_notes.c: what a musician sends while it plays: MIDI notes, ramps of tempo and dynamics,
 /// beats that repeat, and what is told of all that.
+#include "performance/research.h"
 #include "session.h"
 
 #include "drum/drum_performer.h"
@@ -288,6 +289,74 @@ static void test_strokes_without_a_dynamic_follow_a_crescendo(void)
     unlink("/tmp/himc-cresc.txt");
 }
 
+// what would be mute, or not followed, is told in one line
+static void test_a_command_that_comes_too_late_or_behind_the_end_says_so(void)
+{
+    himc_performance *p = four_timpani();
+    heard h = {0};
+    session_do(p, "stroke 1 right legato - low");
+    session_do(p, "stroke 2 left legato - low");
+    session_do(p, "cresc 3 2 p f"); // behind both
+    session_play(p, 0.1, &h);
+    TEST_ASSERT_EQUAL_INT(0, h.notes);
+    session_do(p, "cresc 1 2 p f");
+    session_play(p, 0.1, &h);
+    TEST_ASSERT_EQUAL_STRING(
+        "cresc: strokes up to beat 2 have their dynamics, expected cresc before them", h.note);
+    session_do(p, "loop 20 24");
+    session_do(p, "play");
+    session_play(p, 1, &h);
+    TEST_ASSERT_EQUAL_STRING(
+        "loop: FROM: 20, nothing to play: expected 0 .. 2, the last stroke's beat", h.note);
+    TEST_ASSERT_FALSE(himc_performance_load_text(p, "drum low; gliss low A2 4;", "s.txt", &error));
+    TEST_ASSERT_EQUAL_STRING("s.txt:1: gliss: not allowed in a score, expected at BEAT DRUM gliss "
+                             "PITCH SECONDS",
+                             error.text);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_clear_while_it_plays_is_its_end(void)
+{
+    himc_performance *p = four_timpani();
+    heard h = {0};
+    session_do(p, "stroke 1 right legato f low");
+    session_do(p, "stroke 9 left legato f low");
+    session_do(p, "play");
+    session_play(p, 3, &h);
+    session_do(p, "clear");
+    session_play(p, 1, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.dones);
+    session_do(p, "clear");
+    session_play(p, 1, &h);
+    TEST_ASSERT_EQUAL_INT(1, h.dones);
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
+static void test_a_clock_that_falls_silent_leaves_its_tempo(void)
+{
+    himc_performance *p = four_timpani();
+    double most = 0; // faster or slower: it catches up
+    session_do(p, "tempo 60");
+    session_do(p, "stroke 40 right legato f low");
+    session_do(p, "play");
+    session_play(p, 0.7, NULL);
+    for (int tick = 0; tick < 10; tick++) {
+        session_do(p, "clock");
+        session_play(p, 0.02, NULL);
+        most = fmax(most, fabs(himc_performance_measure(p).bpm - 125));
+    }
+    TEST_ASSERT_FALSE(session_try(p, "tempo 90"));
+    TEST_ASSERT_EQUAL_STRING("tempo: a clock sets it, expected sync off before", error.text);
+    TEST_ASSERT_GREATER_THAN_INT(6, (int)most);
+    session_play(p, 1, NULL);
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, 125, himc_performance_measure(p).bpm);
+    session_do(p, "tempo 90");
+    TEST_ASSERT_EQUAL_DOUBLE(90, himc_performance_measure(p).bpm);
+    himc_performance_free(p);
+}
+
 static void test_a_gliss_takes_its_beats(void)
 {
     himc_performance *p = four_timpani();
@@ -491,6 +560,9 @@ int main(void)
     RUN_TEST(test_a_ramp_while_it_plays_ends_at_its_tempo_also_in_a_loop);
     RUN_TEST(test_beats_that_repeat_are_equal_strokes);
     RUN_TEST(test_strokes_without_a_dynamic_follow_a_crescendo);
+    RUN_TEST(test_a_command_that_comes_too_late_or_behind_the_end_says_so);
+    RUN_TEST(test_clear_while_it_plays_is_its_end);
+    RUN_TEST(test_a_clock_that_falls_silent_leaves_its_tempo);
     RUN_TEST(test_a_gliss_takes_its_beats);
     RUN_TEST(test_every_setting_can_be_asked_for_and_answers_what_was_set);
     RUN_TEST(test_a_gesture_is_told_before_its_strike);

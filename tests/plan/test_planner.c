@@ -50,6 +50,24 @@ static void test_impact_speeds_are_those_of_the_nuances_when_there_is_time(void)
     }
 }
 
+// the arm goes on with a stick that comes back by itself
+static void test_sixteenths_of_doubles_are_within_1_dB_of_single_strokes(void)
+{
+    static const double bpm[] = {100, 120, 150};
+    for (int k = 0; k < 3; k++) {
+        use(bpm[k]);
+        for (int i = 0; i < 12; i++)
+            add(planner, 4 + i / 4.0, i % 4 < 2 ? HIMC_RIGHT : HIMC_LEFT, HIMC_LEGATO, 5 / 7.0);
+        himc_planner_play(planner, 0);
+        for (int i = 0; i < 12; i++) {
+            double time = (4 + i / 4.0) * 60 / bpm[k];
+            himc_planner_advance(planner, time - 0.02);
+            double speed = -at(planner, i % 4 < 2 ? HIMC_RIGHT : HIMC_LEFT, time - 1e-9).v.z;
+            TEST_ASSERT_TRUE(20 * log10(speed / 4.3) > -1);
+        }
+    }
+}
+
 /// Height, depth and rising speed of a stroke, from samples around its touch.
 typedef struct shape {
     double apex, depth, up;
@@ -398,6 +416,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_tips_touch_on_time_with_no_acceleration_at_any_tempo);
     RUN_TEST(test_impact_speeds_are_those_of_the_nuances_when_there_is_time);
+    RUN_TEST(test_sixteenths_of_doubles_are_within_1_dB_of_single_strokes);
     RUN_TEST(test_nuances_keep_their_order_of_height_and_depth_at_every_dynamic);
     RUN_TEST(test_staccato_is_pulled_off_faster_than_it_strikes);
     RUN_TEST(test_stroke_before_an_accent_is_lifted_higher);

@@ -110,6 +110,27 @@ static void test_equal_strokes_are_equal_after_a_loud_one(void)
     himc_performance_free(p);
 }
 
+// a hand that has played waits over its own spot, not where the rebound has carried it
+static void test_hands_3_s_apart_do_not_meet(void)
+{
+    static const char *const nuances[] = {"legato", "accent"};
+    for (int n = 0; n < 2; n++) {
+        himc_performance *p = session_new();
+        heard h = {0};
+        session_do(p, "drum kettle");
+        session_do(p, "tempo 60");
+        for (int i = 0; i < 3; i++)
+            session_do(p, "stroke %d %s %s ff kettle", 2 + 3 * i, i % 2 ? "right" : "left",
+                       nuances[n]);
+        session_do(p, "play");
+        session_play(p, 10, &h);
+        TEST_ASSERT_EQUAL_STRING("", h.note);
+        TEST_ASSERT_EQUAL_INT(3, h.strikes);
+        heard_free(&h);
+        himc_performance_free(p);
+    }
+}
+
 static void test_a_kick_that_is_made_first_decides_no_height(void)
 {
     himc_performance *p = session_new();
@@ -130,6 +151,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_written_sticking_is_kept_on_a_snare);
     RUN_TEST(test_a_written_sticking_is_kept_in_every_set_up);
+    RUN_TEST(test_hands_3_s_apart_do_not_meet);
     RUN_TEST(test_equal_strokes_are_equal_after_a_loud_one);
     RUN_TEST(test_a_kick_that_is_made_first_decides_no_height);
     return UNITY_END();

@@ -152,6 +152,7 @@ static void performance_step(himc_performance *p)
         if (!himc_motion_is_finite(p->motion))
             recover(p, t);
     }
+    himc_performance_leave_clock(p, t);
     if (tick) { // what the score has at a beat
         double beat = himc_motion_score_beat(p->motion, t);
         himc_planner *planner = p->motion->planner;

@@ -126,7 +126,6 @@ static bool carry_out(himc_performance *p, const himc_command *c, himc_error *er
 static bool act_on_score(himc_performance *p, const himc_command *c, himc_error *error)
 {
     const himc_atom *atom = c->atom;
-    himc_tempo_ramp ramp;
     himc_planner *planner = p->motion->planner;
     switch (c->id) {
     case HIMC_COMMAND_STROKE:
@@ -135,7 +134,13 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
     case HIMC_COMMAND_DRAG:
     case HIMC_COMMAND_RUFF: return himc_performance_add_stroke(p, &c->stroke, error);
     case HIMC_COMMAND_CLOCK: return himc_performance_clock(p, c, error);
-    case HIMC_COMMAND_CRESC: return himc_dynamics_add(&p->written.dynamics, c, error);
+    case HIMC_COMMAND_CRESC:
+        if (p->written.dynamics.from >= 1 + atom[0].number)
+            himc_events_note(&p->events,
+                             "cresc: strokes up to beat %g have their dynamics, expected cresc "
+                             "before them",
+                             p->written.dynamics.from - 1);
+        return himc_dynamics_add(&p->written.dynamics, c, error);
     case HIMC_COMMAND_HIT: return himc_performance_hit(p, &c->stroke, error);
     case HIMC_COMMAND_PLAY: return himc_performance_play(p, error);
     case HIMC_COMMAND_STOP: himc_performance_stop(p); return true;
@@ -144,11 +149,7 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
                                 himc_vec3_make(atom[1].number, atom[2].number, atom[3].number));
         return true;
     case HIMC_COMMAND_NUDGE: return himc_performance_nudge(p->motion->track, c, error);
-    case HIMC_COMMAND_TEMPO:
-        himc_motion_replan(p->motion);
-        ramp = himc_score_read_tempo(c);
-        return c->count == 1 ? himc_performance_set_tempo(p, atom[0].number, error)
-                             : himc_planner_add_tempo(planner, &ramp, error);
+    case HIMC_COMMAND_TEMPO: return himc_performance_tempo(p, c, error);
     case HIMC_COMMAND_LOOP:
         if (c->count == 1) {
             himc_planner_loop(planner, step_time(p), atom[0].number != 0);
@@ -158,13 +159,21 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
                               error))
             return false;
         himc_planner_loop_beats(planner, step_time(p), atom[0].number, atom[1].number);
+        if (p->motion->playing)
+            himc_performance_tell_loop(p);
         break;
     case HIMC_COMMAND_SEEK: himc_planner_seek(planner, step_time(p), atom[0].number); break;
     case HIMC_COMMAND_CLEAR:
         himc_planner_clear(planner);
+        if (p->motion->playing && himc_motion_plays_score(p->motion) &&
+            !himc_planner_is_looped(planner)) {
+            p->motion->playing = false;
+            himc_events_add(&p->events, &(himc_event){.kind = HIMC_EVENT_DONE});
+        }
         himc_feet_clear(&p->motion->feet);
         himc_text_clear(&p->written.score);
         p->written.dynamics.count = 0;
+        p->written.dynamics.from = 0;
         himc_drums_drop_heads(&p->drums);
         himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
         break;

@@ -26,6 +26,7 @@
 // a clock that is followed; chosen
 #define SYNC_STEP 0.012 // it is not looked at sooner again (s): 200 beats a minute of MIDI
 #define SYNC_GAP 1.0    // after that it is another one (s)
+#define SYNC_SILENT 0.3 // after that the clock is not heard, and its mean tempo holds (s)
 #define SYNC_LEAST 6    // looks from which its tempo is known
 #define SYNC_SAME 0.003 // so little another tempo is the same: 1.5 ms in half a second
 
@@ -121,7 +122,10 @@ bool himc_performance_put_stroke(himc_performance *p, const himc_stroke *written
 bool himc_performance_add_stroke(himc_performance *p, const himc_stroke *asked, himc_error *error)
 {
     himc_stroke own = *asked, *stroke = &own;
-    himc_dynamics_give(&p->written.dynamics, stroke);
+    himc_dynamics *dynamics = &p->written.dynamics;
+    if (stroke->dynamic == HIMC_DYNAMIC_FOLLOWS)
+        dynamics->from = fmax(dynamics->from, 1 + stroke->beat);
+    himc_dynamics_give(dynamics, stroke);
     if (!himc_written_room(&p->written.score, "stroke", error) ||
         !himc_check_range("stroke: BEAT", stroke->beat, 0, LATEST_BEAT, "beats", error) ||
         !himc_performance_put_stroke(p, stroke, error))
@@ -381,6 +385,30 @@ static double total_beat(const himc_performance *p, double t)
     return himc_planner_beat(planner, t) + (double)himc_planner_round(planner, t) * round;
 }
 
+static bool is_clocked(const performance_sync *s, double t)
+{
+    return s->count >= SYNC_LEAST && t - s->seen[(s->count - 1) % SYNC_TICKS].time < SYNC_SILENT;
+}
+
+bool himc_performance_tempo(himc_performance *p, const himc_command *c, himc_error *error)
+{
+    himc_tempo_ramp ramp = himc_score_read_tempo(c);
+    if (is_clocked(&p->sync, step_time(p)))
+        return himc_error_set(error, "tempo: a clock sets it, expected sync off before");
+    himc_motion_replan(p->motion);
+    return c->count == 1 ? himc_performance_set_tempo(p, c->atom[0].number, error)
+                         : himc_planner_add_tempo(p->motion->planner, &ramp, error);
+}
+
+void himc_performance_leave_clock(himc_performance *p, double t)
+{
+    himc_error unused;
+    if (p->sync.bpm == 0 || is_clocked(&p->sync, t))
+        return;
+    himc_performance_set_tempo(p, p->sync.bpm, &unused);
+    p->sync.bpm = 0;
+}
+
 // Sees the clock at its beat: the tempo becomes the clock's, and so much faster or slower that the
 // beats meet within one.
 static bool see_clock(himc_performance *p, double t, bool absolute, himc_error *error)
@@ -402,7 +430,8 @@ static bool see_clock(himc_performance *p, double t, bool absolute, himc_error *
     double ahead = himc_planner_beat(p->motion->planner, t) < 0 ? 0 : s->beat - total_beat(p, t);
     if (!absolute || fabs(ahead) > 1) // it began elsewhere: the same place in a beat
         ahead -= round(ahead);
-    double bpm = 60 * beats / seconds * (1 + fmin(fmax(ahead, -0.5), 0.5)),
+    s->bpm = fmin(fmax(60 * beats / seconds, HIMC_BPM_MIN), HIMC_BPM_MAX);
+    double bpm = s->bpm * (1 + fmin(fmax(ahead, -0.5), 0.5)),
            now = himc_planner_bpm(p->motion->planner, t);
     bpm = fmin(fmax(bpm, HIMC_BPM_MIN), HIMC_BPM_MAX);
     return fabs(bpm - now) < SYNC_SAME * now || himc_performance_set_tempo(p, bpm, error);
@@ -444,6 +473,16 @@ bool himc_performance_clock(himc_performance *p, const himc_command *c, himc_err
     return himc_performance_play(p, error);
 }
 
+void himc_performance_tell_loop(himc_performance *p)
+{
+    const himc_planner *planner = p->motion->planner;
+    double last = fmax(himc_planner_last_beat(planner), himc_feet_last(&p->motion->feet));
+    if (himc_planner_loops_beats(planner) && last >= 0 && himc_planner_loop_begin(planner) > last)
+        himc_events_note(
+            &p->events, "loop: FROM: %g, nothing to play: expected 0 .. %g, the last stroke's beat",
+            himc_planner_loop_begin(planner), last);
+}
+
 bool himc_performance_play(himc_performance *p, himc_error *error)
 {
     int first;
@@ -452,6 +491,7 @@ bool himc_performance_play(himc_performance *p, himc_error *error)
     tell_places(p);
     if (himc_motion_plays_score(p->motion) && himc_planner_length(p->motion->planner) <= 0)
         himc_events_note(&p->events, "play: nothing to play: no strokes, no take");
+    himc_performance_tell_loop(p);
     himc_motion_play(p->motion, step_time(p));
     return true;
 }

@@ -69,6 +69,7 @@ typedef struct performance_sync {
         double time, beat; ///< (s, beats)
     } seen[SYNC_TICKS];    ///< a ring of the last `count`
     long count;
+    double bpm; ///< its mean tempo, while it is followed; else 0
 } performance_sync;
 
 struct himc_performance {
@@ -197,6 +198,11 @@ himc_job *himc_performance_units_job(himc_performance *p, const himc_command *co
                                      himc_error *error);
 /// The command `clock`.
 bool himc_performance_clock(himc_performance *p, const himc_command *command, himc_error *error);
+/// A clock that is no longer heard leaves its mean tempo; each step asks.
+void himc_performance_leave_clock(himc_performance *p, double t);
+bool himc_performance_tempo(himc_performance *p, const himc_command *command, himc_error *error);
+/// Says so if the loop begins behind the last stroke.
+void himc_performance_tell_loop(himc_performance *p);
 /// The command `note`; what it plays becomes `hit`, if anything: it has a drum then.
 bool himc_performance_note(himc_performance *p, const himc_command *command, int delay,
                            himc_stroke *hit, himc_error *error);

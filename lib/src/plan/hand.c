@@ -78,8 +78,6 @@
 #define HOVER_LEAST_HEIGHT 0.05 // lower tips are raised first (m)
 #define HOVER_TIME 1.0          // one sway (s)
 #define HOVER_ARRIVAL 0.6       // coming to the waiting height (s)
-#define HOVER_COAST 0.1         // meanwhile the path goes on for so long at its speed (s), but
-#define ASTRAY 0.12             // thrown so far from the last spot, the tip comes back to it (m)
 #define FREE_REBOUND_TIME 2.0   // a rebound with nothing after it has so much time (s)
 #define BRAKE_LIMIT 1.0         // a halt with nothing after it has so much time (s)
 #define BREAK_OFF 5.0           // a stroke broken off with more acceleration is halted (m/s^2)
@@ -580,10 +578,7 @@ void himc_hand_wait(himc_hand_plan *plan, double until, bool ready)
         bool low =
             s.height.h < HIMC_WAIT_HEIGHT + 2 * HIMC_WAIT_SWAY && s.height.h > HOVER_LEAST_HEIGHT;
         double sway = plan->swayed ? -HIMC_WAIT_SWAY : HIMC_WAIT_SWAY;
-        himc_vec3 x = low ? himc_vec3_madd(s.path.x, sway, plan->last.back)
-                          : himc_vec3_madd(s.path.x, HOVER_COAST, s.path.v);
-        if (himc_vec3_length(himc_vec3_sub(s.path.x, plan->last.spot)) > ASTRAY)
-            x = plan->last.spot;
+        himc_vec3 x = himc_vec3_madd(plan->last.spot, low ? sway : 0, plan->last.back);
         plan->swayed = !plan->swayed;
         himc_height_profile_to(&s, s.height_end + (low ? HOVER_TIME : HOVER_ARRIVAL),
                                (height_state){HIMC_WAIT_HEIGHT + (low ? sway / 2 : 0), 0, 0});

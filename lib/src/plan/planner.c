@@ -534,6 +534,11 @@ void himc_planner_last_until(himc_planner *planner, double beat)
     himc_planner_replan(planner, t);
 }
 
+double himc_planner_last_beat(const himc_planner *planner)
+{
+    return himc_planner_roll_last_beat(&planner->score);
+}
+
 double himc_planner_until(const himc_planner *planner)
 {
     return planner->score.until;

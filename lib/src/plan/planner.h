@@ -129,6 +129,8 @@ void himc_planner_clear(himc_planner *planner);
 /// Beside its strokes the score has something up to that beat, -1: nothing. It ends after it.
 HIMC_RT void himc_planner_last_until(himc_planner *planner, double beat);
 HIMC_RT double himc_planner_until(const himc_planner *planner);
+/// The last beat of its strokes, -1 without any.
+HIMC_RT double himc_planner_last_beat(const himc_planner *planner);
 /// Starts the transport at time `t` (s) from the current beat, or from beat 0 if all has been
 /// played; does nothing while strokes are still to come. The first beat waits until the first
 /// stroke can be prepared.

@@ -251,12 +251,13 @@ static const char *reason_of(const himc_planner *planner, const timed_stroke *s,
 static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
 {
     const planner_hand *h = &planner->hand[s->stroke.hand];
-    double before = s->latency > 0 ? s->latency : HUGE_VAL; // from its message, or a touch (s)
+    // speed for which there is time since its message, or since a touch
+    double most = s->latency > 0 ? HIMC_HURRY * s->latency : HUGE_VAL;
     if (h->planned_count > 0) {
         const himc_goal *last = &h->planned[h->planned_count - 1].goal;
-        before = fmin(before, s->goal.time - last->time - last->hold);
+        most = fmin(most, HIMC_HURRY_AGAIN * (s->goal.time - last->time - last->hold));
     }
-    himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, HIMC_HURRY * before);
+    himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, most);
     timed_stroke after;
     s->gives_way = false;
     if (!next_written(planner, s->stroke.hand, &after))
@@ -265,7 +266,7 @@ static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
     if (!(time > 0))
         return g;
     himc_gesture other = after.written.gesture, softer = own.speed < other.speed ? own : other;
-    double share = himc_gesture_bend(softer, HIMC_HURRY * time).speed / softer.speed;
+    double share = himc_gesture_bend(softer, HIMC_HURRY_AGAIN * time).speed / softer.speed;
     s->gives_way = share * own.speed < g.speed;
     return s->gives_way ? himc_gesture_scale(own, share) : g;
 }

@@ -248,7 +248,10 @@ static bool may_stand(const himc_command *c, himc_error *error)
 {
     const himc_command_row *row = himc_command_table((int)c->id);
     return !(row->marks & HIMC_NOT_IN_SCORE) ||
-           himc_error_set(error, "%s: not allowed in a score", row->name);
+           himc_error_set(error, "%s: not allowed in a score%s", row->name,
+                          c->id == HIMC_COMMAND_DRUM_GLISS
+                              ? ", expected at BEAT DRUM gliss PITCH SECONDS"
+                              : "");
 }
 
 bool himc_score_read_change(const himc_atom *atom, int count, himc_score_line *out,

@@ -38,6 +38,7 @@ typedef struct himc_dynamics {
         double from, to;     ///< 0 .. 1
     } * cresc;
     int count, room;
+    double from; ///< 1 + the last beat for which a stroke has got its dynamic; 0: none
 } himc_dynamics;
 
 /// The command `cresc`; false with the reason.
