@@ -353,10 +353,12 @@ test-python: deps ## the Python package, built and installed into build/python: 
 	@tools/build/deps.sh tools/build/deps-python.txt
 	@build/python/bin/python -c 'import cffi, setuptools as s; assert int(s.__version__.split(".")[0]) >= 77' 2>/dev/null || \
 		{ python3 -m venv build/python && build/python/bin/pip -q install numpy cffi 'setuptools>=77' wheel matplotlib; }
-	@build/python/bin/pip -q install gymnasium==1.4.0 mujoco==4.0.0 opensim==4.6
+	@build/python/bin/pip -q install gymnasium==1.4.0 mujoco==4.0.0 opensim==4.6 ezc3d==1.7.2
+	@build/python/bin/pip -q install ray==2.60.0 || echo "no ray: its test is skipped"
 	@build/python/bin/pip -q install --no-build-isolation --force-reinstall --no-deps ./python
 	@build/python/bin/python python/tests/test_himc.py
 	@build/python/bin/python python/tests/test_gym.py
+	@build/python/bin/python python/tests/test_trials.py
 
 levels: deps ## how loud the pieces are, by libebur128: -23 LUFS, true peaks below full scale (a minute)
 	@tools/build/deps.sh tools/build/deps-sound.txt

@@ -7,6 +7,7 @@ import json
 import math
 import os
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -120,7 +121,7 @@ def test_drums_are_found_again():
     said = "tension %.2f %%, partials %.2f Hz, T60 %.1f %%, mallets %d of %d" % (100 * worst[0], worst[1], 100 * worst[2], mallets, count)
     assert not wrong, f"{wrong} {said}"
     # a room hides how a partial rings that rings shorter than the room
-    assert worst[0] < 0.01 and worst[1] < 0.5 and worst[2] < 0.15 and mallets >= 0.9 * count, said
+    assert worst[0] < 0.01 and worst[1] < 0.5 and worst[2] < 0.12 and mallets >= 0.9 * count, said
     return said
 
 
@@ -131,6 +132,20 @@ def test_a_second_drum_is_told():
     found = json.loads(good("fit", write_wave("both.wav", both, 2), "-o", path("both.txt"), "--json"))
     hz = {found["tune_hz"], found["second_drum_hz"]}
     assert all(any(abs(x / DRUMS[i][1] - 1) < 0.015 for x in hz) for i in (1, 14)), hz
+
+
+def test_the_octave_of_a_recorded_c2_is_found():
+    """Its strongest partial is (1,1), at half the frequency of the drum that its higher partials suggest."""
+    soundfont = "/usr/share/sounds/sf2/FluidR3_GM.sf2"  # Debian: fluid-soundfont-gm
+    if not (os.path.exists(soundfont) and shutil.which("fluidsynth")):
+        raise report.Ignored("needs fluidsynth and fluid-soundfont-gm")
+    track = bytes.fromhex("00ff510307a120 00c02f 0090246e ad00 802400 00ff2f00")  # program 48, note 36, 12 beats later its end
+    with open(path("c2.mid"), "wb") as file:
+        file.write(b"MThd" + bytes.fromhex("00000006 0000 0001 01e0") + b"MTrk" + len(track).to_bytes(4, "big") + track)
+    subprocess.run(["fluidsynth", "-ni", "-R", "0", "-C", "0", "-g", "0.5", "-r", "44100", "-F", path("c2.wav"), soundfont, path("c2.mid")], check=True, capture_output=True)
+    found = json.loads(good("fit", path("c2.wav"), "-o", path("c2.txt"), "--json"))
+    assert found["instrument"] == "timpano" and found["inches"] == 32 and abs(found["tune_hz"] / 65.41 - 1) < 0.03, found
+    return "%.2f Hz" % found["tune_hz"]
 
 
 def test_what_is_written_plays():

@@ -22,6 +22,8 @@
 #define DECAYS 0.7      // of ln T60: counts half
 #define UP_TO 2.6       // partials up to this multiple of (1,1) are judged; above modes are dense
 #define DOWN_TO 0.6     // ... and so far below it: a room has poles everywhere
+#define STRONG 10.0     // (dB) a partial so near the strongest is no room's, and no drum's below it
+#define LONGEST 15.0    // (s) of a drum; what rings longer is hum
 #define LOUD 40.0       // (dB) below the strongest a partial counts nothing
 #define UNEXPLAINED 0.5 // a partial that the drum has not counts so much against it
 #define NEEDED 3        // (1,1) .. (3,1) are heard of every timpano ...
@@ -47,6 +49,7 @@ static const struct {
 #define USUAL_WITHIN 0.35 // chosen
 #define SUREST 0.04       // of a decay, relative; chosen: beats of a pair that stay unresolved
 #define LONGER 1.3        // a partial rings longer than the room by this, or its decay is not used
+#define HELD 1.8 // found at less of the room's decay time it is the room's; chosen: 20 drums
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -64,15 +67,20 @@ static double worth(const partial *p)
     return fmax(0, fmin(p->clear, CLEAREST) - LEAST_CLEAR) / (1 + moves * moves);
 }
 
+static double strongest(const partials_list *partials)
+{
+    double most = -INFINITY;
+    for (int k = 0; k < partials->count; k++)
+        if (worth(&partials->row[k]) > 0)
+            most = fmax(most, partials->row[k].energy);
+    return most;
+}
+
 // the same, less for what is softer than the strongest
 static double weight(const partials_list *partials, int i)
 {
-    double strongest = -INFINITY;
-    for (int k = 0; k < partials->count; k++)
-        if (worth(&partials->row[k]) > 0)
-            strongest = fmax(strongest, partials->row[k].energy);
     const partial *p = &partials->row[i];
-    return worth(p) * fmax(0, 1 + (p->energy - strongest) / LOUD);
+    return worth(p) * fmax(0, 1 + (p->energy - strongest(partials)) / LOUD);
 }
 
 // how near a partial is to a mode, and it rings as long: 1, or less
@@ -105,17 +113,21 @@ static void assign(const partials_list *partials, const fit_mode *modes, int cou
 static double judge(const partials_list *partials, const fit_mode *modes, int count,
                     const fit_drum *d)
 {
-    double score = 0;
+    double score = 0, loudest = strongest(partials);
+    bool below = false;
     for (int i = 0; i < partials->count; i++) {
         const partial *p = &partials->row[i];
         double most = 0;
-        if (p->frequency < DOWN_TO * d->tune || p->frequency > UP_TO * d->tune)
+        bool low = p->frequency < DOWN_TO * d->tune;
+        below |= low && worth(p) > 0 && p->energy > loudest - STRONG && p->t60 < LONGEST;
+        if (low || p->frequency > UP_TO * d->tune)
             continue;
         for (int k = 0; k < count; k++)
             if (modes[k].m > 0 && modes[k].n <= 2)
                 most = fmax(most, likeness(p, &modes[k]));
         score += weight(partials, i) * (most - UNEXPLAINED * (1 - most));
     }
+    score -= below ? UNLIKELY : 0; // an octave too high
     for (int k = 0; k < 2 * NEEDED; k += 2)
         score -= d->of[k] < 0 && d->of[k + 1] < 0 ? MISSING : 0;
     return score;
@@ -182,6 +194,8 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
                 continue;
             if (!partials_ring(sound, f, due, &decay, &part, error))
                 return false;
+            if (log(1000) / decay < HELD * partials->room)
+                continue;
             double known = decay * hypot(part, SUREST);
             double a = load * FIT_USUAL_CONSTANT / known, y = (decay - air) / known;
             double b = load * FIT_USUAL_SQUARE * pow(2 * HIMC_PI * f, 2) / known;

@@ -416,8 +416,9 @@ bool partials_ring(const partials_sound *sound, double frequency, double due, do
                 found = at[2];
             }
         }
-        sum += found / (best * best);
-        weights += 1 / (best * best);
+        double known = fmax(0, 1 / (best * best) - 1); // energy of the pair over that of the rest
+        sum += known * found;
+        weights += known;
     }
     *decay = weights > 0 ? exp(sum / weights) : due;
     *part = weights > 0 ? sqrt(OVERLAP / weights) : INFINITY;
