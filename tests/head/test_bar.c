@@ -179,7 +179,7 @@ static void test_each_note_of_each_keyboard_is_struck_on_its_bar(void)
     }
 }
 
-// straight above, at 1 m, per acceleration (Pa s^2/m), and rho/(2 pi) times the integral of the shape
+// straight above, at 1 m, per acceleration (Pa s^2/m); and rho/(2 pi) times the shape's integral
 static double above(int index, double *in_wall)
 {
     const himc_modes *modes = himc_drum_membrane(drum)->model->modes;

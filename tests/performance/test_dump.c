@@ -326,9 +326,6 @@ static void test_a_dump_sent_back_line_by_line_makes_the_same_performance(void)
         session_do(p, "engine tree"); // ODE's bits also depend on what it did before
         session_do(p, "drum low 29");
         session_do(p, "drum high 23");
-        // without a place they stand clear of the others as those stood then, which no dump tells
-        session_do(p, "low place 0.4 0.5 0.85");
-        session_do(p, "high place 0.4 -0.5 0.85");
         for (int i = 0; i < 6; i++) {
             random_setting(&command, HIMC_DRUM, &seed);
             session_drum_command(p, i % 2 ? "low" : "high", &command);
@@ -345,6 +342,25 @@ static void test_a_dump_sent_back_line_by_line_makes_the_same_performance(void)
         himc_performance_free(p);
         himc_performance_free(other);
     }
+}
+
+// beside what stood there when it was made
+static void test_a_drum_without_a_place_is_restored_where_it_stood(void)
+{
+    himc_performance *p = session_new(), *other = session_new();
+    session_do(p, "setup bells");
+    session_do(p, "drum low");
+    session_do(p, "bells place 2 1 1");
+    char *state = copy_of(state_of(p));
+    send(other, state);
+    TEST_ASSERT_EQUAL_STRING(state, state_of(other));
+    const himc_head_frame *was = himc_drum_head_frame(himc_performance_drum(p, 1)),
+                          *now = himc_drum_head_frame(himc_performance_drum(other, 1));
+    TEST_ASSERT_TRUE(was->center.y < -0.1); // no longer where one would be put
+    TEST_ASSERT_EQUAL_MEMORY(&was->center, &now->center, sizeof now->center);
+    free(state);
+    himc_performance_free(p);
+    himc_performance_free(other);
 }
 
 static void test_a_state_is_restored_from_text_all_or_nothing(void)
@@ -460,6 +476,7 @@ int main(void)
     RUN_TEST(test_performance_with_four_drums_and_odd_settings_plays_the_same_from_its_dump);
     RUN_TEST(test_performer_takes_the_dump_of_another_body);
     RUN_TEST(test_a_dump_sent_back_line_by_line_makes_the_same_performance);
+    RUN_TEST(test_a_drum_without_a_place_is_restored_where_it_stood);
     RUN_TEST(test_a_state_is_restored_from_text_all_or_nothing);
     RUN_TEST(test_what_is_written_keeps_its_order_in_a_restored_state);
     RUN_TEST(test_presets_are_what_a_dump_has_written_all_or_nothing);

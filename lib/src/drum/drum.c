@@ -199,8 +199,7 @@ bool himc_drum_set(himc_drum *drum, const himc_drum_settings *to, himc_model **m
     if (!set_head(drum, &to->head, to->pedal ? to->gliss : -1, made, error))
         return false;
     bool heard = himc_drum_is_heard(drum);
-    drum->revision += moves || grows || drum->set.placed != to->placed ||
-                      memcmp(mallet, to->mallet, sizeof to->mallet) != 0;
+    drum->revision += moves || grows || memcmp(mallet, to->mallet, sizeof to->mallet) != 0;
     drum->set = *to;
     drum->set.pedal = false;
     himc_drum_find_noise(drum, &drum->set.mallet[HIMC_RIGHT]);

@@ -549,25 +549,29 @@ static void dump_mallets(const himc_drum_settings *set, const himc_line_sink *to
     }
 }
 
-void himc_drum_describe(const himc_drum *drum, himc_description what,
-                        void (*line)(void *, const char *), void *user)
+void himc_drum_tell_state(const himc_drum *drum, bool placed, const himc_line_sink *to)
 {
     const himc_drum_settings *set = &drum->set;
     const himc_vec3 *at = &set->place.center;
-    himc_line_sink to = {line, user};
-    if (what == HIMC_DESCRIBE_INFO) {
-        describe_for_person(drum, &to);
-        return;
-    }
-    dump_head(drum, &to);
-    dump_pickups(himc_membrane_config_of(drum->membrane), &to);
-    himc_state_tell(&to, "listener", set->picked ? "off" : "usual", 0, NULL);
-    dump_mallets(set, &to);
-    tell(&to, "noise", set->noise);
-    if (set->placed)
-        himc_state_tell(&to, "place", NULL, 4, (double[]){at->x, at->y, at->z, set->place.tilt});
-    tell(&to, "gain", 20 * log10(set->gain));
-    tell(&to, "mute", set->mute);
-    himc_state_tell(&to, "technique",
+    dump_head(drum, to);
+    dump_pickups(himc_membrane_config_of(drum->membrane), to);
+    himc_state_tell(to, "listener", set->picked ? "off" : "usual", 0, NULL);
+    dump_mallets(set, to);
+    tell(to, "noise", set->noise);
+    if (placed)
+        himc_state_tell(to, "place", NULL, 4, (double[]){at->x, at->y, at->z, set->place.tilt});
+    tell(to, "gain", 20 * log10(set->gain));
+    tell(to, "mute", set->mute);
+    himc_state_tell(to, "technique",
                     himc_command_word(HIMC_COMMAND_TECHNIQUE, 0, (int)set->technique).text, 0, 0);
+}
+
+void himc_drum_describe(const himc_drum *drum, himc_description what,
+                        void (*line)(void *, const char *), void *user)
+{
+    himc_line_sink to = {line, user};
+    if (what == HIMC_DESCRIBE_INFO)
+        describe_for_person(drum, &to);
+    else
+        himc_drum_tell_state(drum, drum->set.placed, &to);
 }

@@ -4,6 +4,7 @@
 #define HIMC_DRUM_PERFORMER_H
 
 #include "base/job.h"
+#include "base/text.h"
 #include "drum/ears.h"
 #include "drum/model.h"
 #include "himc/drum.h"
@@ -38,6 +39,8 @@ HIMC_RT void himc_drum_fade(himc_drum *drum, double factor);
 
 /// True once the command `place` has set its place.
 HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
+/// Tells the state as himc_drum_describe does, `placed`: with the place where it stands.
+void himc_drum_tell_state(const himc_drum *drum, bool placed, const himc_line_sink *to);
 /// True for a kick that stands on the floor: a foot plays it, no hand.
 HIMC_RT bool himc_drum_is_footed(const himc_drum *drum);
 /// True for a kick, a bass drum and a hi-hat: a foot plays them.

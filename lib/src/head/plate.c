@@ -68,9 +68,10 @@ typedef struct plate_row {
     {                                                                                         \
         .stiffness = 4e9, .exponent = 1.5, .mass = 0.016, .radius = 0.008, .relaxation = 2e-6 \
     }
-// The side of a shaft on a thin edge: the wood dents, so the force is its strength p times the area,
-// 2 pi p sqrt(R h/2) per metre, R = 7.2 mm the shaft's radius, h/2 the edge's; p = 60 MPa of hickory
-// across the grain, between Brinell's 33 and Janka's 81 (static, remembered).
+// The side of a shaft on a thin edge: the wood dents, so the force is its strength p times the
+// area, 2 pi p sqrt(R h/2) per metre, R = 7.2 mm the shaft's radius, h/2 the edge's; p = 60 MPa of
+// hickory across the grain, between Brinell's 33 and Janka's 81 (static, remembered). A china's
+// edge is bent away: a stick meets it flat.
 #define SHAFT                                                                               \
     {                                                                                       \
         .stiffness = 8e5, .exponent = 1, .mass = 0.016, .radius = 0.008, .relaxation = 2e-6 \

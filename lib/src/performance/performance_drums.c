@@ -4,6 +4,7 @@
 /// the one nearest to straight ahead at which its rim is clear of the others, first to the right,
 /// then to the left. So no two drums are at one place, where a stick could not tell them apart.
 #include "performance/performance_drums.h"
+#include "base/argument.h"
 #include "base/array.h"
 #include "base/format.h"
 #include "base/text.h"
@@ -84,7 +85,7 @@ static void stand(drum_slot *slot, himc_vec3 center)
     himc_drum_stand(slot->drum, center);
 }
 
-// places a drum automatically
+// places a drum automatically, where a command could have placed it
 static void find_room(performance_drums *d, int index)
 {
     drum_slot *slot = &d->slot[index];
@@ -94,7 +95,11 @@ static void find_room(performance_drums *d, int index)
     for (double arc = first.x; arc < LARGEST_ARC; arc += ARC_STEP)
         for (double angle = 0; angle < ARC_END; angle += ARC_ANGLE_STEP)
             for (int side = -1; side <= 1; side += 2) {
-                himc_vec3 center = {arc * cos(angle), side * arc * sin(angle), first.z};
+                himc_vec3 center = {himc_argument_single(arc * cos(angle)),
+                                    himc_argument_single(side * arc * sin(angle)),
+                                    himc_argument_single(first.z)};
+                if (index == 0 && angle == 0 && arc == first.x)
+                    center = first;
                 if (!is_clear(d, index, center))
                     continue;
                 stand(slot, center);

@@ -166,8 +166,10 @@ static int tell_item(const himc_performance *p, dump_part part, int i, const him
                             (double[]){himc_drum_inches(drum)});
         return d->count;
     case DRUMS:
+        // One without a place stands clear of the others as those stood when it was made; but the
+        // first where it does in any performance, or where its take moves it.
         if (named)
-            himc_performance_describe_drum(drum, HIMC_DESCRIBE_STATE, himc_drum_name(drum), "", to);
+            himc_performance_tell_drum(drum, i > 0 || himc_drum_is_placed(drum), to);
         return d->count;
     case RATES:
         himc_settings_tell(&p->settings, HIMC_COMMAND_RATE, HIMC_COMMAND_PLAYER, to);

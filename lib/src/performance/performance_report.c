@@ -439,10 +439,10 @@ static void tell_of_drum(void *object, const char *text)
     sink->to->line(sink->to->user, line);
 }
 
-void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
-                                    const char *before, const char *after, const himc_line_sink *to)
+void himc_performance_tell_drum(const himc_drum *drum, bool placed, const himc_line_sink *to)
 {
-    himc_drum_describe(drum, what, tell_of_drum, &(drum_sink){to, before, after});
+    drum_sink sink = {to, himc_drum_name(drum), ""};
+    himc_drum_tell_state(drum, placed, &(himc_line_sink){tell_of_drum, &sink});
 }
 
 void himc_performance_inform(const himc_performance *p, himc_line_sink to)
@@ -451,8 +451,9 @@ void himc_performance_inform(const himc_performance *p, himc_line_sink to)
     describe_body(p, to);
     for (int i = 0; i < p->drums.count; i++) {
         const drum_slot *slot = &p->drums.slot[i];
-        himc_performance_describe_drum(slot->drum, HIMC_DESCRIBE_INFO, "drum",
-                                       slot->source == DRUM_SILENT ? " (silent)" : "", &to);
+        himc_drum_describe(
+            slot->drum, HIMC_DESCRIBE_INFO, tell_of_drum,
+            &(drum_sink){&to, "drum", slot->source == DRUM_SILENT ? " (silent)" : ""});
     }
     himc_tell(
         &to, "grip %s%s, latency %g ms, hits %d, the last after %.0f ms, the slowest after %.0f ms",

@@ -110,10 +110,8 @@ himc_job *himc_performance_record_job(himc_performance *p, const himc_command *c
                                       himc_error *error);
 
 void himc_performance_inform(const himc_performance *p, himc_line_sink to);
-/// Gives each line of a drum's description to `to`, with words before and after it.
-void himc_performance_describe_drum(const himc_drum *drum, himc_description what,
-                                    const char *before, const char *after,
-                                    const himc_line_sink *to);
+/// Tells a drum's state, each line after its name (himc_drum_tell_state).
+void himc_performance_tell_drum(const himc_drum *drum, bool placed, const himc_line_sink *to);
 
 // performance_dump.c
 himc_job *himc_performance_dump_job(himc_performance *p, const himc_command *command,
