@@ -594,10 +594,20 @@ def test_firefox_plays_and_edits_without_webgl_too():
     return "a drawing" if flat else "with WebGL"
 
 
+# apart, by tests/page/test_page_seen.sh
+SEEN = [
+    test_keys_alone_play_and_edit,
+    test_each_size_of_screen_shows_the_whole_inspector_of_a_stroke,
+    test_axe_core_finds_no_serious_fault,
+    test_firefox_plays_and_edits_without_webgl_too,
+]
+
 if __name__ == "__main__":
     browser = Browser(800, 600)
     try:
-        tests = [f for name, f in list(globals().items()) if name.startswith("test_") and all(w in name for w in sys.argv[1:])]
+        words = [w for w in sys.argv[1:] if w != "seen"]
+        mine = SEEN if "seen" in sys.argv[1:] else [f for name, f in list(globals().items()) if name.startswith("test_")]
+        tests = [f for f in mine if all(w in f.__name__ for w in words) and (words or mine is SEEN or f not in SEEN)]
         code = report.run("tests/page/page.py", tests)
     finally:
         browser.close()

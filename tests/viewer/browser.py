@@ -50,7 +50,7 @@ class Browser:
             },
         )
         self.session = "/session/" + answer["sessionId"]
-        self.call("POST", self.session + "/timeouts", {"script": 300000})
+        self.call("POST", self.session + "/timeouts", {"script": 3000000})
 
     def call(self, method, path, body=None):
         data = None if body is None else json.dumps(body).encode()
@@ -58,7 +58,7 @@ class Browser:
             self.url + path, data, {"Content-Type": "application/json"}, method=method
         )
         try:
-            with urllib.request.urlopen(request, timeout=300) as answer:
+            with urllib.request.urlopen(request, timeout=3000) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"]) from None
@@ -149,10 +149,10 @@ class Firefox(Browser):
                 raise RuntimeError("Firefox does not start")
             time.sleep(0.1)
         with open(port) as file:
-            self.socket = socket.create_connection(("127.0.0.1", int(file.read())), 300)
+            self.socket = socket.create_connection(("127.0.0.1", int(file.read())), 3000)
         self.stream, self.number = self.socket.makefile("rb"), 0
         self.answer()  # who it is
-        self.ask("WebDriver:NewSession", {"capabilities": {"alwaysMatch": {"timeouts": {"script": 300000}}}})
+        self.ask("WebDriver:NewSession", {"capabilities": {"alwaysMatch": {"timeouts": {"script": 3000000}}}})
 
     def answer(self):
         size = b""

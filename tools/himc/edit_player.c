@@ -96,6 +96,7 @@ bool edit_player_begin(edit_player *p, const char *text, const char *record, him
                                   .source = p->name,
                                   .name = "himc",
                                   .rate = EDIT_RATE,
+                                  .live = true,
                                   .bare = true};
     p->record = scene_record_begin(&config, error);
     if (!p->record)

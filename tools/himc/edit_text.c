@@ -221,7 +221,8 @@ static double acts_from(const char *bytes)
         return HUGE_VAL;
     return c.id == HIMC_COMMAND_PUSH    ? beat
            : c.id == HIMC_COMMAND_NUDGE ? c.atom[1].number - c.atom[2].number
-                                        : fmax(c.stroke.beat - 1, 0);
+           : c.stroke.ornament == HIMC_PLAIN && c.stroke.early == 0 ? c.stroke.beat
+                                                                    : fmax(c.stroke.beat - 1, 0);
 }
 
 // the place of the change at `changes[i]` gets its bytes, and that gets those of the place

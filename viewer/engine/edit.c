@@ -2,6 +2,7 @@
 /// instances of this module and copies of their memory (viewer/page/workshop.js).
 #include "base/file.h"
 #include "engine.h"
+#include "performance/research.h"
 #include "tools/himc/edit_player.h"
 #include "tools/himc/edit_session.h"
 
@@ -163,6 +164,11 @@ int page_piece_exchange(void)
     clear_room();
     fflush(stdout);
     return good ? 1 : late ? -1 : 0;
+}
+
+double page_piece_rests_to(void)
+{
+    return himc_performance_rests_to(e.player.performance);
 }
 
 bool page_piece_cell(void)

@@ -61,6 +61,8 @@ bool PAGE_CALL(page_piece_begin)(void);
 bool PAGE_CALL(page_piece_start)(void);
 /// Takes the text's strokes: 1. 0 with the reason; -1 if the plan may rest already on what differs.
 int PAGE_CALL(page_piece_exchange)(void);
+/// Until when the plan rests on what differs, if beats stay (s of the score).
+double PAGE_CALL(page_piece_rests_to)(void);
 /// A fifth of a second, as frames; false where the piece ends.
 bool PAGE_CALL(page_piece_cell)(void);
 /// Tells the rest, and writes the take. False with the reason.

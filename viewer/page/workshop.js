@@ -3,9 +3,9 @@
 //
 // One instance has the text. Another plays it, and leaves a copy of its memory behind every second: the last
 // copy as a whole, of each earlier one only the pages of 4 kB in which it differs from the next. After a change
-// the last copy before it comes back, takes the new strokes in place of the old ones, and plays on; one whose
-// plan may rest on them already refuses, and the one before is asked. So all that follows is, bit by bit,
-// what a playing from the start would be. Where memory is short, copies far from the last change go.
+// the last copy whose plan does not rest on it comes back, takes the new strokes in place of the old ones, and plays
+// on; if it refuses after all, the one before is asked. So all that follows is, bit by bit, what a playing from the
+// start would be. Where memory is short, copies far from the last change go.
 const WORD = 4,
     PAGE = 4096 / WORD, // (words)
     APART = 1, // (s) of the piece between two copies
@@ -13,14 +13,13 @@ const WORD = 4,
     ROOM = 120 << 20, // of what the copies differ in (bytes), and less ...
     ALL = 190 << 20, // ... where a memory and its last copy are larger; chosen: 300 MB with the page
     FOCUS = 4, // (s) copies get rarer from here on
-    HEADROOM = 2, // (s) a piece may begin so much later than its first beat
     TEXT = "himc-text"; // PAGE_TEXT of viewer/engine/engine.h
 
 // the memory of an instance as it was
 class Copies {
     constructor(memory) {
         ((this.memory = memory), (this.image = new Int32Array(0)));
-        this.list = []; // { at (s), pages that the next one has otherwise: [index, words] }
+        this.list = []; // { at, until when its plan rests on strokes (s), pages that the next one has otherwise: [index, words] }
     }
 
     get size() {
@@ -28,7 +27,7 @@ class Copies {
     }
 
     // the memory as it is now is that at a time
-    add(at) {
+    add(at, rests) {
         const now = new Int32Array(this.memory.buffer),
             last = this.list[this.list.length - 1];
         if (now.length > this.image.length) {
@@ -39,7 +38,7 @@ class Copies {
             last?.pages.set(i, this.image.slice(i, i + PAGE));
             this.image.set(page, i);
         });
-        this.list.push({ at, pages: new Map() });
+        this.list.push({ at, rests, pages: new Map() });
     }
 
     // calls with the pages in which it differs from the last copy; others stay untouched, and, empty, cost nothing
@@ -48,7 +47,7 @@ class Copies {
         for (let at = 0; at < now.length; at += PAGE) {
             let i = at;
             const end = at + PAGE;
-            while (i < end && now[i] === image[i]) i++;
+            while (i < end && !((now[i] ^ image[i]) | (now[i + 1] ^ image[i + 1]) | (now[i + 2] ^ image[i + 2]) | (now[i + 3] ^ image[i + 3]))) i += 4;
             if (i < end) use(at, now.subarray(at, end));
         }
     }
@@ -130,21 +129,18 @@ class Workshop {
         else this.ask("page_edit_line", line);
     }
 
-    // plays the text that was ordered; from a copy, if only strokes have changed. How long before the change plans
-    // rest on it is not known: as long as the last time, or a little less.
+    // plays the text that was ordered; from a copy, if only strokes have changed
     begin() {
         const { from, text } = this.order,
             { list } = this.copies ?? { list: [] };
         ((this.order = null), (this.played = text), (this.focus = Math.max(0, from)));
-        const until = from + HEADROOM - (this.tries ?? 0) * APART;
-        for (this.tries = Math.max(0, (this.tries ?? 0) - 1); from >= 0 && list.length; this.copies.drop()) {
-            if (list[list.length - 1].at > until && list.length > 1) continue;
+        for (; from >= 0 && list.length; this.copies.drop()) {
+            if (list[list.length - 1].rests > from && list.length > 1) continue;
             this.copies.restore();
             this.player.files.bytes.set(TEXT, text);
             const done = this.player.calls.page_piece_exchange();
             if (done === 0) return this.failed();
             if (done > 0) return this.resume();
-            this.tries++;
         }
         this.start(text);
     }
@@ -160,7 +156,7 @@ class Workshop {
         this.player.files.bytes.set(TEXT, text);
         if (!this.player.call("page_piece_begin", this.name)) return this.failed();
         this.copies = new Copies(this.player.files.memory);
-        this.copies.add(0);
+        this.copies.add(0, 0);
         this.resume();
     }
 
@@ -180,7 +176,7 @@ class Workshop {
         const { copies, player } = this,
             { list } = copies;
         if (this.time >= list[list.length - 1].at + APART - CELL / 2) {
-            copies.add(this.time);
+            copies.add(this.time, player.calls.page_piece_rests_to());
             copies.thin(Math.min(ROOM, ALL - 2 * player.files.memory.buffer.byteLength), this.focus);
         }
         this.over = !player.calls.page_piece_cell();

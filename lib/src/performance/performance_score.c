@@ -636,6 +636,12 @@ bool himc_performance_load_text(himc_performance *p, const char *text, const cha
     return himc_job_carry_out(himc_performance_score_job(p, text, name, NULL, error), error);
 }
 
+double himc_performance_rests_to(const himc_performance *p)
+{
+    return p->motion->track ? himc_motion_take_time(p->motion, step_time(p))
+                            : himc_planner_rests_to(p->motion->planner);
+}
+
 bool himc_performance_exchange_strokes(himc_performance *p, himc_performance *other)
 {
     const performance_body *with = other->body;

@@ -433,6 +433,15 @@ static double part_time(const planner_score *score, const planner_part *part, in
     return i < part->count ? himc_planner_score_touch(score, 0, &part->list[i].stroke) : HUGE_VAL;
 }
 
+/// The first stroke of a part that another part has at another beat, or not.
+static int common_beats(const planner_part *a, const planner_part *b)
+{
+    int i = himc_planner_score_common(a, b);
+    while (i < a->count && i < b->count && a->list[i].stroke.beat == b->list[i].stroke.beat)
+        i++;
+    return i;
+}
+
 /// True if a hand's plan so far is the same with the strokes of `other`.
 static bool may_exchange(const himc_planner *planner, himc_hand hand, const planner_score *other)
 {
@@ -457,12 +466,26 @@ static bool may_exchange(const himc_planner *planner, himc_hand hand, const plan
     if (same == index && time < to)
         return false;
     // variation depends on the time to the neighbours in both hands: to the last ones looked at
+    same = common_beats(part, fresh);
+    time = fmin(part_time(score, part, same), part_time(score, fresh, same));
     for (int i = 0; i < HIMC_HANDS && planner->human.amount > 0; i++) {
         to = himc_planner_looked_to(planner, (himc_hand)i, &index);
         if (time < fmin(part_time(score, &score->part[i], index), to) + NEIGHBOUR_TIME)
             return false;
     }
     return true;
+}
+
+double himc_planner_rests_to(const himc_planner *planner)
+{
+    const planner_score *score = &planner->score;
+    double rests = 0;
+    for (int i = 0; i < HIMC_HANDS && score->playing; i++) {
+        int index;
+        double to = himc_planner_looked_to(planner, (himc_hand)i, &index);
+        rests = fmax(rests, fmin(to, part_time(score, &score->part[i], index)) - score->origin);
+    }
+    return rests;
 }
 
 bool himc_planner_exchange(himc_planner *planner, himc_planner *other)
