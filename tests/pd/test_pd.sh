@@ -293,7 +293,10 @@ report gesture_is_told_before_its_strike "$(awk '/^himc: prepare/ { told = $3 } 
 report head_and_pose_are_drawn_into_arrays "$(awk '$1 == "middle:" { m[++n] = $2 } $1 == "trunk-height:" { h = $2 }
     END { if (m[1] == 0 || m[2] != 0 || h < 0.8 || h > 1.8) print m[1], m[2], h }' "$work/log")"
 report array_that_is_missing_or_short_is_refused "$(lines "himc~: pose: short: no array of 66 points or more, expected pose ARRAY
-membrane~: kettle: head: nothing: no array of 2 points or more, expected head ARRAY")"
+membrane~: kettle: head: nothing: no array of 2 points or more, expected head ARRAY
+himc~: pose: 7: no array of 66 points or more, expected pose ARRAY")"
+report empty_list_names_a_command_of_its_object "$(lines "himc~: an empty list: expected a message that begins with a word, as [hit any legato f(
+membrane~: kettle: an empty list: expected a message that begins with a word, as [strike 0.1 0 2(")"
 
 play_pd notes.pd
 report key_and_velocity_in_two_inlets_are_a_note "$(awk '/^himc: strike/ { n++; drum[n] = $5; speed[n] = $8 }
@@ -301,6 +304,7 @@ report key_and_velocity_in_two_inlets_are_a_note "$(awk '/^himc: strike/ { n++; 
 report get_answers_with_what_was_set "$(lines "answer: latency 200
 answer: subdivide 2
 answer: drums low high
+answer: beat-now -1
 himc~: get: WHAT: foo, expected a setting")$(grep -qx 'answer: tempo 60' "$work/log" || echo 'no tempo. ')"
 
 play_pd phasor.pd

@@ -503,6 +503,29 @@ static double mean_speed(const heard *h, int from, int to)
 }
 
 // the last stroke of each hand has no other one after it, and was 3 dB louder
+static void test_a_stroke_that_ends_a_roll_is_as_loud_as_alone(void)
+{
+    static const char *const made[] = {"drum d", "instrument d snare"};
+    for (int i = 0; i < 4; i++) {
+        double speed[2];
+        for (int alone = 0; alone < 2; alone++) {
+            himc_performance *p = session_new();
+            heard h = {0};
+            session_do(p, "%s", made[i / 2]);
+            session_do(p, "tempo 60");
+            if (!alone)
+                session_do(p, "roll 1 2 single f d");
+            session_do(p, "stroke 3 right legato %s d", i % 2 ? "ff" : "f");
+            session_do(p, "play");
+            session_play(p, 5, &h);
+            speed[alone] = h.strike[h.strikes - 1].velocity;
+            heard_free(&h);
+            himc_performance_free(p);
+        }
+        TEST_ASSERT_TRUE(20 * log10(speed[0] / speed[1]) > -0.5);
+    }
+}
+
 static void test_a_roll_is_even_to_its_end(void)
 {
     static const char *const kind[] = {"single", "double", "press"}, *const loud[] = {"mf", "ff",
@@ -575,6 +598,7 @@ int main(void)
     RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
     RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);
     RUN_TEST(test_notes_that_are_left_out_are_named_as_they_are_written);
+    RUN_TEST(test_a_stroke_that_ends_a_roll_is_as_loud_as_alone);
     RUN_TEST(test_a_roll_is_even_to_its_end);
     RUN_TEST(test_the_line_about_softer_strokes_counts_all_that_are);
     return UNITY_END();

@@ -1,8 +1,9 @@
 /// export.c: from a score's strokes to notes, the way back of midi/import.c.
 ///
 /// A timpano's note is the pitch that its pedal has on the stroke's beat, rounded to a semitone; a
-/// pedal that moves becomes an order, heard if it is a gliss. Bars have their pitch, all other instruments the key of their
-/// name in the kit, else of their kind. Invariant: each stroke of the score is a note or counted.
+/// pedal that moves becomes an order, heard if it is a gliss. Bars have their pitch, all other
+/// instruments the key of their name in the kit, else of their kind. Invariant: each stroke of the
+/// score is a note or counted.
 #include "musicxml/export.h"
 
 #include "base/array.h"

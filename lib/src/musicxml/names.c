@@ -187,8 +187,9 @@ static size_t begins_with(const char *at, const char *words)
     size_t longest = 0;
     for (const char *word = words; *word; word += *word == '|') {
         size_t all = strcspn(word, "|"), length = all - (word[all - 1] == '$');
-        bool whole = length < all && isalpha((unsigned char)at[length]);
-        if (length > longest && !whole && strncmp(at, word, length) == 0)
+        // the text may end before the word does
+        if (length > longest && strncmp(at, word, length) == 0 &&
+            !(length < all && isalpha((unsigned char)at[length])))
             longest = length;
         word += all;
     }

@@ -3,9 +3,9 @@
 /// Time counts in TICKS of a quarter note. Notes that overlap stand in several voices; a note lasts
 /// up to the next one of its voice or to the bar's end, a roll as long as it is, tied over bars.
 /// Dynamics are steps: a mark where the step changes, a hairpin for a roll that moves by one at
-/// least. An accent is read back a step louder (shape.c), so it is written a step softer. A gliss is
-/// words with a line. Words and marks of a bar are written first, then each voice, each back from the
-/// bar's end.
+/// least. An accent is read back a step louder (shape.c), so it is written a step softer. A gliss
+/// is words with a line. Words and marks of a bar are written first, then each voice, each back
+/// from the bar's end.
 #include "musicxml/export.h"
 
 #include "base/format.h"
