@@ -99,7 +99,7 @@ def exercise(count):
     return "tempo 120;\n" + "".join(f"stroke {s['beat']} {s['hand']} legato mf;\n" for s in strokes), strokes
 
 
-SHORT = ("pause", "skip", "exchanged", "sticking", "uneven", "loudness", "drag late")
+SHORT = ("pause", "skip", "exchanged", "sticking", "uneven", "very uneven", "loudness", "drag late")
 
 
 def plan_short(strokes, fault, draw):
@@ -114,7 +114,7 @@ def plan_short(strokes, fault, draw):
             shift -= 0.7 * beat  # hesitates, then goes on
             continue
         t = start + shift + beat * s["beat"] * (1 + (0.035 * s["beat"] / strokes[-1]["beat"] if "drag" in fault else 0))
-        t += draw.gauss(0, 0.045 if fault == "uneven" else 0.006) + (0.03 if "late" in fault and hand == "right" else 0)
+        t += draw.gauss(0, {"uneven": 0.045, "very uneven": 0.06}.get(fault, 0.006)) + (0.03 if "late" in fault and hand == "right" else 0)
         speed = 2.9 * 10 ** (draw.gauss(0, 5 if fault == "loudness" else 0.9) / 20)
         strikes[hand].append((t, max(speed, 0.8), BASE["normal"] + draw.gauss(0, 0.007), (0.015 if hand == "left" else -0.015) + draw.gauss(0, 0.006)))
     return {hand: sorted(list_) for hand, list_ in strikes.items()}, planted
@@ -269,7 +269,7 @@ def is_named(planted, faults):
             return True
         if fault in ("exchanged", "sticking") and kind == "hand" and (fault in what if fault == "exchanged" else beat in what):
             return True
-        if kind == "even" and {"uneven": "in time", "loudness": "in loudness"}.get(fault, "-") in what:
+        if kind == "even" and {"uneven": "in time", "very uneven": "in time", "loudness": "in loudness"}.get(fault, "-") in what:
             return True
         if fault == "high elbow" and kind == "elbow" and planted["hand"] in what:
             return abs(effect - planted["raised"]) < 5

@@ -23,7 +23,7 @@
 #define LEAP 14.0
 #define GAP 6.0
 #define JUMP 20.0
-#define MORE 0.7
+#define MORE 1.2
 #define EXCHANGED 8.0
 #define ROLLED 0.02 // for a played event that a roll may contain
 #define OTHER 3.0
