@@ -341,7 +341,7 @@ def test_a_piece_that_was_edited_sounds_as_its_text_from_the_start():
     with open("tests/page/edits.js") as file:
         code = file.read()
     said = []
-    for name, edits in [("improvisation.txt", 200), ("tide.txt", 40)] if LONG else [("improvisation.txt", 8)]:
+    for name, edits in [("improvisation.txt", 200), ("tide.txt", 40)] if LONG else [("improvisation.txt", 12)]:
         got = browser.run(EDITS, name, code, edits)
         assert "failed" not in got, got
         assert all(e["text"].startswith("nothing to ") for e in got["events"]), got["events"]
