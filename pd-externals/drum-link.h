@@ -249,7 +249,7 @@ static inline t_word *array_find(t_garray **array, int *size, int argc, const t_
     *array = (t_garray *)pd_findbyclass(name, garray_class);
     if (*array && garray_getfloatwords(*array, size, &points) && *size >= least)
         return points;
-    char given[MAXPDSTRING] = "nothing";
+    char given[MAXPDSTRING] = "no name";
     if (argc > 0)
         atom_string(argv, given, sizeof given);
     himc_error_set(error, "%s: %s: no array of %d points or more, expected %s ARRAY", command,
