@@ -92,9 +92,10 @@ static void test_a_run_too_fast_for_its_hand_is_shared_and_a_roll_of_hits_is_cou
 
 static void test_any_hand_is_the_other_one_in_a_fast_run_and_so_louder(void)
 {
-    himc_performance *p = with_kettle("150"), *q = with_kettle("150");
-    taps one = tap(p, 10, 0.07, LATENCY, right, "legato f"),
-         two = tap(q, 10, 0.07, LATENCY, any, "legato f");
+    const double latency = 0.33; // time for all of its strength
+    himc_performance *p = with_kettle("330"), *q = with_kettle("330");
+    taps one = tap(p, 10, 0.07, latency, right, "legato f"),
+         two = tap(q, 10, 0.07, latency, any, "legato f");
     for (int i = 1; i < two.h.strikes; i++)
         TEST_ASSERT_NOT_EQUAL(two.h.strike[i - 1].hand, two.h.strike[i].hand);
     TEST_ASSERT_TRUE(two.speed > 1.3 * one.speed);
