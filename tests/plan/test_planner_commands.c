@@ -51,7 +51,7 @@ static void test_fast_strokes_are_softer_and_one_note_says_so(void)
     himc_planner_note note;
     use(200);
     for (int i = 0; i < 40; i++)
-        add(planner, 4 + 0.5 * i, HIMC_RIGHT, HIMC_LEGATO, 0.9);
+        add(planner, 4 + 0.4 * i, HIMC_RIGHT, HIMC_LEGATO, 0.9);
     himc_planner_play(planner, 0);
     double next = first_touch(HIMC_RIGHT);
     for (double t = 0; t < 8; t += 0.01) {
@@ -60,10 +60,10 @@ static void test_fast_strokes_are_softer_and_one_note_says_so(void)
             continue;
         himc_target left = himc_planner_target(planner, HIMC_RIGHT, t); // as planned
         himc_planner_separated(planner, HIMC_RIGHT, t, &left);
-        next += 0.15;
+        next += 0.12;
     }
     TEST_ASSERT_TRUE(himc_planner_note_next(planner, &note));
-    TEST_ASSERT_EQUAL_STRING("stroke at beat 4 right: too little time for 5.3 m/s, struck with 4.2",
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 4 right: too little time for 5.3 m/s, struck with 4.8",
                              note.text);
     TEST_ASSERT_FALSE(himc_planner_note_next(planner, &note));
 }

@@ -137,8 +137,8 @@ static bool has_time(const himc_planner *planner, himc_hand hand, double t, doub
     if (isinf(after->time))
         return true;
     // a stroke of the score after the hit stays as strong as it would be without it
-    double now = HIMC_HURRY_AGAIN * (after->time - himc_goal_end(goal)),
-           without = HIMC_HURRY_AGAIN * (after->time - before);
+    double now = himc_goal_hurry(goal->spot, after->spot) * (after->time - himc_goal_end(goal)),
+           without = himc_goal_hurry(c->near.before.spot, after->spot) * (after->time - before);
     return can_follow(goal, after) &&
            (!c->near.scored ||
             himc_gesture_bend(after->gesture, now).speed >=

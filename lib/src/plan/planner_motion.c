@@ -255,7 +255,8 @@ static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
     double most = s->latency > 0 ? HIMC_HURRY * s->latency : HUGE_VAL;
     if (h->planned_count > 0) {
         const himc_goal *last = &h->planned[h->planned_count - 1].goal;
-        most = fmin(most, HIMC_HURRY_AGAIN * (s->goal.time - last->time - last->hold));
+        most = fmin(most, himc_goal_hurry(last->spot, s->goal.spot) *
+                              (s->goal.time - last->time - last->hold));
     }
     himc_gesture own = s->goal.gesture, g = himc_gesture_bend(own, most);
     timed_stroke after;
@@ -266,7 +267,8 @@ static himc_gesture in_haste(himc_planner *planner, timed_stroke *s)
     if (!(time > 0))
         return g;
     himc_gesture other = after.written.gesture, softer = own.speed < other.speed ? own : other;
-    double share = himc_gesture_bend(softer, HIMC_HURRY_AGAIN * time).speed / softer.speed;
+    double hurry = himc_goal_hurry(s->goal.spot, after.written.spot);
+    double share = himc_gesture_bend(softer, hurry * time).speed / softer.speed;
     s->gives_way = share * own.speed < g.speed;
     return s->gives_way ? himc_gesture_scale(own, share) : g;
 }
