@@ -51,8 +51,8 @@ HIMC_RT double himc_gesture_time(const himc_gesture *gesture, double height);
 /// Speed that an arm in a hurry reaches from rest, over its time (m/s^2). Computed for a lumped tip
 /// with strokes from 50 mm in 60 .. 150 ms; a peak acceleration of about 4 times that.
 #define HIMC_HURRY 26.0
-/// The same after a touch of the same spot, from which the tip comes back by itself with .85 of its speed: with that
-/// peak acceleration and .71 of it in the mean, v = .71 104 T/1.85.
+/// The same after a touch of the same spot, from which the tip comes back by itself with .85 of its
+/// speed: with that peak acceleration and .71 of it in the mean, v = .71 104 T/1.85.
 #define HIMC_HURRY_AGAIN 40.0
 
 /// The stroke with a smaller impact speed, if it is near to or above the speed `most` (m/s, > 0).

@@ -16,8 +16,8 @@ typedef struct himc_goal {
     bool straight; ///< the way there bows out round the body no farther than it must
 } himc_goal;
 
-/// Speed over the time between two touches of an arm in a hurry (m/s^2): it is helped by the rebound
-/// where the tip stays, and not on its way to another place.
+/// Speed over the time between two touches of an arm in a hurry (m/s^2): it is helped by the
+/// rebound where the tip stays, and not on its way to another place.
 static inline double himc_goal_hurry(himc_vec3 from, himc_vec3 to)
 {
     const double same = 0.2; // (m) chosen: spots of one head
