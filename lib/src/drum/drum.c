@@ -273,13 +273,6 @@ bool himc_drum_is_footed(const himc_drum *drum)
     return shell && shell->mallet == &himc_shell_beater && place->center.z < 2 * place->radius;
 }
 
-bool himc_drum_has_pedal(const himc_drum *drum)
-{
-    const himc_shell *shell = himc_membrane_config_of(drum->membrane)->shape.shell;
-    return himc_drum_hats(drum) || (shell && (shell->mallet == &himc_shell_beater ||
-                                              strcmp(shell->name, "bass-drum") == 0));
-}
-
 himc_membrane *himc_drum_membrane(himc_drum *drum)
 {
     return drum->membrane;

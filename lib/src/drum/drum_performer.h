@@ -43,8 +43,6 @@ HIMC_RT bool himc_drum_is_placed(const himc_drum *drum);
 void himc_drum_tell_state(const himc_drum *drum, bool placed, const himc_line_sink *to);
 /// True for a kick that stands on the floor: a foot plays it, no hand.
 HIMC_RT bool himc_drum_is_footed(const himc_drum *drum);
-/// True for a kick, a bass drum and a hi-hat: a foot plays them.
-HIMC_RT bool himc_drum_has_pedal(const himc_drum *drum);
 /// The inches with which it was made.
 HIMC_RT double himc_drum_inches(const himc_drum *drum);
 /// 8000 .. 192000 Hz, or false with the reason.

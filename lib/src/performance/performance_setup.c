@@ -328,12 +328,8 @@ bool himc_performance_place_stroke(const himc_performance *p, himc_stroke *strok
                                    himc_error *error)
 {
     const himc_membrane_config none = {.head.radius = 1}, *head = &none;
-    himc_drum *drum = index < p->drums.count ? p->drums.slot[index].drum : NULL;
-    if (stroke->hand == HIMC_FOOT && !(drum && himc_drum_has_pedal(drum)))
-        return himc_error_set(error,
-                              "foot: %s has no pedal, expected a kick, a bass drum, a hi-hat",
-                              drum ? himc_drum_name(drum) : "the first drum");
-    if (drum) {
+    if (index < p->drums.count) {
+        himc_drum *drum = p->drums.slot[index].drum;
         head = himc_membrane_config_of(himc_drum_membrane(drum));
         if (stroke->hand != HIMC_FOOT && himc_drum_is_footed(drum))
             return himc_error_set(error, "stroke on %s: no hand reaches it, expected foot",
