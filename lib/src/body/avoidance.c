@@ -28,9 +28,10 @@
 #define FOLDED_FREE 0.14     // ... and of free ones, which then turn with up to 60 rad/s
 #define LARGEST_LACK (-0.08) // of crossed parts in the wrong order (m); chosen: all is pushed alike
 #define LEVEL 0.5            // of the vertical: parts beside each other are in no order
-#define RETURN_TIME 2.0      // T (s); chosen: long, so that the goal rests 5 mm inside D
-#define AVOIDS 0.05        // goals up to it unfold no arm (rad); chosen: a push of 1 mm makes less
-#define LEAST_GOAL 1e-3    // a smaller goal of a clear body is 0 (rad)
+#define DESCENT 40.0    // K (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second
+#define RETURN_TIME 2.0 // T (s); chosen: long, so that the goal rests 5 mm inside D
+#define AVOIDS 0.05     // goals up to it unfold no arm (rad); chosen: a push of 1 mm makes less
+#define LEAST_GOAL 1e-3 // a smaller goal of a clear body is 0 (rad)
 #define LONGEST_STEP 0.012 // (s); chosen: K dt stays below 1 / |F''|
 #define FASTEST 8.0        // of each angle's goal (rad/s); chosen: as fast as a wrist is turned
 #define PATH_KNOWN 0.07    // of a hand's path (s); chosen: its filter looks so far ahead
@@ -38,11 +39,6 @@
 // limits of the three angles of an arm; chosen: what shoulders and wrists allow
 static const double least[HIMC_ARM_ANGLES] = {-0.5, -0.03, -0.6},
                     most[HIMC_ARM_ANGLES] = {1.5, 1.0, 1.0};
-
-// K of each (rad^2/(m s)); chosen: a gap of -0.1 m is opened in a tenth of a second, and
-// by crossed arms rather with the elbow than with a wrist that bends
-static const double descent[HIMC_ARM_ANGLES] = {40, 40, 40},
-                    crossed_descent[HIMC_ARM_ANGLES] = {60, 12, 20};
 
 const double himc_avoidance_times[HIMC_FORESEEN] = {0.06, 0.14};
 
@@ -204,7 +200,7 @@ static field field_of(const himc_avoidance *a, const himc_capsule capsule[HIMC_S
 
 // -K dF/dg of a posture
 static void add_descent(const himc_posture *then, const himc_foreseen *foreseen, const field *f,
-                        const double K[HIMC_ARM_ANGLES], double rate[HIMC_AVOIDANCE_PARTS])
+                        double rate[HIMC_AVOIDANCE_PARTS])
 {
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         himc_arm_moves moves = himc_posture_arm_moves(then, (himc_hand)hand, foreseen->tip[hand]);
@@ -212,7 +208,7 @@ static void add_descent(const himc_posture *then, const himc_foreseen *foreseen,
             double work = -moves.beyond * moves.missing[i] / NEAR_BODY;
             for (int k = 0; k < HIMC_ARM_POINTS; k++)
                 work += himc_vec3_dot(f->push[hand][k], moves.by[i][k]);
-            rate[i * HIMC_HANDS + hand] += K[i] * work;
+            rate[i * HIMC_HANDS + hand] += DESCENT * work;
         }
     }
 }
@@ -251,7 +247,7 @@ int himc_avoidance_update(himc_avoidance *a, const himc_posture *posture, const 
         if (!f.pushed && missing[k] == 0)
             continue;
         then = foreseen_posture(a, posture, &foreseen[k], himc_avoidance_times[k]);
-        add_descent(&then, &foreseen[k], &f, a->order ? crossed_descent : descent, rate);
+        add_descent(&then, &foreseen[k], &f, rate);
         work += DESCENT_WORK;
     }
     dt = fmin(dt, LONGEST_STEP);

@@ -44,21 +44,12 @@
 #define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
 #define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
 #define STRAIGHT 0.15 // an elbow nearer to the line to the wrist is carried along by it (m); chosen
-// A wrist is raised by turning the stick about its tip. A head pushes a shaft that is steeper by 20
-// degrees with a third more impulse, by 30 with twice as much, by 60 with nine times as much.
-// Chosen: 30 degrees at a touch, with less crossed arms have no room; more by as much as the stick
-// points up; from half of that on less than asked for.
-#define RAISED_MOST 0.52 // (rad)
-#define RAISED_ROUND 0.1 // of the stick's elevation about 0, with no corner (rad)
 // The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach
 // four timpani in an arc.
-#define TRUNK_LEAN 0.09  // (rad)
-#define LEAN_BEGINS 0.60 // strike points farther than this make the trunk lean more (m) ...
-#define LEAN_SLOPE 1.4   // ... by this (rad/m) ...
-#define LEAN_LIMIT 0.55  // ... up to this (rad)
-// ... also to those that are farther by this from their hand's shoulder (m); chosen: those that a
-// hand reaches across for, so that crossed arms bend and have room
-#define LEANS_CROSSED 0.05
+#define TRUNK_LEAN 0.09         // (rad)
+#define LEAN_BEGINS 0.60        // strike points farther than this make the trunk lean more (m) ...
+#define LEAN_SLOPE 1.4          // ... by this (rad/m) ...
+#define LEAN_LIMIT 0.55         // ... up to this (rad)
 #define TURN_SHARE 0.85         // of the azimuth of the strike points; the arms do the rest
 #define BOTH_SIDES (-0.5)       // cosine of the angle from which two places are on both sides
 #define TURN_LIMIT 1.05         // (rad)
@@ -167,14 +158,6 @@ static double azimuth(himc_vec3 a)
     return fmin(fmax(atan2(a.y, a.x), -most), most);
 }
 
-// of two places from the points so far beside the trunk's middle on each hand's side
-static double farthest(const himc_vec3 place[HIMC_HANDS], double turn, double beside)
-{
-    himc_vec3 l = place[HIMC_LEFT], r = place[HIMC_RIGHT];
-    double x = -beside * sin(turn), y = beside * cos(turn);
-    return fmax(hypot(l.x - x, l.y - y), hypot(r.x + x, r.y + y));
-}
-
 himc_trunk_posture himc_posture_trunk(const himc_posture *posture,
                                       const himc_vec3 strike[HIMC_HANDS], himc_grip grip)
 {
@@ -185,9 +168,8 @@ himc_trunk_posture himc_posture_trunk(const himc_posture *posture,
     if (l.x * r.x + l.y * r.y < BOTH_SIDES * hypot(l.x, l.y) * hypot(r.x, r.y))
         azimuths = 0.5 * (azimuth(l) + azimuth(r));
     double turn = fmin(fmax(TURN_SHARE * azimuths, -TURN_LIMIT), TURN_LIMIT);
-    double far = farthest(strike, turn, posture->leans_beside),
-           shoulder = posture->skeleton.segment[HIMC_LEFT_UPPER_ARM].origin.y;
-    far = fmax(far, farthest(strike, turn, shoulder) - LEANS_CROSSED);
+    double side = posture->leans_beside, x = -side * sin(turn), y = side * cos(turn);
+    double far = fmax(hypot(l.x - x, l.y - y), hypot(r.x + x, r.y + y));
     double more = fmin(LEAN_SLOPE * fmax(far - posture->leans_beyond, 0), LEAN_LIMIT - TRUNK_LEAN);
     himc_trunk_posture b = {{0}, {0}, {0}};
     b.value[HIMC_TRUNK_POSTURE_TURN] = turn;
@@ -293,13 +275,6 @@ static arm arm_of(const himc_posture *posture, himc_hand hand)
     return a;
 }
 
-// of a stick with that elevation about its tip: as asked for where that is little
-static double raise_of(double asked, double up)
-{
-    double most = RAISED_MOST + 0.5 * (up + hypot(up, RAISED_ROUND)), more = asked - 0.5 * most;
-    return more > 0 ? 0.5 * most * (1 + tanh(more / (0.5 * most))) : asked;
-}
-
 // stick and hand: from the tip to the wrist
 static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 tip, arm *a)
 {
@@ -317,9 +292,8 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
         blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french) + path[HIMC_HAND_PATH_ELBOW];
     double lower = tip.z - path[HIMC_HAND_PATH_GRIP];
     double bent = blend_grips(1, FRENCH_WRIST, a->french) * path[HIMC_HAND_PATH_HAND];
-    double up = himc_hand_path_stick(lower, length), raise = raise_of(a->raise, up);
-    a->stick = himc_vec3_elevated(azimuth, up - raise);
-    a->hand = himc_vec3_elevated(azimuth, bent - raise);
+    a->stick = himc_vec3_elevated(azimuth, himc_hand_path_stick(lower, length) - a->raise);
+    a->hand = himc_vec3_elevated(azimuth, bent - a->raise);
     a->side = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
     a->grip = himc_vec3_madd(tip, -length, a->stick);
     double palm = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_STICK + hand].origin);

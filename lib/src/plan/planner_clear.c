@@ -42,10 +42,6 @@
 #define TRUNK_STEP 0.004 // of the rehearsed trunk, at most (s): a usual tick
 /// With a smaller gap other ways are tried (m); chosen: a rebound changes the plan by 6 mm.
 #define SURE_GAP 0.008
-// a stroke is left out only if hands overlap by more than this, with what is unsure of passing
-// sticks, which may not touch at all (m) ...
-#define GRAZE 0.012
-#define LEAVES_BETTER 0.02 // ... and gaps become so much larger without it (m); chosen
 
 // the walk; chosen
 #define MOST_CREDIT 16.0   // work that is not done is not owed
@@ -355,7 +351,7 @@ static bool make_way(himc_planner *planner, himc_hand hand, int k)
     // left out is a leap to another drum, not a stroke of a roll, where a gap would be worse than
     // sticks that touch
     bool begins = s == planner->hand[hand].planned, leaps = !begins && s[-1].drum != s->drum;
-    bool leaves = way.leaves && c->least.gap < -GRAZE && (begins || leaps);
+    bool leaves = way.leaves && meets && (begins || leaps);
     if ((tried->touch == way.touch && k < tried->tried) ||
         !(way.aside != 0 || way.waits || other || leaves || (way.straight && leaps)))
         return false;
@@ -472,7 +468,6 @@ static int try_on(himc_planner *planner)
     int work = walk_step(planner, walk, &c->lift, hand, c->searched);
     // its least gap is larger, or both are SURE_GAP, and less is lacking
     double gap = fmin(walk->near.gap, SURE_GAP), least = fmin(c->least.gap, SURE_GAP);
-    gap -= c->way.leaves ? LEAVES_BETTER : 0;
     bool better = gap == least ? walk->near.lack < c->least.lack : gap > least;
     if (better && walk->t < end)
         return work;
