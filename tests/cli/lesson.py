@@ -180,6 +180,18 @@ def test_the_model_itself_has_nothing_to_practise():
         assert abs(sum(shares) - 1) < 1e-3 and float(row["wrist_torque_n_m"]) > 0.01, row
 
 
+def test_strokes_of_many_rolls_are_none_too_many():
+    text = "tempo 140;\n" + "".join(
+        "".join(f"stroke {1 + 4 * i + k / 2} {('right', 'left')[k % 2]} legato mf;\n" for k in range(5)) + f"roll {3.5 + 4 * i} 1 single mf mf;\n"
+        for i in range(40))
+    subprocess.run([HIMC, "render", path("rolls.txt", text), "-o", path("own.wav"), "--set", f"record {path('rolls.bvh')}", "--quiet", "--rate", "8000"],
+                   check=True, capture_output=True)
+    told = json.loads(lesson(path("rolls.txt"), path("rolls.bvh"), "--json")[1])
+    assert told["matched"] == 200 and told["missing"] == 0 and told["extra"] <= 1, told
+    many = "".join(f"roll {i} 0.5 single mf mf;\n" for i in range(513))
+    refused("more than 512 rolls", path("many.txt", "stroke 600 left legato mf;\n" + many), path("rolls.bvh"))
+
+
 def test_errors_are_one_line():
     judged("none", 60, 0)
     take = path("take.csv")

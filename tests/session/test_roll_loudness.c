@@ -100,7 +100,8 @@ static void test_a_roll_struck_softer_than_written_is_named_once(void)
 {
     heard h = {0};
     himc_performance *p = session_new();
-    session_do(p, "drum kettle");
+    session_do(p, "drum kettle 23");
+    session_do(p, "kettle tune A3"); // the fastest
     session_do(p, "tempo 60");
     session_do(p, "roll 1 2 single p");
     session_do(p, "roll 4 2 single fff");

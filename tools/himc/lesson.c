@@ -46,10 +46,12 @@ static bool keep_asked(lesson *l, himc_performance *p, const himc_event *event, 
 }
 
 // fills the rolls, in beats; ask() makes seconds of them
-static void find_rolls(lesson *l, const himc_score *score)
+static bool find_rolls(lesson *l, const himc_score *score, himc_error *error)
 {
-    for (int i = 0; i < score->stroke_count && l->rolls < LESSON_ROLLS / 2; i++) {
+    for (int i = 0; i < score->stroke_count; i++) {
         const himc_stroke *s = &score->strokes[i];
+        if (s->ornament >= HIMC_ROLL_SINGLE && l->rolls == LESSON_ROLLS / 2)
+            return himc_error_set(error, "%s: more than %d rolls", l->score, LESSON_ROLLS / 2);
         if (s->ornament >= HIMC_ROLL_SINGLE)
             l->roll[l->rolls++] =
                 (lesson_roll){.from = s->beat, .to = s->beat + s->length, .written = true};
@@ -58,6 +60,7 @@ static void find_rolls(lesson *l, const himc_score *score)
     for (int i = 1; i < score->tempo_count && score->stroke_count; i++)
         if (score->tempi[i].beat <= score->strokes[0].beat)
             l->bpm = score->tempi[i].bpm;
+    return true;
 }
 
 static bool play_score(lesson *l, himc_performance *p, double most, himc_error *error)
@@ -80,14 +83,13 @@ static bool ask(lesson *l, himc_error *error)
     if (!score)
         return false;
     double last = 0;
-    find_rolls(l, score);
     for (int i = 0; i < score->stroke_count; i++)
         last = fmax(last, score->strokes[i].beat + score->strokes[i].length);
     last = himc_score_seconds(score->tempi, score->tempo_count, last);
     himc_performance *p = cli_load(l->score, LESSON_RATE, NULL, error);
     l->asked = malloc(LESSON_MOST * sizeof *l->asked);
     bool good = p && (l->asked || himc_error_set(error, "out of memory")) &&
-                play_score(l, p, last + 30, error);
+                find_rolls(l, score, error) && play_score(l, p, last + 30, error);
     if (good && !l->asked_count)
         good = himc_error_set(error, "%s: no strokes beside rolls, expected some to compare",
                               l->score);

@@ -12,7 +12,7 @@
 
 #define LESSON_FAULTS 32  ///< chosen: most that are kept; three are named
 #define LESSON_NAMED 3    ///< faults that are named first
-#define LESSON_ROLLS 64   ///< chosen
+#define LESSON_ROLLS 1024 ///< most rolls and runs; half of them written
 #define LESSON_LIMBS 4    ///< shares of shoulder, elbow, wrist with grip, trunk
 #define LESSON_MOST 20000 ///< strokes of a lesson; chosen: an hour
 #define LESSON_RATE 8000  ///< of the model's samples (Hz); chosen: its sound is heard by no one

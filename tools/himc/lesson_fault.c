@@ -10,9 +10,10 @@ lesson_fault *lesson_fault_add(lesson *l, const char *kind, double effect, doubl
                                double threshold)
 {
     double excess = (fabs(effect) - bound * u) / threshold;
-    if (!(excess >= 1) || l->faults == LESSON_FAULTS)
+    bool full = l->faults == LESSON_FAULTS;
+    if (!(excess >= 1) || (full && l->fault[LESSON_FAULTS - 1].excess >= excess))
         return NULL;
-    int k = l->faults++;
+    int k = full ? LESSON_FAULTS - 1 : l->faults++; // the smallest goes
     for (; k > 0 && l->fault[k - 1].excess < excess; k--)
         l->fault[k] = l->fault[k - 1];
     l->fault[k] = (lesson_fault){

@@ -6,6 +6,7 @@
 /// named once. Then single strokes are compared with the player's own spread.
 #include "lesson_beat.h"
 
+#include "base/format.h"
 #include "base/order.h"
 
 #include <math.h>
@@ -290,6 +291,8 @@ static void judge_roll(lesson *l, lesson_roll *r, const double *t, const double 
     for (int k = 1; k < n; k++)
         value[k - 1] = t[k] - t[k - 1];
     double middle = lesson_median(value, n - 1);
+    if (!(middle > 0)) // both hands at once: no roll's strokes
+        return;
     for (int k = 0; k < n; k++)
         index[k] = k ? index[k - 1] + fmax(1, round((t[k] - t[k - 1]) / middle)) : 0;
     lesson_fit(index, t, n, 3, p, u);
@@ -371,10 +374,13 @@ static void judge_rolls(lesson *l, const lesson_course *c)
     }
 }
 
+#define LISTED 64 // characters of strokes that are listed, in whole entries of 32 at most
+#define ENTRY 32
+
 // strokes without a partner
 static void judge_missing(lesson *l)
 {
-    char beats[2][64] = {"", ""};
+    char beats[2][LISTED + ENTRY] = {"", ""};
     int alone = 0; // missing, but not with a phrase
     for (int k = 0; k < l->asked_count; k++) {
         const lesson_asked *a = &l->asked[k];
@@ -385,8 +391,9 @@ static void judge_missing(lesson *l)
             continue;
         alone++;
         size_t used = strlen(beats[0]);
-        snprintf(beats[0] + used, sizeof beats[0] - used, "%s%s at beat %g", used ? ", " : "",
-                 himc_hand_name(a->hand), a->beat);
+        if (used < LISTED)
+            snprintf(beats[0] + used, ENTRY, "%s%s at beat %g", used ? ", " : "",
+                     himc_hand_name(a->hand), a->beat);
     }
     for (int k = 0; k < l->count; k++) {
         const lesson_played *p = &l->played[k];
@@ -394,16 +401,17 @@ static void judge_missing(lesson *l)
             continue;
         l->extra++;
         size_t used = strlen(beats[1]);
-        snprintf(beats[1] + used, sizeof beats[1] - used, "%s%s at %.2f s", used ? ", " : "",
-                 himc_hand_name(p->strike.hand), p->strike.time);
+        if (used < LISTED)
+            snprintf(beats[1] + used, ENTRY, "%s%s at %.2f s", used ? ", " : "",
+                     himc_hand_name(p->strike.hand), p->strike.time);
     }
     const int count[] = {alone, l->extra};
     for (int k = 0; k < 2; k++) {
         lesson_fault *f = lesson_fault_add(l, k ? "extra" : "missing", count[k], 0, 0, 0.01);
         if (!f)
             continue;
-        snprintf(f->what, sizeof f->what, "%d stroke%s %s: %s", count[k], count[k] > 1 ? "s" : "",
-                 k ? "too many" : "missing", beats[k]);
+        himc_format(f->what, sizeof f->what, "%d stroke%s %s: %s", count[k],
+                    count[k] > 1 ? "s" : "", k ? "too many" : "missing", beats[k]);
         snprintf(f->how, sizeof f->how, "%d strokes asked, %d matched, %d played", l->asked_count,
                  l->matched, l->count);
         lesson_fault_explain(f, 0, count[k] > 1 ? "strokes" : "stroke", lesson_none_source);
