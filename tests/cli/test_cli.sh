@@ -579,7 +579,7 @@ check test_a_roll_of_musicxml_grows [ "$(awk -F, 'NR > 1 && $3 == "second" && $1
 check test_exported_musicxml_comes_back [ "$(head -n 1 err) $(grep -c '^\(stroke\|roll\|drag\)' again.txt)" = "8 of 8 notes for timpani are played 8" ]
 "$himc" export made.txt -o again.mid && "$himc" info again.mid >out
 check test_exported_midi_is_read [ $? = 0 ]
-printf 'instrument x triangle;\nstroke 1 right accent f x;\nstroke 2 right accent f normal dead x;\n' >two.txt
+printf 'instrument x bongo;\nstroke 1 right accent f x;\nstroke 2 right accent f rim x;\n' >two.txt
 "$himc" export two.txt -o two.musicxml 2>err && "$himc" export two.txt -o quiet.musicxml --quiet 2>quiet
 check test_quiet_export_says_nothing [ "$(grep -c 'not written' err) $(wc -c <quiet)" = "1 0" ]
 refuses test_export_of_notes_needs_a_score "no SCORE given" export -o x.musicxml
