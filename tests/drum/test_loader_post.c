@@ -54,7 +54,7 @@ static bool post(callback *c, const char *text)
 
 static void test_posted_commands_give_the_sound_of_the_same_commands_sent(void)
 {
-    static const char *const commands[] = {"kettle mallet hard",      "score " SCORE,
+    static const char *const commands[] = {"kettle mallet hard",      ("score " SCORE),
                                            "stroke 1 left legato ff", "tempo 150",
                                            "kettle tension 3500",     "play"};
     static float sound[2][2 * 96000];
