@@ -1875,7 +1875,7 @@ def test_a_browser_without_webgl_shows_a_drawing_and_says_so():
             )
             for at in (1000, 7000)
         ]
-        assert min(map(len, pictures)) > 10000 and pictures[0] != pictures[1], [len(p) for p in pictures]  # a blank one has 2000
+        assert min(map(len, pictures)) > 10000 and pictures[0] != pictures[1], [len(p) for p in pictures]
         assert not plain.log(), plain.log()
     finally:
         plain.close()
