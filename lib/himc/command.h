@@ -27,7 +27,7 @@ typedef struct himc_atom {
 typedef enum himc_nuance {
     HIMC_LEGATO,          ///< 4.3 m/s, free rebound
     HIMC_TENUTO,          ///< 4.2 m/s, weak rebound
-    HIMC_ACCENT,          ///< as legato a step of dynamics louder, from the largest height
+    HIMC_ACCENT,          ///< 4.5 m/s, from the largest height
     HIMC_VERTICAL_ACCENT, ///< 7.5 m/s
     HIMC_STACCATO,        ///< 2.8 m/s, pulled off the head
     HIMC_NUANCES          ///< number of nuances

@@ -1866,16 +1866,17 @@ def test_a_browser_without_webgl_shows_a_drawing_and_says_so():
         assert plain.wait("return viewer.playback && viewer.joints()", 60), plain.log()
         shown = "return getComputedStyle(document.getElementById(arguments[0])).display"
         assert plain.run(shown, "wait") == "none" and plain.run(shown, "lost") == "none"
-        plain.run("viewer.held = true; viewer.playback.play(false)")
+        # the camera glides up to its place
+        plain.run("viewer.held = true; viewer.playback.play(false); for (let i = 0; i < 100; i++) viewer.step(100)")
         pictures = [
             plain.run(
                 "viewer.playback.seek(arguments[0]); viewer.step(1);"
                 "return viewer.stage.renderer.domElement.toDataURL()",
                 at,
             )
-            for at in (1000, 7000)
+            for at in (1000, 1000, 7000)
         ]
-        assert min(map(len, pictures)) > 10000 and pictures[0] != pictures[1], [len(p) for p in pictures]
+        assert pictures[0] == pictures[1] != pictures[2]
         assert not plain.log(), plain.log()
     finally:
         plain.close()

@@ -372,8 +372,10 @@ static bool write_c3d(const motion_table *t, himc_error *error)
         if (t->has[i])
             count[is_place(&arrays[i])] +=
                 items(&arrays[i]) * (is_place(&arrays[i]) ? 1 : arrays[i].components);
+    if (!t->failed && t->rows < 2)
+        return himc_error_set(error, "--motion: %zu rows, expected 2 in a .c3d", t->rows);
     himc_take *take = t->failed ? NULL : calloc(1, sizeof *take);
-    if (!take || t->rows < 2)
+    if (!take)
         return himc_error_set(error, "out of memory for the rows of a .c3d");
     snprintf(take->file, sizeof take->file, "--motion");
     double rate = (double)(t->rows - 1) / (t->data[(t->rows - 1) * t->width] - t->data[0]);

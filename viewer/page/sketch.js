@@ -75,7 +75,7 @@ export class Sketch {
             head = at("head", HEAD);
         add([at("trunk"), at("trunk", [0, 0, 0.25])], color, 0.26);
         add([at("pelvis"), at("pelvis", [0, 0, 0.06])], COLORS.trousers, 0.24);
-        add(HANDS.map((side) => at(side + "-upper-arm")), color, 0.09);
+        add(HANDS.map(side => at(side + "-upper-arm")), color, 0.09);
         add([at("neck"), head], COLORS.skin, 0.1);
         if (figure.headMeshes[0].visible) {
             add([head, at("head", [0, 0, 0.11])], COLORS.skin, 0.18);

@@ -11,7 +11,8 @@ typedef struct himc_setup {
 
 /// In the order of HIMC_SETUPS (himc/command_rows.h).
 extern const himc_setup himc_setups[];
-/// A seated player's kit, also for General MIDI, and what stands around it for the rest of that.
+/// A seated player's kit, also for General MIDI, what stands around it for the rest of that, and
+/// tubular bells.
 extern const char himc_setup_kit[], himc_setup_around[], himc_setup_bells[];
 
 /// Where an instrument stands (m; its tilt, rad), and `made`, the words of `instrument` after its

@@ -189,11 +189,9 @@ static bool find_own(const himc_score *setup, midi_head *head)
             continue;
         bool named = strcmp(c->atom[0].symbol, head->name) == 0,
              alike = strcmp(c->atom[1].symbol, usual.made) == 0;
-        double size = c->count > 2 ? c->atom[2].number : inches, away = named ? -1
-                                                                        : alike
-                                                                            ? fabs(size - inches)
-                                                                            : HUGE_VAL;
-        if (away < least) {
+        double away = c->count > 2 ? fabs(c->atom[2].number - inches) : 0;
+        away = named ? -1 : away;
+        if ((named || alike) && away < least) {
             least = away;
             own = c->atom[0].symbol;
         }

@@ -172,8 +172,7 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
         }
         himc_feet_clear(&p->motion->feet);
         himc_text_clear(&p->written.score);
-        p->written.dynamics.count = 0;
-        p->written.dynamics.from = 0;
+        himc_dynamics_clear(&p->written.dynamics);
         himc_drums_drop_heads(&p->drums);
         himc_body_plan_pushes(p->body, NULL, 0, PUSHES_ANEW, NULL);
         break;

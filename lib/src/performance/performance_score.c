@@ -447,7 +447,7 @@ static himc_job_state install_changes(score_job *j, himc_error *error)
             himc_planner_clear(planner);
             himc_feet_clear(&p->motion->feet);
             himc_text_clear(&p->written.score);
-            p->written.dynamics.count = 0;
+            himc_dynamics_clear(&p->written.dynamics);
         }
         j->from = j->queued ? himc_planner_next_start(planner, step_time(p)) : 0;
         if (!himc_planner_append_tempi(planner, score->tempi, score->tempo_count, j->from, error)) {

@@ -82,7 +82,7 @@ static void begin(himc_performance *p, const made_parts *parts)
     p->written.take[0] = '\0';
     himc_text_clear(&p->written.score);
     himc_text_clear(&p->written.units);
-    p->written.dynamics.count = 0;
+    himc_dynamics_clear(&p->written.dynamics);
     p->sync =
         (performance_sync){.beat = -1.0 / SYNC_TICKS, .halt = NAN}; // the first tick is beat 0
     p->motion = parts->motion;

@@ -197,7 +197,8 @@ himc_job *himc_performance_units_job(himc_performance *p, const himc_command *co
 /// The command `clock`.
 bool himc_performance_clock(himc_performance *p, const himc_command *command, himc_error *error);
 /// A clock that is no longer heard leaves its mean tempo; each step asks.
-void himc_performance_leave_clock(himc_performance *p, double t);
+HIMC_RT void himc_performance_leave_clock(himc_performance *p, double t);
+/// The command `tempo`; refused while a clock is heard.
 bool himc_performance_tempo(himc_performance *p, const himc_command *command, himc_error *error);
 /// Says so if the loop begins behind the last stroke.
 void himc_performance_tell_loop(himc_performance *p);

@@ -41,6 +41,13 @@ typedef struct himc_dynamics {
     double from; ///< 1 + the last beat for which a stroke has got its dynamic; 0: none
 } himc_dynamics;
 
+/// As before any stroke, the memory kept.
+static inline void himc_dynamics_clear(himc_dynamics *dynamics)
+{
+    dynamics->count = 0;
+    dynamics->from = 0;
+}
+
 /// The command `cresc`; false with the reason.
 bool himc_dynamics_add(himc_dynamics *dynamics, const himc_command *cresc, himc_error *error);
 /// Gives a stroke or a roll its dynamic at its beat.
