@@ -8,7 +8,7 @@
 /// the walls change, keep and take are means of two such filters: their gain is below 1, too.
 ///
 /// So many, because the tail of a note rings at the modes next to it. The sum of all delays, 1.2 s,
-/// is the number of modes per hertz. Tails are 9 cents RMS beside their pitch (test_room), with 16
+/// is the number of modes per hertz. Tails are 8 cents RMS beside their pitch (test_room), with 16
 /// delays 15; in a hall of 1500 m3, which has 14 modes per hertz at 180 Hz, 8.
 ///
 /// Level. A source that sends p at 1 m fills a room of volume V with p^2 16 pi/(D A), D its
