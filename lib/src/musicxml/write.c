@@ -10,16 +10,15 @@
 
 #include "base/format.h"
 #include "midi/part.h"
-#include "musicxml/names.h"
+#include "musicxml/music.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define TICKS 960 // of a quarter note; chosen: 0.5 ms at 120 beats a minute
-#define BAR (4 * TICKS)
+#define BAR ((int)MUSIC_BAR * TICKS)
 #define VOICES 4
-#define LINES 9 // of glissandi that run at once
 
 /// A note of a part.
 typedef struct item {
@@ -45,6 +44,7 @@ typedef struct writer {
     int count;
     int step;   ///< the last dynamic that was marked, 0 .. 7; -1: none
     bool first; ///< of the parts: it has the tempi
+    long end;   ///< of all parts (ticks)
 } writer;
 
 #define PUT(w, ...) himc_text_print((w)->out, __VA_ARGS__)
@@ -195,7 +195,7 @@ static void put_gliss(const writer *w, long *at, long to, int line, const char *
     if (words[0])
         PUT(w, "<direction-type><words>gliss. %s</words></direction-type>", words);
     PUT(w, "<direction-type><dashes type=\"%s\" number=\"%d\"/></direction-type></direction>\n",
-        words[0] ? "start" : "stop", 1 + line % LINES);
+        words[0] ? "start" : "stop", 1 + line % MUSIC_LINES_MAX);
 }
 
 static void put_tempi(const writer *w, long begin, long *at)
@@ -215,6 +215,7 @@ static void put_tempi(const writer *w, long begin, long *at)
 
 static void put_orders(const writer *w, long begin, long *at)
 {
+    static const char *const drums[] = {"", "low ", "second ", "third ", "high "};
     static const char *const pitch[] = {"C",  "C#", "D",  "Eb", "E",  "F",
                                         "F#", "G",  "Ab", "A",  "Bb", "B"};
     for (int i = 0; i < w->file->order_count; i++) {
@@ -224,8 +225,9 @@ static void put_orders(const writer *w, long begin, long *at)
         char words[40];
         if (o->choice != w->choice)
             continue;
-        himc_format(words, sizeof words, o->glides ? "%s to %s" : "%s muta in %s",
-                    o->kind == MIDI_TUNING ? pitch[o->from] : "", pitch[o->value % 12]);
+        himc_format(words, sizeof words, o->glides ? "%s%s%d to %s%d" : "%s%s%d muta in %s%d",
+                    drums[o->from / 128], pitch[o->from % 128 % 12], o->from % 128 / 12 - 1,
+                    pitch[o->value % 12], o->value / 12 - 1);
         if (here && o->glides)
             put_gliss(w, at, tick, i, words);
         else if (here)
@@ -335,14 +337,7 @@ static void put_voice(const writer *w, int voice, int first, long begin)
 static void put_bars(writer *w)
 {
     int first = 0;
-    long end = 0;
-    for (int k = 0; k < w->count; k++)
-        end = w->items[k].end > end ? w->items[k].end : end;
-    for (int i = 0; i < w->file->order_count; i++) {
-        long last = end_of(w, &w->file->orders[i]);
-        end = w->file->orders[i].choice == w->choice && last > end ? last : end;
-    }
-    for (long begin = 0, bar = 1; begin < end; begin += BAR, bar++) {
+    for (long begin = 0, bar = 1; begin < w->end; begin += BAR, bar++) {
         long at = begin;
         PUT(w, "<measure number=\"%ld\">", bar);
         if (bar == 1)
@@ -444,8 +439,13 @@ bool himc_music_write(himc_text_lines *out, const midi_file *file, const char *t
     PUT(&w, "<score-partwise version=\"4.0\"><movement-title>%s</movement-title><part-list>\n",
         title);
     for (w.choice = MIDI_TIMPANI; w.choice < MIDI_CHOICES; w.choice++)
-        if (take_items(&w) > 0)
+        if (take_items(&w) > 0) {
             put_part_list(&w);
+            for (int i = 0; i < w.count; i++)
+                w.end = w.items[i].end > w.end ? w.items[i].end : w.end;
+        }
+    for (int i = 0; i < file->order_count; i++)
+        w.end = end_of(&w, &file->orders[i]) > w.end ? end_of(&w, &file->orders[i]) : w.end;
     PUT(&w, "</part-list>\n");
     w.first = true;
     for (w.choice = MIDI_TIMPANI; w.choice < MIDI_CHOICES; w.choice++)

@@ -11,11 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BASS_DRUM 36    // for concert instruments that General MIDI has no key for
-#define TICKS 960       // of a quarter note
-#define ROLL_RATE 11.0  // strokes of a roll (1/s); chosen: of a middle drum (plan/ornament.c)
-#define GRACE_TIME 0.04 // (s) chosen, as there
-#define SHORT 0.05      // of a stroke's note (s)
+#define BASS_DRUM 36        // for concert instruments that General MIDI has no key for
+#define TICKS 960           // of a quarter note
+#define ROLL_RATE 11.0      // strokes of a roll (1/s); chosen: of a middle drum (plan/ornament.c)
+#define GRACE_TIME 0.04     // (s) chosen, as there
+#define SHORT 0.05          // of a stroke's note (s)
+#define LONGEST 0x0fffffffL // between two events (ticks), by the standard
 
 typedef struct event {
     long tick;
@@ -100,8 +101,11 @@ static void put_number(himc_text_lines *out, unsigned long number, int bytes)
         put(out, &(uint8_t){(uint8_t)(number >> (8 * i))}, 1);
 }
 
+// a time up to the next event; a longer one than four bytes hold has empty texts on its way
 static void put_length(himc_text_lines *out, long number)
 {
+    for (; number > LONGEST; number -= LONGEST)
+        put(out, "\xff\xff\xff\x7f\xff\1\0", 7);
     for (int shift = 21; shift > 0; shift -= 7)
         if (number >> shift)
             put(out, &(uint8_t){(uint8_t)(0x80 | (number >> shift & 0x7f))}, 1);
