@@ -276,6 +276,8 @@ refuses test_a_link_and_its_file_are_refused "link.csv: named twice" render piec
 ln -s piece.txt link.txt
 refuses test_score_is_not_overwritten_by_a_link "link.txt: named twice" render piece.txt -o x.wav --strokes link.txt
 refuses test_strokes_are_no_arrays "--strokes: a.npz, expected endings are .csv" render piece.txt -o x.wav --strokes a.npz
+printf 'loop 5 5;\n' >no-loop.txt
+refuses test_info_knows_an_empty_loop "no-loop.txt:1: loop: TO: 5 beats, expected 5.1 .. 1e+06 beats" info no-loop.txt
 refuses test_a_c3d_has_places "--columns: no places, expected in a .c3d some of targets,tips,elbows" \
     render piece.txt -o o.wav --motion m.c3d --columns limits,torques
 refuses test_a_c3d_has_255_channels "--columns: 599 values beside places, expected up to 255 in a .c3d" \
