@@ -31,6 +31,7 @@ typedef struct head {
     bool open;    ///< a hi-hat
     int written;  ///< of timpani: at the last stroke ...
     double moved; ///< ... and the beat at which its pedal began to move since then
+    int last;     ///< 1 + the index of its last note
 } head;
 
 /// What notation does not have.
@@ -110,6 +111,20 @@ static void add_head(exporter *x, const char *name, const char *kind, double siz
     h->written = h->key;
 }
 
+// a hand on the head ends its last note; off it again, it is there for the next. False if there is
+// no note
+static bool damp(exporter *x, const head *h, double beat, bool on)
+{
+    midi_note *n = h->last > 0 ? &x->file->notes[h->last - 1] : NULL;
+    if (on && n && n->way.ring == 0) {
+        n->way.ring = -1;
+        n->off = n->way.length > 0 ? n->off
+                                   : himc_score_seconds(x->file->tempi, x->file->tempo_count, beat);
+        x->end = fmax(x->end, n->way.length > 0 ? 0 : beat);
+    }
+    return !on || n;
+}
+
 // what a line does to a drum; `kind`: its loss if notation does not have it
 static void follow_line(exporter *x, const himc_score_line *line, loss kind)
 {
@@ -132,6 +147,8 @@ static void follow_line(exporter *x, const himc_score_line *line, loss kind)
     } else if (c->id == HIMC_COMMAND_MUFFLE) {
         written = timpano && !x->midi && is_switch(c);
     }
+    if (timpano && !x->midi && c->id == HIMC_COMMAND_DAMP && is_switch(c))
+        written = damp(x, h, line->beat, c->atom[0].number > 0);
     if (!written)
         lose(x, (int)kind + (int)c->id, line->beat);
 }
@@ -274,6 +291,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
     };
+    h->last = f->note_count;
     return true;
 }
 

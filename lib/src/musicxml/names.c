@@ -90,6 +90,8 @@ static const struct {
     {"l.v|let ring|laissez vibrer|laisser vibrer|lasciar vibrare|lasciare vibrare|"
      "klingen lassen",
      MUSIC_RING, 1},
+    {"sempre l.v|l.v. sempre|laissez toujours vibrer|lasciar sempre vibrare|immer klingen lassen",
+     MUSIC_RING_ALWAYS, 1},
     {"sempre secco|immer trocken|toujours sec", MUSIC_RING_ALWAYS, -1},
     {"secco|damp|dämpf|étouff|etouff|soffoc|trocken|sec$|dry$", MUSIC_RING, -1},
     {"in der mitte|mitte|au centre|al centro|nel centro|au milieu|center|centre|"

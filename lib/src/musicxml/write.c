@@ -138,9 +138,15 @@ static void put_notations(const writer *w, const item *i, bool begins, bool ties
     PUT(w, "</notations>");
 }
 
+// its end is written: of a roll, and of a note that a hand ends
+static bool is_held(const midi_note *n)
+{
+    return n->way.length > 0 || n->way.ring < 0;
+}
+
 static void put_note(const writer *w, const item *i, long from, long to)
 {
-    bool begins = from == i->begin, ties_on = i->note->way.length > 0 && to < i->end;
+    bool begins = from == i->begin, ties_on = is_held(i->note) && to < i->end;
     if (begins)
         put_graces(w, i);
     const char *notehead = himc_music_notehead(i->note->way.spot);
@@ -301,6 +307,8 @@ static void put_dynamics(writer *w, int first, long begin, long *at)
             put_words(w, at, m->tick, spots[way->spot]);
             w->spot = way->spot;
         }
+        if (way->ring < 0)
+            put_words(w, at, m->tick, "secco");
         if (has_wedge(m->item))
             put_wedge(w, at, m->tick, to > from ? "crescendo" : "diminuendo");
     }
@@ -348,6 +356,8 @@ static void put_bars(writer *w)
                 w->choice == MIDI_DRUMS     ? "percussion"
                 : w->choice == MIDI_TIMPANI ? "F"
                                             : "G");
+        if (bar == 1 && w->choice == MIDI_TIMPANI) // what is short is not damped
+            put_words(w, &at, begin, "sempre l.v.");
         put_tempi(w, begin, &at);
         put_orders(w, begin, &at);
         put_dynamics(w, first, begin, &at);
@@ -376,16 +386,19 @@ static int take_items(writer *w)
         if (n->choice != w->choice)
             continue;
         item *to = &w->items[w->count];
-        *to = (item){n, ticks_of(n->beat), ticks_of(n->beat + n->way.length), 0};
+        double end = n->way.length > 0
+                         ? n->beat + n->way.length
+                         : himc_score_beat(w->file->tempi, w->file->tempo_count, n->off);
+        *to = (item){n, ticks_of(n->beat), ticks_of(fmax(end, n->beat + 1.0 / TICKS)), 0};
         while (to->voice + 1 < VOICES && last[to->voice] > to->begin)
             to->voice++;
         int k = before[to->voice];
         long bar_end = (to->begin / BAR + 1) * BAR;
-        if (k >= 0 && w->items[k].note->way.length <= 0 && w->items[k].end > to->begin)
+        if (k >= 0 && !is_held(w->items[k].note) && w->items[k].end > to->begin)
             w->items[k].end = to->begin;
-        if (n->way.length <= 0)
+        if (!is_held(n))
             to->end = bar_end < to->begin + TICKS ? bar_end : to->begin + TICKS;
-        last[to->voice] = n->way.length > 0 ? to->end : to->begin + 1;
+        last[to->voice] = is_held(n) ? to->end : to->begin + 1;
         before[to->voice] = w->count++;
     }
     return w->count;
