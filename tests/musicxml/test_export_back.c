@@ -305,6 +305,37 @@ static void test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have(vo
                              notes.said);
 }
 
+// a stroke rings unless a hand damps it, also after a bar's end and where its note is short
+static void test_what_rings_and_what_a_hand_damps_come_back(void)
+{
+    parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
+          "stroke 0 right legato f low; stroke 1 left legato f second; at 2.5 second damp 1;"
+          "at 3 second damp 0; stroke 5 left legato f second; stroke 7 right legato f low;"
+          "at 9.5 low damp 1; at 10 low damp 0; roll 12 2 single p f low; at 14 low damp 1;"
+          "stroke 20 right legato f low; stroke 28 left legato f second;");
+    TEST_ASSERT_NULL_MESSAGE(notes.said, notes.said);
+    static const char *const lines[] = {"second damp 1;", "low damp 1;", "low damp 1;"};
+    static const double beats[] = {2.5, 9.5, 14};
+    midi_score made;
+    double lead = 0;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    sscanf(strstr(made.text, "beat 0 of the file"), "beat 0 of the file is beat %lf", &lead);
+    const char *at = made.text;
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_NOT_NULL_MESSAGE(at = strstr(at, "damp 1;"), made.text);
+        const char *line = at;
+        while (line[-1] != '\n')
+            line--;
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(line, lines[i]), line);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3, beats[i], atof(line + 3) - lead);
+        at++;
+    }
+    TEST_ASSERT_NULL_MESSAGE(strstr(at, "damp 1;"), at);
+    himc_midi_score_free(&made);
+    read_back(himc_music_import);
+    expect_same("damped");
+}
+
 static void test_more_bars_than_are_read_are_refused(void)
 {
     score = himc_score_parse("drum kettle; stroke 0 right legato f; stroke 80000 left legato f;",
@@ -429,6 +460,7 @@ int main(void)
     RUN_TEST(test_a_gliss_keeps_its_octave_and_its_drum);
     RUN_TEST(test_what_notation_does_not_have_is_told_once_with_its_first_bar);
     RUN_TEST(test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have);
+    RUN_TEST(test_what_rings_and_what_a_hand_damps_come_back);
     RUN_TEST(test_more_bars_than_are_read_are_refused);
     RUN_TEST(test_the_last_bar_that_is_read_is_written);
     RUN_TEST(test_midi_keeps_a_rest_of_any_length);

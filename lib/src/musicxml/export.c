@@ -257,8 +257,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
     bool words = h->choice == MIDI_TIMPANI && !x->midi; // "near rim"
     if (spot == HIMC_SPOT_XY || (spot > HIMC_SPOT_RIM && h->choice != MIDI_DRUMS))
         spot = HIMC_SPOT_NORMAL;
-    bool lost = h->choice == MIDI_DRUMS ? struck != HIMC_SPOT_NORMAL && s->hand != HIMC_FOOT &&
-                                              himc_midi_key_spot(key) != struck
+    bool lost = h->choice == MIDI_DRUMS ? s->hand != HIMC_FOOT && himc_midi_key_spot(key) != struck
                                         : spot != s->spot || (spot != HIMC_SPOT_NORMAL && !words);
     if (s->spot == HIMC_SPOT_XY)
         lose(x, PLACES, s->beat);
