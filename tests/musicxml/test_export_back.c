@@ -259,9 +259,9 @@ static void test_a_gliss_keeps_its_octave_and_its_drum(void)
 {
     static const char *const lines[] = {"low gliss D3 1;", "low gliss C3 1;", "third gliss G3 1;"};
     parse("drum low 32; low tune C3; drum third 26; third tune C3; tempo 60;"
-          "stroke 0 right legato f low; stroke 1 left legato f third; at 2 low gliss D3 1;"
-          "stroke 4 right legato f low; stroke 5 left legato f third; at 6 low gliss C3 1;"
-          "stroke 8 right legato f low; at 9 third gliss G3 1; stroke 12 left legato f third;");
+          "stroke 0 left legato f low; stroke 1 right legato f third; at 2 low gliss D3 1;"
+          "stroke 4 left legato f low; stroke 5 right legato f third; at 6 low gliss C3 1;"
+          "stroke 8 left legato f low; at 9 third gliss G3 1; stroke 12 right legato f third;");
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>gliss. third C3 to G3</words>"));
     midi_score made;
     TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
@@ -309,10 +309,10 @@ static void test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have(vo
 static void test_what_rings_and_what_a_hand_damps_come_back(void)
 {
     parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
-          "stroke 0 right legato f low; stroke 1 left legato f second; at 2.5 second damp 1;"
-          "at 3 second damp 0; stroke 5 left legato f second; stroke 7 right legato f low;"
+          "stroke 0 left legato f low; stroke 1 right legato f second; at 2.5 second damp 1;"
+          "at 3 second damp 0; stroke 5 right legato f second; stroke 7 left legato f low;"
           "at 9.5 low damp 1; at 10 low damp 0; roll 12 2 single p f low; at 14 low damp 1;"
-          "stroke 20 right legato f low; stroke 28 left legato f second;");
+          "stroke 20 left legato f low; stroke 28 right legato f second;");
     TEST_ASSERT_NULL_MESSAGE(notes.said, notes.said);
     static const char *const lines[] = {"second damp 1;", "low damp 1;", "low damp 1;"};
     static const double beats[] = {2.5, 9.5, 14};
@@ -334,6 +334,26 @@ static void test_what_rings_and_what_a_hand_damps_come_back(void)
     himc_midi_score_free(&made);
     read_back(himc_music_import);
     expect_same("damped");
+}
+
+static void test_midi_has_what_rings_and_what_a_hand_damps(void)
+{
+    score = himc_score_parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
+                             "stroke 0 left legato f low; stroke 1 right legato f second;"
+                             "at 2.5 second damp 1; at 3 second damp 0;"
+                             "stroke 5 right legato f second; stroke 9 left legato f low;"
+                             "stroke 12 right legato f second;",
+                             "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_NULL_MESSAGE(notes.said, notes.said);
+    TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_midi_import(&made, text.bytes, text.size, "back", NULL, &error));
+    const char *at = strstr(made.text, "at 3.5 second damp 1;"); // after a beat of its own
+    TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
+    TEST_ASSERT_EQUAL_PTR(strstr(made.text, "damp 1;"), strstr(at, "damp 1;"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(strstr(at, "1;"), "damp 1;"), made.text);
+    himc_midi_score_free(&made);
 }
 
 static void test_more_bars_than_are_read_are_refused(void)
@@ -461,6 +481,7 @@ int main(void)
     RUN_TEST(test_what_notation_does_not_have_is_told_once_with_its_first_bar);
     RUN_TEST(test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have);
     RUN_TEST(test_what_rings_and_what_a_hand_damps_come_back);
+    RUN_TEST(test_midi_has_what_rings_and_what_a_hand_damps);
     RUN_TEST(test_more_bars_than_are_read_are_refused);
     RUN_TEST(test_the_last_bar_that_is_read_is_written);
     RUN_TEST(test_midi_keeps_a_rest_of_any_length);

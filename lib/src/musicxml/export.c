@@ -147,7 +147,7 @@ static void follow_line(exporter *x, const himc_score_line *line, loss kind)
     } else if (c->id == HIMC_COMMAND_MUFFLE) {
         written = timpano && !x->midi && is_switch(c);
     }
-    if (timpano && !x->midi && c->id == HIMC_COMMAND_DAMP && is_switch(c))
+    if (timpano && c->id == HIMC_COMMAND_DAMP && is_switch(c))
         written = damp(x, h, line->beat, c->atom[0].number > 0);
     if (!written)
         lose(x, (int)kind + (int)c->id, line->beat);
@@ -269,9 +269,8 @@ static bool add_note(exporter *x, const himc_stroke *s)
         lose(x, s->ornament == HIMC_ROLL_PRESS ? PRESSES : DOUBLES, s->beat);
     if (x->midi && s->nuance != HIMC_LEGATO && s->ornament < HIMC_ROLL_SINGLE)
         lose(x, NUANCES, s->beat);
-    if (!add_tuning(x, h, h->key))
-        return false;
-    if (!himc_array_grow(&f->notes, f->note_count, &x->note_room, sizeof *f->notes, x->error))
+    if (!add_tuning(x, h, h->key) ||
+        !himc_array_grow(&f->notes, f->note_count, &x->note_room, sizeof *f->notes, x->error))
         return false;
     double end = s->beat + (s->ornament >= HIMC_ROLL_SINGLE ? s->length : 0);
     x->end = fmax(x->end, fmax(end, s->beat + 1e-3)); // a bar's first beat is in it
@@ -290,6 +289,10 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
     };
+    // MIDI has no other sign for what rings: a note lasts up to the drum's next
+    midi_note *old = h->last > 0 && x->midi ? &f->notes[h->last - 1] : NULL;
+    if (old && old->way.ring == 0 && old->way.length <= 0)
+        old->off = f->notes[f->note_count - 1].seconds;
     h->last = f->note_count;
     return true;
 }

@@ -2,7 +2,8 @@
 ///
 /// A roll is the strokes that a player would about play, as MIDI has no tremolo; grace notes stand
 /// before their note; hands, nuances and places are lost. Velocities are those of notation
-/// programs (midi/import.c). Events are sorted by tick, ends before beginnings.
+/// programs (midi/import.c). A timpano's note lasts until a hand damps it, else
+/// up to the next. Events are sorted by tick, ends before beginnings.
 #include "musicxml/export.h"
 
 #include "midi/part.h"
@@ -46,7 +47,7 @@ static void add(writer *w, double beat, uint8_t status, uint8_t key, double velo
         (event){lround(fmax(beat, 0) * TICKS), {status, key, (uint8_t)lround(velocity)}};
 }
 
-static void add_stroke(writer *w, const midi_note *n, double seconds, double dynamic)
+static void add_stroke(writer *w, const midi_note *n, double seconds, double length, double dynamic)
 {
     static const uint8_t channel[] = {
         [MIDI_TIMPANI] = 0,     [MIDI_DRUMS] = 9,      [MIDI_MARIMBA] = 1,
@@ -54,7 +55,7 @@ static void add_stroke(writer *w, const midi_note *n, double seconds, double dyn
         [MIDI_TUBULAR_BELL] = 5};
     const midi_file *f = w->file;
     uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : BASS_DRUM;
-    double end = himc_score_beat(f->tempi, f->tempo_count, seconds + SHORT);
+    double end = himc_score_beat(f->tempi, f->tempo_count, seconds + fmax(length, SHORT));
     add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key,
         himc_midi_velocity(dynamic));
     add(w, end, on & 0x8f, key, 64);
@@ -67,9 +68,10 @@ static void add_note(writer *w, const midi_note *n)
     int strokes = way->length > 0 ? (int)fmax(lround(seconds * ROLL_RATE), 4) : 1;
     for (int g = way->ornament; g > 0; g--)
         if (n->seconds - g * GRACE_TIME >= 0)
-            add_stroke(w, n, n->seconds - g * GRACE_TIME, 0.6 * way->dynamic);
+            add_stroke(w, n, n->seconds - g * GRACE_TIME, 0, 0.6 * way->dynamic);
     for (int i = 0; i < strokes; i++)
         add_stroke(w, n, n->seconds + seconds * i / strokes,
+                   strokes == 1 && n->choice == MIDI_TIMPANI ? seconds : 0,
                    way->dynamic +
                        (strokes > 1 ? (way->last_dynamic - way->dynamic) * i / strokes : 0));
 }
