@@ -217,6 +217,15 @@ def test_no_recording_is_written_over():
     assert not [name for name in os.listdir(folder.name) if name.startswith("cp")]
 
 
+def test_all_files_are_written_or_none():
+    """the drum's file is a folder, the one beside it would be written first"""
+    os.mkdir(path("taken.txt"))
+    for kind in ("modes", "timpano"):
+        done = himc("fit", write_wave("bar.wav", rings(BAR)), "-o", path("taken.txt"), "--instrument", kind)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1 and "taken.txt: cannot be written" in done.stderr, done.stderr
+        assert [name for name in os.listdir(folder.name) if name.startswith("taken")] == ["taken.txt"]
+
+
 def refused(name, samples, words):
     done = himc("fit", write_wave(name, samples), "-o", path("none.txt"))
     assert done.returncode == 1 and done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
@@ -231,6 +240,7 @@ def test_bad_recordings_are_refused():
     refused("short.wav", stroke[: RATE // 2], "0.30 s from the stroke on")
     refused("noisy.wav", [x + rng.gauss(0, 0.03) for x in stroke], "noise at")
     refused("noise.wav", [rng.gauss(0, 0.1) for _ in stroke], "as loud at its end")
+    refused("click.wav", [0.9 * (k == RATE // 2) for k in range(2 * RATE)], "no partial is clear of the noise")
     for bad in (math.nan, math.inf, -math.inf):
         refused("bad.wav", stroke[:50000] + [bad] + stroke[50001:], "bad.wav: frame 50000 is not a finite number")
     write_text("text.wav", "no sound")

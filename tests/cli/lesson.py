@@ -200,6 +200,9 @@ def test_errors_are_one_line():
     refused("no point has a stick tip's name", SCORE, path("nose.csv", "time,NOSE_x_m,NOSE_y_m,NOSE_z_m\n0,0,0,1\n0.01,0,0,1\n0.02,0,0,1\n"))
     other = "".join(f"stroke {1 + 0.37 * i * i:g} left legato mf;\n" for i in range(30))
     refused("does not match", path("other.txt", other), take)
+    os.remove(path("page.html"))
+    refused("folder/s.csv: cannot be written", SCORE, take, "--up", "z", "--csv", path("no folder/s.csv"))
+    assert not os.path.exists(path("page.html"))  # all files or none
     refused("expected a take", SCORE, SCORE)
     refused("expected a score", take, take)
     done = subprocess.run([HIMC, "lesson", SCORE, "-o", path("page.html")], capture_output=True, text=True)

@@ -212,17 +212,27 @@ static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *
     return good;
 }
 
-static bool write_scene(const lesson *l, const cli_arguments *arguments, himc_error *error)
+static bool write_scene(const lesson *l, const cli_arguments *arguments, cli_file *file,
+                        himc_error *error)
 {
     himc_take_options how;
-    cli_file file = {0};
-    if (!l->scene)
-        return true;
-    bool good = cli_take_options(l->take, arguments->value + TAKE, &how, error) &&
-                cli_file_open(&file, l->scene, error) &&
-                lesson_scene(l, &how, file.stream, error) && cli_file_close(&file, error) &&
-                cli_file_keep(&file, error);
-    cli_file_drop(&file);
+    return !l->scene || (cli_take_options(l->take, arguments->value + TAKE, &how, error) &&
+                         cli_file_open(file, l->scene, error) &&
+                         lesson_scene(l, &how, file->stream, error) && cli_file_close(file, error));
+}
+
+// all files, or none
+static bool write_files(const lesson *l, const cli_arguments *arguments, himc_error *error)
+{
+    cli_file scene = {0}, page = {0}, csv = {0};
+    bool good = write_scene(l, arguments, &scene, error) &&
+                cli_draft(&page, arguments->value[OUT], lesson_page, l, error) &&
+                cli_draft(&csv, arguments->value[CSV], lesson_csv, l, error) &&
+                cli_file_keep(&scene, error) && cli_file_keep(&page, error) &&
+                cli_file_keep(&csv, error);
+    cli_file_drop(&scene);
+    cli_file_drop(&page);
+    cli_file_drop(&csv);
     return good;
 }
 
@@ -255,8 +265,7 @@ static int run(const cli_arguments *arguments)
                cli_ending_is("--scene", l->scene, ".himc", &error) &&
                cli_apart(value[OUT], files, 2, &error) && cli_apart(value[CSV], files, 3, &error) &&
                cli_apart(l->scene, files, 4, &error) && read_sources(l, arguments, &error) &&
-               write_scene(l, arguments, &error) && cli_write(value[OUT], lesson_page, l, &error) &&
-               cli_write(value[CSV], lesson_csv, l, &error);
+               write_files(l, arguments, &error);
     }
     bool piped = cli_is_standard(value[OUT]) || cli_is_standard(value[CSV]);
     if (good && value[JSON])

@@ -18,8 +18,6 @@
 #include <string.h>
 
 #define MOST_INSTRUMENTS 64 // of a part
-#define MOST_LINES 9        // that run at once
-#define MOST_BARS 20000     // chosen: no piece has as many
 
 typedef struct instrument {
     const char *id;
@@ -38,7 +36,7 @@ typedef struct reader {
     double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
     double time;                     ///< length of a bar (beats)
     int transpose;                   ///< (semitones)
-    bool line[MOST_LINES];           ///< a pedal's, which has begun
+    bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
     bool failed;
 } reader;
 
@@ -197,7 +195,7 @@ static void read_line(reader *r, const xml_node *dashes, double beat, int first)
     const music *m = r->music;
     const char *number = himc_xml_attribute(dashes, "number");
     int line = number[0] ? number[0] - '0' : 1;
-    if (line < 1 || line > MOST_LINES)
+    if (line < 1 || line > MUSIC_LINES_MAX)
         return;
     if (himc_xml_has(dashes, "type", "stop") && r->line[line - 1]) {
         add_sign(r, beat, MUSIC_GLISS_END, 0);
@@ -557,9 +555,9 @@ static bool read_part(reader *r, const xml_node *part)
     r->bar = 0;
     const xml_node *measure = himc_xml_child(part, "measure");
     for (; measure && !r->failed; measure = himc_xml_next(measure), r->bar++) {
-        if (r->bar == MOST_BARS)
+        if (r->bar == MUSIC_BARS_MAX)
             return himc_error_set(r->error, "line %d: bar %d, expected up to %d bars",
-                                  measure->line, r->bar + 1, MOST_BARS);
+                                  measure->line, r->bar + 1, MUSIC_BARS_MAX);
         if (r->bar == m->bar_count) {
             if (!himc_array_grow(&m->bars, m->bar_count, &m->bar_room, sizeof *m->bars, r->error))
                 return false;
