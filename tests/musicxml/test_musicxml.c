@@ -468,6 +468,76 @@ static void test_a_roll_ends_with_its_note_at_any_tempo(void)
     TEST_ASSERT_EQUAL(2, score->stroke_count);
 }
 
+// a roll tied to a note without a tremolo ends with a stroke there, one tied to a tremolo goes on
+static void test_a_roll_tied_to_a_plain_note_ends_with_a_stroke(void)
+{
+#define WAVY(type) "<notations><ornaments><wavy-line type='" type "'/></ornaments></notations>"
+#define TIE(type) "<tie type='" type "'/>"
+    static const char *const roll[] = {MARKS(3), MARKS(4), WAVY("start")},
+                             *const goes_on[] = {MARKS(3), MARKS(4), ""},
+                             *const ends[] = {MARKS(3), MARKS(4), WAVY("stop")};
+    for (int k = 0; k < 3; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") BAR(1, FOUR DYNAMICS("f") C3(16, TIE("start") "%s"))
+                     BAR(2, C3(16, TIE("stop") TIE("start") "%s"))
+                         BAR(3, C3(8, TIE("stop") TIE("start") "%s") C3(4, TIE("stop")) REST(4))
+                             TAIL,
+                 roll[k], goes_on[k], ends[k]);
+        load(text);
+        TEST_ASSERT_EQUAL_MESSAGE(2, score->stroke_count, made.text);
+        expect_roll(0, 0, 10, 5, 5);
+        TEST_ASSERT_EQUAL(HIMC_PLAIN, stroke(1)->ornament);
+        TEST_ASSERT_FLOAT_WITHIN(1e-4, 10 + lead(), stroke(1)->beat);
+        expect_text("2 of 2 notes");
+    }
+    // a stroke, and a roll from the ringing drum on
+    PLAY(BAR(1, FOUR C3(16, TIE("start"))) BAR(2, C3(16, TIE("stop") MARKS(3))));
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    TEST_ASSERT_EQUAL(HIMC_PLAIN, stroke(0)->ornament);
+    expect_roll(1, 4, 4, 4, 4);
+}
+
+#define CHORD(step, octave, duration, more)                                           \
+    "<note><chord/><pitch><step>" #step "</step><octave>" #octave "</octave></pitch>" \
+    "<duration>" #duration "</duration><voice>1</voice>" more "</note>"
+
+static void expect_roll_of_two(int index, double beat, double length)
+{
+    expect_roll(index, beat, length, 4, 4);
+    expect_roll(index + 1, beat, length, 4, 4);
+    TEST_ASSERT_TRUE(strcmp(stroke(index)->drum, stroke(index + 1)->drum) != 0);
+}
+
+// both drums of a roll on two sound, a hand each, however it is written
+static void test_a_roll_on_two_drums_has_both(void)
+{
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) CHORD(G, 2, 16, MARKS(3))) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(3, score->stroke_count);
+    expect_roll_of_two(0, 0, 4);
+    expect_text("3 of 3 notes");
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) CHORD(G, 2, 16, "")) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(3, score->stroke_count); // marks of the chord at its first note alone
+    expect_roll_of_two(0, 0, 4);
+    // one goes on behind the other
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) "<backup><duration>16</duration></backup>" REST(8)
+                    NOTE(G, 2, 8, MARKS(3))) BAR(2, NOTE(G, 2, 16, "")));
+    TEST_ASSERT_EQUAL(4, score->stroke_count);
+    expect_roll(0, 0, 2, 4, 4);
+    expect_roll_of_two(1, 2, 2);
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) CHORD(G, 2, 16, "") CHORD(F, 3, 16, "")));
+    TEST_ASSERT_EQUAL(2, score->stroke_count); // no third hand
+    expect_text("2 of 3 notes");
+    expect_text("1 note is not played: both hands are busy (bar 1)");
+}
+
+static void test_marks_of_a_chord_are_of_all_its_notes(void)
+{
+    PLAY(
+        BAR(1, FOUR C3(8, ARTICULATION("accent")) CHORD(G, 2, 8, "") C3(8, "") CHORD(G, 2, 8, "")));
+    expect_dynamics(4, 5.0, 5.0, 4.0, 4.0);
+}
+
 static void test_an_accent_on_a_roll_is_its_beginning(void)
 {
     PLAY(BAR(1, FOUR TEMPO(60) DYNAMICS("p") C3(16, ARTICULATION("accent") MARKS(3))));
@@ -949,6 +1019,9 @@ int main(void)
     RUN_TEST(test_graces_come_before_a_roll);
     RUN_TEST(test_notes_above_high_b_are_played);
     RUN_TEST(test_a_roll_ends_with_its_note_at_any_tempo);
+    RUN_TEST(test_a_roll_tied_to_a_plain_note_ends_with_a_stroke);
+    RUN_TEST(test_a_roll_on_two_drums_has_both);
+    RUN_TEST(test_marks_of_a_chord_are_of_all_its_notes);
     RUN_TEST(test_an_accent_on_a_roll_is_its_beginning);
     RUN_TEST(test_two_notes_are_played_in_turn);
     RUN_TEST(test_graces_are_flam_drag_and_ruff);

@@ -15,6 +15,7 @@ enum { OMIT = HIMC_HANDS };
 
 // of the time that a move takes: the planner's margin (hand.c) for a stroke's swing, a little more
 #define MOVE_SHARE 1.45
+#define SAME_TIME 1e-7  // (beats)
 #define ROLL_STROKE 0.1 // from a roll's last stroke to its end (s)
 #define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
 
@@ -38,6 +39,17 @@ static place place_of(const midi_part *part, int stroke, int hand, int now)
     return (place){at, head->x - 0.75 * head->radius + s->x, head->y + s->y};
 }
 
+// of two rolls together each hand plays one; the first has both until the second comes
+static bool is_second(const midi_part *part, const midi_state *state, int stroke)
+{
+    int first = state->key[HIMC_LEFT];
+    if (first < 0 || first != state->key[HIMC_RIGHT])
+        return false;
+    const midi_stroke *a = &part->stroke[first], *b = &part->stroke[stroke];
+    return a->roll.length > 0 && fabs(a->roll.length - b->roll.length) < SAME_TIME &&
+           fabs(a->note->beat - b->note->beat) < SAME_TIME && a->head != b->head;
+}
+
 // the state's key is the index of each hand's last stroke
 static bool choose(const midi_part *part, int stroke, int hand, midi_state *state)
 {
@@ -49,6 +61,10 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     place to = place_of(part, stroke, hand, stroke),
           from = place_of(part, state->key[hand], hand, stroke),
           other = place_of(part, state->key[1 - hand], 1 - hand, stroke);
+    if (is_second(part, state, stroke)) {
+        state->key[hand] = stroke;
+        return (hand == HIMC_LEFT) == (to.y > from.y);
+    }
     himc_sticking s = {.gap = to.at - from.at,
                        .way = hypot(to.x - from.x, to.y - from.y),
                        .inwards = hand == HIMC_LEFT ? other.y - to.y : to.y - other.y,

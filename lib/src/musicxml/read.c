@@ -39,6 +39,8 @@ typedef struct reader {
     double time;                     ///< length of a bar (beats)
     int transpose;                   ///< (semitones)
     bool line[MOST_LINES];           ///< a pedal's, which has begun
+    int head;                        ///< the first note of a chord, -1: it is left out
+    int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
     bool failed;
 } reader;
 
@@ -326,11 +328,15 @@ static int drum_at(int key)
     return 38;
 }
 
-static void read_ornaments(music_note *n, const xml_node *ornaments)
+static void read_ornaments(reader *r, music_note *n, const xml_node *ornaments)
 {
     for (const xml_node *o = ornaments ? ornaments->child : NULL; o; o = o->next) {
         if (himc_xml_is(o, "trill-mark") || himc_xml_is(o, "wavy-line")) {
             n->tremolo = MUSIC_ROLL;
+            if (himc_xml_has(o, "type", "start"))
+                r->wavy = 1 + n->voice;
+            else if (himc_xml_has(o, "type", "stop"))
+                r->wavy = 0;
         } else if (himc_xml_is(o, "tremolo")) {
             int marks = atoi(o->text);
             n->marks = marks < 0 ? 0 : marks > 8 ? 8 : marks;
@@ -342,6 +348,21 @@ static void read_ornaments(music_note *n, const xml_node *ornaments)
     }
 }
 
+// programs write the marks of a chord at its first note
+static void share_marks(music_note *n, const music_note *head)
+{
+    if (n->tremolo == MUSIC_NO_TREMOLO) {
+        n->tremolo = head->tremolo;
+        n->marks = head->marks;
+    }
+    n->accent |= head->accent;
+    n->marcato |= head->marcato;
+    n->tenuto |= head->tenuto;
+    n->staccato |= head->staccato;
+    n->pulled |= head->pulled;
+    n->held |= head->held;
+}
+
 static int hand_of(const char *text)
 {
     if (strlen(text) != 1 || !strchr("RLrldgDG", *text))
@@ -351,7 +372,7 @@ static int hand_of(const char *text)
 
 static void read_notations(reader *r, music_note *n, const xml_node *notations)
 {
-    read_ornaments(n, himc_xml_child(notations, "ornaments"));
+    read_ornaments(r, n, himc_xml_child(notations, "ornaments"));
     const xml_node *articulations = himc_xml_child(notations, "articulations");
     for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
         n->accent |= himc_xml_is(a, "accent");
@@ -423,6 +444,9 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
                     .grace = himc_xml_child(note, "grace") != NULL,
                     .spot = spot_of(himc_xml_text(note, "notehead")),
                     .ratio = 1};
+    bool chord = himc_xml_child(note, "chord");
+    if (!chord)
+        r->head = -1;
     if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
         return;
     if (himc_xml_child(note, "cue")) {
@@ -452,6 +476,15 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
     for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
         read_notations(r, &n, t);
+    if (chord && r->head >= 0)
+        share_marks(&n, &m->notes[r->head]);
+    else if (!chord)
+        r->head = m->note_count;
+    // a tied note in the middle of a trill's line has no sign of its own
+    if (r->wavy == 1 + n.voice && n.tremolo == MUSIC_NO_TREMOLO) {
+        n.tremolo = n.tied_back ? MUSIC_ROLL : n.tremolo;
+        r->wavy = n.tied_back ? r->wavy : 0;
+    }
     if (!himc_array_grow(&m->notes, m->note_count, &m->note_room, sizeof *m->notes, r->error))
         r->failed = true;
     else
@@ -552,9 +585,10 @@ static bool read_part(reader *r, const xml_node *part)
         r->list = himc_xml_next(r->list);
     read_instruments(r);
     r->divisions = 1;
-    r->transpose = 0;
+    r->transpose = r->wavy = 0;
     r->time = 4;
     r->bar = 0;
+    r->head = -1;
     const xml_node *measure = himc_xml_child(part, "measure");
     for (; measure && !r->failed; measure = himc_xml_next(measure), r->bar++) {
         if (r->bar == MOST_BARS)

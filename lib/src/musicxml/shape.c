@@ -1,9 +1,11 @@
 /// shape.c: from written notes to the notes of a player: ties, tremolos, graces, nuances.
 ///
-/// Part by part: ties join notes; then each note takes the dynamic of its beat (level.c), the words
-/// that hold there, and its own marks. One or two strokes through the stem are measured, as many as
+/// Part by part: ties join notes, but a roll tied to a note without a tremolo ends with a stroke
+/// there; then each note takes the dynamic of its beat (level.c), the words that hold there, and its
+/// own marks. One or two strokes through the stem are measured, as many as
 /// written; three are a roll from FAST strokes a second on, more are always one; a trill is one. A
-/// roll is cut where its dynamic bends. Grace notes on the drum of their note are its flam, drag or
+/// roll is cut where its dynamic bends, and where another one begins or ends: two rolls of one
+/// length at a time are played together, each hand on its drum (planner_roll.c). Grace notes on the drum of their note are its flam, drag or
 /// ruff; others, and those before a roll, are strokes of their own before the beat. A chosen
 /// number has no published source. Invariant: each note but a tied one makes at least one stroke,
 /// or is counted as omitted.
@@ -37,7 +39,8 @@ typedef struct shaper {
     int note_room, order_room;
     int part, sign; ///< the next sign
     music_level *levels;
-    int level_count;
+    double *cuts; ///< beats where rolls are cut
+    int level_count, cut_count;
     double second; ///< beats in one second at the present note
     himc_spot spot;
     int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
@@ -93,13 +96,12 @@ static void join_ties(music *m)
         n->rolled = n->tremolo == MUSIC_NO_TREMOLO ? 0 : n->length;
         if (n->tied_on && !to)
             n->ring = 1; // into the air
-        if (!to || n->tremolo >= MUSIC_PAIR_BEGIN)
-            continue;
-        n->tremolo = n->tremolo ? n->tremolo : to->tremolo;
-        n->marks = n->marks ? n->marks : to->marks;
         // a roll is held to the end of a fermata that it is tied to
-        if (to->tremolo || (to->held && n->tremolo))
-            n->rolled = n->length + (to->tremolo ? to->rolled : to->length);
+        bool goes_on = to && (!n->tremolo == !to->tremolo || (n->tremolo && to->held));
+        if (!goes_on || n->tremolo >= MUSIC_PAIR_BEGIN || to->tremolo >= MUSIC_PAIR_BEGIN)
+            continue;
+        if (n->tremolo)
+            n->rolled += to->tremolo ? to->rolled : to->length;
         n->length += to->length;
         n->ring = to->ring;
         n->glides |= to->glides;
@@ -136,20 +138,65 @@ static double level(const shaper *s, double beat)
     return himc_music_level(s->levels, s->level_count, beat);
 }
 
-// from `begin` to `end`, cut at the points between
+// of an accent on a roll (beats)
+static double attack_beats(double second)
+{
+    return fmax(ATTACK_TIME * second, fmax(himc_argument_find("LENGTH", "roll")->low, 0.1));
+}
+
+static int by_beat(const void *a, const void *b)
+{
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+// where the part's dynamics bend, its tremolos begin and end, and accents on them end
+static bool list_cuts(shaper *s)
+{
+    const music *m = s->music;
+    const midi_file *f = s->file;
+    s->cuts = malloc(((size_t)s->level_count + 3 * (size_t)m->note_count + 1) * sizeof *s->cuts);
+    if (!s->cuts)
+        return himc_error_set(s->error, "out of memory for %d notes", m->note_count);
+    s->cut_count = 0;
+    for (int i = 0; i < s->level_count; i++)
+        s->cuts[s->cut_count++] = s->levels[i].beat;
+    for (int i = 0; i < m->note_count; i++) {
+        const music_note *n = &m->notes[i];
+        if (n->at.part != s->part || n->length <= 0 || !(n->rolled > 0))
+            continue;
+        s->cuts[s->cut_count++] = n->at.beat;
+        s->cuts[s->cut_count++] = n->at.beat + n->rolled;
+        if (n->accent || n->marcato)
+            s->cuts[s->cut_count++] =
+                n->at.beat + attack_beats(himc_midi_bpm(f->tempi, f->tempo_count, n->at.beat) / 60);
+    }
+    qsort(s->cuts, (size_t)s->cut_count, sizeof *s->cuts, by_beat);
+    return true;
+}
+
+// the first cut at or after `from`, up to `end`
+static double next_cut(const shaper *s, double from, double end)
+{
+    int low = 0, high = s->cut_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (s->cuts[middle] < from)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < s->cut_count ? fmin(s->cuts[low], end) : end;
+}
+
+// from the note's beat to `end`, cut at the points between
 static void emit_roll(shaper *s, const music_note *n, double end, double louder, midi_way way)
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
-    double begin = n->at.beat, least = fmax(range->low, 0.1);
-    double attack = fmax(ATTACK_TIME * s->second, least);
+    double begin = n->at.beat, least = fmax(range->low, 0.1), attack = attack_beats(s->second);
     double base = way.dynamic, most = fmin(range->high, LONGEST * s->second);
-    int next = 0;
-    while (next < s->level_count && s->levels[next].beat <= begin + SAME)
-        next++;
     for (double at = begin; at < end - SAME && !s->failed;) {
-        while (next < s->level_count && s->levels[next].beat < at + least)
-            next++;
-        double to = next < s->level_count ? s->levels[next].beat : end;
+        double to = next_cut(s, at + least, end);
         double up = louder > 0 && at == begin && end - at > 2 * attack ? louder : 0;
         to = up > 0 ? fmin(to, at + attack) : to;
         to = to > end - least ? end : to;
@@ -399,6 +446,7 @@ static bool shape_part(shaper *s, int part)
         m, part, himc_midi_bpm(s->file->tempi, s->file->tempo_count, 0) / 60, &s->level_count);
     if (!s->levels)
         return himc_error_set(s->error, "out of memory for %d signs", m->sign_count);
+    s->failed |= !list_cuts(s);
     for (int i = 0; i < m->note_count && !s->failed; i++) {
         music_note *n = &m->notes[i];
         if (n->at.part != part || n->length < 0)
@@ -423,6 +471,7 @@ static bool shape_part(shaper *s, int part)
         himc_music_omit(m, MUSIC_GRACES, s->grace[i]->at.bar);
     take_signs(s, HUGE_VAL, MIDI_ANY);
     free(s->levels);
+    free(s->cuts);
     return !s->failed;
 }
 
