@@ -112,8 +112,10 @@ static void take_notes(midi_part *part, const midi_options *options)
             .spot = beyond ? HIMC_SPOT_NORMAL : way->spot,
             .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
             .end = fmax(note->off, damped),
-            .roll = {way->length, written ? way->last_dynamic
-                                          : himc_midi_dynamic(note->last_level, options->range)}};
+            .roll = {way->length,
+                     written ? way->last_dynamic
+                             : himc_midi_dynamic(note->last_level, options->range),
+                     note->off}};
     }
 }
 
@@ -131,15 +133,15 @@ static const midi_bar *bar_at(const midi_file *file, double beat)
     return low > 0 ? &file->bars[low - 1] : NULL;
 }
 
-// a part of a roll without the part before it is left out, too
+// a part of a roll without the part before it is left out, too, and so are the strokes in it
 static void drop_rests(midi_part *part)
 {
     midi_fate fate[MIDI_KEY_COUNT] = {MIDI_PLAYED}; // of the last part of a roll of each key
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
-        if (s->roll.length <= 0)
+        if (s->roll.length <= 0 && !s->in_roll)
             continue;
-        if (s->note->way.extra && fate[s->key] != MIDI_PLAYED)
+        if ((s->note->way.extra || s->in_roll) && fate[s->key] != MIDI_PLAYED)
             s->fate = fate[s->key];
         fate[s->key] = s->fate;
     }
@@ -159,7 +161,7 @@ static void count_fates(midi_part *part)
         part->damped += s->damped;
         bool roll = s->roll.length > 0 && s->fate == MIDI_PLAYED;
         part->rolls += roll;
-        part->rolled += roll && !s->note->way.extra;
+        part->rolled += (roll || (s->in_roll && s->fate == MIDI_PLAYED)) && !s->note->way.extra;
     }
 }
 
@@ -180,14 +182,16 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
                               himc_midi_choice_name(part->choice));
     if (part->count > MOST_STROKES)
         return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
-    if (!give_instruments(part, error) || !himc_midi_stick(part, error))
+    if (!give_instruments(part, error))
+        return false;
+    if (part->choice == MIDI_TIMPANI && !file->said)
+        himc_midi_find_rolls(part);
+    if (!himc_midi_stick(part, error))
         return false;
     for (int i = 0; i < part->count && part->choice != MIDI_TIMPANI; i++)
         part->stroke[i].damped = part->stroke[i].note->way.ring < 0;
     drop_rests(part);
     count_fates(part);
-    if (part->choice == MIDI_TIMPANI && !file->said)
-        himc_midi_find_rolls(part);
     return true;
 }
 

@@ -98,7 +98,7 @@ bool himc_midi_stick(midi_part *part, himc_error *error)
         midi_stroke *s = &part->stroke[i];
         if (s->foot)
             s->hand = HIMC_FOOT;
-        if (s->fate != MIDI_PLAYED || s->foot)
+        if (s->fate != MIDI_PLAYED || s->foot || s->in_roll)
             continue;
         if (hand[i] == OMIT)
             s->fate = MIDI_NO_HAND;
