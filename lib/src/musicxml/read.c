@@ -17,6 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { CLOSED_HATS = 42, OPEN_HATS = 46, RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
+
 #define MOST_INSTRUMENTS 64 // of a part
 #define MOST_LINES 9        // that run at once
 #define MOST_BARS 20000     // chosen: no piece has as many
@@ -337,7 +339,10 @@ static void read_ornaments(reader *r, music_note *n, const xml_node *ornaments)
                 r->wavy = 1 + n->voice;
             else if (himc_xml_has(o, "type", "stop"))
                 r->wavy = 0;
-        } else if (himc_xml_is(o, "tremolo")) {
+        } else if (!himc_xml_is(o, "tremolo")) {
+            if (!himc_xml_is(o, "accidental-mark"))
+                himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
+        } else {
             int marks = atoi(o->text);
             n->marks = marks < 0 ? 0 : marks > 8 ? 8 : marks;
             n->tremolo = himc_xml_has(o, "type", "start")                         ? MUSIC_PAIR_BEGIN
@@ -370,22 +375,49 @@ static int hand_of(const char *text)
     return 1 + (strchr("RrdD", *text) ? HIMC_RIGHT : HIMC_LEFT);
 }
 
+static void read_articulations(reader *r, music_note *n, const xml_node *articulations)
+{
+    for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
+        bool other = himc_xml_is(a, "other-articulation");
+        if (himc_xml_is(a, "accent"))
+            n->accent = true;
+        else if (himc_xml_is(a, "strong-accent"))
+            n->marcato = true;
+        else if (himc_xml_is(a, "tenuto") || himc_xml_is(a, "detached-legato") ||
+                 himc_xml_is(a, "soft-accent") || himc_xml_is(a, "stress"))
+            n->tenuto = true;
+        else if (himc_xml_is(a, "staccato") || himc_xml_is(a, "staccatissimo") ||
+                 himc_xml_is(a, "spiccato"))
+            n->staccato = true;
+        else if (himc_xml_is(a, "unstress"))
+            n->ghost = true;
+        else if (other && strcmp(a->text, "pulled off") == 0)
+            n->pulled = true;
+        else if (other && strcmp(a->text, "choke") == 0)
+            n->ring = -1;
+        else
+            himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
+    }
+}
+
+static void read_technical(reader *r, music_note *n, const xml_node *technical)
+{
+    for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next) {
+        bool open = himc_xml_is(t, "open") || himc_xml_is(t, "open-string");
+        if (hand_of(t->text))
+            n->hand = hand_of(t->text);
+        else if (n->choice == MIDI_DRUMS && n->key == CLOSED_HATS && open)
+            n->key = OPEN_HATS;
+        else if (!himc_xml_is(t, "fingering") && !himc_xml_is(t, "stopped")) // of mallets, of hats
+            himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
+    }
+}
+
 static void read_notations(reader *r, music_note *n, const xml_node *notations)
 {
     read_ornaments(r, n, himc_xml_child(notations, "ornaments"));
-    const xml_node *articulations = himc_xml_child(notations, "articulations");
-    for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
-        n->accent |= himc_xml_is(a, "accent");
-        n->marcato |= himc_xml_is(a, "strong-accent");
-        n->tenuto |= himc_xml_is(a, "tenuto") || himc_xml_is(a, "detached-legato");
-        n->staccato |= himc_xml_is(a, "staccato") || himc_xml_is(a, "staccatissimo") ||
-                       himc_xml_is(a, "spiccato");
-        n->pulled |= himc_xml_is(a, "other-articulation") && strcmp(a->text, "pulled off") == 0;
-    }
-    const xml_node *technical = himc_xml_child(notations, "technical");
-    for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next)
-        if (himc_xml_is(t, "fingering") || himc_xml_is(t, "other-technical"))
-            n->hand = hand_of(t->text) ? hand_of(t->text) : n->hand;
+    read_articulations(r, n, himc_xml_child(notations, "articulations"));
+    read_technical(r, n, himc_xml_child(notations, "technical"));
     for (const xml_node *t = himc_xml_child(notations, "tied"); t; t = himc_xml_next(t))
         n->ring |= himc_xml_has(t, "type", "let-ring");
     n->held |= himc_xml_child(notations, "fermata") != NULL;
@@ -418,8 +450,14 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
     n->choice = of->choice;
     n->drum = of->drum;
     n->key = written + (pitch ? r->transpose : 0);
-    if (of->choice == MIDI_DRUMS)
+    if (of->choice == MIDI_DRUMS) {
+        const char *head = himc_xml_text(note, "notehead");
         n->key = of->key != MUSIC_NO_KEY ? of->key : drum_at(written);
+        if (n->key == CLOSED_HATS && strcmp(head, "circle-x") == 0)
+            n->key = OPEN_HATS;
+        else if (n->key == RIDE && strcmp(head, "diamond") == 0)
+            n->key = RIDE_BELL;
+    }
     return (pitch || unpitched) && n->key >= 0 && n->key < 256 &&
            (written >= 0 || of->key != MUSIC_NO_KEY) && (of->choice == MIDI_DRUMS || n->key < 128);
 }
@@ -443,6 +481,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
                     .voice = atoi(himc_xml_text(note, "voice")),
                     .grace = himc_xml_child(note, "grace") != NULL,
                     .spot = spot_of(himc_xml_text(note, "notehead")),
+                    .ghost = is_yes(himc_xml_child(note, "notehead"), "parentheses"),
                     .ratio = 1};
     bool chord = himc_xml_child(note, "chord");
     if (!chord)
@@ -634,7 +673,12 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
                               "before a note",
                               "grace notes are not played: a ruff has two, others need time "
                               "before a note",
-                              0, ""}}};
+                              0, ""},
+            [MUSIC_ATTACKS] = {"accent is not played: no stroke begins there",
+                               "accents are not played: no stroke begins there", 0, ""},
+            [MUSIC_UNKNOWN] = {"sign of a note is not played: strokes have no way for it",
+                               "signs of notes are not played: strokes have no way for them", 0,
+                               ""}}};
     if (!himc_xml_read(&document, bytes, size, unused, error))
         return false;
     reader r = {.music = m, .error = error};
