@@ -210,8 +210,11 @@ static int count_wireless(const midi_part *part)
     for (int h = 0; h < part->heads; h++)
         if (has_wires(&part->head[h]))
             return 0;
-    for (int i = 0; i < part->file->order_count; i++)
-        count += part->file->orders[i].kind == MIDI_WIRES;
+    for (int i = 0; i < part->file->order_count; i++) {
+        const midi_order *o = &part->file->orders[i];
+        bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
+        count += o->kind == MIDI_WIRES && mine;
+    }
     return count;
 }
 
@@ -243,10 +246,10 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                           "notes are not played: no drum could be tuned to them in time"},
         [MIDI_NO_HAND] = {"note is not played: both hands are busy",
                           "notes are not played: both hands are busy"},
-        [MIDI_LOST_STROKE] = {"stroke of a tremolo, roll or grace note is not played: both hands "
-                              "are busy",
-                              "strokes of tremolos, rolls and grace notes are not played: both "
-                              "hands are busy"},
+        [MIDI_LOST_STROKE] = {"stroke of a tremolo, roll or grace is not played: no hand or drum "
+                              "is free",
+                              "strokes of tremolos, rolls and graces are not played: no hand or "
+                              "drum is free"},
         [MIDI_NO_INSTRUMENT] = {"note is not played: there is no instrument for it",
                                 "notes are not played: there is no instrument for them"},
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",

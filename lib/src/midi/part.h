@@ -24,7 +24,7 @@ typedef enum midi_fate {
     MIDI_TOGETHER,         ///< with another one on the same head: they are one stroke
     MIDI_NO_DRUM,          ///< no drum could be tuned in time
     MIDI_NO_HAND,          ///< both hands are busy
-    MIDI_LOST_STROKE,      ///< the same, of a stroke of a note that has others
+    MIDI_LOST_STROKE,      ///< one of these two, of a stroke of a note that has others
     MIDI_FATES
 } midi_fate;
 
