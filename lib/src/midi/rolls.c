@@ -116,7 +116,7 @@ static bool make_roll(midi_part *part, const row *r)
     // the last stroke lasts as long as the others
     double beat = s[r->first].note->beat, beats = s[r->end].note->beat - beat,
            length = r->notes > 1 ? beats * r->notes / (r->notes - 1) : 0;
-    if (!is_sure(part, r) || length < range->low || length > range->high)
+    if (r->notes < LEAST_NOTES || !is_sure(part, r) || length < range->low || length > range->high)
         return false;
     double end = himc_score_seconds(f->tempi, f->tempo_count, beat + length);
     int last = last_of(part, r, r->end);
