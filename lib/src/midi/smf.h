@@ -56,7 +56,7 @@ typedef struct midi_bar {
     char number[12];
 } midi_bar;
 
-typedef enum midi_order_kind { MIDI_TUNING, MIDI_MUFFLE, MIDI_MALLET } midi_order_kind;
+typedef enum midi_order_kind { MIDI_TUNING, MIDI_MUFFLE, MIDI_MALLET, MIDI_WIRES } midi_order_kind;
 
 /// What the player is told between notes, by MusicXML.
 typedef struct midi_order {

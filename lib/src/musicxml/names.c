@@ -93,9 +93,12 @@ static const struct {
     {"sempre l.v|l.v. sempre|laissez toujours vibrer|lasciar sempre vibrare|immer klingen lassen",
      MUSIC_RING_ALWAYS, 1},
     {"sempre secco|immer trocken|toujours sec", MUSIC_RING_ALWAYS, -1},
-    {"secco|damp|dämpf|étouff|etouff|soffoc|trocken|sec$|dry$", MUSIC_RING, -1},
+    {"secco|damp|dämpf|étouff|etouff|soffoc|trocken|sec$|dry$|choke|abstopp|stoppato", MUSIC_RING,
+     -1},
     {"in der mitte|mitte|au centre|al centro|nel centro|au milieu|center|centre|"
      "middle of",
+     MUSIC_SPOT, HIMC_SPOT_CENTER},
+    {"bell$|on bell|on the bell|bell of|kuppe|auf der kuppe|sur le dôme|sulla cupola|cupola",
      MUSIC_SPOT, HIMC_SPOT_CENTER},
     {"near rim|near the rim|near edge|near the edge|at the edge|am rand|nahe am rand|"
      "au bord|près du bord|vicino al bordo|al bordo|sul bordo",
@@ -121,6 +124,12 @@ static const struct {
     {"con sord|avec sourd|mit dämpfer|coperto|coperti|muffled|gedeckt|bedeckt|"
      "couvert|voilé",
      MUSIC_MUFFLE, 1},
+    {"snares off|snare off|wires off|without snares|senza cord|ohne saiten|ohne schnarr|"
+     "sans timbre",
+     MUSIC_WIRES, 0},
+    {"snares on|snare on|wires on|with snares|con cord|colle cord|mit saiten|mit schnarr|"
+     "avec timbre",
+     MUSIC_WIRES, 1},
     {"unmeasured", MUSIC_MEASURED, 0},
     {"misurato|measured|mesuré|gemessen", MUSIC_MEASURED, 1},
     {"poco a poco cresc|cresc", MUSIC_GROWING, 1},
