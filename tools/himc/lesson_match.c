@@ -240,12 +240,40 @@ static void join(lesson *l, int asked, int played)
     l->matched++;
 }
 
+// true if the stroke that closes a roll is missing: what has been taken for it follows the roll's
+// strokes as these follow each other, well before its time after the stroke before and between
+// that and the next
+static bool is_rolled(const table *t, int i, int j, int next_i, int next_j)
+{
+    const event *a = t->asked, *p = t->played;
+    const cell *c = at(t, i, j);
+    bool closes = false;
+    for (int k = c->i < 0 ? a[i].rolls : a[c->i].rolls; k < a[i].rolls; k++)
+        closes |= fabs(t->l->roll[k].to - a[i].time) < SLACK;
+    if (!closes || j - c->j < 4)
+        return false;
+    double interval = 0.5 * (p[j - 1].time - p[j - 3].time), asked = a[i].time - a[c->i].time,
+           played = p[j].time - p[c->j].time, early = at(t, c->i, c->j)->tempo * asked - played;
+    if (next_i >= 0)
+        early =
+            fmin(early, (p[next_j].time - p[c->j].time) * asked / (a[next_i].time - a[c->i].time) -
+                            played);
+    return early > 0.6 * interval && p[j].time - p[j - 1].time < 1.4 * interval;
+}
+
 // the path's pairs: hand by hand, then, if an event has one hand, with the other hand
 static void join_path(lesson *l, const table *t, int i, int j)
 {
+    int next_i = -1, next_j = -1;
     while (i >= 0) {
         const event *a = &t->asked[i], *p = &t->played[j];
         const cell *c = at(t, i, j);
+        bool rolled = is_rolled(t, i, j, next_i, next_j);
+        next_i = i, next_j = j;
+        if (rolled) {
+            i = c->i, j = c->j;
+            continue;
+        }
         bool both = a->stroke[0] >= 0 && a->stroke[1] >= 0;
         for (int h = 0; h < HIMC_HANDS; h++) {
             int own = t->exchanged && !both ? !h : h; // a chord has no exchanged hands
