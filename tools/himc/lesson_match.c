@@ -104,7 +104,7 @@ typedef struct stretch {
     int first, last;             // rolls
 } stretch;
 
-// of the played events from `low` on, before `high`, those that are in no roll; `cost` has the rolls'
+// of the played events from `low` on, before `high`, those in no roll; `cost` has the rolls'
 static int out_of_rolls(const table *t, const stretch *s, int low, int high, double *cost)
 {
     int in = 0;
