@@ -8,6 +8,7 @@
 #include "fit_list.h"
 #include "himc/drum.h"
 
+#include "base/order.h"
 #include "base/text.h"
 #include "system/files.h"
 
@@ -16,7 +17,7 @@
 #include <string.h>
 
 #define RADIUS_PER_INCH 0.0127 // (m) half an inch
-#define ROWS 24                // of the report
+#define ROWS 60                // of the report; as many as a list has modes
 #define HIGHEST 1200.0         // (Hz) of a timpano
 #define SECONDS 4.0            // of the blow that is set beside the recording
 #define NEAR 0.015             // per frequency: the same partial
@@ -250,15 +251,15 @@ static void report_drum(const fit *f, bool json)
 static void report(const fit *f, bool json)
 {
     int row[ROWS], count = rows(f, row);
-    double strongest = -INFINITY, louder = 0; // the made ones, in the mean
+    double strongest = -INFINITY, louder[ROWS] = {0}; // the made ones; the middle one is set aside
     int pairs = 0;
     for (int i = 0; i < count; i++) {
         const partial *p = &f->found.row[row[i]], *q = nearest(f, p);
         strongest = fmax(strongest, p->level);
-        louder += q ? q->level - p->level : 0;
-        pairs += q != NULL;
+        if (q)
+            louder[pairs++] = q->level - p->level;
     }
-    louder /= pairs ? pairs : 1;
+    qsort(louder, (size_t)pairs, sizeof *louder, himc_order_doubles);
     printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n", f->list ? "modes" : "timpano");
     if (!f->list)
         report_drum(f, json);
@@ -279,7 +280,7 @@ static void report(const fit *f, bool json)
         if (q)
             printf(json ? ", \"made_hz\": %.3f, \"made_t60_s\": %.4f, \"made_level_db\": %.2f"
                         : "      %9.2f %6.2f %6.1f",
-                   q->frequency, q->t60, q->level - louder - strongest);
+                   q->frequency, q->t60, q->level - louder[pairs / 2] - strongest);
         puts(json ? "}" : "");
     }
     if (json)

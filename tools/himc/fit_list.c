@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#define MODES 60      // the strongest; chosen
+#define MODES 160     // the strongest; chosen: of halls' recordings a third of all poles
 #define RADIUS 0.1    // (m) of the struck disc, chosen
 #define MASS 0.05     // (kg) chosen
 #define PRESSURE 1e-4 // of the loudest mode (Pa s^2/m); as of the lists of lists.c
