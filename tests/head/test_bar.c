@@ -214,8 +214,8 @@ static void test_a_case_is_a_wall_to_a_glockenspiel_and_a_xylophone_has_none(voi
     }
 }
 
-// The second mode of torsion, 2/(2 L) sqrt(G K/(rho I)), is 6.88 times mode 1 of the recorded bar of
-// 1050 Hz. A blow on the axis leaves it at rest, blows on both sides turn it both ways alike.
+// The second mode of torsion, 2/(2 L) sqrt(G K/(rho I)), is 6.88 times mode 1 of the recorded bar
+// of 1050 Hz. A blow on the axis leaves it at rest, blows on both sides turn it both ways alike.
 static void test_a_glockenspiel_twists_as_recorded_where_it_is_struck_beside_its_axis(void)
 {
     double q[3], v[3];

@@ -318,8 +318,8 @@ static void name_part(himc_part *part, double hz)
     snprintf(part->name, sizeof part->name, "%s", note);
 }
 
-// Of a mode of a bar in a case, as in a wall, the same: rho/(2 pi) |int phi exp(i k . x) dx dy|, all
-// directions of half a sphere, whose four quarters are alike.
+// Of a mode of a bar in a case, as in a wall, the same: rho/(2 pi) |int phi exp(i k . x) dx dy|,
+// all directions of half a sphere, whose four quarters are alike.
 static double walled(const bar *b, double omega, const double *shape, bool twists)
 {
     enum { RINGS = 6, SPOKES = 6 };
@@ -345,8 +345,8 @@ static double sent(double pressure, double omega, double mass)
     return HIMC_PI * pow(pressure * omega, 2) / (HIMC_AIR_DENSITY * HIMC_AIR_SPEED * mass);
 }
 
-// A mode that twists a bar in a case, n half waves from end to end: theta = cos(n pi x/L), at n/(2 L)
-// sqrt(G K/(rho I)), K = b h^3/3 (1 - .63 h/b), I = b h (b^2 + h^2)/12.
+// A mode that twists a bar in a case, n half waves from end to end: theta = cos(n pi x/L), at
+// n/(2 L) sqrt(G K/(rho I)), K = b h^3/3 (1 - .63 h/b), I = b h (b^2 + h^2)/12.
 static himc_partial twist(const bar *b, int n, double *shape)
 {
     double h = b->thickness, flat = h / b->width, square = flat * flat;
