@@ -6,13 +6,12 @@
 /// and h0 elsewhere: the undercut of depth d tunes mode 2 to a given ratio, the length L mode 1. It
 /// is symmetric, so half of it, of elements whose shear does not lock (Przemieniecki 1968), gives
 /// the even modes (no rotation in the middle) and the odd ones (no displacement there). Of a steel
-/// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21; a thin one would have 2.756 : 5.404.
+/// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; a thin one would have 2.756 : 5.404.
 ///
 /// A glockenspiel's bars also twist, as mallets land beside the axis: of its recorded lines of 1050
-/// Hz the strongest, 6.88 times that, is the second of torsion. Its thickness and width are those
-/// whose lines lie where they were recorded. It lies close over the bottom of its case and sounds
-/// as in a wall, and each mode loses what it sends and what its cords take. Of other bars torsion,
-/// whose two sides cancel without a wall, is left out.
+/// Hz the strongest, 6.88 times that, is the second of torsion, which gives the width. It lies close
+/// over the bottom of its case and sounds as in a wall, and each mode loses what it sends and what
+/// its cords take. Of other bars torsion, whose two sides cancel without a wall, is left out.
 ///
 /// A tubular bell is a beam of a tube's section: modes 4, 5, 6 sound one tone, an octave below the
 /// fourth, 2 : 2.89 : 3.87 of C5. It hangs, and is struck on the cap at its top, which is all
@@ -127,9 +126,9 @@ static const bar_row rows[] = {
      {.stiffness = 1e9, .exponent = 2.2, .mass = 0.022, .relaxation = 2e-4}},
     {STEEL,
      880,
-     0.00635,
+     0.0085,
      0,
-     0.028,
+     0.0317,
      0,
      0,
      false,
