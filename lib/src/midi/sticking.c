@@ -93,8 +93,8 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     int written = part->stroke[stroke].note->way.hand;
     if (s.gap < (s.same_spot ? 0.055 : written == 1 + hand ? WRITTEN * leap : leap))
         return false;
-    bool across = s.inwards > ACROSS && fabs(to.z - other.z) < OVER;
-    if (across && s.other_gap < ACROSS_TIME && written != 1 + hand)
+    bool across = s.inwards > ACROSS && fabs(to.z - other.z) < OVER && written != 1 + hand;
+    if (across && s.other_gap < ACROSS_TIME)
         return false;
     state->cost += himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0) +
                    40 * fmax(0, need - s.gap) / need + pow(0.3 * need / s.gap, 2) +
