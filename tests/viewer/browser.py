@@ -4,22 +4,36 @@ import base64
 import json
 import os
 import shutil
+import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 import urllib.error
 import urllib.request
 
 
-def stop(process):
-    """It ends, in the end by force."""
+signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # a test that is ended ends its browser
+
+
+def stop(process, home):
+    """Ends it, in the end by force, and every process that was given the folder `home`."""
     process.terminate()
     try:
         process.wait(20)
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()
+    for one in os.listdir("/proc"):
+        try:
+            with open(f"/proc/{one}/cmdline", "rb") as file:
+                left = one.isdigit() and home.encode() in file.read()
+            if left:
+                os.kill(int(one), signal.SIGKILL)
+        except OSError:
+            pass
+    shutil.rmtree(home, ignore_errors=True)
 
 
 PATIENCE = 120  # (s) until a page is there, or what a test waits for; chosen: ten times what the slowest needed
@@ -147,8 +161,7 @@ class Browser:
             self.call("DELETE", self.session)
         except (OSError, RuntimeError):
             pass
-        stop(self.driver)
-        shutil.rmtree(self.home, ignore_errors=True)
+        stop(self.driver, self.home)
 
 
 class Firefox(Browser):
@@ -207,5 +220,4 @@ class Firefox(Browser):
         except (OSError, RuntimeError):
             pass
         self.socket.close()
-        stop(self.driver)
-        shutil.rmtree(self.home, ignore_errors=True)
+        stop(self.driver, self.home)
