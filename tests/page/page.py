@@ -137,6 +137,11 @@ def test_it_opens_as_a_file_without_a_request_or_a_console_line():
     assert not browser.log(), browser.log()
 
 
+def test_it_tells_nobody_to_send_it_a_performer():
+    """Which the viewer's page does until one comes."""
+    assert browser.run("document.body.classList.add('empty'); return getComputedStyle(document.getElementById('wait')).display") == "none"
+
+
 def test_the_improvisation_is_that_of_the_program_bit_by_bit():
     pieces = ["improvisation.txt"]
     paths = ["patches/improvisation.txt"]
