@@ -6,7 +6,7 @@
 /// and h0 elsewhere: the undercut of depth d tunes mode 2 to a given ratio, the length L mode 1. It
 /// is symmetric, so half of it, of elements whose shear does not lock (Przemieniecki 1968), gives
 /// the even modes (no rotation in the middle) and the odd ones (no displacement there). Of a steel
-/// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; a thin one would have 2.756 : 5.404.
+/// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; of a thin one 1 : 2.756 : 5.404.
 ///
 /// A glockenspiel's bars also twist, as mallets land beside the axis: of its recorded lines of 1050
 /// Hz the strongest, 6.88 times that, is the second of torsion, which gives the width. It lies close
