@@ -9,9 +9,9 @@
 /// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; of a thin one 1 : 2.756 : 5.404.
 ///
 /// A glockenspiel's bars also twist, as mallets land beside the axis: of its recorded lines of 1050
-/// Hz the strongest, 6.88 times that, is the second of torsion, which gives the width. It lies close
-/// over the bottom of its case and sounds as in a wall, and each mode loses what it sends and what
-/// its cords take. Of other bars torsion, whose two sides cancel without a wall, is left out.
+/// Hz the strongest, 6.88 times that, is the second of torsion, which gives the width. A bar lies
+/// close over the bottom of its case and sounds as in a wall, and each mode loses what it sends and
+/// what its cords take. Of other bars torsion, whose two sides cancel without a wall, is left out.
 ///
 /// A tubular bell is a beam of a tube's section: modes 4, 5, 6 sound one tone, an octave below the
 /// fourth, 2 : 2.89 : 3.87 of C5. It hangs, and is struck on the cap at its top, which is all
