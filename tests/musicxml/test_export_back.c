@@ -446,6 +446,15 @@ static void test_spots_without_a_key_are_told_and_come_back_normal(void)
     TEST_ASSERT_EQUAL(HIMC_SPOT_RIMSHOT, back[3].spot);
 }
 
+static void test_the_bell_of_a_ride_comes_back(void)
+{
+    parse("setup kit; stroke 1 left legato mf bell ride; stroke 2 left legato mf bow ride;");
+    read_back(himc_music_import);
+    TEST_ASSERT_EQUAL(2, count);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_CENTER, back[0].spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[1].spot);
+}
+
 // `timbales` alone are the French timpani
 static void test_a_timbale_is_a_drum_also_under_another_name(void)
 {
@@ -488,6 +497,7 @@ int main(void)
     RUN_TEST(test_a_tempo_slower_than_midi_has_is_refused);
     RUN_TEST(test_a_tempo_after_the_end_of_a_part_is_written);
     RUN_TEST(test_strokes_on_hoop_and_shell_come_back);
+    RUN_TEST(test_the_bell_of_a_ride_comes_back);
     RUN_TEST(test_spots_without_a_key_are_told_and_come_back_normal);
     RUN_TEST(test_a_timbale_is_a_drum_also_under_another_name);
     RUN_TEST(test_a_score_without_strokes_is_refused);

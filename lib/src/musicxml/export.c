@@ -233,6 +233,14 @@ static int part_key(const char *part)
     return himc_note_frequency(part, &hz) ? key_of(hz) : -1;
 }
 
+// where a stroke lands, on a plate also by the name of a part
+static himc_spot spot_of(const himc_stroke *s)
+{
+    return strcmp(s->part, "bell") == 0   ? HIMC_SPOT_CENTER
+           : strcmp(s->part, "edge") == 0 ? HIMC_SPOT_RIM
+                                          : s->spot;
+}
+
 static bool add_note(exporter *x, const himc_stroke *s)
 {
     midi_file *f = x->file;
@@ -242,7 +250,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
         h = &x->head[x->heads - 1];
     }
     bool told = himc_spot_is_beyond(s->spot) && !x->midi; // by its notehead
-    himc_spot struck = told ? HIMC_SPOT_NORMAL : s->spot;
+    himc_spot struck = told ? HIMC_SPOT_NORMAL : spot_of(s);
     int key = h->choice == MIDI_DRUMS ? himc_midi_key_of(h->name, struck, h->open) : h->key;
     if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
         key = PEDAL_HAT;
