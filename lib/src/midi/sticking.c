@@ -15,11 +15,12 @@
 
 enum { OMIT = HIMC_HANDS };
 
-#define NEED 1.5        // of the least time of a leap: what is quicker costs; chosen
+#define NEED 2.0        // of the least time of a leap: what is quicker costs; chosen
 #define WRITTEN 0.8     // of the time of a leap: who wrote the hand may know better; chosen
 #define AGAIN_TIME 0.09 // the same on one spot (s)
 #define ACROSS 0.2      // arms cross over another drum if a hand is so far past the other (m) ...
-#define OVER 0.1        // on another height it passes (m)
+#define OVER 0.1        // on another height it passes (m), ...
+#define SMALL 0.25      // ... and over toms, which lie close together (radius, m)
 #define ACROSS_COST 20.0
 #define ACROSS_TIME 0.3 // ... and meet if that one has struck so shortly before (s)
 #define SAME_TIME 1e-7  // (beats)
@@ -93,7 +94,8 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     int written = part->stroke[stroke].note->way.hand;
     if (s.gap < (s.same_spot ? 0.055 : written == 1 + hand ? WRITTEN * leap : leap))
         return false;
-    bool across = s.inwards > ACROSS && fabs(to.z - other.z) < OVER && written != 1 + hand;
+    bool across = s.inwards > ACROSS && fabs(to.z - other.z) < OVER &&
+                  part->head[part->stroke[stroke].head].radius > SMALL && written != 1 + hand;
     if (across && s.other_gap < ACROSS_TIME)
         return false;
     state->cost += himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0) +
