@@ -4,8 +4,9 @@
 
 #include "body/posture.h"
 
-/// Elbow out, wrist up and wrist aside of each hand: the parts of the posture that make room.
-#define HIMC_AVOIDANCE_PARTS (HIMC_ARM_ANGLES * HIMC_HANDS)
+/// Elbow out, wrist up and wrist aside of each hand, and what of the wrist up is eased at a touch:
+/// the parts of the posture that make room.
+#define HIMC_AVOIDANCE_PARTS ((HIMC_ARM_ANGLES + 1) * HIMC_HANDS)
 
 typedef struct himc_avoidance {
     double goal[HIMC_AVOIDANCE_PARTS]; ///< beyond the usual posture (rad); all 0: nothing is near

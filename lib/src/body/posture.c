@@ -44,6 +44,7 @@
 #define LONGEST_SHARE 0.985 // wrist's largest distance, of the straight arm
 #define SHORTEST_EXTRA 0.05 // wrist's smallest distance, above the difference of the two bones (m)
 #define STRAIGHT 0.15 // an elbow nearer to the line to the wrist is carried along by it (m); chosen
+#define TOUCHES 0.4   // a stick that points up so far has left the head (rad); chosen
 // The trunk. Chosen: nearly upright for a drum in front, and turned and leaning enough to reach
 // four timpani in an arc.
 #define TRUNK_LEAN 0.09         // (rad)
@@ -236,6 +237,8 @@ typedef struct arm {
     himc_quat trunk;     // orientation in the world
     double turn, french; // of the trunk (rad); share of the French grip
     double out, raise;   // of elbow and wrist beyond the usual (rad)
+    double eased;        // of the wrist's at a touch (rad)
+    double touches;      // 1 at a touch .. 0 with the stick up
     double usually_out;  // of the elbow (rad)
     double aside;        // wrist to the left about the tip (rad)
     union {
@@ -270,9 +273,17 @@ static arm arm_of(const himc_posture *posture, himc_hand hand)
              .french = value[HIMC_TRUNK_POSTURE_FRENCH_GRIP],
              .out = value[HIMC_TRUNK_POSTURE_ELBOW + hand],
              .raise = value[HIMC_TRUNK_POSTURE_WRIST + hand],
+             .eased = value[HIMC_TRUNK_POSTURE_EASED + hand],
              .aside = value[HIMC_TRUNK_POSTURE_ASIDE + hand] * (hand == HIMC_LEFT ? 1 : -1)};
     a.shoulder = himc_shoulder(&posture->skeleton, a.trunk, hand);
     return a;
+}
+
+// from 0 at 0 to 1 at 1, with no acceleration at either end
+static double smooth_step(double x)
+{
+    x = fmin(fmax(x, 0), 1);
+    return x * x * x * (10 + x * (-15 + x * 6));
 }
 
 // stick and hand: from the tip to the wrist
@@ -292,8 +303,11 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
         blend_grips(ELBOW_OUT, FRENCH_ELBOW_OUT, a->french) + path[HIMC_HAND_PATH_ELBOW];
     double lower = tip.z - path[HIMC_HAND_PATH_GRIP];
     double bent = blend_grips(1, FRENCH_WRIST, a->french) * path[HIMC_HAND_PATH_HAND];
-    a->stick = himc_vec3_elevated(azimuth, himc_hand_path_stick(lower, length) - a->raise);
-    a->hand = himc_vec3_elevated(azimuth, bent - a->raise);
+    double up = himc_hand_path_stick(lower, length);
+    a->touches = 1 - smooth_step(up / TOUCHES);
+    double raise = a->raise - a->touches * a->eased;
+    a->stick = himc_vec3_elevated(azimuth, up - raise);
+    a->hand = himc_vec3_elevated(azimuth, bent - raise);
     a->side = himc_vec3_make(-sin(azimuth), cos(azimuth), 0);
     a->grip = himc_vec3_madd(tip, -length, a->stick);
     double palm = himc_vec3_length(posture->skeleton.segment[HIMC_LEFT_STICK + hand].origin);
@@ -303,13 +317,6 @@ static void solve_wrist(const himc_posture *posture, himc_hand hand, himc_vec3 t
 static himc_vec3 about(himc_vec3 axis, double angle, himc_vec3 v)
 {
     return himc_quat_rotate(himc_quat_exp(himc_vec3_scale(axis, angle)), v);
-}
-
-// from 0 at 0 to 1 at 1, with no acceleration at either end
-static double smooth_step(double x)
-{
-    x = fmin(fmax(x, 0), 1);
-    return x * x * x * (10 + x * (-15 + x * 6));
 }
 
 // the triangle shoulder - elbow - wrist; moves the wrist into reach and returns the distance (m)
@@ -417,6 +424,7 @@ himc_arm_moves himc_posture_arm_moves(const himc_posture *posture, himc_hand han
     himc_arm_moves moves;
     arm here = arm_of(posture, hand), a = here;
     moves.beyond = solve_arm(posture, hand, tip, &a);
+    moves.touches = a.touches;
     for (int i = 0; i < HIMC_ARM_ANGLES; i++) {
         arm b = here;
         double probe = i == 2 && hand == HIMC_RIGHT ? -PROBE : PROBE;

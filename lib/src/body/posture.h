@@ -60,7 +60,9 @@ typedef enum himc_trunk_posture_part {
     HIMC_TRUNK_POSTURE_ASIDE = HIMC_TRUNK_POSTURE_WRIST + HIMC_HANDS,
     ///< of each hand: hand and stick turned about the vertical through the tip, the wrist outwards
     ///< (rad)
-    HIMC_TRUNK_POSTURE_SIDE = HIMC_TRUNK_POSTURE_ASIDE + HIMC_HANDS, ///< trunk to the right (rad)
+    HIMC_TRUNK_POSTURE_EASED = HIMC_TRUNK_POSTURE_ASIDE + HIMC_HANDS,
+    ///< of each hand: so much less is the wrist raised at a touch (rad)
+    HIMC_TRUNK_POSTURE_SIDE = HIMC_TRUNK_POSTURE_EASED + HIMC_HANDS, ///< trunk to the right (rad)
     HIMC_TRUNK_POSTURE_LOOK_LEFT, ///< rotation of the head to the left, in the trunk's frame (rad)
     HIMC_TRUNK_POSTURE_LOOK_DOWN, ///< and down, beyond its resting pose (rad)
     HIMC_TRUNK_POSTURE_PARTS
@@ -160,6 +162,7 @@ typedef struct himc_arm_moves {
     himc_vec3 by[HIMC_ARM_ANGLES][HIMC_ARM_POINTS]; ///< (m/rad)
     double beyond;                                  ///< distance of the tip out of reach (m) ...
     double missing[HIMC_ARM_ANGLES];                ///< ... and how it grows (m/rad)
+    double touches; ///< 1 at a touch .. 0 with the stick up: the share of what is eased
 } himc_arm_moves;
 
 /// The moves of one arm, by differences.
