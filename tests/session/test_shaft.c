@@ -107,9 +107,45 @@ static void test_soft_strokes_are_of_the_hand_and_loud_ones_of_the_arm_too(void)
     }
 }
 
+// Four strokes of both hands in turn on a drum at the left, four on one at the right: at each change
+// of drum one hand reaches over the other. A steep shaft would stab the head, a shaft that stays
+// steep after a crossing would make equal strokes unequal.
+static void test_a_stroke_after_a_crossing_is_as_any_other_and_a_crossed_one_no_stab(void)
+{
+    himc_performance *p = session_new();
+    heard h = {0};
+    session_do(p, "strength off");
+    session_do(p, "tempo 60");
+    for (int i = 0; i < 2; i++) {
+        session_do(p, "instrument %c tom 12", 'a' + i);
+        session_do(p, "%c place 0.6 %g 0.85", 'a' + i, 0.3 - 0.6 * i);
+    }
+    for (int i = 0; i < 24; i++)
+        session_do(p, "stroke %g %s legato f %c", 2 + 0.5 * i, i % 2 ? "right" : "left",
+                   "ab"[i / 4 % 2]);
+    session_do(p, "play");
+    session_play(p, 15, &h);
+    TEST_ASSERT_EQUAL_INT(24, h.strikes);
+    double least = INFINITY, most = 0, crossed = 0; // mass that strikes (kg)
+    for (int i = 0; i < h.strikes; i++) {
+        double mass = h.strike[i].impulse / h.strike[i].velocity;
+        least = fmin(least, mass);
+        if (i % 8 == 3) // at the left, while the left hand goes to the right
+            crossed = fmax(crossed, mass);
+        else
+            most = fmax(most, mass);
+    }
+    printf("masses: %.2f, crossed %.2f of the least\n", most / least, crossed / least);
+    TEST_ASSERT_TRUE(most < 1.12 * least);   // 8.4 with wrists that stay raised
+    TEST_ASSERT_TRUE(crossed < 4.5 * least); // 5.4 with wrists that are raised without a limit
+    heard_free(&h);
+    himc_performance_free(p);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_stroke_after_a_crossing_is_as_any_other_and_a_crossed_one_no_stab);
     RUN_TEST(test_no_shaft_touches_the_hoop);
     RUN_TEST(test_soft_strokes_are_of_the_hand_and_loud_ones_of_the_arm_too);
     return UNITY_END();

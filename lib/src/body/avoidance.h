@@ -10,7 +10,8 @@
 
 typedef struct himc_avoidance {
     double goal[HIMC_AVOIDANCE_PARTS]; ///< beyond the usual posture (rad); all 0: nothing is near
-    int order; ///< of crossed arms: 1 the left one is above, -1 below, 0 none
+    int order;    ///< of crossed arms: 1 the left one is above, -1 below, 0 none
+    bool crossed; ///< arms are, or wrists are still raised from it
 } himc_avoidance;
 
 /// Both tips at one time, with the posture of the trunk then.
