@@ -40,6 +40,7 @@
 // A head pushes a shaft that is steeper by 20 degrees with a third more impulse, by 30 with twice as
 // much, by 60 with nine times as much. Chosen: with less than RAISED_MOST crossed arms have no room.
 #define RAISED_MOST 0.65                     // of a wrist at a touch (rad)
+#define RAISED_FREE 0.03                     // ... of arms that were crossed before (rad)
 #define EASE_TIME 0.2                        // (s)
 #define DESCENT_WORK (1 + HIMC_ARM_ANGLES)   // postures of a descent
 #define EASED (HIMC_ARM_ANGLES * HIMC_HANDS) // its part of the goal
@@ -241,14 +242,14 @@ static void foresee_order(himc_avoidance *a, himc_capsule capsule[HIMC_FORESEEN]
 }
 
 // At a touch a wrist is raised less, by what is eased: of crossed arms by no more than is needed
-// there, of arms that were crossed before soon by all of it.
+// there, of arms that were crossed before soon by nearly all of it.
 static void ease_touches(himc_avoidance *a, const double rate[HIMC_HANDS], double dt)
 {
     const double *wrist = &a->goal[HIMC_HANDS];
     a->crossed = a->order != 0 || (a->crossed && fmax(wrist[HIMC_LEFT], wrist[HIMC_RIGHT]) > 0);
     for (int hand = 0; hand < HIMC_HANDS; hand++) {
         double up = wrist[hand], *eased = &a->goal[EASED + hand];
-        double all = a->crossed ? fmax(up, 0) : 0, goal = a->order == 0 ? all : 0;
+        double all = a->crossed ? fmax(up - RAISED_FREE, 0) : 0, goal = a->order == 0 ? all : 0;
         double more = (goal - *eased) / EASE_TIME + fmax(fmin(rate[hand], 0), -FASTEST);
         *eased = fmin(fmax(*eased + dt * more, fmax(up - RAISED_MOST, 0)), all);
     }
