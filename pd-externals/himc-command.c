@@ -341,27 +341,19 @@ static bool himc_tilde_gliss(t_himc *x, const himc_command *asked, himc_error *e
            himc_tilde_command_drum(x, asked->atom[0].symbol, &gliss, error);
 }
 
-/* WHAT VALUE, from the lines of all values. */
+/* The values of WHAT, behind its name. */
+static void himc_tilde_value(void *answer, const char *line)
+{
+    answer_line(answer, line + strcspn(line, " "));
+}
+
 static bool himc_tilde_get(t_himc *x, const char *what, himc_error *error)
 {
-    t_answer all = {NULL}, known = {NULL};
-    bool found = false;
-    size_t length = strlen(what);
-    himc_performance_describe(x->x_performance, HIMC_DESCRIBE_VALUES, answer_line, &all);
-    for (char *line = all.a_text, *end; line && (end = strchr(line, '\n')); line = end + 1) {
-        *end = '\0';
-        if (strncmp(line, what, length) != 0 || (line[length] && line[length] != ' '))
-            continue;
-        found = true;
-        answer_line(&known, line + length);
-    }
-    free(all.a_text);
+    t_answer values = {NULL};
+    bool found = himc_performance_get(x->x_performance, what, himc_tilde_value, &values, error);
     /* not as the beats that begin are told */
-    answer_send(&known, x->x_messages, strcmp(what, "beat") == 0 ? "beat-now" : what);
-    return found || himc_error_set(error,
-                                   "get: WHAT: %s, expected a setting, tempo, beat, state, drums, "
-                                   "loop, room, listener or mute",
-                                   what);
+    answer_send(&values, x->x_messages, strcmp(what, "beat") == 0 ? "beat-now" : what);
+    return found;
 }
 
 static bool himc_tilde_command(t_himc *x, t_symbol *s, int argc, t_atom *argv, himc_error *error)

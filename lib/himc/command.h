@@ -132,10 +132,9 @@ typedef enum himc_command_id {
 
 /// What himc_drum_describe and himc_performance_describe tell.
 typedef enum himc_description {
-    HIMC_DESCRIBE_INFO,   ///< a few lines for a person: `info`
-    HIMC_DESCRIBE_VALUES, ///< of a performer, what `get` asks for: each line a word and its value
-    HIMC_DESCRIBE_STATE   ///< all settings, each line a command: `dump`. Carried out in their order
-                          ///< by a new object they make the same state, bit by bit
+    HIMC_DESCRIBE_INFO, ///< a few lines for a person: `info`
+    HIMC_DESCRIBE_STATE ///< all settings, each line a command: `dump`. Carried out in their order
+                        ///< by a new object they make the same state, bit by bit
 } himc_description;
 
 #define HIMC_COMMAND_ATOMS 8 ///< most atoms of a command

@@ -297,6 +297,11 @@ HIMC_RT himc_performance_stats himc_performance_measure(const himc_performance *
 /// score again.
 void himc_performance_describe(const himc_performance *performance, himc_description what,
                                void (*line)(void *, const char *), void *user);
+/// Answers the command `get`: calls `line` with each line "WHAT VALUE ..." of a setting, as the
+/// command that sets it, or of tempo, beat, state, drums, loop, room, listener, mute. False with
+/// the reason if there is none.
+bool himc_performance_get(const himc_performance *performance, const char *what,
+                          void (*line)(void *, const char *), void *user, himc_error *error);
 
 HIMC_END
 

@@ -216,6 +216,27 @@ static void test_what_is_written_is_read_again_with_its_analog_channels(void)
     himc_take_free(again);
 }
 
+// room for channels, but none
+static void test_points_alone_are_written_and_read_again(void)
+{
+    himc_take *take = read_maker(maker_default(C3D_INTEL, true));
+    free(take->analog);
+    take->analog = calloc(1, sizeof *take->analog);
+    take->analog_channels = take->analog_samples = 0;
+    char bytes[20000];
+    FILE *file = tmpfile();
+    TEST_ASSERT_TRUE_MESSAGE(himc_c3d_write(file, take, &error), error.text);
+    rewind(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    himc_take_free(take);
+    take = himc_take_read(bytes, size, "made.c3d", NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(take, error.text);
+    TEST_ASSERT_EQUAL_INT(0, take->analog_channels);
+    check_places(take, 5, 1e-7);
+    himc_take_free(take);
+}
+
 // makes a good file, damages it with `spoil`, and expects the reason
 static void refuses(void (*spoil)(maker *), const char *reason)
 {
@@ -666,6 +687,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_intel_floats_are_read);
     RUN_TEST(test_what_is_written_is_read_again_with_its_analog_channels);
+    RUN_TEST(test_points_alone_are_written_and_read_again);
     RUN_TEST(test_intel_integers_are_read);
     RUN_TEST(test_dec_floats_are_read);
     RUN_TEST(test_dec_integers_are_read);

@@ -121,7 +121,7 @@ def test_drums_are_found_again():
     said = "tension %.2f %%, partials %.2f Hz, T60 %.1f %%, mallets %d of %d" % (100 * worst[0], worst[1], 100 * worst[2], mallets, count)
     assert not wrong, f"{wrong} {said}"
     # a room hides how a partial rings that rings shorter than the room
-    assert worst[0] < 0.01 and worst[1] < 0.5 and worst[2] < 0.12 and mallets >= 0.9 * count, said
+    assert worst[0] < 0.01 and worst[1] < 0.5 and worst[2] < 0.10 and mallets >= 0.9 * count, said
     return said
 
 
@@ -134,18 +134,41 @@ def test_a_second_drum_is_told():
     assert all(any(abs(x / DRUMS[i][1] - 1) < 0.015 for x in hz) for i in (1, 14)), hz
 
 
-def test_the_octave_of_a_recorded_c2_is_found():
-    """Its strongest partial is (1,1), at half the frequency of the drum that its higher partials suggest."""
-    soundfont = "/usr/share/sounds/sf2/FluidR3_GM.sf2"  # Debian: fluid-soundfont-gm
+def soundfont_timpano(note):
+    """a stroke of Debian's fluid-soundfont-gm, dry, 6 s"""
+    soundfont, name = "/usr/share/sounds/sf2/FluidR3_GM.sf2", path(f"note{note}.wav")
     if not (os.path.exists(soundfont) and shutil.which("fluidsynth")):
         raise report.Ignored("needs fluidsynth and fluid-soundfont-gm")
-    track = bytes.fromhex("00ff510307a120 00c02f 0090246e ad00 802400 00ff2f00")  # program 48, note 36, 12 beats later its end
-    with open(path("c2.mid"), "wb") as file:
+    track = bytes.fromhex("00ff510307a120 00c02f 0090%02x6e ad00 80%02x00 00ff2f00" % (note, note))  # 120 BPM, program 48, 12 beats later its end
+    with open(path("note.mid"), "wb") as file:
         file.write(b"MThd" + bytes.fromhex("00000006 0000 0001 01e0") + b"MTrk" + len(track).to_bytes(4, "big") + track)
-    subprocess.run(["fluidsynth", "-ni", "-R", "0", "-C", "0", "-g", "0.5", "-r", "44100", "-F", path("c2.wav"), soundfont, path("c2.mid")], check=True, capture_output=True)
-    found = json.loads(good("fit", path("c2.wav"), "-o", path("c2.txt"), "--json"))
+    subprocess.run(["fluidsynth", "-ni", "-R", "0", "-C", "0", "-g", "0.5", "-r", "44100", "-F", name, soundfont, path("note.mid")], check=True, capture_output=True)
+    return name
+
+
+def test_the_octave_of_a_recorded_c2_is_found():
+    """Its strongest partial is (1,1), at half the frequency of the drum that its higher partials suggest."""
+    found = json.loads(good("fit", soundfont_timpano(36), "-o", path("c2.txt"), "--json"))
     assert found["instrument"] == "timpano" and found["inches"] == 32 and abs(found["tune_hz"] / 65.41 - 1) < 0.03, found
     return "%.2f Hz" % found["tune_hz"]
+
+
+# (1,1), (2,1), (3,1) of a recorded timpano, read from its spectrum by another program
+RECORDED = {36: (64.33, 97.66, 131.0)}
+
+
+def test_a_recorded_timpano_becomes_a_list_that_sounds_so():
+    """Gallardo et al. 2020 find partials within 1.25 Hz. The recordings' hall rings 2.5 s, so the list has its poles as well."""
+    said = []
+    for note, partials in RECORDED.items():
+        found = json.loads(good("fit", soundfont_timpano(note), "-o", path("list.txt"), "--instrument", "modes", "--json"))["partials"]
+        off = [min(abs(p["hz"] - hz) for p in found) for hz in partials]
+        made = [p for p in found if "made_hz" in p and abs(p["made_hz"] - p["hz"]) < 1.25]
+        level = sum(abs(p["made_level_db"] - p["level_db"]) < 3 for p in made) / len(made)
+        decay = sum(abs(p["made_t60_s"] / p["t60_s"] - 1) < 0.15 for p in made) / len(made)
+        said.append("%d: partials %.2f Hz, %d of %d made, %.0f %% within 3 dB, %.0f %% of T60 within 15 %%" % (note, max(off), len(made), len(found), 100 * level, 100 * decay))
+        assert max(off) < 1.25 and len(made) >= 0.6 * len(found) and level > 0.9 and decay > 0.9, said
+    return said
 
 
 def test_what_is_written_plays():
@@ -217,6 +240,15 @@ def test_no_recording_is_written_over():
     assert not [name for name in os.listdir(folder.name) if name.startswith("cp")]
 
 
+def test_all_files_are_written_or_none():
+    """the drum's file is a folder, the one beside it would be written first"""
+    os.mkdir(path("taken.txt"))
+    for kind in ("modes", "timpano"):
+        done = himc("fit", write_wave("bar.wav", rings(BAR)), "-o", path("taken.txt"), "--instrument", kind)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1 and "taken.txt: cannot be written" in done.stderr, done.stderr
+        assert [name for name in os.listdir(folder.name) if name.startswith("taken")] == ["taken.txt"]
+
+
 def refused(name, samples, words):
     done = himc("fit", write_wave(name, samples), "-o", path("none.txt"))
     assert done.returncode == 1 and done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
@@ -231,6 +263,7 @@ def test_bad_recordings_are_refused():
     refused("short.wav", stroke[: RATE // 2], "0.30 s from the stroke on")
     refused("noisy.wav", [x + rng.gauss(0, 0.03) for x in stroke], "noise at")
     refused("noise.wav", [rng.gauss(0, 0.1) for _ in stroke], "as loud at its end")
+    refused("click.wav", [0.9 * (k == RATE // 2) for k in range(2 * RATE)], "no partial is clear of the noise")
     for bad in (math.nan, math.inf, -math.inf):
         refused("bad.wav", stroke[:50000] + [bad] + stroke[50001:], "bad.wav: frame 50000 is not a finite number")
     write_text("text.wav", "no sound")

@@ -17,6 +17,7 @@ HIMC = os.path.join(os.environ["HIMC_BUILD"], "bin/himc")
 SHARED = os.environ.get("HIMC_SHARED", "../shared")
 LONG = os.environ.get("HIMC_LONG")
 RATES = (60, 120, 250)
+HANDS = lesson_takes.HANDS
 FIRST_SEED = int(os.environ.get("HIMC_SEED", "0"))  # of takes that were never used for tuning
 folder = tempfile.TemporaryDirectory(prefix="himc-lesson-")
 
@@ -180,16 +181,62 @@ def test_the_model_itself_has_nothing_to_practise():
         assert abs(sum(shares) - 1) < 1e-3 and float(row["wrist_torque_n_m"]) > 0.01, row
 
 
-def test_strokes_of_many_rolls_are_none_too_many():
-    text = "tempo 140;\n" + "".join(
-        "".join(f"stroke {1 + 4 * i + k / 2} {('right', 'left')[k % 2]} legato mf;\n" for k in range(5)) + f"roll {3.5 + 4 * i} 1 single mf mf;\n"
-        for i in range(40))
-    subprocess.run([HIMC, "render", path("rolls.txt", text), "-o", path("own.wav"), "--set", f"record {path('rolls.bvh')}", "--quiet", "--rate", "8000"],
+def own_take(text):
+    """of the model, against the score that it has played"""
+    subprocess.run([HIMC, "render", path("own.txt", text), "-o", path("own.wav"), "--set", f"record {path('own.bvh')}", "--quiet", "--rate", "8000"],
                    check=True, capture_output=True)
-    told = json.loads(lesson(path("rolls.txt"), path("rolls.bvh"), "--json")[1])
-    assert told["matched"] == 200 and told["missing"] == 0 and told["extra"] <= 1, told
-    many = "".join(f"roll {i} 0.5 single mf mf;\n" for i in range(513))
-    refused("more than 512 rolls", path("many.txt", "stroke 600 left legato mf;\n" + many), path("rolls.bvh"))
+    return json.loads(lesson(path("own.txt"), path("own.bvh"), "--json")[1])
+
+
+def test_the_models_own_rolls_are_told_no_fault():
+    for between in (1, 2, 5):
+        closed = lesson_takes.rolls(between, 6)[0]
+        spaced = "tempo 140;\n" + "".join(  # a rest before and after each roll, and a roll at the end
+            "".join(f"stroke {1 + i * (3 + between / 2) + k / 2:g} {HANDS[k % 2]} legato mf;\n" for k in range(between))
+            + f"roll {1.5 + i * (3 + between / 2) + between / 2:g} 1 single mf mf;\n" for i in range(6))
+        for text in (closed, spaced):
+            told = own_take(text)
+            assert told["matched"] == told["asked"] and told["missing"] == told["extra"] == 0 and not told["faults"], (between, text, told)
+
+
+def test_faults_between_rolls_are_named():
+    unnamed, false, named = [], [], 0
+    for between in (1, 2, 5):
+        text, strokes = lesson_takes.rolls(between)
+        for fault in ("none", *lesson_takes.ROLLED):
+            for rate in RATES:
+                for seed in range(FIRST_SEED, FIRST_SEED + (6 if LONG else 1)):
+                    draw = lesson_takes.random.Random(f"{between} {fault} {rate} {seed}")
+                    strikes, planted = lesson_takes.plan_rolls(strokes, fault, draw)
+                    lesson_takes.write(path("take.csv"), strikes, rate, draw)
+                    status, out, err = lesson(path("rolls.txt", text), path("take.csv"), "--json", "--up", "z")
+                    assert status == 0, (between, fault, rate, seed, err)
+                    faults = json.loads(out)["faults"]
+                    named += fault != "none" and lesson_takes.is_named(planted, faults)
+                    if fault == "none" and faults or fault != "none" and not lesson_takes.is_named(planted, faults):
+                        (unnamed if fault != "none" else false).append((between, fault, rate, seed, planted, [f["what"] for f in faults[:3]]))
+    assert len(unnamed) <= 0.05 * (named + len(unnamed)) and len(false) <= 0.02 * (named + len(unnamed)) / 3, (unnamed, false)
+    return f"{named} named, unnamed {unnamed}, invented {false}"
+
+
+def test_a_flat_crescendo_is_told_so():
+    text = "tempo 100;\ncresc 1 23 p f;\n" + "".join(f"stroke {1 + i} {HANDS[i % 2]} legato -;\n" for i in range(24))
+    for rate in RATES:
+        for rise in (0, 10):
+            draw, strikes = lesson_takes.random.Random(f"{rate} {rise}"), {hand: [] for hand in HANDS}
+            for i in range(24):
+                level = 4 + rise * (i / 23 - 0.5) + draw.gauss(0, 0.9)
+                strikes[HANDS[i % 2]].append((1 + 0.6 * i + draw.gauss(0, 0.006), 1.6 * 10 ** (level / 20), lesson_takes.BASE["normal"] + draw.gauss(0, 0.007), 0.015 - 0.03 * (i % 2)))
+            lesson_takes.write(path("take.csv"), strikes, rate, draw)
+            faults = [f["what"] for f in json.loads(lesson(path("swell.txt", text), path("take.csv"), "--json", "--up", "z")[1])["faults"]]
+            assert faults == [] if rise else len(faults) == 1 and "Flat: no crescendo from beat 1 to 24" in faults[0], (rate, rise, faults)
+
+
+def test_a_score_far_longer_than_the_take_is_refused_before_it_is_played():
+    judged("none", 60, 0, 16)
+    text = "".join(f"stroke {1 + 2 * i} left legato mf;\nroll {2 + 2 * i} 0.5 single mf mf;\n" for i in range(512))
+    refused("16 strokes found, of 1024 strokes and rolls, expected half", path("long.txt", text), path("take.csv"))
+    refused("more than 512 rolls", path("many.txt", "".join(f"roll {i} 0.5 single mf mf;\n" for i in range(513))), path("take.csv"))
 
 
 def test_errors_are_one_line():
@@ -200,6 +247,9 @@ def test_errors_are_one_line():
     refused("no point has a stick tip's name", SCORE, path("nose.csv", "time,NOSE_x_m,NOSE_y_m,NOSE_z_m\n0,0,0,1\n0.01,0,0,1\n0.02,0,0,1\n"))
     other = "".join(f"stroke {1 + 0.37 * i * i:g} left legato mf;\n" for i in range(30))
     refused("does not match", path("other.txt", other), take)
+    os.remove(path("page.html"))
+    refused("folder/s.csv: cannot be written", SCORE, take, "--up", "z", "--csv", path("no folder/s.csv"))
+    assert not os.path.exists(path("page.html"))  # all files or none
     refused("expected a take", SCORE, SCORE)
     refused("expected a score", take, take)
     done = subprocess.run([HIMC, "lesson", SCORE, "-o", path("page.html")], capture_output=True, text=True)

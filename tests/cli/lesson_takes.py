@@ -120,6 +120,46 @@ def plan_short(strokes, fault, draw):
     return {hand: sorted(list_) for hand, list_ in strikes.items()}, planted
 
 
+def rolls(between, count=8):
+    """(text, strokes) of rolls of two beats with so many strokes between them; the first of these closes the roll before it."""
+    beat, strokes = 1.0, []
+    for i in range(count * between + 1):
+        strokes.append(dict(beat=beat, hand=HANDS[(i + 1) % 2], nuance="legato", spot="normal", run=False))
+        beat += 0.5
+        if i % between == between - 1 and i < count * between:
+            strokes.append(dict(beat=beat, roll=2))
+            beat += 2
+    return "tempo 112;\n" + "".join(f"roll {s['beat']:g} {s['roll']} single mf mf;\n" if "roll" in s else f"stroke {s['beat']:g} {s['hand']} legato mf;\n"
+                                    for s in strokes), strokes
+
+
+ROLLED = ("short roll", "roll", "missing")
+
+
+def plan_rolls(strokes, fault, draw):
+    """Strikes of a player whose tempo drifts by up to 5 %, and what has been planted; `missing` is a closing stroke."""
+    beat, start, length = 60 / 112 * draw.uniform(0.9, 1.1), draw.uniform(0.8, 2), strokes[-1]["beat"]
+    drift = draw.uniform(-0.016, 0.016) / length if fault != "steady" else 0
+    chosen = [s for k, s in enumerate(strokes) if ("roll" in s if "roll" in fault else "roll" in strokes[k - 1]) and 6 < s["beat"] < length - 4]
+    chosen = draw.choice(chosen)
+    strikes, planted = {hand: [] for hand in HANDS}, {"fault": fault, "beat": chosen["beat"]}
+
+    def strike(beats, late, hand, speed):
+        t = start + beat * beats * (1 + drift * beats) + late
+        x, y = BASE["normal"] + draw.gauss(0, 0.007), 0.015 if hand == "left" else -0.015
+        strikes[hand].append((t, speed * 10 ** (draw.gauss(0, 0.9) / 20), x, y + draw.gauss(0, 0.006)))
+
+    for s in strokes:
+        if "roll" in s:
+            count = int(s["roll"] * beat * draw.uniform(10, 12))
+            for k in range(count // 2 if s is chosen and fault == "short roll" else count):
+                uneven = 0.018 if s is chosen and fault == "roll" else 0.003
+                strike(s["beat"] + (k + 0.2) * s["roll"] / count, max(-0.03, min(0.03, draw.gauss(0, uneven))), HANDS[(k + 1) % 2], 2.6)
+        elif not (s is chosen and fault == "missing"):
+            strike(s["beat"], draw.gauss(0, 0.005), s["hand"], 2.9)
+    return {hand: sorted(list_) for hand, list_ in strikes.items()}, planted
+
+
 CONTACT, REBOUND = 0.006, 0.45  # (s), share of the speed
 
 
@@ -264,6 +304,8 @@ def is_named(planted, faults):
         if fault in ("single", "missing", "wait") and beat in what and kind == {"single": "time"}.get(fault, fault):
             return True
         if fault in ("roll", "extra", "skip") and kind == fault:
+            return True
+        if fault == "short roll" and kind == "roll" and "too short" in what:
             return True
         if fault == "pause" and kind == "wait" and beat in what and abs(effect - 2000) < 60:
             return True

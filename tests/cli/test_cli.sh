@@ -58,6 +58,7 @@ printf 'stroke 1 right legato mf;\nstroke 90000 left legato mf;\n' >endless.txt
 printf 'PathFileType\t4\t(X/Y/Z)\tcut.trc\nDataRate\tCameraRate\n' >cut.trc
 printf 'drum kettle;\nkettle shape /dev/zero;\n' >endless-shape.txt
 printf 'loop 1;\ntempo 200;\nstroke 0 right legato mf;\nstroke 1 left legato mf;\n' >round.txt
+sed 's/loop 1/loop 1;\nloop 0 4/' round.txt >beats.txt
 # two tips that are held still in the air: metres, y up
 awk 'BEGIN {
     print "PathFileType\t4\t(X/Y/Z)\tstill.trc"
@@ -275,6 +276,14 @@ refuses test_a_link_and_its_file_are_refused "link.csv: named twice" render piec
 ln -s piece.txt link.txt
 refuses test_score_is_not_overwritten_by_a_link "link.txt: named twice" render piece.txt -o x.wav --strokes link.txt
 refuses test_strokes_are_no_arrays "--strokes: a.npz, expected endings are .csv" render piece.txt -o x.wav --strokes a.npz
+printf 'loop 5 5;\n' >no-loop.txt
+refuses test_info_knows_an_empty_loop "no-loop.txt:1: loop: TO: 5 beats, expected 5.1 .. 1e+06 beats" info no-loop.txt
+refuses test_a_c3d_has_places "--columns: no places, expected in a .c3d some of targets,tips,elbows" \
+    render piece.txt -o o.wav --motion m.c3d --columns limits,torques
+refuses test_a_c3d_has_255_channels "--columns: 599 values beside places, expected up to 255 in a .c3d" \
+    render piece.txt -o o.wav --motion m.c3d --columns all
+"$himc" render piece.txt -o two.wav --motion m.c3d --columns tips >/dev/null
+check test_a_c3d_of_points_alone_is_read_again [ "$("$himc" info m.c3d | grep '^points')" = "points 2: left_tip right_tip" ]
 refuses test_motion_has_two_formats "--motion: a.npy, expected endings are .csv .npz .sto .mot .c3d" \
     render piece.txt -o x.wav --motion a.npy
 for option in "--trials 3" "--range 1-2" "--only legato" "--log x.csv"; do
@@ -459,7 +468,13 @@ check test_kinematic_body_plays_too [ "$(number played)" = 4 ]
 "$himc" render empty.txt -o two.wav >out
 check test_empty_score_is_silence [ "$(number strokes) $(number peak_force_n)" = "0 0" ]
 "$himc" render round.txt -o two.wav >out 2>err
-check test_a_loop_is_rendered_once_and_it_is_said [ "$(number played)$(grep -cx 'note: round.txt: loop: one round is rendered' err)" = 21 ]
+check test_a_loop_is_rendered_once_and_it_is_said [ "$(number played)$(grep -cx 'note: round.txt: loop: the score is rendered once' err)" = 21 ]
+# FROM 0 is no switch; --set loops, too, and ends a loop
+for set in "0 2" "1 2" 1 0; do
+    timeout 120 "$himc" render beats.txt --set "loop $set" -o two.wav >out 2>err
+    echo "$? $(number played) $(grep -cx 'note: beats.txt: loop: the score is rendered once' err)"
+done >loops
+check test_a_loop_of_beats_or_of_set_is_rendered_once [ "$(paste -sd, loops)" = "0 2 1,0 2 1,0 2 1,0 2 0" ]
 "$himc" render still.trc -o two.wav >out
 check test_percent_of_no_stroke_is_null [ "$(number strokes) $(number tip_rms_percent)" = "0 null" ]
 check test_error_of_a_take_without_strikes_is_a_number true_that "$(number tip_rms_mm) > 0"

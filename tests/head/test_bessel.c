@@ -43,6 +43,11 @@ static void test_bessel_first_zero_of_j0_has_all_its_digits(void)
     TEST_ASSERT_DOUBLE_WITHIN(5e-16, 3.831705970207512315614, himc_bessel_zero(1, 1));
 }
 
+static void test_bessel_first_zero_of_j1_is_the_constant(void)
+{
+    TEST_ASSERT_TRUE(himc_bessel_zero(1, 1) == HIMC_BESSEL_FIRST);
+}
+
 static void test_bessel_next_order_at_zeros_agrees_with_the_tables(void)
 {
     TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.5191474973, himc_bessel_j(1, himc_bessel_zero(0, 1)));
@@ -109,6 +114,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_bessel_zeros_agree_with_the_tables);
     RUN_TEST(test_bessel_first_zero_of_j0_has_all_its_digits);
+    RUN_TEST(test_bessel_first_zero_of_j1_is_the_constant);
     RUN_TEST(test_bessel_next_order_at_zeros_agrees_with_the_tables);
     RUN_TEST(test_bessel_zeros_of_high_orders_interlace_and_vanish);
     RUN_TEST(test_bessel_orders_agree_with_the_c_library);

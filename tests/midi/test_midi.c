@@ -456,6 +456,10 @@ static void test_slower_fewer_or_shared_strokes_and_drum_fills_are_no_rolls(void
     import(&b, NULL);
     TEST_ASSERT_EQUAL_INT(6, score->stroke_count);
     tearDown();
+    timpani(&b, (int[]){48, 48, 48, 48, 43, 48}, 6, 20, 10); // four 16ths and the next beat
+    import(&b, NULL);
+    TEST_ASSERT_EQUAL_INT(6, score->stroke_count);
+    tearDown();
     begin(&b);
     for (int i = 0; i < 6; i++)
         event(&b, 20, 0x99, 38, 90);
@@ -463,6 +467,81 @@ static void test_slower_fewer_or_shared_strokes_and_drum_fills_are_no_rolls(void
     import(&b, NULL);
     TEST_ASSERT_EQUAL_INT(6, score->stroke_count);
     TEST_ASSERT_NULL(strstr(made.report, "roll"));
+}
+
+// two or four 16ths on each of four drums at 80, 100 and 120 a minute: all are played, and no arm
+// crosses the other one over a drum, which bodies can not in that time
+static void test_16ths_over_four_drums_are_played_without_crossing(void)
+{
+    static const char *const order[] = {"low", "second", "third", "high"};
+    const int step[] = {36, 29, 24}, key[] = {43, 48, 50, 55};
+    for (int k = 0; k < 6; k++) {
+        builder b;
+        int keys[32], at[32] = {0};
+        for (int i = 0; i < 32; i++)
+            keys[i] = key[i / (k % 2 ? 2 : 4) % 4];
+        timpani(&b, keys, 32, step[k / 2], 10);
+        import(&b, NULL);
+        reported("32 of 32 notes for timpani are played");
+        TEST_ASSERT_EQUAL_INT(32, score->stroke_count);
+        for (int i = 0; i < 32; i++) {
+            const himc_stroke *s = &score->strokes[i];
+            for (int d = 0; d < 4; d++)
+                at[i] = strcmp(s->drum, order[d]) == 0 ? d : at[i];
+            bool other = i > 0 && s->hand != s[-1].hand;
+            int out = other ? at[i] - at[i - 1] : 0; // to the right
+            TEST_ASSERT_TRUE_MESSAGE(s->hand == HIMC_LEFT ? out <= 0 : out >= 0, hands());
+        }
+        TEST_ASSERT_NOT_NULL(strstr(hands(), "RLR")); // not hand for hand a drum
+        tearDown();
+    }
+}
+
+// up to the stroke on another drum, which comes where no hand could leave the file's own strokes
+static void test_a_roll_goes_on_to_a_stroke_on_another_drum(void)
+{
+    const int steps[] = {20, 12}; // 9.6, 16 a second
+    for (int k = 0; k < 2; k++) {
+        builder b;
+        int keys[33];
+        for (int i = 0; i < 33; i++)
+            keys[i] = i < 32 ? 48 : 43;
+        timpani(&b, keys, 33, steps[k], 10);
+        import(&b, NULL);
+        reported("33 of 33 notes for timpani are played");
+        TEST_ASSERT_EQUAL_INT_MESSAGE(2, score->stroke_count, made.text);
+        TEST_ASSERT_EQUAL_INT(HIMC_ROLL_SINGLE, score->strokes[0].ornament);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, 32.0 * steps[k] / QUARTER, score->strokes[0].length);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, score->strokes[0].beat + score->strokes[0].length,
+                                  score->strokes[1].beat);
+        tearDown();
+    }
+}
+
+// as programs write a tremolo of a chord
+static void test_fast_strokes_of_two_drums_at_the_same_times_are_a_roll_on_both(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xc0, 47);
+    for (int i = 0; i < 16; i++) {
+        event(&b, i ? 6 : 0, 0x90, 43, 80);
+        event(&b, 0, 0x90, 48, 80);
+        event(&b, 6, 0x80, 43, 0);
+        event(&b, 0, 0x80, 48, 0);
+    }
+    end(&b);
+    import(&b, NULL);
+    reported("32 of 32 notes for timpani are played");
+    reported("32 notes are played as 2 rolls");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(2, score->stroke_count, made.text);
+    const himc_stroke *s = score->strokes;
+    TEST_ASSERT_TRUE(strcmp(s[0].drum, s[1].drum) != 0);
+    for (int i = 0; i < 2; i++) {
+        TEST_ASSERT_EQUAL_INT(HIMC_ROLL_SINGLE, s[i].ornament);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, s[0].beat, s[i].beat);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-4, 2, s[i].length);
+    }
 }
 
 static void test_two_drums_in_the_middle_are_played_by_sides(void)
@@ -926,6 +1005,9 @@ int main(void)
     RUN_TEST(test_one_drum_is_played_hand_by_hand);
     RUN_TEST(test_fast_repeats_of_a_timpano_are_rolls);
     RUN_TEST(test_slower_fewer_or_shared_strokes_and_drum_fills_are_no_rolls);
+    RUN_TEST(test_16ths_over_four_drums_are_played_without_crossing);
+    RUN_TEST(test_a_roll_goes_on_to_a_stroke_on_another_drum);
+    RUN_TEST(test_fast_strokes_of_two_drums_at_the_same_times_are_a_roll_on_both);
     RUN_TEST(test_two_drums_in_the_middle_are_played_by_sides);
     RUN_TEST(test_outer_drums_are_played_by_the_hand_of_their_side);
     RUN_TEST(test_what_two_hands_cannot_play_is_reported);

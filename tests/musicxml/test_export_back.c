@@ -142,7 +142,7 @@ static void test_pedals_come_back_as_words(void)
     parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
           "stroke 0 right legato f low; stroke 1 left legato f second; at 4 low tune E2;"
           "stroke 8 right legato f low; at 9 second muffle 1; stroke 12 left legato f second;");
-    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>D muta in E</words>"));
+    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>D2 muta in E2</words>"));
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>coperto</words>"));
     midi_score made;
     TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
@@ -243,7 +243,7 @@ static void test_a_gliss_comes_back_as_a_gliss(void)
           "roll 12 2 single f low;"
           "at 4 low gliss E2 2; at 9 low gliss D2 1; at 9 second gliss B2 .5;"
           "at 12 low gliss F2 1.5;");
-    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>gliss. D to E</words>"));
+    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>gliss. D2 to E2</words>"));
     midi_score made;
     TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
     for (int i = 0; i < 4; i++)
@@ -254,6 +254,162 @@ static void test_a_gliss_comes_back_as_a_gliss(void)
     expect_same("gliss");
 }
 
+// also beyond a drum's usual pitches, and where two drums have one pitch
+static void test_a_gliss_keeps_its_octave_and_its_drum(void)
+{
+    static const char *const lines[] = {"low gliss D3 1;", "low gliss C3 1;", "third gliss G3 1;"};
+    parse("drum low 32; low tune C3; drum third 26; third tune C3; tempo 60;"
+          "stroke 0 left legato f low; stroke 1 right legato f third; at 2 low gliss D3 1;"
+          "stroke 4 left legato f low; stroke 5 right legato f third; at 6 low gliss C3 1;"
+          "stroke 8 left legato f low; at 9 third gliss G3 1; stroke 12 right legato f third;");
+    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>gliss. third C3 to G3</words>"));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    for (int i = 0; i < 3; i++)
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, lines[i]), made.text);
+    himc_midi_score_free(&made);
+    read_back(himc_music_import);
+    expect_same("gliss");
+    for (int i = 0; i < count; i++)
+        TEST_ASSERT_EQUAL_STRING(score->strokes[i].drum, back[i].drum);
+}
+
+static void test_what_notation_does_not_have_is_told_once_with_its_first_bar(void)
+{
+    parse("drum kettle; kettle tune 110.5; kettle place 0.5 0 0.8; kettle decay 3; tempo 60;"
+          "stroke 1 right legato f dead kettle; stroke 9 left legato f dead kettle;"
+          "stroke 10 right legato f 0.1 0.1 kettle; roll 12 2 press p kettle;"
+          "at 20 kettle decay 2; at 24 kettle decay 1; at 28 push trunk 10 0 0 0.1;"
+          "hit right legato f; stroke 30 left legato f kettle;");
+    TEST_ASSERT_EQUAL_STRING("1 place (bar 3) is written as the usual spot\n"
+                             "2 dead strokes (bar 1) are written as usual\n"
+                             "1 press roll (bar 4) is written as single strokes\n"
+                             "1 tuning (bar 1) is written to the semitone\n"
+                             "1 change by push (bar 8) is not written\n"
+                             "2 changes by decay (bar 6) are not written\n"
+                             "before the piece, not written: hit 1, decay 1, place 1\n",
+                             notes.said);
+}
+
+static void test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have(void)
+{
+    score =
+        himc_score_parse("drum low; stroke 0 right accent f low; stroke 5 left legato f rim low;"
+                         "at 9 low gliss E3 1; stroke 12 left legato f low; at 13 low muffle 1;",
+                         "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_EQUAL_STRING("1 spot (bar 2) is not written: the instrument has no sign for it\n"
+                             "1 nuance (bar 1) is not written\n"
+                             "1 change by gliss (bar 3) is not written\n"
+                             "1 change by muffle (bar 4) is not written\n",
+                             notes.said);
+}
+
+// a stroke rings unless a hand damps it, also after a bar's end and where its note is short
+static void test_what_rings_and_what_a_hand_damps_come_back(void)
+{
+    parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
+          "stroke 0 left legato f low; stroke 1 right legato f second; at 2.5 second damp 1;"
+          "at 3 second damp 0; stroke 5 right legato f second; stroke 7 left legato f low;"
+          "at 9.5 low damp 1; at 10 low damp 0; roll 12 2 single p f low; at 14 low damp 1;"
+          "stroke 20 left legato f low; stroke 28 right legato f second;");
+    TEST_ASSERT_NULL_MESSAGE(notes.said, notes.said);
+    static const char *const lines[] = {"second damp 1;", "low damp 1;", "low damp 1;"};
+    static const double beats[] = {2.5, 9.5, 14};
+    midi_score made;
+    double lead = 0;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    sscanf(strstr(made.text, "beat 0 of the file"), "beat 0 of the file is beat %lf", &lead);
+    const char *at = made.text;
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_NOT_NULL_MESSAGE(at = strstr(at, "damp 1;"), made.text);
+        const char *line = at;
+        while (line[-1] != '\n')
+            line--;
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(line, lines[i]), line);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-3, beats[i], atof(line + 3) - lead);
+        at++;
+    }
+    TEST_ASSERT_NULL_MESSAGE(strstr(at, "damp 1;"), at);
+    himc_midi_score_free(&made);
+    read_back(himc_music_import);
+    expect_same("damped");
+}
+
+static void test_midi_has_what_rings_and_what_a_hand_damps(void)
+{
+    score = himc_score_parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
+                             "stroke 0 left legato f low; stroke 1 right legato f second;"
+                             "at 2.5 second damp 1; at 3 second damp 0;"
+                             "stroke 5 right legato f second; stroke 9 left legato f low;"
+                             "stroke 12 right legato f second;",
+                             "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_NULL_MESSAGE(notes.said, notes.said);
+    TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_midi_import(&made, text.bytes, text.size, "back", NULL, &error));
+    const char *at = strstr(made.text, "at 3.5 second damp 1;"); // after a beat of its own
+    TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
+    TEST_ASSERT_EQUAL_PTR(strstr(made.text, "damp 1;"), strstr(at, "damp 1;"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(strstr(at, "1;"), "damp 1;"), made.text);
+    himc_midi_score_free(&made);
+}
+
+static void test_more_bars_than_are_read_are_refused(void)
+{
+    score = himc_score_parse("drum kettle; stroke 0 right legato f; stroke 80000 left legato f;",
+                             "words", NULL, &error);
+    TEST_ASSERT_FALSE(himc_music_notes(&notes, score, false, &error));
+    TEST_ASSERT_EQUAL_STRING("it ends in bar 20001, expected up to 20000 bars of MusicXML",
+                             error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+}
+
+static void test_the_last_bar_that_is_read_is_written(void)
+{
+    parse("drum kettle; tempo 1000; stroke 1 right legato f; stroke 79999 left legato f;");
+    read_part(himc_music_import, MIDI_TIMPANI);
+    TEST_ASSERT_EQUAL(2, count);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 79999, back[1].beat);
+}
+
+// a time between two events has four bytes in MIDI
+static void test_midi_keeps_a_rest_of_any_length(void)
+{
+    score = himc_score_parse("drum kettle; tempo 1000; stroke 1 right legato f;"
+                             "stroke 279625 left legato f; stroke 990000 left legato f;",
+                             "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+    midi_file file;
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, text.bytes, text.size, &error), error.text);
+    TEST_ASSERT_EQUAL(3, file.note_count);
+    for (int i = 0; i < file.note_count; i++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, score->strokes[i].beat, file.notes[i].beat);
+    himc_midi_file_free(&file);
+}
+
+static void test_a_tempo_slower_than_midi_has_is_refused(void)
+{
+    score = himc_score_parse("drum kettle; tempo 90; tempo 1.6 4; stroke 1 right legato f;",
+                             "words", NULL, &error);
+    TEST_ASSERT_FALSE(himc_music_notes(&notes, score, true, &error));
+    TEST_ASSERT_EQUAL_STRING("tempo 1.6 at beat 4, expected 3.576 beats per minute or more in MIDI",
+                             error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, false, &error), error.text);
+}
+
+// all parts have the bars of the longest, and the first has all tempi
+static void test_a_tempo_after_the_end_of_a_part_is_written(void)
+{
+    parse("drum kettle; instrument tom tom; tempo 60; tempo 120 40; stroke 0 right legato f kettle;"
+          "stroke 30 right legato f tom; stroke 50 left legato f tom;");
+    TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<sound tempo=\"120\"/>"));
+    read_back(himc_music_import);
+    expect_same("two parts");
+}
+
 static void test_strokes_on_hoop_and_shell_come_back(void)
 {
     parse(
@@ -261,7 +417,7 @@ static void test_strokes_on_hoop_and_shell_come_back(void)
         "stroke 2.5 right legato mf snare; stroke 3 left legato mf click snare;"
         "stroke 4 right legato mf shell tom; stroke 4 foot legato mf kick;"
         "stroke 5 right legato f rimshot tom; stroke 6 left legato f snare;");
-    TEST_ASSERT_NULL(notes.said);
+    TEST_ASSERT_EQUAL_STRING("before the piece, not written: place 8\n", notes.said);
     read_back(himc_music_import);
     TEST_ASSERT_EQUAL(score->stroke_count, count);
     for (int i = 0; i < count; i++) {
@@ -279,7 +435,8 @@ static void test_spots_without_a_key_are_told_and_come_back_normal(void)
     parse(
         "setup kit; stroke 1 left legato mf rim snare; stroke 2 left legato mf crossstick snare;"
         "stroke 3 left legato mf rimshot tom; drum kettle; stroke 5 left legato mf click kettle;");
-    TEST_ASSERT_EQUAL_STRING("2 spots are not written: the instrument has no key for it\n",
+    TEST_ASSERT_EQUAL_STRING("2 spots (bar 1) are not written: the instrument has no sign for it\n"
+                             "before the piece, not written: place 8\n",
                              notes.said);
     read_back(himc_music_import);
     TEST_ASSERT_EQUAL(4, count);
@@ -320,6 +477,16 @@ int main(void)
     RUN_TEST(test_a_roll_is_a_roll_after_midi);
     RUN_TEST(test_hats_stay_closed_and_a_foot_s_stroke_stays_the_foot_s);
     RUN_TEST(test_a_gliss_comes_back_as_a_gliss);
+    RUN_TEST(test_a_gliss_keeps_its_octave_and_its_drum);
+    RUN_TEST(test_what_notation_does_not_have_is_told_once_with_its_first_bar);
+    RUN_TEST(test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have);
+    RUN_TEST(test_what_rings_and_what_a_hand_damps_come_back);
+    RUN_TEST(test_midi_has_what_rings_and_what_a_hand_damps);
+    RUN_TEST(test_more_bars_than_are_read_are_refused);
+    RUN_TEST(test_the_last_bar_that_is_read_is_written);
+    RUN_TEST(test_midi_keeps_a_rest_of_any_length);
+    RUN_TEST(test_a_tempo_slower_than_midi_has_is_refused);
+    RUN_TEST(test_a_tempo_after_the_end_of_a_part_is_written);
     RUN_TEST(test_strokes_on_hoop_and_shell_come_back);
     RUN_TEST(test_spots_without_a_key_are_told_and_come_back_normal);
     RUN_TEST(test_a_timbale_is_a_drum_also_under_another_name);

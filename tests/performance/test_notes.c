@@ -378,25 +378,16 @@ static void test_a_gliss_takes_its_beats(void)
     himc_performance_free(p);
 }
 
-typedef struct value {
-    const char *what;
-    char line[256];
-} value;
-
-static void find_value(void *user, const char *line)
+static void keep_line(void *user, const char *line)
 {
-    value *v = user;
-    size_t n = strlen(v->what);
-    if (strncmp(line, v->what, n) == 0 && line[n] == ' ')
-        snprintf(v->line, sizeof v->line, "%s", line);
+    snprintf(user, 256, "%s", line);
 }
 
 static const char *get(himc_performance *p, const char *what)
 {
-    static value v;
-    v = (value){.what = what};
-    himc_performance_describe(p, HIMC_DESCRIBE_VALUES, find_value, &v);
-    return v.line;
+    static char line[256];
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_get(p, what, keep_line, line, &error), error.text);
+    return line;
 }
 
 static void test_every_setting_can_be_asked_for_and_answers_what_was_set(void)

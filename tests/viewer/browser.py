@@ -4,15 +4,45 @@ import base64
 import json
 import os
 import shutil
+import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 import urllib.error
 import urllib.request
 
 
+signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # a test that is ended ends its browser
+
+
+def stop(process, home):
+    """Ends it, in the end by force, and every process that was given the folder `home`."""
+    process.terminate()
+    try:
+        process.wait(20)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+    for one in os.listdir("/proc"):
+        try:
+            with open(f"/proc/{one}/cmdline", "rb") as file:
+                left = one.isdigit() and home.encode() in file.read()
+            if left:
+                os.kill(int(one), signal.SIGKILL)
+        except OSError:
+            pass
+    shutil.rmtree(home, ignore_errors=True)
+
+
+PATIENCE = 120  # (s) until a page is there, or what a test waits for; chosen: ten times what the slowest needed
+SCRIPT = 300  # (s) for one script
+
+
 class Browser:
+    patience = SCRIPT
+
     def __init__(self, width=1280, height=720, more=()):
         self.home = tempfile.mkdtemp(prefix="himc-chromium-")
         self.driver = subprocess.Popen(
@@ -50,7 +80,12 @@ class Browser:
             },
         )
         self.session = "/session/" + answer["sessionId"]
-        self.call("POST", self.session + "/timeouts", {"script": 3000000})
+        self.be_patient(SCRIPT)
+
+    def be_patient(self, seconds):
+        """How long a script may take."""
+        self.patience = seconds
+        self.call("POST", self.session + "/timeouts", {"script": 1000 * seconds, "pageLoad": 1000 * PATIENCE})
 
     def call(self, method, path, body=None):
         data = None if body is None else json.dumps(body).encode()
@@ -58,7 +93,7 @@ class Browser:
             self.url + path, data, {"Content-Type": "application/json"}, method=method
         )
         try:
-            with urllib.request.urlopen(request, timeout=3000) as answer:
+            with urllib.request.urlopen(request, timeout=self.patience + 30) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"]) from None
@@ -71,7 +106,7 @@ class Browser:
             "POST", self.session + "/execute/sync", {"script": script, "args": list(args)}
         )
 
-    def wait(self, script, seconds=300):
+    def wait(self, script, seconds=PATIENCE):
         """The first true answer of `script`; the last answer if none is true within `seconds`."""
         end = time.time() + seconds
         while True:
@@ -121,13 +156,12 @@ class Browser:
             file.write(base64.b64decode(self.call("GET", self.session + "/screenshot")))
 
     def close(self):
+        self.patience = 0  # it may hang
         try:
             self.call("DELETE", self.session)
         except (OSError, RuntimeError):
             pass
-        self.driver.terminate()
-        self.driver.wait(300)
-        shutil.rmtree(self.home, ignore_errors=True)
+        stop(self.driver, self.home)
 
 
 class Firefox(Browser):
@@ -149,10 +183,10 @@ class Firefox(Browser):
                 raise RuntimeError("Firefox does not start")
             time.sleep(0.1)
         with open(port) as file:
-            self.socket = socket.create_connection(("127.0.0.1", int(file.read())), 3000)
+            self.socket = socket.create_connection(("127.0.0.1", int(file.read())), SCRIPT + 30)
         self.stream, self.number = self.socket.makefile("rb"), 0
         self.answer()  # who it is
-        self.ask("WebDriver:NewSession", {"capabilities": {"alwaysMatch": {"timeouts": {"script": 3000000}}}})
+        self.ask("WebDriver:NewSession", {"capabilities": {"alwaysMatch": {"timeouts": {"script": 1000 * SCRIPT, "pageLoad": 1000 * PATIENCE}}}})
 
     def answer(self):
         size = b""
@@ -180,10 +214,10 @@ class Firefox(Browser):
             file.write(base64.b64decode(self.ask("WebDriver:TakeScreenshot", {"full": False})["value"]))
 
     def close(self):
+        self.socket.settimeout(30)
         try:
             self.ask("Marionette:Quit", {"flags": ["eForceQuit"]})
         except (OSError, RuntimeError):
             pass
         self.socket.close()
-        self.driver.wait(300)
-        shutil.rmtree(self.home, ignore_errors=True)
+        stop(self.driver, self.home)

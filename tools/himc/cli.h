@@ -85,7 +85,10 @@ bool cli_file_close(cli_file *file, himc_error *error);
 bool cli_file_keep(cli_file *file, himc_error *error);
 /// Closes the file and removes it unless it was kept. Safe in any state, also all zero.
 void cli_file_drop(cli_file *file);
-/// A whole file: `write` puts `from` into it. Does nothing without a path.
+/// A whole file, not kept yet: `write` puts `from` into it. Does nothing without a path.
+bool cli_draft(cli_file *file, const char *path, void (*write)(const void *from, FILE *out),
+               const void *from, himc_error *error);
+/// The same, kept.
 bool cli_write(const char *path, void (*write)(const void *from, FILE *out), const void *from,
                himc_error *error);
 /// True if the name stands for the standard input or output.

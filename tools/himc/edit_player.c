@@ -59,11 +59,15 @@ static bool load(edit_player *p, const char *text, const char *record, himc_erro
 {
     himc_performance_config config = himc_performance_default();
     himc_score *score = himc_score_parse(text, p->name, NULL, error);
-    bool drums = score && cli_first_drum(score);
+    bool drums = score && (p->spare || cli_first_drum(score));
+    himc_drum *made;
     himc_score_free(score);
     p->performance = score ? himc_performance_new(&config, error) : NULL;
     if (!p->performance)
         return false;
+    for (int i = 0; p->spare && (made = himc_performance_drum(p->spare, i)); i++)
+        if (!himc_performance_add_drum(p->performance, made, error))
+            return false;
     himc_performance_make_drums(p->performance, true);
     himc_performance_take_options(p->performance, p->options);
     return (drums || cli_add_drum(p->performance, EDIT_RATE, error)) &&
@@ -76,7 +80,7 @@ static bool load(edit_player *p, const char *text, const char *record, himc_erro
 bool edit_player_exchange(edit_player *p, const char *text, bool *late, himc_error *error)
 {
     double time = (double)p->ending.samples / EDIT_RATE;
-    edit_player fresh = {.name = p->name, .options = p->options};
+    edit_player fresh = {.name = p->name, .options = p->options, .spare = p->spare};
     bool good = load(&fresh, text, NULL, error);
     *late = good && !himc_performance_exchange_strokes(p->performance, fresh.performance);
     himc_performance_free(fresh.performance);
@@ -88,8 +92,10 @@ bool edit_player_exchange(edit_player *p, const char *text, bool *late, himc_err
 bool edit_player_begin(edit_player *p, const char *text, const char *record, himc_error *error)
 {
     double start = 0;
-    if (!load(p, text, record, error))
+    edit_player spare = *p;
+    if ((!record && !load(&spare, text, NULL, error)) || !load(p, text, record, error))
         return false;
+    p->spare = record ? NULL : spare.performance;
     edit_player_put(p, "from", &start, sizeof start);
     scene_record_config config = {.performance = p->performance,
                                   .stream = p->to,
@@ -118,5 +124,6 @@ bool edit_player_end(edit_player *p, himc_error *error)
     fflush(p->to); // which ends a process if nobody wants the recording any more
     bool good = himc_performance_end_recording(p->performance, error);
     himc_performance_free(p->performance);
+    himc_performance_free(p->spare);
     return good;
 }

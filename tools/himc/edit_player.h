@@ -16,6 +16,8 @@ typedef struct edit_player {
     himc_performance *performance;    ///< owned
     scene_record *record;             ///< owned
     cli_ending ending;
+    himc_performance
+        *spare; ///< owned; the piece once more, whose drums a changed text is read with
 } edit_player;
 
 /// A frame.

@@ -252,8 +252,9 @@ const cli_call cli_export = {
     " -o FILE",
     "writes a score as MusicXML or MIDI, or body and drums as a model of MuJoCo (MJCF)",
     "-o F.musicxml, F.mid: the strokes of a score as a part to print; what notation does not\n"
-    "have is counted on stderr. `himc import` reads it back: a pedal is \"C muta in D\", sticking\n"
-    "a fingering, dynamics are steps; MIDI keeps times, pitches and velocities.\n"
+    "have is counted on stderr. `himc import` reads it back: a pedal is \"C3 muta in D3\", a hand\n"
+    "on the head \"secco\", sticking a fingering, dynamics are steps; MIDI keeps times, pitches and\n"
+    "velocities.\n"
     "-o F.xml: player and drums of a score or a take; without it the usual ones. Segments have\n"
     "their masses, centres and inertias and ball joints; all geoms are for looking and touch\n"
     "nothing. Sites are at the sticks' tips, the key frame `rest` is the posture before a stroke.\n"

@@ -111,15 +111,22 @@ void cli_file_drop(cli_file *file)
     forget(file->temp);
 }
 
+bool cli_draft(cli_file *file, const char *path, void (*write)(const void *, FILE *),
+               const void *from, himc_error *error)
+{
+    if (!path)
+        return true;
+    if (!cli_file_open(file, path, error))
+        return false;
+    write(from, file->stream);
+    return cli_file_close(file, error);
+}
+
 bool cli_write(const char *path, void (*write)(const void *, FILE *), const void *from,
                himc_error *error)
 {
     cli_file file = {0};
-    bool good = !path || cli_file_open(&file, path, error);
-    if (path && good) {
-        write(from, file.stream);
-        good = cli_file_close(&file, error) && cli_file_keep(&file, error);
-    }
+    bool good = cli_draft(&file, path, write, from, error) && cli_file_keep(&file, error);
     cli_file_drop(&file);
     return good;
 }

@@ -8,6 +8,7 @@
 #include "fit_list.h"
 #include "himc/drum.h"
 
+#include "base/order.h"
 #include "base/text.h"
 #include "system/files.h"
 
@@ -16,7 +17,7 @@
 #include <string.h>
 
 #define RADIUS_PER_INCH 0.0127 // (m) half an inch
-#define ROWS 24                // of the report
+#define ROWS 60                // of the report; as many as a list has modes
 #define HIGHEST 1200.0         // (Hz) of a timpano
 #define SECONDS 4.0            // of the blow that is set beside the recording
 #define NEAR 0.015             // per frequency: the same partial
@@ -47,6 +48,7 @@ typedef struct fit {
     bool list;
     char name[HIMC_NAME_SIZE];
     char head[HIMC_PATH_SIZE], modes[HIMC_PATH_SIZE]; // files beside the drum's; one is written
+    cli_file file, second_file;                       // the drum's, and that one
 } fit;
 
 // the name of the drum: the file's without folder, ending and what a drum's name cannot have
@@ -95,7 +97,8 @@ static bool write_drum(fit *f, const char *path, himc_error *error)
         "tempo 60;\nstroke 1 right legato %s;\n",
         f->name, d->inches, f->name, d->constant, d->square, f->name, d->tune, f->name,
         fit_mallets[d->mallet], fit_dynamics[d->dynamic]);
-    return cli_write(f->head, put, head, error) && cli_write(path, put, text, error);
+    return cli_draft(&f->second_file, f->head, put, head, error) &&
+           cli_draft(&f->file, path, put, text, error);
 }
 
 // names the list by its whole path: files in a score are looked for where the program runs
@@ -103,29 +106,33 @@ static bool write_list(fit *f, const char *path, himc_error *error)
 {
     char text[3 * HIMC_PATH_SIZE];
     himc_state_line line = himc_state_begin("instrument");
-    if (!fit_list(&f->sound, &f->found, f->modes, error))
+    if (!fit_list(&f->sound, &f->found, f->modes, &f->second_file, error))
         return false;
-    char *whole = himc_system_real_path(f->modes);
-    if (!whole || strlen(whole) >= HIMC_PATH_SIZE || strpbrk(whole, "\n\r\v\f")) {
+    // it is not there yet: its draft is, whose name goes on
+    const cli_file *file = &f->second_file;
+    char *whole = himc_system_real_path(file->temp);
+    size_t length = whole ? strlen(whole) + strlen(file->path) - strlen(file->temp) : 0;
+    if (!whole || length >= HIMC_PATH_SIZE || strpbrk(whole, "\n\r\v\f")) {
         free(whole);
         return himc_error_set(error, "%s: expected a path of up to %d characters without line ends",
                               f->modes, HIMC_PATH_SIZE - 1);
     }
+    whole[length] = '\0';
     himc_state_word(&line, f->name);
     himc_state_word(&line, "modes");
     himc_state_word(&line, whole);
     free(whole);
     snprintf(text, sizeof text,
              "comment made by himc fit;\n%s;\ntempo 60;\nstroke 1 right legato mf;\n", line.text);
-    return cli_write(path, put, text, error);
+    return cli_draft(&f->file, path, put, text, error);
 }
 
 static bool hear_again(fit *f, himc_error *error)
 {
     const fit_drum *d = &f->drum;
     double rate = f->sound.rate < 16000 ? 48000 : f->sound.rate;
-    himc_drum *drum =
-        f->list ? fit_list_drum(f->modes, rate, error) : fit_drum_make(d, d->mallet, rate, error);
+    himc_drum *drum = f->list ? fit_list_drum(&f->second_file, rate, error)
+                              : fit_drum_make(d, d->mallet, rate, error);
     double x = f->list ? 0 : -FIT_PLACE * RADIUS_PER_INCH * d->inches;
     bool good =
         drum && fit_hear(drum, x, fit_speeds[f->list ? 2 : d->dynamic], SECONDS, &f->again, error);
@@ -144,11 +151,7 @@ static bool find_drum(fit *f, const char *kind, himc_error *error)
         return false;
     if (kind || (f->drum.score > LEAST_SCORE && f->drum.distance < MOST_APART))
         return fit_drum_second(&f->drum, &f->spectrum, &f->second, &f->two, error);
-    f->list = partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
-    if (f->list)
-        cli_say(
-            "note: no timpano found: a list of modes (--instrument timpano makes the nearest)\n");
-    return f->list;
+    return f->list = partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
 }
 
 static bool work(fit *f, const cli_arguments *a, himc_error *error)
@@ -173,7 +176,13 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
     name_drum(out, f->name, sizeof f->name);
     if (!f->list && !find_drum(f, kind, error))
         return false;
-    return (f->list ? write_list : write_drum)(f, out, error) && hear_again(f, error);
+    if (!(f->list ? write_list : write_drum)(f, out, error) || !hear_again(f, error) ||
+        !cli_file_keep(&f->second_file, error) || !cli_file_keep(&f->file, error))
+        return false;
+    if (f->list && !kind)
+        cli_say(
+            "note: no timpano found: a list of modes (--instrument timpano makes the nearest)\n");
+    return true;
 }
 
 // two mallets whose blows are as near, beside how near they are, are not told apart
@@ -242,15 +251,15 @@ static void report_drum(const fit *f, bool json)
 static void report(const fit *f, bool json)
 {
     int row[ROWS], count = rows(f, row);
-    double strongest = -INFINITY, louder = 0; // the made ones, in the mean
+    double strongest = -INFINITY, louder[ROWS] = {0}; // the made ones; the middle one is set aside
     int pairs = 0;
     for (int i = 0; i < count; i++) {
         const partial *p = &f->found.row[row[i]], *q = nearest(f, p);
         strongest = fmax(strongest, p->level);
-        louder += q ? q->level - p->level : 0;
-        pairs += q != NULL;
+        if (q)
+            louder[pairs++] = q->level - p->level;
     }
-    louder /= pairs ? pairs : 1;
+    qsort(louder, (size_t)pairs, sizeof *louder, himc_order_doubles);
     printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n", f->list ? "modes" : "timpano");
     if (!f->list)
         report_drum(f, json);
@@ -271,7 +280,7 @@ static void report(const fit *f, bool json)
         if (q)
             printf(json ? ", \"made_hz\": %.3f, \"made_t60_s\": %.4f, \"made_level_db\": %.2f"
                         : "      %9.2f %6.2f %6.1f",
-                   q->frequency, q->t60, q->level - louder - strongest);
+                   q->frequency, q->t60, q->level - louder[pairs / 2] - strongest);
         puts(json ? "}" : "");
     }
     if (json)
@@ -285,6 +294,8 @@ static int run(const cli_arguments *arguments)
     bool good = work(&f, arguments, &error);
     if (good)
         report(&f, arguments->value[JSON]);
+    cli_file_drop(&f.file);
+    cli_file_drop(&f.second_file);
     partials_sound_free(&f.sound);
     partials_sound_free(&f.again);
     return good ? cli_finish(&cli_fit) : cli_fail(&cli_fit, "%s", error.text);

@@ -4,9 +4,10 @@
 /// The air over the head makes the ratios of (1,1) .. (6,1) depend on the drum's size at a pitch: a
 /// size more is 1 % of (2,1), 1.5 % of (3,1), 2 % of (4,1), and a partial is found within a tenth
 /// of that. So the size whose own modes fit best is the drum's; all of its partials tune it. What
-/// the air takes follows from both; the losses S0 and S1 are the rest, by least squares over the
-/// decays in narrow bands around the drum's own modes (partials_ring). A partial that rings no
-/// longer than the room is not used: the room would hold it up.
+/// the air takes follows from both; the losses S0 and S1 are the rest. A room blurs each partial,
+/// so the last 0.1 % of the tuning and the losses are those at which all of the drum's pairs are
+/// likeliest together, late, in narrow bands (partials_likely). A pair that rings no longer than
+/// the room is not used: the room would hold it up.
 #include "fit_drum.h"
 
 #include <math.h>
@@ -47,9 +48,16 @@ static const struct {
 #define OUTSIDE 30.0 // an octave beyond them is less likely by so much (dB)
 
 #define USUAL_WITHIN 0.35 // chosen
-#define SUREST 0.04       // of a decay, relative; chosen: beats of a pair that stay unresolved
-#define LONGER 1.3        // a partial rings longer than the room by this, or its decay is not used
-#define HELD 1.8 // found at less of the room's decay time it is the room's; chosen: 20 drums
+#define LONGER 1.3        // a pair rings longer than the room by this, or it is not used
+#define PAIRS (FIT_ORDERS + 4)
+#define FINE 40            // tunings tried either way ...
+#define FINE_STEP 0.0001   // ... per frequency
+#define TUNED_WITHIN 0.001 // by `refine`
+#define SUREST 0.05        // (ln) of a decay; chosen: beats of a pair that stay unresolved
+#define DECAYS_TRIED 49
+#define DECAY_STEP 0.05 // (ln)
+#define LOSSES_MOST 3.0 // in units of the usual ones
+#define LOSSES_STEP 0.025
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
 static const fit_mode *member(const fit_mode *modes, int count, int k)
@@ -77,10 +85,9 @@ static double strongest(const partials_list *partials)
 }
 
 // the same, less for what is softer than the strongest
-static double weight(const partials_list *partials, int i)
+static double weight(const partial *p, double loudest)
 {
-    const partial *p = &partials->row[i];
-    return worth(p) * fmax(0, 1 + (p->energy - strongest(partials)) / LOUD);
+    return worth(p) * fmax(0, 1 + (p->energy - loudest) / LOUD);
 }
 
 // how near a partial is to a mode, and it rings as long: 1, or less
@@ -125,7 +132,7 @@ static double judge(const partials_list *partials, const fit_mode *modes, int co
         for (int k = 0; k < count; k++)
             if (modes[k].m > 0 && modes[k].n <= 2)
                 most = fmax(most, likeness(p, &modes[k]));
-        score += weight(partials, i) * (most - UNEXPLAINED * (1 - most));
+        score += weight(p, loudest) * (most - UNEXPLAINED * (1 - most));
     }
     score -= below ? UNLIKELY : 0; // an octave too high
     for (int k = 0; k < 2 * NEEDED; k += 2)
@@ -155,64 +162,126 @@ static bool match(const partials_list *partials, fit_drum *d, himc_error *error)
     return true;
 }
 
-// mean decay of the pair (m,n) of the drum's modes, 0 without it; and its frequencies
-static double pair_of(const fit_mode *modes, int count, int m, int n, double *frequency)
+// mean decay of the pair (m,n) of the drum's modes, 0 without it; its middle and its split
+static double pair_of(const fit_mode *modes, int count, int m, int n, double *frequency,
+                      double *apart)
 {
-    double decay = 0, sum = 0;
+    double decay = 0, low = INFINITY, high = 0;
     int found = 0;
     for (int i = 0; i < count; i++)
         if (modes[i].m == m && modes[i].n == n) {
             decay += log(1000) / modes[i].t60;
-            sum += modes[i].frequency;
+            low = fmin(low, modes[i].frequency), high = fmax(high, modes[i].frequency);
             found++;
         }
-    *frequency = found ? sum / found : 0;
+    *frequency = 0.5 * (low + high), *apart = high - low;
     return found ? decay / found : 0;
 }
 
-// S0 and S1 of least squares, drawn to the usual ones as if each were known within half of itself.
-// What a room may hold up is not used.
-static bool find_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+// the pairs that ring longer than the room, with what air and one unit of losses do to them
+typedef struct ringing {
+    double frequency, apart, air, load, due;
+} ringing;
+
+static int find_ringing(const partials_list *partials, const fit_drum *d, ringing out[PAIRS],
                         himc_error *error)
 {
     fit_mode none[FIT_MODES], one[FIT_MODES];
     fit_drum bare = *d, lossy = *d;
+    int kept = 0;
     bare.constant = bare.square = lossy.square = 0;
     lossy.constant = 1;
     int count = fit_drum_modes(&bare, none, error);
     if (count == 0 || fit_drum_modes(&lossy, one, error) == 0)
-        return false;
-    // unknowns in units of the usual ones
-    double aa = 1 / (USUAL_WITHIN * USUAL_WITHIN), ab = 0, bb = aa, ay = aa, by = aa;
+        return -1;
     for (int n = 1; n <= 2; n++)
         for (int m = 1; m <= (n == 1 ? FIT_ORDERS : 4); m++) {
-            double f, decay, part;
-            double air = pair_of(none, count, m, n, &f), load = pair_of(one, count, m, n, &f) - air;
-            double due =
-                air + load * (FIT_USUAL_CONSTANT + FIT_USUAL_SQUARE * pow(2 * HIMC_PI * f, 2));
-            if (!(air > 0) || log(1000) / due < LONGER * partials->room)
-                continue;
-            if (!partials_ring(sound, f, due, &decay, &part, error))
-                return false;
-            if (log(1000) / decay < HELD * partials->room)
-                continue;
-            double known = decay * hypot(part, SUREST);
-            double a = load * FIT_USUAL_CONSTANT / known, y = (decay - air) / known;
-            double b = load * FIT_USUAL_SQUARE * pow(2 * HIMC_PI * f, 2) / known;
-            aa += a * a;
-            ab += a * b;
-            bb += b * b;
-            ay += a * y;
-            by += b * y;
+            ringing r;
+            r.air = pair_of(none, count, m, n, &r.frequency, &r.apart);
+            r.load = pair_of(one, count, m, n, &r.frequency, &r.apart) - r.air;
+            r.due = r.air + r.load * (FIT_USUAL_CONSTANT +
+                                      FIT_USUAL_SQUARE * pow(2 * HIMC_PI * r.frequency, 2));
+            if (r.air > 0 && log(1000) / r.due > LONGER * partials->room)
+                out[kept++] = r;
         }
-    double det = aa * bb - ab * ab, s0 = (ay * bb - by * ab) / det, s1 = (by * aa - ay * ab) / det;
-    if (s0 < 0)
-        s1 = by / bb;
-    if (s1 < 0)
-        s0 = ay / aa;
-    d->constant = FIT_USUAL_CONSTANT * fmax(s0, 0);
-    d->square = FIT_USUAL_SQUARE * fmax(s1, 0);
-    return true;
+    return kept;
+}
+
+// The tuning at which the pairs that outlast the room are likeliest, together; where they say
+// nothing it stays.
+static bool find_tuning(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+                        himc_error *error)
+{
+    ringing pair[PAIRS];
+    double likely[2 * FINE + 1], sum[2 * FINE + 1], shift[2 * FINE + 1];
+    int count = find_ringing(partials, d, pair, error), best = FINE;
+    for (int k = 0; k <= 2 * FINE; k++)
+        sum[k] = -0.5 * pow(FINE_STEP * (k - FINE) / TUNED_WITHIN, 2);
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k <= 2 * FINE; k++)
+            shift[k] = FINE_STEP * (k - FINE) * pair[i].frequency;
+        if (!partials_likely(sound, partials->room, pair[i].frequency, pair[i].apart, shift,
+                             2 * FINE + 1, &pair[i].due, 1, likely, error))
+            return false;
+        for (int k = 0; k <= 2 * FINE; k++)
+            sum[k] += likely[k];
+    }
+    for (int k = 0; k <= 2 * FINE; k++)
+        best = sum[k] > sum[best] ? k : best;
+    d->tune *= 1 + FINE_STEP * (best - FINE);
+    return count >= 0;
+}
+
+// as likely, with a decay known within SUREST at best
+static void blur(double likely[DECAYS_TRIED])
+{
+    double sharp[DECAYS_TRIED], most = -INFINITY;
+    for (int k = 0; k < DECAYS_TRIED; k++) {
+        sharp[k] = likely[k];
+        most = fmax(most, likely[k]);
+    }
+    for (int k = 0; k < DECAYS_TRIED; k++) {
+        double sum = 1e-12;
+        for (int i = 0; i < DECAYS_TRIED; i++)
+            sum += exp(sharp[i] - most - 0.5 * pow(DECAY_STEP * (i - k) / SUREST, 2));
+        likely[k] = log(sum);
+    }
+}
+
+// S0 and S1, in units of the usual ones, at which the decays of those pairs are likeliest; drawn to
+// the usual ones as if each were known within a part of itself.
+static bool find_losses(const partials_sound *sound, const partials_list *partials, fit_drum *d,
+                        himc_error *error)
+{
+    ringing pair[PAIRS];
+    double likely[PAIRS][DECAYS_TRIED], decay[DECAYS_TRIED], best = -INFINITY, at[2] = {1, 1};
+    const double none = 0;
+    int count = find_ringing(partials, d, pair, error);
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < DECAYS_TRIED; k++)
+            decay[k] = pair[i].due * exp(DECAY_STEP * (k - DECAYS_TRIED / 2));
+        if (!partials_likely(sound, partials->room, pair[i].frequency, pair[i].apart, &none, 1,
+                             decay, DECAYS_TRIED, likely[i], error))
+            return false;
+        blur(likely[i]);
+    }
+    for (double s0 = 0; s0 < LOSSES_MOST; s0 += LOSSES_STEP)
+        for (double s1 = 0; s1 < LOSSES_MOST; s1 += LOSSES_STEP) {
+            double sum = -0.5 * (pow((s0 - 1) / USUAL_WITHIN, 2) + pow((s1 - 1) / USUAL_WITHIN, 2));
+            for (int i = 0; i < count; i++) {
+                double lost = s0 * FIT_USUAL_CONSTANT +
+                              s1 * FIT_USUAL_SQUARE * pow(2 * HIMC_PI * pair[i].frequency, 2);
+                double k = log((pair[i].air + pair[i].load * lost) / pair[i].due) / DECAY_STEP +
+                           DECAYS_TRIED / 2;
+                int low = (int)fmin(fmax(k, 0), DECAYS_TRIED - 2);
+                sum += likely[i][low] + (k - low) * (likely[i][low + 1] - likely[i][low]);
+            }
+            if (sum > best)
+                best = sum, at[0] = s0, at[1] = s1;
+        }
+    d->constant = FIT_USUAL_CONSTANT * at[0];
+    d->square = FIT_USUAL_SQUARE * at[1];
+    return count >= 0;
 }
 
 // how well all modes tuned by a factor are partials, sharply
@@ -237,9 +306,9 @@ static double accord(const partials_list *partials, const double *weights, const
 static bool refine(const partials_list *partials, fit_drum *d, himc_error *error)
 {
     fit_mode modes[FIT_MODES];
-    double weights[PARTIALS_MOST];
+    double weights[PARTIALS_MOST], loudest = strongest(partials);
     for (int i = 0; i < partials->count; i++)
-        weights[i] = weight(partials, i);
+        weights[i] = weight(&partials->row[i], loudest);
     for (int round = 0; round < 2; round++) {
         double best = 0, tune = d->tune;
         int count = fit_drum_modes(d, modes, error);
@@ -303,7 +372,8 @@ int fit_drum_find(const partials_sound *sound, const fit_spectrum *spectrum,
     while (count > 0 && choice[count - 1].score < choice[0].score - UNLIKELY)
         count--;
     for (int i = 0; i < count; i++)
-        if (!find_losses(sound, partials, &choice[i], error))
+        if (!find_tuning(sound, partials, &choice[i], error) ||
+            !find_losses(sound, partials, &choice[i], error))
             return 0;
     return count;
 }

@@ -85,11 +85,18 @@ static bool ask(lesson *l, himc_error *error)
     double last = 0;
     for (int i = 0; i < score->stroke_count; i++)
         last = fmax(last, score->strokes[i].beat + score->strokes[i].length);
+    int asked = score->stroke_count;
+    bool good = find_rolls(l, score, error);
+    if (good && l->seen[0] && l->seen[1] && asked > 2 * l->count) // to play a long one takes long
+        good = himc_error_set(error,
+                              "%s does not match %s: %d strokes found, of %d strokes and rolls, "
+                              "expected half",
+                              l->take, l->score, l->count, asked);
     last = himc_score_seconds(score->tempi, score->tempo_count, last);
-    himc_performance *p = cli_load(l->score, LESSON_RATE, NULL, error);
+    himc_performance *p = good ? cli_load(l->score, LESSON_RATE, NULL, error) : NULL;
     l->asked = malloc(LESSON_MOST * sizeof *l->asked);
-    bool good = p && (l->asked || himc_error_set(error, "out of memory")) &&
-                find_rolls(l, score, error) && play_score(l, p, last + 30, error);
+    good = p && (l->asked || himc_error_set(error, "out of memory")) &&
+           play_score(l, p, last + 30, error);
     if (good && !l->asked_count)
         good = himc_error_set(error, "%s: no strokes beside rolls, expected some to compare",
                               l->score);
@@ -199,11 +206,11 @@ static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *
         return himc_error_set(error, "%s: expected a take," HIMC_TAKE_SUFFIXES, l->take);
     if (cli_is_take(l->score))
         return himc_error_set(error, "%s: expected a score, not a take", l->score);
-    if (!cli_take_options(l->take, arguments->value + TAKE, &how, error) || !ask(l, error))
+    if (!cli_take_options(l->take, arguments->value + TAKE, &how, error))
         return false;
     himc_take *take = himc_take_load(l->take, &how, error);
-    bool good =
-        take && hear(l, take, &how, error) && lesson_match(l, error) && lesson_judge(l, error);
+    bool good = take && hear(l, take, &how, error) && ask(l, error) && lesson_match(l, error) &&
+                lesson_judge(l, error);
     if (good) {
         himc_take_describe(take, &how, tell_note, l);
         lesson_body(l, take, &how);
@@ -212,17 +219,27 @@ static bool read_sources(lesson *l, const cli_arguments *arguments, himc_error *
     return good;
 }
 
-static bool write_scene(const lesson *l, const cli_arguments *arguments, himc_error *error)
+static bool write_scene(const lesson *l, const cli_arguments *arguments, cli_file *file,
+                        himc_error *error)
 {
     himc_take_options how;
-    cli_file file = {0};
-    if (!l->scene)
-        return true;
-    bool good = cli_take_options(l->take, arguments->value + TAKE, &how, error) &&
-                cli_file_open(&file, l->scene, error) &&
-                lesson_scene(l, &how, file.stream, error) && cli_file_close(&file, error) &&
-                cli_file_keep(&file, error);
-    cli_file_drop(&file);
+    return !l->scene || (cli_take_options(l->take, arguments->value + TAKE, &how, error) &&
+                         cli_file_open(file, l->scene, error) &&
+                         lesson_scene(l, &how, file->stream, error) && cli_file_close(file, error));
+}
+
+// all files, or none
+static bool write_files(const lesson *l, const cli_arguments *arguments, himc_error *error)
+{
+    cli_file scene = {0}, page = {0}, csv = {0};
+    bool good = write_scene(l, arguments, &scene, error) &&
+                cli_draft(&page, arguments->value[OUT], lesson_page, l, error) &&
+                cli_draft(&csv, arguments->value[CSV], lesson_csv, l, error) &&
+                cli_file_keep(&scene, error) && cli_file_keep(&page, error) &&
+                cli_file_keep(&csv, error);
+    cli_file_drop(&scene);
+    cli_file_drop(&page);
+    cli_file_drop(&csv);
     return good;
 }
 
@@ -255,8 +272,7 @@ static int run(const cli_arguments *arguments)
                cli_ending_is("--scene", l->scene, ".himc", &error) &&
                cli_apart(value[OUT], files, 2, &error) && cli_apart(value[CSV], files, 3, &error) &&
                cli_apart(l->scene, files, 4, &error) && read_sources(l, arguments, &error) &&
-               write_scene(l, arguments, &error) && cli_write(value[OUT], lesson_page, l, &error) &&
-               cli_write(value[CSV], lesson_csv, l, &error);
+               write_files(l, arguments, &error);
     }
     bool piped = cli_is_standard(value[OUT]) || cli_is_standard(value[CSV]);
     if (good && value[JSON])

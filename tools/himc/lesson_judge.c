@@ -31,6 +31,13 @@ static const char even_source[] =
 static const char even_level_source[] =
     "chosen: 2 dB, five times what listeners notice in the laboratory: Miller 1947";
 
+#define LENGTH 0.15 // (s) of a roll
+static const char length_source[] =
+    "chosen: two of its strokes, 150 ms or more; no listeners' threshold is published";
+#define FLAT 0.5   // share of a crescendo that must be missing
+#define SWELL 3.0  // (dB) of a crescendo or more; chosen
+#define WAVERS 0.5 // (dB) of asked strokes that are alike
+
 enum { HAND, IN_BEAT, NUANCE, SPOT, KINDS };
 
 static int group_of(const lesson *l, int stroke, int kind)
@@ -195,6 +202,52 @@ static double below(double sd, double free)
     return sd * (1 - pow(1 - 2 / (9 * free) + 2.33 * sqrt(2 / (9 * free)), -1.5));
 }
 
+// the slope of the level over the asked one within a swell, named and taken away if it is flat
+static void judge_swell(lesson *l, lesson_course *c, int from, int to, bool falls)
+{
+    double *level = c->value[0], *asked = c->value[2];
+    double rise = asked[to] - asked[from], x = 0, xx = 0, y = 0, xy = 0, rest = 0;
+    int n = to - from + 1;
+    for (int k = from; k <= to; k++)
+        x += asked[k] / n, y += level[k] / n;
+    for (int k = from; k <= to; k++)
+        xx += pow(asked[k] - x, 2), xy += (asked[k] - x) * (level[k] - y);
+    double slope = xy / xx;
+    for (int k = from; k <= to; k++)
+        rest += pow(level[k] - y - slope * (asked[k] - x), 2);
+    lesson_fault *f = slope > -FLAT ? NULL
+                                    : lesson_fault_add(l, "level", slope * fabs(rise),
+                                                       fabs(rise) * sqrt(rest / (n - 2) / xx),
+                                                       LESSON_SURE, JND_LEVEL);
+    if (!f)
+        return;
+    snprintf(f->what, sizeof f->what, "%s %s from beat %g to %g: of %.1f dB you play %.1f dB",
+             slope < -0.75 ? "Flat: no" : "Too little", falls ? "diminuendo" : "crescendo",
+             l->asked[l->played[c->stroke[from]].of].beat,
+             l->asked[l->played[c->stroke[to]].of].beat, rise, (1 + slope) * rise);
+    snprintf(f->how, sizeof f->how, "slope of %d strokes over the asked level", n);
+    lesson_fault_explain(f, sqrt(rest / (n - 2)), "dB", level_source);
+    for (int k = from; k <= to; k++)
+        level[k] -= slope * (asked[k] - x);
+}
+
+/// Crescendi and diminuendi of the score: runs in which the asked level goes one way.
+static void judge_swells(lesson *l, lesson_course *c)
+{
+    double *asked = c->value[2];
+    for (int k = 0; k < c->n; k++)
+        asked[k] = 20 * log10(l->asked[l->played[c->stroke[k]].of].speed);
+    for (int way = 1; way >= -1; way -= 2)
+        for (int from = 0, k = 1; k <= c->n; k++) {
+            int before = k - 2 > from ? k - 2 : from; // a hand with itself
+            if (k < c->n && way * (asked[k] - asked[before]) > -WAVERS)
+                continue;
+            if (k - from >= 2 * LESSON_FEWEST && way * (asked[k - 1] - asked[from]) > SWELL)
+                judge_swell(l, c, from, k - 1, way < 0);
+            from = k;
+        }
+}
+
 /// Unevenness of all strokes, once the differences of groups are taken away.
 static void judge_even(lesson *l, lesson_course *c, const quantity *q)
 {
@@ -281,6 +334,32 @@ static void judge_singles(lesson *l, lesson_course *c, const quantity *q)
     lesson_fault_explain(f, q->scale * own, q->unit, q->source);
 }
 
+// a roll that is left out, or that ends well before its end `due` or goes on well after it (s)
+static void judge_length(lesson *l, const lesson_roll *r, double due, double last, double interval)
+{
+    double seconds, decibels, most = fmax(LENGTH, 2 * interval);
+    double early = due - last - interval;
+    lesson_scatter(l, &seconds, &decibels);
+    if (!r->strokes) {
+        lesson_fault *f = lesson_fault_add(l, "missing", 1, 0, 0, 0.01);
+        if (f) {
+            snprintf(f->what, sizeof f->what, "The roll until %.1f s is left out", due);
+            snprintf(f->how, sizeof f->how, "no stroke in its time");
+            lesson_fault_explain(f, 0, "roll", lesson_none_source);
+            f->threshold = 1;
+        }
+        return;
+    }
+    lesson_fault *f =
+        lesson_fault_add(l, "roll", 1e3 * early, 1e3 * seconds, LESSON_SURE, 1e3 * most);
+    if (!f)
+        return;
+    snprintf(f->what, sizeof f->what, "The roll at %.1f s is too %s: it ends %.0f ms too %s",
+             r->begin, early > 0 ? "short" : "long", fabs(f->effect), early > 0 ? "early" : "late");
+    snprintf(f->how, sizeof f->how, "%d strokes", r->strokes);
+    lesson_fault_explain(f, 1e3 * seconds, "ms", length_source);
+}
+
 /// Evenness of a roll: its strokes about an even course that may quicken; a stroke left out counts.
 static void judge_roll(lesson *l, lesson_roll *r, const double *t, const double *level, int n)
 {
@@ -353,13 +432,16 @@ static void judge_rolls(lesson *l, const lesson_course *c)
 {
     for (int i = 0; i < l->rolls; i++) {
         lesson_roll *r = &l->roll[i];
-        double t[512], level[512];
-        int n = 0, segment = 0;
-        for (int k = 0; k < c->n && c->asked[k] < r->from; k++)
-            segment = c->segment[k];
-        double from = lesson_beat_at(c, r->from, segment) - 0.12,
-               to = lesson_beat_at(c, r->to, segment) + 0.12;
-        for (int k = 0; k < l->count && n < 512; k++) {
+        double t[512], level[512], interval[512];
+        int n = 0, k = 0;
+        while (k + 1 < c->n && c->asked[k + 1] < r->from)
+            k++;
+        int before = c->segment[k];
+        while (k + 1 < c->n && c->asked[k] < r->to - 0.01)
+            k++;
+        double from = lesson_beat_at(c, r->from, before) - 0.12,
+               due = lesson_beat_at(c, r->to, c->segment[k]), to = due + 0.12;
+        for (k = 0; k < l->count && n < 512; k++) {
             lesson_played *p = &l->played[k];
             double asked = p->of < 0 ? NAN : l->asked[p->of].time;
             bool in = r->written ? p->of < 0 && p->strike.time >= from && p->strike.time < to
@@ -369,8 +451,15 @@ static void judge_rolls(lesson *l, const lesson_course *c)
             p->roll = i;
             t[n] = p->strike.time - l->lead[p->strike.hand],
             level[n++] = 20 * log10(p->strike.velocity);
+            // what goes on after its time, without a pause, is the same roll
+            if (r->written && n > 1 && t[n - 1] > due - 0.12)
+                to = fmax(to, t[n - 1] + 1.6 * (t[n - 1] - t[0]) / (n - 1));
         }
         judge_roll(l, r, t, level, n);
+        for (k = 1; k < n; k++)
+            interval[k - 1] = t[k] - t[k - 1];
+        if (r->written)
+            judge_length(l, r, due, n ? t[n - 1] : due, lesson_median(interval, n - (n > 0)));
     }
 }
 
@@ -524,6 +613,8 @@ bool lesson_judge(lesson *l, himc_error *error)
             c.value[0][k] = q == 0 ? p->off : q == 1 ? p->level : p->aside.x;
             c.value[1][k] = p->aside.y;
         }
+        if (q == 1)
+            judge_swells(l, &c);
         good = judge_groups(l, &c, &quantities[q]);
         if (good && q < 2)
             judge_even(l, &c, &quantities[q]);

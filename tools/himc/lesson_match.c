@@ -10,8 +10,9 @@
 /// or, for a phrase left out or played again, JUMP + MORE for each such event, whatever the time.
 /// So the offset does not matter, and a wait costs LEAP once. All is done once more with the
 /// score's hands exchanged, which costs EXCHANGED. The tempo r begins with each of a
-/// grid of values and follows the played intervals along the path. Rolls have no events: their
-/// number of strokes is the player's.
+/// grid of values and follows the played intervals along the path. Rolls have no events, as their
+/// number of strokes is the player's: a played event is left out for nearly nothing where its place
+/// between the two matched ones is within a roll, also before the first and after the last.
 #include "lesson.h"
 
 #include <math.h>
@@ -25,18 +26,20 @@
 #define JUMP 20.0
 #define MORE 1.2
 #define EXCHANGED 8.0
-#define ROLLED 0.02 // for a played event that a roll may contain
+#define ROLLED 0.02 // for a played event within a roll
 #define OTHER 3.0
 #define BACK 4 // steps back: up to BACK - 1 events left out in a row; in a roll ...
 #define BACK_ROLL 400
-#define FOLLOW 0.15 // share of a new interval in the tempo
-#define TEMPI 29    // from half to twice the score's
-#define BAND 60     // events beside the diagonal
+#define SLACK 0.07      // a roll begins earlier, ends later (s) ...
+#define SLACK_PART 0.08 // ... and so much of the time from the matched stroke
+#define FOLLOW 0.15     // share of a new interval in the tempo
+#define TEMPI 29        // from half to twice the score's
+#define BAND 60         // events beside the diagonal
 
 typedef struct event {
     double time;
     int stroke[HIMC_HANDS]; // index, or -1
-    bool after_roll;
+    int rolls;              // that begin before it
 } event;
 
 static int add_event(event *e, int count, double time, himc_hand hand, int stroke)
@@ -46,7 +49,7 @@ static int add_event(event *e, int count, double time, himc_hand hand, int strok
         last->stroke[hand] = stroke;
         return count;
     }
-    e[count] = (event){time, {-1, -1}, false};
+    e[count] = (event){time, {-1, -1}, 0};
     e[count].stroke[hand] = stroke;
     return count + 1;
 }
@@ -80,16 +83,77 @@ static double beside(int count)
     return fmin(GAP * count, JUMP + MORE * count);
 }
 
-static void try_from(const table *t, int i, int j, int from_i, int from_j, double left_out,
-                     cell *to)
+// how many played events from `low` on, before `high`, are earlier than that
+static int earlier(const table *t, int low, int high, double time)
 {
+    int from = low;
+    while (low < high) {
+        int k = (low + high) / 2;
+        if (t->played[k].time < time)
+            low = k + 1;
+        else
+            high = k;
+    }
+    return low - from;
+}
+
+// a stretch between two matched events: asked times become played ones
+typedef struct stretch {
+    double asked, played, slope; // at its beginning, or where it is open there, at its end
+    double end;                  // asked; INFINITY or -INFINITY: one end is open
+    int first, last;             // rolls
+} stretch;
+
+// of the played events from `low` on, before `high`, those in no roll; `cost` has the rolls'
+static int out_of_rolls(const table *t, const stretch *s, int low, int high, double *cost)
+{
+    int in = 0;
+    double done = -INFINITY;
+    *cost = 0;
+    for (int k = s->first; k < s->last; k++) {
+        const lesson_roll *r = &t->l->roll[k];
+        double from = r->from - s->asked, to = r->to - s->asked;
+        double begins = SLACK + SLACK_PART * fmin(fabs(from), fabs(s->end - r->from)),
+               ends = SLACK + SLACK_PART * fmin(fabs(to), fabs(s->end - r->to));
+        from = fmax(done, s->played + s->slope * from - begins);
+        done = fmax(done, s->played + s->slope * to + ends);
+        int here = earlier(t, low, high, done) - earlier(t, low, high, from);
+        in += here;
+        *cost += here ? ROLLED * here : GAP;
+    }
+    return high - low - in;
+}
+
+// of the events before the first matched ones, or after the last
+static double at_an_end(const table *t, int i, int j, double tempo, bool last)
+{
+    const stretch s = {t->asked[i].time,
+                       t->played[j].time,
+                       tempo,
+                       last ? INFINITY : -INFINITY,
+                       last ? t->asked[i].rolls : 0,
+                       last ? t->l->rolls : t->asked[i].rolls};
+    double rolls;
+    int out = last ? out_of_rolls(t, &s, j + 1, t->m, &rolls) : out_of_rolls(t, &s, 0, j, &rolls);
+    return beside(last ? t->n - 1 - i : i) + beside(out) + fmin(rolls, JUMP);
+}
+
+static void try_from(const table *t, int i, int j, int from_i, int from_j, cell *to)
+{
+    const event *a = t->asked, *p = t->played;
     const cell *from = at(t, from_i, from_j);
-    if (!from || from->cost + left_out >= to->cost)
+    double cost = GAP * (i - from_i - 1), rolls = 0;
+    bool rolled = a[i].rolls > a[from_i].rolls;
+    if (!from || from->cost + cost + (rolled ? 0 : GAP * (j - from_j - 1)) >= to->cost)
         return;
-    double asked = t->asked[i].time - t->asked[from_i].time,
-           played = t->played[j].time - t->played[from_j].time, due = from->tempo * asked,
-           z = (played - due) / (0.03 + 0.08 * due),
-           cost = from->cost + left_out + fmin(z * z, LEAP);
+    double asked = a[i].time - a[from_i].time, played = p[j].time - p[from_j].time,
+           due = from->tempo * asked, z = (played - due) / (0.03 + 0.08 * due);
+    cost += from->cost + fmin(z * z, LEAP);
+    if (cost >= to->cost)
+        return;
+    const stretch s = {a[from_i].time, p[from_j].time,  played / asked,
+                       a[i].time,      a[from_i].rolls, a[i].rolls};
+    cost += GAP * out_of_rolls(t, &s, from_j + 1, j, &rolls) + rolls;
     if (cost >= to->cost)
         return;
     *to = (cell){.cost = cost, .tempo = from->tempo, .i = from_i, .j = from_j};
@@ -124,13 +188,11 @@ static void fill(const table *t, int i, int j, double tempo)
     cell *c = at(t, i, j);
     if (!c)
         return;
-    *c = (cell){.cost = beside(i) + beside(j), .tempo = tempo, .i = -1, .j = -1};
-    bool rolled = false;
+    *c = (cell){.cost = at_an_end(t, i, j, tempo, false), .tempo = tempo, .i = -1, .j = -1};
     for (int a = i - 1; a >= 0 && a >= i - BACK; a--) {
-        rolled |= t->asked[a + 1].after_roll;
-        int back = rolled ? BACK_ROLL : BACK;
+        int back = t->asked[i].rolls > t->asked[a].rolls ? BACK_ROLL : BACK;
         for (int b = j - 1; b >= 0 && b >= j - back; b--)
-            try_from(t, i, j, a, b, GAP * (i - a - 1) + (rolled ? ROLLED : GAP) * (j - b - 1), c);
+            try_from(t, i, j, a, b, c);
     }
     const cell *jump = i > 0 ? at(t, i - 1, j - 1) : NULL;
     if (jump && jump->jump + JUMP < c->cost)
@@ -142,22 +204,33 @@ static void fill(const table *t, int i, int j, double tempo)
     keep_jump(t, i, j, c);
 }
 
-// the last cell of the best path in that tempo, and its cost
-static double best_path(const table *t, double tempo, int *last_i, int *last_j)
+// the last cell of the best path in that tempo, and its cost; it gives up when no path can be
+// better than `least`
+static double best_path(const table *t, double tempo, double least, int *last_i, int *last_j)
 {
-    double best = INFINITY;
+    // chosen: the score's tempo is likelier
+    double extra = 4 * fabs(log2(tempo)) + (t->exchanged ? EXCHANGED : 0), best = INFINITY;
+    double row[BACK] = {0}; // least costs of the last rows, from which all later ones come
     for (int i = 0; i < t->n; i++) {
         int middle = (int)((double)i * t->m / t->n);
+        double *here = &row[i % BACK], most = beside(i + 1);
+        *here = INFINITY;
         for (int j = middle - t->band; j <= middle + t->band; j++) {
             fill(t, i, j, tempo);
             const cell *c = at(t, i, j);
-            double cost = c ? c->cost + beside(t->n - 1 - i) + beside(t->m - 1 - j) : INFINITY;
+            if (!c)
+                continue;
+            double cost = c->cost < best ? c->cost + at_an_end(t, i, j, c->tempo, true) : INFINITY;
+            *here = fmin(*here, fmin(c->cost, c->jump + JUMP));
             if (cost < best)
                 best = cost, *last_i = i, *last_j = j;
         }
+        for (int k = 0; k < BACK; k++)
+            most = fmin(most, row[k]);
+        if (most >= fmin(best, least - extra))
+            break;
     }
-    // chosen: the score's tempo is likelier
-    return best + 4 * fabs(log2(tempo)) + (t->exchanged ? EXCHANGED : 0);
+    return best + extra;
 }
 
 static void join(lesson *l, int asked, int played)
@@ -167,12 +240,40 @@ static void join(lesson *l, int asked, int played)
     l->matched++;
 }
 
+// true if the stroke that closes a roll is missing: what has been taken for it follows the roll's
+// strokes as these follow each other, well before its time after the stroke before and between
+// that and the next
+static bool is_rolled(const table *t, int i, int j, int next_i, int next_j)
+{
+    const event *a = t->asked, *p = t->played;
+    const cell *c = at(t, i, j);
+    bool closes = false;
+    for (int k = c->i < 0 ? a[i].rolls : a[c->i].rolls; k < a[i].rolls; k++)
+        closes |= fabs(t->l->roll[k].to - a[i].time) < SLACK;
+    if (!closes || j - c->j < 4)
+        return false;
+    double interval = 0.5 * (p[j - 1].time - p[j - 3].time), asked = a[i].time - a[c->i].time,
+           played = p[j].time - p[c->j].time, early = at(t, c->i, c->j)->tempo * asked - played;
+    if (next_i >= 0)
+        early =
+            fmin(early, (p[next_j].time - p[c->j].time) * asked / (a[next_i].time - a[c->i].time) -
+                            played);
+    return early > 0.6 * interval && p[j].time - p[j - 1].time < 1.4 * interval;
+}
+
 // the path's pairs: hand by hand, then, if an event has one hand, with the other hand
 static void join_path(lesson *l, const table *t, int i, int j)
 {
+    int next_i = -1, next_j = -1;
     while (i >= 0) {
         const event *a = &t->asked[i], *p = &t->played[j];
         const cell *c = at(t, i, j);
+        bool rolled = is_rolled(t, i, j, next_i, next_j);
+        next_i = i, next_j = j;
+        if (rolled) {
+            i = c->i, j = c->j;
+            continue;
+        }
         bool both = a->stroke[0] >= 0 && a->stroke[1] >= 0;
         for (int h = 0; h < HIMC_HANDS; h++) {
             int own = t->exchanged && !both ? !h : h; // a chord has no exchanged hands
@@ -207,12 +308,13 @@ static void join_chords(lesson *l)
 
 static bool make_table(lesson *l, table *t, event *asked, event *played)
 {
+    int rolls = 0;
     for (int i = 0; i < l->asked_count; i++)
         if (l->seen[l->asked[i].hand]) {
             t->n = add_event(asked, t->n, l->asked[i].time, l->asked[i].hand, i);
-            for (int k = 0; k < l->rolls && t->n > 1; k++)
-                asked[t->n - 1].after_roll |=
-                    l->roll[k].from > asked[t->n - 2].time && l->roll[k].from < l->asked[i].time;
+            for (; rolls < l->rolls && l->roll[rolls].from < l->asked[i].time - 0.01;)
+                rolls++;
+            asked[t->n - 1].rolls = rolls;
         }
     for (int k = 0; k < l->count; k++)
         t->m = add_event(played, t->m, l->played[k].strike.time, l->played[k].strike.hand, k);
@@ -231,11 +333,13 @@ bool lesson_match(lesson *l, himc_error *error)
     int i = -1, j = -1;
     bool exchanged = false, both = l->seen[0] && l->seen[1];
     for (int k = 0; good && t.n > 0 && k <= 2 * TEMPI; k++) { // the last: the best once more
-        if (k % TEMPI == 0 && k / TEMPI == 1 && !both)
+        if (k == TEMPI && !both)
             k = 2 * TEMPI;
-        t.exchanged = k < 2 * TEMPI ? k >= TEMPI : exchanged;
-        double tried = k < 2 * TEMPI ? exp2(2.0 * (k % TEMPI) / (TEMPI - 1) - 1) : tempo,
-               cost = best_path(&t, tried, &i, &j);
+        int away = (k % TEMPI + 1) / 2; // from the score's tempo outwards
+        double tried = exp2((k % TEMPI % 2 ? 2.0 : -2.0) * away / (TEMPI - 1));
+        bool again = k == 2 * TEMPI;
+        t.exchanged = again ? exchanged : k >= TEMPI;
+        double cost = best_path(&t, again ? tempo : tried, again ? INFINITY : best, &i, &j);
         if (cost < best)
             best = cost, tempo = tried, exchanged = t.exchanged;
     }

@@ -213,6 +213,31 @@ static void write_header(const motion_table *t, const char *time, char between)
     fputc('\n', t->stream);
 }
 
+static bool is_place(const array *a)
+{
+    return a->components == 3 && !strcmp(a->unit, "m");
+}
+
+// points or analog channels of an array in a C3D
+static int labels(const array *a)
+{
+    return items(a) * (is_place(a) ? 1 : a->components);
+}
+
+// count[0]: the channels of a C3D, count[1]: its points
+static bool check_labels(const motion_table *t, int count[2], himc_error *error)
+{
+    count[0] = count[1] = 0;
+    for (size_t i = 0; i < ARRAYS; i++)
+        count[is_place(&arrays[i])] += t->has[i] ? labels(&arrays[i]) : 0;
+    if (!count[1])
+        return himc_error_set(error, "--columns: no places, expected in a .c3d some of targets,"
+                                     "tips,elbows,segments,centers,pushes,errors");
+    return count[0] <= HIMC_C3D_LABELS ||
+           himc_error_set(error, "--columns: %d values beside places, expected up to %d in a .c3d",
+                          count[0], HIMC_C3D_LABELS);
+}
+
 motion_table *motion_table_new(FILE *stream, motion_table_format format, const char *columns,
                                himc_error *error)
 {
@@ -223,7 +248,9 @@ motion_table *motion_table_new(FILE *stream, motion_table_format format, const c
     }
     t->stream = stream;
     t->format = format;
-    if (!choose(t, columns, error)) {
+    int count[2];
+    if (!choose(t, columns, error) ||
+        (format == MOTION_TABLE_C3D && !check_labels(t, count, error))) {
         free(t);
         return NULL;
     }
@@ -336,11 +363,6 @@ static void unit_text(const char *unit, char out[24])
             snprintf(out, 24, "%s", known[i][1]);
 }
 
-static bool is_place(const array *a)
-{
-    return a->components == 3 && !strcmp(a->unit, "m");
-}
-
 // an array's columns of all rows, from column `from` on, as points or as channels; `next` is the
 // number of points or channels before
 static void add_to_take(const motion_table *t, himc_take *take, const array *a, size_t from,
@@ -367,11 +389,9 @@ static void add_to_take(const motion_table *t, himc_take *take, const array *a, 
 
 static bool write_c3d(const motion_table *t, himc_error *error)
 {
-    int count[2] = {0}; // of channels and of points
-    for (size_t i = 0; i < ARRAYS; i++)
-        if (t->has[i])
-            count[is_place(&arrays[i])] +=
-                items(&arrays[i]) * (is_place(&arrays[i]) ? 1 : arrays[i].components);
+    int count[2];
+    if (!check_labels(t, count, error))
+        return false;
     if (!t->failed && t->rows < 2)
         return himc_error_set(error, "--motion: %zu rows, expected 2 in a .c3d", t->rows);
     himc_take *take = t->failed ? NULL : calloc(1, sizeof *take);
@@ -392,7 +412,7 @@ static bool write_c3d(const motion_table *t, himc_error *error)
         if (!t->has[i])
             continue;
         add_to_take(t, take, a, from, count[is_place(a)]);
-        count[is_place(a)] += items(a) * (is_place(a) ? 1 : a->components);
+        count[is_place(a)] += labels(a);
         from += size_of(a);
     }
     good = good && himc_c3d_write(t->stream, take, error);

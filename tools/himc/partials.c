@@ -36,8 +36,7 @@
 #define PAIR 10.0          // (Hz) around a pair of a drum's modes ...
 #define PAIR_SECONDS 5.0   // ... in a window at most so long ...
 #define PAIR_PART 0.5      // ... or so much of T60, at least 1 s ...
-#define OVERLAP 2.0        // windows that overlap count as one
-#define FACTOR 1.4         // (ln) a decay this far from that which is due is another's
+#define SINGLE 0.1         // (Hz) nearer ones are one
 #define PAIR_LEAST 20      // ... of so many decimated samples or more
 #define AROUND_PART 0.12   // ... so much of the frequency
 
@@ -52,6 +51,10 @@ typedef struct windows {
 static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN, WIDE_FROM, 1.2}};
 #define SETS (sizeof sets / sizeof *sets)
 
+// when a room has answered what was at the onset (s); windows that overlap share their weight
+static const double later_from[] = {0.5, 1.0};
+#define LATER (int)(sizeof later_from / sizeof *later_from)
+
 typedef struct band {
     double centre, width; // (Hz)
     int step, half;       // decimation, filter
@@ -59,6 +62,7 @@ typedef struct band {
     double *turning;      // ... and imaginary ones
     double *z;            // (tracks, samples, 2)
     int samples, tracks;
+    double weight[SPAN]; // of samples, in left_by
 } band;
 
 typedef struct pole {
@@ -338,15 +342,16 @@ static double left_by(const band *b, double rate, const double at[3])
         turn[k][1] = exp(-exp(at[2]) / rate) * sin(angle);
     }
     for (int n = 0; n < b->samples; n++) {
-        gram += of[0][0] * of[0][0] + of[0][1] * of[0][1];
-        cross[0] += of[0][0] * of[1][0] + of[0][1] * of[1][1];
-        cross[1] += of[0][0] * of[1][1] - of[0][1] * of[1][0];
+        double w = b->weight[n];
+        gram += w * (of[0][0] * of[0][0] + of[0][1] * of[0][1]);
+        cross[0] += w * (of[0][0] * of[1][0] + of[0][1] * of[1][1]);
+        cross[1] += w * (of[0][0] * of[1][1] - of[0][1] * of[1][0]);
         for (int c = 0; c < b->tracks; c++) {
             const double *z = &b->z[2 * (c * b->samples + n)];
-            all += z[0] * z[0] + z[1] * z[1];
+            all += w * (z[0] * z[0] + z[1] * z[1]);
             for (int k = 0; k < 2; k++) {
-                product[c][k][0] += of[k][0] * z[0] + of[k][1] * z[1];
-                product[c][k][1] += of[k][0] * z[1] - of[k][1] * z[0];
+                product[c][k][0] += w * (of[k][0] * z[0] + of[k][1] * z[1]);
+                product[c][k][1] += w * (of[k][0] * z[1] - of[k][1] * z[0]);
             }
         }
         for (int k = 0; k < 2; k++) {
@@ -367,61 +372,47 @@ static double left_by(const band *b, double rate, const double at[3])
     return fmax(left, 0) / (all + 1e-30);
 }
 
-// goes down in steps that halve
-static double go_down(const band *b, double rate, double at[3], double least)
+// What a pair leaves is the room's sound, which decays, and noise: each sample counts by what is
+// left there, as at the window's end or above.
+static void weigh(band *b, double rate, double room)
 {
-    double step[3] = {0.1, 0.1, 0.2}, here = left_by(b, rate, at);
-    for (int round = 0; round < 40 && step[2] > 1e-3; round++) {
-        bool better = false;
-        for (int k = 0; k < 6; k++) {
-            double next[3] = {at[0], at[1], at[2]};
-            if (k / 2 == 1 && at[1] == 0)
-                continue;
-            next[k / 2] += k % 2 ? step[k / 2] : -step[k / 2];
-            double there = next[1] > 0 && next[1] < least ? INFINITY : left_by(b, rate, next);
-            if (there < here) {
-                memcpy(at, next, sizeof next);
-                here = there;
-                better = true;
-            }
+    double level[2] = {0}; // of the window's beginning and end
+    int tenth = b->samples / 10 + 1;
+    for (int c = 0; c < b->tracks; c++)
+        for (int k = 0; k < 2 * tenth; k++) {
+            int n = k < tenth ? k : b->samples - 1 - (k - tenth);
+            const double *z = &b->z[2 * (c * b->samples + n)];
+            level[k >= tenth] += z[0] * z[0] + z[1] * z[1];
         }
-        for (int k = 0; k < 3 && !better; k++)
-            step[k] *= 0.5;
-    }
-    return here;
+    double most = fmax(1, level[0] / (level[1] + 1e-30));
+    for (int n = 0; n < b->samples; n++)
+        b->weight[n] = room > 0 ? fmin(most, pow(1e6, n / rate / room)) : 1;
 }
 
-bool partials_ring(const partials_sound *sound, double frequency, double due, double *decay,
-                   double *part, himc_error *error)
+bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
+                     const double *shift, int shifts, const double *decay, int decays, double *out,
+                     himc_error *error)
 {
     band b = {0};
-    if (!band_open(&b, frequency, PAIR, sound)) {
+    if (!band_open(&b, frequency, fmax(PAIR, 2 * apart), sound)) {
         band_close(&b);
         return himc_error_set(error, "out of memory");
     }
-    double rate = sound->rate / b.step, sum = 0, weights = 0;
-    double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / due));
-    for (double start = 0.15; start < 2; start += 0.4) {
-        size_t from = (size_t)(start * sound->rate) + (size_t)b.half;
-        double best = INFINITY, found = 0;
-        if (!band_fill(&b, sound, from, (int)(span * rate), PAIR_LEAST))
+    double rate = sound->rate / b.step;
+    double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / decay[decays / 2]));
+    memset(out, 0, sizeof *out * (size_t)(shifts * decays));
+    for (int w = 0; w < LATER; w++) {
+        size_t from = (size_t)(later_from[w] * sound->rate) + (size_t)b.half;
+        if (!band_fill(&b, sound, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
             break;
-        double least = 0.2 * rate / b.samples, most = fmin(2.5, 0.008 * frequency); // half apart
-        for (double half = 0; half<most; half += half> 0 ? 0.3 : least) {
-            double at[3] = {0, half, log(due)};
-            double left = sqrt(go_down(&b, rate, at, least) * (half > 0 ? 2 : 1));
-            bool other = fabs(at[0]) > 0.3 * PAIR || fabs(at[2] - log(due)) > FACTOR;
-            if (left < best && !other) {
-                best = left;
-                found = at[2];
-            }
+        weigh(&b, rate, room);
+        double free = 0.5 / LATER * b.samples * b.tracks; // the filter passes half of the band
+        for (int i = 0; i < shifts * decays; i++) {
+            double at[3] = {shift[i / decays], apart < SINGLE ? 0 : 0.5 * apart,
+                            log(decay[i % decays])};
+            out[i] -= free * log(left_by(&b, rate, at) + 1e-6);
         }
-        double known = fmax(0, 1 / (best * best) - 1); // energy of the pair over that of the rest
-        sum += known * found;
-        weights += known;
     }
-    *decay = weights > 0 ? exp(sum / weights) : due;
-    *part = weights > 0 ? sqrt(OVERLAP / weights) : INFINITY;
     band_close(&b);
     return true;
 }

@@ -49,9 +49,12 @@ void partials_sound_free(partials_sound *sound);
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
 
-/// How fast the pair of partials near a frequency decays (1/s; `due`: about), and its relative
-/// standard uncertainty, 1 and more if nothing is known. False with the reason, without memory.
-bool partials_ring(const partials_sound *sound, double frequency, double due, double *decay,
-                   double *part, himc_error *error);
+/// How likely pairs of partials about `frequency`, `apart` from each other, that decay alike, are:
+/// ln of it, for each of `shifts` (Hz) and `decays` (1/s), to out[shift * decays + decay]; by the
+/// energy that least squares leave in a narrow band, late, in a `room` of that T60 (s). False with
+/// the reason, without memory.
+bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
+                     const double *shift, int shifts, const double *decay, int decays, double *out,
+                     himc_error *error);
 
 #endif

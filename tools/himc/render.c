@@ -223,18 +223,19 @@ static bool check_apart(const job *wanted, const himc_score *score, himc_error *
     return true;
 }
 
-/// Finds out if the score makes drums itself, if it loops and how long it is; false if it is too
-/// long for the sound file.
+/// Finds out if the score makes drums itself, if it loops, by itself or by --set, and how long it
+/// is; false if it is too long for the sound file.
 static bool inspect_score(job *wanted, bool *makes_drums, bool *loops, himc_error *error)
 {
     himc_score *score = himc_score_load(wanted->source, error);
     if (!score)
         return false;
     *makes_drums = cli_first_drum(score) != NULL;
-    for (int i = 0; i < score->line_count; i++) {
-        const himc_command *c = &score->lines[i].command;
-        if (c->id == HIMC_COMMAND_LOOP)
-            *loops = c->atom[0].number != 0;
+    himc_command parsed;
+    for (int i = 0; i < score->line_count + wanted->arguments->repeats; i++) {
+        const himc_command *c = command_at(score, wanted->arguments, i, &parsed);
+        if (c && c->id == HIMC_COMMAND_LOOP)
+            *loops = c->count > 1 || c->atom[0].number != 0;
     }
     bool good = check_apart(wanted, score, error);
     wanted->length = score_seconds(score);
@@ -306,10 +307,10 @@ static bool prepare(himc_performance *performance, job *wanted, himc_error *erro
         return false;
     if (loops) {
         himc_error note;
-        himc_error_set(&note, "%s: loop: one round is rendered", wanted->source);
+        himc_error_set(&note, "%s: loop: the score is rendered once", wanted->source);
         cli_say("note: %s\n", note.text);
     }
-    return (!loops || cli_tell(performance, "loop 0", NULL, error)) &&
+    return cli_tell(performance, "loop 0", NULL, error) &&
            cli_tell(performance, "play", NULL, error);
 }
 

@@ -19,7 +19,7 @@ import { HANDS, bone } from "./body.js";
 import { segments } from "./skeleton.js";
 
 const canvas = document.getElementById("stage"),
-    stage = new Stage(canvas),
+    stage = new Stage(canvas, !!window.himcFiles),
     view = new View(canvas);
 const performers = new Map(),
     drums = new Map(),
@@ -608,7 +608,7 @@ const shownDrums = () => [...drums.values()].filter(d => d.group.visible);
 // a page of `himc share` brings its scene, that of `make page` a performer; any other asks the program that
 // serves it
 if (window.himcFiles) {
-    if (stage.software && !stage.flat) (stage.simplify(4), stage.resize(view)); // the performer needs the processor, too
+    if (stage.plain && !stage.flat) (stage.simplify(4), stage.resize(view)); // the performer needs the processor, too
     studio = new Studio(window.himcFiles, sound, liveSound, {
         frame: live,
         fresh: () => (forget(), panel.forget()),
@@ -620,7 +620,7 @@ if (window.himcFiles) {
         ray: e => view.ray(e),
         scene: async file => play(new Uint8Array(await file.arrayBuffer()), file.name),
     });
-    if (stage.software) studio.tell(stage.flat ? FLAT : "no graphics card: drawn with fewer points, one light and no shadows");
+    if (stage.plain) studio.tell(stage.flat ? FLAT : "no graphics card: drawn with fewer points, one light and no shadows");
 } else if (window.himcScene) {
     document.body.classList.add("shared");
     play(window.himcScene.bytes, window.himcScene.name).catch(tell("scene"));

@@ -14,10 +14,10 @@ export function discard(object) {
     object.traverse(part => part.geometry && part.geometry.dispose());
 }
 
-// Bright panels in a dark room, rendered once from the centre: the reflections in copper and steel.
-function environment(renderer) {
+// Bright panels in a dark room, rendered once from the centre: the reflections in copper and steel, `size` points wide.
+function environment(renderer, size) {
     const room = new THREE.Scene(),
-        camera = new THREE.CubeCamera(0.1, 20, 256);
+        camera = new THREE.CubeCamera(0.1, 20, size);
     const panel = (color, strength, w, h, p) => {
         const c = rgb(color).multiplyScalar(strength);
         const mesh = new THREE.Mesh(
@@ -59,7 +59,7 @@ function environment(renderer) {
     return texture;
 }
 
-function planks() {
+function planks(sharp) {
     const canvas = document.createElement("canvas"),
         c = canvas.getContext("2d"),
         w = 1024;
@@ -90,7 +90,7 @@ function planks() {
     const texture = picture(canvas);
     texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
     texture.repeat.set(16, 16);
-    texture.anisotropy = 8;
+    texture.anisotropy = sharp;
     return texture;
 }
 
@@ -147,15 +147,26 @@ function curtain() {
     );
 }
 
-function makeRenderer(canvas) {
-    const context = canvas.getContext("webgl", { alpha: false, antialias: true });
+// true where no graphics card draws
+function inSoftware(gl) {
+    const info = gl.getExtension("WEBGL_debug_renderer_info");
+    return !!info && /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+}
+
+// one that plays, too, leaves the processor alone where that draws: no edge is smoothed then
+function makeRenderer(canvas, plays) {
+    const trial = plays && document.createElement("canvas").getContext("webgl"),
+        antialias = !(trial && inSoftware(trial)),
+        context = canvas.getContext("webgl", { alpha: false, antialias });
+    trial?.getExtension("WEBGL_lose_context")?.loseContext();
     return context ? new THREE.WebGLRenderer({ canvas, context }) : new Sketch(canvas);
 }
 
 export class Stage {
-    constructor(canvas) {
+    // `plays`: the performer is in the page
+    constructor(canvas, plays) {
         THREE.Object3D.DefaultUp.set(0, 0, 1);
-        const renderer = (this.renderer = makeRenderer(canvas));
+        const renderer = (this.renderer = makeRenderer(canvas, plays));
         renderer.shadowMap.enabled = true;
         renderer.shadowMap.type = THREE.PCFSoftShadowMap;
         renderer.gammaOutput = true;
@@ -165,7 +176,8 @@ export class Stage {
         renderer.physicallyCorrectLights = true;
         this.scene = new THREE.Scene();
         this.flat = renderer instanceof Sketch; // a drawing
-        this.environment = this.flat ? null : environment(renderer);
+        this.plain = plays && this.software;
+        this.environment = this.flat ? null : environment(renderer, this.plain ? 64 : 256);
         this.lights();
         this.floor();
         this.scene.background = rgb("#0a0707");
@@ -208,7 +220,7 @@ export class Stage {
     floor() {
         const wood = new THREE.MeshStandardMaterial({
             color: rgb("#b9a08c"),
-            map: planks(),
+            map: planks(this.plain ? 1 : 8),
             roughness: 0.55,
             envMap: this.environment,
             envMapIntensity: 0.25,
@@ -226,12 +238,8 @@ export class Stage {
         view.resize();
     }
 
-    // true where no graphics card draws
     get software() {
-        if (this.flat) return true;
-        const gl = this.renderer.getContext(),
-            info = gl.getExtension("WEBGL_debug_renderer_info");
-        return !!info && /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+        return this.flat || inSoftware(this.renderer.getContext());
     }
 
     // if the frame rate stays low, lowers the quality by one step; `frame` is the last frame's time

@@ -2,12 +2,12 @@
 // instances of the module. Follows worker.js in a Worker of its own, and in the tests.
 //
 // One instance has the text. Another plays it, and leaves a copy of its memory behind every second: the last
-// copy as a whole, of each earlier one only the pages of 4 kB in which it differs from the next. After a change
+// copy as a whole, of each earlier one only the pages of 512 bytes in which it differs from the next. After a change
 // the last copy whose plan does not rest on it comes back, takes the new strokes in place of the old ones, and plays
 // on; if it refuses after all, the one before is asked. So all that follows is, bit by bit, what a playing from the
 // start would be. Where memory is short, copies far from the last change go.
 const WORD = 4,
-    PAGE = 4096 / WORD, // (words)
+    PAGE = 512 / WORD, // (words)
     APART = 1, // (s) of the piece between two copies
     CELL = 0.2, // (s) played at a time
     ROOM = 120 << 20, // of what the copies differ in (bytes), and less ...
@@ -19,11 +19,13 @@ const WORD = 4,
 class Copies {
     constructor(memory) {
         ((this.memory = memory), (this.image = new Int32Array(0)));
-        this.list = []; // { at, until when its plan rests on strokes (s), pages that the next one has otherwise: [index, words] }
+        this.list = []; // { at, until when its plan rests on strokes (s), pages that the next one has otherwise: where, words }
+        this.touched = 0; // where the memory was ever used (words)
     }
 
+    // of what the copies differ in (bytes)
     get size() {
-        return this.list.reduce((sum, copy) => sum + copy.pages.size * PAGE * WORD, 0);
+        return WORD * this.list.reduce((sum, copy) => sum + copy.words.length, 0);
     }
 
     // the memory as it is now is that at a time
@@ -34,37 +36,41 @@ class Copies {
             const { image } = this;
             (this.image = new Int32Array(now.length)).set(image);
         }
-        this.differing(now, (i, page) => {
-            last?.pages.set(i, this.image.slice(i, i + PAGE));
-            this.image.set(page, i);
-        });
-        this.list.push({ at, rests, pages: new Map() });
+        const where = this.differing(now);
+        if (last) [last.where, last.words] = [where, pagesOf(this.image, where)];
+        else this.touched = where.length * PAGE;
+        for (const i of where) this.image.set(now.subarray(i, i + PAGE), i);
+        this.list.push({ at, rests, where: [], words: [] });
     }
 
-    // calls with the pages in which it differs from the last copy; others stay untouched, and, empty, cost nothing
-    differing(now, use) {
-        const { image } = this;
+    // the pages in which it differs from the last copy; others stay untouched, and, empty, cost nothing
+    differing(now) {
+        const { image } = this,
+            where = [];
         for (let at = 0; at < now.length; at += PAGE) {
             let i = at;
             const end = at + PAGE;
             while (i < end && !((now[i] ^ image[i]) | (now[i + 1] ^ image[i + 1]) | (now[i + 2] ^ image[i + 2]) | (now[i + 3] ^ image[i + 3]))) i += 4;
-            if (i < end) use(at, now.subarray(at, end));
+            if (i < end) where.push(at);
         }
+        return Int32Array.from(where);
     }
 
     // the last copy is the memory again
     restore() {
-        const now = new Int32Array(this.memory.buffer);
-        if (now.length > this.image.length) now.fill(0, this.image.length);
-        this.differing(now.subarray(0, this.image.length), (i, page) => page.set(this.image.subarray(i, i + PAGE)));
+        const now = new Int32Array(this.memory.buffer),
+            { image } = this;
+        if (now.length > image.length) now.fill(0, image.length);
+        for (const i of this.differing(now.subarray(0, image.length))) now.set(image.subarray(i, i + PAGE), i);
     }
 
     // the one before is the last
     drop() {
         this.list.pop();
         const last = this.list[this.list.length - 1];
-        for (const [at, words] of last?.pages ?? []) this.image.set(words, at);
-        last?.pages.clear();
+        if (!last) return;
+        last.where.forEach((at, k) => this.image.set(last.words.subarray(k * PAGE, (k + 1) * PAGE), at));
+        ((last.where = []), (last.words = []));
     }
 
     // until there is room, without those whose absence costs least
@@ -73,11 +79,29 @@ class Copies {
             const cost = i => (list[i + 1].at - list[i - 1].at) / (FOCUS + Math.abs(list[i].at - focus));
             let least = 1;
             for (let i = 2; i < list.length - 1; i++) if (cost(i) < cost(least)) least = i;
-            const [gone] = list.splice(least, 1),
-                { pages } = list[least - 1];
-            for (const [at, words] of gone.pages) if (!pages.has(at)) pages.set(at, words);
+            this.join(list[least - 1], list.splice(least, 1)[0]);
         }
     }
+
+    // a copy has otherwise, too, what the one after it had, which is gone
+    join(copy, gone) {
+        const known = new Set(copy.where),
+            more = [...gone.where.keys()].filter(k => !known.has(gone.where[k])),
+            own = copy.where.length,
+            where = new Int32Array(own + more.length),
+            words = new Int32Array(where.length * PAGE);
+        (where.set(copy.where), words.set(copy.words));
+        where.set(more.map(k => gone.where[k]), own);
+        more.forEach((k, n) => words.set(gone.words.subarray(k * PAGE, (k + 1) * PAGE), (own + n) * PAGE));
+        Object.assign(copy, { where, words });
+    }
+}
+
+// one after another
+function pagesOf(image, where) {
+    const words = new Int32Array(where.length * PAGE);
+    where.forEach((at, k) => words.set(image.subarray(at, at + PAGE), k * PAGE));
+    return words;
 }
 
 // `tell` is given chunks; `written(name, bytes)` what is in a file that has to last, null: nothing
@@ -177,7 +201,7 @@ class Workshop {
             { list } = copies;
         if (this.time >= list[list.length - 1].at + APART - CELL / 2) {
             copies.add(this.time, player.calls.page_piece_rests_to());
-            copies.thin(Math.min(ROOM, ALL - 2 * player.files.memory.buffer.byteLength), this.focus);
+            copies.thin(Math.min(ROOM, ALL - 2 * WORD * copies.touched), this.focus);
         }
         this.over = !player.calls.page_piece_cell();
         this.time += CELL;

@@ -36,7 +36,8 @@ static const char *const plates[] = {HIMC_PLATES(WORD) NULL};
 static const char *const instruments[] = {HIMC_INSTRUMENTS(WORD) NULL};
 
 static const himc_argument arguments[] = {
-    {"BEAT|FROM|TO", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
+    {"BEAT|TO", NULL, HIMC_ARGUMENT_NUMBER, 0, 1e6, "", NULL},
+    {"FROM", NULL, HIMC_ARGUMENT_NUMBER, 0, 999999, "", NULL}, // before TO
     {"HAND", "hit", HIMC_ARGUMENT_WORD, 0, 0, "", hit_hands},
     {"HAND", "stroke", HIMC_ARGUMENT_WORD, 0, 0, "", stroke_hands},
     {"HAND", NULL, HIMC_ARGUMENT_WORD, 0, 0, "", hands},

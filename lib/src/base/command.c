@@ -15,7 +15,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEAD_TIME 0.2 // of a mallet on the head (s); chosen: the tone is over by then
+#define DEAD_TIME 0.2  // of a mallet on the head (s); chosen: the tone is over by then
+#define LEAST_LOOP 0.1 // chosen: a stroke of one hand at 150 beats a minute (beats)
 #define WORD_SIZE 64
 #define EXPECTED_SIZE 256
 #define OWN_WORD 1000 // rank of a form with a word of its own; more than that of all atoms
@@ -411,6 +412,10 @@ bool himc_command_parse(himc_command *out, himc_receiver receiver, const char *n
         return himc_command_parse(out, HIMC_PERFORMER, "score",
                                   &(himc_atom){HIMC_ATOM_SYMBOL, 0, file}, 1, error);
     }
+    if (row->id == HIMC_COMMAND_LOOP && count == 2 &&
+        !himc_check_range("loop: TO", atoms[1].number, atoms[0].number + LEAST_LOOP, 1e6, "beats",
+                          error))
+        return false;
     out->id = row->id;
     store(out, atoms, count, &read);
     if (ornament_of(row->id) >= 0)

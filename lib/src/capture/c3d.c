@@ -546,8 +546,6 @@ bool himc_c3d_read(himc_take *take, const void *file, size_t size, himc_error *e
 // meaning; a gap has the residual -1. X_SCREEN +X and Y_SCREEN +Z state the library's axes. More
 // than 65535 frames are counted by TRIAL:ACTUAL_END_FIELD.
 
-#define MOST_LABELS 255 // a parameter's dimension is one byte
-
 typedef struct bytes {
     unsigned char *at, *end;
 } bytes;
@@ -697,7 +695,7 @@ static void put_parameters(bytes *b, const himc_take *take, int blocks)
     put_group(b, 2, "TRIAL");
     put_field(b, "ACTUAL_START_FIELD", 1);
     put_field(b, "ACTUAL_END_FIELD", (unsigned)take->frames);
-    if (take->analog)
+    if (take->analog && take->analog_channels > 0)
         put_analog(b, take);
     b->at = begin + (size_t)blocks * BLOCK;
 }
@@ -706,10 +704,10 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
 {
     int channels = take->analog ? take->analog_channels : 0,
         each = channels ? take->analog_samples / take->frames : 0, samples = channels * each;
-    if (take->points > MOST_LABELS || channels > MOST_LABELS)
+    if (take->points > HIMC_C3D_LABELS || channels > HIMC_C3D_LABELS)
         return himc_error_set(error, "%s: %d %s, expected up to %d in a .c3d", take->file,
-                              channels > MOST_LABELS ? channels : take->points,
-                              channels > MOST_LABELS ? "analog channels" : "points", MOST_LABELS);
+                              channels > HIMC_C3D_LABELS ? channels : take->points,
+                              channels > HIMC_C3D_LABELS ? "analog channels" : "points", HIMC_C3D_LABELS);
     // a channel has a label, a unit, a scale and an offset
     int blocks =
         2 + (take->points * TAKE_NAME + channels * (2 * TAKE_NAME + 6) + BLOCK - 1) / BLOCK;

@@ -190,6 +190,7 @@ static inline himc_vec3 himc_take_y_up(himc_vec3 x)
     HIMC_TAKE_READER(suffix, begins)     \
     bool himc_##suffix##_write(FILE *file, const himc_take *take, himc_error *error);
 HIMC_TAKE_FORMATS(HIMC_TAKE_READER, HIMC_TAKE_WRITER)
+#define HIMC_C3D_LABELS 255 ///< most points or channels written; a parameter's dimension is a byte
 /// A number of 32 bits of a C3D's processor (84 Intel, 85 DEC, 86 MIPS); NaN where reserved.
 double himc_c3d_real(int processor, const unsigned char *at);
 

@@ -6,8 +6,12 @@
 /// and h0 elsewhere: the undercut of depth d tunes mode 2 to a given ratio, the length L mode 1. It
 /// is symmetric, so half of it, of elements whose shear does not lock (Przemieniecki 1968), gives
 /// the even modes (no rotation in the middle) and the odd ones (no displacement there). Of a steel
-/// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; a thin one would have 2.756 : 5.404.
-/// Torsion is left out: a blow on the axis does not excite it.
+/// bar of 180 x 8.5 mm it makes 1 : 2.716 : 5.21, as recorded; of a thin one 1 : 2.756 : 5.404.
+///
+/// A glockenspiel's bars also twist, as mallets land beside the axis: of its recorded lines of 1050
+/// Hz the strongest, 6.88 times that, is the second of torsion, which gives the width. It lies close
+/// over the bottom of its case and sounds as in a wall, and each mode loses what it sends and what
+/// its cords take. Of other bars torsion, whose two sides cancel without a wall, is left out.
 ///
 /// A tubular bell is a beam of a tube's section: modes 4, 5, 6 sound one tone, an octave below the
 /// fourth, 2 : 2.89 : 3.87 of C5. It hangs, and is struck on the cap at its top, which is all
@@ -44,6 +48,8 @@
 #define LENGTH 0.3          // at which it begins (m)
 #define EXACT 1e-6          // of a ratio; chosen: 0.002 cent
 #define GAP 0.008           // between two bars (m)
+#define NODE 0.224          // of a free bar, where it lies on its cords; ...
+#define CORD 1.0            // ... their resistance (N s/m); chosen: T60 of modes 2 and 3
 #define SEMITONE 1.0594630943592953
 
 // A kind of bar. Size at f: at `from`, times (from/f)^exponent.
@@ -69,7 +75,8 @@ typedef struct bar_row {
 #define GLOCKENSPIEL 3 // ... in a case
 #define FELT 40.0      // that they take (1/s); chosen: T60 = .17 s
 
-// In the order of HIMC_BARS (himc/command_rows.h). Mallets: yarn, plastic, cord, brass, rawhide.
+// In the order of HIMC_BARS (himc/command_rows.h). Mallets: yarn, plastic, cord, hard plastic,
+// rawhide.
 // Losses of a tube as recorded: T60 8.1, 3.7, 1.7 s at 1402, 2043, 2768 Hz.
 static const bar_row rows[] = {
     {ROSEWOOD,
@@ -121,17 +128,17 @@ static const bar_row rows[] = {
      880,
      0.0085,
      0,
-     0.026,
+     0.0317,
      0,
      0,
      false,
      0.3,
-     6e-5,
-     4.5e-9,
+     8e-5,
+     0,
      0,
      390,
      4200,
-     {.stiffness = 6e9, .exponent = 1.6, .mass = 0.018, .relaxation = 10e-6}},
+     {.stiffness = 2e9, .exponent = 1.5, .mass = 0.008, .relaxation = 2e-6}},
     {BRASS,
      523,
      0.0015,
@@ -310,6 +317,50 @@ static void name_part(himc_part *part, double hz)
     snprintf(part->name, sizeof part->name, "%s", note);
 }
 
+// Of a mode of a bar in a case, as in a wall, the same: rho/(2 pi) |int phi exp(i k . x) dx dy|,
+// all directions of half a sphere, whose four quarters are alike.
+static double walled(const bar *b, double omega, const double *shape, bool twists)
+{
+    enum { RINGS = 6, SPOKES = 6 };
+    double wave = omega / HIMC_AIR_SPEED, step = b->length / (POINTS - 1), sum = 0;
+    for (int k = 0; k < RINGS * SPOKES; k++) {
+        double height = (k / SPOKES + 0.5) / RINGS, flat = wave * sqrt(1 - height * height);
+        double azimuth = HIMC_PI / 2 * (k % SPOKES + 0.5) / SPOKES, even = 0, odd = 0;
+        double along = flat * cos(azimuth) * step, u = flat * sin(azimuth) * b->width / 2;
+        double across = twists ? (sin(u) - u * cos(u)) / (u * u) : sin(u) / u;
+        for (int i = 0; i < POINTS; i++) {
+            double part = shape[i] * step * (i == 0 || i == POINTS - 1 ? 0.5 : 1);
+            even += part * cos(along * i);
+            odd += part * sin(along * i);
+        }
+        sum += across * across * (even * even + odd * odd) / (RINGS * SPOKES);
+    }
+    return HIMC_AIR_DENSITY * b->width / (2 * HIMC_PI) * sqrt(sum);
+}
+
+// what such a mode loses by its sound, 2 d m v^2/2 = 2 pi p^2/(rho c) of half a sphere (1/s)
+static double sent(double pressure, double omega, double mass)
+{
+    return HIMC_PI * pow(pressure * omega, 2) / (HIMC_AIR_DENSITY * HIMC_AIR_SPEED * mass);
+}
+
+// A mode that twists a bar in a case, n half waves from end to end: theta = cos(n pi x/L), at
+// n/(2 L) sqrt(G K/(rho I)), K = b h^3/3 (1 - .63 h/b), I = b h (b^2 + h^2)/12.
+static himc_partial twist(const bar *b, int n, double *shape)
+{
+    double h = b->thickness, flat = h / b->width, square = flat * flat;
+    double speed =
+        sqrt(b->row->shear / b->row->density * 4 * square * (1 - 0.63 * flat) / (1 + square));
+    double mass = b->row->density * h * b->width * b->length;
+    himc_partial mode = {
+        .frequency = n * speed / (2 * b->length), .mass = mass * (1 + square) / 6, .twists = true};
+    for (int i = 0; i < POINTS; i++)
+        shape[i] = cos(n * HIMC_PI * i / (POINTS - 1));
+    mode.pressure = walled(b, 2 * HIMC_PI * mode.frequency, shape, true);
+    mode.loss = sent(mode.pressure, 2 * HIMC_PI * mode.frequency, mode.mass);
+    return mode;
+}
+
 static bool add_bar(himc_idiophone *body, bar *b, double hz, himc_error *error)
 {
     const bar_row *r = b->row;
@@ -329,9 +380,20 @@ static bool add_bar(himc_idiophone *body, bar *b, double hz, himc_error *error)
         himc_partial mode = {
             .frequency = frequency(b, i), .mass = 1, .share = i == 0 ? r->share : 0};
         find_shape(b, i, shape);
+        double omega = 2 * HIMC_PI * mode.frequency;
         if (r->tube)
-            mode.pressure = pressure(b, 2 * HIMC_PI * frequency(b, i), shape);
+            mode.pressure = pressure(b, omega, shape);
+        if (r == &rows[GLOCKENSPIEL])
+            mode.loss = sent(walled(b, omega, shape, false), omega, mode.mass) +
+                        CORD * pow(shape[(int)lround(NODE * (POINTS - 1))], 2);
         if (!himc_idiophone_add_mode(body, mode, shape + from, POINTS - from, error))
+            return false;
+    }
+    for (int n = 1; r == &rows[GLOCKENSPIEL]; n++) {
+        himc_partial mode = twist(b, n, shape);
+        if (mode.frequency > HIGHEST)
+            break;
+        if (!himc_idiophone_add_mode(body, mode, shape, POINTS, error))
             return false;
     }
     return true;

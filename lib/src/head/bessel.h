@@ -15,6 +15,8 @@ double himc_bessel_j0(double z);
 /// The n-th positive zero of J_m (m >= 0, n >= 1), to about 1e-15 relative.
 double himc_bessel_zero(int m, int n);
 
+#define HIMC_BESSEL_FIRST 0x1.ea75575af6f08p+1 ///< himc_bessel_zero(1, 1), to the bit
+
 /// The zero of J_m in [low, high]; this interval must have exactly one.
 double himc_bessel_zero_between(int m, double low, double high);
 

@@ -216,12 +216,13 @@ bool himc_idiophone_list(himc_modes *modes, bool automatic)
     return modes->entries;
 }
 
-// The part at a point, and how far along it that is, 0 .. 1; -1 outside. Between parts a mallet, as
-// wide as the gap, meets the nearer one.
-static int part_at(const himc_idiophone *body, double x, double y, double *along)
+// The part at a point, how far along it that is, 0 .. 1, and how far off its axis, -1 .. 1; -1
+// outside. Between parts a mallet, as wide as the gap, meets the nearer one.
+static int part_at(const himc_idiophone *body, double x, double y, double *along, double *aside)
 {
     int nearest = -1;
     double least = INFINITY;
+    *aside = 0;
     if (body->length == 0) {
         *along = hypot(x, y) / body->radius;
         return *along < 1 ? 0 : -1;
@@ -237,6 +238,7 @@ static int part_at(const himc_idiophone *body, double x, double y, double *along
         least = away;
         nearest = i;
         *along = fmin(fmax(u + 0.5, 0), 1 - 1e-9); // the last value has none behind it
+        *aside = fmin(fmax(2 * v / p->width, -1), 1);
     }
     return nearest;
 }
@@ -244,14 +246,15 @@ static int part_at(const himc_idiophone *body, double x, double y, double *along
 void himc_idiophone_shapes(const himc_modes *modes, double radius, double x, double y, double *out)
 {
     const himc_idiophone *body = modes->shape.body;
-    double along = 0, scale = body->radius / radius;
-    int part = part_at(body, scale * x, scale * y, &along);
+    double along = 0, aside, scale = body->radius / radius;
+    int part = part_at(body, scale * x, scale * y, &along, &aside);
     for (int i = 0; i < modes->count; i++) {
         const himc_partial *m = &body->mode[i];
         const double *w = body->shape + m->first;
         double at = along * (m->points - 1);
         int k = (int)at;
         out[i] = m->part != part ? 0 : m->points == 1 ? w[0] : w[k] + (at - k) * (w[k + 1] - w[k]);
+        out[i] *= m->twists ? aside : 1;
     }
 }
 

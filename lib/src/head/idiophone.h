@@ -29,6 +29,7 @@ typedef struct himc_partial {
     double pressure;   ///< at 1 m, any way, per acceleration where it is 1 (Pa s^2/m); 0: a strip's
     double share;      ///< of what it loses, sent by its resonator
     int first, points; ///< of its shape: even steps from end to end of a bar, from centre to edge
+    bool twists;       ///< it turns about the bar's axis, and the shape is that of its left edge
 } himc_partial;
 
 /// Constant once made; counts its references, which may be in several threads.

@@ -48,7 +48,7 @@ bool himc_head_check(const himc_head *head, himc_error *error)
 
 double himc_head_tension_for(const himc_head *head, double frequency)
 {
-    double speed = 2 * HIMC_PI * frequency * head->radius / himc_bessel_zero(1, 1);
+    double speed = 2 * HIMC_PI * frequency * head->radius / HIMC_BESSEL_FIRST;
     return head->density * speed * speed;
 }
 

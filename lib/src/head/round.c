@@ -157,7 +157,7 @@ static void shapes(const himc_modes *modes, double radius, double x, double y, d
 static double principal(const himc_shape *shape)
 {
     (void)shape;
-    return himc_bessel_zero(1, 1);
+    return HIMC_BESSEL_FIRST;
 }
 
 static double film(const himc_shape *shape)

@@ -19,6 +19,12 @@ typedef struct step {
     int8_t from, choice;
 } step;
 
+// a hand or a drum is looked for
+static bool is_chosen(const midi_stroke *s)
+{
+    return s->fate == MIDI_PLAYED && !s->foot && !s->in_roll;
+}
+
 // among the `count` best so far; returns how many they are then
 static int keep(way *best, int count, const way *made)
 {
@@ -50,7 +56,7 @@ bool himc_midi_search(const midi_part *part, const midi_state *first, int choice
     if (good)
         now[0].state = *first;
     for (int k = 0; good && k < part->count; k++) {
-        if (part->stroke[k].fate != MIDI_PLAYED || part->stroke[k].foot)
+        if (!is_chosen(&part->stroke[k]))
             continue;
         int kept = 0;
         for (int i = 0; i < count * choices; i++) {
@@ -68,7 +74,7 @@ bool himc_midi_search(const midi_part *part, const midi_state *first, int choice
     for (int i = 1; good && i < count; i++)
         best = now[i].state.cost < now[best].state.cost ? i : best;
     for (int k = part->count - 1; good && k >= 0; k--) {
-        if (part->stroke[k].fate != MIDI_PLAYED || part->stroke[k].foot)
+        if (!is_chosen(&part->stroke[k]))
             continue;
         step at = steps[(size_t)k * WIDTH + (size_t)best];
         chosen[k] = at.choice;

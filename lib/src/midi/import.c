@@ -112,8 +112,10 @@ static void take_notes(midi_part *part, const midi_options *options)
             .spot = beyond ? HIMC_SPOT_NORMAL : way->spot,
             .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
             .end = fmax(note->off, damped),
-            .roll = {way->length, written ? way->last_dynamic
-                                          : himc_midi_dynamic(note->last_level, options->range)}};
+            .roll = {way->length,
+                     written ? way->last_dynamic
+                             : himc_midi_dynamic(note->last_level, options->range),
+                     note->off}};
     }
 }
 
@@ -131,15 +133,15 @@ static const midi_bar *bar_at(const midi_file *file, double beat)
     return low > 0 ? &file->bars[low - 1] : NULL;
 }
 
-// a part of a roll without the part before it is left out, too
+// a part of a roll without the part before it is left out, too, and so are the strokes in it
 static void drop_rests(midi_part *part)
 {
     midi_fate fate[MIDI_KEY_COUNT] = {MIDI_PLAYED}; // of the last part of a roll of each key
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
-        if (s->roll.length <= 0)
+        if (s->roll.length <= 0 && !s->in_roll)
             continue;
-        if (s->note->way.extra && fate[s->key] != MIDI_PLAYED)
+        if ((s->note->way.extra || s->in_roll) && fate[s->key] != MIDI_PLAYED)
             s->fate = fate[s->key];
         fate[s->key] = s->fate;
     }
@@ -152,14 +154,17 @@ static void count_fates(midi_part *part)
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
         const midi_bar *bar = bar_at(part->file, s->note->beat);
-        part->fate[s->fate] += !s->note->way.extra;
-        if (bar && !s->note->way.extra)
-            himc_text_list(part->bars[s->fate], sizeof part->bars[0], bar->number);
+        bool extra = s->note->way.extra;
+        bool lost = extra && (s->fate == MIDI_NO_HAND || s->fate == MIDI_NO_DRUM);
+        midi_fate fate = lost ? MIDI_LOST_STROKE : s->fate;
+        part->fate[fate] += !extra || lost;
+        if (bar && (!extra || lost))
+            himc_text_list(part->bars[fate], sizeof part->bars[0], bar->number);
         s->damped = s->damped && s->fate == MIDI_PLAYED && part->damped < most_damped;
         part->damped += s->damped;
         bool roll = s->roll.length > 0 && s->fate == MIDI_PLAYED;
         part->rolls += roll;
-        part->rolled += roll && !s->note->way.extra;
+        part->rolled += (roll || (s->in_roll && s->fate == MIDI_PLAYED)) && !s->note->way.extra;
     }
 }
 
@@ -180,15 +185,37 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
                               himc_midi_choice_name(part->choice));
     if (part->count > MOST_STROKES)
         return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
-    if (!give_instruments(part, error) || !himc_midi_stick(part, error))
+    if (!give_instruments(part, error))
+        return false;
+    if (part->choice == MIDI_TIMPANI && !file->said)
+        himc_midi_find_rolls(part);
+    if (!himc_midi_stick(part, error))
         return false;
     for (int i = 0; i < part->count && part->choice != MIDI_TIMPANI; i++)
         part->stroke[i].damped = part->stroke[i].note->way.ring < 0;
     drop_rests(part);
     count_fates(part);
-    if (part->choice == MIDI_TIMPANI && !file->said)
-        himc_midi_find_rolls(part);
     return true;
+}
+
+static bool has_wires(const midi_head *head)
+{
+    return strncmp(head->made[0] ? head->made : head->name, "snare", 5) == 0;
+}
+
+// words about snare wires that no drum of the part has
+static int count_wireless(const midi_part *part)
+{
+    int count = 0;
+    for (int h = 0; h < part->heads; h++)
+        if (has_wires(&part->head[h]))
+            return 0;
+    for (int i = 0; i < part->file->order_count; i++) {
+        const midi_order *o = &part->file->orders[i];
+        bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
+        count += o->kind == MIDI_WIRES && mine;
+    }
+    return count;
 }
 
 // the report
@@ -219,6 +246,10 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                           "notes are not played: no drum could be tuned to them in time"},
         [MIDI_NO_HAND] = {"note is not played: both hands are busy",
                           "notes are not played: both hands are busy"},
+        [MIDI_LOST_STROKE] = {"stroke of a tremolo, roll or grace is not played: no hand or drum "
+                              "is free",
+                              "strokes of tremolos, rolls and graces are not played: no hand or "
+                              "drum is free"},
         [MIDI_NO_INSTRUMENT] = {"note is not played: there is no instrument for it",
                                 "notes are not played: there is no instrument for them"},
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
@@ -254,6 +285,9 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
     report_kind(t, part->hoopless,
                 "stroke is played at its usual place: the instrument has no hoop or shell",
                 "strokes are played at their usual place: the instrument has no hoop or shell");
+    report_kind(t, count_wireless(part),
+                "word about snares is not followed: no drum of the part has any",
+                "words about snares are not followed: no drum of the part has any");
     report_kind(t, part->damped, "note is damped at its end", "notes are damped at their end");
     if (file->converted)
         himc_text_print(t, "the tempo map is not kept: beats are half seconds\n");
@@ -312,9 +346,11 @@ static int list_orders(const midi_part *part, change *list, int count)
     for (int i = 0; i < part->file->order_count; i++) {
         const midi_order *o = &part->file->orders[i];
         bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
-        for (int h = 0; o->kind == MIDI_MUFFLE && mine && h < part->heads; h++)
-            if (part->head[h].key != -1 && count < most)
+        for (int h = 0; mine && h < part->heads && count < most; h++)
+            if (o->kind == MIDI_MUFFLE && part->head[h].key != -1)
                 list[count++] = (change){o->seconds, h, o->value ? "muffle 1" : "muffle 0", NULL};
+            else if (o->kind == MIDI_WIRES && has_wires(&part->head[h]))
+                list[count++] = (change){o->seconds, h, o->value ? "wires 1" : "wires 0", NULL};
     }
     for (int k = 0; k < part->pedals; k++)
         list[count++] =

@@ -225,7 +225,10 @@ static int head_of(midi_part *part, const char *name)
     *head = own;
     if (!part->setup && !find(himc_setup_kit, head) && !find(himc_setup_around, head))
         return -1;
-    head->radius = 0.15; // (m) chosen: only the way to the next one depends on it
+    char made[sizeof head->made];
+    snprintf(made, sizeof made, "%s", head->made);
+    double inches = himc_midi_split_size(made);
+    head->radius = inches > 0 ? 0.0127 * inches : 0.1; // (m), of what is small
     return part->heads++;
 }
 

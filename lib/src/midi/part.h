@@ -24,6 +24,7 @@ typedef enum midi_fate {
     MIDI_TOGETHER,         ///< with another one on the same head: they are one stroke
     MIDI_NO_DRUM,          ///< no drum could be tuned in time
     MIDI_NO_HAND,          ///< both hands are busy
+    MIDI_LOST_STROKE,      ///< one of these two, of a stroke of a note that has others
     MIDI_FATES
 } midi_fate;
 
@@ -42,6 +43,7 @@ typedef struct midi_head {
 typedef struct midi_roll {
     double length;       ///< (beats); 0: none
     double last_dynamic; ///< 0 .. 1
+    double end;          ///< (s)
 } midi_roll;
 
 /// What a pedal does before a stroke.
@@ -93,13 +95,13 @@ typedef struct midi_part {
     int untuned;               ///< orders to tune that no drum can follow
     int mallets;               ///< changes of mallets that are not played
     int hoopless;              ///< strokes beyond a head that has no hoop or shell
-    int rolls, rolled;         ///< rolls, and the strokes in them
+    int rolls, rolled;         ///< rolls, and the notes in them
 } midi_part;
 
 /// When the hands leave a stroke's head: of a roll its end (s).
 static inline double himc_midi_stroke_end(const midi_stroke *stroke)
 {
-    return stroke->roll.length > 0 ? stroke->note->off : stroke->note->seconds;
+    return stroke->roll.length > 0 ? stroke->roll.end : stroke->note->seconds;
 }
 
 /// Of two strokes on one head (but for drums: of one pitch) at the same time one is played, the
@@ -153,7 +155,7 @@ void himc_midi_keyboard(midi_part *part);
 /// sticking.c: gives each stroke a hand. False without memory.
 bool himc_midi_stick(midi_part *part, himc_error *error);
 
-/// rolls.c: finds the rolls among the strokes that are played.
+/// rolls.c: finds the rolls among the strokes that have heads.
 void himc_midi_find_rolls(midi_part *part);
 
 #endif

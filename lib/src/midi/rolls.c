@@ -3,8 +3,9 @@
 /// A roll in a MIDI file is a row of notes as fast as its maker could; a player plays as many
 /// strokes as drum and dynamic ask for. So strokes of one drum at 9 a second and more, 32nds at 8,
 /// four at least, with no other drum between them, become a `roll` from the first to the end of the
-/// last. Where the dynamics do not lie on a line, another roll begins. The drum channel has no
-/// rolls: there such rows are fills, whose rhythm counts.
+/// last, and those of two drums at the same times a roll on both. Four have to come before a hand
+/// goes to the next drum: fewer are a figure, whose rhythm counts. Where the dynamics do not lie on
+/// a line, another roll begins. The drum channel has no rolls: there such rows are fills.
 #include "base/argument.h"
 #include "midi/part.h"
 
@@ -15,7 +16,8 @@
 #define LEAST_NOTES 4    // of a roll
 #define MOST_NOTES 1000  // of a roll; chosen: a minute of a fast one
 #define LONGEST 60.0     // (s) chosen: the score's limit less a last stroke at the slowest tempo
-#define MOVE_TIME 0.5 // from its last stroke to one on another drum (s); chosen: sticking.c's need
+#define MOVE_TIME 0.5  // from its last stroke to one on another drum (s); chosen: sticking.c's need
+#define SAME_TIME 0.01 // (s) as himc_midi_join
 #define MOST_OFF_LINE 0.06 // of the dynamics from a straight line; chosen: less than half a step
 
 /// The next stroke that is played, -1 after the last.
@@ -34,7 +36,24 @@ static bool is_fast(const midi_note *a, const midi_note *b)
     return gap <= 1 / (thirty_second ? SLOWEST_32ND : SLOWEST);
 }
 
-// true if the dynamics from the first to the last lie on a line
+/// Strokes of one drum in a row, or of two drums at the same times.
+typedef struct row {
+    int first, second; ///< of each drum; -1: of one only
+    int end;           ///< the last stroke of the first drum
+    int notes;         ///< of each drum
+} row;
+
+// the stroke on another drum at the same time, if it comes next; else -1
+static int partner_of(const midi_part *part, int stroke)
+{
+    int next = next_played(part, stroke);
+    const midi_stroke *s = part->stroke;
+    bool together = next >= 0 && s[next].head != s[stroke].head &&
+                    s[next].note->seconds - s[stroke].note->seconds < SAME_TIME;
+    return together ? next : -1;
+}
+
+// true if the dynamics of a drum from the first to the last lie on a line
 static bool is_straight(const midi_part *part, int first, int last)
 {
     const midi_stroke *a = &part->stroke[first], *b = &part->stroke[last];
@@ -42,50 +61,82 @@ static bool is_straight(const midi_part *part, int first, int last)
     for (int i = first; i != last; i = next_played(part, i)) {
         const midi_stroke *s = &part->stroke[i];
         double share = time > 0 ? (s->note->seconds - a->note->seconds) / time : 0;
-        if (fabs(s->dynamic - a->dynamic - share * (b->dynamic - a->dynamic)) > MOST_OFF_LINE)
+        if (s->head == a->head &&
+            fabs(s->dynamic - a->dynamic - share * (b->dynamic - a->dynamic)) > MOST_OFF_LINE)
             return false;
     }
     return true;
 }
 
-// A roll ends early enough for a hand to go to the next drum: the strokes after it keep the hands
-// that sticking.c gave them, one of which may go ahead.
-void himc_midi_find_rolls(midi_part *part)
+// the last stroke of a row that ends with that of the first drum
+static int last_of(const midi_part *part, const row *r, int end)
+{
+    return r->second < 0 ? end : next_played(part, end);
+}
+
+// true if the row goes on with its next stroke, or its next two
+static bool goes_on(const midi_part *part, row *r)
+{
+    const midi_stroke *s = part->stroke;
+    int next = next_played(part, last_of(part, r, r->end));
+    int other = next >= 0 && r->second >= 0 ? partner_of(part, next) : -1;
+    bool both = r->second < 0 || (other >= 0 && s[other].head == s[r->second].head &&
+                                  is_straight(part, r->second, other));
+    if (next < 0 || !both || r->notes == MOST_NOTES || s[next].head != s[r->first].head ||
+        s[next].roll.length > 0 || !is_fast(s[r->end].note, s[next].note) ||
+        s[next].note->seconds - s[r->first].note->seconds > LONGEST ||
+        !is_straight(part, r->first, next))
+        return false;
+    r->end = next;
+    r->notes++;
+    return true;
+}
+
+// true if enough notes of a row come so early that a hand could still go to the next drum
+static bool is_sure(const midi_part *part, const row *r)
+{
+    const midi_stroke *s = part->stroke;
+    int next = r->end, sure = 0;
+    while (next >= 0 && s[next].head == s[r->first].head)
+        next = next_played(part, next);
+    double until = next >= 0 && r->second < 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
+    for (int i = r->first; sure < LEAST_NOTES && s[i].note->seconds <= until; sure++) {
+        if (i == r->end)
+            return sure + 1 == LEAST_NOTES;
+        i = next_played(part, last_of(part, r, i));
+    }
+    return sure == LEAST_NOTES;
+}
+
+static bool make_roll(midi_part *part, const row *r)
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
+    const midi_file *f = part->file;
     midi_stroke *s = part->stroke;
-    for (int first = next_played(part, -1), last; first >= 0; first = next_played(part, last)) {
-        int end = first, row = 1, next, notes = 1;
-        if (s[last = first].roll.length > 0)
-            continue;
-        while (row < MOST_NOTES && (next = next_played(part, end)) >= 0 &&
-               s[next].head == s[first].head && s[next].roll.length == 0 &&
-               is_fast(s[end].note, s[next].note) &&
-               s[next].note->seconds - s[first].note->seconds <= LONGEST &&
-               is_straight(part, first, next)) {
-            end = next;
-            row++;
-        }
-        next = end;
-        while (next >= 0 && s[next].head == s[first].head)
-            next = next_played(part, next);
-        double until = next >= 0 ? s[next].note->seconds - MOVE_TIME : HUGE_VAL;
-        last = first;
-        while (last != end && s[next_played(part, last)].note->seconds <= until) {
-            last = next_played(part, last);
-            notes++;
-        }
-        // the last stroke lasts as long as the others
-        double beats = s[last].note->beat - s[first].note->beat;
-        double length = notes >= LEAST_NOTES ? beats * notes / (notes - 1) : 0;
-        if (length < range->low || length > range->high) {
-            last = first;
-            continue;
-        }
-        s[first].roll = (midi_roll){length, s[last].dynamic};
-        for (int k = first; k != last;)
-            s[k = next_played(part, k)].in_roll = true;
-        part->rolls++;
-        part->rolled += notes;
+    // the last stroke lasts as long as the others
+    double beat = s[r->first].note->beat, beats = s[r->end].note->beat - beat,
+           length = r->notes > 1 ? beats * r->notes / (r->notes - 1) : 0;
+    if (r->notes < LEAST_NOTES || !is_sure(part, r) || length < range->low || length > range->high)
+        return false;
+    double end = himc_score_seconds(f->tempi, f->tempo_count, beat + length);
+    int last = last_of(part, r, r->end);
+    for (int k = r->first; k != last;)
+        s[k = next_played(part, k)].in_roll = true;
+    s[r->first].roll = (midi_roll){length, s[r->end].dynamic, end};
+    if (r->second >= 0) {
+        s[r->second].in_roll = false;
+        s[r->second].roll = (midi_roll){length, s[last].dynamic, end};
+    }
+    return true;
+}
+
+void himc_midi_find_rolls(midi_part *part)
+{
+    for (int first = next_played(part, -1); first >= 0;) {
+        row r = {first, partner_of(part, first), first, 1};
+        while (part->stroke[first].roll.length == 0 && goes_on(part, &r))
+            ;
+        int last = make_roll(part, &r) ? last_of(part, &r, r.end) : first;
+        first = next_played(part, last);
     }
 }

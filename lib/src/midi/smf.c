@@ -561,7 +561,10 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
     r.timpani = calloc(UINT16_MAX, sizeof *r.timpani);
     r.channels = calloc(UINT16_MAX, sizeof *r.channels);
     collection *c = calloc(1, sizeof *c);
-    bool good = (r.timpani && r.channels && c) || himc_error_set(error, "out of memory");
+    // a file without events has an address of them, too
+    bool good = (himc_array_grow(&r.events, 0, &r.room, sizeof *r.events, NULL) && r.timpani &&
+                 r.channels && c) ||
+                himc_error_set(error, "out of memory");
     good = good && read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r, c) &&
            find_swells(file, &r, c) && settle_beats(file, &r) &&
            (file->converted || place_bars(file, &r));

@@ -56,15 +56,16 @@ typedef struct midi_bar {
     char number[12];
 } midi_bar;
 
-typedef enum midi_order_kind { MIDI_TUNING, MIDI_MUFFLE, MIDI_MALLET } midi_order_kind;
+typedef enum midi_order_kind { MIDI_TUNING, MIDI_MUFFLE, MIDI_MALLET, MIDI_WIRES } midi_order_kind;
 
 /// What the player is told between notes, by MusicXML.
 typedef struct midi_order {
     double beat, seconds;
     midi_order_kind kind;
     midi_choice choice; ///< whose part says it
-    int from, value; ///< tuning: classes of pitch, 0 C .. 11 (12: of any drum); 0 or 1; a mallet,
-                     ///< 0 soft .. 3 wood
+    int from, value; ///< tuning: MIDI keys, below 24 classes of pitch, 0 C .. 11; `from`: 12 of any
+                     ///< drum, 128 more for the low one by name, 256 the second, ..; 0 or 1; a
+                     ///< mallet, 0 soft .. 3 wood
     bool glides;     ///< tuning: the drum is heard meanwhile, and goes on after a stroke here
     double length;   ///< ... its time (s); 0: as usual
     int line;        ///< ... as music_sign

@@ -1,10 +1,12 @@
 /// sticking.c: which hand plays which stroke.
 ///
 /// A beam search over the strokes in time. Its state is the last stroke of each hand; a stroke
-/// costs its hand what plan/sticking.h says, a little more the left one, and more the hand that has
-/// just struck the same drum: hand by hand, as players do also where one hand had the time. A
-/// stroke nearer to its hand's last than the planner can move (hand.c) is not possible; one that is
-/// left out costs more than any that is played, and the more the louder it is.
+/// costs its hand what plan/sticking.h says, with the time that the planner needs for its way, a
+/// little more the left one, and more the hand that has just struck the same drum: hand by hand, as
+/// players do also where one hand had the time. A stroke nearer to its hand's last than the planner
+/// can leap (hand.c), or for which the arms would cross over another drum at once, is not possible;
+/// one that is left out costs more than any that is played, and the more the louder it is.
+#include "base/head_frame.h"
 #include "midi/part.h"
 #include "plan/hand.h"
 #include "plan/sticking.h"
@@ -13,29 +15,50 @@
 
 enum { OMIT = HIMC_HANDS };
 
-// of the time that a move takes: the planner's margin (hand.c) for a stroke's swing, a little more
-#define MOVE_SHARE 1.45
+#define NEED 1.5        // of the least time of a leap: what is quicker costs; chosen
+#define WRITTEN 0.8     // of the time of a leap: who wrote the hand may know better; chosen
+#define AGAIN_TIME 0.09 // the same on one spot (s)
+#define ACROSS 0.2      // arms cross over another drum if a hand is so far past the other (m) ...
+#define OVER 0.1        // on another height it passes (m)
+#define ACROSS_COST 20.0
+#define ACROSS_TIME 0.3 // ... and meet if that one has struck so shortly before (s)
+#define SAME_TIME 1e-7  // (beats)
 #define ROLL_STROKE 0.1 // from a roll's last stroke to its end (s)
 #define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
 
 /// A stroke of one hand.
 typedef struct place {
-    double at;   ///< (s); far in the past at first
-    double x, y; ///< (m)
+    double at;      ///< (s); far in the past at first
+    double x, y, z; ///< (m)
 } place;
 
-// of a stroke, at the normal spot: towards the player from the centre; -1: at first each hand is
-// before its own side
+// of a stroke; -1: at first each hand is before its own side
 static place place_of(const midi_part *part, int stroke, int hand, int now)
 {
     if (stroke < 0)
-        return (place){-1e3, 0.5, hand == HIMC_LEFT ? 0.2 : -0.2};
+        return (place){-1e3, 0.5, hand == HIMC_LEFT ? 0.2 : -0.2, 1};
     const midi_head *head = &part->head[part->stroke[stroke].head];
     const midi_stroke *s = &part->stroke[stroke];
     double at = s->note->seconds;
     if (s->roll.length > 0 && stroke != now) // its last stroke, about
         at = fmax(at, himc_midi_stroke_end(s) - ROLL_STROKE);
-    return (place){at, head->x - 0.75 * head->radius + s->x, head->y + s->y};
+    const himc_head_frame frame = {
+        .center = {head->x, head->y, head->z}, .tilt = head->tilt, .radius = head->radius};
+    double x, y;
+    himc_head_frame_spot(&frame, &(himc_stroke){.spot = s->spot, .hand = (himc_hand)hand}, &x, &y);
+    himc_vec3 spot = himc_head_frame_to_world(&frame, x + s->x, y + s->y);
+    return (place){at, spot.x, spot.y, spot.z};
+}
+
+// of two rolls together each hand plays one; the first has both until the second comes
+static bool is_second(const midi_part *part, const midi_state *state, int stroke)
+{
+    int first = state->key[HIMC_LEFT];
+    if (first < 0 || first != state->key[HIMC_RIGHT])
+        return false;
+    const midi_stroke *a = &part->stroke[first], *b = &part->stroke[stroke];
+    return a->roll.length > 0 && fabs(a->roll.length - b->roll.length) < SAME_TIME &&
+           fabs(a->note->beat - b->note->beat) < SAME_TIME && a->head != b->head;
 }
 
 // the state's key is the index of each hand's last stroke
@@ -49,23 +72,33 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     place to = place_of(part, stroke, hand, stroke),
           from = place_of(part, state->key[hand], hand, stroke),
           other = place_of(part, state->key[1 - hand], 1 - hand, stroke);
+    if (is_second(part, state, stroke)) {
+        state->key[hand] = stroke;
+        return (hand == HIMC_LEFT) == (to.y > from.y);
+    }
     himc_sticking s = {.gap = to.at - from.at,
+                       .waits = true, // its way is counted here
                        .way = hypot(to.x - from.x, to.y - from.y),
                        .inwards = hand == HIMC_LEFT ? other.y - to.y : to.y - other.y,
                        .other_gap = to.at - other.at};
     s.same_spot = s.way == 0;
+    double leap = himc_hand_leap_time(s.way), need = s.same_spot ? AGAIN_TIME : NEED * leap;
     // a roll is left earlier for another drum, up to its middle (planner_roll.c)
     const midi_stroke *before = state->key[hand] < 0 ? NULL : &part->stroke[state->key[hand]];
     if (before && before->roll.length > 0 && s.way > 0) {
         double half = 0.5 * (before->note->seconds + himc_midi_stroke_end(before));
-        s.gap =
-            fmax(s.gap, fmin(to.at - half, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)));
+        s.gap = fmax(s.gap, fmin(to.at - half, leap));
     }
     // on one spot 0.055 s, as the planner refuses 0.04 s
-    if (s.gap < fmax(0.055, MOVE_SHARE * himc_move_time(s.way, HIMC_HARDEST_MOVE)))
-        return false;
     int written = part->stroke[stroke].note->way.hand;
-    state->cost += himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0);
+    if (s.gap < (s.same_spot ? 0.055 : written == 1 + hand ? WRITTEN * leap : leap))
+        return false;
+    bool across = s.inwards > ACROSS && fabs(to.z - other.z) < OVER && written != 1 + hand;
+    if (across && s.other_gap < ACROSS_TIME)
+        return false;
+    state->cost += himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0) +
+                   40 * fmax(0, need - s.gap) / need + pow(0.3 * need / s.gap, 2) +
+                   (across ? ACROSS_COST : 0);
     state->cost += written > 0 && written != 1 + hand ? OTHER_HAND : 0;
     state->key[hand] = stroke;
     if (part->stroke[stroke].roll.length > 0)
@@ -82,7 +115,7 @@ bool himc_midi_stick(midi_part *part, himc_error *error)
         midi_stroke *s = &part->stroke[i];
         if (s->foot)
             s->hand = HIMC_FOOT;
-        if (s->fate != MIDI_PLAYED || s->foot)
+        if (s->fate != MIDI_PLAYED || s->foot || s->in_roll)
             continue;
         if (hand[i] == OMIT)
             s->fate = MIDI_NO_HAND;

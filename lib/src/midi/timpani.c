@@ -50,12 +50,12 @@ static double pedal_begin(const midi_state *state, int drum)
     return fmax(state->ready[drum], state->foot);
 }
 
-// the pitch of a class (0 C .. 11) nearest to `key` that a drum has; -1: none
+// the pitch of a class (of key `pitch`) nearest to `key` that a drum has; -1: none
 static int nearest_pitch(int drum, int key, int pitch)
 {
     int best = -1;
     for (int k = timpano[drum].low; k <= timpano[drum].high; k++)
-        if (k % 12 == pitch && (best < 0 || abs(k - key) < abs(best - key)))
+        if (k % 12 == pitch % 12 && (best < 0 || abs(k - key) < abs(best - key)))
             best = k;
     return best;
 }
@@ -63,15 +63,21 @@ static int nearest_pitch(int drum, int key, int pitch)
 // the drum that an order to tune is for, and its new pitch; -1: none
 static int find_ordered(const midi_state *state, const midi_order *o, int *key)
 {
-    int best = -1;
+    int best = -1, least = 0, from = o->from % 128, named = o->from / 128;
+    bool octaves = from >= 24 && o->value >= 24;
     for (int d = 0; d < DRUMS; d++) {
-        int now = state->key[d], to = now < 0 ? -1 : nearest_pitch(d, now, o->value);
-        if (to < 0 || (o->from < 12 && now % 12 != o->from))
+        int now = state->key[d];
+        int to = now < 0 ? -1 : octaves ? now + o->value - from : nearest_pitch(d, now, o->value);
+        if (to < 0 || (from != 12 && now % 12 != from % 12))
             continue;
-        if (o->from >= 12 && now % 12 == o->value)
+        if (from == 12 && now % 12 == o->value % 12)
             return -1; // a drum has it
-        if (best < 0 || abs(to - now) < abs(*key - state->key[best])) {
+        // rather in the octave, and rather the drum that is written, than the shortest way
+        int way = abs(to - now) + (from >= 24 && now != from ? 24 : 0) +
+                  (named > 0 && named != d + 1 ? 48 : 0);
+        if (best < 0 || way < least) {
             best = d;
+            least = way;
             *key = to;
         }
     }
@@ -109,11 +115,11 @@ static void follow_orders(const midi_part *part, int first, int count, double un
         int drum = find_ordered(state, o, &key);
         double begin = o->seconds, end = begin;
         // a drum that is named moves while it rings, and as fast as it has to
-        if (drum >= 0 && o->from >= 12)
+        if (drum >= 0 && o->from % 128 == 12)
             begin = fmax(begin, pedal_begin(state, drum));
         if (drum >= 0)
             end = begin + (o->length > 0 ? o->length : pedal_time(key - state->key[drum]));
-        if (o->from < 12 && !o->glides && begin + FASTEST_PEDAL <= until)
+        if (o->from % 128 != 12 && !o->glides && begin + FASTEST_PEDAL <= until)
             end = fmin(end, until);
         if (drum < 0 || (end > until && !o->glides)) {
             if (record)
@@ -145,7 +151,7 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
     int low = timpano[drum].low, high = timpano[drum].high;
     // semitones past the usual range: slack or overstretched heads sound poorer
     int outside = s->key < low ? low - s->key : s->key > high ? s->key - high : 0;
-    if (outside > 4)
+    if (outside > 4 && written != drum + 1)
         return false;
     // of equal ways the natural one: in the middle of the range
     state->cost += 0.001 * fabs(s->key - 0.5 * (low + high)) + 0.02 * outside;

@@ -2,15 +2,15 @@
 ///
 /// A timpano's note is the pitch that its pedal has on the stroke's beat, rounded to a semitone; a
 /// pedal that moves becomes an order, heard if it is a gliss. Bars have their pitch, all other
-/// instruments the key of their name in the kit, else of their kind. Invariant: each stroke of the
-/// score is a note or counted.
+/// instruments the key of their name in the kit, else of their kind. Invariant: each stroke and
+/// each line of the score is written, or counted once with the bar of the first of its kind.
 #include "musicxml/export.h"
 
 #include "base/array.h"
 #include "base/format.h"
 #include "base/head_frame.h"
 #include "midi/part.h"
-#include "musicxml/names.h"
+#include "musicxml/music.h"
 #include "plan/score.h"
 
 #include <math.h>
@@ -21,6 +21,7 @@
 #define USUAL_INCHES 26.0 // of a timpano, which then sounds ...
 #define USUAL_KEY 50      // ... D3
 #define PEDAL_HAT 44      // General MIDI's key of hats that a foot closes
+#define ROUNDED 2.0       // of a pitch between semitones that is told (cents); chosen
 
 /// A drum of the score.
 typedef struct head {
@@ -30,21 +31,56 @@ typedef struct head {
     bool open;    ///< a hi-hat
     int written;  ///< of timpani: at the last stroke ...
     double moved; ///< ... and the beat at which its pedal began to move since then
+    int last;     ///< 1 + the index of its last note
 } head;
+
+/// What notation does not have.
+typedef enum loss {
+    STROKES,
+    SPOTS,
+    PLACES,
+    DEAD,
+    DOUBLES,
+    PRESSES,
+    NUANCES,
+    TUNINGS,
+    COMMANDS, ///< and on: a command at a beat, by its id
+    LINES = COMMANDS + HIMC_COMMANDS,
+    LOSSES = LINES + HIMC_COMMANDS
+} loss;
 
 typedef struct exporter {
     midi_file *file;
     head head[HIMC_DRUMS];
-    int heads, note_room, order_room, lost;
-    int spots; ///< of drums, without a key or a notehead
+    int heads, note_room, order_room;
+    int lost[LOSSES];     ///< how many ...
+    double first[LOSSES]; ///< ... and the beat of the first
+    double end;           ///< of notes and pedals (beats)
     bool midi;
     himc_error *error;
 } exporter;
+
+static void lose(exporter *x, int what, double beat)
+{
+    if (x->lost[what]++ == 0 || beat < x->first[what])
+        x->first[what] = beat;
+}
 
 static int key_of(double hz)
 {
     double key = 69 + 12 * log2(hz / 440);
     return key >= 12 && key < 127 ? (int)lround(key) : USUAL_KEY;
+}
+
+static double hz_of(int key)
+{
+    return 440 * exp2((key - 69) / 12.0);
+}
+
+// notation says on or off
+static bool is_switch(const himc_command *c)
+{
+    return c->atom[0].number == 0 || c->atom[0].number == 1;
 }
 
 static head *find_head(exporter *x, const char *name)
@@ -75,20 +111,46 @@ static void add_head(exporter *x, const char *name, const char *kind, double siz
     h->written = h->key;
 }
 
-// what a line does to a drum
-static void follow_line(exporter *x, const himc_score_line *line)
+// a hand on the head ends its last note; off it again, it is there for the next. False if there is
+// no note
+static bool damp(exporter *x, const head *h, double beat, bool on)
+{
+    midi_note *n = h->last > 0 ? &x->file->notes[h->last - 1] : NULL;
+    if (on && n && n->way.ring == 0) {
+        n->way.ring = -1;
+        n->off = n->way.length > 0 ? n->off
+                                   : himc_score_seconds(x->file->tempi, x->file->tempo_count, beat);
+        x->end = fmax(x->end, n->way.length > 0 ? 0 : beat);
+    }
+    return !on || n;
+}
+
+// what a line does to a drum; `kind`: its loss if notation does not have it
+static void follow_line(exporter *x, const himc_score_line *line, loss kind)
 {
     const himc_command *c = &line->command;
     head *h = find_head(x, line->drum);
+    bool timpano = h && h->choice == MIDI_TIMPANI, written = false;
     if (himc_score_makes_drum(line)) {
         bool drum = c->id == HIMC_COMMAND_MAKE_DRUM;
         double size = c->count > 1 && c->atom[1].kind == HIMC_ATOM_NUMBER ? c->atom[1].number : 0;
         add_head(x, c->atom[0].symbol, drum ? "timpano" : c->atom[1].symbol, drum ? size : 0);
-    } else if (h && (c->id == HIMC_COMMAND_TUNE || c->id == HIMC_COMMAND_GLISS)) {
-        h->key = h->choice == MIDI_TIMPANI ? key_of(c->atom[0].number) : h->key;
+        written = true;
+    } else if (timpano && (c->id == HIMC_COMMAND_TUNE || c->id == HIMC_COMMAND_GLISS)) {
+        h->key = key_of(c->atom[0].number);
+        if (fabs(1200 * log2(c->atom[0].number / hz_of(h->key))) > ROUNDED)
+            lose(x, TUNINGS, line->beat);
+        written = c->id == HIMC_COMMAND_TUNE || !x->midi;
     } else if (h && c->id == HIMC_COMMAND_PEDAL) {
         h->open = c->atom[0].number < 0.5;
+        written = strcmp(h->kind, "hi-hat") == 0 && is_switch(c);
+    } else if (c->id == HIMC_COMMAND_MUFFLE) {
+        written = timpano && !x->midi && is_switch(c);
     }
+    if (timpano && c->id == HIMC_COMMAND_DAMP && is_switch(c))
+        written = damp(x, h, line->beat, c->atom[0].number > 0);
+    if (!written)
+        lose(x, (int)kind + (int)c->id, line->beat);
 }
 
 static bool add_order(exporter *x, midi_order order)
@@ -98,7 +160,25 @@ static bool add_order(exporter *x, midi_order order)
         return false;
     order.seconds = himc_score_seconds(f->tempi, f->tempo_count, order.beat);
     f->orders[f->order_count++] = order;
+    x->end = fmax(x->end, himc_score_beat(f->tempi, f->tempo_count, order.seconds + order.length));
     return true;
+}
+
+// a timpano with the name that the import gives it
+static int drum_of(const head *h)
+{
+    char name[HIMC_NAME_SIZE + 10];
+    himc_format(name, sizeof name, "%s timpano", h->name);
+    return h->choice == MIDI_TIMPANI ? himc_music_drum(name) : 0;
+}
+
+// the drum where another one has its pitch
+static int named_drum(const exporter *x, const head *h, int key)
+{
+    for (const head *other = x->head; other < x->head + x->heads; other++)
+        if (other != h && other->choice == MIDI_TIMPANI && other->key == key)
+            return drum_of(h);
+    return 0;
 }
 
 // what a pedal has done since the last order
@@ -110,8 +190,18 @@ static bool add_tuning(exporter *x, head *h, int key)
            add_order(x, (midi_order){.beat = h->moved,
                                      .kind = MIDI_TUNING,
                                      .choice = h->choice,
-                                     .from = from % 12,
-                                     .value = key % 12});
+                                     .from = from + 128 * named_drum(x, h, from),
+                                     .value = key});
+}
+
+static bool follow_muffle(exporter *x, const himc_score_line *line)
+{
+    const head *h = find_head(x, line->drum);
+    return !h || line->command.id != HIMC_COMMAND_MUFFLE ||
+           add_order(x, (midi_order){.beat = line->beat,
+                                     .kind = MIDI_MUFFLE,
+                                     .choice = h->choice,
+                                     .value = line->command.atom[0].number > 0.5});
 }
 
 static bool follow_change(exporter *x, const himc_score_line *line)
@@ -121,7 +211,7 @@ static bool follow_change(exporter *x, const himc_score_line *line)
     int before = h ? h->key : 0;
     if (h && h->key == h->written)
         h->moved = line->beat;
-    follow_line(x, line);
+    follow_line(x, line, COMMANDS);
     if (h && c->id == HIMC_COMMAND_GLISS && h->key != before) {
         if (!add_tuning(x, h, before))
             return false;
@@ -129,30 +219,18 @@ static bool follow_change(exporter *x, const himc_score_line *line)
         return add_order(x, (midi_order){.beat = line->beat,
                                          .kind = MIDI_TUNING,
                                          .choice = h->choice,
-                                         .from = before % 12,
-                                         .value = h->key % 12,
+                                         .from = before + 128 * named_drum(x, h, before),
+                                         .value = h->key,
                                          .glides = true,
                                          .length = c->atom[1].number});
     }
-    return !h || c->id != HIMC_COMMAND_MUFFLE ||
-           add_order(x, (midi_order){.beat = line->beat,
-                                     .kind = MIDI_MUFFLE,
-                                     .choice = h->choice,
-                                     .value = c->atom[0].number > 0.5});
+    return follow_muffle(x, line);
 }
 
 static int part_key(const char *part)
 {
     double hz;
     return himc_note_frequency(part, &hz) ? key_of(hz) : -1;
-}
-
-// a timpano with the name that the import gives it
-static int drum_of(const head *h)
-{
-    char name[HIMC_NAME_SIZE + 10];
-    himc_format(name, sizeof name, "%s timpano", h->name);
-    return h->choice == MIDI_TIMPANI ? himc_music_drum(name) : 0;
 }
 
 static bool add_note(exporter *x, const himc_stroke *s)
@@ -169,23 +247,33 @@ static bool add_note(exporter *x, const himc_stroke *s)
     if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
         key = PEDAL_HAT;
     key = key < 0 ? h->key : key;
-    x->spots += h->choice == MIDI_DRUMS && s->hand != HIMC_FOOT && struck != HIMC_SPOT_NORMAL &&
-                himc_midi_key_spot(key) != struck;
-    himc_spot spot = s->spot;
-    if (spot == HIMC_SPOT_XY || (h->choice == MIDI_TIMPANI && spot > HIMC_SPOT_RIM))
-        spot = HIMC_SPOT_NORMAL;
-    x->spots += spot != s->spot && s->spot != HIMC_SPOT_XY;
     if (h->choice > MIDI_DRUMS)
         key = part_key(s->part);
     if (key < 0 || h->choice == MIDI_ANY) {
-        x->lost++;
+        lose(x, STROKES, s->beat);
         return true;
     }
-    if (!add_tuning(x, h, h->key))
-        return false;
-    if (!himc_array_grow(&f->notes, f->note_count, &x->note_room, sizeof *f->notes, x->error))
+    himc_spot spot = s->spot;
+    bool words = h->choice == MIDI_TIMPANI && !x->midi; // "near rim"
+    if (spot == HIMC_SPOT_XY || (spot > HIMC_SPOT_RIM && h->choice != MIDI_DRUMS))
+        spot = HIMC_SPOT_NORMAL;
+    bool lost = h->choice == MIDI_DRUMS ? s->hand != HIMC_FOOT && himc_midi_key_spot(key) != struck
+                                        : spot != s->spot || (spot != HIMC_SPOT_NORMAL && !words);
+    if (s->spot == HIMC_SPOT_XY)
+        lose(x, PLACES, s->beat);
+    else if (lost)
+        lose(x, SPOTS, s->beat);
+    if (s->bounces == HIMC_DEAD)
+        lose(x, DEAD, s->beat);
+    if (s->ornament > HIMC_ROLL_SINGLE)
+        lose(x, s->ornament == HIMC_ROLL_PRESS ? PRESSES : DOUBLES, s->beat);
+    if (x->midi && s->nuance != HIMC_LEGATO && s->ornament < HIMC_ROLL_SINGLE)
+        lose(x, NUANCES, s->beat);
+    if (!add_tuning(x, h, h->key) ||
+        !himc_array_grow(&f->notes, f->note_count, &x->note_room, sizeof *f->notes, x->error))
         return false;
     double end = s->beat + (s->ornament >= HIMC_ROLL_SINGLE ? s->length : 0);
+    x->end = fmax(x->end, fmax(end, s->beat + 1e-3)); // a bar's first beat is in it
     f->notes[f->note_count++] = (midi_note){
         .beat = s->beat,
         .seconds = himc_score_seconds(f->tempi, f->tempo_count, s->beat),
@@ -201,6 +289,11 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
     };
+    // MIDI has no other sign for what rings: a note lasts up to the drum's next
+    midi_note *old = h->last > 0 && x->midi ? &f->notes[h->last - 1] : NULL;
+    if (old && old->way.ring == 0 && old->way.length <= 0)
+        old->off = f->notes[f->note_count - 1].seconds;
+    h->last = f->note_count;
     return true;
 }
 
@@ -217,6 +310,59 @@ static bool follow_changes(exporter *x, const himc_score *score, int *change, do
     return true;
 }
 
+// what a file of that kind can hold
+static bool fits(const exporter *x)
+{
+    const double slowest = 60e6 / 0xffffff; // microseconds of a quarter note in three bytes
+    const midi_file *f = x->file;
+    for (int i = 0; i < f->tempo_count && x->midi; i++)
+        if (f->tempi[i].bpm < slowest)
+            return himc_error_set(x->error,
+                                  "tempo %g at beat %g, expected %.4g beats per minute or more in "
+                                  "MIDI",
+                                  f->tempi[i].bpm, f->tempi[i].beat, slowest);
+    double bars = ceil(x->end / MUSIC_BAR);
+    return x->midi || bars <= MUSIC_BARS_MAX ||
+           himc_error_set(x->error, "it ends in bar %.0f, expected up to %d bars of MusicXML", bars,
+                          MUSIC_BARS_MAX);
+}
+
+// a line for each kind of loss
+static char *tell(const exporter *x)
+{
+    static const char *const what[COMMANDS][3] = {
+        [STROKES] = {"stroke", "strokes", "not written: notation has no such instrument"},
+        [SPOTS] = {"spot", "spots", "not written: the instrument has no sign for it"},
+        [PLACES] = {"place", "places", "written as the usual spot"},
+        [DEAD] = {"dead stroke", "dead strokes", "written as usual"},
+        [DOUBLES] = {"double roll", "double rolls", "written as single strokes"},
+        [PRESSES] = {"press roll", "press rolls", "written as single strokes"},
+        [NUANCES] = {"nuance", "nuances", "not written"},
+        [TUNINGS] = {"tuning", "tunings", "written to the semitone"}};
+    himc_text_lines said = {0};
+    for (int i = 0; i < LINES; i++) {
+        const char *verb = x->lost[i] == 1 ? "is" : "are";
+        int bar = 1 + (int)(x->first[i] / MUSIC_BAR);
+        if (x->lost[i] > 0 && i < COMMANDS)
+            himc_text_print(&said, "%d %s (bar %d) %s %s\n", x->lost[i], what[i][x->lost[i] > 1],
+                            bar, verb, what[i][2]);
+        else if (x->lost[i] > 0)
+            himc_text_print(&said, "%d change%s by %s (bar %d) %s not written\n", x->lost[i],
+                            x->lost[i] == 1 ? "" : "s", himc_command_table(i - COMMANDS)->name, bar,
+                            verb);
+    }
+    const char *before = "before the piece, not written: ";
+    for (int i = LINES; i < LOSSES; i++)
+        if (x->lost[i] > 0) {
+            himc_text_print(&said, "%s%s %d", before, himc_command_table(i - LINES)->name,
+                            x->lost[i]);
+            before = ", ";
+        }
+    if (before[0] == ',')
+        himc_text_print(&said, "\n");
+    return said.bytes;
+}
+
 bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_error *error)
 {
     exporter *x = calloc(1, sizeof *x);
@@ -231,8 +377,10 @@ bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_
         memcpy(file->tempi, score->tempi, tempi);
         file->tempo_count = score->tempo_count;
     }
-    for (int i = 0; good && i < score->line_count; i++)
-        follow_line(x, &score->lines[i]);
+    for (int i = 0; good && i < score->line_count; i++) {
+        follow_line(x, &score->lines[i], LINES);
+        good = follow_muffle(x, &score->lines[i]);
+    }
     for (int i = 0; i < (x ? x->heads : 0); i++)
         x->head[i].written = x->head[i].key;
     int change = 0;
@@ -244,14 +392,9 @@ bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_
         good = add_tuning(x, &x->head[i], x->head[i].key);
     if (good && file->note_count == 0)
         good = himc_error_set(error, "no stroke that notation has, expected a score with strokes");
-    himc_text_lines said = {0};
-    if (good && x->lost > 0)
-        himc_text_print(&said, "%d stroke%s not written: notation has no such instrument\n",
-                        x->lost, x->lost == 1 ? " is" : "s are");
-    if (good && x->spots > 0)
-        himc_text_print(&said, "%d spot%s not written: the instrument has no key for it\n",
-                        x->spots, x->spots == 1 ? " is" : "s are");
-    file->said = said.bytes;
+    good = good && fits(x);
+    if (good)
+        file->said = tell(x);
     free(x);
     if (!good)
         himc_midi_file_free(file);

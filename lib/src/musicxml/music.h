@@ -5,6 +5,9 @@
 #include "base/text.h"
 #include "musicxml/names.h"
 
+#define MUSIC_BARS_MAX 20000               ///< of a part; chosen: no piece has as many
+#define MUSIC_LINES_MAX 9                  ///< of pedals that run at once, by their numbers 1 .. 9
+#define MUSIC_BAR 4.0                      ///< quarter notes of a bar that is written
 #define MUSIC_BYTES_MAX ((size_t)64 << 20) ///< of a file, also unpacked; chosen: a long symphony
 
 typedef struct music_bar {
@@ -41,6 +44,8 @@ typedef struct music_note {
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
     bool pulled;         ///< the nuance staccato, as `himc export` writes it
     bool held;           ///< under a fermata
+    bool attacked;       ///< sf, sfz
+    bool ghost;          ///< softer: a notehead in parentheses
     bool glides, glided; ///< a line of a glissando begins, ends here
     himc_spot spot;      ///< of its notehead
     int ring;            ///< 1, -1, or 0: not written
@@ -67,7 +72,7 @@ typedef struct music_omission {
     char bars[48];
 } music_omission;
 
-enum { MUSIC_CUES, MUSIC_BAD_NOTES, MUSIC_GRACES, MUSIC_OMISSIONS };
+enum { MUSIC_CUES, MUSIC_BAD_NOTES, MUSIC_GRACES, MUSIC_ATTACKS, MUSIC_UNKNOWN, MUSIC_OMISSIONS };
 
 typedef struct music {
     music_bar *bars;

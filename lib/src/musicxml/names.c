@@ -90,10 +90,15 @@ static const struct {
     {"l.v|let ring|laissez vibrer|laisser vibrer|lasciar vibrare|lasciare vibrare|"
      "klingen lassen",
      MUSIC_RING, 1},
+    {"sempre l.v|l.v. sempre|laissez toujours vibrer|lasciar sempre vibrare|immer klingen lassen",
+     MUSIC_RING_ALWAYS, 1},
     {"sempre secco|immer trocken|toujours sec", MUSIC_RING_ALWAYS, -1},
-    {"secco|damp|dämpf|étouff|etouff|soffoc|trocken|sec$|dry$", MUSIC_RING, -1},
+    {"secco|damp|dämpf|étouff|etouff|soffoc|trocken|sec$|dry$|choke|abstopp|stoppato", MUSIC_RING,
+     -1},
     {"in der mitte|mitte|au centre|al centro|nel centro|au milieu|center|centre|"
      "middle of",
+     MUSIC_SPOT, HIMC_SPOT_CENTER},
+    {"bell$|on bell|on the bell|bell of|kuppe|auf der kuppe|sur le dôme|sulla cupola|cupola",
      MUSIC_SPOT, HIMC_SPOT_CENTER},
     {"near rim|near the rim|near edge|near the edge|at the edge|am rand|nahe am rand|"
      "au bord|près du bord|vicino al bordo|al bordo|sul bordo",
@@ -119,6 +124,12 @@ static const struct {
     {"con sord|avec sourd|mit dämpfer|coperto|coperti|muffled|gedeckt|bedeckt|"
      "couvert|voilé",
      MUSIC_MUFFLE, 1},
+    {"snares off|snare off|wires off|without snares|senza cord|ohne saiten|ohne schnarr|"
+     "sans timbre",
+     MUSIC_WIRES, 0},
+    {"snares on|snare on|wires on|with snares|con cord|colle cord|mit saiten|mit schnarr|"
+     "avec timbre",
+     MUSIC_WIRES, 1},
     {"unmeasured", MUSIC_MEASURED, 0},
     {"misurato|measured|mesuré|gemessen", MUSIC_MEASURED, 1},
     {"poco a poco cresc|cresc", MUSIC_GROWING, 1},
@@ -210,10 +221,11 @@ midi_choice himc_music_instrument(const char *name, int *key)
     return MIDI_ANY;
 }
 
+static const char *const drums[] = {"low timpano", "second timpano", "third timpano",
+                                    "high timpano"};
+
 int himc_music_drum(const char *name)
 {
-    static const char *const drums[] = {"low timpano", "second timpano", "third timpano",
-                                        "high timpano"};
     for (int i = 0; i < 4; i++)
         if (strcmp(name, drums[i]) == 0)
             return i + 1;
@@ -259,8 +271,8 @@ bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
 }
 
 /// A pitch in words at `*at`, which moves behind it: "F", "b flat", "F#", German "fis" and "es",
-/// French and Italian "fa", "si bémol". Its class (0 C .. 11), or -1. `german`: B is B flat, and H
-/// is B.
+/// French and Italian "fa", "si bémol". Its class (0 C .. 11), with an octave its MIDI key (24 ..
+/// 95, "C3" is 48), or -1. `german`: B is B flat, and H is B.
 static int read_pitch(const char **at, bool german)
 {
     static const struct {
@@ -296,8 +308,9 @@ static int read_pitch(const char **at, bool german)
         }
     if (pitch < 0 || isalpha((unsigned char)*p) || (unsigned char)*p >= 0x80)
         return -1;
+    int octave = *p >= '1' && *p <= '6' ? *p - '0' : -1;
     *at = p + strspn(p, "0123456789");
-    return pitch;
+    return octave > 0 && *at == p + 1 ? pitch + 12 * (octave + 1) : pitch;
 }
 
 // "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la", "gliss. C to D"
@@ -312,14 +325,14 @@ static int read_tunings(const char *text, int most, double *value)
         told |= at && begins_word(text, at);
     }
     bool german = strstr(text, "stimm") || strstr(text, "nach ");
-    int from = 12, count = 0;
+    int from = 12, drum = 0, count = 0;
     bool joined = false;
     for (const char *at = text; told && *at && count < most;) {
         at += strspn(at, " ,;:()");
         const char *word = at;
         int pitch = read_pitch(&at, german);
-        if (pitch >= 0 && (joined || from < 12)) {
-            value[count++] = 100 * from + pitch;
+        if (pitch >= 0 && (joined || from != 12)) {
+            value[count++] = 100 * (from + 128 * drum) + pitch;
             from = 12;
             joined = false;
         } else if (pitch >= 0) {
@@ -328,6 +341,9 @@ static int read_tunings(const char *text, int most, double *value)
         if (pitch >= 0)
             continue;
         size_t length = strcspn(at, " ,;:()");
+        for (size_t i = 0; i < 4; i++)
+            drum =
+                strncmp(at, drums[i], length) == 0 && drums[i][length] == ' ' ? (int)i + 1 : drum;
         for (size_t i = 0; i < sizeof joins / sizeof *joins; i++)
             joined |= strlen(joins[i]) == length && strncmp(word, joins[i], length) == 0;
         at += length;

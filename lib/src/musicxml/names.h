@@ -36,9 +36,10 @@ typedef enum music_meaning {
     MUSIC_DAMP,        ///< what sounds is damped here
     MUSIC_MALLET,      ///< value: 0 soft, 1 medium, 2 hard, 3 wood
     MUSIC_MUFFLE,      ///< value: 1 or 0
+    MUSIC_WIRES,       ///< value: 1 or 0
     MUSIC_HAND,        ///< value: himc_hand, of the note here
     MUSIC_MEASURED,    ///< value: 1 tremolos are measured, 0 not
-    MUSIC_TUNING,      ///< value: 100 from + to (classes of pitch, 0 C .. 11), from 12: any drum
+    MUSIC_TUNING,      ///< value: 100 from + to, as midi_order has them
     MUSIC_GLISS,       ///< the same, heard; up to the end of its line, if it has one
     MUSIC_GLISS_END,
     MUSIC_DA_CAPO,

@@ -17,9 +17,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { CLOSED_HATS = 42, OPEN_HATS = 46, RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
+
 #define MOST_INSTRUMENTS 64 // of a part
-#define MOST_LINES 9        // that run at once
-#define MOST_BARS 20000     // chosen: no piece has as many
 
 typedef struct instrument {
     const char *id;
@@ -38,7 +38,9 @@ typedef struct reader {
     double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
     double time;                     ///< length of a bar (beats)
     int transpose;                   ///< (semitones)
-    bool line[MOST_LINES];           ///< a pedal's, which has begun
+    bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
+    int head;                        ///< the first note of a chord, -1: it is left out
+    int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
     bool failed;
 } reader;
 
@@ -197,7 +199,7 @@ static void read_line(reader *r, const xml_node *dashes, double beat, int first)
     const music *m = r->music;
     const char *number = himc_xml_attribute(dashes, "number");
     int line = number[0] ? number[0] - '0' : 1;
-    if (line < 1 || line > MOST_LINES)
+    if (line < 1 || line > MUSIC_LINES_MAX)
         return;
     if (himc_xml_has(dashes, "type", "stop") && r->line[line - 1]) {
         add_sign(r, beat, MUSIC_GLISS_END, 0);
@@ -326,12 +328,19 @@ static int drum_at(int key)
     return 38;
 }
 
-static void read_ornaments(music_note *n, const xml_node *ornaments)
+static void read_ornaments(reader *r, music_note *n, const xml_node *ornaments)
 {
     for (const xml_node *o = ornaments ? ornaments->child : NULL; o; o = o->next) {
         if (himc_xml_is(o, "trill-mark") || himc_xml_is(o, "wavy-line")) {
             n->tremolo = MUSIC_ROLL;
-        } else if (himc_xml_is(o, "tremolo")) {
+            if (himc_xml_has(o, "type", "start"))
+                r->wavy = 1 + n->voice;
+            else if (himc_xml_has(o, "type", "stop"))
+                r->wavy = 0;
+        } else if (!himc_xml_is(o, "tremolo")) {
+            if (!himc_xml_is(o, "accidental-mark"))
+                himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
+        } else {
             int marks = atoi(o->text);
             n->marks = marks < 0 ? 0 : marks > 8 ? 8 : marks;
             n->tremolo = himc_xml_has(o, "type", "start")                         ? MUSIC_PAIR_BEGIN
@@ -342,6 +351,21 @@ static void read_ornaments(music_note *n, const xml_node *ornaments)
     }
 }
 
+// programs write the marks of a chord at its first note
+static void share_marks(music_note *n, const music_note *head)
+{
+    if (n->tremolo == MUSIC_NO_TREMOLO) {
+        n->tremolo = head->tremolo;
+        n->marks = head->marks;
+    }
+    n->accent |= head->accent;
+    n->marcato |= head->marcato;
+    n->tenuto |= head->tenuto;
+    n->staccato |= head->staccato;
+    n->pulled |= head->pulled;
+    n->held |= head->held;
+}
+
 static int hand_of(const char *text)
 {
     if (strlen(text) != 1 || !strchr("RLrldgDG", *text))
@@ -349,22 +373,49 @@ static int hand_of(const char *text)
     return 1 + (strchr("RrdD", *text) ? HIMC_RIGHT : HIMC_LEFT);
 }
 
+static void read_articulations(reader *r, music_note *n, const xml_node *articulations)
+{
+    for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
+        bool other = himc_xml_is(a, "other-articulation");
+        if (himc_xml_is(a, "accent"))
+            n->accent = true;
+        else if (himc_xml_is(a, "strong-accent"))
+            n->marcato = true;
+        else if (himc_xml_is(a, "tenuto") || himc_xml_is(a, "detached-legato") ||
+                 himc_xml_is(a, "soft-accent") || himc_xml_is(a, "stress"))
+            n->tenuto = true;
+        else if (himc_xml_is(a, "staccato") || himc_xml_is(a, "staccatissimo") ||
+                 himc_xml_is(a, "spiccato"))
+            n->staccato = true;
+        else if (himc_xml_is(a, "unstress"))
+            n->ghost = true;
+        else if (other && strcmp(a->text, "pulled off") == 0)
+            n->pulled = true;
+        else if (other && strcmp(a->text, "choke") == 0)
+            n->ring = -1;
+        else
+            himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
+    }
+}
+
+static void read_technical(reader *r, music_note *n, const xml_node *technical)
+{
+    for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next) {
+        bool open = himc_xml_is(t, "open") || himc_xml_is(t, "open-string");
+        if (hand_of(t->text))
+            n->hand = hand_of(t->text);
+        else if (n->choice == MIDI_DRUMS && n->key == CLOSED_HATS && open)
+            n->key = OPEN_HATS;
+        else if (!himc_xml_is(t, "fingering") && !himc_xml_is(t, "stopped")) // of mallets, of hats
+            himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
+    }
+}
+
 static void read_notations(reader *r, music_note *n, const xml_node *notations)
 {
-    read_ornaments(n, himc_xml_child(notations, "ornaments"));
-    const xml_node *articulations = himc_xml_child(notations, "articulations");
-    for (const xml_node *a = articulations ? articulations->child : NULL; a; a = a->next) {
-        n->accent |= himc_xml_is(a, "accent");
-        n->marcato |= himc_xml_is(a, "strong-accent");
-        n->tenuto |= himc_xml_is(a, "tenuto") || himc_xml_is(a, "detached-legato");
-        n->staccato |= himc_xml_is(a, "staccato") || himc_xml_is(a, "staccatissimo") ||
-                       himc_xml_is(a, "spiccato");
-        n->pulled |= himc_xml_is(a, "other-articulation") && strcmp(a->text, "pulled off") == 0;
-    }
-    const xml_node *technical = himc_xml_child(notations, "technical");
-    for (const xml_node *t = technical ? technical->child : NULL; t; t = t->next)
-        if (himc_xml_is(t, "fingering") || himc_xml_is(t, "other-technical"))
-            n->hand = hand_of(t->text) ? hand_of(t->text) : n->hand;
+    read_ornaments(r, n, himc_xml_child(notations, "ornaments"));
+    read_articulations(r, n, himc_xml_child(notations, "articulations"));
+    read_technical(r, n, himc_xml_child(notations, "technical"));
     for (const xml_node *t = himc_xml_child(notations, "tied"); t; t = himc_xml_next(t))
         n->ring |= himc_xml_has(t, "type", "let-ring");
     n->held |= himc_xml_child(notations, "fermata") != NULL;
@@ -397,8 +448,14 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
     n->choice = of->choice;
     n->drum = of->drum;
     n->key = written + (pitch ? r->transpose : 0);
-    if (of->choice == MIDI_DRUMS)
+    if (of->choice == MIDI_DRUMS) {
+        const char *head = himc_xml_text(note, "notehead");
         n->key = of->key != MUSIC_NO_KEY ? of->key : drum_at(written);
+        if (n->key == CLOSED_HATS && strcmp(head, "circle-x") == 0)
+            n->key = OPEN_HATS;
+        else if (n->key == RIDE && strcmp(head, "diamond") == 0)
+            n->key = RIDE_BELL;
+    }
     return (pitch || unpitched) && n->key >= 0 && n->key < 256 &&
            (written >= 0 || of->key != MUSIC_NO_KEY) && (of->choice == MIDI_DRUMS || n->key < 128);
 }
@@ -422,7 +479,11 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
                     .voice = atoi(himc_xml_text(note, "voice")),
                     .grace = himc_xml_child(note, "grace") != NULL,
                     .spot = spot_of(himc_xml_text(note, "notehead")),
+                    .ghost = is_yes(himc_xml_child(note, "notehead"), "parentheses"),
                     .ratio = 1};
+    bool chord = himc_xml_child(note, "chord");
+    if (!chord)
+        r->head = -1;
     if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
         return;
     if (himc_xml_child(note, "cue")) {
@@ -452,6 +513,15 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
     for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
         read_notations(r, &n, t);
+    if (chord && r->head >= 0)
+        share_marks(&n, &m->notes[r->head]);
+    else if (!chord)
+        r->head = m->note_count;
+    // a tied note in the middle of a trill's line has no sign of its own
+    if (r->wavy == 1 + n.voice && n.tremolo == MUSIC_NO_TREMOLO) {
+        n.tremolo = n.tied_back ? MUSIC_ROLL : n.tremolo;
+        r->wavy = n.tied_back ? r->wavy : 0;
+    }
     if (!himc_array_grow(&m->notes, m->note_count, &m->note_room, sizeof *m->notes, r->error))
         r->failed = true;
     else
@@ -552,14 +622,15 @@ static bool read_part(reader *r, const xml_node *part)
         r->list = himc_xml_next(r->list);
     read_instruments(r);
     r->divisions = 1;
-    r->transpose = 0;
+    r->transpose = r->wavy = 0;
     r->time = 4;
     r->bar = 0;
+    r->head = -1;
     const xml_node *measure = himc_xml_child(part, "measure");
     for (; measure && !r->failed; measure = himc_xml_next(measure), r->bar++) {
-        if (r->bar == MOST_BARS)
+        if (r->bar == MUSIC_BARS_MAX)
             return himc_error_set(r->error, "line %d: bar %d, expected up to %d bars",
-                                  measure->line, r->bar + 1, MOST_BARS);
+                                  measure->line, r->bar + 1, MUSIC_BARS_MAX);
         if (r->bar == m->bar_count) {
             if (!himc_array_grow(&m->bars, m->bar_count, &m->bar_room, sizeof *m->bars, r->error))
                 return false;
@@ -600,7 +671,12 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
                               "before a note",
                               "grace notes are not played: a ruff has two, others need time "
                               "before a note",
-                              0, ""}}};
+                              0, ""},
+            [MUSIC_ATTACKS] = {"accent is not played: no stroke begins there",
+                               "accents are not played: no stroke begins there", 0, ""},
+            [MUSIC_UNKNOWN] = {"sign of a note is not played: strokes have no way for it",
+                               "signs of notes are not played: strokes have no way for them", 0,
+                               ""}}};
     if (!himc_xml_read(&document, bytes, size, unused, error))
         return false;
     reader r = {.music = m, .error = error};

@@ -1,12 +1,14 @@
 /// shape.c: from written notes to the notes of a player: ties, tremolos, graces, nuances.
 ///
-/// Part by part: ties join notes; then each note takes the dynamic of its beat (level.c), the words
-/// that hold there, and its own marks. One or two strokes through the stem are measured, as many as
-/// written; three are a roll from FAST strokes a second on, more are always one; a trill is one. A
-/// roll is cut where its dynamic bends. Grace notes on the drum of their note are its flam, drag or
-/// ruff; others, and those before a roll, are strokes of their own before the beat. A chosen
-/// number has no published source. Invariant: each note but a tied one makes at least one stroke,
-/// or is counted as omitted.
+/// Part by part: ties join notes, but a roll tied to a note without a tremolo ends with a stroke
+/// there; then each note takes the dynamic of its beat (level.c), the words that hold there, and
+/// its own marks. One or two strokes through the stem are measured, as many as written; three are
+/// a roll from FAST strokes a second on, more are always one; a trill is one. A roll is cut where
+/// its dynamic bends, and where another one begins or ends: two of one length at a time are played
+/// together, each hand on its drum (planner_roll.c). Grace notes on the drum of their note are its
+/// flam, drag or ruff; others, and those before a roll, are strokes of their own before the beat.
+/// A chosen number has no published source. Invariant: each note but a tied one makes at least one
+/// stroke, or is counted as omitted.
 #include "musicxml/music.h"
 
 #include "base/argument.h"
@@ -24,8 +26,9 @@
 #define ALTERNATE 0.11   // between strokes on two drums, at least (s); chosen: of one hand .22
 #define GRACE_TIME 0.07  // between strokes that are grace notes (s); chosen: an open ruff
 #define GRACE_SOFTER 0.2 // than their note
-#define ATTACK_TIME 0.3  // of an accent on a roll (s)
-#define LONGEST 60.0     // roll (s); chosen: a score's limit is 180 s
+#define GHOST_SOFTER (2 * STEP) // a note in parentheses
+#define ATTACK_TIME 0.3         // of an accent on a roll (s)
+#define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
 #define MOST_STROKES 100000 // as import.c
 #define MOST_CANDIDATES 400 // notes of one beat that a tie is looked for in; chosen: bounds time
@@ -37,12 +40,12 @@ typedef struct shaper {
     int note_room, order_room;
     int part, sign; ///< the next sign
     music_level *levels;
-    int level_count;
+    double *cuts; ///< beats where rolls are cut
+    int level_count, cut_count;
     double second; ///< beats in one second at the present note
     himc_spot spot;
     int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
     double held;                      ///< a fermata ends (beats)
-    bool attack;                      ///< of this beat
     himc_spot here;                   ///< of this beat; HIMC_SPOT_NORMAL: as `spot`
     music_note *grace[MOST_GRACES];
     int graces;
@@ -85,6 +88,27 @@ static music_note *find_next(music *m, const music_note *n, joint by)
     return NULL;
 }
 
+// sf and sfz are of the notes that begin there
+static void mark_attacks(music *m)
+{
+    for (int i = 0; i < m->sign_count; i++) {
+        const music_place *at = &m->signs[i].at;
+        if (m->signs[i].meaning != MUSIC_ATTACK)
+            continue;
+        int first = first_from(m, at->beat);
+        bool found = false;
+        for (int k = first; k < m->note_count && k - first < MOST_CANDIDATES; k++) {
+            music_note *n = &m->notes[k];
+            if (n->at.beat > at->beat + SAME)
+                break;
+            if (n->at.part == at->part && !n->grace)
+                n->attacked = found = true;
+        }
+        if (!found)
+            himc_music_omit(m, MUSIC_ATTACKS, at->bar);
+    }
+}
+
 // backwards, so that a row of tied notes becomes one
 static void join_ties(music *m)
 {
@@ -93,13 +117,16 @@ static void join_ties(music *m)
         n->rolled = n->tremolo == MUSIC_NO_TREMOLO ? 0 : n->length;
         if (n->tied_on && !to)
             n->ring = 1; // into the air
-        if (!to || n->tremolo >= MUSIC_PAIR_BEGIN)
+        bool accent = to && (to->accent || to->marcato || to->attacked);
+        if (accent && !n->tremolo && !to->tremolo)
+            himc_music_omit(m, MUSIC_ATTACKS, to->at.bar); // it is not struck again
+        // a roll is held to the end of a fermata that it is tied to; an accent on it begins anew
+        bool goes_on = to && (!n->tremolo == !to->tremolo || (n->tremolo && to->held)) &&
+                       !(accent && to->tremolo);
+        if (!goes_on || n->tremolo >= MUSIC_PAIR_BEGIN || to->tremolo >= MUSIC_PAIR_BEGIN)
             continue;
-        n->tremolo = n->tremolo ? n->tremolo : to->tremolo;
-        n->marks = n->marks ? n->marks : to->marks;
-        // a roll is held to the end of a fermata that it is tied to
-        if (to->tremolo || (to->held && n->tremolo))
-            n->rolled = n->length + (to->tremolo ? to->rolled : to->length);
+        if (n->tremolo)
+            n->rolled += to->tremolo ? to->rolled : to->length;
         n->length += to->length;
         n->ring = to->ring;
         n->glides |= to->glides;
@@ -136,22 +163,68 @@ static double level(const shaper *s, double beat)
     return himc_music_level(s->levels, s->level_count, beat);
 }
 
-// from `begin` to `end`, cut at the points between
+// of an accent on a roll (beats)
+static double attack_beats(double second)
+{
+    return fmax(ATTACK_TIME * second, fmax(himc_argument_find("LENGTH", "roll")->low, 0.1));
+}
+
+static int by_beat(const void *a, const void *b)
+{
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+// where the part's dynamics bend, its tremolos begin and end, and accents on them end
+static bool list_cuts(shaper *s)
+{
+    const music *m = s->music;
+    const midi_file *f = s->file;
+    s->cuts = malloc(((size_t)s->level_count + 3 * (size_t)m->note_count + 1) * sizeof *s->cuts);
+    if (!s->cuts)
+        return himc_error_set(s->error, "out of memory for %d notes", m->note_count);
+    s->cut_count = 0;
+    for (int i = 0; i < s->level_count; i++)
+        s->cuts[s->cut_count++] = s->levels[i].beat;
+    for (int i = 0; i < m->note_count; i++) {
+        const music_note *n = &m->notes[i];
+        if (n->at.part != s->part || n->length <= 0 || !(n->rolled > 0))
+            continue;
+        s->cuts[s->cut_count++] = n->at.beat;
+        s->cuts[s->cut_count++] = n->at.beat + n->rolled;
+        double attack = attack_beats(himc_midi_bpm(f->tempi, f->tempo_count, n->at.beat) / 60);
+        if ((n->accent || n->marcato || n->attacked) && n->rolled > 2 * attack)
+            s->cuts[s->cut_count++] = n->at.beat + attack;
+    }
+    qsort(s->cuts, (size_t)s->cut_count, sizeof *s->cuts, by_beat);
+    return true;
+}
+
+// the first cut at or after `from`, up to `end`
+static double next_cut(const shaper *s, double from, double end)
+{
+    int low = 0, high = s->cut_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (s->cuts[middle] < from)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < s->cut_count ? fmin(s->cuts[low], end) : end;
+}
+
+// from the note's beat to `end`, cut at the points between
 static void emit_roll(shaper *s, const music_note *n, double end, double louder, midi_way way)
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
-    double begin = n->at.beat, least = fmax(range->low, 0.1);
-    double attack = fmax(ATTACK_TIME * s->second, least);
+    double begin = n->at.beat, least = fmax(range->low, 0.1), attack = attack_beats(s->second);
     double base = way.dynamic, most = fmin(range->high, LONGEST * s->second);
-    int next = 0;
-    while (next < s->level_count && s->levels[next].beat <= begin + SAME)
-        next++;
     for (double at = begin; at < end - SAME && !s->failed;) {
-        while (next < s->level_count && s->levels[next].beat < at + least)
-            next++;
-        double to = next < s->level_count ? s->levels[next].beat : end;
-        double up = louder > 0 && at == begin && end - at > 2 * attack ? louder : 0;
-        to = up > 0 ? fmin(to, at + attack) : to;
+        double to = next_cut(s, at + least, end);
+        double up = at == begin ? louder : 0;
+        if (up > 0 && end - at > 2 * attack)
+            to = fmin(to, at + attack);
         to = to > end - least ? end : to;
         if (to > at + most) // no rest shorter than a roll can be
             to = end < at + most + least ? at + most / 2 : at + most;
@@ -165,6 +238,12 @@ static void emit_roll(shaper *s, const music_note *n, double end, double louder,
     }
 }
 
+// of the strokes behind the first
+static himc_nuance after_accent(himc_nuance nuance)
+{
+    return nuance == HIMC_ACCENT || nuance == HIMC_VERTICAL_ACCENT ? HIMC_LEGATO : nuance;
+}
+
 static void emit_measured(shaper *s, const music_note *n, double unit, midi_way way)
 {
     int count = (int)lround(n->rolled / unit);
@@ -175,8 +254,7 @@ static void emit_measured(shaper *s, const music_note *n, double unit, midi_way 
         emit(s, n, at, i + 1 < count ? at : n->at.beat + n->length, &way);
         way.extra = true;
         way.hand = 0;
-        way.nuance = way.nuance == HIMC_ACCENT || way.nuance == HIMC_VERTICAL_ACCENT ? HIMC_LEGATO
-                                                                                     : way.nuance;
+        way.nuance = after_accent(way.nuance);
     }
 }
 
@@ -191,7 +269,8 @@ static void emit_pair(shaper *s, music_note *n, double unit, midi_way way)
     count = count < 2 || !other ? 2 : count;
     for (int i = 0; i < count; i++) {
         double at = n->at.beat + i * all / count;
-        way.dynamic = level(s, at);
+        way.dynamic = i == 0 ? way.dynamic : level(s, at);
+        way.nuance = i == 0 ? way.nuance : after_accent(way.nuance);
         way.extra = i > 1;
         if (i % 2 == 0)
             emit(s, n, at, at + all / count, &way);
@@ -304,7 +383,6 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
         if (sign->at.part != s->part)
             continue;
         switch (sign->meaning) {
-        case MUSIC_ATTACK: s->attack |= sign->at.beat > beat - SAME; break;
         case MUSIC_SPOT: s->spot = (himc_spot)sign->value; break;
         case MUSIC_SPOT_HERE:
             s->here = sign->at.beat > beat - SAME ? (himc_spot)sign->value : s->here;
@@ -325,6 +403,7 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
         case MUSIC_MEASURED: s->measured = (int)sign->value; break;
         case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, choice); break;
         case MUSIC_MUFFLE: add_order(s, MIDI_MUFFLE, sign, choice); break;
+        case MUSIC_WIRES: add_order(s, MIDI_WIRES, sign, choice); break;
         case MUSIC_TUNING:
         case MUSIC_GLISS: add_order(s, MIDI_TUNING, sign, choice); break;
         case MUSIC_GLISS_END: end_gliss(s, sign->line, sign->at.beat); break;
@@ -351,7 +430,7 @@ static bool is_roll(const shaper *s, const music_note *n, double *unit)
 static void shape_note(shaper *s, music_note *n)
 {
     double unit, least = himc_argument_find("LENGTH", "roll")->low;
-    bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = s->attack || n->marcato;
+    bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = n->attacked || n->marcato;
     midi_way way = {.dynamic = n->dynamic >= 0 ? n->dynamic : level(s, n->at.beat),
                     .drum = n->drum,
                     .nuance = attack      ? HIMC_VERTICAL_ACCENT
@@ -374,6 +453,8 @@ static void shape_note(shaper *s, music_note *n)
     emit_graces(s, n, roll, &way);
     if (!roll && n->accent && !attack)
         way.dynamic = fmin(way.dynamic + STEP, 1);
+    if (n->ghost && n->dynamic < 0)
+        way.dynamic = fmax(way.dynamic - GHOST_SOFTER, 0);
     if (roll)
         emit_roll(s, n, n->at.beat + n->rolled, louder, way);
     else if (n->tremolo == MUSIC_MARKS)
@@ -393,18 +474,17 @@ static bool shape_part(shaper *s, int part)
     s->sign = s->always = s->ring = s->hand = s->graces = 0;
     s->held = 0;
     s->measured = -1;
-    s->attack = false;
     s->spot = s->here = HIMC_SPOT_NORMAL;
     s->levels = himc_music_levels(
         m, part, himc_midi_bpm(s->file->tempi, s->file->tempo_count, 0) / 60, &s->level_count);
     if (!s->levels)
         return himc_error_set(s->error, "out of memory for %d signs", m->sign_count);
+    s->failed |= !list_cuts(s);
     for (int i = 0; i < m->note_count && !s->failed; i++) {
         music_note *n = &m->notes[i];
         if (n->at.part != part || n->length < 0)
             continue;
         if (n->at.beat > last + SAME && last >= 0) {
-            s->attack = false;
             s->ring = s->hand = 0;
             s->here = HIMC_SPOT_NORMAL;
         }
@@ -423,6 +503,7 @@ static bool shape_part(shaper *s, int part)
         himc_music_omit(m, MUSIC_GRACES, s->grace[i]->at.bar);
     take_signs(s, HUGE_VAL, MIDI_ANY);
     free(s->levels);
+    free(s->cuts);
     return !s->failed;
 }
 
@@ -446,6 +527,7 @@ bool himc_music_shape(music *m, midi_file *file, himc_error *error)
 {
     shaper s = {.music = m, .file = file, .error = error};
     int parts = 0;
+    mark_attacks(m);
     join_ties(m);
     for (int i = 0; i < m->note_count; i++)
         parts = m->notes[i].at.part >= parts ? m->notes[i].at.part + 1 : parts;

@@ -10,16 +10,15 @@
 
 #include "base/format.h"
 #include "midi/part.h"
-#include "musicxml/names.h"
+#include "musicxml/music.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define TICKS 960 // of a quarter note; chosen: 0.5 ms at 120 beats a minute
-#define BAR (4 * TICKS)
+#define BAR ((int)MUSIC_BAR * TICKS)
 #define VOICES 4
-#define LINES 9 // of glissandi that run at once
 
 /// A note of a part.
 typedef struct item {
@@ -45,6 +44,7 @@ typedef struct writer {
     int count;
     int step;   ///< the last dynamic that was marked, 0 .. 7; -1: none
     bool first; ///< of the parts: it has the tempi
+    long end;   ///< of all parts (ticks)
 } writer;
 
 #define PUT(w, ...) himc_text_print((w)->out, __VA_ARGS__)
@@ -138,9 +138,15 @@ static void put_notations(const writer *w, const item *i, bool begins, bool ties
     PUT(w, "</notations>");
 }
 
+// its end is written: of a roll, and of a note that a hand ends
+static bool is_held(const midi_note *n)
+{
+    return n->way.length > 0 || n->way.ring < 0;
+}
+
 static void put_note(const writer *w, const item *i, long from, long to)
 {
-    bool begins = from == i->begin, ties_on = i->note->way.length > 0 && to < i->end;
+    bool begins = from == i->begin, ties_on = is_held(i->note) && to < i->end;
     if (begins)
         put_graces(w, i);
     const char *notehead = himc_music_notehead(i->note->way.spot);
@@ -195,7 +201,7 @@ static void put_gliss(const writer *w, long *at, long to, int line, const char *
     if (words[0])
         PUT(w, "<direction-type><words>gliss. %s</words></direction-type>", words);
     PUT(w, "<direction-type><dashes type=\"%s\" number=\"%d\"/></direction-type></direction>\n",
-        words[0] ? "start" : "stop", 1 + line % LINES);
+        words[0] ? "start" : "stop", 1 + line % MUSIC_LINES_MAX);
 }
 
 static void put_tempi(const writer *w, long begin, long *at)
@@ -215,6 +221,7 @@ static void put_tempi(const writer *w, long begin, long *at)
 
 static void put_orders(const writer *w, long begin, long *at)
 {
+    static const char *const drums[] = {"", "low ", "second ", "third ", "high "};
     static const char *const pitch[] = {"C",  "C#", "D",  "Eb", "E",  "F",
                                         "F#", "G",  "Ab", "A",  "Bb", "B"};
     for (int i = 0; i < w->file->order_count; i++) {
@@ -224,8 +231,9 @@ static void put_orders(const writer *w, long begin, long *at)
         char words[40];
         if (o->choice != w->choice)
             continue;
-        himc_format(words, sizeof words, o->glides ? "%s to %s" : "%s muta in %s",
-                    o->kind == MIDI_TUNING ? pitch[o->from] : "", pitch[o->value % 12]);
+        himc_format(words, sizeof words, o->glides ? "%s%s%d to %s%d" : "%s%s%d muta in %s%d",
+                    drums[o->from / 128], pitch[o->from % 128 % 12], o->from % 128 / 12 - 1,
+                    pitch[o->value % 12], o->value / 12 - 1);
         if (here && o->glides)
             put_gliss(w, at, tick, i, words);
         else if (here)
@@ -299,6 +307,8 @@ static void put_dynamics(writer *w, int first, long begin, long *at)
             put_words(w, at, m->tick, spots[way->spot]);
             w->spot = way->spot;
         }
+        if (way->ring < 0)
+            put_words(w, at, m->tick, "secco");
         if (has_wedge(m->item))
             put_wedge(w, at, m->tick, to > from ? "crescendo" : "diminuendo");
     }
@@ -335,14 +345,7 @@ static void put_voice(const writer *w, int voice, int first, long begin)
 static void put_bars(writer *w)
 {
     int first = 0;
-    long end = 0;
-    for (int k = 0; k < w->count; k++)
-        end = w->items[k].end > end ? w->items[k].end : end;
-    for (int i = 0; i < w->file->order_count; i++) {
-        long last = end_of(w, &w->file->orders[i]);
-        end = w->file->orders[i].choice == w->choice && last > end ? last : end;
-    }
-    for (long begin = 0, bar = 1; begin < end; begin += BAR, bar++) {
+    for (long begin = 0, bar = 1; begin < w->end; begin += BAR, bar++) {
         long at = begin;
         PUT(w, "<measure number=\"%ld\">", bar);
         if (bar == 1)
@@ -353,6 +356,8 @@ static void put_bars(writer *w)
                 w->choice == MIDI_DRUMS     ? "percussion"
                 : w->choice == MIDI_TIMPANI ? "F"
                                             : "G");
+        if (bar == 1 && w->choice == MIDI_TIMPANI) // what is short is not damped
+            put_words(w, &at, begin, "sempre l.v.");
         put_tempi(w, begin, &at);
         put_orders(w, begin, &at);
         put_dynamics(w, first, begin, &at);
@@ -381,16 +386,19 @@ static int take_items(writer *w)
         if (n->choice != w->choice)
             continue;
         item *to = &w->items[w->count];
-        *to = (item){n, ticks_of(n->beat), ticks_of(n->beat + n->way.length), 0};
+        double end = n->way.length > 0
+                         ? n->beat + n->way.length
+                         : himc_score_beat(w->file->tempi, w->file->tempo_count, n->off);
+        *to = (item){n, ticks_of(n->beat), ticks_of(fmax(end, n->beat + 1.0 / TICKS)), 0};
         while (to->voice + 1 < VOICES && last[to->voice] > to->begin)
             to->voice++;
         int k = before[to->voice];
         long bar_end = (to->begin / BAR + 1) * BAR;
-        if (k >= 0 && w->items[k].note->way.length <= 0 && w->items[k].end > to->begin)
+        if (k >= 0 && !is_held(w->items[k].note) && w->items[k].end > to->begin)
             w->items[k].end = to->begin;
-        if (n->way.length <= 0)
+        if (!is_held(n))
             to->end = bar_end < to->begin + TICKS ? bar_end : to->begin + TICKS;
-        last[to->voice] = n->way.length > 0 ? to->end : to->begin + 1;
+        last[to->voice] = is_held(n) ? to->end : to->begin + 1;
         before[to->voice] = w->count++;
     }
     return w->count;
@@ -444,8 +452,13 @@ bool himc_music_write(himc_text_lines *out, const midi_file *file, const char *t
     PUT(&w, "<score-partwise version=\"4.0\"><movement-title>%s</movement-title><part-list>\n",
         title);
     for (w.choice = MIDI_TIMPANI; w.choice < MIDI_CHOICES; w.choice++)
-        if (take_items(&w) > 0)
+        if (take_items(&w) > 0) {
             put_part_list(&w);
+            for (int i = 0; i < w.count; i++)
+                w.end = w.items[i].end > w.end ? w.items[i].end : w.end;
+        }
+    for (int i = 0; i < file->order_count; i++)
+        w.end = end_of(&w, &file->orders[i]) > w.end ? end_of(&w, &file->orders[i]) : w.end;
     PUT(&w, "</part-list>\n");
     w.first = true;
     for (w.choice = MIDI_TIMPANI; w.choice < MIDI_CHOICES; w.choice++)

@@ -2,7 +2,8 @@
 ///
 /// A roll is the strokes that a player would about play, as MIDI has no tremolo; grace notes stand
 /// before their note; hands, nuances and places are lost. Velocities are those of notation
-/// programs (midi/import.c). Events are sorted by tick, ends before beginnings.
+/// programs (midi/import.c). A timpano's note lasts until a hand damps it, else
+/// up to the next. Events are sorted by tick, ends before beginnings.
 #include "musicxml/export.h"
 
 #include "midi/part.h"
@@ -11,11 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BASS_DRUM 36    // for concert instruments that General MIDI has no key for
-#define TICKS 960       // of a quarter note
-#define ROLL_RATE 11.0  // strokes of a roll (1/s); chosen: of a middle drum (plan/ornament.c)
-#define GRACE_TIME 0.04 // (s) chosen, as there
-#define SHORT 0.05      // of a stroke's note (s)
+#define BASS_DRUM 36        // for concert instruments that General MIDI has no key for
+#define TICKS 960           // of a quarter note
+#define ROLL_RATE 11.0      // strokes of a roll (1/s); chosen: of a middle drum (plan/ornament.c)
+#define GRACE_TIME 0.04     // (s) chosen, as there
+#define SHORT 0.05          // of a stroke's note (s)
+#define LONGEST 0x0fffffffL // between two events (ticks), by the standard
 
 typedef struct event {
     long tick;
@@ -45,7 +47,7 @@ static void add(writer *w, double beat, uint8_t status, uint8_t key, double velo
         (event){lround(fmax(beat, 0) * TICKS), {status, key, (uint8_t)lround(velocity)}};
 }
 
-static void add_stroke(writer *w, const midi_note *n, double seconds, double dynamic)
+static void add_stroke(writer *w, const midi_note *n, double seconds, double length, double dynamic)
 {
     static const uint8_t channel[] = {
         [MIDI_TIMPANI] = 0,     [MIDI_DRUMS] = 9,      [MIDI_MARIMBA] = 1,
@@ -53,7 +55,7 @@ static void add_stroke(writer *w, const midi_note *n, double seconds, double dyn
         [MIDI_TUBULAR_BELL] = 5};
     const midi_file *f = w->file;
     uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : BASS_DRUM;
-    double end = himc_score_beat(f->tempi, f->tempo_count, seconds + SHORT);
+    double end = himc_score_beat(f->tempi, f->tempo_count, seconds + fmax(length, SHORT));
     add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key,
         himc_midi_velocity(dynamic));
     add(w, end, on & 0x8f, key, 64);
@@ -66,9 +68,10 @@ static void add_note(writer *w, const midi_note *n)
     int strokes = way->length > 0 ? (int)fmax(lround(seconds * ROLL_RATE), 4) : 1;
     for (int g = way->ornament; g > 0; g--)
         if (n->seconds - g * GRACE_TIME >= 0)
-            add_stroke(w, n, n->seconds - g * GRACE_TIME, 0.6 * way->dynamic);
+            add_stroke(w, n, n->seconds - g * GRACE_TIME, 0, 0.6 * way->dynamic);
     for (int i = 0; i < strokes; i++)
         add_stroke(w, n, n->seconds + seconds * i / strokes,
+                   strokes == 1 && n->choice == MIDI_TIMPANI ? seconds : 0,
                    way->dynamic +
                        (strokes > 1 ? (way->last_dynamic - way->dynamic) * i / strokes : 0));
 }
@@ -100,8 +103,11 @@ static void put_number(himc_text_lines *out, unsigned long number, int bytes)
         put(out, &(uint8_t){(uint8_t)(number >> (8 * i))}, 1);
 }
 
+// a time up to the next event; a longer one than four bytes hold has empty texts on its way
 static void put_length(himc_text_lines *out, long number)
 {
+    for (; number > LONGEST; number -= LONGEST)
+        put(out, "\xff\xff\xff\x7f\xff\1\0", 7);
     for (int shift = 21; shift > 0; shift -= 7)
         if (number >> shift)
             put(out, &(uint8_t){(uint8_t)(0x80 | (number >> shift & 0x7f))}, 1);

@@ -273,23 +273,6 @@ static void loaded(void *object, const char *error)
     refuse_to(osc, &h->loading_for, line.text);
 }
 
-// of all values those that `get` asks for
-typedef struct asked_value {
-    osc_sender *from;
-    const char *what;
-    bool found;
-} asked_value;
-
-static void answer_value(void *asked, const char *line)
-{
-    asked_value *a = asked;
-    size_t length = strlen(a->what);
-    if (strncmp(line, a->what, length) != 0 || (line[length] && line[length] != ' '))
-        return;
-    a->found = true;
-    answer(a->from, line);
-}
-
 static void obey(himc_osc *osc, himc_performance *performance, const osc_order *order)
 {
     himc_error error = {""};
@@ -306,12 +289,7 @@ static void obey(himc_osc *osc, himc_performance *performance, const osc_order *
     if (id == HIMC_COMMAND_INFO) {
         himc_performance_describe(performance, HIMC_DESCRIBE_INFO, answer, &from);
     } else if (id == HIMC_COMMAND_GET) {
-        asked_value asked = {.from = &from, .what = command->atom[0].symbol};
-        himc_performance_describe(performance, HIMC_DESCRIBE_VALUES, answer_value, &asked);
-        good = asked.found || himc_error_set(&error,
-                                             "get: WHAT: %s, expected a setting, tempo, "
-                                             "beat, state, drums, loop, room, listener or mute",
-                                             asked.what);
+        good = himc_performance_get(performance, command->atom[0].symbol, answer, &from, &error);
     } else if (id == HIMC_COMMAND_DUMP) {
         h->dump = (osc_dump){
             .tells = true, .to = order->from, .from = {.osc = osc, .address = &h->dump.to}};

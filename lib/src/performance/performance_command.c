@@ -7,7 +7,6 @@
 #include "base/format.h"
 #include "performance/performance_state.h"
 
-#define LEAST_LOOP 0.1     // chosen: a stroke of one hand at 150 beats a minute (beats)
 #define LONGEST_DELAY 8192 // chosen: the largest block of Pure Data and more (samples)
 
 // a setting, and what follows from its change
@@ -155,9 +154,6 @@ static bool act_on_score(himc_performance *p, const himc_command *c, himc_error 
             himc_planner_loop(planner, step_time(p), atom[0].number != 0);
             break;
         }
-        if (!himc_check_range("loop: TO", atom[1].number, atom[0].number + LEAST_LOOP, 1e6, "beats",
-                              error))
-            return false;
         himc_planner_loop_beats(planner, step_time(p), atom[0].number, atom[1].number);
         if (p->motion->playing)
             himc_performance_tell_loop(p);

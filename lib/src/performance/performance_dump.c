@@ -257,14 +257,39 @@ static void tell_values(const himc_performance *p, const himc_line_sink *to)
     tell_item(p, LOOP, 0, to);
 }
 
+typedef struct asked_value {
+    himc_line_sink to;
+    const char *what;
+    bool found;
+} asked_value;
+
+static void answer_value(void *asked, const char *line)
+{
+    asked_value *a = asked;
+    size_t length = strlen(a->what);
+    if (strncmp(line, a->what, length) != 0 || (line[length] && line[length] != ' '))
+        return;
+    a->found = true;
+    a->to.line(a->to.user, line);
+}
+
+bool himc_performance_get(const himc_performance *p, const char *what,
+                          void (*line)(void *, const char *), void *user, himc_error *error)
+{
+    asked_value asked = {.to = {line, user}, .what = what};
+    tell_values(p, &(himc_line_sink){answer_value, &asked});
+    return asked.found || himc_error_set(error,
+                                         "get: WHAT: %s, expected a setting, tempo, beat, state, "
+                                         "drums, loop, room, listener or mute",
+                                         what);
+}
+
 void himc_performance_describe(const himc_performance *p, himc_description what,
                                void (*line)(void *, const char *), void *user)
 {
     himc_line_sink to = {line, user};
     if (what == HIMC_DESCRIBE_STATE)
         dump(p, &to);
-    else if (what == HIMC_DESCRIBE_VALUES)
-        tell_values(p, &to);
     else
         himc_performance_inform(p, to);
 }

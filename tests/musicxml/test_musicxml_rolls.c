@@ -1,0 +1,226 @@
+/// MusicXML: tremolos, rolls, graces, and six reports of users of MuseScore.
+#define _XOPEN_SOURCE 700
+#include "made.h"
+
+static void test_two_strokes_through_the_stem_are_measured(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(60) C3(4, MARKS(1)) C3(4, MARKS(2)) REST(8)));
+    expect_beats(6, 0.0, 0.5, 1.0, 1.25, 1.5, 1.75);
+    // an eighth has a flag already
+    PLAY(BAR(1, FOUR TEMPO(60) C3(2, "<type>eighth</type>" MARKS(1)) REST(14)));
+    expect_beats(2, 0.0, 0.25);
+    expect_text("1 of 1 notes for timpani");
+}
+
+// musescore#20883: three are a roll, but measured where they are slow, or where it says so
+static void test_three_strokes_are_a_roll_unless_measured(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(120) C3(16, MARKS(3))));
+    TEST_ASSERT_EQUAL(1, score->stroke_count);
+    expect_roll(0, 0, 4, 4, 4);
+    PLAY(BAR(1, FOUR TEMPO(40) C3(4, MARKS(3)) REST(12)));
+    TEST_ASSERT_EQUAL(8, score->stroke_count);
+    PLAY(BAR(1, FOUR TEMPO(66) WORDS("gemessen") C3(4, MARKS(3)) REST(12)));
+    TEST_ASSERT_EQUAL(8, score->stroke_count);
+    PLAY(BAR(1, FOUR TEMPO(40) C3(16, "<notations><ornaments><tremolo type='unmeasured'/>"
+                                      "</ornaments></notations>")));
+    expect_roll(0, 0, 4, 4, 4);
+}
+
+static void test_three_strokes_under_a_fermata_are_a_roll(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(96) REST(8)
+                    C3(8, "<notations><ornaments><tremolo type='single'>3</tremolo></ornaments>"
+                          "<fermata/></notations>")));
+    TEST_ASSERT_EQUAL(1, score->stroke_count);
+    expect_roll(0, 2, 2, 4, 4);
+}
+
+// musescore#16756: a timpani trill is a roll
+static void test_a_trill_is_a_roll(void)
+{
+    PLAY(BAR(1,
+             FOUR C3(8, "<notations><ornaments><trill-mark/></ornaments></notations>") C3(8, "")));
+    expect_roll(0, 0, 2, 4, 4);
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+}
+
+// musescore#19095, #21060: hairpins act within a roll, tied over bars, too
+static void test_a_hairpin_acts_within_a_roll(void)
+{
+    PLAY(BAR(1, FOUR DYNAMICS("pp") WEDGE("crescendo") C3(16, "<tie type='start'/>" MARKS(3))) BAR(
+        2, C3(16, "<tie type='stop'/>" MARKS(3)) WEDGE("stop")) BAR(3, DYNAMICS("ff") C3(16, "")));
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    expect_roll(0, 0, 8, 1, 6);
+    PLAY(BAR(1, FOUR DYNAMICS("p") WEDGE("crescendo")
+                    C3(16, MARKS(3)) "<backup><duration>8"
+                                     "</duration></backup>" WEDGE("stop") WEDGE(
+                                         "diminuendo") "<forward><duration>8"
+                                                       "</duration></forward>" WEDGE("stop")));
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    expect_roll(0, 0, 2, 2, 3);
+    expect_roll(1, 2, 2, 3, 2);
+    expect_text("1 of 1 notes");
+}
+
+// musescore#22480: grace notes before a roll are played before it, softer
+static void test_graces_come_before_a_roll(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(120) REST(8) GRACE(C) GRACE(C) C3(8, MARKS(3))));
+    TEST_ASSERT_EQUAL(3, score->stroke_count);
+    expect_roll(2, 2, 2, 4, 4);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 0.14, time_between(stroke(0)->beat - lead(), 2));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 0.07, time_between(stroke(1)->beat - lead(), 2));
+    TEST_ASSERT_TRUE(stroke(0)->hand != stroke(1)->hand);
+    TEST_ASSERT_TRUE(stroke(1)->dynamic < stroke(2)->dynamic - 0.1);
+}
+
+// musescore#24793: notes above the usual B are played: on the high drum, or an octave lower
+static void test_notes_above_high_b_are_played(void)
+{
+    PLAY(BAR(1, FOUR NOTE(B, 3, 8, "") NOTE(C, 4, 8, "")));
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    expect_text("2 of 2 notes");
+}
+
+// musescore#16733: a roll is as even at any tempo and ends with its note
+static void test_a_roll_ends_with_its_note_at_any_tempo(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(180) C3(8, MARKS(3)) NOTE(G, 2, 8, "")));
+    expect_roll(0, 0, 2, 4, 4);
+    PLAY(BAR(1, FOUR TEMPO(70) C3(8, MARKS(4)) NOTE(G, 2, 8, "")));
+    expect_roll(0, 0, 2, 4, 4);
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+}
+
+// a roll tied to a note without a tremolo ends with a stroke there, one tied to a tremolo goes on
+static void test_a_roll_tied_to_a_plain_note_ends_with_a_stroke(void)
+{
+#define WAVY(type) "<notations><ornaments><wavy-line type='" type "'/></ornaments></notations>"
+#define TIE(type) "<tie type='" type "'/>"
+    static const char *const roll[] = {MARKS(3), MARKS(4), WAVY("start")},
+                             *const goes_on[] = {MARKS(3), MARKS(4), ""},
+                             *const ends[] = {MARKS(3), MARKS(4), WAVY("stop")};
+    for (int k = 0; k < 3; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") BAR(1, FOUR DYNAMICS("f") C3(16, TIE("start") "%s"))
+                     BAR(2, C3(16, TIE("stop") TIE("start") "%s"))
+                         BAR(3, C3(8, TIE("stop") TIE("start") "%s") C3(4, TIE("stop")) REST(4))
+                             TAIL,
+                 roll[k], goes_on[k], ends[k]);
+        load(text);
+        TEST_ASSERT_EQUAL_MESSAGE(2, score->stroke_count, made.text);
+        expect_roll(0, 0, 10, 5, 5);
+        TEST_ASSERT_EQUAL(HIMC_PLAIN, stroke(1)->ornament);
+        TEST_ASSERT_FLOAT_WITHIN(1e-4, 10 + lead(), stroke(1)->beat);
+        expect_text("2 of 2 notes");
+    }
+    // a stroke, and a roll from the ringing drum on
+    PLAY(BAR(1, FOUR C3(16, TIE("start"))) BAR(2, C3(16, TIE("stop") MARKS(3))));
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    TEST_ASSERT_EQUAL(HIMC_PLAIN, stroke(0)->ornament);
+    expect_roll(1, 4, 4, 4, 4);
+}
+
+#define CHORD(step, octave, duration, more)                                           \
+    "<note><chord/><pitch><step>" #step "</step><octave>" #octave "</octave></pitch>" \
+    "<duration>" #duration "</duration><voice>1</voice>" more "</note>"
+
+static void expect_roll_of_two(int index, double beat, double length)
+{
+    expect_roll(index, beat, length, 4, 4);
+    expect_roll(index + 1, beat, length, 4, 4);
+    TEST_ASSERT_TRUE(strcmp(stroke(index)->drum, stroke(index + 1)->drum) != 0);
+}
+
+// both drums of a roll on two sound, a hand each, however it is written
+static void test_a_roll_on_two_drums_has_both(void)
+{
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) CHORD(G, 2, 16, MARKS(3))) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(3, score->stroke_count);
+    expect_roll_of_two(0, 0, 4);
+    expect_text("3 of 3 notes");
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) CHORD(G, 2, 16, "")) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(3, score->stroke_count); // marks of the chord at its first note alone
+    expect_roll_of_two(0, 0, 4);
+    // one goes on behind the other
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) "<backup><duration>16</duration></backup>" REST(8)
+                    NOTE(G, 2, 8, MARKS(3))) BAR(2, NOTE(G, 2, 16, "")));
+    TEST_ASSERT_EQUAL(4, score->stroke_count);
+    expect_roll(0, 0, 2, 4, 4);
+    expect_roll_of_two(1, 2, 2);
+    PLAY(BAR(1, FOUR C3(16, MARKS(3)) CHORD(G, 2, 16, "") CHORD(F, 3, 16, "")));
+    TEST_ASSERT_EQUAL(2, score->stroke_count); // no third hand
+    expect_text("2 of 3 notes");
+    expect_text("1 note is not played: both hands are busy (bar 1)");
+}
+
+static void test_marks_of_a_chord_are_of_all_its_notes(void)
+{
+    PLAY(
+        BAR(1, FOUR C3(8, ARTICULATION("accent")) CHORD(G, 2, 8, "") C3(8, "") CHORD(G, 2, 8, "")));
+    expect_dynamics(4, 5.0, 5.0, 4.0, 4.0);
+}
+
+static void test_an_accent_on_a_roll_is_its_beginning(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(60) DYNAMICS("p") C3(16, ARTICULATION("accent") MARKS(3))));
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    expect_roll(0, 0, 0.3, 3, 2);
+    expect_roll(1, 0.3, 3.7, 2, 2);
+}
+
+static void test_two_notes_are_played_in_turn(void)
+{
+#define PAIR(type)                                                           \
+    "<notations><ornaments><tremolo type='" type "'>2</tremolo></ornaments>" \
+    "</notations>"
+    PLAY(BAR(1, FOUR TEMPO(60) C3(4, "<type>half</type>" PAIR("start"))
+                    NOTE(G, 2, 4, "<type>half</type>" PAIR("stop")) REST(8)));
+    expect_beats(8, 0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75);
+    for (int i = 2; i < 8; i++)
+        TEST_ASSERT_EQUAL_STRING(stroke(i - 2)->drum, stroke(i)->drum);
+    TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
+    expect_text("2 of 2 notes");
+}
+
+static void test_graces_are_flam_drag_and_ruff(void)
+{
+    PLAY(BAR(1, FOUR REST(4) GRACE(C) C3(4, "") GRACE(C) GRACE(C) C3(4, "") GRACE(C) GRACE(C)
+                    GRACE(C) C3(4, "")));
+    TEST_ASSERT_EQUAL(3, score->stroke_count);
+    TEST_ASSERT_EQUAL(HIMC_FLAM, stroke(0)->ornament);
+    TEST_ASSERT_EQUAL(HIMC_DRAG, stroke(1)->ornament);
+    TEST_ASSERT_EQUAL(HIMC_RUFF, stroke(2)->ornament);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "1 grace"),
+                                 made.report); // of the ruff's three
+}
+
+static void test_a_grace_on_another_drum_is_a_stroke(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(60) REST(8) GRACE(G) C3(8, "")));
+    expect_beats(2, 1.93, 2.0);
+    TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_two_strokes_through_the_stem_are_measured);
+    RUN_TEST(test_three_strokes_are_a_roll_unless_measured);
+    RUN_TEST(test_three_strokes_under_a_fermata_are_a_roll);
+    RUN_TEST(test_a_trill_is_a_roll);
+    RUN_TEST(test_a_hairpin_acts_within_a_roll);
+    RUN_TEST(test_graces_come_before_a_roll);
+    RUN_TEST(test_notes_above_high_b_are_played);
+    RUN_TEST(test_a_roll_ends_with_its_note_at_any_tempo);
+    RUN_TEST(test_a_roll_tied_to_a_plain_note_ends_with_a_stroke);
+    RUN_TEST(test_a_roll_on_two_drums_has_both);
+    RUN_TEST(test_marks_of_a_chord_are_of_all_its_notes);
+    RUN_TEST(test_an_accent_on_a_roll_is_its_beginning);
+    RUN_TEST(test_two_notes_are_played_in_turn);
+    RUN_TEST(test_graces_are_flam_drag_and_ruff);
+    RUN_TEST(test_a_grace_on_another_drum_is_a_stroke);
+    return UNITY_END();
+}
