@@ -18,6 +18,7 @@
 #define LONGEST 60.0     // (s) chosen: the score's limit less a last stroke at the slowest tempo
 #define MOVE_TIME 0.5  // from its last stroke to one on another drum (s); chosen: sticking.c's need
 #define SAME_TIME 0.01 // (s) as himc_midi_join
+#define LONG 2.5       // gaps of a row; chosen
 #define MOST_OFF_LINE 0.06 // of the dynamics from a straight line; chosen: less than half a step
 
 /// The next stroke that is played, -1 after the last.
@@ -39,7 +40,7 @@ static bool is_fast(const midi_note *a, const midi_note *b)
 /// Strokes of one drum in a row, or of two drums at the same times.
 typedef struct row {
     int first, second; ///< of each drum; -1: of one only
-    int end;           ///< the last stroke of the first drum
+    int end, before;   ///< the last stroke of the first drum, and the one before it
     int notes;         ///< of each drum
 } row;
 
@@ -87,9 +88,22 @@ static bool goes_on(const midi_part *part, row *r)
         s[next].note->seconds - s[r->first].note->seconds > LONGEST ||
         !is_straight(part, r->first, next))
         return false;
+    r->before = r->end;
     r->end = next;
     r->notes++;
     return true;
+}
+
+// The last of some short notes is the stroke that they lead to if it lasts much longer.
+static void leave_aim(const midi_part *part, row *r)
+{
+    const midi_note *last = part->stroke[r->end].note, *before = part->stroke[r->before].note;
+    double gap = last->seconds - before->seconds;
+    if (r->second >= 0 || r->notes <= LEAST_NOTES || last->off - last->seconds < LONG * gap ||
+        before->off - before->seconds >= LONG * gap)
+        return;
+    r->end = r->before;
+    r->notes--;
 }
 
 // true if enough notes of a row come so early that a hand could still go to the next drum
@@ -133,9 +147,10 @@ static bool make_roll(midi_part *part, const row *r)
 void himc_midi_find_rolls(midi_part *part)
 {
     for (int first = next_played(part, -1); first >= 0;) {
-        row r = {first, partner_of(part, first), first, 1};
+        row r = {first, partner_of(part, first), first, first, 1};
         while (part->stroke[first].roll.length == 0 && goes_on(part, &r))
             ;
+        leave_aim(part, &r);
         int last = make_roll(part, &r) ? last_of(part, &r, r.end) : first;
         first = next_played(part, last);
     }

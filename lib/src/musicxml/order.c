@@ -48,6 +48,21 @@ static int last_time(const music *m, int bar)
     return last;
 }
 
+// The coda is at the last of its signs. If no words say where one leaves for it, one leaves at the
+// other signs.
+static int find_coda(music *m)
+{
+    int coda = -1;
+    bool said = false;
+    for (int i = 0; i < m->bar_count; i++) {
+        coda = m->bars[i].coda ? i : coda;
+        said |= m->bars[i].to_coda;
+    }
+    for (int i = 0; i < coda && !said; i++)
+        m->bars[i].to_coda = m->bars[i].coda;
+    return coda;
+}
+
 static int find_bar(const music *m, size_t flag)
 {
     for (int i = 0; i < m->bar_count; i++)
@@ -57,10 +72,10 @@ static int find_bar(const music *m, size_t flag)
 }
 
 // long: a state machine
-static int play_order(const music *m, int *played)
+static int play_order(music *m, int *played)
 {
     int count = 0, begin = 0, time = 1, segno = find_bar(m, offsetof(music_bar, segno)),
-        coda = find_bar(m, offsetof(music_bar, coda));
+        coda = find_coda(m);
     bool jumped = false;
     for (int i = 0; i < m->bar_count && count < MOST_PLAYED;) {
         const music_bar *b = &m->bars[i];

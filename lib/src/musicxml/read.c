@@ -41,6 +41,7 @@ typedef struct reader {
     bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
     int head;                        ///< the first note of a chord, -1: it is left out
     int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
+    int repeated;                    ///< bars back that a sign repeats; 0: none
     bool failed;
 } reader;
 
@@ -144,6 +145,15 @@ static bool is_tempo(music_meaning meaning)
     return meaning >= MUSIC_TEMPO && meaning <= MUSIC_FERMATA;
 }
 
+// "Coda" alone, where it begins
+static bool is_coda(const char *text)
+{
+    while (isspace((unsigned char)*text))
+        text++;
+    return tolower((unsigned char)*text) == 'c' && strncmp(text + 1, "oda", 3) == 0 &&
+           text[4 + strspn(text + 4, " .:\n")] == '\0';
+}
+
 static bool read_words(reader *r, const xml_node *words, double beat, bool own, bool sound)
 {
     music_bar *bar = &r->music->bars[r->bar];
@@ -151,6 +161,7 @@ static bool read_words(reader *r, const xml_node *words, double beat, bool own, 
     double value[8];
     bool dynamic = false;
     int count = himc_music_words(words->text, 8, meaning, value);
+    bar->coda |= is_coda(words->text) && !sound;
     for (int i = 0; i < count; i++) {
         // a `sound` beside it says where it jumps
         bar->da_capo |= meaning[i] == MUSIC_DA_CAPO && !sound;
@@ -513,6 +524,8 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
     for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
         read_notations(r, &n, t);
+    if (n.tremolo >= MUSIC_PAIR_BEGIN && n.ratio >= 2) // each is written as long as both sound
+        n.ratio /= 2;
     if (chord && r->head >= 0)
         share_marks(&n, &m->notes[r->head]);
     else if (!chord)
@@ -555,6 +568,10 @@ static void read_attributes(reader *r, const xml_node *attributes)
                     12 * himc_xml_number(transpose, "octave-change", 0);
         r->transpose = fabs(by) < 128 ? (int)by : 0;
     }
+    const xml_node *again =
+        himc_xml_child(himc_xml_child(attributes, "measure-style"), "measure-repeat");
+    if (again)
+        r->repeated = himc_xml_has(again, "type", "start") ? atoi(again->text) : 0;
     const xml_node *time = himc_xml_child(attributes, "time");
     double beats = 0;
     for (const char *n = himc_xml_text(time, "beats"); n && *n;) { // "3+2"
@@ -574,6 +591,27 @@ static void read_number(music_bar *bar, const xml_node *measure)
         snprintf(bar->number, sizeof bar->number, "%.11s", himc_xml_attribute(measure, "number"));
     for (char *c = bar->number; *c; c++)
         *c = isalnum((unsigned char)*c) || strchr("-+.", *c) ? *c : '_';
+}
+
+// the notes of the bar that a sign repeats; this one has none of its own
+static void repeat_bar(reader *r)
+{
+    music *m = r->music;
+    const int count = m->note_count, from = r->bar - r->repeated;
+    for (int i = count - 1; i >= 0 && m->notes[i].at.part == r->part; i--)
+        if (m->notes[i].at.bar == r->bar)
+            return;
+    for (int i = 0; i < count && !r->failed; i++) {
+        music_note n = m->notes[i];
+        if (n.at.part != r->part || n.at.bar != from)
+            continue;
+        n.at.bar = r->bar;
+        n.at.order = m->note_count;
+        if (!himc_array_grow(&m->notes, m->note_count, &m->note_room, sizeof *m->notes, r->error))
+            r->failed = true;
+        else
+            m->notes[m->note_count++] = n;
+    }
 }
 
 static void read_measure(reader *r, const xml_node *measure)
@@ -604,6 +642,8 @@ static void read_measure(reader *r, const xml_node *measure)
             read_barline(r, n);
         r->end = fmax(r->end, r->at);
     }
+    if (r->repeated > 0 && r->repeated <= r->bar)
+        repeat_bar(r);
     if (bar->length == 0 && r->end == 0)
         r->end = r->time;
     // a rest may fill a whole bar where the bar of others is a pickup
@@ -622,7 +662,7 @@ static bool read_part(reader *r, const xml_node *part)
         r->list = himc_xml_next(r->list);
     read_instruments(r);
     r->divisions = 1;
-    r->transpose = r->wavy = 0;
+    r->transpose = r->wavy = r->repeated = 0;
     r->time = 4;
     r->bar = 0;
     r->head = -1;

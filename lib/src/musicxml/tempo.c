@@ -47,7 +47,8 @@ static bool sets_tempo(music_meaning meaning)
            meaning == MUSIC_TEMPO_RAMP;
 }
 
-// evenly from sign `i` to the next mark of tempo; returns the tempo at its end, 0 without memory
+// evenly from sign `i` to the next mark of tempo, and to its tempo if it lies on the way; returns
+// the tempo at its end, 0 without memory
 static double add_ramp(map *to, const music *m, int i, double bpm)
 {
     const music_sign *s = &m->signs[i];
@@ -55,7 +56,12 @@ static double add_ramp(map *to, const music *m, int i, double bpm)
     for (int k = i + 1; k < m->sign_count; k++)
         if (sets_tempo(m->signs[k].meaning) && m->signs[k].at.beat > s->at.beat + SAME) {
             double beat = m->signs[k].at.beat;
-            end = beat - s->at.beat <= LONGEST_RAMP ? beat : fmin(end, beat);
+            bool near = beat - s->at.beat <= LONGEST_RAMP,
+                 mark =
+                     m->signs[k].meaning == MUSIC_TEMPO || m->signs[k].meaning == MUSIC_TEMPO_WORD;
+            if (near && mark && (m->signs[k].value - bpm) * (s->value - 1) > 0)
+                last = m->signs[k].value;
+            end = near ? beat : fmin(end, beat);
             break;
         }
     int steps = (int)ceil((end - s->at.beat) / STEP);
@@ -69,8 +75,9 @@ static double add_ramp(map *to, const music *m, int i, double bpm)
 
 static bool add_signs(map *to, const music *m)
 {
-    double bpm = USUAL_BPM, first = 0, before = 0; // now, the first, before the last ramp
+    double bpm = USUAL_BPM, first = 0, before = 0; // now, the first, before the last ramps
     double numbered = -1, ramp = -1;               // beats of the last number and ramp
+    bool ramps = false;
     for (int i = 0; i < m->sign_count; i++) {
         const music_sign *s = &m->signs[i];
         double now = bpm;
@@ -82,7 +89,8 @@ static bool add_signs(map *to, const music *m)
         } else if (s->meaning == MUSIC_TEMPO_BACK && s->at.beat > numbered + SAME) {
             bpm = s->value > 0 && first > 0 ? first : before > 0 ? before : bpm;
         } else if (s->meaning == MUSIC_TEMPO_RAMP && s->at.beat > ramp + SAME) {
-            before = bpm;
+            before = ramps ? before : bpm; // rit. molto rit. a tempo
+            ramps = true;
             ramp = s->at.beat;
             if (!(bpm = add_ramp(to, m, i, bpm)))
                 return false;
@@ -91,6 +99,7 @@ static bool add_signs(map *to, const music *m)
             continue;
         }
         first = first > 0 ? first : bpm;
+        ramps = false;
         if (s->meaning != MUSIC_TEMPO_BACK && now != bpm)
             before = 0;
         if (!add(to, s->at.beat, bpm))
