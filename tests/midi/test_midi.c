@@ -518,6 +518,25 @@ static void test_a_roll_goes_on_to_a_stroke_on_another_drum(void)
     }
 }
 
+// 32nds that lead to a quarter note: it is a stroke, as loud as they are or not
+static void test_a_long_note_after_fast_ones_is_their_aim(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xc0, 47);
+    for (int i = 0; i < 9; i++) {
+        event(&b, i ? 2 : 0, 0x90, 48, 80);
+        event(&b, i < 8 ? 10 : 96, 0x80, 48, 0);
+    }
+    end(&b);
+    import(&b, NULL);
+    reported("9 of 9 notes for timpani are played");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(2, score->stroke_count, made.text);
+    const himc_stroke *s = score->strokes;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, s[0].beat + s[0].length, s[1].beat);
+    TEST_ASSERT_EQUAL_INT(HIMC_PLAIN, s[1].ornament);
+}
+
 // as programs write a tremolo of a chord
 static void test_fast_strokes_of_two_drums_at_the_same_times_are_a_roll_on_both(void)
 {
@@ -1007,6 +1026,7 @@ int main(void)
     RUN_TEST(test_slower_fewer_or_shared_strokes_and_drum_fills_are_no_rolls);
     RUN_TEST(test_16ths_over_four_drums_are_played_without_crossing);
     RUN_TEST(test_a_roll_goes_on_to_a_stroke_on_another_drum);
+    RUN_TEST(test_a_long_note_after_fast_ones_is_their_aim);
     RUN_TEST(test_fast_strokes_of_two_drums_at_the_same_times_are_a_roll_on_both);
     RUN_TEST(test_two_drums_in_the_middle_are_played_by_sides);
     RUN_TEST(test_outer_drums_are_played_by_the_hand_of_their_side);

@@ -154,6 +154,87 @@ static void test_dal_segno_goes_to_the_coda(void)
     TEST_ASSERT_EQUAL_STRING(stroke(1)->drum, stroke(6)->drum);
 }
 
+// signs alone, as programs write them: one leaves at the first coda and goes to the last
+static void test_the_first_coda_is_left_for_the_last(void)
+{
+    static const char *const from[] = {"<coda/>", "<words>To Coda</words><coda/>",
+                                       "<words>To Coda</words>"};
+    static const char *const to[] = {"<coda/>", "<coda/>", "<words>Coda</words>"};
+    for (int k = 0; k < 3; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") BAR(1, FOUR C3(16, ""))
+                     BAR(2, DIRECTION("<segno/>") C3(16, "")) BAR(3, C3(16, "") DIRECTION("%s"))
+                         BAR(4, C3(16, "") WORDS("D.S. al Coda"))
+                             BAR(5, DIRECTION("%s") NOTE(G, 2, 16, "")) TAIL,
+                 from[k], to[k]);
+        load(text);
+        expect_beats(7, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0);
+        for (int i = 0; i < 7; i++)
+            TEST_ASSERT_EQUAL_INT(i == 6, strcmp(stroke(i)->drum, stroke(0)->drum) != 0);
+    }
+}
+
+static void test_a_bar_with_a_repeat_sign_is_the_one_before(void)
+{
+    PLAY(BAR(1, FOUR C3(8, "") NOTE(G, 2, 8, ""))
+             BAR(2, "<attributes><measure-style><measure-repeat type='start'>1</measure-repeat>"
+                    "</measure-style></attributes>" REST(16)) BAR(3, REST(16))
+                 BAR(4, "<attributes><measure-style><measure-repeat type='stop'/></measure-style>"
+                        "</attributes>" C3(8, "") REST(8)));
+    expect_beats(7, 0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0);
+    for (int i = 0; i < 6; i++)
+        TEST_ASSERT_EQUAL_STRING(stroke(i % 2)->drum, stroke(i)->drum);
+}
+
+// each of two notes in turn is written as long as both sound, with a time-modification or without
+static void test_two_notes_in_turn_are_as_fast_with_their_time_modification(void)
+{
+#define PAIR(step, octave, type, more)                                                \
+    NOTE(step, octave, 8,                                                             \
+         "<type>whole</type>" more "<notations><ornaments><tremolo type='" type "'>1" \
+         "</tremolo></ornaments></notations>")
+#define TWO \
+    "<time-modification><actual-notes>2</actual-notes><normal-notes>1</normal-notes></time-modification>"
+    for (int k = 0; k < 2; k++) {
+        if (k)
+            PLAY(BAR(1, FOUR PAIR(C, 3, "start", TWO) PAIR(G, 2, "stop", TWO)));
+        else
+            PLAY(BAR(1, FOUR PAIR(C, 3, "start", "") PAIR(G, 2, "stop", "")));
+        expect_beats(8, 0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5);
+    }
+}
+
+// one lane's marks are not another's where they differ
+static void test_two_voices_have_their_own_dynamics(void)
+{
+#define FOR_VOICE(d, v)                                                         \
+    "<direction><direction-type><dynamics><" d "/></dynamics></direction-type>" \
+    "<voice>" v "</voice></direction>"
+#define SECOND                                                                    \
+    "<note><pitch><step>G</step><octave>2</octave></pitch><duration>8</duration>" \
+    "<voice>2</voice></note>"
+    static const char *const marks[] = {FOR_VOICE("ff", "1") FOR_VOICE("pp", "2"),
+                                        FOR_VOICE("pp", "1") FOR_VOICE("ff", "2"),
+                                        FOR_VOICE("ff", "1"), FOR_VOICE("pp", "2")};
+    static const double first[] = {6, 1, 6, 1}, second[] = {1, 6, 6, 1}; // of 7
+    for (int k = 0; k < 4; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani")
+                     BAR(1, FOUR "%s" C3(8, "")
+                                C3(8, "") "<backup><duration>16</duration></backup>" SECOND SECOND)
+                         TAIL,
+                 marks[k]);
+        load(text);
+        TEST_ASSERT_EQUAL(4, score->stroke_count);
+        for (int i = 0; i < 4; i++) {
+            bool low = strcmp(stroke(i)->drum, "low") == 0;
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, (low ? second : first)[k] / 7, stroke(i)->dynamic);
+        }
+    }
+}
+
 // --- tempo
 
 static void test_tempo_marks_words_and_numbers(void)
@@ -177,6 +258,24 @@ static void test_a_ritardando_slows_evenly_to_a_tempo(void)
         TEST_ASSERT_TRUE(bpm_at(beat) < bpm_at(beat - 0.5));
     TEST_ASSERT_FLOAT_WITHIN(3, 90, bpm_at(7.9));
     TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(8));
+}
+
+static void test_a_tempo_is_that_before_two_ritardandi(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(120) C3(16, "")) BAR(2, WORDS("rit.") C3(16, ""))
+             BAR(3, WORDS("molto rit.") C3(16, "")) BAR(4, WORDS("a tempo") C3(16, "")));
+    TEST_ASSERT_TRUE(bpm_at(11.9) < bpm_at(8) && bpm_at(8) < 95);
+    TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(12));
+}
+
+static void test_an_accelerando_arrives_at_the_mark_that_it_leads_to(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(60) WORDS("accel.") C3(16, "")) BAR(2, TEMPO(120) C3(16, ""))
+             BAR(3, WORDS("rit.") C3(16, "")) BAR(4, TEMPO(60) C3(16, "")));
+    TEST_ASSERT_FLOAT_WITHIN(8, 120, bpm_at(3.9));
+    TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(4));
+    TEST_ASSERT_FLOAT_WITHIN(8, 60, bpm_at(11.9));
+    TEST_ASSERT_EQUAL_FLOAT(60, bpm_at(12));
 }
 
 static void test_a_fermata_holds(void)
@@ -655,8 +754,14 @@ int main(void)
     RUN_TEST(test_a_repeat_is_played_as_often_as_it_says);
     RUN_TEST(test_da_capo_goes_to_fine_without_repeats);
     RUN_TEST(test_dal_segno_goes_to_the_coda);
+    RUN_TEST(test_the_first_coda_is_left_for_the_last);
+    RUN_TEST(test_a_bar_with_a_repeat_sign_is_the_one_before);
+    RUN_TEST(test_two_notes_in_turn_are_as_fast_with_their_time_modification);
+    RUN_TEST(test_two_voices_have_their_own_dynamics);
     RUN_TEST(test_tempo_marks_words_and_numbers);
     RUN_TEST(test_a_ritardando_slows_evenly_to_a_tempo);
+    RUN_TEST(test_a_tempo_is_that_before_two_ritardandi);
+    RUN_TEST(test_an_accelerando_arrives_at_the_mark_that_it_leads_to);
     RUN_TEST(test_a_fermata_holds);
     RUN_TEST(test_dynamics_hold_until_the_next);
     RUN_TEST(test_a_hairpin_leads_to_its_end);

@@ -2,7 +2,8 @@
 ///
 /// A hairpin leads to the mark at its end; without one it goes a step, two if it is longer than
 /// HAIRPIN. A word (cresc.) leads to the next mark within LONGEST_WORD, else as a hairpin of
-/// HAIRPIN. A part that says nothing is mf. Invariant: the beats of the points never decrease.
+/// HAIRPIN. A part that says nothing is mf. Signs hold for all voices and staves, unless two have
+/// different dynamics at one time. Invariant: the beats of the points never decrease.
 #include "musicxml/music.h"
 
 #include "base/array.h"
@@ -41,21 +42,44 @@ static void add(line *l, double beat, double dynamic)
     l->now = dynamic;
 }
 
+static bool is_of(const music_sign *s, int part, int lane)
+{
+    int staff = s->lane / 100, voice = s->lane % 100;
+    return s->at.part == part && s->meaning <= MUSIC_GROWING &&
+           (lane == MUSIC_ALL_LANES || ((!staff || lane < 100 || staff == lane / 100) &&
+                                        (!voice || lane % 100 == 0 || voice == lane % 100)));
+}
+
+bool himc_music_apart(const music *m, int part, int lane)
+{
+    for (int i = 1; i < m->sign_count; i++) {
+        const music_sign *a = &m->signs[i];
+        for (int k = i - 1; k >= 0 && a->at.beat < m->signs[k].at.beat + SAME; k--) {
+            const music_sign *b = &m->signs[k];
+            if (a->meaning == MUSIC_DYNAMIC && b->meaning == MUSIC_DYNAMIC && b->at.part == part &&
+                a->at.part == part && a->value != b->value &&
+                is_of(a, part, lane) != is_of(b, part, lane))
+                return true;
+        }
+    }
+    return false;
+}
+
 // the next mark of the part behind sign `i`, up to `until`; -1: none
-static int next_mark(const music *m, int part, int i, double from, double until)
+static int next_mark(const music *m, int part, int lane, int i, double from, double until)
 {
     const int most = i + 2000; // signs; chosen: bounds the time
     for (int k = i + 1; k < m->sign_count && k < most && m->signs[k].at.beat <= until + SAME; k++)
-        if (m->signs[k].at.part == part && m->signs[k].meaning == MUSIC_DYNAMIC &&
+        if (is_of(&m->signs[k], part, lane) && m->signs[k].meaning == MUSIC_DYNAMIC &&
             m->signs[k].at.beat >= from - SAME)
             return k;
     return -1;
 }
 
-static void close_hairpin(line *l, const music *m, int part, int i, double beat)
+static void close_hairpin(line *l, const music *m, int part, int lane, int i, double beat)
 {
     double steps = beat - l->from > HAIRPIN ? 2 * STEP : STEP, to = l->now + l->way * steps;
-    int mark = next_mark(m, part, i, beat, beat + REACH);
+    int mark = next_mark(m, part, lane, i, beat, beat + REACH);
     if (mark >= 0 && (m->signs[mark].value - l->now) * l->way > 0)
         to = m->signs[mark].value;
     add(l, beat, to);
@@ -70,12 +94,12 @@ static void open_hairpin(line *l, double beat, double way)
     l->end = -1;
 }
 
-static void take_sign(line *l, const music *m, int part, int i, double second)
+static void take_sign(line *l, const music *m, int part, int lane, int i, double second)
 {
     const music_sign *s = &m->signs[i];
     double beat = s->at.beat;
     if (l->from >= 0 && l->end >= 0 && beat >= l->end - SAME)
-        close_hairpin(l, m, part, i - 1, l->end);
+        close_hairpin(l, m, part, lane, i - 1, l->end);
     bool open = l->from >= 0, begins = open && beat < l->from + SAME;
     if (s->meaning == MUSIC_DYNAMIC || s->meaning == MUSIC_FORTEPIANO) {
         bool leads = s->meaning == MUSIC_DYNAMIC && (s->value - l->now) * l->way > 0;
@@ -89,25 +113,25 @@ static void take_sign(line *l, const music *m, int part, int i, double second)
         l->from = begins ? l->from : -1;
     } else if (s->meaning == MUSIC_WEDGE) {
         if (open && !begins)
-            close_hairpin(l, m, part, i, beat);
+            close_hairpin(l, m, part, lane, i, beat);
         if (s->value != 0)
             open_hairpin(l, beat, s->value);
     } else if (s->meaning == MUSIC_GROWING && !open) {
         open_hairpin(l, beat, s->value);
-        if (next_mark(m, part, i, beat, beat + LONGEST_WORD) < 0)
+        if (next_mark(m, part, lane, i, beat, beat + LONGEST_WORD) < 0)
             l->end = beat + HAIRPIN;
     }
 }
 
-music_level *himc_music_levels(const music *m, int part, double second, int *count)
+music_level *himc_music_levels(const music *m, int part, int lane, double second, int *count)
 {
     line l = {.now = USUAL, .from = -1, .end = -1};
     add(&l, 0, USUAL);
     for (int i = 0; i < m->sign_count; i++)
-        if (m->signs[i].at.part == part && m->signs[i].meaning <= MUSIC_GROWING)
-            take_sign(&l, m, part, i, second);
+        if (is_of(&m->signs[i], part, lane))
+            take_sign(&l, m, part, lane, i, second);
     if (l.from >= 0)
-        close_hairpin(&l, m, part, m->sign_count, l.end >= 0 ? l.end : l.from + HAIRPIN);
+        close_hairpin(&l, m, part, lane, m->sign_count, l.end >= 0 ? l.end : l.from + HAIRPIN);
     if (l.failed) {
         free(l.levels);
         return NULL;

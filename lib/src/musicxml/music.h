@@ -39,6 +39,7 @@ typedef struct music_note {
     double length; ///< (beats); 0: a grace note, below 0: played with another one
     double rolled; ///< of a tremolo with ties (beats)
     int voice;
+    int lane; ///< 100 staff + voice; 0 for one that is not written
     midi_choice choice;
     int key;
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
@@ -62,6 +63,7 @@ typedef struct music_sign {
     music_place at;
     music_meaning meaning;
     double value;
+    int lane; ///< of dynamics: the notes they are beside, as theirs
     int line; ///< of MUSIC_GLISS and its end: 1 + the number of its line; 0: none
 } music_sign;
 
@@ -100,8 +102,12 @@ typedef struct music_level {
     double beat, dynamic; ///< 0 .. 1
 } music_level;
 
-/// level.c: the points of a part's signs (`count`), owned by the caller; NULL without memory.
-music_level *himc_music_levels(const music *music, int part, double second, int *count);
+/// level.c: the points of a part's signs (`count`), of all or of a lane, owned by the caller; NULL
+/// without memory.
+music_level *himc_music_levels(const music *music, int part, int lane, double second, int *count);
+#define MUSIC_ALL_LANES (-1)
+/// True if a lane's signs are its own: somewhere another one has another dynamic at the same time.
+bool himc_music_apart(const music *music, int part, int lane);
 double himc_music_level(const music_level *levels, int count, double beat);
 
 /// shape.c: makes the file's notes and orders of it.

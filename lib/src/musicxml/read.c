@@ -41,6 +41,7 @@ typedef struct reader {
     bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
     int head;                        ///< the first note of a chord, -1: it is left out
     int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
+    int lane;                        ///< of a direction
     int repeated;                    ///< bars back that a sign repeats; 0: none
     bool failed;
 } reader;
@@ -60,7 +61,7 @@ static void add_sign(reader *r, double beat, music_meaning meaning, double value
         return;
     }
     m->signs[m->sign_count] =
-        (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value, 0};
+        (music_sign){{beat, r->bar, r->part, m->sign_count}, meaning, value, r->lane, 0};
     m->sign_count++;
 }
 
@@ -75,6 +76,11 @@ static bool is_yes(const xml_node *node, const char *attribute)
 static int whole(const xml_node *node, const char *name, int otherwise)
 {
     return (int)lround(fmin(fmax(himc_xml_number(node, name, otherwise), -1000), 1000));
+}
+
+static int lane_of(const xml_node *node)
+{
+    return 100 * (abs(whole(node, "staff", 0)) % 10) + abs(whole(node, "voice", 0)) % 100;
 }
 
 // by the names first, then by the MIDI instrument
@@ -261,6 +267,7 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
     for (int i = 0; i < 6; i++)
         jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
     const int first = r->music->sign_count;
+    r->lane = lane_of(direction);
     const xml_node *type = himc_xml_child(direction, "direction-type");
     for (; type; type = himc_xml_next(type))
         for (const xml_node *d = type->child; d; d = d->next) {
@@ -284,6 +291,7 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
                 add_sign(r, beat, MUSIC_DAMP, 0);
         }
     read_sound(r, sound, beat, own && !dynamic);
+    r->lane = 0;
 }
 
 static void read_barline(reader *r, const xml_node *barline)
@@ -436,8 +444,10 @@ static void read_notations(reader *r, music_note *n, const xml_node *notations)
             n->glided |= himc_xml_has(g, "type", "stop");
         }
     const xml_node *dynamics = himc_xml_child(notations, "dynamics");
+    r->lane = n->lane;
     if (dynamics)
         read_dynamics(r, dynamics, n->at.beat);
+    r->lane = 0;
 }
 
 static const instrument *instrument_of(const reader *r, const xml_node *note)
@@ -488,6 +498,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     music_note n = {.at = {beat, r->bar, r->part, m->note_count},
                     .length = length,
                     .voice = atoi(himc_xml_text(note, "voice")),
+                    .lane = lane_of(note),
                     .grace = himc_xml_child(note, "grace") != NULL,
                     .spot = spot_of(himc_xml_text(note, "notehead")),
                     .ghost = is_yes(himc_xml_child(note, "notehead"), "parentheses"),

@@ -30,18 +30,27 @@
 #define ATTACK_TIME 0.3         // of an accent on a roll (s)
 #define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
+#define MOST_LANES 8        // with dynamics of their own, and one
 #define MOST_STROKES 100000 // as import.c
 #define MOST_CANDIDATES 400 // notes of one beat that a tie is looked for in; chosen: bounds time
+
+/// The dynamics of one lane.
+typedef struct lane {
+    int lane;
+    music_level *levels;
+    int count;
+} lane;
 
 typedef struct shaper {
     music *music;
     midi_file *file;
     himc_error *error;
     int note_room, order_room;
-    int part, sign; ///< the next sign
-    music_level *levels;
+    int part, sign;               ///< the next sign
+    lane lanes[MOST_LANES], *now; ///< the first of all others; the present note's
+    int lane_count;
     double *cuts; ///< beats where rolls are cut
-    int level_count, cut_count;
+    int cut_count;
     double second; ///< beats in one second at the present note
     himc_spot spot;
     int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
@@ -160,7 +169,7 @@ static void emit(shaper *s, const music_note *n, double beat, double end, const 
 
 static double level(const shaper *s, double beat)
 {
-    return himc_music_level(s->levels, s->level_count, beat);
+    return himc_music_level(s->now->levels, s->now->count, beat);
 }
 
 // of an accent on a roll (beats)
@@ -180,12 +189,16 @@ static bool list_cuts(shaper *s)
 {
     const music *m = s->music;
     const midi_file *f = s->file;
-    s->cuts = malloc(((size_t)s->level_count + 3 * (size_t)m->note_count + 1) * sizeof *s->cuts);
+    size_t points = 0;
+    for (int k = 0; k < s->lane_count; k++)
+        points += (size_t)s->lanes[k].count;
+    s->cuts = malloc((points + 3 * (size_t)m->note_count + 1) * sizeof *s->cuts);
     if (!s->cuts)
         return himc_error_set(s->error, "out of memory for %d notes", m->note_count);
     s->cut_count = 0;
-    for (int i = 0; i < s->level_count; i++)
-        s->cuts[s->cut_count++] = s->levels[i].beat;
+    for (int k = 0; k < s->lane_count; k++)
+        for (int i = 0; i < s->lanes[k].count; i++)
+            s->cuts[s->cut_count++] = s->lanes[k].levels[i].beat;
     for (int i = 0; i < m->note_count; i++) {
         const music_note *n = &m->notes[i];
         if (n->at.part != s->part || n->length <= 0 || !(n->rolled > 0))
@@ -352,7 +365,8 @@ static void add_gliss(shaper *s, const music_note *n)
     const music_note *to = n->glides ? find_next(s->music, n, BY_GLISS) : NULL;
     if (!to || n->choice != MIDI_TIMPANI || to->key == n->key)
         return;
-    music_sign sign = {n->at, MUSIC_GLISS, 100 * (n->key % 12) + to->key % 12, -1};
+    music_sign sign = {
+        .at = n->at, .meaning = MUSIC_GLISS, .value = 100 * n->key + to->key, .line = -1};
     add_order(s, MIDI_TUNING, &sign, n->choice);
     end_gliss(s, -1, to->at.beat);
 }
@@ -466,6 +480,40 @@ static void shape_note(shaper *s, music_note *n)
     add_gliss(s, n);
 }
 
+static bool add_lane(shaper *s, int number)
+{
+    lane *l = &s->lanes[s->lane_count++];
+    double second = himc_midi_bpm(s->file->tempi, s->file->tempo_count, 0) / 60;
+    *l = (lane){.lane = number};
+    l->levels = himc_music_levels(s->music, s->part, number, second, &l->count);
+    return l->levels || himc_error_set(s->error, "out of memory for the dynamics");
+}
+
+static bool list_lanes(shaper *s)
+{
+    const music *m = s->music;
+    bool seen[1000] = {false};
+    s->lane_count = 0;
+    bool good = add_lane(s, MUSIC_ALL_LANES);
+    for (int i = 0; i < m->note_count && good && s->lane_count < MOST_LANES; i++) {
+        int number = m->notes[i].lane;
+        if (m->notes[i].at.part == s->part && !seen[number]) {
+            seen[number] = true;
+            good = !himc_music_apart(m, s->part, number) || add_lane(s, number);
+        }
+    }
+    s->now = s->lanes;
+    return good;
+}
+
+static void choose_lane(shaper *s, int number)
+{
+    s->now = s->lanes;
+    for (int k = 1; k < s->lane_count; k++)
+        if (s->lanes[k].lane == number)
+            s->now = &s->lanes[k];
+}
+
 static bool shape_part(shaper *s, int part)
 {
     music *m = s->music;
@@ -475,11 +523,8 @@ static bool shape_part(shaper *s, int part)
     s->held = 0;
     s->measured = -1;
     s->spot = s->here = HIMC_SPOT_NORMAL;
-    s->levels = himc_music_levels(
-        m, part, himc_midi_bpm(s->file->tempi, s->file->tempo_count, 0) / 60, &s->level_count);
-    if (!s->levels)
-        return himc_error_set(s->error, "out of memory for %d signs", m->sign_count);
-    s->failed |= !list_cuts(s);
+    s->cuts = NULL;
+    s->failed |= !list_lanes(s) || !list_cuts(s);
     for (int i = 0; i < m->note_count && !s->failed; i++) {
         music_note *n = &m->notes[i];
         if (n->at.part != part || n->length < 0)
@@ -497,12 +542,14 @@ static bool shape_part(shaper *s, int part)
         take_signs(s, n->at.beat, n->choice);
         last = n->at.beat;
         s->second = himc_midi_bpm(s->file->tempi, s->file->tempo_count, last) / 60;
+        choose_lane(s, n->lane);
         shape_note(s, n);
     }
     for (int i = 0; i < s->graces; i++) // no note follows
         himc_music_omit(m, MUSIC_GRACES, s->grace[i]->at.bar);
     take_signs(s, HUGE_VAL, MIDI_ANY);
-    free(s->levels);
+    for (int k = 0; k < s->lane_count; k++)
+        free(s->lanes[k].levels);
     free(s->cuts);
     return !s->failed;
 }
