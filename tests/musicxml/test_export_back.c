@@ -356,6 +356,26 @@ static void test_midi_has_what_rings_and_what_a_hand_damps(void)
     himc_midi_score_free(&made);
 }
 
+static void test_a_note_before_graces_rings_on_after_midi(void)
+{
+    static const char *const with[] = {"flam", "drag", "ruff"};
+    for (int k = 0; k < 3; k++) {
+        char words[200];
+        snprintf(words, sizeof words,
+                 "drum kettle; tempo 60; stroke 0 right legato f; %s 2 left legato f;"
+                 "stroke 4 right legato f;",
+                 with[k]);
+        score = himc_score_parse(words, "words", NULL, &error);
+        TEST_ASSERT_TRUE(himc_music_notes(&notes, score, true, &error));
+        TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+        midi_score made;
+        TEST_ASSERT_TRUE(himc_midi_import(&made, text.bytes, text.size, "back", NULL, &error));
+        TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "damp 1;"), made.text);
+        himc_midi_score_free(&made);
+        tearDown();
+    }
+}
+
 static void test_more_bars_than_are_read_are_refused(void)
 {
     score = himc_score_parse("drum kettle; stroke 0 right legato f; stroke 80000 left legato f;",
@@ -491,6 +511,7 @@ int main(void)
     RUN_TEST(test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have);
     RUN_TEST(test_what_rings_and_what_a_hand_damps_come_back);
     RUN_TEST(test_midi_has_what_rings_and_what_a_hand_damps);
+    RUN_TEST(test_a_note_before_graces_rings_on_after_midi);
     RUN_TEST(test_more_bars_than_are_read_are_refused);
     RUN_TEST(test_the_last_bar_that_is_read_is_written);
     RUN_TEST(test_midi_keeps_a_rest_of_any_length);

@@ -187,6 +187,19 @@ static void test_a_bar_with_a_repeat_sign_is_the_one_before(void)
         TEST_ASSERT_EQUAL_STRING(stroke(i % 2)->drum, stroke(i)->drum);
 }
 
+static void test_both_notes_of_a_chord_are_damped_or_none(void)
+{
+    PLAY(BAR(1, FOUR C3(4, "") "<note><chord/><pitch><step>G</step><octave>2</octave></pitch>"
+                               "<duration>4</duration><voice>1</voice></note>" REST(12))
+             BAR(2, C3(4, "") NOTE(G, 2, 4, "") REST(8)));
+    int damped[2] = {0};
+    for (int i = 0; i < score->change_count; i++)
+        if (score->changes[i].command.id == HIMC_COMMAND_DAMP && score->changes[i].beat < 4.9)
+            damped[strcmp(score->changes[i].drum, "low") == 0]++;
+    TEST_ASSERT_EQUAL_MESSAGE(2, damped[0], made.text);
+    TEST_ASSERT_EQUAL(2, damped[1]);
+}
+
 // each of two notes in turn is written as long as both sound, with a time-modification or without
 static void test_two_notes_in_turn_are_as_fast_with_their_time_modification(void)
 {
@@ -756,6 +769,7 @@ int main(void)
     RUN_TEST(test_dal_segno_goes_to_the_coda);
     RUN_TEST(test_the_first_coda_is_left_for_the_last);
     RUN_TEST(test_a_bar_with_a_repeat_sign_is_the_one_before);
+    RUN_TEST(test_both_notes_of_a_chord_are_damped_or_none);
     RUN_TEST(test_two_notes_in_turn_are_as_fast_with_their_time_modification);
     RUN_TEST(test_two_voices_have_their_own_dynamics);
     RUN_TEST(test_tempo_marks_words_and_numbers);

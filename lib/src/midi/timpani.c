@@ -13,6 +13,7 @@
 #include <string.h>
 
 #define DRUMS MIDI_KEYS
+#define SAME_TIME 0.01     // (s) as himc_midi_join
 #define RING_TIME 1.0      // after a stroke an undamped drum may be retuned (s)
 #define FASTEST_PEDAL 0.05 // (s) chosen
 #define MOST_PEDALS 2000   // chosen: an hour of a busy foot, and a score has room for them
@@ -173,8 +174,9 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
 // a drum is damped where its note ends early, and before its pedal moves while it rings
 static void find_damped(midi_part *part)
 {
-    double next[DRUMS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, moves[DRUMS], any = HUGE_VAL;
-    bool heard[DRUMS] = {false}; // a gliss
+    double next[DRUMS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, moves[DRUMS];
+    double now = HUGE_VAL, any = HUGE_VAL; // this stroke's time, and that of the next after it
+    bool heard[DRUMS] = {false};           // a gliss
     memcpy(moves, next, sizeof moves);
     int pedal = part->pedals;
     for (int i = part->count - 1; i >= 0; i--) {
@@ -182,6 +184,10 @@ static void find_damped(midi_part *part)
         double at = s->note->seconds, off = s->end;
         if (s->fate != MIDI_PLAYED)
             continue;
+        if (at < now - SAME_TIME) {
+            any = now;
+            now = at;
+        }
         for (; pedal > 0 && part->pedal[pedal - 1].seconds >= at; pedal--)
             if (part->pedal[pedal - 1].heard)
                 heard[part->pedal[pedal - 1].head] = true;
@@ -193,7 +199,7 @@ static void find_damped(midi_part *part)
                     moves[s->head] < himc_midi_stroke_end(s) + RING_TIME;
         if (s->note->way.ring != 0)
             s->damped = s->note->way.ring < 0;
-        next[s->head] = any = at;
+        next[s->head] = at;
         moves[s->head] = HUGE_VAL;
         heard[s->head] = false;
     }

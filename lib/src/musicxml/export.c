@@ -297,10 +297,11 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
     };
-    // MIDI has no other sign for what rings: a note lasts up to the drum's next
+    // MIDI has no other sign for what rings: a note lasts up to the drum's next, or its graces
     midi_note *old = h->last > 0 && x->midi ? &f->notes[h->last - 1] : NULL;
     if (old && old->way.ring == 0 && old->way.length <= 0)
-        old->off = f->notes[f->note_count - 1].seconds;
+        old->off = f->notes[f->note_count - 1].seconds -
+                   f->notes[f->note_count - 1].way.ornament * MUSIC_GRACE_TIME;
     h->last = f->note_count;
     return true;
 }

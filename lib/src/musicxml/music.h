@@ -8,6 +8,7 @@
 #define MUSIC_BARS_MAX 20000               ///< of a part; chosen: no piece has as many
 #define MUSIC_LINES_MAX 9                  ///< of pedals that run at once, by their numbers 1 .. 9
 #define MUSIC_BAR 4.0                      ///< quarter notes of a bar that is written
+#define MUSIC_GRACE_TIME 0.04              ///< (s) between strokes of a ruff in MIDI; chosen
 #define MUSIC_BYTES_MAX ((size_t)64 << 20) ///< of a file, also unpacked; chosen: a long symphony
 
 typedef struct music_bar {

@@ -7,6 +7,7 @@
 #include "musicxml/export.h"
 
 #include "midi/part.h"
+#include "musicxml/music.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,8 +16,7 @@
 #define BASS_DRUM 36        // for concert instruments that General MIDI has no key for
 #define TICKS 960           // of a quarter note
 #define ROLL_RATE 11.0      // strokes of a roll (1/s); chosen: of a middle drum (plan/ornament.c)
-#define GRACE_TIME 0.04     // (s) chosen, as there
-#define SHORT 0.05          // of a stroke's note (s)
+#define SHORT 0.03          // of a stroke's note (s); shorter than from grace to grace
 #define LONGEST 0x0fffffffL // between two events (ticks), by the standard
 
 typedef struct event {
@@ -67,8 +67,8 @@ static void add_note(writer *w, const midi_note *n)
     double seconds = n->off - n->seconds;
     int strokes = way->length > 0 ? (int)fmax(lround(seconds * ROLL_RATE), 4) : 1;
     for (int g = way->ornament; g > 0; g--)
-        if (n->seconds - g * GRACE_TIME >= 0)
-            add_stroke(w, n, n->seconds - g * GRACE_TIME, 0, 0.6 * way->dynamic);
+        if (n->seconds - g * MUSIC_GRACE_TIME >= 0)
+            add_stroke(w, n, n->seconds - g * MUSIC_GRACE_TIME, 0, 0.6 * way->dynamic);
     for (int i = 0; i < strokes; i++)
         add_stroke(w, n, n->seconds + seconds * i / strokes,
                    strokes == 1 && n->choice == MIDI_TIMPANI ? seconds : 0,
