@@ -317,6 +317,16 @@ static void test_a_hairpin_leads_to_its_end(void)
     expect_dynamics(2, 5.0, 4.0);
 }
 
+static void test_words_beside_a_dynamic_do_not_hide_it(void)
+{
+    PLAY(BAR(1, FOUR DYNAMICS("mf") C3(4, "") WORDS("p sub.") C3(4, "") WORDS("sempre ff") C3(4, "")
+                    DIRECTION("<dynamics><other-dynamics>sub. pp</other-dynamics></dynamics>")
+                        C3(4, "")));
+    expect_dynamics(4, 4.0, 2.0, 6.0, 1.0);
+    PLAY(BAR(1, FOUR C3(8, "") WORDS("Timpani in F") C3(8, "")));
+    expect_dynamics(2, 4.0, 4.0);
+}
+
 static void test_a_word_leads_to_the_next_dynamic(void)
 {
     PLAY(BAR(1, FOUR DYNAMICS("p") WORDS("cresc.") C3(8, "") C3(8, ""))
@@ -779,6 +789,7 @@ int main(void)
     RUN_TEST(test_a_fermata_holds);
     RUN_TEST(test_dynamics_hold_until_the_next);
     RUN_TEST(test_a_hairpin_leads_to_its_end);
+    RUN_TEST(test_words_beside_a_dynamic_do_not_hide_it);
     RUN_TEST(test_a_word_leads_to_the_next_dynamic);
     RUN_TEST(test_marks_of_a_note_are_its_nuance);
     RUN_TEST(test_fp_is_loud_once);

@@ -239,7 +239,7 @@ const char *himc_music_notehead(himc_spot spot)
     return heads[spot];
 }
 
-bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
+static bool find_dynamic(const char *name, music_meaning *meaning, double *value)
 {
     static const struct {
         const char *name;
@@ -268,6 +268,27 @@ bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
             return true;
         }
     return false;
+}
+
+bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value)
+{
+    static const char *const beside[] = {"sub",       "sub.",  "subito", "sempre",    "molto",
+                                         "possibile", "dolce", "espr.",  "espressivo"};
+    bool found = false;
+    for (const char *at = name + strspn(name, " "); *at; at += strspn(at, " ")) {
+        char word[16] = "";
+        size_t length = strcspn(at, " "), i = 0;
+        memcpy(word, at, length < sizeof word ? length : 0);
+        while (i < sizeof beside / sizeof *beside && strcmp(word, beside[i]) != 0)
+            i++;
+        if (i == sizeof beside / sizeof *beside) {
+            if (found || !find_dynamic(word, meaning, value))
+                return false;
+            found = true;
+        }
+        at += length;
+    }
+    return found;
 }
 
 /// A pitch in words at `*at`, which moves behind it: "F", "b flat", "F#", German "fis" and "es",

@@ -51,7 +51,8 @@ typedef enum music_meaning {
 /// Finds what a text asks for; at most `most` of `meaning` and `value`. Returns how many.
 int himc_music_words(const char *text, int most, music_meaning *meaning, double *value);
 
-/// The sign of a dynamic by its element's name ("mf", "sfz"); false if there is none.
+/// The sign of a dynamic by its element's name ("mf", "sfz"), or by words ("subito p"); false if
+/// there is none.
 bool himc_music_dynamic(const char *name, music_meaning *meaning, double *value);
 
 #endif
