@@ -291,6 +291,24 @@ static void test_an_accelerando_arrives_at_the_mark_that_it_leads_to(void)
     TEST_ASSERT_EQUAL_FLOAT(60, bpm_at(12));
 }
 
+// the eighth becomes the quarter, a dotted quarter the quarter
+static void test_a_note_value_becomes_another(void)
+{
+#define UNIT(u) "<beat-unit>" u "</beat-unit>"
+    PLAY(BAR(1, FOUR TEMPO(60) C3(16, "")) BAR(
+        2, DIRECTION("<metronome>" UNIT("eighth") UNIT("quarter") "</metronome>") C3(16, ""))
+             BAR(3, DIRECTION("<metronome>" UNIT("quarter") "<beat-unit-dot/>" UNIT(
+                        "quarter") "</metronome>") C3(16, ""))
+                 BAR(4, DIRECTION("<metronome><metronome-note><metronome-type>half</metronome-type>"
+                                  "</metronome-note><metronome-relation>equals</metronome-relation>"
+                                  "<metronome-note><metronome-type>quarter</metronome-type>"
+                                  "<metronome-dot/></metronome-note></metronome>") C3(16, "")));
+    TEST_ASSERT_EQUAL_FLOAT(60, bpm_at(12));
+    TEST_ASSERT_EQUAL_FLOAT(60, bpm_at(0));
+    TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(4));
+    TEST_ASSERT_EQUAL_FLOAT(80, bpm_at(8));
+}
+
 static void test_a_fermata_holds(void)
 {
     PLAY(BAR(1, FOUR TEMPO(40) C3(16, "<notations><fermata/></notations>")) BAR(2, C3(16, "")));
@@ -786,6 +804,7 @@ int main(void)
     RUN_TEST(test_a_ritardando_slows_evenly_to_a_tempo);
     RUN_TEST(test_a_tempo_is_that_before_two_ritardandi);
     RUN_TEST(test_an_accelerando_arrives_at_the_mark_that_it_leads_to);
+    RUN_TEST(test_a_note_value_becomes_another);
     RUN_TEST(test_a_fermata_holds);
     RUN_TEST(test_dynamics_hold_until_the_next);
     RUN_TEST(test_a_hairpin_leads_to_its_end);

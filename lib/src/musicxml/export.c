@@ -241,6 +241,17 @@ static himc_spot spot_of(const himc_stroke *s)
                                           : s->spot;
 }
 
+// MIDI has no other sign for what rings: a note lasts up to the drum's next, which is the last one,
+// or to the graces of that
+static void end_last(exporter *x, head *h)
+{
+    const midi_note *last = &x->file->notes[x->file->note_count - 1];
+    midi_note *old = h->last > 0 && x->midi ? &x->file->notes[h->last - 1] : NULL;
+    if (old && old->way.ring == 0 && old->way.length <= 0)
+        old->off = last->seconds - last->way.ornament * MUSIC_GRACE_TIME;
+    h->last = x->file->note_count;
+}
+
 static bool add_note(exporter *x, const himc_stroke *s)
 {
     midi_file *f = x->file;
@@ -297,12 +308,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
     };
-    // MIDI has no other sign for what rings: a note lasts up to the drum's next, or its graces
-    midi_note *old = h->last > 0 && x->midi ? &f->notes[h->last - 1] : NULL;
-    if (old && old->way.ring == 0 && old->way.length <= 0)
-        old->off = f->notes[f->note_count - 1].seconds -
-                   f->notes[f->note_count - 1].way.ornament * MUSIC_GRACE_TIME;
-    h->last = f->note_count;
+    end_last(x, h);
     return true;
 }
 

@@ -181,24 +181,44 @@ static bool read_words(reader *r, const xml_node *words, double beat, bool own, 
     return dynamic;
 }
 
-static void read_metronome(reader *r, const xml_node *metronome, double beat)
+static double beats_of(const char *unit)
 {
     static const struct {
         const char *unit;
         double beats;
     } units[] = {{"whole", 4},  {"half", 2},  {"quarter", 1}, {"eighth", .5},
                  {"16th", .25}, {"breve", 8}, {"32nd", .125}};
-    const char *unit = himc_xml_text(metronome, "beat-unit"),
-               *text = himc_xml_text(metronome, "per-minute");
-    double beats = 0, dot = .5;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        beats = strcmp(unit, units[i].unit) == 0 ? units[i].beats : beats;
-    for (const xml_node *d = himc_xml_child(metronome, "beat-unit-dot"); d;
-         d = himc_xml_next(d), dot /= 2)
-        beats *= 1 + dot;
+        if (strcmp(unit, units[i].unit) == 0)
+            return units[i].beats;
+    return 0;
+}
+
+// a note and its number, or, by either element, a note that becomes another
+static void read_metronome(reader *r, const xml_node *metronome, double beat)
+{
+    const char *text = himc_xml_text(metronome, "per-minute");
+    double beats[2] = {0}, more = 0; // the last two notes
+    int notes = 0;
+    for (const xml_node *d = metronome->child; d; d = d->next) {
+        bool note = himc_xml_is(d, "metronome-note");
+        const xml_node *dot = note ? himc_xml_child(d, "metronome-dot") : NULL;
+        if (note || himc_xml_is(d, "beat-unit")) {
+            beats[0] = beats[1];
+            beats[1] = beats_of(note ? himc_xml_text(d, "metronome-type") : d->text);
+            more = beats[1] / 2;
+            notes++;
+        }
+        if (himc_xml_is(d, "beat-unit-dot") || dot) {
+            beats[1] += more;
+            more /= 2;
+        }
+    }
     double number = strtod(text + strcspn(text, "0123456789"), NULL); // "ca. 96"
-    if (beats * number > 0)
-        add_sign(r, beat, MUSIC_TEMPO, beats * number);
+    if (notes == 2 && beats[0] > 0 && beats[1] > 0)
+        add_sign(r, beat, MUSIC_TEMPO_SHARE, beats[1] / beats[0]);
+    else if (notes == 1 && beats[1] * number > 0)
+        add_sign(r, beat, MUSIC_TEMPO, beats[1] * number);
 }
 
 static void read_wedge(reader *r, const xml_node *wedge, double beat)
