@@ -18,6 +18,8 @@ static void test_three_strokes_are_a_roll_unless_measured(void)
     PLAY(BAR(1, FOUR TEMPO(120) C3(16, MARKS(3))));
     TEST_ASSERT_EQUAL(1, score->stroke_count);
     expect_roll(0, 0, 4, 4, 4);
+    PLAY(BAR(1, FOUR TEMPO(54) C3(16, MARKS(3)))); // an Adagio
+    expect_roll(0, 0, 4, 4, 4);
     PLAY(BAR(1, FOUR TEMPO(40) C3(4, MARKS(3)) REST(12)));
     TEST_ASSERT_EQUAL(8, score->stroke_count);
     PLAY(BAR(1, FOUR TEMPO(66) WORDS("gemessen") C3(4, MARKS(3)) REST(12)));

@@ -21,11 +21,11 @@
 
 #define SAME 1e-6      // (beats)
 #define STEP (1.0 / 7) // of dynamics
-#define FAST 8.0 // (1/s) a tremolo of three marks is a roll from this rate on; chosen, as rolls.c
-#define FASTEST 12.0     // strokes of two hands (1/s)
-#define ALTERNATE 0.11   // between strokes on two drums, at least (s); chosen: of one hand .22
-#define GRACE_TIME 0.07  // between strokes that are grace notes (s); chosen: an open ruff
-#define GRACE_SOFTER 0.2 // than their note
+#define FAST 6.0       // (1/s) from here on a tremolo of three marks is a roll; chosen: an Adagio's
+#define FASTEST 12.0   // strokes of two hands (1/s)
+#define ALTERNATE 0.11 // between strokes on two drums, at least (s); chosen: of one hand .22
+#define GRACE_TIME 0.07         // between strokes that are grace notes (s); chosen: an open ruff
+#define GRACE_SOFTER 0.2        // than their note
 #define GHOST_SOFTER (2 * STEP) // a note in parentheses
 #define ATTACK_TIME 0.3         // of an accent on a roll (s)
 #define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
