@@ -291,6 +291,17 @@ static void test_an_accelerando_arrives_at_the_mark_that_it_leads_to(void)
     TEST_ASSERT_EQUAL_FLOAT(60, bpm_at(12));
 }
 
+static void test_the_tempo_of_a_repeated_bar_returns(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(120) C3(16, "")) BAR(2, WORDS("rit.") C3(16, "") REPEAT("backward"))
+             BAR(3, WORDS("a tempo") C3(16, "")));
+    TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(0));
+    TEST_ASSERT_TRUE(bpm_at(7.9) < 95);
+    TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(8));
+    TEST_ASSERT_TRUE(bpm_at(15.9) < 95);
+    TEST_ASSERT_EQUAL_FLOAT(120, bpm_at(16));
+}
+
 // the eighth becomes the quarter, a dotted quarter the quarter
 static void test_a_note_value_becomes_another(void)
 {
@@ -804,6 +815,7 @@ int main(void)
     RUN_TEST(test_a_ritardando_slows_evenly_to_a_tempo);
     RUN_TEST(test_a_tempo_is_that_before_two_ritardandi);
     RUN_TEST(test_an_accelerando_arrives_at_the_mark_that_it_leads_to);
+    RUN_TEST(test_the_tempo_of_a_repeated_bar_returns);
     RUN_TEST(test_a_note_value_becomes_another);
     RUN_TEST(test_a_fermata_holds);
     RUN_TEST(test_dynamics_hold_until_the_next);

@@ -26,6 +26,7 @@ typedef enum music_meaning {
     MUSIC_GROWING,     ///< value: 1 or -1; as a word, to the next dynamic
     MUSIC_TEMPO,       ///< value: (beats per minute)
     MUSIC_TEMPO_WORD,  ///< the same, by custom
+    MUSIC_TEMPO_AGAIN, ///< value: the beat whose tempo returns, after a jump back
     MUSIC_TEMPO_SHARE, ///< value: of the tempo before
     MUSIC_TEMPO_RAMP,  ///< value: share of the tempo at its end
     MUSIC_TEMPO_BACK,  ///< value: 0 a tempo, 1 tempo primo

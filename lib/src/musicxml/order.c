@@ -5,6 +5,8 @@
 /// count. Invariant: bars are played at most MOST_PLAYED times altogether, whatever the signs say.
 #include "musicxml/music.h"
 
+#include "base/array.h"
+
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -184,6 +186,28 @@ static bool place_bars(const music *m, order *o, midi_file *file)
     return file->bars != NULL;
 }
 
+// where a jump leads back, the tempo returns that was there
+static bool add_returns(music *m, const order *o, himc_error *error)
+{
+    for (int k = 1; k < o->count; k++)
+        o->first[o->played[k]] = -1;
+    for (int k = 0; k < o->count; k++) {
+        int bar = o->played[k], first = k > 0 ? o->first[bar] : -1;
+        if (first < 0)
+            o->first[bar] = k;
+        if (first < 0 || bar == o->played[k - 1] + 1)
+            continue;
+        if (!himc_array_grow(&m->signs, m->sign_count, &m->sign_room, sizeof *m->signs, error))
+            return false;
+        m->signs[m->sign_count++] = (music_sign){.at = {o->begin[k], bar, 0, -1},
+                                                 .meaning = MUSIC_TEMPO_AGAIN,
+                                                 .value = o->begin[first]};
+    }
+    if (m->sign_count > 0)
+        qsort(m->signs, (size_t)m->sign_count, sizeof *m->signs, by_beat);
+    return true;
+}
+
 bool himc_music_order(music *m, midi_file *file, himc_error *error)
 {
     order o = {.bars = m->bar_count};
@@ -200,6 +224,10 @@ bool himc_music_order(music *m, midi_file *file, himc_error *error)
         himc_error_set(error, "out of memory for %d bars", m->bar_count);
     good = good && unfold(&o, &m->notes, &m->note_count, sizeof *m->notes, error) &&
            unfold(&o, &m->signs, &m->sign_count, sizeof *m->signs, error);
+    if (good) {
+        m->sign_room = m->sign_count + 1; // as unfolded
+        good = add_returns(m, &o, error);
+    }
     free(o.played);
     free(o.begin);
     free(o.first);

@@ -44,7 +44,8 @@ static bool add(map *m, double beat, double bpm)
 static bool sets_tempo(music_meaning meaning)
 {
     return meaning == MUSIC_TEMPO || meaning == MUSIC_TEMPO_WORD || meaning == MUSIC_TEMPO_BACK ||
-           meaning == MUSIC_TEMPO_SHARE || meaning == MUSIC_TEMPO_RAMP;
+           meaning == MUSIC_TEMPO_AGAIN || meaning == MUSIC_TEMPO_SHARE ||
+           meaning == MUSIC_TEMPO_RAMP;
 }
 
 // evenly from sign `i` to the next mark of tempo, and to its tempo if it lies on the way; returns
@@ -86,6 +87,8 @@ static bool add_signs(map *to, const music *m)
             bpm = s->value;
         } else if (s->meaning == MUSIC_TEMPO_WORD && s->at.beat > numbered + SAME) {
             bpm = s->value;
+        } else if (s->meaning == MUSIC_TEMPO_AGAIN) {
+            bpm = himc_midi_bpm(to->tempi, to->count, s->value + SAME);
         } else if (s->meaning == MUSIC_TEMPO_SHARE && s->at.beat > numbered + SAME) {
             numbered = s->at.beat; // also where all parts say it
             bpm *= s->value;
