@@ -531,7 +531,7 @@ $(BUILD)/himc.html: $(PAGE_MAKER) $(BUILD)/page/engine.wasm $(PAGE_PIECES)
 
 # a page plays at 48 kHz in short blocks, and has no deadline: rings are as short as that needs, heads are made when
 # their changes come. The samples are the same; what is copied for an edit is a third.
-PAGE_ROOM := -DHIMC_DRUM_RING=1024 -DHIMC_EARS_LINE=8192 -DHIMC_ROOM_LINE=3424 -DMOST_SPARES=1
+PAGE_ROOM := -DHIMC_DRUM_RING=1024 -DHIMC_EARS_LINE=8192 -DHIMC_ROOM_RATE=48000 -DMOST_SPARES=1
 # Over all files at once (-flto) it runs a tenth faster. clang-16 runs Debian's wasm-opt, if that is installed, without
 # SIMD, and fails: hence -O0.
 $(BUILD)/page/parts/parts.o: tools/build/page.sh

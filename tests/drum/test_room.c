@@ -117,6 +117,14 @@ static void test_room_keeps_a_note_in_tune(void)
     TEST_ASSERT_TRUE(sqrt(sum / count) < 12);
 }
 
+static void test_room_has_place_for_its_delays_at_the_highest_rate(void)
+{
+    memset(&room, 0, sizeof room);
+    himc_room_set(&room, &HIMC_WALLS_USUAL, 192000);
+    for (int l = 0; l < HIMC_ROOM_LINES; l++)
+        TEST_ASSERT_TRUE(room.delay[l] > HIMC_ROOM_RUN && room.delay[l] < HIMC_ROOM_LINE);
+}
+
 static double loudest_after_a_click(double seconds)
 {
     double most = 0;
@@ -411,6 +419,7 @@ int main(void)
     RUN_TEST(test_room_returns_as_much_as_one_of_its_size);
     RUN_TEST(test_room_keeps_a_note_in_tune);
     RUN_TEST(test_every_semitone_has_its_fifth_in_the_usual_room);
+    RUN_TEST(test_room_has_place_for_its_delays_at_the_highest_rate);
     RUN_TEST(test_room_of_a_short_time_is_soft);
     RUN_TEST(test_room_gives_each_ear_its_own_at_any_frequency);
     RUN_TEST(test_room_never_gains_energy_also_while_its_walls_change);

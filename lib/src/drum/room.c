@@ -28,7 +28,7 @@
 // one leaves the four lowest partials of each semitone from C2 to A3 within 4 dB (SD 1.8) of the
 // hall's mean, at the usual listener's; a plain geometric row of 17 to 71 ms within 9 (2.5).
 #define SHORTEST 0.0163 // (s) of a delay; a room of 6 by 26 m
-#define LONGEST 0.077   // (s)
+#define LONGEST (HIMC_ROOM_LONGEST * 1e-3)
 #define BEND 1.24       // the row's: 1 is geometric
 #define HIGH 4000.0     // (Hz) where ...
 #define HIGH_PART 0.6   // ... T60 is so much of itself; chosen: curtains and air

@@ -20,9 +20,11 @@ typedef struct himc_walls {
 
 #define HIMC_ROOM_LINES 32
 #define HIMC_ROOM_RUN 32 ///< (samples) at a time; chosen: less than the shortest delay at 8 kHz
-#ifndef HIMC_ROOM_LINE
-#define HIMC_ROOM_LINE 13696 ///< (samples) more than the longest delay at 192 kHz
+#ifndef HIMC_ROOM_RATE
+#define HIMC_ROOM_RATE 192000 ///< (Hz) the highest
 #endif
+#define HIMC_ROOM_LONGEST 77                                              ///< (ms) of a delay
+#define HIMC_ROOM_LINE (HIMC_ROOM_LONGEST * (HIMC_ROOM_RATE / 1000) + 16) ///< (samples) and more
 #define HIMC_ROOM_EMPTY INT32_MAX
 
 /// What a change of the room changes.
