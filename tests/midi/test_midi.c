@@ -670,6 +670,7 @@ static void test_drums_are_played_on_a_set_up(void)
     TEST_ASSERT_NOT_NULL(file);
     fputs("instrument mine snare 13; mine place .5 .1 .8; instrument boom kick 20;", file);
     fclose(file);
+    tearDown();
     begin(&b);
     for (int i = 0; i < 6; i++)
         event(&b, i ? QUARTER : 0, 0x99, keys[i], 90);
@@ -679,6 +680,7 @@ static void test_drums_are_played_on_a_set_up(void)
     TEST_ASSERT_EQUAL_STRING("mine", score->strokes[0].drum);
     TEST_ASSERT_EQUAL_STRING("boom", score->strokes[1].drum);
     remove(path);
+    tearDown();
     begin(&b);
     event(&b, 0, 0x99, 38, 90);
     end(&b);
