@@ -155,7 +155,7 @@ function inSoftware(gl) {
 
 // one that plays, too, leaves the processor alone where that draws: no edge is smoothed then
 function makeRenderer(canvas, plays) {
-    const trial = plays && document.createElement("canvas").getContext("webgl"),
+    const trial = plays ? document.createElement("canvas").getContext("webgl") : null,
         antialias = !(trial && inSoftware(trial)),
         context = canvas.getContext("webgl", { alpha: false, antialias });
     trial?.getExtension("WEBGL_lose_context")?.loseContext();
