@@ -707,7 +707,8 @@ bool himc_c3d_write(FILE *file, const himc_take *take, himc_error *error)
     if (take->points > HIMC_C3D_LABELS || channels > HIMC_C3D_LABELS)
         return himc_error_set(error, "%s: %d %s, expected up to %d in a .c3d", take->file,
                               channels > HIMC_C3D_LABELS ? channels : take->points,
-                              channels > HIMC_C3D_LABELS ? "analog channels" : "points", HIMC_C3D_LABELS);
+                              channels > HIMC_C3D_LABELS ? "analog channels" : "points",
+                              HIMC_C3D_LABELS);
     // a channel has a label, a unit, a scale and an offset
     int blocks =
         2 + (take->points * TAKE_NAME + channels * (2 * TAKE_NAME + 6) + BLOCK - 1) / BLOCK;

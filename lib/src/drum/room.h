@@ -24,7 +24,7 @@ typedef struct himc_walls {
 #define HIMC_ROOM_RATE 192000 ///< (Hz) the highest
 #endif
 #define HIMC_ROOM_LONGEST 77                                              ///< (ms) of a delay
-#define HIMC_ROOM_LINE (HIMC_ROOM_LONGEST * (HIMC_ROOM_RATE / 1000) + 16) ///< (samples) and more
+#define HIMC_ROOM_LINE (HIMC_ROOM_LONGEST * (HIMC_ROOM_RATE / 1000) + 16) ///< (samples), and more
 #define HIMC_ROOM_EMPTY INT32_MAX
 
 /// What a change of the room changes.

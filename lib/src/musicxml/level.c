@@ -17,6 +17,7 @@
 #define REACH 1.0         // a mark so much after a hairpin is its end (beats)
 #define LOUD_TIME 0.3     // of fp, before the p (s)
 #define SAME 1e-6         // (beats)
+#define NEAR 50           // signs of one beat that are compared; chosen: bounds the time
 
 typedef struct line {
     music_level *levels;
@@ -54,7 +55,8 @@ bool himc_music_apart(const music *m, int part, int lane)
 {
     for (int i = 1; i < m->sign_count; i++) {
         const music_sign *a = &m->signs[i];
-        for (int k = i - 1; k >= 0 && a->at.beat < m->signs[k].at.beat + SAME; k--) {
+        for (int k = i - 1; k >= 0 && i - k <= NEAR && a->at.beat < m->signs[k].at.beat + SAME;
+             k--) {
             const music_sign *b = &m->signs[k];
             if (a->meaning == MUSIC_DYNAMIC && b->meaning == MUSIC_DYNAMIC && b->at.part == part &&
                 a->at.part == part && a->value != b->value &&

@@ -6,6 +6,7 @@
 #include "musicxml/names.h"
 
 #define MUSIC_BARS_MAX 20000               ///< of a part; chosen: no piece has as many
+#define MUSIC_MADE_MAX 400000              ///< notes, signs, with repeats; more than a score has
 #define MUSIC_LINES_MAX 9                  ///< of pedals that run at once, by their numbers 1 .. 9
 #define MUSIC_BAR 4.0                      ///< quarter notes of a bar that is written
 #define MUSIC_GRACE_TIME 0.04              ///< (s) between strokes of a ruff in MIDI; chosen

@@ -12,7 +12,6 @@
 #include <string.h>
 
 #define MOST_PLAYED 60000 // bars; chosen: a day of music
-#define MOST_MADE 400000  // notes and signs, each; more than a score has strokes
 
 // an ending lasts from where it begins to where it stops, or for one bar
 static void spread_endings(music *m)
@@ -151,9 +150,9 @@ static bool unfold(const order *o, void *events, int *count, size_t size, himc_e
     size_t all = 0, made_count = 0;
     for (int k = 0; k < o->count; k++)
         all += (size_t)(o->first[o->played[k] + 1] - o->first[o->played[k]]);
-    if (all > MOST_MADE)
+    if (all > MUSIC_MADE_MAX)
         return himc_error_set(error, "%zu notes or signs with repeats, expected up to %d", all,
-                              MOST_MADE);
+                              MUSIC_MADE_MAX);
     char *made = malloc((all + 1) * size);
     if (!made)
         return himc_error_set(error, "out of memory for %zu notes", all);

@@ -624,23 +624,26 @@ static void read_number(music_bar *bar, const xml_node *measure)
         *c = isalnum((unsigned char)*c) || strchr("-+.", *c) ? *c : '_';
 }
 
-// the notes of the bar that a sign repeats; this one has none of its own
+// the notes of the bar that a sign repeats, if this one has none of its own
 static void repeat_bar(reader *r)
 {
     music *m = r->music;
-    const int count = m->note_count, from = r->bar - r->repeated;
-    for (int i = count - 1; i >= 0 && m->notes[i].at.part == r->part; i--)
-        if (m->notes[i].at.bar == r->bar)
-            return;
-    for (int i = 0; i < count && !r->failed; i++) {
+    const int bar = r->bar - r->repeated, end = m->note_count;
+    int first = end; // notes are in the order of parts and bars
+    while (first > 0 && m->notes[first - 1].at.part == r->part && m->notes[first - 1].at.bar >= bar)
+        first--;
+    if (first < end && m->notes[end - 1].at.bar == r->bar)
+        return;
+    for (int i = first; i < end && !r->failed && m->notes[i].at.bar == bar; i++) {
         music_note n = m->notes[i];
-        if (n.at.part != r->part || n.at.bar != from)
-            continue;
         n.at.bar = r->bar;
         n.at.order = m->note_count;
-        if (!himc_array_grow(&m->notes, m->note_count, &m->note_room, sizeof *m->notes, r->error))
-            r->failed = true;
-        else
+        r->failed =
+            m->note_count >= MUSIC_MADE_MAX
+                ? !himc_error_set(r->error, "more than %d notes with repeated bars", MUSIC_MADE_MAX)
+                : !himc_array_grow(&m->notes, m->note_count, &m->note_room, sizeof *m->notes,
+                                   r->error);
+        if (!r->failed)
             m->notes[m->note_count++] = n;
     }
 }

@@ -30,7 +30,7 @@
 #define ATTACK_TIME 0.3         // of an accent on a roll (s)
 #define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
-#define MOST_LANES 8        // with dynamics of their own, and one
+#define MOST_LANES 16       // that may have dynamics of their own; chosen: bounds the time
 #define MOST_STROKES 100000 // as import.c
 #define MOST_CANDIDATES 400 // notes of one beat that a tie is looked for in; chosen: bounds time
 
@@ -46,8 +46,8 @@ typedef struct shaper {
     midi_file *file;
     himc_error *error;
     int note_room, order_room;
-    int part, sign;               ///< the next sign
-    lane lanes[MOST_LANES], *now; ///< the first of all others; the present note's
+    int part, sign;                   ///< the next sign
+    lane lanes[MOST_LANES + 1], *now; ///< the first of all others; the present note's
     int lane_count;
     double *cuts; ///< beats where rolls are cut
     int cut_count;
@@ -493,12 +493,14 @@ static bool list_lanes(shaper *s)
 {
     const music *m = s->music;
     bool seen[1000] = {false};
+    int known = 0;
     s->lane_count = 0;
     bool good = add_lane(s, MUSIC_ALL_LANES);
-    for (int i = 0; i < m->note_count && good && s->lane_count < MOST_LANES; i++) {
+    for (int i = 0; i < m->note_count && good && known < MOST_LANES; i++) {
         int number = m->notes[i].lane;
         if (m->notes[i].at.part == s->part && !seen[number]) {
             seen[number] = true;
+            known++;
             good = !himc_music_apart(m, s->part, number) || add_lane(s, number);
         }
     }
