@@ -394,9 +394,8 @@ static void test_every_semitone_has_its_fifth_in_the_usual_room(void)
         int inches = hz < 80 ? 32 : hz < 115 ? 29 : hz < 150 ? 26 : 23;
         char text[40];
         himc_performance *p = session_new();
-        snprintf(text, sizeof text, "drum kettle %d", inches);
         session_do(p, "listener usual");
-        session_do(p, text);
+        session_do(p, "drum kettle %d", inches);
         snprintf(text, sizeof text, "tune %.3f", hz);
         session_drum(p, 0, text);
         snprintf(text, sizeof text, "strike %.4f 0 2.9", -0.75 * inches * 0.0127);

@@ -1033,10 +1033,15 @@ return opened.then(async () => {
     sound.gain.connect(ear);
     p.setSpeed(1), p.seek(1000 * loud - 500), p.play(true);
     const met = await new Promise(done => (ear.port.onmessage = e => done(e.data)));
-    p.advance(0);
-    const off = p.at - 1000 * (loud + sound.heard() - met);
+    // a busy machine stamps a moment late now and then; the middle of nine looks does not
+    const offs = [];
+    for (let i = 0; i < 9; i++) {
+        p.advance(0);
+        offs.push(p.at - 1000 * (loud + sound.heard() - met));
+        await new Promise(done => setTimeout(done, 30));
+    }
     p.play(false);
-    return off;
+    return offs.sort((a, b) => a - b)[4];
 });
 """
 
