@@ -213,11 +213,12 @@ static void step_ode(himc_character *c, const segment_forces *f, double h)
 // true if the legs are at rest and no force on them has changed: then nothing moves them
 static bool legs_rest(const himc_character *c, const segment_forces *f)
 {
-    bool same = c->first > 0 && c->still >= STILL_STEPS &&
-                memcmp(&f->force[HIMC_LEGS], &c->resting.force[HIMC_LEGS], LEGS_SIZE) == 0;
+    bool same = c->first > 0 && c->still >= STILL_STEPS;
     for (int i = HIMC_LEGS; same && i < HIMC_SEGMENTS; i++) {
-        himc_vec3 more = himc_vec3_sub(f->torque[i], c->resting.torque[i]);
-        same = himc_vec3_dot(more, more) < STILL_TORQUE * STILL_TORQUE;
+        himc_vec3 force = himc_vec3_sub(f->force[i], c->resting.force[i]);
+        himc_vec3 torque = himc_vec3_sub(f->torque[i], c->resting.torque[i]);
+        same = himc_vec3_dot(force, force) == 0 &&
+               himc_vec3_dot(torque, torque) < STILL_TORQUE * STILL_TORQUE;
     }
     return same;
 }

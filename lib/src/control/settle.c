@@ -145,7 +145,12 @@ void himc_settle(const himc_controller *c, const himc_skeleton *skeleton, const 
 {
     himc_articulation own;
     himc_vec3 more[HIMC_JOINTS], now[HIMC_JOINTS];
-    if (memcmp(&asked[ARMS], &given[ARMS], sizeof *given * (ARMS_END - ARMS)) == 0)
+    double missing = 0;
+    for (int j = ARMS; j < ARMS_END; j++) {
+        himc_vec3 less = himc_vec3_sub(asked[j], given[j]);
+        missing += himc_vec3_dot(less, less);
+    }
+    if (missing == 0)
         return;
     const himc_articulation *art = himc_strength_articulation(c, skeleton, s, &own);
     memcpy(now, asked, sizeof now);

@@ -137,12 +137,14 @@ void himc_strength_apply(const himc_controller *c, const himc_skeleton *skeleton
 {
     himc_saturation_counts *counts = c->saturation;
     for (int j = 0; j < HIMC_JOINTS; j++) {
+        bool bounded = c->config.strength[j] > 0;
         double asked = himc_vec3_length(torque[j]);
-        bool weak = himc_strength_bound(c, skeleton, s, j, reserve, &torque[j]);
+        bool weak = bounded && himc_strength_bound(c, skeleton, s, j, reserve, &torque[j]);
+        double given = bounded ? himc_vec3_length(torque[j]) : asked;
         if (!counts)
             continue;
         counts->torque[j] = fmax(counts->torque[j], asked);
-        counts->given[j] = fmax(counts->given[j], himc_vec3_length(torque[j]));
+        counts->given[j] = fmax(counts->given[j], given);
         counts->weak[j] += weak;
     }
     if (counts)

@@ -54,26 +54,18 @@ void himc_membrane_state(const himc_membrane *membrane, int index, double *q, do
     himc_bank_state(membrane->model->bank, index, q, v);
 }
 
-// a mode's displacement: that of `modal`, which has `count`, or if that is NULL its own
-static double coordinate(const himc_membrane *membrane, int count, const double *modal, int index)
-{
-    double q, v;
-    if (modal)
-        return index < count ? modal[index] : 0;
-    himc_membrane_state(membrane, index, &q, &v);
-    return q;
-}
-
-// of the even head's shape `index`, in what the uneven head's modes make of them
+// of the even head's shape `index`, in what the uneven head's modes, of which `modal` has `count`,
+// make of them
 static double even_displacement(const himc_membrane *m, int count, const double *modal, int index)
 {
     int row;
     const himc_uneven_block *block = himc_uneven_of(m->model->modes, index, &row);
     double sum = 0;
     if (!block)
-        return coordinate(m, count, modal, index);
+        return index < count ? modal[index] : 0;
     for (int i = 0; i < block->count; i++)
-        sum += block->part[i][row] * coordinate(m, count, modal, block->index[i]);
+        if (block->index[i] < count)
+            sum += block->part[i][row] * modal[block->index[i]];
     return sum;
 }
 
@@ -83,10 +75,14 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, const doubl
     const himc_modes *modes = membrane->model->modes;
     const himc_head *head = &membrane->model->config.head;
     const himc_mixture *mix = &modes->mixture;
-    double mixed[HIMC_MIXED];
+    double mixed[HIMC_MIXED], now[HIMC_MODES_MAX], v;
+    int known = modal ? count : himc_membrane_audible(membrane);
+    for (int i = 0; !modal && i < known; i++)
+        himc_membrane_state(membrane, i, &now[i], &v);
+    modal = modal ? modal : now;
     for (int i = 0; i < count; i++) {
         int own = modes->disc ? himc_two_heads_upper(modes, i) : i;
-        displacement[i] = own < 0 ? 0 : even_displacement(membrane, count, modal, own);
+        displacement[i] = own < 0 ? 0 : even_displacement(membrane, known, modal, own);
     }
     // of the bare shapes of order 0, from those of what a kettle makes of them
     for (int n = 0; n < mix->count; n++)
@@ -104,7 +100,7 @@ void himc_membrane_upright(const himc_membrane *membrane, int count, const doubl
         const himc_lugs_pair *axis = &modes->pairs[mode.m];
         bool whole = i + 1 < modes->count && himc_modes_get(modes, head, i + 1).sine;
         double cosine = displacement[i],
-               sine = whole ? even_displacement(membrane, count, modal, i + 1) : 0;
+               sine = whole ? even_displacement(membrane, known, modal, i + 1) : 0;
         displacement[i] = cosine * axis->cosine - sine * axis->sine;
         if (i + 1 < count && whole)
             displacement[i + 1] = sine * axis->cosine + cosine * axis->sine;
