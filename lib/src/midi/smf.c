@@ -318,6 +318,7 @@ static void begin_note(midi_file *file, const reader *r, channel *c, const event
                         .seconds = seconds,
                         .off = -1,
                         .track = e->track,
+                        .player = 16 * e->track + e->channel,
                         .channel = e->channel,
                         .key = e->first,
                         .velocity = e->second,

@@ -1,0 +1,102 @@
+/// layout.c: where instruments of several kinds stand around one player.
+///
+/// Each kind alone has places of its own; those of `setup multi` count where it has the instrument.
+/// Keyboards come first, in front, then timpani, then drums: each as near to its usual place as the
+/// others leave room, and where its strokes are in reach. Seen from above an instrument is a circle,
+/// a keyboard a line from left to right with a margin. Kicks stand below the others.
+#include "midi/part.h"
+
+#include "base/setups.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DEPTH 0.19   // of a keyboard, half (m)
+#define GAP 0.02     // between instruments (m); chosen
+#define REACH 0.88   // to a stroke (m); measured: from 0.98 on strokes are given up
+#define BODY 0.25    // no instrument is nearer to the player (m); chosen
+#define STEP 0.03    // of the places that are tried (m)
+#define FARTHEST 1.2 // of them (m)
+#define LOW 0.5      // what a foot plays is lower (m)
+
+static double radius_of(const midi_head *h)
+{
+    return h->side > 0 ? DEPTH : h->radius;
+}
+
+// how deep two instruments would be in each other (m)
+static double overlap(const midi_head *a, const midi_head *b)
+{
+    double along = fmax(0, fabs(a->y - b->y) - a->side - b->side);
+    return fmax(0, radius_of(a) + radius_of(b) + GAP - hypot(a->x - b->x, along));
+}
+
+// of a place: the way to the usual one (m), and more for what makes it worse
+static double cost_of(const midi_part *part, const bool *placed, const midi_head *h,
+                      const midi_head *usual)
+{
+    double near = hypot(h->x, fmax(0, fabs(h->y) - h->side)),
+           far = hypot(h->x, fabs(h->y) + h->side) - 0.6 * h->radius;
+    double cost = hypot(h->x - usual->x, h->y - usual->y) + 4 * fmax(0, far - REACH) +
+                  4 * fmax(0, BODY + radius_of(h) - near);
+    for (int i = 0; i < part->heads; i++)
+        if (placed[i])
+            cost += 20 * overlap(h, &part->head[i]);
+    return cost;
+}
+
+static void place(const midi_part *part, const bool *placed, midi_head *head)
+{
+    midi_head best = *head;
+    double least = cost_of(part, placed, &best, head);
+    for (double x = -0.3; x < FARTHEST; x += STEP)
+        for (double y = -FARTHEST; y < FARTHEST; y += STEP) {
+            midi_head h = *head;
+            h.x = x;
+            h.y = y;
+            double cost = cost_of(part, placed, &h, head);
+            if (cost < least - 1e-9) {
+                least = cost;
+                best = h;
+            }
+        }
+    *head = best;
+}
+
+// where `setup multi` has it
+static void find_usual(midi_head *h, int timpani)
+{
+    const char *made, *name = h->choice == MIDI_TIMPANI && timpani == 1   ? "timpano"
+                              : strcmp(h->name, "temple-blocks") == 0 ? "blocks"
+                                                                      : h->name;
+    int length;
+    double at[4];
+    for (const himc_setup *s = himc_setups; h->choice <= MIDI_DRUMS; s++)
+        if (strcmp(s->name, "multi") == 0) {
+            if (!himc_setup_find(s->text, name, &made, &length, at))
+                return;
+            h->x = at[0];
+            h->y = at[1];
+            h->z = at[2];
+            h->tilt = at[3];
+            return;
+        }
+}
+
+void himc_midi_lay_out(midi_part *part)
+{
+    bool placed[MIDI_HEADS] = {false};
+    int timpani = 0;
+    for (int i = 0; i < part->heads; i++)
+        timpani += part->head[i].choice == MIDI_TIMPANI;
+    for (int turn = 0; turn < 3; turn++)
+        for (int i = 0; i < part->heads; i++) {
+            midi_head *h = &part->head[i];
+            int own = h->choice == MIDI_TIMPANI ? 1 : h->choice == MIDI_DRUMS ? 2 : 0;
+            if (own != turn || h->z < LOW)
+                continue;
+            find_usual(h, timpani);
+            place(part, placed, h);
+            placed[i] = true;
+        }
+}
