@@ -133,10 +133,9 @@ static void take_note(midi_part *part, const midi_note *note, const midi_options
         .spot = beyond ? HIMC_SPOT_NORMAL : way->spot,
         .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
         .end = fmax(note->off, damped),
-        .roll = {
-            way->length,
-            written ? way->last_dynamic : himc_midi_dynamic(note->last_level, options->range),
-            note->off}};
+        .roll = {way->length,
+                 written ? way->last_dynamic : himc_midi_dynamic(note->last_level, options->range),
+                 note->off}};
 }
 
 // counts what is not for the part

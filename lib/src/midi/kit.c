@@ -105,11 +105,14 @@ static const gm_key *find_key(int key)
     return known ? &keys[key - FIRST_KEY] : NULL;
 }
 
-// how well a key stands for that spot and part
+// how well a key stands for that spot and part; another sound is worse
 static int likeness(const gm_key *k, const char *part, himc_spot spot)
 {
-    return (strcmp(k->part ? k->part : "", part) == 0 ? 3 : 0) +
-           (k->spot == spot ? 2 : k->spot == HIMC_SPOT_NORMAL);
+    return (strcmp(k->part ? k->part : "", part) == 0 ? 8 : 0) +
+           (k->spot == spot               ? 4
+            : k->spot == HIMC_SPOT_NORMAL ? 2
+                                          : 0) -
+           k->instead;
 }
 
 himc_spot himc_midi_key_spot(int key)
@@ -209,14 +212,18 @@ const char *himc_midi_instrument_like(const char *name, const char *kind, double
 
 int himc_midi_concert_key(const char *text, size_t size)
 {
+    int found = 0;
+    size_t longest = 0;
     for (int key = MIDI_BASS_DRUM; key < MIDI_NO_SOUND; key++) {
         const char *sound = find_key(key)->sound;
         size_t length = strlen(sound);
-        if (size >= length && memcmp(text + size - length, sound, length) == 0 &&
-            (size == length || text[size - length - 1] == ' '))
-            return key;
+        if (length > longest && size >= length && memcmp(text + size - length, sound, length) == 0 &&
+            (size == length || text[size - length - 1] == ' ')) {
+            found = key;
+            longest = length;
+        }
     }
-    return 0;
+    return found;
 }
 
 // the instrument of a set-up with that name, or else that of its kind nearest in size; its place
@@ -273,7 +280,8 @@ static int head_of(midi_part *part, const char *name)
     char made[sizeof head->made];
     snprintf(made, sizeof made, "%s", head->made);
     double inches = himc_midi_split_size(made);
-    head->radius = inches > 0 ? 0.0127 * inches : 0.1; // (m), of what is small
+    head->radius = inches > 0 && inches < 50 ? 0.0127 * inches : 0.1; // (m), of what is small
+    head->side = strcmp(made, "temple-blocks") == 0 ? 0.2 : 0;
     return part->heads++;
 }
 

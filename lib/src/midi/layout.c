@@ -21,7 +21,7 @@
 
 static double radius_of(const midi_head *h)
 {
-    return h->side > 0 ? DEPTH : h->radius;
+    return h->radius > 0 ? h->radius : DEPTH;
 }
 
 // how deep two instruments would be in each other (m)
@@ -31,16 +31,36 @@ static double overlap(const midi_head *a, const midi_head *b)
     return fmax(0, radius_of(a) + radius_of(b) + GAP - hypot(a->x - b->x, along));
 }
 
+// where `setup multi` has it; false if it has none. Of timpani it has one
+static bool find_usual(const midi_head *h, double at[4])
+{
+    const char *made, *name = h->choice == MIDI_TIMPANI               ? "timpano"
+                              : strcmp(h->name, "temple-blocks") == 0 ? "blocks"
+                                                                      : h->name;
+    const himc_setup *s = himc_setups;
+    int length;
+    while (strcmp(s->name, "multi") != 0)
+        s++;
+    return himc_setup_find(s->text, name, &made, &length, at);
+}
+
+// there it has room with the others that are
+static bool is_usual(const midi_head *h)
+{
+    double at[4];
+    return find_usual(h, at) && h->x == at[0] && h->y == at[1];
+}
+
 // of a place: the way to the usual one (m), and more for what makes it worse
 static double cost_of(const midi_part *part, const bool *placed, const midi_head *h,
                       const midi_head *usual)
 {
     double near = hypot(h->x, fmax(0, fabs(h->y) - h->side)),
            far = hypot(h->x, fabs(h->y) + h->side) - 0.6 * h->radius;
-    double cost = hypot(h->x - usual->x, h->y - usual->y) + 4 * fmax(0, far - REACH) +
-                  4 * fmax(0, BODY + radius_of(h) - near);
+    double way = hypot(h->x - usual->x, h->y - usual->y),
+           cost = way + 4 * fmax(0, far - REACH) + 4 * fmax(0, BODY + radius_of(h) - near);
     for (int i = 0; i < part->heads; i++)
-        if (placed[i])
+        if (placed[i] && (way > 0 || !is_usual(h) || !is_usual(&part->head[i])))
             cost += 20 * overlap(h, &part->head[i]);
     return cost;
 }
@@ -63,26 +83,6 @@ static void place(const midi_part *part, const bool *placed, midi_head *head)
     *head = best;
 }
 
-// where `setup multi` has it
-static void find_usual(midi_head *h, int timpani)
-{
-    const char *made, *name = h->choice == MIDI_TIMPANI && timpani == 1   ? "timpano"
-                              : strcmp(h->name, "temple-blocks") == 0 ? "blocks"
-                                                                      : h->name;
-    int length;
-    double at[4];
-    for (const himc_setup *s = himc_setups; h->choice <= MIDI_DRUMS; s++)
-        if (strcmp(s->name, "multi") == 0) {
-            if (!himc_setup_find(s->text, name, &made, &length, at))
-                return;
-            h->x = at[0];
-            h->y = at[1];
-            h->z = at[2];
-            h->tilt = at[3];
-            return;
-        }
-}
-
 void himc_midi_lay_out(midi_part *part)
 {
     bool placed[MIDI_HEADS] = {false};
@@ -95,7 +95,13 @@ void himc_midi_lay_out(midi_part *part)
             int own = h->choice == MIDI_TIMPANI ? 1 : h->choice == MIDI_DRUMS ? 2 : 0;
             if (own != turn || h->z < LOW)
                 continue;
-            find_usual(h, timpani);
+            double at[4];
+            if ((own > 1 || (own == 1 && timpani == 1)) && find_usual(h, at)) {
+                h->x = at[0];
+                h->y = at[1];
+                h->z = at[2];
+                h->tilt = at[3];
+            }
             place(part, placed, h);
             placed[i] = true;
         }

@@ -40,14 +40,14 @@ typedef enum midi_fate {
 
 /// Where a head stands, and its pitch.
 typedef struct midi_head {
-    const char *name; ///< static
-    char made[40];    ///< the words of `instrument` after its name; "": a drum ...
-    double inches;    ///< ... of this diameter
-    double x, y, z;   ///< of its centre (m)
-    double tilt;      ///< (rad)
-    double radius;    ///< (m)
-    double side;      ///< of a keyboard: from its middle to its ends (m)
-    int key;          ///< tuned so at first (MIDI key), MIDI_UNTUNED; -1: the head is not used
+    const char *name;   ///< static
+    char made[40];      ///< the words of `instrument` after its name; "": a drum ...
+    double inches;      ///< ... of this diameter
+    double x, y, z;     ///< of its centre (m)
+    double tilt;        ///< (rad)
+    double radius;      ///< (m)
+    double side;        ///< of a keyboard: from its middle to its ends (m)
+    int key;            ///< tuned so at first (MIDI key), MIDI_UNTUNED; -1: the head is not used
     midi_choice choice; ///< its kind
 } midi_head;
 
@@ -91,10 +91,10 @@ typedef struct midi_pedal {
 } midi_pedal;
 
 typedef struct midi_part {
-    const midi_file *file; ///< borrowed
-    midi_choice choice;    ///< not MIDI_ANY; of several the first
+    const midi_file *file;  ///< borrowed
+    midi_choice choice;     ///< not MIDI_ANY; of several the first
     unsigned kinds, others; ///< a bit each: that are played, and that are not asked for
-    himc_score *setup;     ///< owned; its instruments are all that there are; or NULL
+    himc_score *setup;      ///< owned; its instruments are all that there are; or NULL
     midi_head head[MIDI_HEADS];
     int heads, taken;    ///< how many, and by other kinds of the part
     midi_stroke *stroke; ///< in the order of time (count), owned

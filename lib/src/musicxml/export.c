@@ -267,8 +267,8 @@ static bool add_note(exporter *x, const himc_stroke *s)
     }
     bool told = himc_spot_is_beyond(s->spot) && !x->midi; // by its notehead
     himc_spot struck = told ? HIMC_SPOT_NORMAL : spot_of(s);
-    int key = h->choice == MIDI_DRUMS ? himc_midi_key_of(h->like, s->part, struck, h->open)
-                                        : h->key;
+    int key =
+        h->choice == MIDI_DRUMS ? himc_midi_key_of(h->like, s->part, struck, h->open) : h->key;
     if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
         key = PEDAL_HAT;
     key = key < 0 ? h->key : key;

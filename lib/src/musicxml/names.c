@@ -294,10 +294,11 @@ midi_choice himc_music_instrument(const char *name, int *key)
 midi_choice himc_music_change(const char *words, int *key, bool *bare)
 {
     static const char tells[] =
-                          "to |take |takes |change to |changes to |switch to |muta in |mutano in |"
-                          "cambia in |prende |prendere |prend |prenez |change pour |changez pour |"
-                          "nimmt |nehmen |nimm |wechselt zu |wechsel zu |wechselt auf ",
-                      articles[] = "the |a |an |il |la |le |lo |i |gli |les |die |das |den |zur |zum ",
+        "to |take |takes |change to |changes to |switch to |muta in |mutano in |"
+        "cambia in |prende |prendere |prend |prenez |change pour |changez pour |"
+        "nimmt |nehmen |nimm |wechselt zu |wechsel zu |wechselt auf ",
+                      articles[] =
+                          "the |a |an |il |la |le |lo |i |gli |les |die |das |den |zur |zum ",
                       tails[] = "drum|block|bell|tom|tam|cymb|becken|trommel|susp|sosp|caisse|set",
                       sticks[] = "stick|mallet|schläg|schleg|baguette|bacchett|brush|besen";
     char text[MOST_TEXT];

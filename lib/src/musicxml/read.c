@@ -135,8 +135,8 @@ static int read_pitch(const xml_node *note)
     const char *letter = himc_xml_text(of, pitch ? "step" : "display-step");
     if (letter[0] < 'A' || letter[0] > 'G')
         return -1;
-    return natural[letter[0] - 'A'] +
-           12 * (whole(of, pitch ? "octave" : "display-octave", 4) + 1) + whole(of, "alter", 0);
+    return natural[letter[0] - 'A'] + 12 * (whole(of, pitch ? "octave" : "display-octave", 4) + 1) +
+           whole(of, "alter", 0);
 }
 
 // the entry that a note names; -1: none
@@ -182,8 +182,7 @@ static void read_instruments(reader *r)
         snprintf(word, sizeof word, "%.*s", (int)length, name);
         if (r->instruments > 0 || name[length])
             made.choice = himc_music_instrument(word, &made.key);
-        made.sort =
-            made.choice == MIDI_DRUMS && himc_music_of_sort(made.key, 0, 2) != made.key;
+        made.sort = made.choice == MIDI_DRUMS && himc_music_of_sort(made.key, 0, 2) != made.key;
         if (made.choice != MIDI_ANY || (!name[length] && r->instruments == 0))
             r->instrument[r->instruments++] = made;
         if (!name[length])
@@ -573,7 +572,9 @@ static int of_clef(const reader *r, const xml_node *note)
 {
     char clef = r->clef[staff_of(note)];
     bool pitched = himc_xml_child(note, "pitch");
-    midi_choice first = !pitched ? MIDI_DRUMS : clef == 'F' ? MIDI_TIMPANI : MIDI_MARIMBA,
+    midi_choice first = !pitched      ? MIDI_DRUMS
+                        : clef == 'F' ? MIDI_TIMPANI
+                                      : MIDI_MARIMBA,
                 last = pitched && clef != 'F' ? MIDI_TUBULAR_BELL : first;
     for (int i = 0; i < r->declared; i++)
         if (r->instrument[i].choice >= first && r->instrument[i].choice <= last)
@@ -872,9 +873,9 @@ static bool read_root(reader *r, const xml_node *root)
 bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error)
 {
     // what is only printed
-    static const char *const unused[] = {
-        "identification", "defaults",     "credit",        "print", "stem", "beam", "accidental",
-        "harmony",        "figured-bass", "slur",          NULL};
+    static const char *const unused[] = {"identification", "defaults", "credit",     "print",
+                                         "stem",           "beam",     "accidental", "harmony",
+                                         "figured-bass",   "slur",     NULL};
     xml_document document;
     *m = (music){
         .omitted = {

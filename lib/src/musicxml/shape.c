@@ -43,9 +43,9 @@ typedef struct lane {
 
 /// What words say of one kind of instruments.
 typedef struct saying {
-    himc_spot spot, here;       ///< `here` of this beat; HIMC_SPOT_NORMAL: as `spot`
-    int always, measured;       ///< from here on
-    int ring, hand;             ///< of this beat
+    himc_spot spot, here; ///< `here` of this beat; HIMC_SPOT_NORMAL: as `spot`
+    int always, measured; ///< from here on
+    int ring, hand;       ///< of this beat
 } saying;
 
 typedef struct shaper {
@@ -93,7 +93,7 @@ static music_note *find_next(music *m, const music_note *n, joint by)
         music_note *to = &m->notes[i];
         if (to->at.beat > end + SAME)
             break;
-        bool fits = by == BY_TIE            ? to->key == n->key && to->choice == n->choice && to->tied_back
+        bool fits = by == BY_TIE ? to->key == n->key && to->choice == n->choice && to->tied_back
                     : to->voice != n->voice ? false
                     : by == BY_GLISS        ? to->glided
                                             : to->tremolo == MUSIC_PAIR_END;
@@ -480,7 +480,7 @@ static void shape_note(shaper *s, music_note *n)
                               : n->pulled ? HIMC_STACCATO
                               : n->tenuto ? HIMC_TENUTO
                                           : HIMC_LEGATO,
-                    .spot = n->spot != HIMC_SPOT_NORMAL   ? n->spot
+                    .spot = n->spot != HIMC_SPOT_NORMAL      ? n->spot
                             : says->here != HIMC_SPOT_NORMAL ? says->here
                                                              : says->spot,
                     .hand = n->hand ? n->hand : says->hand,
