@@ -217,7 +217,8 @@ int himc_midi_concert_key(const char *text, size_t size)
     for (int key = MIDI_BASS_DRUM; key < MIDI_NO_SOUND; key++) {
         const char *sound = find_key(key)->sound;
         size_t length = strlen(sound);
-        if (length > longest && size >= length && memcmp(text + size - length, sound, length) == 0 &&
+        if (length > longest && size >= length &&
+            memcmp(text + size - length, sound, length) == 0 &&
             (size == length || text[size - length - 1] == ' ')) {
             found = key;
             longest = length;

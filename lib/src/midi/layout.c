@@ -3,7 +3,8 @@
 /// Each kind alone has places of its own; those of `setup multi` count where it has the instrument.
 /// Keyboards come first, in front, then timpani, then drums: each as near to its usual place as the
 /// others leave room, and where its strokes are in reach. Seen from above an instrument is a circle,
-/// a keyboard a line from left to right with a margin. Kicks stand below the others.
+/// a keyboard a line from left to right with a margin. What is small hangs over the far half of
+/// timpani, where no stick comes. Kicks stand below the others.
 #include "midi/part.h"
 
 #include "base/setups.h"
@@ -11,24 +12,31 @@
 #include <math.h>
 #include <string.h>
 
-#define DEPTH 0.19   // of a keyboard, half (m)
 #define GAP 0.02     // between instruments (m); chosen
-#define REACH 0.88   // to a stroke (m); measured: from 0.98 on strokes are given up
+#define REACH 0.88   // to a stroke (m); measured: some hands come so far, all 0.1 less
+#define SHOULDER 0.2 // of the other hand, which reaches a drum, too, from the middle (m)
 #define BODY 0.25    // no instrument is nearer to the player (m); chosen
 #define STEP 0.03    // of the places that are tried (m)
-#define FARTHEST 1.2 // of them (m)
+#define FARTHEST 40  // of them (steps)
+#define LARGE 0.25   // radius of timpani, at least (m)
+#define SMALL 0.1    // at most (m)
+#define HIGHER 0.1   // a keyboard behind another one (m)
+#define HANGS 1.05   // what is small, over others (m)
 #define LOW 0.5      // what a foot plays is lower (m)
 
 static double radius_of(const midi_head *h)
 {
-    return h->radius > 0 ? h->radius : DEPTH;
+    return h->depth > 0 ? h->depth : h->radius;
 }
 
 // how deep two instruments would be in each other (m)
 static double overlap(const midi_head *a, const midi_head *b)
 {
-    double along = fmax(0, fabs(a->y - b->y) - a->side - b->side);
-    return fmax(0, radius_of(a) + radius_of(b) + GAP - hypot(a->x - b->x, along));
+    bool over = a->z >= HANGS && b->radius > LARGE;
+    double away = hypot(b->x, b->y), share = over ? 0.55 : 1, // of its radius, where it is struck
+        near = over && away > 0 ? 1 - 0.45 * b->radius / away : 1, x = near * b->x, y = near * b->y;
+    double along = fmax(0, fabs(a->y - y) - a->side - b->side);
+    return fmax(0, radius_of(a) + share * radius_of(b) + GAP - hypot(a->x - x, along));
 }
 
 // where `setup multi` has it; false if it has none. Of timpani it has one
@@ -56,9 +64,11 @@ static double cost_of(const midi_part *part, const bool *placed, const midi_head
                       const midi_head *usual)
 {
     double near = hypot(h->x, fmax(0, fabs(h->y) - h->side)),
-           far = hypot(h->x, fabs(h->y) + h->side) - 0.6 * h->radius;
+           beside = h->depth > 0 ? h->side : SHOULDER,
+           far = hypot(h->x + 0.5 * h->depth, fabs(h->y) + beside) - 0.6 * h->radius;
     double way = hypot(h->x - usual->x, h->y - usual->y),
-           cost = way + 4 * fmax(0, far - REACH) + 4 * fmax(0, BODY + radius_of(h) - near);
+           cost = way + 10 * fmax(0, far - REACH) + 4 * fmax(0, BODY + radius_of(h) - near) +
+                  2 * fmax(0, -h->x);
     for (int i = 0; i < part->heads; i++)
         if (placed[i] && (way > 0 || !is_usual(h) || !is_usual(&part->head[i])))
             cost += 20 * overlap(h, &part->head[i]);
@@ -69,11 +79,11 @@ static void place(const midi_part *part, const bool *placed, midi_head *head)
 {
     midi_head best = *head;
     double least = cost_of(part, placed, &best, head);
-    for (double x = -0.3; x < FARTHEST; x += STEP)
-        for (double y = -FARTHEST; y < FARTHEST; y += STEP) {
+    for (int x = -FARTHEST / 4; x <= FARTHEST; x++)
+        for (int y = -FARTHEST; y <= FARTHEST; y++) {
             midi_head h = *head;
-            h.x = x;
-            h.y = y;
+            h.x = STEP * x;
+            h.y = STEP * y;
             double cost = cost_of(part, placed, &h, head);
             if (cost < least - 1e-9) {
                 least = cost;
@@ -86,7 +96,7 @@ static void place(const midi_part *part, const bool *placed, midi_head *head)
 void himc_midi_lay_out(midi_part *part)
 {
     bool placed[MIDI_HEADS] = {false};
-    int timpani = 0;
+    int timpani = 0, keyboards = 0;
     for (int i = 0; i < part->heads; i++)
         timpani += part->head[i].choice == MIDI_TIMPANI;
     for (int turn = 0; turn < 3; turn++)
@@ -102,6 +112,10 @@ void himc_midi_lay_out(midi_part *part)
                 h->z = at[2];
                 h->tilt = at[3];
             }
+            if (own == 2 && h->radius <= SMALL)
+                h->z = fmax(h->z, HANGS);
+            if (own == 0)
+                h->z += HIGHER * keyboards++;
             place(part, placed, h);
             placed[i] = true;
         }

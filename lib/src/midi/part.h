@@ -46,7 +46,7 @@ typedef struct midi_head {
     double x, y, z;     ///< of its centre (m)
     double tilt;        ///< (rad)
     double radius;      ///< (m)
-    double side;        ///< of a keyboard: from its middle to its ends (m)
+    double side, depth; ///< of a row: from its middle to its ends; of bars: to its edges (m)
     int key;            ///< tuned so at first (MIDI key), MIDI_UNTUNED; -1: the head is not used
     midi_choice choice; ///< its kind
 } midi_head;

@@ -137,7 +137,9 @@ static void follow_line(exporter *x, const himc_score_line *line, loss kind)
     bool timpano = h && h->choice == MIDI_TIMPANI, written = false;
     if (himc_score_makes_drum(line)) {
         bool drum = c->id == HIMC_COMMAND_MAKE_DRUM;
-        double size = c->count > 1 && c->atom[1].kind == HIMC_ATOM_NUMBER ? c->atom[1].number : 0;
+        int of = drum ? 1 : 2;
+        double size =
+            c->count > of && c->atom[of].kind == HIMC_ATOM_NUMBER ? c->atom[of].number : 0;
         const char *made = drum ? "timpano" : c->atom[1].symbol;
         add_head(x, c->atom[0].symbol, made, drum || strcmp(made, "timpano") != 0 ? size : 0);
         written = true;
