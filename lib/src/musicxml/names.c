@@ -296,7 +296,7 @@ midi_choice himc_music_change(const char *words, int *key, bool *bare)
     static const char tells[] =
         "to |take |takes |change to |changes to |switch to |muta in |mutano in |"
         "cambia in |prende |prendere |prend |prenez |change pour |changez pour |"
-        "nimmt |nehmen |nimm |wechselt zu |wechsel zu |wechselt auf ",
+        "nimmt |nimm |wechselt zu |wechsel zu |wechselt auf ",
                       articles[] =
                           "the |a |an |il |la |le |lo |i |gli |les |die |das |den |zur |zum ",
                       tails[] = "drum|block|bell|tom|tam|cymb|becken|trommel|susp|sosp|caisse|set",
@@ -304,14 +304,17 @@ midi_choice himc_music_change(const char *words, int *key, bool *bare)
     char text[MOST_TEXT];
     fold(text, words, true);
     size_t told = begins_with(text, tells), length = 0;
+    char *taken = strstr(text, " nehmen");
+    if (taken)
+        *taken = '\0';
     const char *at = text + told;
     at += begins_with(at, articles);
     midi_choice choice = himc_music_instrument(at, key);
-    *bare = told == 0;
+    *bare = told == 0 && !taken;
     for (const char *w = text; *w; w++)
         if (begins_with(w, sticks) > 0)
             return MIDI_ANY;
-    if (told > 0)
+    if (!*bare)
         return choice;
     for (size_t i = 0; i < sizeof instruments / sizeof *instruments && length == 0; i++)
         length = begins_with(at, instruments[i].words);

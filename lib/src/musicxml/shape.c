@@ -174,6 +174,11 @@ static void emit(shaper *s, const music_note *n, double beat, double end, const 
     };
 }
 
+static bool is_several(const shaper *s)
+{
+    return s->kinds & (s->kinds - 1);
+}
+
 static double level(const shaper *s, double beat)
 {
     return himc_music_level(s->now->levels, s->now->count, beat);
@@ -203,7 +208,7 @@ static bool list_cuts(shaper *s)
     if (!s->cuts)
         return himc_error_set(s->error, "out of memory for %d notes", m->note_count);
     s->cut_count = 0;
-    for (int k = 0; k < s->lane_count; k++)
+    for (int k = 0; k < s->lane_count && !is_several(s); k++)
         for (int i = 0; i < s->lanes[k].count; i++)
             s->cuts[s->cut_count++] = s->lanes[k].levels[i].beat;
     for (int i = 0; i < m->note_count; i++) {
@@ -231,7 +236,18 @@ static double next_cut(const shaper *s, double from, double end)
         else
             high = middle;
     }
-    return low < s->cut_count ? fmin(s->cuts[low], end) : end;
+    end = low < s->cut_count ? fmin(s->cuts[low], end) : end;
+    if (!is_several(s))
+        return end;
+    // of several kinds only its own dynamics cut a roll
+    for (low = 0, high = s->now->count; low < high;) {
+        int middle = (low + high) / 2;
+        if (s->now->levels[middle].beat < from)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < s->now->count ? fmin(s->now->levels[low].beat, end) : end;
 }
 
 // from the note's beat to `end`, cut at the points between
@@ -399,8 +415,7 @@ static void end_at(shaper *s, double beat, midi_choice choice, int ring)
 static midi_choice kind_of(const shaper *s, const music_sign *sign, int next, midi_choice choice)
 {
     const music *m = s->music;
-    bool several = s->kinds & (s->kinds - 1);
-    for (int i = next; several && sign->lane >= 100 && i < m->note_count; i++) {
+    for (int i = next; is_several(s) && sign->lane >= 100 && i < m->note_count; i++) {
         const music_note *n = &m->notes[i];
         if (i - next > MOST_CANDIDATES)
             break;
@@ -520,7 +535,7 @@ static bool add_lane(shaper *s, int number)
 // of several kinds on several staves each staff has dynamics of its own
 static bool is_of_staff(const shaper *s, const music_note *n)
 {
-    return (s->kinds & (s->kinds - 1)) && n->lane >= 100;
+    return is_several(s) && n->lane >= 100;
 }
 
 static bool list_lanes(shaper *s)
