@@ -23,6 +23,19 @@
     "<attributes><divisions>4</divisions><staff-details><staff-lines>1</staff-lines>" \
     "</staff-details></attributes>"
 
+#define PLAYED_BY(list) HEAD "<part-list>" list "</part-list><part id='P1'>"
+#define CHANGED(id, sound)                                           \
+    "<sound><instrument-change id='" id "'><instrument-sound>" sound \
+    "</instrument-sound></instrument-change></sound>"
+#define TIMPANI_AND_SNARE \
+    PLAYER("P1", "Percussion", INSTRUMENT("T", "Timpani") INSTRUMENT("S", "Snare Drum"))
+#define SAYS(staff, type) \
+    "<direction><direction-type>" type "</direction-type><staff>" #staff "</staff></direction>"
+#define ON(n, id, duration)                                                     \
+    "<note><pitch><step>D</step><octave>3</octave></pitch><duration>" #duration \
+    "</duration><instrument id='" id "'/><voice>" #n "</voice><staff>" #n "</staff></note>"
+#define BACK "<backup><duration>16</duration></backup>"
+
 static void expect_drums(int count, const char *const *names)
 {
     TEST_ASSERT_EQUAL_MESSAGE(count, score->stroke_count, made.text);
@@ -81,12 +94,8 @@ static void test_words_that_name_sticks_or_a_pitch_change_no_instrument(void)
 
 static void test_a_sound_changes_the_instrument(void)
 {
-    load(
-        HEAD
-        "<part-list>" PLAYER("P1", "Timpani", INSTRUMENT("A", "Timpani")) "</part-list><part id='P1'>" BAR(
-            1, FOUR OF("A", D, 3) "<sound><instrument-change id='A'><instrument-sound>"
-                                  "pitched-percussion.xylophone</instrument-sound>"
-                                  "</instrument-change></sound>" OF("A", C, 5)) TAIL);
+    load(PLAYED_BY(PLAYER("P1", "Timpani", INSTRUMENT("A", "Timpani"))) BAR(
+        1, FOUR OF("A", D, 3) CHANGED("A", "pitched-percussion.xylophone") OF("A", C, 5)) TAIL);
     expect_drums(2, (const char *const[]){"third", "xylophone"});
 }
 
@@ -102,27 +111,17 @@ static void test_clefs_say_the_instrument_where_notes_do_not(void)
 // each staff of several kinds has its dynamics and its words
 static void test_staves_have_their_own_words(void)
 {
-#define STAFF(n) "<staff>" #n "</staff>"
-#define SAYS(type, n) "<direction><direction-type>" type "</direction-type>" STAFF(n) "</direction>"
-    load(HEAD "<part-list>" PLAYER("P1", "Percussion", INSTRUMENT("T", "Timpani") INSTRUMENT("S", "Snare Drum")) "</part-list><part id='P1'>" BAR(
-        1,
-        FOUR SAYS("<dynamics><ff/></dynamics>", 1) SAYS(
-            "<words>near rim</words>",
-            1) "<note><pitch><step>D</step><octave>3</octave></pitch><duration>16</duration>"
-               "<instrument id='T'/><voice>1</voice>" STAFF(
-                   1) "</note><backup><duration>16"
-                      "</duration></backup><forward><duration>8</duration></forward>" SAYS(
-                          "<dynamics><pp/></dynamics>",
-                          2) "<note><unpitched/><duration>4</duration><instrument id='S'/><voice>5</voice>" STAFF(2) "</note>" SAYS("<words>snares off</words>",
-                                                                                                                                    2)
-                          SAYS("<words>hard sticks</words>", 1) "<note><unpitched/><duration>4</duration><instrument id='S'/><voice>5</voice>" STAFF(
-                              2) "</note>")
-             BAR(2, "<note><pitch><step>D</step><octave>3</octave></pitch><duration>16"
-                    "</duration><instrument id='T'/><voice>1</voice>" STAFF(1) "</note>") TAIL);
-    expect_dynamics(4, 6.0, 1.0, 1.0, 6.0);
-    TEST_ASSERT_EQUAL(HIMC_SPOT_RIM, stroke(0)->spot);
-    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, stroke(1)->spot);
+    load(PLAYED_BY(TIMPANI_AND_SNARE)
+             BAR(1, FOUR SAYS(1, "<dynamics><ff/></dynamics>") SAYS(1, "<words>near rim</words>")
+                        ON(1, "T", 16) BACK SAYS(2, "<dynamics><pp/></dynamics>") ON(2, "S", 4)
+                            SAYS(2, "<words>snares off</words>") ON(2, "S", 12))
+                 BAR(2, SAYS(1, "<words>hard sticks</words>") ON(1, "T", 16)) TAIL);
+    expect_drums(4, (const char *const[]){"snare", "third", "snare", "third"});
+    expect_dynamics(4, 1.0, 6.0, 1.0, 6.0);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, stroke(0)->spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_RIM, stroke(1)->spot);
     expect_text("snare wires 0;");
+    TEST_ASSERT_NULL(strstr(made.text, "third wires"));
 }
 
 // drums of one sort are told apart by their names, and by their places on the staff
@@ -187,12 +186,11 @@ static void test_what_is_not_known_on_one_line_is_told_and_left_out(void)
     expect_text("1 of other percussion: no such instrument here");
 }
 
-#define TWO_PLAYERS                                                                                                              \
-    HEAD "<part-list>" PLAYER("P1", "Timpani", "")                                                                               \
-        PLAYER("P2", "Percussion", INSTRUMENT("S", "Snare Drum") INSTRUMENT("X", "Xylophone")) "</part-list><part id='P1'>" BAR( \
-            1, FOUR NOTE(D, 3, 4, "")                                                                                            \
-                   NOTE(D, 3, 4, "")) "</part><part id='P2'>" BAR(1, FOUR REST(8) OF("S", E, 4)                                  \
-                                                                         OF("X", C, 5)) TAIL
+#define SNARE_AND_XYLOPHONE INSTRUMENT("S", "Snare Drum") INSTRUMENT("X", "Xylophone")
+#define TWO_PLAYERS                                                                        \
+    PLAYED_BY(PLAYER("P1", "Timpani", "") PLAYER("P2", "Percussion", SNARE_AND_XYLOPHONE)) \
+    BAR(1, FOUR NOTE(D, 3, 4, "") NOTE(D, 3, 4, ""))                                       \
+    "</part><part id='P2'>" BAR(1, FOUR REST(8) OF("S", E, 4) OF("X", C, 5)) TAIL
 
 static void test_other_players_are_told_and_all_can_be_asked_for(void)
 {
@@ -276,7 +274,8 @@ static const char several[] =
     "drum low 32; low tune D2; instrument xylophone xylophone F4 C6; instrument snare snare 14;"
     "instrument tam-tam tam-tam 32; instrument temple-blocks temple-blocks;"
     "instrument low-cowbell cowbell 420; instrument agogo agogo; tempo 60;"
-    "stroke 0 left legato p low; stroke 1 right legato f F5 xylophone; stroke 2 left legato mf snare;"
+    "stroke 0 left legato p low; stroke 1 right legato f F5 xylophone;"
+    "stroke 2 left legato mf snare;"
     "stroke 3 right legato ff tam-tam; stroke 4 left legato mp low temple-blocks;"
     "stroke 5 right legato mf fourth temple-blocks; stroke 6 left legato f low-cowbell;"
     "stroke 7 right legato f low agogo; stroke 8 right legato f high agogo;";

@@ -199,7 +199,9 @@ const char *himc_midi_instrument_like(const char *name, const char *kind, double
         if (!head.name[0] || (!find(himc_setup_kit, &head) && !find(himc_setup_around, &head)))
             continue;
         double inches = himc_midi_split_size(head.made),
-               away = size <= 0 ? 0 : inches > 0 ? fabs(log(size / inches)) : 0.2; // usual size
+               away = size <= 0    ? 0
+                      : inches > 0 ? fabs(log(size / inches))
+                                   : 0.2; // usual size
         for (const char *const *u = used; *u; u++)
             away += strcmp(*u, head.name) == 0 ? 10 : 0;
         if (strcmp(head.made, kind) == 0 && away < least) {

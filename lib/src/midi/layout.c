@@ -2,9 +2,9 @@
 ///
 /// Each kind alone has places of its own; those of `setup multi` count where it has the instrument.
 /// Keyboards come first, in front, then timpani, then drums: each as near to its usual place as the
-/// others leave room, and where its strokes are in reach. Seen from above an instrument is a circle,
-/// a keyboard a line from left to right with a margin. What is small hangs over the far half of
-/// timpani, where no stick comes. Kicks stand below the others.
+/// others leave room, and where its strokes are in reach. Seen from above an instrument is a
+/// circle, a keyboard a line from left to right with a margin. What is small hangs over the far
+/// half of timpani, where no stick comes. Kicks stand below the others.
 #include "midi/part.h"
 
 #include "base/setups.h"

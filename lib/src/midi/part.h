@@ -152,11 +152,11 @@ double himc_midi_split_size(char *made);
 /// notes.
 int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);
 
-/// The key of an instrument of the kit, struck at that spot of that part ("": any); of a hi-hat open
-/// or closed; -1: none.
+/// The key of an instrument of the kit, struck at that spot of that part ("": any); of a hi-hat
+/// open or closed; -1: none.
 int himc_midi_key_of(const char *instrument, const char *part, himc_spot spot, bool open);
-/// The instrument of the kit with that name, else of that kind the one nearest in size, of those not
-/// among `used` (names, 0 after the last) while there are any; "" without. Borrowed, static.
+/// The instrument of the kit with that name, else of that kind the one nearest in size, of those
+/// not among `used` (names, NULL after the last) while there are any; "" without. Borrowed, static.
 const char *himc_midi_instrument_like(const char *name, const char *kind, double size,
                                       const char *const *used);
 /// The concert instrument that a text ends with: its key from 128; else 0.

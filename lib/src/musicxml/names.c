@@ -87,8 +87,8 @@ static const struct {
     {"trommel", MIDI_DRUMS, 38},
 };
 
-/// Of one sort from high to low, by the key of a name that does not say which; `low`: that of a name
-/// that says low.
+/// Of one sort from high to low, by the key of a name that does not say which; `low`: the index of
+/// a name that says low.
 static const struct {
     int key, count, low, keys[5];
 } sorts[] = {

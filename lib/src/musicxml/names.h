@@ -11,8 +11,8 @@
 /// whose part it is, and of drums the key (midi/kit.c). MIDI_ANY if it is none that is played.
 midi_choice himc_music_instrument(const char *name, int *key);
 
-/// The same of words that tell the player to change to an instrument ("muta in Xilofono", "nimmt Kl.
-/// Trommel"), or, `bare`, that are a name and no more.
+/// The same of words that tell the player to change to an instrument ("muta in Xilofono", "nimmt
+/// Kl. Trommel"), or, `bare`, that are a name and no more.
 midi_choice himc_music_change(const char *words, int *key, bool *bare);
 
 /// Of `count` drums of one sort, whose common key it is, the key of the one of that index from the

@@ -355,12 +355,11 @@ static void put_dynamics(writer *w, int first, long begin, long *at)
 
 // bars and parts
 
-static void put_rest(const writer *w, long length, bool typed)
+static void put_rest(const writer *w, long length)
 {
     PUT(w, "<note><rest/><duration>%ld</duration>", length);
     put_voice_number(w, 0);
-    if (typed)
-        put_type(w, length);
+    put_type(w, length);
     put_staff(w);
     PUT(w, "</note>\n");
 }
@@ -375,7 +374,7 @@ static void put_voice(const writer *w, int voice, int first, long begin)
         long from = i->begin > begin ? i->begin : begin;
         long to = i->end < begin + BAR ? i->end : begin + BAR;
         if (from > at && voice == 0) {
-            put_rest(w, from - at, true);
+            put_rest(w, from - at);
             at = from;
         }
         move(w, &at, from);
@@ -383,7 +382,7 @@ static void put_voice(const writer *w, int voice, int first, long begin)
         at = to;
     }
     if (voice == 0 && at < begin + BAR)
-        put_rest(w, begin + BAR - at, false);
+        put_rest(w, begin + BAR - at);
     else
         move(w, &at, begin + BAR);
     PUT(w, "<backup><duration>%d</duration></backup>\n", BAR);
