@@ -12,17 +12,18 @@
 #include <math.h>
 #include <string.h>
 
-#define GAP 0.02     // between instruments (m); chosen
-#define REACH 0.88   // to a stroke (m); measured: some hands come so far, all 0.1 less
-#define SHOULDER 0.2 // of the other hand, which reaches a drum, too, from the middle (m)
-#define BODY 0.25    // no instrument is nearer to the player (m); chosen
-#define STEP 0.03    // of the places that are tried (m)
-#define FARTHEST 40  // of them (steps)
-#define LARGE 0.25   // radius of timpani, at least (m)
-#define SMALL 0.1    // at most (m)
-#define HIGHER 0.1   // a keyboard behind another one (m)
-#define HANGS 1.05   // what is small, over others (m)
-#define LOW 0.5      // what a foot plays is lower (m)
+#define GAP 0.02       // between instruments (m); chosen
+#define REACH 0.88     // to a stroke (m); measured: some hands come so far, all 0.1 less
+#define SHOULDER 0.2   // of the other hand, which reaches a drum, too, from the middle (m)
+#define BODY 0.25      // no instrument is nearer to the player (m); chosen
+#define STEP 0.03      // of the places that are tried (m)
+#define FARTHEST 40    // of them (steps)
+#define LARGE 0.25     // radius of timpani, at least (m)
+#define SMALL 0.1      // at most (m)
+#define HIGHER 0.1     // a keyboard behind another one (m)
+#define HANGS 1.05     // what is small, over others (m)
+#define OVER_BARS 0.97 // what stands behind a keyboard (m); chosen
+#define LOW 0.5        // what a foot plays is lower (m)
 
 static double radius_of(const midi_head *h)
 {
@@ -67,7 +68,7 @@ static double cost_of(const midi_part *part, const bool *placed, const midi_head
            beside = h->depth > 0 ? h->side : SHOULDER,
            far = hypot(h->x + 0.5 * h->depth, fabs(h->y) + beside) - 0.6 * h->radius;
     double way = hypot(h->x - usual->x, h->y - usual->y),
-           cost = way + 10 * fmax(0, far - REACH) + 4 * fmax(0, BODY + radius_of(h) - near) +
+           cost = way + 20 * fmax(0, far - REACH) + 10 * fmax(0, BODY + radius_of(h) - near) +
                   2 * fmax(0, -h->x);
     for (int i = 0; i < part->heads; i++)
         if (placed[i] && (way > 0 || !is_usual(h) || !is_usual(&part->head[i])))
@@ -91,6 +92,18 @@ static void place(const midi_part *part, const bool *placed, midi_head *head)
             }
         }
     *head = best;
+}
+
+// sticks come to it over the bars of a keyboard
+static bool is_behind(const midi_part *part, const bool *placed, const midi_head *h)
+{
+    for (int i = 0; i < part->heads; i++) {
+        const midi_head *bars = &part->head[i];
+        if (placed[i] && bars->depth > 0 && h->x > bars->x &&
+            fabs(h->y - bars->y) < bars->side + h->radius)
+            return true;
+    }
+    return false;
 }
 
 void himc_midi_lay_out(midi_part *part)
@@ -117,6 +130,8 @@ void himc_midi_lay_out(midi_part *part)
             if (own == 0)
                 h->z += HIGHER * keyboards++;
             place(part, placed, h);
+            if (own > 0 && is_behind(part, placed, h))
+                h->z = fmax(h->z, OVER_BARS);
             placed[i] = true;
         }
 }

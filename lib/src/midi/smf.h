@@ -42,7 +42,7 @@ typedef struct midi_note {
     int track;          ///< from 0
     int player;         ///< of several, by number from 0: a part of MusicXML, a channel of a track
     uint8_t channel;    ///< 0 .. 15
-    uint8_t key;        ///< 0 .. 127; 60 is C4. From 128: drums that only MusicXML has (part.h)
+    uint8_t key;        ///< 0 .. 127; 60 is C4. From 128: drums that General MIDI lacks (part.h)
     uint8_t velocity;   ///< 1 .. 127
     uint8_t program;    ///< of its channel then, 0 .. 127
     double level;       ///< the velocity with volume, expression and pressure, 0 .. 127
