@@ -597,6 +597,16 @@ check test_exported_midi_is_read [ $? = 0 ]
 printf 'instrument x bongo;\nstroke 1 right accent f x;\nstroke 2 right accent f rim x;\n' >two.txt
 "$himc" export two.txt -o two.musicxml 2>err && "$himc" export two.txt -o quiet.musicxml --quiet 2>quiet
 check test_quiet_export_says_nothing [ "$(grep -c 'not written' err) $(wc -c <quiet)" = "1 0" ]
+cat >player.txt <<'END'
+drum low 32; low tune D2; instrument xylophone xylophone F4 C6; instrument snare snare 14; tempo 60;
+stroke 0 left legato f low; stroke 1 right legato f C5 xylophone; stroke 2 left legato f snare;
+END
+for end in musicxml mid; do
+    "$himc" export player.txt -o "player.$end" 2>/dev/null && "$himc" import "player.$end" -o - 2>err >back.txt
+    check "test_one_player_comes_back_from_$end" [ "$(head -n 1 err)$(sed -n 's/^stroke.* //p' back.txt | tr -d '\n')" = "3 of 3 notes for timpani drums xylophone are playedlow;xylophone;snare;" ]
+done
+"$himc" import player.mid --part drums -o - 2>err >/dev/null
+check test_a_part_is_still_asked_for [ "$(tail -n 1 err)" = "2 notes for other percussion are not asked for: timpani xylophone" ]
 refuses test_export_of_notes_needs_a_score "no SCORE given" export -o x.musicxml
 head -c 90 scherzo.mid >cut.mid
 refuses test_a_cut_midi_file_is_refused "cut.mid: cut short: 1 of its" render cut.mid -o x.wav

@@ -2,6 +2,7 @@
 /// without an error, and each note is a stroke or counted in the report.
 #include "fuzz.h"
 #include "midi/import.h"
+#include "midi/part.h"
 #include "midi/smf.h"
 #include "plan/score.h"
 
@@ -23,7 +24,8 @@ static void check_report(const char *report, const himc_score *score)
         char text[256];
         snprintf(text, sizeof text, "%.*s", (int)(end - line), line);
         require(himc_line_is_clean(text), "a report has clean lines");
-        if ((strstr(text, "not played") || strstr(text, "one stroke")) &&
+        bool extra = strstr(text, "tremolo"); // strokes of notes that are counted themselves
+        if (!extra && (strstr(text, "not played") || strstr(text, "one stroke")) &&
             sscanf(text, "%d", &count) == 1)
             missing += count;
         const char *as = strstr(text, "played as ");
@@ -44,7 +46,9 @@ static void check_file(const uint8_t *data, size_t size)
         return;
     for (int i = 0; i < file.note_count; i++) {
         const midi_note *note = &file.notes[i];
-        require(note->channel < 16 && note->key < 128 && note->velocity > 0 && note->velocity < 128,
+        bool concert = note->channel == MIDI_DRUM_CHANNEL && note->key < MIDI_NO_SOUND;
+        require(note->channel < 16 && (note->key < 128 || concert) && note->velocity > 0 &&
+                    note->velocity < 128,
                 "a note is in range");
         require(note->seconds >= 0 && note->off >= note->seconds && note->beat >= 0,
                 "a note ends after it has begun");
@@ -58,7 +62,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     himc_error error = {""};
     midi_score made;
     check_file(data, size);
-    if (!himc_midi_import(&made, data, size, "fuzz.mid", NULL, &error)) {
+    const midi_options options = {.all = size & 1};
+    if (!himc_midi_import(&made, data, size, "fuzz.mid", &options, &error)) {
         require_line(&error);
         return 0;
     }

@@ -22,7 +22,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     himc_error error = {""};
     midi_score made;
-    if (!himc_music_import(&made, data, size, "fuzz.mxl", NULL, &error)) {
+    const midi_options options = {.all = size & 1};
+    if (!himc_music_import(&made, data, size, "fuzz.mxl", &options, &error)) {
         require_line(&error);
         require(!made.text && !made.report, "nothing is made of a refused file");
         return 0;

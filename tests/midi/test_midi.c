@@ -769,6 +769,65 @@ static void test_the_part_is_chosen(void)
     reported("1 note for other percussion is not asked for");
 }
 
+// a channel of a track is a player, whose program may change
+static void test_a_program_changes_the_instrument(void)
+{
+    builder b;
+    begin(&b);
+    PUT(&b, 0, 0xc0, 47);
+    event(&b, 0, 0x90, 45, 90);
+    PUT(&b, 0, 0xc0, 13);
+    event(&b, QUARTER, 0x90, 72, 90);
+    event(&b, QUARTER, 0x99, 38, 90);
+    end(&b);
+    import(&b, NULL);
+    reported("2 of 2 notes for timpani xylophone are played");
+    reported("1 note for other percussion is not asked for: drums");
+    TEST_ASSERT_EQUAL_STRING("xylophone", score->strokes[1].drum);
+    TEST_ASSERT_EQUAL_STRING("C5", score->strokes[1].part);
+    tearDown();
+    import(&b, &(midi_options){.all = true});
+    reported("3 of 3 notes for timpani drums xylophone are played");
+    TEST_ASSERT_EQUAL_STRING("snare", score->strokes[2].drum);
+    tearDown();
+    import(&b, &(midi_options){.choice = MIDI_XYLOPHONE});
+    reported("1 of 1 notes for xylophone are played");
+    tearDown();
+    TEST_ASSERT_FALSE(himc_midi_import(&made, b.bytes, b.size, "test.mid",
+                                       &(midi_options){.all = true, .setup = "kit"}, &error));
+    TEST_ASSERT_EQUAL_STRING(
+        "a set-up is for drums, expected none: timpani has instruments of its own", error.text);
+}
+
+// "Player 3: ..." joins tracks; other names do not
+static void test_tracks_of_one_player_are_played_together(void)
+{
+    static const char *const names[][2] = {{"Player 3: Timpani", "Player 3: tam-tam"},
+                                           {"Player 3: Timpani", "Player 4: tam-tam"},
+                                           {"Player: Timpani", "Player: tam-tam"}};
+    for (int k = 0; k < 3; k++) {
+        uint8_t bytes[256] = "MThd\0\0\0\6\0\1\0\2\0\140";
+        size_t size = 14;
+        for (int i = 0; i < 2; i++) {
+            size_t name = strlen(names[k][i]);
+            const uint8_t events[] = {0, (uint8_t)(i ? 0x99 : 0x90), i ? 36 : 45, 90, 0, 0xff, 47,
+                                      0};
+            memcpy(bytes + size, "MTrk\0\0\0", 7);
+            bytes[size + 7] = (uint8_t)(4 + name + sizeof events);
+            memcpy(bytes + size + 8, (uint8_t[]){0, 0xff, 3, (uint8_t)name}, 4);
+            memcpy(bytes + size + 12, names[k][i], name);
+            memcpy(bytes + size + 12 + name, events, sizeof events);
+            size += 12 + name + sizeof events;
+        }
+        TEST_ASSERT_TRUE_MESSAGE(himc_midi_import(&made, bytes, size, "t.mid", NULL, &error),
+                                 error.text);
+        reported(k == 0 ? "2 of 2 notes for timpani drums are played"
+                        : "1 note for other percussion is not asked for: drums");
+        TEST_ASSERT_EQUAL(k == 0, strstr(made.text, "instrument tam-tam") != NULL);
+        himc_midi_score_free(&made);
+    }
+}
+
 // a file's name and tracks come from strangers
 static void test_a_name_stays_one_comment(void)
 {
@@ -1040,6 +1099,8 @@ int main(void)
     RUN_TEST(test_tubular_bells_hang_where_the_set_up_has_them);
     RUN_TEST(test_the_loud_notes_of_a_chord_are_played);
     RUN_TEST(test_the_part_is_chosen);
+    RUN_TEST(test_a_program_changes_the_instrument);
+    RUN_TEST(test_tracks_of_one_player_are_played_together);
     RUN_TEST(test_a_name_stays_one_comment);
     RUN_TEST(test_a_tempo_that_scores_do_not_have_leaves_the_times);
     RUN_TEST(test_score_file_loads_midi_and_keeps_its_report);

@@ -74,8 +74,7 @@ static void read_part(himc_score_maker *make, midi_choice choice)
 
 static void read_back(himc_score_maker *make)
 {
-    for (midi_choice c = MIDI_TIMPANI; c < MIDI_CHOICES; c++)
-        read_part(make, c);
+    read_part(make, MIDI_ANY);
 }
 
 static bool is_same(const himc_stroke *a, const himc_stroke *b)
@@ -128,13 +127,13 @@ static void test_the_pieces_are_the_same_after_musicxml(void)
     }
 }
 
-// parts that one player has at once are parts of their own there, with hands of their own
+// the kinds of one player are staves of one part
 static void test_a_piece_for_many_instruments_keeps_its_strokes(void)
 {
     load("patches/pieces/stations.txt");
     TEST_ASSERT_TRUE(himc_music_write(&text, &notes, "stations"));
     read_back(himc_music_import);
-    TEST_ASSERT_EQUAL(score->stroke_count, count);
+    expect_same("stations");
 }
 
 static void test_pedals_come_back_as_words(void)
@@ -460,10 +459,10 @@ static void test_spots_without_a_key_are_told_and_come_back_normal(void)
                              notes.said);
     read_back(himc_music_import);
     TEST_ASSERT_EQUAL(4, count);
-    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[0].spot); // the timpano's part is read first
-    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[1].spot);
-    TEST_ASSERT_EQUAL(HIMC_SPOT_CROSSSTICK, back[2].spot);
-    TEST_ASSERT_EQUAL(HIMC_SPOT_RIMSHOT, back[3].spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[0].spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_CROSSSTICK, back[1].spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_RIMSHOT, back[2].spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, back[3].spot);
 }
 
 static void test_the_bell_of_a_ride_comes_back(void)

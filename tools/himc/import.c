@@ -17,7 +17,7 @@ enum { OUT, PART, CURVE, SETUP, TRACK, CHANNEL, AS };
 
 static const cli_option options[] = {
     {"output", 'o', "SCORE", "the score; - is the standard output"},
-    {"part", 0, "PART", "the first of these of which the file has any"},
+    {"part", 0, "PART", "the player of the first of these of which the file has any"},
     {"curve", 0, "CURVE", "how velocities become dynamics (notation)"},
     {"setup", 0, "NAME|FILE", "drums: a set-up, whose instruments play them"},
     {"track", 0, "N", "only notes of that track or part, from 1"},
@@ -43,16 +43,16 @@ static bool read_curve(const char *word, double *range, himc_error *error)
     return himc_check_range("--curve square", *range, 1, 80, "dB", error);
 }
 
-static bool read_part(const char *word, midi_choice *part, himc_error *error)
+static bool read_part(const char *word, midi_options *wanted, himc_error *error)
 {
-    *part = MIDI_ANY;
+    wanted->all = word && strcmp(word, "all") == 0;
     for (int i = 1; i < MIDI_CHOICES && word; i++)
         if (strcmp(word, himc_midi_choice_name((midi_choice)i)) == 0)
-            *part = (midi_choice)i;
-    return !word || *part != MIDI_ANY ||
+            wanted->choice = (midi_choice)i;
+    return !word || wanted->all || wanted->choice != MIDI_ANY ||
            himc_error_set(error,
                           "--part: \"%s\", expected timpani drums marimba xylophone vibraphone "
-                          "glockenspiel tubular-bell",
+                          "glockenspiel tubular-bell all",
                           word);
 }
 
@@ -114,7 +114,7 @@ static bool make(const cli_arguments *arguments, midi_score *made, himc_error *e
     const char *dot = strrchr(out, '.');
     if (cli_is_take(out) || (dot && (!strcmp(dot, ".mid") || !strcmp(dot, ".wav"))))
         return himc_error_set(error, "%s: a score is a text, expected a name like score.txt", out);
-    return read_part(arguments->value[PART], &wanted.choice, error) &&
+    return read_part(arguments->value[PART], &wanted, error) &&
            read_curve(arguments->value[CURVE], &wanted.range, error) &&
            read_number("--track", arguments->value[TRACK], 65535, &wanted.track, error) &&
            read_number("--channel", arguments->value[CHANNEL], 16, &wanted.channel, error) &&
@@ -148,7 +148,9 @@ const cli_call cli_import = {
     "MusicXML: .musicxml and .mxl, score-partwise.\n"
     "\n"
     "PART: timpani (program 48 of General MIDI and tracks of that name), drums (channel 10),\n"
-    "marimba, xylophone, vibraphone, glockenspiel, tubular-bell (programs 13, 14, 12, 10, 15).\n"
+    "marimba, xylophone, vibraphone, glockenspiel, tubular-bell (programs 13, 14, 12, 10, 15);\n"
+    "all: those of all players, for one. A part of MusicXML, or a channel of a track, is a player\n"
+    "with several instruments, as are tracks whose names begin alike: \"Player 1: Xylophone\".\n"
     "CURVE: `notation`, as notation programs write them, 16 ppp .. 112 ff in equal steps; or\n"
     "`square:DB`, the square law of synthesisers over a range of 1 .. 80 dB; `square` is 22.",
     options,

@@ -69,14 +69,42 @@ static midi_choice asked_choice(const midi_note *note, const midi_options *optio
     return !asked ? MIDI_ANY : options->as != MIDI_ANY ? options->as : choice_of(note);
 }
 
-static midi_choice first_choice(const midi_file *file, const midi_options *options)
+#define KIND(choice) (1u << (choice))
+
+/// Who plays which kinds.
+typedef struct cast {
+    uint8_t *kinds; ///< a bit each, by player; owned
+    midi_choice first;
+    int leader; ///< the first player of that kind
+} cast;
+
+static bool list_cast(cast *c, const midi_file *file, const midi_options *options)
 {
-    midi_choice first = MIDI_CHOICES;
-    for (int i = 0; i < file->note_count; i++) {
-        midi_choice c = asked_choice(&file->notes[i], options);
-        first = c != MIDI_ANY && c < first ? c : first;
+    int players = 0;
+    for (int i = 0; i < file->note_count; i++)
+        players = file->notes[i].player >= players ? file->notes[i].player + 1 : players;
+    *c = (cast){.kinds = calloc((size_t)players + 1, 1), .first = MIDI_CHOICES};
+    for (int i = 0; i < file->note_count && c->kinds; i++) {
+        const midi_note *note = &file->notes[i];
+        midi_choice choice = asked_choice(note, options);
+        if (choice == MIDI_ANY)
+            continue;
+        c->kinds[note->player] |= KIND(choice);
+        if (choice < c->first || (choice == c->first && note->player < c->leader))
+            c->leader = note->player;
+        c->first = choice < c->first ? choice : c->first;
     }
-    return first == MIDI_CHOICES ? MIDI_DRUMS : first;
+    c->first = c->first == MIDI_CHOICES ? MIDI_DRUMS : c->first;
+    return c->kinds;
+}
+
+// all of one player, and of others who play that kind alone
+static bool is_taken(const cast *c, const midi_note *note, midi_choice choice,
+                     const midi_options *options)
+{
+    if (choice == MIDI_ANY || options->choice != MIDI_ANY)
+        return choice != MIDI_ANY && choice == options->choice;
+    return options->all || note->player == c->leader || c->kinds[note->player] == KIND(c->first);
 }
 
 static bool give_instruments(midi_part *part, himc_error *error)
@@ -90,32 +118,38 @@ static bool give_instruments(midi_part *part, himc_error *error)
     return true;
 }
 
-static void take_notes(midi_part *part, const midi_options *options)
+static void take_note(midi_part *part, const midi_note *note, const midi_options *options)
+{
+    const midi_way *way = &note->way;
+    bool written = way->dynamic >= 0;
+    double damped = note->seconds + 0.15; // by a hand at the earliest (s); chosen
+    part->notes += !way->extra;
+    bool beyond = part->choice != MIDI_DRUMS && himc_spot_is_beyond(way->spot);
+    part->hoopless += beyond;
+    part->stroke[part->count++] = (midi_stroke){
+        .note = note,
+        .choice = part->choice,
+        .key = options->as_key > 0 ? options->as_key : note->key,
+        .spot = beyond ? HIMC_SPOT_NORMAL : way->spot,
+        .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
+        .end = fmax(note->off, damped),
+        .roll = {way->length,
+                 written ? way->last_dynamic : himc_midi_dynamic(note->last_level, options->range),
+                 note->off}};
+}
+
+// counts what is not for the part
+static void list_notes(midi_part *part, const cast *c, const midi_options *options)
 {
     for (int i = 0; i < part->file->note_count; i++) {
         const midi_note *note = &part->file->notes[i];
-        const midi_way *way = &note->way;
-        midi_choice choice = asked_choice(note, options);
-        bool written = way->dynamic >= 0;
-        double damped = note->seconds + 0.15; // by a hand at the earliest (s); chosen
-        if (choice != part->choice) {
-            bool drum = choice_of(note) != MIDI_ANY;
-            part->fate[drum ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT] += !way->extra;
-            continue;
-        }
-        part->notes += !way->extra;
-        bool beyond = choice != MIDI_DRUMS && himc_spot_is_beyond(way->spot);
-        part->hoopless += beyond;
-        part->stroke[part->count++] = (midi_stroke){
-            .note = note,
-            .key = options->as_key > 0 ? options->as_key : note->key,
-            .spot = beyond ? HIMC_SPOT_NORMAL : way->spot,
-            .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
-            .end = fmax(note->off, damped),
-            .roll = {way->length,
-                     written ? way->last_dynamic
-                             : himc_midi_dynamic(note->last_level, options->range),
-                     note->off}};
+        midi_choice choice = asked_choice(note, options), drum = choice_of(note);
+        bool taken = is_taken(c, note, choice, options);
+        part->kinds |= taken ? KIND(choice) : 0;
+        part->others |= !taken && drum != MIDI_ANY ? KIND(drum) : 0;
+        if (!taken)
+            part->fate[drum != MIDI_ANY ? MIDI_OTHER_PART : MIDI_OTHER_INSTRUMENT] +=
+                !note->way.extra;
     }
 }
 
@@ -136,14 +170,16 @@ static const midi_bar *bar_at(const midi_file *file, double beat)
 // a part of a roll without the part before it is left out, too, and so are the strokes in it
 static void drop_rests(midi_part *part)
 {
-    midi_fate fate[MIDI_KEY_COUNT] = {MIDI_PLAYED}; // of the last part of a roll of each key
+    // of the last part of a roll of each key
+    midi_fate fates[MIDI_CHOICES][MIDI_KEY_COUNT] = {{MIDI_PLAYED}};
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
+        midi_fate *fate = &fates[s->choice][s->key];
         if (s->roll.length <= 0 && !s->in_roll)
             continue;
-        if ((s->note->way.extra || s->in_roll) && fate[s->key] != MIDI_PLAYED)
-            s->fate = fate[s->key];
-        fate[s->key] = s->fate;
+        if ((s->note->way.extra || s->in_roll) && *fate != MIDI_PLAYED)
+            s->fate = *fate;
+        *fate = s->fate;
     }
 }
 
@@ -168,34 +204,105 @@ static void count_fates(midi_part *part)
     }
 }
 
+// instruments of one kind, with their strokes and pedals, join those of others
+static void join_kind(midi_part *whole, const midi_part *own)
+{
+    int at[MIDI_HEADS] = {0};
+    for (int i = 0; i < own->heads; i++) {
+        at[i] = whole->heads;
+        if (own->head[i].key == -1)
+            continue;
+        whole->head[whole->heads] = own->head[i];
+        whole->head[whole->heads++].choice = own->choice;
+    }
+    for (int i = 0; i < own->count; i++)
+        own->stroke[i].head = own->stroke[i].head < 0 ? -1 : at[own->stroke[i].head];
+    for (int i = 0; i < own->pedals; i++)
+        own->pedal[i].head = at[own->pedal[i].head];
+    whole->pedals += own->pedals;
+    whole->count += own->count;
+    whole->notes += own->notes;
+    whole->moved += own->moved;
+    whole->untuned += own->untuned;
+    whole->hoopless += own->hoopless;
+}
+
+// the strokes of one kind
+static bool add_kind(midi_part *whole, midi_choice kind, const cast *c, const midi_options *options,
+                     himc_error *error)
+{
+    const midi_file *file = whole->file;
+    midi_part own = {.file = file,
+                     .choice = kind,
+                     .setup = whole->setup,
+                     .taken = whole->heads,
+                     .stroke = whole->stroke + whole->count};
+    for (int i = 0; i < file->note_count; i++) {
+        midi_choice choice = asked_choice(&file->notes[i], options);
+        if (choice == kind && is_taken(c, &file->notes[i], choice, options))
+            take_note(&own, &file->notes[i], options);
+    }
+    int count = whole->count + own.count;
+    if (count > MOST_STROKES)
+        return himc_error_set(error, "%d notes for drums, expected %d", count, MOST_STROKES);
+    bool good = give_instruments(&own, error);
+    if (own.pedal)
+        whole->pedal = own.pedal;
+    if (good && kind == MIDI_TIMPANI && !file->said)
+        himc_midi_find_rolls(&own);
+    for (int i = 0; i < own.count && kind != MIDI_TIMPANI; i++)
+        own.stroke[i].damped = own.stroke[i].note->way.ring < 0;
+    if (good)
+        join_kind(whole, &own);
+    return good;
+}
+
+static int by_note(const void *a, const void *b)
+{
+    const midi_stroke *x = a, *y = b;
+    return (x->note > y->note) - (x->note < y->note);
+}
+
 // the notes of the part as strokes with heads and hands
 static bool make_part(midi_part *part, const midi_file *file, const midi_options *options,
                       himc_error *error)
 {
+    cast c;
+    bool good = list_cast(&c, file, options);
     part->file = file;
-    part->choice = options->choice == MIDI_ANY ? first_choice(file, options) : options->choice;
+    part->choice = options->choice == MIDI_ANY ? c.first : options->choice;
     part->stroke = calloc((size_t)file->note_count + 1, sizeof *part->stroke);
-    if (!part->stroke)
-        return himc_error_set(error, "out of memory for %d notes", file->note_count);
-    take_notes(part, options);
-    if (part->setup && part->choice != MIDI_DRUMS)
-        return himc_error_set(error,
-                              "a set-up is for drums, expected none: %s has instruments of "
-                              "its own",
-                              himc_midi_choice_name(part->choice));
-    if (part->count > MOST_STROKES)
-        return himc_error_set(error, "%d notes for drums, expected %d", part->count, MOST_STROKES);
-    if (!give_instruments(part, error))
+    good = good && part->stroke;
+    if (!good)
+        himc_error_set(error, "out of memory for %d notes", file->note_count);
+    else
+        list_notes(part, &c, options);
+    for (int i = 1; i < MIDI_CHOICES && good && part->setup; i++)
+        if (i != MIDI_DRUMS && (part->kinds | KIND(part->choice)) & KIND(i))
+            good = himc_error_set(
+                error, "a set-up is for drums, expected none: %s has instruments of its own",
+                names[i]);
+    // drums come last: they take what room there is
+    for (int i = 1; i < MIDI_CHOICES && good; i++) {
+        midi_choice kind = (midi_choice)(i == 1 ? 1 : i < MIDI_CHOICES - 1 ? i + 1 : MIDI_DRUMS);
+        good = !(part->kinds & KIND(kind)) || add_kind(part, kind, &c, options, error);
+    }
+    free(c.kinds);
+    if (good && part->count > 0 && part->kinds != KIND(part->choice)) {
+        qsort(part->stroke, (size_t)part->count, sizeof *part->stroke, by_note);
+        himc_midi_lay_out(part);
+    }
+    if (!good || !himc_midi_stick(part, error))
         return false;
-    if (part->choice == MIDI_TIMPANI && !file->said)
-        himc_midi_find_rolls(part);
-    if (!himc_midi_stick(part, error))
-        return false;
-    for (int i = 0; i < part->count && part->choice != MIDI_TIMPANI; i++)
-        part->stroke[i].damped = part->stroke[i].note->way.ring < 0;
     drop_rests(part);
     count_fates(part);
     return true;
+}
+
+// true of words that are for a kind of the part
+static bool is_mine(const midi_part *part, const midi_order *o)
+{
+    return o->choice == MIDI_ANY || (part->kinds & KIND(o->choice));
 }
 
 static bool has_wires(const midi_head *head)
@@ -212,8 +319,7 @@ static int count_wireless(const midi_part *part)
             return 0;
     for (int i = 0; i < part->file->order_count; i++) {
         const midi_order *o = &part->file->orders[i];
-        bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
-        count += o->kind == MIDI_WIRES && mine;
+        count += o->kind == MIDI_WIRES && is_mine(part, o);
     }
     return count;
 }
@@ -237,6 +343,16 @@ static void report_fate(himc_text_lines *t, const midi_part *part, midi_fate fat
         report_kind(t, count, text, text);
 }
 
+// names of kinds, a bit each
+static const char *list_names(char *line, size_t size, unsigned kinds)
+{
+    *line = '\0';
+    for (int i = 1; i < MIDI_CHOICES; i++)
+        if (kinds & KIND(i))
+            himc_text_list(line, size, names[i]);
+    return line;
+}
+
 static void report(himc_text_lines *t, const midi_file *file, const midi_part *part)
 {
     static const char *const why[MIDI_FATES][2] = {
@@ -255,8 +371,9 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
                                    "notes are of other instruments"},
     };
+    char line[100];
     himc_text_print(t, "%d of %d notes for %s are played\n", part->fate[MIDI_PLAYED], part->notes,
-                    himc_midi_choice_name(part->choice));
+                    list_names(line, sizeof line, part->kinds));
     report_kind(t, file->missing, "track is missing: the file is cut short or its header is wrong",
                 "tracks are missing: the file is cut short or its header is wrong");
     for (int i = 0; i < MIDI_FATES; i++)
@@ -264,10 +381,12 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
             report_fate(t, part, (midi_fate)i, why[i]);
     if (file->said)
         himc_text_print(t, "%s", file->said);
-    report_kind(t, part->fate[MIDI_OTHER_PART], "note for other percussion is not asked for",
-                "notes for other percussion are not asked for");
-    char line[100];
-    for (int key = 0; key < MIDI_KEY_COUNT && part->choice == MIDI_DRUMS; key++)
+    if (part->fate[MIDI_OTHER_PART] > 0)
+        himc_text_print(t, "%d note%s not asked for: %s\n", part->fate[MIDI_OTHER_PART],
+                        part->fate[MIDI_OTHER_PART] == 1 ? " for other percussion is"
+                                                         : "s for other percussion are",
+                        list_names(line, sizeof line, part->others));
+    for (int key = 0; key < MIDI_KEY_COUNT; key++)
         if (himc_midi_tell_key(part, key, line, sizeof line) > 0 && line[0])
             himc_text_print(t, "%s\n", line);
     report_kind(t, part->moved, "note is moved by octaves to what is built",
@@ -345,9 +464,10 @@ static int list_orders(const midi_part *part, change *list, int count)
     int most = MOST_CHANGES - part->pedals;
     for (int i = 0; i < part->file->order_count; i++) {
         const midi_order *o = &part->file->orders[i];
-        bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
-        for (int h = 0; mine && h < part->heads && count < most; h++)
-            if (o->kind == MIDI_MUFFLE && part->head[h].key != -1)
+        for (int h = 0; is_mine(part, o) && h < part->heads && count < most; h++)
+            if (o->choice != MIDI_ANY && o->choice != part->head[h].choice)
+                continue;
+            else if (o->kind == MIDI_MUFFLE)
                 list[count++] = (change){o->seconds, h, o->value ? "muffle 1" : "muffle 0", NULL};
             else if (o->kind == MIDI_WIRES && has_wires(&part->head[h]))
                 list[count++] = (change){o->seconds, h, o->value ? "wires 1" : "wires 0", NULL};
@@ -420,22 +540,23 @@ static void put_stroke(himc_text_lines *t, const midi_part *part, const midi_str
                         dynamic_word(first, s->dynamic), spot, s->part, space, drum);
 }
 
-// the first mallets that a word names before the first stroke; others cannot be played
-static const char *find_mallets(midi_part *part, double first)
+// the first mallets that a word names before the first stroke of a kind; others cannot be played
+static void find_mallets(midi_part *part, const char *found[MIDI_CHOICES])
 {
     static const char *const mallets[] = {"soft", "medium", "hard", "wood"};
-    const char *found = NULL;
+    double first[MIDI_CHOICES] = {0}; // beats
+    for (int i = part->count - 1; i >= 0; i--)
+        if (part->stroke[i].fate == MIDI_PLAYED)
+            first[part->stroke[i].choice] = first[MIDI_ANY] = part->stroke[i].note->beat;
     for (int i = 0; i < part->file->order_count; i++) {
         const midi_order *o = &part->file->orders[i];
-        bool mine = o->choice == MIDI_ANY || o->choice == part->choice;
-        if (o->kind != MIDI_MALLET || !mine)
+        if (o->kind != MIDI_MALLET || !is_mine(part, o))
             continue;
-        if (o->beat <= first + 1e-6)
-            found = mallets[o->value & 3];
-        else
-            part->mallets++;
+        part->mallets += o->beat > first[o->choice] + 1e-6;
+        for (int kind = 1; kind < MIDI_CHOICES && o->beat <= first[o->choice] + 1e-6; kind++)
+            if (o->choice == MIDI_ANY || (int)o->choice == kind)
+                found[kind] = mallets[o->value & 3];
     }
-    return found;
 }
 
 // the file's name as a word: what ends a word or a line in Pure Data becomes _
@@ -449,15 +570,13 @@ static void put_name(himc_text_lines *t, const char *name)
     himc_text_print(t, "comment made of %s by himc import;\n", shown);
 }
 
-static void put_heads(himc_text_lines *t, const midi_part *part, const char *mallets,
-                      const char *setup)
+static void put_heads(himc_text_lines *t, const midi_part *part,
+                      const char *const mallets[MIDI_CHOICES], const char *setup)
 {
     if (setup)
         himc_text_print(t, "setup %s;\n", setup);
     for (int i = 0; i < part->heads && !setup; i++) {
         const midi_head *h = &part->head[i];
-        if (h->key == -1)
-            continue;
         if (h->made[0])
             himc_text_print(t, "instrument %s %s;\n", h->name, h->made);
         else
@@ -468,8 +587,8 @@ static void put_heads(himc_text_lines *t, const midi_part *part, const char *mal
             himc_midi_key_name(pitch, h->key);
             himc_text_print(t, "%s tune %s;\n", h->name, pitch);
         }
-        if (mallets)
-            himc_text_print(t, "%s mallet %s;\n", h->name, mallets);
+        if (mallets[h->choice])
+            himc_text_print(t, "%s mallet %s;\n", h->name, mallets[h->choice]);
     }
     himc_text_print(t, "gain %g;\n", GAIN);
 }
@@ -512,7 +631,8 @@ static bool write_score(midi_score *made, const midi_file *file, midi_part *part
     for (int i = 0; i < part->count; i++)
         off = fmax(off, part->stroke[i].note->off);
     double last = himc_score_beat(file->tempi, file->tempo_count, off);
-    const char *mallets = find_mallets(part, part->stroke[first].note->beat);
+    const char *mallets[MIDI_CHOICES] = {NULL};
+    find_mallets(part, mallets);
     report(&said, file, part);
     put_name(&score, name);
     const char *line = said.failed ? "" : said.bytes;

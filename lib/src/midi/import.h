@@ -11,6 +11,7 @@ typedef struct midi_options {
     const char
         *setup; ///< of drums: a set-up's name or file, whose instruments play; NULL: as needed
     int track, channel; ///< whose notes alone are taken, from 1; 0: all
+    bool all;           ///< with MIDI_ANY: of all players and kinds, for one player
     midi_choice as;     ///< what they are taken for; MIDI_ANY: as the file says
     int as_key;         ///< of drums: all are this key; 0: as the file says
 } midi_options;

@@ -80,6 +80,8 @@ void himc_midi_keyboard(midi_part *part)
     himc_format(head->made, sizeof head->made, "%s %s %s", name, low_name, high_name);
     double pitch = boards[part->choice - FIRST].pitch,
            middle = .5 * (naturals(first) + naturals(last));
+    head->depth = 4 * pitch; // about, of two rows
+    head->side = 0.5 * pitch * (naturals(last) - naturals(first) + 1);
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
         bool natural = notes[s->key % 12][1] == '\0';

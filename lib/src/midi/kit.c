@@ -86,6 +86,14 @@ static const gm_key concert[] = {
     {"bass drum", "bass-drum", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"tam-tam", "tam-tam", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"temple block", "temple-blocks", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"low temple block", "temple-blocks", BY_HAND, HIMC_SPOT_NORMAL, false, "low"},
+    {"second temple block", "temple-blocks", BY_HAND, HIMC_SPOT_NORMAL, false, "second"},
+    {"third temple block", "temple-blocks", BY_HAND, HIMC_SPOT_NORMAL, false, "third"},
+    {"fourth temple block", "temple-blocks", BY_HAND, HIMC_SPOT_NORMAL, false, "fourth"},
+    {"high temple block", "temple-blocks", BY_HAND, HIMC_SPOT_NORMAL, false, "high"},
+    {"middle wood block", "middle-block", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"low cowbell", "low-cowbell", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"high cowbell", "high-cowbell", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"other percussion", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
 };
 
@@ -97,10 +105,14 @@ static const gm_key *find_key(int key)
     return known ? &keys[key - FIRST_KEY] : NULL;
 }
 
-// how well a key stands for that spot
-static int likeness(const gm_key *k, himc_spot spot)
+// how well a key stands for that spot and part; another sound is worse
+static int likeness(const gm_key *k, const char *part, himc_spot spot)
 {
-    return k->spot == spot ? 2 : k->spot == HIMC_SPOT_NORMAL;
+    return (strcmp(k->part ? k->part : "", part) == 0 ? 8 : 0) +
+           (k->spot == spot               ? 4
+            : k->spot == HIMC_SPOT_NORMAL ? 2
+                                          : 0) -
+           k->instead;
 }
 
 himc_spot himc_midi_key_spot(int key)
@@ -109,7 +121,7 @@ himc_spot himc_midi_key_spot(int key)
     return k ? k->spot : HIMC_SPOT_NORMAL;
 }
 
-int himc_midi_key_of(const char *instrument, himc_spot spot, bool open)
+int himc_midi_key_of(const char *instrument, const char *part, himc_spot spot, bool open)
 {
     int found = -1;
     for (int key = FIRST_KEY; key < MIDI_KEY_COUNT; key++) {
@@ -117,7 +129,7 @@ int himc_midi_key_of(const char *instrument, himc_spot spot, bool open)
         if (!k || !k->instrument || strcmp(k->instrument, instrument) != 0)
             continue;
         bool fits = k->how == CLOSED ? !open : k->how == OPENED ? open : k->how != PEDALLED;
-        bool better = found < 0 || likeness(k, spot) > likeness(find_key(found), spot);
+        bool better = found < 0 || likeness(k, part, spot) > likeness(find_key(found), part, spot);
         if (fits && better && (!k->instead || k->spot == spot))
             found = key;
     }
@@ -174,6 +186,49 @@ static bool find(const char *setup, midi_head *head)
     return true;
 }
 
+const char *himc_midi_instrument_like(const char *name, const char *kind, double size,
+                                      const char *const *used)
+{
+    const char *found = "";
+    double least = HUGE_VAL;
+    for (int key = FIRST_KEY; key < MIDI_KEY_COUNT; key++) {
+        const gm_key *k = find_key(key);
+        midi_head head = {.name = k && k->instrument ? k->instrument : ""};
+        if (strcmp(head.name, name) == 0 && head.name[0])
+            return head.name;
+        if (!head.name[0] || (!find(himc_setup_kit, &head) && !find(himc_setup_around, &head)))
+            continue;
+        double inches = himc_midi_split_size(head.made),
+               away = size <= 0    ? 0
+                      : inches > 0 ? fabs(log(size / inches))
+                                   : 0.2; // usual size
+        for (const char *const *u = used; *u; u++)
+            away += strcmp(*u, head.name) == 0 ? 10 : 0;
+        if (strcmp(head.made, kind) == 0 && away < least) {
+            least = away;
+            found = head.name;
+        }
+    }
+    return found;
+}
+
+int himc_midi_concert_key(const char *text, size_t size)
+{
+    int found = 0;
+    size_t longest = 0;
+    for (int key = MIDI_BASS_DRUM; key < MIDI_NO_SOUND; key++) {
+        const char *sound = find_key(key)->sound;
+        size_t length = strlen(sound);
+        if (length > longest && size >= length &&
+            memcmp(text + size - length, sound, length) == 0 &&
+            (size == length || text[size - length - 1] == ' ')) {
+            found = key;
+            longest = length;
+        }
+    }
+    return found;
+}
+
 // the instrument of a set-up with that name, or else that of its kind nearest in size; its place
 static bool find_own(const himc_score *setup, midi_head *head)
 {
@@ -219,7 +274,7 @@ static int head_of(midi_part *part, const char *name)
     for (int i = 0; i < part->heads; i++)
         if (strcmp(part->head[i].name, name) == 0)
             return i;
-    if (part->heads == MIDI_HEADS)
+    if (part->heads + part->taken == MIDI_HEADS)
         return -1;
     midi_head *head = &part->head[part->heads];
     *head = own;
@@ -228,7 +283,8 @@ static int head_of(midi_part *part, const char *name)
     char made[sizeof head->made];
     snprintf(made, sizeof made, "%s", head->made);
     double inches = himc_midi_split_size(made);
-    head->radius = inches > 0 ? 0.0127 * inches : 0.1; // (m), of what is small
+    head->radius = inches > 0 && inches < 50 ? 0.0127 * inches : 0.1; // (m), of what is small
+    head->side = strcmp(made, "temple-blocks") == 0 ? 0.2 : 0;
     return part->heads++;
 }
 
@@ -263,8 +319,10 @@ int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size)
     const gm_key *of = find_key(key);
     int missing = 0, played = 0;
     for (int i = 0; i < part->count; i++) {
-        missing += part->stroke[i].key == key && part->stroke[i].fate == MIDI_NO_INSTRUMENT;
-        played += part->stroke[i].key == key && part->stroke[i].fate == MIDI_PLAYED;
+        const midi_stroke *s = &part->stroke[i];
+        bool of_key = s->choice == MIDI_DRUMS && s->key == key;
+        missing += of_key && s->fate == MIDI_NO_INSTRUMENT;
+        played += of_key && s->fate == MIDI_PLAYED;
     }
     *line = '\0';
     if (missing > 0 && of && of->instrument && part->setup && part->heads < MIDI_HEADS)

@@ -13,7 +13,17 @@
 #define MIDI_UNTUNED (-2)     ///< of midi_head.key: it is used as it is made
 
 /// Keys of drums that General MIDI does not have.
-enum { MIDI_BASS_DRUM = 128, MIDI_TAM_TAM, MIDI_TEMPLE_BLOCKS, MIDI_NO_SOUND, MIDI_KEY_COUNT };
+enum {
+    MIDI_BASS_DRUM = 128,
+    MIDI_TAM_TAM,
+    MIDI_TEMPLE_BLOCKS,
+    MIDI_LOW_TEMPLE_BLOCK, ///< and four more, up to the high one
+    MIDI_MIDDLE_BLOCK = MIDI_LOW_TEMPLE_BLOCK + 5,
+    MIDI_LOW_COWBELL,
+    MIDI_HIGH_COWBELL,
+    MIDI_NO_SOUND,
+    MIDI_KEY_COUNT
+};
 
 /// What became of a note.
 typedef enum midi_fate {
@@ -30,13 +40,15 @@ typedef enum midi_fate {
 
 /// Where a head stands, and its pitch.
 typedef struct midi_head {
-    const char *name; ///< static
-    char made[40];    ///< the words of `instrument` after its name; "": a drum ...
-    double inches;    ///< ... of this diameter
-    double x, y, z;   ///< of its centre (m)
-    double tilt;      ///< (rad)
-    double radius;    ///< (m)
-    int key;          ///< tuned so at first (MIDI key), MIDI_UNTUNED; -1: the head is not used
+    const char *name;   ///< static
+    char made[40];      ///< the words of `instrument` after its name; "": a drum ...
+    double inches;      ///< ... of this diameter
+    double x, y, z;     ///< of its centre (m)
+    double tilt;        ///< (rad)
+    double radius;      ///< (m)
+    double side, depth; ///< of a row: from its middle to its ends; of bars: to its edges (m)
+    int key;            ///< tuned so at first (MIDI key), MIDI_UNTUNED; -1: the head is not used
+    midi_choice choice; ///< its kind
 } midi_head;
 
 /// A roll that a stroke begins.
@@ -53,6 +65,7 @@ typedef enum midi_opening { MIDI_AS_IT_IS, MIDI_CLOSE, MIDI_OPEN } midi_opening;
 typedef struct midi_stroke {
     const midi_note *note; ///< borrowed from the file
     int order, orders;     ///< of the file, since the stroke before: the first, how many
+    midi_choice choice;    ///< of its instrument
     int key;               ///< of the note, of timpani moved by octaves into their range
     midi_fate fate;
     int head; ///< its index
@@ -78,11 +91,12 @@ typedef struct midi_pedal {
 } midi_pedal;
 
 typedef struct midi_part {
-    const midi_file *file; ///< borrowed
-    midi_choice choice;    ///< not MIDI_ANY
-    himc_score *setup;     ///< owned; its instruments are all that there are; or NULL
+    const midi_file *file;  ///< borrowed
+    midi_choice choice;     ///< not MIDI_ANY; of several the first
+    unsigned kinds, others; ///< a bit each: that are played, and that are not asked for
+    himc_score *setup;      ///< owned; its instruments are all that there are; or NULL
     midi_head head[MIDI_HEADS];
-    int heads;
+    int heads, taken;    ///< how many, and by other kinds of the part
     midi_stroke *stroke; ///< in the order of time (count), owned
     int count;
     midi_pedal *pedal; ///< in the order of time (pedals), owned
@@ -138,8 +152,15 @@ double himc_midi_split_size(char *made);
 /// notes.
 int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size);
 
-/// The key of an instrument of the kit, struck at that spot; of a hi-hat open or closed; -1: none.
-int himc_midi_key_of(const char *instrument, himc_spot spot, bool open);
+/// The key of an instrument of the kit, struck at that spot of that part ("": any); of a hi-hat
+/// open or closed; -1: none.
+int himc_midi_key_of(const char *instrument, const char *part, himc_spot spot, bool open);
+/// The instrument of the kit with that name, else of that kind the one nearest in size, of those
+/// not among `used` (names, NULL after the last) while there are any; "" without. Borrowed, static.
+const char *himc_midi_instrument_like(const char *name, const char *kind, double size,
+                                      const char *const *used);
+/// The concert instrument that a text ends with: its key from 128; else 0.
+int himc_midi_concert_key(const char *text, size_t size);
 /// Where the instrument of that key of the kit is struck.
 himc_spot himc_midi_key_spot(int key);
 /// What General MIDI calls a key; "" if it has none.
@@ -151,6 +172,9 @@ midi_choice himc_midi_program_choice(int program);
 void himc_midi_key_name(char name[HIMC_NOTE_SIZE], int key);
 /// Gives each stroke its bar.
 void himc_midi_keyboard(midi_part *part);
+
+/// layout.c: puts instruments of several kinds around one player.
+void himc_midi_lay_out(midi_part *part);
 
 /// sticking.c: gives each stroke a hand. False without memory.
 bool himc_midi_stick(midi_part *part, himc_error *error);

@@ -13,6 +13,7 @@
 #include "base/argument.h"
 #include "base/array.h"
 #include "base/format.h"
+#include "midi/part.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -55,6 +56,8 @@ typedef struct reader {
     event *events;
     int count, room;
     bool *timpani;      ///< (tracks) of the names
+    uint8_t *concert;   ///< (tracks) the key that the name says: what General MIDI lacks; or 0
+    uint32_t *player;   ///< (tracks) "Player 2: Xylophone": 1 + that number; or 0
     uint16_t *channels; ///< (tracks) that have notes, a bit each
     himc_error *error;
 } reader;
@@ -134,6 +137,25 @@ static bool names_timpani(const uint8_t *text, size_t size)
     return false;
 }
 
+// "Player 1: Timpani", "Player 1: Tam-tam": tracks of one player's instruments, as `himc export`
+// writes them
+static void read_name(reader *r, const uint8_t *text, size_t size)
+{
+    static const char begin[] = "Player ";
+    const size_t most = 4; // digits
+    size_t at = sizeof begin - 1, first = at;
+    uint32_t number = 0;
+    r->timpani[r->track] |= names_timpani(text, size);
+    if (size <= at || memcmp(text, begin, at) != 0)
+        return;
+    for (; at < size && isdigit(text[at]) && at - first < most; at++)
+        number = 10 * number + (uint32_t)(text[at] - '0');
+    if (at == first || at == size || text[at] != ':')
+        return;
+    r->player[r->track] = 1 + number;
+    r->concert[r->track] = (uint8_t)himc_midi_concert_key((const char *)text, size);
+}
+
 // a message to a channel, of one data byte or two; `first` has been read
 static bool read_message(reader *r, uint8_t first)
 {
@@ -186,7 +208,7 @@ static bool read_event(reader *r)
     r->at += length;
     r->over = type == END;
     if (type == NAME)
-        r->timpani[r->track] |= names_timpani(data, length);
+        read_name(r, data, length);
     if (type == SET_TEMPO && length >= 3)
         return add_event(r, &(event){.kind = TEMPO, .tempo = number_of(data, 3)});
     if (type == SET_METER && length >= 2 && data[0] > 0 && data[1] < 8)
@@ -313,18 +335,22 @@ static void begin_note(midi_file *file, const reader *r, channel *c, const event
     // a track's name says more than the drum channel, unless it has other channels, too
     bool timpani = r->timpani[e->track] &&
                    (e->channel != MIDI_DRUM_CHANNEL || r->channels[e->track] == 1 << e->channel);
+    bool drum = e->channel == MIDI_DRUM_CHANNEL;
     midi_note *note = c->sounding[e->first] = &file->notes[file->note_count++];
-    *note = (midi_note){.beat = beat,
-                        .seconds = seconds,
-                        .off = -1,
-                        .track = e->track,
-                        .channel = e->channel,
-                        .key = e->first,
-                        .velocity = e->second,
-                        .program = c->program,
-                        .level = level_of(c, e->first, e->second),
-                        .choice = timpani ? MIDI_TIMPANI : MIDI_ANY,
-                        .way = {.dynamic = -1, .spot = HIMC_SPOT_NORMAL}};
+    *note =
+        (midi_note){.beat = beat,
+                    .seconds = seconds,
+                    .off = -1,
+                    .track = e->track,
+                    .player = r->player[e->track] > 0 ? 16 * UINT16_MAX + (int)r->player[e->track]
+                                                      : 16 * e->track + e->channel,
+                    .channel = e->channel,
+                    .key = drum && r->concert[e->track] ? r->concert[e->track] : e->first,
+                    .velocity = e->second,
+                    .program = c->program,
+                    .level = level_of(c, e->first, e->second),
+                    .choice = timpani ? MIDI_TIMPANI : MIDI_ANY,
+                    .way = {.dynamic = -1, .spot = HIMC_SPOT_NORMAL}};
 }
 
 static bool add_tempo(midi_file *file, double beat, uint32_t tempo)
@@ -560,10 +586,12 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
         r.per_second = (rate == 29 ? 30000.0 / 1001 : rate) * ticks;
     r.timpani = calloc(UINT16_MAX, sizeof *r.timpani);
     r.channels = calloc(UINT16_MAX, sizeof *r.channels);
+    r.concert = calloc(UINT16_MAX, sizeof *r.concert);
+    r.player = calloc(UINT16_MAX, sizeof *r.player);
     collection *c = calloc(1, sizeof *c);
     // a file without events has an address of them, too
     bool good = (himc_array_grow(&r.events, 0, &r.room, sizeof *r.events, NULL) && r.timpani &&
-                 r.channels && c) ||
+                 r.channels && r.concert && r.player && c) ||
                 himc_error_set(error, "out of memory");
     good = good && read_tracks(&r, file, at + 8 + header, at + size) && collect(file, &r, c) &&
            find_swells(file, &r, c) && settle_beats(file, &r) &&
@@ -575,6 +603,8 @@ bool himc_midi_file_read(midi_file *file, const void *bytes, size_t size, himc_e
     free(c);
     free(r.timpani);
     free(r.channels);
+    free(r.concert);
+    free(r.player);
     free(r.events);
     if (!good)
         himc_midi_file_free(file);

@@ -9,7 +9,7 @@
 
 /// Whose notes are played.
 typedef enum midi_choice {
-    MIDI_ANY,          ///< the first of these of which there are any
+    MIDI_ANY,          ///< the player of the first of these of which there are any
     MIDI_TIMPANI,      ///< program 48 of General MIDI, or a track of that name
     MIDI_DRUMS,        ///< channel 10
     MIDI_MARIMBA,      ///< program 13
@@ -40,8 +40,9 @@ typedef struct midi_note {
     double seconds;     ///< of the note-on, through the tempo map (s)
     double off;         ///< of the note-off (s); the end of the file if there is none
     int track;          ///< from 0
+    int player;         ///< of several, by number from 0: a part of MusicXML, a channel of a track
     uint8_t channel;    ///< 0 .. 15
-    uint8_t key;        ///< 0 .. 127; 60 is C4. From 128: drums that only MusicXML has (part.h)
+    uint8_t key;        ///< 0 .. 127; 60 is C4. From 128: drums that General MIDI lacks (part.h)
     uint8_t velocity;   ///< 1 .. 127
     uint8_t program;    ///< of its channel then, 0 .. 127
     double level;       ///< the velocity with volume, expression and pressure, 0 .. 127

@@ -111,7 +111,7 @@ static void follow_orders(const midi_part *part, int first, int count, double un
     for (int i = first; i < first + count; i++) {
         const midi_order *o = &part->file->orders[i];
         int key = 0;
-        if (o->kind != MIDI_TUNING || o->choice == MIDI_DRUMS)
+        if (o->kind != MIDI_TUNING || o->choice > MIDI_TIMPANI)
             continue;
         int drum = find_ordered(state, o, &key);
         double begin = o->seconds, end = begin;

@@ -26,6 +26,7 @@
 /// A drum of the score.
 typedef struct head {
     const char *name, *kind;
+    const char *like; ///< of drums: the instrument of the kit that it is written as
     midi_choice choice;
     int key;      ///< of timpani as it is now, of drums always
     bool open;    ///< a hi-hat
@@ -93,18 +94,21 @@ static head *find_head(exporter *x, const char *name)
 
 static void add_head(exporter *x, const char *name, const char *kind, double size)
 {
-    head *h = x->heads < HIMC_DRUMS ? &x->head[x->heads++] : NULL;
-    int key = MUSIC_NO_KEY;
-    if (!h)
+    const char *used[HIMC_DRUMS + 1] = {NULL};
+    if (x->heads == HIMC_DRUMS)
         return;
-    *h = (head){.name = name, .kind = kind, .choice = MIDI_TIMPANI, .key = USUAL_KEY};
+    for (int i = 0; i < x->heads; i++)
+        used[i] = x->head[i].like;
+    head *h = &x->head[x->heads++];
+    *h = (head){.name = name, .kind = kind, .like = "", .choice = MIDI_TIMPANI, .key = USUAL_KEY};
     if (strcmp(kind, "timpano") != 0) {
-        bool timbale = strcmp(kind, "timbale") == 0; // alone the French timpani
-        h->choice = himc_music_instrument(timbale ? "drum timbale" : kind, &key);
-        h->key = himc_midi_key_of(name, HIMC_SPOT_NORMAL, false);
-        h->key = h->key < 0 ? key : h->key;
-        if (h->choice == MIDI_ANY && h->key >= 0)
+        bool concert = strcmp(kind, "concert-tom") == 0;
+        h->choice = himc_music_instrument(kind, &h->key);
+        h->like = himc_midi_instrument_like(name, concert ? "tom" : kind, size, used);
+        if (h->like[0] && h->choice <= MIDI_DRUMS) {
             h->choice = MIDI_DRUMS;
+            h->key = himc_midi_key_of(h->like, "", HIMC_SPOT_NORMAL, false);
+        }
     } else if (size > 0) {
         h->key = USUAL_KEY - (int)lround(12 * log2(size / USUAL_INCHES));
     }
@@ -133,8 +137,11 @@ static void follow_line(exporter *x, const himc_score_line *line, loss kind)
     bool timpano = h && h->choice == MIDI_TIMPANI, written = false;
     if (himc_score_makes_drum(line)) {
         bool drum = c->id == HIMC_COMMAND_MAKE_DRUM;
-        double size = c->count > 1 && c->atom[1].kind == HIMC_ATOM_NUMBER ? c->atom[1].number : 0;
-        add_head(x, c->atom[0].symbol, drum ? "timpano" : c->atom[1].symbol, drum ? size : 0);
+        int of = drum ? 1 : 2;
+        double size =
+            c->count > of && c->atom[of].kind == HIMC_ATOM_NUMBER ? c->atom[of].number : 0;
+        const char *made = drum ? "timpano" : c->atom[1].symbol;
+        add_head(x, c->atom[0].symbol, made, drum || strcmp(made, "timpano") != 0 ? size : 0);
         written = true;
     } else if (timpano && (c->id == HIMC_COMMAND_TUNE || c->id == HIMC_COMMAND_GLISS)) {
         h->key = key_of(c->atom[0].number);
@@ -262,7 +269,8 @@ static bool add_note(exporter *x, const himc_stroke *s)
     }
     bool told = himc_spot_is_beyond(s->spot) && !x->midi; // by its notehead
     himc_spot struck = told ? HIMC_SPOT_NORMAL : spot_of(s);
-    int key = h->choice == MIDI_DRUMS ? himc_midi_key_of(h->name, struck, h->open) : h->key;
+    int key =
+        h->choice == MIDI_DRUMS ? himc_midi_key_of(h->like, s->part, struck, h->open) : h->key;
     if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
         key = PEDAL_HAT;
     key = key < 0 ? h->key : key;

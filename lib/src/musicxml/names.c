@@ -11,6 +11,7 @@
 #include "midi/part.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,22 +27,23 @@ static const struct {
     // what begins as another one comes first
     {"drum timbale|high timbale", MIDI_DRUMS, 65},
     {"low timbale", MIDI_DRUMS, 66},
-    {"röhrenglocke|tubular", MIDI_TUBULAR_BELL, 0},
+    {"röhrenglocke|tubular|glocken$|chimes", MIDI_TUBULAR_BELL, 0},
     {"schellen|tambour de basque|tambourin|tamburin|tamburell", MIDI_DRUMS, 54},
     {"timp|pauk|kettle|timbal", MIDI_TIMPANI, 0},
-    {"marimb", MIDI_MARIMBA, 0},
-    {"xyloph|xylor|xilof|silof", MIDI_XYLOPHONE, 0},
-    {"vibraph|vibraf", MIDI_VIBRAPHONE, 0},
-    {"glockensp|jeu de timbres|campanelli|orchestra bells", MIDI_GLOCKENSPIEL, 0},
+    {"marimb|mar$|mba$", MIDI_MARIMBA, 0},
+    {"xyl|xilof|silof", MIDI_XYLOPHONE, 0},
+    {"vibraph|vibraf|vib$|vibes", MIDI_VIBRAPHONE, 0},
+    {"glockensp|glsp|glock$|jeu de timbres|campanelli|orchestra bells", MIDI_GLOCKENSPIEL, 0},
     {"drum set|drumset|drum kit|drumkit", MIDI_DRUMS, MUSIC_NO_KEY},
     {"side stick|cross stick|rimshot", MIDI_DRUMS, 37},
     {"electric snare", MIDI_DRUMS, 40},
-    {"snare|side drum|caisse claire|kleine trommel|military drum|militärtrommel|"
-     "tambour|tamburo|rullante|cassa chiara",
+    {"snare|side drum|caisse claire|kleine trommel|kl trommel|kl tr$|military drum|"
+     "militärtrommel|tambour|tamburo|rullante|cassa chiara|s d$|c cl$",
      MIDI_DRUMS, 38},
     {"kick", MIDI_DRUMS, 36},
-    {"bass drum|grosse caisse|große trommel|grosse trommel|gran cassa|grancassa", MIDI_DRUMS,
-     MIDI_BASS_DRUM},
+    {"bass drum|grosse caisse|große trommel|grosse trommel|gr trommel|gr tr$|gran cassa|grancassa|"
+     "gr c$|b d$",
+     MIDI_DRUMS, MIDI_BASS_DRUM},
     {"tam tam|tamtam|gong", MIDI_DRUMS, MIDI_TAM_TAM},
     {"open hi hat|hi hat open", MIDI_DRUMS, 46},
     {"pedal hi hat|hi hat pedal", MIDI_DRUMS, 44},
@@ -50,11 +52,14 @@ static const struct {
     {"china|chinese", MIDI_DRUMS, 52},
     {"ride bell", MIDI_DRUMS, 53},
     {"ride", MIDI_DRUMS, 51},
-    {"crash|cymbal|becken|piatt|cinelli", MIDI_DRUMS, 49},
-    {"triang", MIDI_DRUMS, 81},
+    {"crash|cym|bck$|becken|piatt|cinelli", MIDI_DRUMS, 49},
+    {"triang|trgl|tri$", MIDI_DRUMS, 81},
     {"low wood block", MIDI_DRUMS, 77},
     {"wood block|woodblock|holzblock|bloc de bois|blocco di legno", MIDI_DRUMS, 76},
-    {"temple|tempelbl", MIDI_DRUMS, MIDI_TEMPLE_BLOCKS},
+    {"second temple block", MIDI_DRUMS, MIDI_LOW_TEMPLE_BLOCK + 1},
+    {"third temple block", MIDI_DRUMS, MIDI_LOW_TEMPLE_BLOCK + 2},
+    {"fourth temple block", MIDI_DRUMS, MIDI_LOW_TEMPLE_BLOCK + 3},
+    {"temple|tempelbl|blocs chinois", MIDI_DRUMS, MIDI_TEMPLE_BLOCKS},
     {"clave", MIDI_DRUMS, 75},
     {"cow bell|cowbell|kuhglocke|bells cowbell|cencerro|campanacci|cloche de vache", MIDI_DRUMS,
      56},
@@ -77,9 +82,34 @@ static const struct {
     {"cabasa", MIDI_DRUMS, 69},
     {"guiro", MIDI_DRUMS, 73},
     {"whip|peitsche|fouet|frusta|ratchet", MIDI_DRUMS, MIDI_NO_SOUND},
-    {"drum|schlagzeug|schlagwerk|batteri|percuss|perkuss", MIDI_DRUMS, MUSIC_NO_KEY},
+    {"schlagwerk|percuss|perkuss", MIDI_DRUMS, MUSIC_ANY_KEY},
+    {"drum|schlagzeug|batteri", MIDI_DRUMS, MUSIC_NO_KEY},
     {"trommel", MIDI_DRUMS, 38},
 };
+
+/// Of one sort from high to low, by the key of a name that does not say which; `low`: the index of
+/// a name that says low.
+static const struct {
+    int key, count, low, keys[5];
+} sorts[] = {
+    {48, 5, 2, {50, 48, 45, 43, 41}},
+    {76, 3, 2, {76, MIDI_MIDDLE_BLOCK, 77}},
+    {MIDI_TEMPLE_BLOCKS,
+     5,
+     4,
+     {MIDI_LOW_TEMPLE_BLOCK + 4, MIDI_LOW_TEMPLE_BLOCK + 3, MIDI_LOW_TEMPLE_BLOCK + 2,
+      MIDI_LOW_TEMPLE_BLOCK + 1, MIDI_LOW_TEMPLE_BLOCK}},
+    {56, 3, 2, {MIDI_HIGH_COWBELL, 56, MIDI_LOW_COWBELL}},
+    {60, 2, 1, {60, 61}},
+    {63, 2, 1, {63, 64}},
+    {65, 2, 1, {65, 66}},
+    {67, 2, 1, {67, 68}},
+};
+
+static const char *const degrees[] = {
+    "high|hi$|small|klein|hoch|hohe|hell|aigu|haut|petit|acut|piccol",
+    "mid|medium|mittel|mittler|moyen|médium|medio|media",
+    "low|lo$|large|big|groß|gross|tief|grave|bas$|basse$|grand|grosse|grosso|basso|bassa"};
 
 /// A $ at the end: the whole word, not its beginning.
 static const struct {
@@ -181,6 +211,8 @@ static void fold(char out[MOST_TEXT], const char *text, bool name)
         else if (c == '-' || isspace(c) || (name && (c == '.' || c == '_')))
             c = ' ';
         high = (unsigned char)*text == 0xc3;
+        if (name && c == ' ' && (length == 0 || out[length - 1] == ' '))
+            continue;
         out[length++] = (char)(c < 0x80 ? tolower(c) : c);
     }
     out[length] = '\0';
@@ -207,18 +239,94 @@ static size_t begins_with(const char *at, const char *words)
     return longest;
 }
 
+int himc_music_of_sort(int key, int index, int count)
+{
+    for (size_t i = 0; i < sizeof sorts / sizeof *sorts; i++)
+        if (sorts[i].key == key && count > 1) {
+            double step = count > sorts[i].count ? (sorts[i].count - 1.0) / (count - 1) : 1;
+            return sorts[i].keys[(int)lround(step * index)];
+        }
+    return key;
+}
+
+// which of a sort a folded name says: "high", "Tom 2", "mittlerer"; else the key
+static int find_degree(const char *text, const char *behind, int key)
+{
+    static const char *const roman[] = {"", "i", "ii", "iii", "iv", "v"};
+    size_t s = 0;
+    while (s < sizeof sorts / sizeof *sorts && sorts[s].key != key)
+        s++;
+    if (s == sizeof sorts / sizeof *sorts)
+        return key;
+    for (const char *at = text; *at; at++)
+        for (int d = 0; d < 3 && begins_word(text, at); d++)
+            if (begins_with(at, degrees[d]) > 0)
+                return sorts[s].keys[d * sorts[s].low / 2];
+    for (const char *at = behind; *at && *at != '('; at++) {
+        size_t length = strcspn(at, " (");
+        if (at[-1] != ' ')
+            continue;
+        int number = length == 1 && *at >= '1' && *at <= '9' ? *at - '0' : 0;
+        for (int i = 1; i <= 5; i++)
+            if (strlen(roman[i]) == length && strncmp(at, roman[i], length) == 0)
+                number = i;
+        if (number > 0)
+            return sorts[s].keys[number < sorts[s].count ? number - 1 : sorts[s].count - 1];
+    }
+    return key;
+}
+
 midi_choice himc_music_instrument(const char *name, int *key)
 {
     char text[MOST_TEXT];
+    size_t length;
     fold(text, name, true);
     for (size_t i = 0; i < sizeof instruments / sizeof *instruments; i++)
         for (const char *at = text; *at; at++)
-            if (begins_word(text, at) && begins_with(at, instruments[i].words) > 0) {
-                *key = instruments[i].key;
+            if (begins_word(text, at) && (length = begins_with(at, instruments[i].words)) > 0) {
+                *key = find_degree(text, at + length, instruments[i].key);
                 return instruments[i].choice;
             }
     *key = MUSIC_NO_KEY;
     return MIDI_ANY;
+}
+
+midi_choice himc_music_change(const char *words, int *key, bool *bare)
+{
+    static const char tells[] =
+        "to |take |takes |change to |changes to |switch to |muta in |mutano in |"
+        "cambia in |prende |prendere |prend |prenez |change pour |changez pour |"
+        "nimmt |nimm |wechselt zu |wechsel zu |wechselt auf ",
+                      articles[] =
+                          "the |a |an |il |la |le |lo |i |gli |les |die |das |den |zur |zum ",
+                      tails[] = "drum|block|bell|tom|tam|cymb|becken|trommel|susp|sosp|caisse|set",
+                      sticks[] = "stick|mallet|schläg|schleg|baguette|bacchett|brush|besen";
+    char text[MOST_TEXT];
+    fold(text, words, true);
+    size_t told = begins_with(text, tells), length = 0;
+    char *taken = strstr(text, " nehmen");
+    if (taken)
+        *taken = '\0';
+    const char *at = text + told;
+    at += begins_with(at, articles);
+    midi_choice choice = himc_music_instrument(at, key);
+    *bare = told == 0 && !taken;
+    for (const char *w = text; *w; w++)
+        if (begins_with(w, sticks) > 0)
+            return MIDI_ANY;
+    if (!*bare)
+        return choice;
+    for (size_t i = 0; i < sizeof instruments / sizeof *instruments && length == 0; i++)
+        length = begins_with(at, instruments[i].words);
+    for (at += length + strcspn(at + length, " "); *at; at += strcspn(at, " ")) {
+        at += *at == ' ';
+        bool more = begins_with(at, tails) > 0 || strspn(at, "0123456789iv() ") == strlen(at);
+        for (int d = 0; d < 3; d++)
+            more |= begins_with(at, degrees[d]) > 0;
+        if (!more)
+            return MIDI_ANY;
+    }
+    return length > 0 && *key != MUSIC_NO_KEY && *key != MUSIC_ANY_KEY ? choice : MIDI_ANY;
 }
 
 static const char *const drums[] = {"low timpano", "second timpano", "third timpano",

@@ -4,11 +4,20 @@
 
 #include "midi/smf.h"
 
-#define MUSIC_NO_KEY (-1) ///< of a drum set, whose notes say which drum they are
+#define MUSIC_NO_KEY (-1)  ///< of a drum set, whose notes say which drum they are
+#define MUSIC_ANY_KEY (-2) ///< of percussion, whose words may say it, too
 
 /// The instrument of a name in English, German, French or Italian, or of an instrument-sound id:
 /// whose part it is, and of drums the key (midi/kit.c). MIDI_ANY if it is none that is played.
 midi_choice himc_music_instrument(const char *name, int *key);
+
+/// The same of words that tell the player to change to an instrument ("muta in Xilofono", "nimmt
+/// Kl. Trommel"), or, `bare`, that are a name and no more.
+midi_choice himc_music_change(const char *words, int *key, bool *bare);
+
+/// Of `count` drums of one sort, whose common key it is, the key of the one of that index from the
+/// highest; other keys stay.
+int himc_music_of_sort(int key, int index, int count);
 
 /// The timpano of a name as `himc export` writes it, "second timpano": 1 low .. 4 high; else 0.
 int himc_music_drum(const char *name);

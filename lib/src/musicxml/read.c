@@ -20,12 +20,15 @@
 enum { CLOSED_HATS = 42, OPEN_HATS = 46, RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
 
 #define MOST_INSTRUMENTS 64 // of a part
+#define STAVES 10           // of a part; 0: a note that does not say which
 
 typedef struct instrument {
     const char *id;
     midi_choice choice;
     int key;
-    int drum; ///< of timpani
+    int drum;       ///< of timpani
+    bool sort;      ///< of drums of one sort, whose notes say which
+    uint64_t at[2]; ///< ... where they are written, a bit for each pitch
 } instrument;
 
 typedef struct reader {
@@ -34,7 +37,10 @@ typedef struct reader {
     const xml_node *root, *list; ///< the part's entry in the part-list
     int part, bar;
     instrument instrument[MOST_INSTRUMENTS];
-    int instruments;
+    int instruments, declared;
+    int current[STAVES]; ///< the one that words have changed to; -1: none
+    int lines[STAVES];
+    char clef[STAVES];
     double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
     double time;                     ///< length of a bar (beats)
     int transpose;                   ///< (semitones)
@@ -78,16 +84,21 @@ static int whole(const xml_node *node, const char *name, int otherwise)
     return (int)lround(fmin(fmax(himc_xml_number(node, name, otherwise), -1000), 1000));
 }
 
+static int staff_of(const xml_node *node)
+{
+    return abs(whole(node, "staff", 0)) % STAVES;
+}
+
 static int lane_of(const xml_node *node)
 {
-    return 100 * (abs(whole(node, "staff", 0)) % 10) + abs(whole(node, "voice", 0)) % 100;
+    return 100 * staff_of(node) + abs(whole(node, "voice", 0)) % 100;
 }
 
 // by the names first, then by the MIDI instrument
 static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
 {
     instrument *made = &r->instrument[r->instruments++];
-    *made = (instrument){himc_xml_attribute(score, "id"), MIDI_ANY, MUSIC_NO_KEY, 0};
+    *made = (instrument){himc_xml_attribute(score, "id"), .key = MUSIC_NO_KEY};
     const char *const name[] = {himc_xml_text(score, "instrument-sound"),
                                 himc_xml_text(score, "instrument-name"),
                                 himc_xml_text(score, "instrument-abbreviation")};
@@ -101,15 +112,56 @@ static void read_instrument(reader *r, const xml_node *score, midi_choice part, 
     int program = whole(midi, "midi-program", 0) - 1;
     bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
     if (made->choice == MIDI_ANY && part != MIDI_ANY)
-        *made = (instrument){made->id, part, part_key, 0};
+        *made = (instrument){made->id, .choice = part, .key = part_key};
     if (made->choice == MIDI_ANY && midi && !drums)
         made->choice = himc_midi_program_choice(program);
     if (made->choice == MIDI_ANY && drums)
         made->choice = MIDI_DRUMS;
     // the MIDI key decides, unless both names say a concert instrument, which General MIDI lacks
     bool concert = made->key >= 128 && part_key >= 128;
-    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert)
+    made->sort = made->choice == MIDI_DRUMS && himc_music_of_sort(made->key, 0, 2) != made->key;
+    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert) {
         made->key = key;
+        made->sort = false;
+    }
+}
+
+// a note's pitch, or where it is written
+static int read_pitch(const xml_node *note)
+{
+    static const int natural[] = {9, 11, 0, 2, 4, 5, 7};
+    const xml_node *pitch = himc_xml_child(note, "pitch"),
+                   *of = pitch ? pitch : himc_xml_child(note, "unpitched");
+    const char *letter = himc_xml_text(of, pitch ? "step" : "display-step");
+    if (letter[0] < 'A' || letter[0] > 'G')
+        return -1;
+    return natural[letter[0] - 'A'] + 12 * (whole(of, pitch ? "octave" : "display-octave", 4) + 1) +
+           whole(of, "alter", 0);
+}
+
+// the entry that a note names; -1: none
+static int find_instrument(const reader *r, const xml_node *named)
+{
+    const char *id = himc_xml_attribute(named, "id");
+    for (int i = 0; i < r->declared && id[0]; i++)
+        if (strcmp(r->instrument[i].id, id) == 0)
+            return i;
+    return -1;
+}
+
+// where drums of one sort are written
+static void survey(reader *r, const xml_node *part)
+{
+    bool any = false;
+    for (int i = 0; i < r->instruments; i++)
+        any |= r->instrument[i].sort;
+    const xml_node *measure = any ? himc_xml_child(part, "measure") : NULL;
+    for (; measure; measure = himc_xml_next(measure))
+        for (const xml_node *n = himc_xml_child(measure, "note"); n; n = himc_xml_next(n)) {
+            int i = find_instrument(r, himc_xml_child(n, "instrument")), written = read_pitch(n);
+            if (written >= 0 && written < 128)
+                r->instrument[i < 0 ? 0 : i].at[written / 64] |= (uint64_t)1 << written % 64;
+        }
 }
 
 // what the part is; an entry for a part without instruments, too
@@ -121,16 +173,68 @@ static void read_instruments(reader *r)
         part = himc_music_instrument(himc_xml_text(r->list, "part-abbreviation"), &key);
     r->instruments = 0;
     const xml_node *score = himc_xml_child(r->list, "score-instrument");
-    if (!score)
-        r->instrument[r->instruments++] = (instrument){"", part, key, 0};
+    // without one each of the names "Timpani, Xylophone" is
+    const char *name = himc_xml_text(r->list, "part-name");
+    for (size_t length; !score && r->instruments < MOST_INSTRUMENTS; name += length + 1) {
+        char word[64];
+        length = strcspn(name, ",/&+");
+        instrument made = {"", .choice = part, .key = key};
+        snprintf(word, sizeof word, "%.*s", (int)length, name);
+        if (r->instruments > 0 || name[length])
+            made.choice = himc_music_instrument(word, &made.key);
+        made.sort = made.choice == MIDI_DRUMS && himc_music_of_sort(made.key, 0, 2) != made.key;
+        if (made.choice != MIDI_ANY || (!name[length] && r->instruments == 0))
+            r->instrument[r->instruments++] = made;
+        if (!name[length])
+            break;
+    }
     for (; score && r->instruments < MOST_INSTRUMENTS; score = himc_xml_next(score))
         read_instrument(r, score, part, key);
+    r->declared = r->instruments;
+}
+
+// from here on notes that do not say it are of that instrument
+static void change_instrument(reader *r, midi_choice choice, int key)
+{
+    int i = 0;
+    while (i < r->instruments && (r->instrument[i].choice != choice || r->instrument[i].key != key))
+        i++;
+    if (i == MOST_INSTRUMENTS)
+        return;
+    if (i == r->instruments)
+        r->instrument[r->instruments++] = (instrument){"", .choice = choice, .key = key};
+    r->current[r->lane / 100] = i;
+}
+
+static void read_change(reader *r, const char *words, bool instructs)
+{
+    int key;
+    bool bare;
+    midi_choice choice = himc_music_change(words, &key, &bare);
+    // of a drum set, or where notes say it, a name alone is no more than a hint
+    bool hint = instructs || r->declared > 1 || r->instrument[0].key == MUSIC_NO_KEY;
+    if (choice != MIDI_ANY && !(bare && hint))
+        change_instrument(r, choice, key);
 }
 
 // signs and words
 
+// a sound that an instrument of the part gets
+static void read_sound_change(reader *r, const xml_node *change)
+{
+    int key = MUSIC_NO_KEY, i = find_instrument(r, change);
+    midi_choice choice = himc_music_instrument(himc_xml_text(change, "instrument-sound"), &key);
+    if (choice != MIDI_ANY && i >= 0)
+        r->instrument[i] = (instrument){r->instrument[i].id, .choice = choice, .key = key};
+    if (i >= 0)
+        r->current[r->lane / 100] = i;
+}
+
 static void read_sound(reader *r, const xml_node *sound, double beat, bool dynamic_too)
 {
+    const xml_node *change = himc_xml_child(sound, "instrument-change");
+    for (; change; change = himc_xml_next(change))
+        read_sound_change(r, change);
     music_bar *bar = &r->music->bars[r->bar];
     const char *tempo = himc_xml_attribute(sound, "tempo"),
                *level = himc_xml_attribute(sound, "dynamics");
@@ -178,6 +282,8 @@ static bool read_words(reader *r, const xml_node *words, double beat, bool own, 
             add_sign(r, beat, meaning[i], value[i]);
         dynamic |= meaning[i] == MUSIC_DYNAMIC;
     }
+    if (own)
+        read_change(r, words->text, count > 0);
     return dynamic;
 }
 
@@ -345,15 +451,6 @@ static void read_barline(reader *r, const xml_node *barline)
 
 // notes
 
-static int read_pitch(const xml_node *pitch, const char *step, const char *octave)
-{
-    static const int natural[] = {9, 11, 0, 2, 4, 5, 7};
-    const char *letter = himc_xml_text(pitch, step);
-    if (letter[0] < 'A' || letter[0] > 'G')
-        return -1;
-    return natural[letter[0] - 'A'] + 12 * (whole(pitch, octave, 4) + 1) + whole(pitch, "alter", 0);
-}
-
 // of a drum set that says nothing else: where its drums are written (Weinberg 1998), by MIDI key
 static int drum_at(int key)
 {
@@ -470,35 +567,65 @@ static void read_notations(reader *r, music_note *n, const xml_node *notations)
     r->lane = 0;
 }
 
+// the first instrument from one kind up to another; of several a clef says which
+static int of_clef(const reader *r, const xml_node *note)
+{
+    char clef = r->clef[staff_of(note)];
+    bool pitched = himc_xml_child(note, "pitch");
+    midi_choice first = !pitched      ? MIDI_DRUMS
+                        : clef == 'F' ? MIDI_TIMPANI
+                                      : MIDI_MARIMBA,
+                last = pitched && clef != 'F' ? MIDI_TUBULAR_BELL : first;
+    for (int i = 0; i < r->declared; i++)
+        if (r->instrument[i].choice >= first && r->instrument[i].choice <= last)
+            return i;
+    return 0;
+}
+
+// by the note's id, if there are several, by words, by the clef
 static const instrument *instrument_of(const reader *r, const xml_node *note)
 {
-    const char *id = himc_xml_attribute(himc_xml_child(note, "instrument"), "id");
-    for (int i = 0; i < r->instruments && id[0]; i++)
-        if (strcmp(r->instrument[i].id, id) == 0)
-            return &r->instrument[i];
-    return &r->instrument[0];
+    int named = find_instrument(r, himc_xml_child(note, "instrument")),
+        current = r->current[staff_of(note)];
+    current = current < 0 ? r->current[0] : current;
+    if (named >= 0 && (r->declared > 1 || current < 0))
+        return &r->instrument[named];
+    return &r->instrument[current >= 0 ? current : of_clef(r, note)];
+}
+
+// the key of a drum that is written there
+static int drum_of(const reader *r, const xml_node *note, const instrument *of, int written)
+{
+    int above = 0, count = 0;
+    for (int k = 0; k < 128; k++)
+        if (of->at[k / 64] >> k % 64 & 1) {
+            above += k > written;
+            count++;
+        }
+    if (of->key >= 0)
+        return of->sort ? himc_music_of_sort(of->key, above, count) : of->key;
+    bool other = himc_xml_child(note, "pitch") && r->declared > 1;
+    return other || r->lines[staff_of(note)] == 1 ? MIDI_NO_SOUND : drum_at(written);
 }
 
 static bool read_key(reader *r, const xml_node *note, music_note *n)
 {
     const instrument *of = instrument_of(r, note);
-    const xml_node *pitch = himc_xml_child(note, "pitch"),
-                   *unpitched = himc_xml_child(note, "unpitched");
-    int written = pitch ? read_pitch(pitch, "step", "octave")
-                        : read_pitch(unpitched, "display-step", "display-octave");
+    const xml_node *pitch = himc_xml_child(note, "pitch");
+    int written = read_pitch(note);
     n->choice = of->choice;
     n->drum = of->drum;
     n->key = written + (pitch ? r->transpose : 0);
     if (of->choice == MIDI_DRUMS) {
         const char *head = himc_xml_text(note, "notehead");
-        n->key = of->key != MUSIC_NO_KEY ? of->key : drum_at(written);
+        n->key = drum_of(r, note, of, written);
         if (n->key == CLOSED_HATS && strcmp(head, "circle-x") == 0)
             n->key = OPEN_HATS;
         else if (n->key == RIDE && strcmp(head, "diamond") == 0)
             n->key = RIDE_BELL;
     }
-    return (pitch || unpitched) && n->key >= 0 && n->key < 256 &&
-           (written >= 0 || of->key != MUSIC_NO_KEY) && (of->choice == MIDI_DRUMS || n->key < 128);
+    return (pitch || himc_xml_child(note, "unpitched")) && n->key >= 0 && n->key < 256 &&
+           (written >= 0 || of->key >= 0) && (of->choice == MIDI_DRUMS || n->key < 128);
 }
 
 // of a drum with a hoop (kit.c)
@@ -603,6 +730,16 @@ static void read_attributes(reader *r, const xml_node *attributes)
         himc_xml_child(himc_xml_child(attributes, "measure-style"), "measure-repeat");
     if (again)
         r->repeated = himc_xml_has(again, "type", "start") ? atoi(again->text) : 0;
+    for (const xml_node *a = attributes->child; a; a = a->next) {
+        int staff = atoi(himc_xml_attribute(a, "number"));
+        staff = staff > 1 && staff < STAVES ? staff : 1; // a note of one staff may say 0
+        if (himc_xml_is(a, "clef"))
+            r->clef[staff] = himc_xml_text(a, "sign")[0];
+        else if (himc_xml_is(a, "staff-details"))
+            r->lines[staff] = whole(a, "staff-lines", 5);
+        r->clef[0] = r->clef[1];
+        r->lines[0] = r->lines[1];
+    }
     const xml_node *time = himc_xml_child(attributes, "time");
     double beats = 0;
     for (const char *n = himc_xml_text(time, "beats"); n && *n;) { // "3+2"
@@ -695,6 +832,10 @@ static bool read_part(reader *r, const xml_node *part)
     while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
         r->list = himc_xml_next(r->list);
     read_instruments(r);
+    survey(r, part);
+    memset(r->current, -1, sizeof r->current);
+    memset(r->lines, 0, sizeof r->lines);
+    memset(r->clef, 0, sizeof r->clef);
     r->divisions = 1;
     r->transpose = r->wavy = r->repeated = 0;
     r->time = 4;
@@ -732,9 +873,9 @@ static bool read_root(reader *r, const xml_node *root)
 bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error)
 {
     // what is only printed
-    static const char *const unused[] = {
-        "identification", "defaults",     "credit",        "print", "stem", "beam", "accidental",
-        "harmony",        "figured-bass", "staff-details", "slur",  "clef", NULL};
+    static const char *const unused[] = {"identification", "defaults", "credit",     "print",
+                                         "stem",           "beam",     "accidental", "harmony",
+                                         "figured-bass",   "slur",     NULL};
     xml_document document;
     *m = (music){
         .omitted = {

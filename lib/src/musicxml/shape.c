@@ -41,6 +41,13 @@ typedef struct lane {
     int count;
 } lane;
 
+/// What words say of one kind of instruments.
+typedef struct saying {
+    himc_spot spot, here; ///< `here` of this beat; HIMC_SPOT_NORMAL: as `spot`
+    int always, measured; ///< from here on
+    int ring, hand;       ///< of this beat
+} saying;
+
 typedef struct shaper {
     music *music;
     midi_file *file;
@@ -52,10 +59,9 @@ typedef struct shaper {
     double *cuts; ///< beats where rolls are cut
     int cut_count;
     double second; ///< beats in one second at the present note
-    himc_spot spot;
-    int always, ring, measured, hand; ///< of words; `ring` and `hand` of this beat
-    double held;                      ///< a fermata ends (beats)
-    himc_spot here;                   ///< of this beat; HIMC_SPOT_NORMAL: as `spot`
+    saying says[MIDI_CHOICES];
+    unsigned kinds; ///< of the part, a bit each
+    double held;    ///< a fermata ends (beats)
     music_note *grace[MOST_GRACES];
     int graces;
     bool failed;
@@ -87,7 +93,7 @@ static music_note *find_next(music *m, const music_note *n, joint by)
         music_note *to = &m->notes[i];
         if (to->at.beat > end + SAME)
             break;
-        bool fits = by == BY_TIE            ? to->key == n->key && to->tied_back
+        bool fits = by == BY_TIE ? to->key == n->key && to->choice == n->choice && to->tied_back
                     : to->voice != n->voice ? false
                     : by == BY_GLISS        ? to->glided
                                             : to->tremolo == MUSIC_PAIR_END;
@@ -160,11 +166,17 @@ static void emit(shaper *s, const music_note *n, double beat, double end, const 
         .seconds = himc_score_seconds(f->tempi, f->tempo_count, beat),
         .off = himc_score_seconds(f->tempi, f->tempo_count, end),
         .track = n->at.part,
+        .player = n->at.part,
         .key = (uint8_t)n->key,
         .velocity = 80,
         .choice = n->choice,
         .way = *way,
     };
+}
+
+static bool is_several(const shaper *s)
+{
+    return s->kinds & (s->kinds - 1);
 }
 
 static double level(const shaper *s, double beat)
@@ -196,7 +208,7 @@ static bool list_cuts(shaper *s)
     if (!s->cuts)
         return himc_error_set(s->error, "out of memory for %d notes", m->note_count);
     s->cut_count = 0;
-    for (int k = 0; k < s->lane_count; k++)
+    for (int k = 0; k < s->lane_count && !is_several(s); k++)
         for (int i = 0; i < s->lanes[k].count; i++)
             s->cuts[s->cut_count++] = s->lanes[k].levels[i].beat;
     for (int i = 0; i < m->note_count; i++) {
@@ -224,7 +236,18 @@ static double next_cut(const shaper *s, double from, double end)
         else
             high = middle;
     }
-    return low < s->cut_count ? fmin(s->cuts[low], end) : end;
+    end = low < s->cut_count ? fmin(s->cuts[low], end) : end;
+    if (!is_several(s))
+        return end;
+    // of several kinds only its own dynamics cut a roll
+    for (low = 0, high = s->now->count; low < high;) {
+        int middle = (low + high) / 2;
+        if (s->now->levels[middle].beat < from)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < s->now->count ? fmin(s->now->levels[low].beat, end) : end;
 }
 
 // from the note's beat to `end`, cut at the points between
@@ -372,13 +395,14 @@ static void add_gliss(shaper *s, const music_note *n)
 }
 
 // what sounds is damped at a beat, or rings on
-static void end_at(shaper *s, double beat, int ring)
+static void end_at(shaper *s, double beat, midi_choice choice, int ring)
 {
     midi_file *f = s->file;
     bool done[256] = {false}; // the last stroke of each drum
     for (int i = f->note_count - 1, steps = 0; i >= 0 && steps < 16; i--, steps++) {
         midi_note *n = &f->notes[i];
-        if (n->track != s->part || n->beat > beat - SAME || done[n->key])
+        if (n->track != s->part || n->beat > beat - SAME || done[n->key] ||
+            (choice != MIDI_ANY && n->choice != choice))
             continue;
         done[n->key] = true;
         n->way.ring = ring;
@@ -387,8 +411,23 @@ static void end_at(shaper *s, double beat, int ring)
     }
 }
 
-// the signs up to a beat
-static void take_signs(shaper *s, double beat, midi_choice choice)
+// of several kinds the one that a sign is for: the next on its staff, else that of the next note
+static midi_choice kind_of(const shaper *s, const music_sign *sign, int next, midi_choice choice)
+{
+    const music *m = s->music;
+    for (int i = next; is_several(s) && sign->lane >= 100 && i < m->note_count; i++) {
+        const music_note *n = &m->notes[i];
+        if (i - next > MOST_CANDIDATES)
+            break;
+        if (n->at.part == s->part && n->lane / 100 == sign->lane / 100 &&
+            n->at.beat > sign->at.beat - SAME)
+            return n->choice;
+    }
+    return choice;
+}
+
+// the signs up to the beat of a note; its index
+static void take_signs(shaper *s, double beat, midi_choice choice, int next)
 {
     for (; s->sign < s->music->sign_count; s->sign++) {
         const music_sign *sign = &s->music->signs[s->sign];
@@ -396,30 +435,32 @@ static void take_signs(shaper *s, double beat, midi_choice choice)
             return;
         if (sign->at.part != s->part)
             continue;
+        midi_choice kind = kind_of(s, sign, next, choice);
+        saying *says = &s->says[kind];
         switch (sign->meaning) {
-        case MUSIC_SPOT: s->spot = (himc_spot)sign->value; break;
+        case MUSIC_SPOT: says->spot = (himc_spot)sign->value; break;
         case MUSIC_SPOT_HERE:
-            s->here = sign->at.beat > beat - SAME ? (himc_spot)sign->value : s->here;
+            says->here = sign->at.beat > beat - SAME ? (himc_spot)sign->value : says->here;
             break;
         case MUSIC_RING:
             // at a rest it is for what sounds
             if (sign->at.beat > beat - SAME)
-                s->ring = (int)sign->value;
+                says->ring = (int)sign->value;
             else
-                end_at(s, sign->at.beat, (int)sign->value);
+                end_at(s, sign->at.beat, sign->lane >= 100 ? kind : MIDI_ANY, (int)sign->value);
             break;
-        case MUSIC_RING_ALWAYS: s->always = (int)sign->value; break;
-        case MUSIC_DAMP: end_at(s, sign->at.beat, -1); break;
+        case MUSIC_RING_ALWAYS: says->always = (int)sign->value; break;
+        case MUSIC_DAMP: end_at(s, sign->at.beat, MIDI_ANY, -1); break;
         case MUSIC_HAND:
-            s->hand = sign->at.beat > beat - SAME ? 1 + (int)sign->value : s->hand;
+            says->hand = sign->at.beat > beat - SAME ? 1 + (int)sign->value : says->hand;
             break;
         case MUSIC_FERMATA: s->held = sign->at.beat + sign->value; break;
-        case MUSIC_MEASURED: s->measured = (int)sign->value; break;
-        case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, choice); break;
-        case MUSIC_MUFFLE: add_order(s, MIDI_MUFFLE, sign, choice); break;
-        case MUSIC_WIRES: add_order(s, MIDI_WIRES, sign, choice); break;
+        case MUSIC_MEASURED: says->measured = (int)sign->value; break;
+        case MUSIC_MALLET: add_order(s, MIDI_MALLET, sign, kind); break;
+        case MUSIC_MUFFLE: add_order(s, MIDI_MUFFLE, sign, kind); break;
+        case MUSIC_WIRES: add_order(s, MIDI_WIRES, sign, kind); break;
         case MUSIC_TUNING:
-        case MUSIC_GLISS: add_order(s, MIDI_TUNING, sign, choice); break;
+        case MUSIC_GLISS: add_order(s, MIDI_TUNING, sign, kind); break;
         case MUSIC_GLISS_END: end_gliss(s, sign->line, sign->at.beat); break;
         default: break;
         }
@@ -436,13 +477,15 @@ static bool is_roll(const shaper *s, const music_note *n, double *unit)
     if (n->tremolo != MUSIC_MARKS)
         return false;
     bool held = n->at.beat < s->held - SAME; // what is held is not counted
-    if (rate > FASTEST || n->marks > 3 || (n->marks == 3 && (s->measured == 0 || held)))
+    int measured = s->says[n->choice].measured;
+    if (rate > FASTEST || n->marks > 3 || (n->marks == 3 && (measured == 0 || held)))
         return true;
-    return n->marks == 3 && s->measured != 1 && rate > FAST - SAME;
+    return n->marks == 3 && measured != 1 && rate > FAST - SAME;
 }
 
 static void shape_note(shaper *s, music_note *n)
 {
+    const saying *says = &s->says[n->choice];
     double unit, least = himc_argument_find("LENGTH", "roll")->low;
     bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = n->attacked || n->marcato;
     midi_way way = {.dynamic = n->dynamic >= 0 ? n->dynamic : level(s, n->at.beat),
@@ -452,13 +495,13 @@ static void shape_note(shaper *s, music_note *n)
                               : n->pulled ? HIMC_STACCATO
                               : n->tenuto ? HIMC_TENUTO
                                           : HIMC_LEGATO,
-                    .spot = n->spot != HIMC_SPOT_NORMAL   ? n->spot
-                            : s->here != HIMC_SPOT_NORMAL ? s->here
-                                                          : s->spot,
-                    .hand = n->hand ? n->hand : s->hand,
-                    .ring = n->ring   ? n->ring
-                            : s->ring ? s->ring
-                                      : s->always};
+                    .spot = n->spot != HIMC_SPOT_NORMAL      ? n->spot
+                            : says->here != HIMC_SPOT_NORMAL ? says->here
+                                                             : says->spot,
+                    .hand = n->hand ? n->hand : says->hand,
+                    .ring = n->ring      ? n->ring
+                            : says->ring ? says->ring
+                                         : says->always};
     if (n->staccato && !n->pulled && way.ring == 0 && n->choice == MIDI_TIMPANI) {
         way.ring = -1; // a dot: the same attack, and a hand on the head
         n->length /= 2;
@@ -489,6 +532,12 @@ static bool add_lane(shaper *s, int number)
     return l->levels || himc_error_set(s->error, "out of memory for the dynamics");
 }
 
+// of several kinds on several staves each staff has dynamics of its own
+static bool is_of_staff(const shaper *s, const music_note *n)
+{
+    return is_several(s) && n->lane >= 100;
+}
+
 static bool list_lanes(shaper *s)
 {
     const music *m = s->music;
@@ -497,11 +546,12 @@ static bool list_lanes(shaper *s)
     s->lane_count = 0;
     bool good = add_lane(s, MUSIC_ALL_LANES);
     for (int i = 0; i < m->note_count && good && known < MOST_LANES; i++) {
-        int number = m->notes[i].lane;
+        bool of_staff = is_of_staff(s, &m->notes[i]);
+        int number = of_staff ? m->notes[i].lane / 100 * 100 : m->notes[i].lane;
         if (m->notes[i].at.part == s->part && !seen[number]) {
             seen[number] = true;
             known++;
-            good = !himc_music_apart(m, s->part, number) || add_lane(s, number);
+            good = !(of_staff || himc_music_apart(m, s->part, number)) || add_lane(s, number);
         }
     }
     s->now = s->lanes;
@@ -521,19 +571,22 @@ static bool shape_part(shaper *s, int part)
     music *m = s->music;
     double last = -1;
     s->part = part;
-    s->sign = s->always = s->ring = s->hand = s->graces = 0;
+    s->sign = s->graces = 0;
+    s->kinds = 0;
     s->held = 0;
-    s->measured = -1;
-    s->spot = s->here = HIMC_SPOT_NORMAL;
+    for (int i = 0; i < MIDI_CHOICES; i++)
+        s->says[i] = (saying){.spot = HIMC_SPOT_NORMAL, .here = HIMC_SPOT_NORMAL, .measured = -1};
+    for (int i = 0; i < m->note_count; i++)
+        s->kinds |= m->notes[i].at.part == part ? 1u << m->notes[i].choice : 0;
     s->cuts = NULL;
     s->failed |= !list_lanes(s) || !list_cuts(s);
     for (int i = 0; i < m->note_count && !s->failed; i++) {
         music_note *n = &m->notes[i];
         if (n->at.part != part || n->length < 0)
             continue;
-        if (n->at.beat > last + SAME && last >= 0) {
-            s->ring = s->hand = 0;
-            s->here = HIMC_SPOT_NORMAL;
+        for (int k = 0; k < MIDI_CHOICES && n->at.beat > last + SAME && last >= 0; k++) {
+            s->says[k].ring = s->says[k].hand = 0;
+            s->says[k].here = HIMC_SPOT_NORMAL;
         }
         if (n->grace && s->graces < MOST_GRACES)
             s->grace[s->graces++] = n;
@@ -541,15 +594,15 @@ static bool shape_part(shaper *s, int part)
             himc_music_omit(m, MUSIC_GRACES, n->at.bar);
         if (n->grace)
             continue;
-        take_signs(s, n->at.beat, n->choice);
+        take_signs(s, n->at.beat, n->choice, i);
         last = n->at.beat;
         s->second = himc_midi_bpm(s->file->tempi, s->file->tempo_count, last) / 60;
-        choose_lane(s, n->lane);
+        choose_lane(s, is_of_staff(s, n) ? n->lane / 100 * 100 : n->lane);
         shape_note(s, n);
     }
     for (int i = 0; i < s->graces; i++) // no note follows
         himc_music_omit(m, MUSIC_GRACES, s->grace[i]->at.bar);
-    take_signs(s, HUGE_VAL, MIDI_ANY);
+    take_signs(s, HUGE_VAL, MIDI_ANY, m->note_count);
     for (int k = 0; k < s->lane_count; k++)
         free(s->lanes[k].levels);
     free(s->cuts);

@@ -34,17 +34,23 @@ typedef struct mark {
     const item *item;
 } mark;
 
+/// The notes of a kind.
+typedef struct staff {
+    midi_choice choice;
+    item *items; ///< borrowed (count)
+    int count, first;
+    himc_spot spot; ///< the last that was written
+    int step;       ///< the last dynamic that was marked, 0 .. 7; -1: none
+} staff;
+
 typedef struct writer {
     himc_text_lines *out;
     const midi_file *file;
-    midi_choice choice;
-    item *items;
-    mark *marks;    ///< scratch: two for each note
-    himc_spot spot; ///< the last that was written
-    int count;
-    int step;   ///< the last dynamic that was marked, 0 .. 7; -1: none
-    bool first; ///< of the parts: it has the tempi
-    long end;   ///< of all parts (ticks)
+    item *items; ///< of all staves
+    mark *marks; ///< scratch: two for each note
+    staff staves[MIDI_CHOICES], *now;
+    int staff_count;
+    long end; ///< (ticks)
 } writer;
 
 #define PUT(w, ...) himc_text_print((w)->out, __VA_ARGS__)
@@ -81,7 +87,7 @@ static void put_pitch(const writer *w, int key)
 {
     static const char *const steps[] = {"C", "C", "D", "E", "E", "F", "F", "G", "A", "A", "B", "B"};
     static const int alter[] = {0, 1, 0, -1, 0, 0, 1, 0, -1, 0, -1, 0};
-    if (w->choice == MIDI_DRUMS)
+    if (w->now->choice == MIDI_DRUMS)
         PUT(w, "<unpitched><display-step>C</display-step><display-octave>5</display-octave>"
                "</unpitched>");
     else if (alter[key % 12])
@@ -91,11 +97,31 @@ static void put_pitch(const writer *w, int key)
         PUT(w, "<pitch><step>%s</step><octave>%d</octave></pitch>", steps[key % 12], key / 12 - 1);
 }
 
-// which drum of a kit, or which timpano
+// of several kinds each has its staff
+static void put_staff(const writer *w)
+{
+    if (w->staff_count > 1)
+        PUT(w, "<staff>%d</staff>", 1 + (int)(w->now - w->staves));
+}
+
+static void put_voice_number(const writer *w, int voice)
+{
+    PUT(w, "<voice>%d</voice>", 1 + voice + VOICES * (int)(w->now - w->staves));
+}
+
+// of a note: the number of a keyboard is below those of drums, above those of timpani
+static int instrument_of(const midi_note *n)
+{
+    return n->choice == MIDI_DRUMS     ? n->key
+           : n->choice == MIDI_TIMPANI ? n->way.drum
+                                       : 10 + (int)n->choice;
+}
+
+// which drum of a kit, which timpano, or which kind
 static void put_instrument(const writer *w, const midi_note *n)
 {
-    if (w->choice == MIDI_DRUMS || (w->choice == MIDI_TIMPANI && n->way.drum > 0))
-        PUT(w, "<instrument id=\"I%d\"/>", w->choice == MIDI_DRUMS ? n->key : n->way.drum);
+    if (w->staff_count > 1 || n->choice == MIDI_DRUMS || n->way.drum > 0)
+        PUT(w, "<instrument id=\"I%d\"/>", instrument_of(n));
 }
 
 static void put_graces(const writer *w, const item *i)
@@ -106,8 +132,10 @@ static void put_graces(const writer *w, const item *i)
         PUT(w, "<note><grace/>");
         put_pitch(w, i->note->key);
         put_instrument(w, i->note);
-        PUT(w, "<voice>%d</voice>", i->voice + 1);
-        PUT(w, "<type>16th</type></note>\n");
+        put_voice_number(w, i->voice);
+        PUT(w, "<type>16th</type>");
+        put_staff(w);
+        PUT(w, "</note>\n");
     }
 }
 
@@ -160,10 +188,11 @@ static void put_note(const writer *w, const item *i, long from, long to)
     if (ties_on)
         PUT(w, "<tie type=\"start\"/>");
     put_instrument(w, i->note);
-    PUT(w, "<voice>%d</voice>", i->voice + 1);
+    put_voice_number(w, i->voice);
     put_type(w, to - from);
     if (notehead[0])
         PUT(w, "<notehead>%s</notehead>", notehead);
+    put_staff(w);
     put_notations(w, i, begins, ties_on);
     PUT(w, "</note>\n");
 }
@@ -179,10 +208,17 @@ static void move(const writer *w, long *at, long to)
     *at = to;
 }
 
+static void end_direction(const writer *w)
+{
+    put_staff(w);
+    PUT(w, "</direction>\n");
+}
+
 static void put_words(const writer *w, long *at, long to, const char *words)
 {
     move(w, at, to);
-    PUT(w, "<direction><direction-type><words>%s</words></direction-type></direction>\n", words);
+    PUT(w, "<direction><direction-type><words>%s</words></direction-type>", words);
+    end_direction(w);
 }
 
 // where the pedal of an order comes to rest
@@ -200,13 +236,14 @@ static void put_gliss(const writer *w, long *at, long to, int line, const char *
     PUT(w, "<direction>");
     if (words[0])
         PUT(w, "<direction-type><words>gliss. %s</words></direction-type>", words);
-    PUT(w, "<direction-type><dashes type=\"%s\" number=\"%d\"/></direction-type></direction>\n",
+    PUT(w, "<direction-type><dashes type=\"%s\" number=\"%d\"/></direction-type>",
         words[0] ? "start" : "stop", 1 + line % MUSIC_LINES_MAX);
+    end_direction(w);
 }
 
 static void put_tempi(const writer *w, long begin, long *at)
 {
-    for (int i = 0; i < w->file->tempo_count && w->first; i++) {
+    for (int i = 0; i < w->file->tempo_count && w->now == w->staves; i++) {
         const himc_tempo_change *t = &w->file->tempi[i];
         long tick = ticks_of(t->beat);
         if (tick < begin || tick >= begin + BAR)
@@ -229,7 +266,7 @@ static void put_orders(const writer *w, long begin, long *at)
         long tick = ticks_of(o->beat), end = end_of(w, o);
         bool here = tick >= begin && tick < begin + BAR;
         char words[40];
-        if (o->choice != w->choice)
+        if (o->choice != w->now->choice)
             continue;
         himc_format(words, sizeof words, o->glides ? "%s%s%d to %s%d" : "%s%s%d muta in %s%d",
                     drums[o->from / 128], pitch[o->from % 128 % 12], o->from % 128 / 12 - 1,
@@ -249,15 +286,17 @@ static void put_orders(const writer *w, long begin, long *at)
 static void put_dynamic(writer *w, long *at, long to, int step)
 {
     move(w, at, to);
-    PUT(w, "<direction><direction-type><dynamics><%s/></dynamics></direction-type></direction>\n",
+    PUT(w, "<direction><direction-type><dynamics><%s/></dynamics></direction-type>",
         himc_dynamic_words[step]);
-    w->step = step;
+    end_direction(w);
+    w->now->step = step;
 }
 
 static void put_wedge(const writer *w, long *at, long to, const char *type)
 {
     move(w, at, to);
-    PUT(w, "<direction><direction-type><wedge type=\"%s\"/></direction-type></direction>\n", type);
+    PUT(w, "<direction><direction-type><wedge type=\"%s\"/></direction-type>", type);
+    end_direction(w);
 }
 
 static int by_tick(const void *a, const void *b)
@@ -278,8 +317,8 @@ static bool has_wedge(const item *i)
 static int list_marks(writer *w, int first, long begin)
 {
     int count = 0;
-    for (int k = first; k < w->count && w->items[k].begin < begin + BAR; k++) {
-        const item *i = &w->items[k];
+    for (int k = first; k < w->now->count && w->now->items[k].begin < begin + BAR; k++) {
+        const item *i = &w->now->items[k];
         if (i->begin >= begin)
             w->marks[count++] = (mark){i->begin, false, i};
         if (has_wedge(i) && i->end > begin && i->end <= begin + BAR)
@@ -301,11 +340,11 @@ static void put_dynamics(writer *w, int first, long begin, long *at)
             put_dynamic(w, at, m->tick, to);
             continue;
         }
-        if (from != w->step)
+        if (from != w->now->step)
             put_dynamic(w, at, m->tick, from);
-        if (way->spot != w->spot && w->choice == MIDI_TIMPANI) {
+        if (way->spot != w->now->spot && w->now->choice == MIDI_TIMPANI) {
             put_words(w, at, m->tick, spots[way->spot]);
-            w->spot = way->spot;
+            w->now->spot = way->spot;
         }
         if (way->ring < 0)
             put_words(w, at, m->tick, "secco");
@@ -316,19 +355,26 @@ static void put_dynamics(writer *w, int first, long begin, long *at)
 
 // bars and parts
 
+static void put_rest(const writer *w, long length)
+{
+    PUT(w, "<note><rest/><duration>%ld</duration>", length);
+    put_voice_number(w, 0);
+    put_type(w, length);
+    put_staff(w);
+    PUT(w, "</note>\n");
+}
+
 static void put_voice(const writer *w, int voice, int first, long begin)
 {
     long at = begin;
-    for (int k = first; k < w->count && w->items[k].begin < begin + BAR; k++) {
-        const item *i = &w->items[k];
+    for (int k = first; k < w->now->count && w->now->items[k].begin < begin + BAR; k++) {
+        const item *i = &w->now->items[k];
         if (i->voice != voice || i->end <= begin)
             continue;
         long from = i->begin > begin ? i->begin : begin;
         long to = i->end < begin + BAR ? i->end : begin + BAR;
         if (from > at && voice == 0) {
-            PUT(w, "<note><rest/><duration>%ld</duration><voice>1</voice>", from - at);
-            put_type(w, from - at);
-            PUT(w, "</note>\n");
+            put_rest(w, from - at);
             at = from;
         }
         move(w, &at, from);
@@ -336,42 +382,64 @@ static void put_voice(const writer *w, int voice, int first, long begin)
         at = to;
     }
     if (voice == 0 && at < begin + BAR)
-        PUT(w, "<note><rest/><duration>%ld</duration><voice>1</voice></note>\n", begin + BAR - at);
+        put_rest(w, begin + BAR - at);
     else
         move(w, &at, begin + BAR);
     PUT(w, "<backup><duration>%d</duration></backup>\n", BAR);
 }
 
+static void put_attributes(writer *w)
+{
+    char number[20] = "";
+    PUT(w,
+        "<attributes><divisions>%d</divisions><time><beats>4</beats><beat-type>4</beat-type>"
+        "</time>",
+        TICKS);
+    if (w->staff_count > 1)
+        PUT(w, "<staves>%d</staves>", w->staff_count);
+    for (int i = 0; i < w->staff_count; i++) {
+        midi_choice choice = w->staves[i].choice;
+        if (w->staff_count > 1)
+            himc_format(number, sizeof number, " number=\"%d\"", i + 1);
+        PUT(w, "<clef%s><sign>%s</sign></clef>", number,
+            choice == MIDI_DRUMS     ? "percussion"
+            : choice == MIDI_TIMPANI ? "F"
+                                     : "G");
+    }
+    PUT(w, "</attributes>\n");
+}
+
+// a bar of a staff, and back to its beginning
+static void put_bar(writer *w, long begin)
+{
+    long at = begin;
+    staff *now = w->now;
+    if (begin == 0 && now->choice == MIDI_TIMPANI) // what is short is not damped
+        put_words(w, &at, begin, "sempre l.v.");
+    put_tempi(w, begin, &at);
+    put_orders(w, begin, &at);
+    put_dynamics(w, now->first, begin, &at);
+    move(w, &at, begin);
+    for (int voice = 0; voice < VOICES; voice++) {
+        bool used = voice == 0;
+        for (int k = now->first; k < now->count && now->items[k].begin < begin + BAR; k++)
+            used |= now->items[k].voice == voice && now->items[k].end > begin;
+        if (used)
+            put_voice(w, voice, now->first, begin);
+    }
+    while (now->first < now->count && now->items[now->first].end <= begin + BAR)
+        now->first++;
+}
+
 static void put_bars(writer *w)
 {
-    int first = 0;
     for (long begin = 0, bar = 1; begin < w->end; begin += BAR, bar++) {
-        long at = begin;
         PUT(w, "<measure number=\"%ld\">", bar);
         if (bar == 1)
-            PUT(w,
-                "<attributes><divisions>%d</divisions><time><beats>4</beats><beat-type>4"
-                "</beat-type></time><clef><sign>%s</sign></clef></attributes>\n",
-                TICKS,
-                w->choice == MIDI_DRUMS     ? "percussion"
-                : w->choice == MIDI_TIMPANI ? "F"
-                                            : "G");
-        if (bar == 1 && w->choice == MIDI_TIMPANI) // what is short is not damped
-            put_words(w, &at, begin, "sempre l.v.");
-        put_tempi(w, begin, &at);
-        put_orders(w, begin, &at);
-        put_dynamics(w, first, begin, &at);
-        move(w, &at, begin);
-        for (int voice = 0; voice < VOICES; voice++) {
-            bool used = voice == 0;
-            for (int k = first; k < w->count && w->items[k].begin < begin + BAR; k++)
-                used |= w->items[k].voice == voice && w->items[k].end > begin;
-            if (used)
-                put_voice(w, voice, first, begin);
-        }
+            put_attributes(w);
+        for (w->now = w->staves; w->now < w->staves + w->staff_count; w->now++)
+            put_bar(w, begin);
         PUT(w, "<forward><duration>%d</duration></forward></measure>\n", BAR);
-        while (first < w->count && w->items[first].end <= begin + BAR)
-            first++;
     }
 }
 
@@ -380,12 +448,12 @@ static int take_items(writer *w)
 {
     long last[VOICES] = {0};
     int before[VOICES] = {-1, -1, -1, -1};
-    w->count = 0;
+    w->now->count = 0;
     for (int i = 0; i < w->file->note_count; i++) {
         const midi_note *n = &w->file->notes[i];
-        if (n->choice != w->choice)
+        if (n->choice != w->now->choice)
             continue;
-        item *to = &w->items[w->count];
+        item *to = &w->now->items[w->now->count];
         double end = n->way.length > 0
                          ? n->beat + n->way.length
                          : himc_score_beat(w->file->tempi, w->file->tempo_count, n->off);
@@ -394,41 +462,56 @@ static int take_items(writer *w)
             to->voice++;
         int k = before[to->voice];
         long bar_end = (to->begin / BAR + 1) * BAR;
-        if (k >= 0 && !is_held(w->items[k].note) && w->items[k].end > to->begin)
-            w->items[k].end = to->begin;
+        if (k >= 0 && !is_held(w->now->items[k].note) && w->now->items[k].end > to->begin)
+            w->now->items[k].end = to->begin;
         if (!is_held(n))
             to->end = bar_end < to->begin + TICKS ? bar_end : to->begin + TICKS;
         last[to->voice] = is_held(n) ? to->end : to->begin + 1;
-        before[to->voice] = w->count++;
+        before[to->voice] = w->now->count++;
     }
-    return w->count;
+    return w->now->count;
+}
+
+static const char *const names[] = {"",          "Timpani",    "Percussion",   "Marimba",
+                                    "Xylophone", "Vibraphone", "Glockenspiel", "Tubular Bells"};
+
+static void put_name(const writer *w, const midi_note *n)
+{
+    static const char *const drums[] = {"", "low timpano", "second timpano", "third timpano",
+                                        "high timpano"};
+    static const char *const sounds[MIDI_CHOICES] = {
+        [MIDI_TIMPANI] = "drum.timpani",
+        [MIDI_MARIMBA] = "pitched-percussion.marimba",
+        [MIDI_XYLOPHONE] = "pitched-percussion.xylophone",
+        [MIDI_VIBRAPHONE] = "pitched-percussion.vibraphone",
+        [MIDI_GLOCKENSPIEL] = "pitched-percussion.glockenspiel",
+        [MIDI_TUBULAR_BELL] = "pitched-percussion.tubular-bells"};
+    PUT(w, "<score-instrument id=\"I%d\"><instrument-name>%s</instrument-name>", instrument_of(n),
+        n->choice == MIDI_DRUMS ? himc_midi_key_sound(n->key)
+        : n->way.drum > 0       ? drums[n->way.drum]
+                                : names[n->choice]);
+    if (w->staff_count > 1 && sounds[n->choice])
+        PUT(w, "<instrument-sound>%s</instrument-sound>", sounds[n->choice]);
+    PUT(w, "</score-instrument>\n");
 }
 
 static void put_part_list(const writer *w)
 {
-    static const char *const names[] = {"",          "Timpani",    "Percussion",   "Marimba",
-                                        "Xylophone", "Vibraphone", "Glockenspiel", "Tubular Bells"};
-    static const char *const drums[] = {"", "low", "second", "third", "high"};
-    bool used[MIDI_KEY_COUNT] = {false};
-    PUT(w, "<score-part id=\"P%d\"><part-name>%s</part-name>\n", (int)w->choice, names[w->choice]);
-    for (int i = 0; i < w->count && w->choice == MIDI_DRUMS; i++)
-        used[w->items[i].note->key] = true;
-    for (int i = 0; i < w->count && w->choice == MIDI_TIMPANI; i++)
-        used[w->items[i].note->way.drum] = true;
-    for (int drum = 1; drum <= 4 && w->choice == MIDI_TIMPANI; drum++)
-        if (used[drum])
-            PUT(w,
-                "<score-instrument id=\"I%d\"><instrument-name>%s timpano</instrument-name>"
-                "</score-instrument>\n",
-                drum, drums[drum]);
-    for (int key = 0; key < MIDI_KEY_COUNT && w->choice == MIDI_DRUMS; key++)
-        if (used[key])
-            PUT(w,
-                "<score-instrument id=\"I%d\"><instrument-name>%s</instrument-name>"
-                "</score-instrument>\n",
-                key, himc_midi_key_sound(key));
-    for (int key = 0; key < MIDI_BASS_DRUM && w->choice == MIDI_DRUMS; key++)
-        if (used[key])
+    const midi_note *used[MIDI_KEY_COUNT] = {NULL}; // by the instrument's number
+    bool several = w->staff_count > 1;
+    midi_choice choice = w->staves[0].choice;
+    PUT(w, "<score-part id=\"P%d\"><part-name>%s</part-name>\n", several ? 1 : (int)choice,
+        names[several ? MIDI_DRUMS : choice]);
+    for (int i = 0; i < w->file->note_count; i++) {
+        const midi_note *n = &w->file->notes[i];
+        if (several || n->choice == MIDI_DRUMS || n->way.drum > 0)
+            used[instrument_of(n)] = n;
+    }
+    for (int i = 0; i < MIDI_KEY_COUNT; i++)
+        if (used[i])
+            put_name(w, used[i]);
+    for (int key = 0; key < MIDI_BASS_DRUM; key++)
+        if (used[key] && used[key]->choice == MIDI_DRUMS)
             PUT(w,
                 "<midi-instrument id=\"I%d\"><midi-channel>10</midi-channel><midi-unpitched>%d"
                 "</midi-unpitched></midi-instrument>\n",
@@ -451,26 +534,24 @@ bool himc_music_write(himc_text_lines *out, const midi_file *file, const char *t
             "\"http://www.musicxml.org/dtds/partwise.dtd\">\n");
     PUT(&w, "<score-partwise version=\"4.0\"><movement-title>%s</movement-title><part-list>\n",
         title);
-    for (w.choice = MIDI_TIMPANI; w.choice < MIDI_CHOICES; w.choice++)
-        if (take_items(&w) > 0) {
-            put_part_list(&w);
-            for (int i = 0; i < w.count; i++)
-                w.end = w.items[i].end > w.end ? w.items[i].end : w.end;
-        }
+    item *free_items = w.items;
+    for (int choice = MIDI_TIMPANI; choice < MIDI_CHOICES; choice++) {
+        w.now = &w.staves[w.staff_count];
+        *w.now = (staff){.choice = (midi_choice)choice,
+                         .items = free_items,
+                         .spot = HIMC_SPOT_NORMAL,
+                         .step = -1};
+        w.staff_count += take_items(&w) > 0;
+        free_items += w.now->count;
+        for (int i = 0; i < w.now->count; i++)
+            w.end = w.now->items[i].end > w.end ? w.now->items[i].end : w.end;
+    }
     for (int i = 0; i < file->order_count; i++)
         w.end = end_of(&w, &file->orders[i]) > w.end ? end_of(&w, &file->orders[i]) : w.end;
-    PUT(&w, "</part-list>\n");
-    w.first = true;
-    for (w.choice = MIDI_TIMPANI; w.choice < MIDI_CHOICES; w.choice++)
-        if (take_items(&w) > 0) {
-            PUT(&w, "<part id=\"P%d\">\n", (int)w.choice);
-            w.step = -1;
-            w.spot = HIMC_SPOT_NORMAL;
-            put_bars(&w);
-            PUT(&w, "</part>\n");
-            w.first = false;
-        }
-    PUT(&w, "</score-partwise>\n");
+    put_part_list(&w);
+    PUT(&w, "</part-list>\n<part id=\"P%d\">\n", w.staff_count > 1 ? 1 : (int)w.staves[0].choice);
+    put_bars(&w);
+    PUT(&w, "</part>\n</score-partwise>\n");
     free(w.items);
     free(w.marks);
     return !out->failed;

@@ -6,6 +6,7 @@
 /// up to the next. Events are sorted by tick, ends before beginnings.
 #include "musicxml/export.h"
 
+#include "base/format.h"
 #include "midi/part.h"
 #include "musicxml/music.h"
 
@@ -143,7 +144,14 @@ static void put_tempi(himc_text_lines *out, const midi_file *file)
     end_track(out, begin);
 }
 
-static void put_part(himc_text_lines *out, writer *w, midi_choice choice)
+/// A track: a kind, or a concert instrument that General MIDI lacks, by its key from 128.
+static bool is_of_track(const midi_note *n, int track)
+{
+    return (n->choice == MIDI_DRUMS && n->key >= MIDI_BASS_DRUM ? n->key : (int)n->choice) == track;
+}
+
+// tracks of one player share the name before the colon (smf.c)
+static void put_part(himc_text_lines *out, writer *w, int track, bool several)
 {
     static const struct {
         const char *name;
@@ -155,11 +163,14 @@ static void put_part(himc_text_lines *out, writer *w, midi_choice choice)
                 [MIDI_VIBRAPHONE] = {"Vibraphone", 0xc3, 11},
                 [MIDI_GLOCKENSPIEL] = {"Glockenspiel", 0xc4, 9},
                 [MIDI_TUBULAR_BELL] = {"Tubular Bells", 0xc5, 14}};
-    const char *name = part[choice].name;
+    midi_choice choice = track < MIDI_CHOICES ? (midi_choice)track : MIDI_DRUMS;
+    char name[64];
+    himc_format(name, sizeof name, "%s%s", several ? "Player 1: " : "",
+                track < MIDI_CHOICES ? part[choice].name : himc_midi_key_sound(track));
     long now = 0;
     w->count = 0;
     for (int i = 0; i < w->file->note_count; i++)
-        if (w->file->notes[i].choice == choice)
+        if (is_of_track(&w->file->notes[i], track))
             add_note(w, &w->file->notes[i]);
     qsort(w->events, (size_t)w->count, sizeof *w->events, by_tick);
     size_t begin = begin_track(out);
@@ -177,19 +188,18 @@ static void put_part(himc_text_lines *out, writer *w, midi_choice choice)
 bool himc_music_write_midi(himc_text_lines *out, const midi_file *file)
 {
     writer w = {.file = file};
-    bool used[MIDI_CHOICES] = {false};
+    bool used[MIDI_KEY_COUNT] = {false};
     int tracks = 1;
-    for (int i = 0; i < file->note_count; i++)
-        used[file->notes[i].choice] = true;
-    for (int c = MIDI_TIMPANI; c < MIDI_CHOICES; c++)
-        tracks += used[c];
+    for (int c = MIDI_TIMPANI; c < MIDI_KEY_COUNT; c++)
+        for (int i = 0; i < file->note_count && !used[c]; i++)
+            tracks += used[c] = is_of_track(&file->notes[i], c);
     put(out, "MThd\0\0\0\6\0\1", 10);
     put_number(out, (unsigned long)tracks, 2);
     put_number(out, TICKS, 2);
     put_tempi(out, file);
-    for (int c = MIDI_TIMPANI; c < MIDI_CHOICES && !w.failed; c++)
+    for (int c = MIDI_TIMPANI; c < MIDI_KEY_COUNT && !w.failed; c++)
         if (used[c])
-            put_part(out, &w, (midi_choice)c);
+            put_part(out, &w, c, tracks > 2);
     free(w.events);
     return !out->failed && !w.failed;
 }

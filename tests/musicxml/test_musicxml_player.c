@@ -1,0 +1,337 @@
+/// MusicXML: a written part is one player with several instruments.
+#define _XOPEN_SOURCE 700
+#include "made.h"
+
+#include "midi/part.h"
+#include "musicxml/export.h"
+#include "musicxml/names.h"
+
+#define HIT(more)                                                              \
+    "<note>" more "<unpitched><display-step>E</display-step><display-octave>4" \
+    "</display-octave></unpitched><duration>4</duration><voice>1</voice></note>"
+#define AT(step, octave)                                                              \
+    "<note><unpitched><display-step>" #step "</display-step><display-octave>" #octave \
+    "</display-octave></unpitched><duration>4</duration><voice>1</voice></note>"
+#define OF(id, step, octave)                                                             \
+    "<note><pitch><step>" #step "</step><octave>" #octave "</octave></pitch><duration>4" \
+    "</duration><instrument id='" id "'/><voice>1</voice></note>"
+#define INSTRUMENT(id, name) \
+    "<score-instrument id='" id "'><instrument-name>" name "</instrument-name></score-instrument>"
+#define PLAYER(id, name, instruments) \
+    "<score-part id='" id "'><part-name>" name "</part-name>" instruments "</score-part>"
+#define ONE_LINE                                                                      \
+    "<attributes><divisions>4</divisions><staff-details><staff-lines>1</staff-lines>" \
+    "</staff-details></attributes>"
+
+#define PLAYED_BY(list) HEAD "<part-list>" list "</part-list><part id='P1'>"
+#define CHANGED(id, sound)                                           \
+    "<sound><instrument-change id='" id "'><instrument-sound>" sound \
+    "</instrument-sound></instrument-change></sound>"
+#define TIMPANI_AND_SNARE \
+    PLAYER("P1", "Percussion", INSTRUMENT("T", "Timpani") INSTRUMENT("S", "Snare Drum"))
+#define SAYS(staff, type) \
+    "<direction><direction-type>" type "</direction-type><staff>" #staff "</staff></direction>"
+#define ON(n, id, duration)                                                     \
+    "<note><pitch><step>D</step><octave>3</octave></pitch><duration>" #duration \
+    "</duration><instrument id='" id "'/><voice>" #n "</voice><staff>" #n "</staff></note>"
+#define BACK "<backup><duration>16</duration></backup>"
+
+static void expect_drums(int count, const char *const *names)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(count, score->stroke_count, made.text);
+    for (int i = 0; i < count; i++)
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(names[i], stroke(i)->drum, made.text);
+}
+
+static void test_ids_of_notes_say_the_instrument(void)
+{
+    static const char *const drums[] = {"third", "xylophone", "snare", "xylophone"};
+    load(HEAD "<part-list>" PLAYER(
+        "P1", "Percussion",
+        INSTRUMENT("T", "Timpani") INSTRUMENT("X", "Xylophone") INSTRUMENT(
+            "S", "Snare Drum")) "</part-list><part id='P1'>" BAR(1, FOUR OF("T", D, 3) OF("X", C, 5)
+                                                                        OF("S", C, 5) OF("X", E, 5))
+             TAIL);
+    expect_drums(4, drums);
+    expect_text("4 of 4 notes for timpani drums xylophone are played");
+}
+
+// in four languages, and a bare name on a staff of one line
+static void test_words_change_the_instrument(void)
+{
+    static const char *const words[][3] = {
+        {"to Xylophone", "take Cymbals", "Snare Drum"},
+        {"nimmt Xylophon", "Becken nehmen", "nimmt Kl. Trommel"},
+        {"prenez le xylophone", "Cymbales", "prend la Caisse claire"},
+        {"muta in Xilofono", "muta in Piatti", "Tamburo"}};
+    static const char *const drums[] = {"xylophone", "crash", "snare", "snare"};
+    for (int k = 0; k < 4; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Percussion") "<measure number='1'>" ONE_LINE WORDS("%s")
+                     NOTE(C, 5, 4, "") WORDS("%s") HIT("") WORDS("%s") HIT("") WORDS("p")
+                         HIT("") "</measure>" TAIL,
+                 words[k][0], words[k][1], words[k][2]);
+        load(text);
+        expect_drums(4, drums);
+    }
+}
+
+static void test_words_that_name_sticks_or_a_pitch_change_no_instrument(void)
+{
+    static const char *const words[] = {"take timpani sticks", "mit Paukenschlägeln", "to Coda",
+                                        "muta in F",           "like a triangle",     "Solo"};
+    for (int k = 0; k < 6; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("Snare Drum") "<measure number='1'>" FOUR HIT("") WORDS("%s")
+                     HIT("") "</measure>" TAIL,
+                 words[k]);
+        load(text);
+        expect_drums(2, (const char *const[]){"snare", "snare"});
+    }
+}
+
+static void test_a_sound_changes_the_instrument(void)
+{
+    load(PLAYED_BY(PLAYER("P1", "Timpani", INSTRUMENT("A", "Timpani"))) BAR(
+        1, FOUR OF("A", D, 3) CHANGED("A", "pitched-percussion.xylophone") OF("A", C, 5)) TAIL);
+    expect_drums(2, (const char *const[]){"third", "xylophone"});
+}
+
+static void test_clefs_say_the_instrument_where_notes_do_not(void)
+{
+#define CLEF(sign) "<attributes><clef><sign>" sign "</sign></clef></attributes>"
+    load(HEAD PART("Pauken, Xylophon, Kl. Trommel")
+             BAR(1, FOUR CLEF("F") NOTE(D, 3, 4, "") CLEF("G") NOTE(C, 5, 4, "") CLEF("percussion")
+                        HIT("") CLEF("F") NOTE(D, 3, 4, "")) TAIL);
+    expect_drums(4, (const char *const[]){"third", "xylophone", "snare", "third"});
+}
+
+// each staff of several kinds has its dynamics and its words
+static void test_staves_have_their_own_words(void)
+{
+    load(PLAYED_BY(TIMPANI_AND_SNARE)
+             BAR(1, FOUR SAYS(1, "<dynamics><ff/></dynamics>") SAYS(1, "<words>near rim</words>")
+                        ON(1, "T", 16) BACK SAYS(2, "<dynamics><pp/></dynamics>") ON(2, "S", 4)
+                            SAYS(2, "<words>snares off</words>") ON(2, "S", 12))
+                 BAR(2, SAYS(1, "<words>hard sticks</words>") ON(1, "T", 16)) TAIL);
+    expect_drums(4, (const char *const[]){"snare", "third", "snare", "third"});
+    expect_dynamics(4, 1.0, 6.0, 1.0, 6.0);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_NORMAL, stroke(0)->spot);
+    TEST_ASSERT_EQUAL(HIMC_SPOT_RIM, stroke(1)->spot);
+    expect_text("snare wires 0;");
+    TEST_ASSERT_NULL(strstr(made.text, "third wires"));
+}
+
+// drums of one sort are told apart by their names, and by their places on the staff
+static void test_names_of_drums_say_high_and_low(void)
+{
+    static const struct {
+        const char *name;
+        int key;
+    } rows[] = {{"Tom-tom 1", 50},
+                {"Tom 2", 48},
+                {"Tom-Tom III", 45},
+                {"Hohes Tom", 50},
+                {"Tom aigu", 50},
+                {"Tom médium", 48},
+                {"Tom grave", 45},
+                {"Tom-tom", 48},
+                {"Large Tom", 45},
+                {"4 Tom-toms", 48},
+                {"Floor Tom", 43},
+                {"Low Tom", 45},
+                {"Wood Block (high)", 76},
+                {"Wood Block 2", MIDI_MIDDLE_BLOCK},
+                {"Holzblock tief", 77},
+                {"Bloc de bois moyen", MIDI_MIDDLE_BLOCK},
+                {"Kleine Kuhglocke", MIDI_HIGH_COWBELL},
+                {"Cowbell large", MIDI_LOW_COWBELL},
+                {"Cowbell", 56},
+                {"Temple Block 1", MIDI_LOW_TEMPLE_BLOCK + 4},
+                {"Temple Block 5", MIDI_LOW_TEMPLE_BLOCK},
+                {"Tempelblock", MIDI_TEMPLE_BLOCKS},
+                {"second temple block", MIDI_LOW_TEMPLE_BLOCK + 1},
+                {"Bongo grave", 61},
+                {"Kl. Tr.", 38},
+                {"Gr. Tr.", MIDI_BASS_DRUM},
+                {"S.D.", 38},
+                {"B.D.", MIDI_BASS_DRUM}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        int key = 0;
+        TEST_ASSERT_EQUAL_MESSAGE(MIDI_DRUMS, himc_music_instrument(rows[i].name, &key),
+                                  rows[i].name);
+        TEST_ASSERT_EQUAL_MESSAGE(rows[i].key, key, rows[i].name);
+    }
+    load(HEAD PART("Temple Blocks") BAR(1, FOUR AT(D, 4) AT(F, 4) AT(A, 4) AT(C, 5))
+             BAR(2, AT(E, 5)) TAIL);
+    static const char *const parts[] = {"low", "second", "third", "fourth", "high"};
+    for (int i = 0; i < 5; i++)
+        TEST_ASSERT_EQUAL_STRING(parts[i], stroke(i)->part);
+    load(HEAD PART("Tom-toms") BAR(1, FOUR AT(C, 5) AT(E, 5) AT(A, 4) AT(C, 5)) TAIL);
+    expect_drums(4, (const char *const[]){"tom", "high-tom", "mid-tom", "tom"});
+    load(HEAD PART("Tom-toms") BAR(1, FOUR AT(C, 5) AT(C, 5)) TAIL);
+    expect_drums(2, (const char *const[]){"tom", "tom"});
+}
+
+static void test_what_is_not_known_on_one_line_is_told_and_left_out(void)
+{
+    load(HEAD "<part-list>" PLAYER(
+        "P1", "Percussion",
+        INSTRUMENT("A", "Anvil") INSTRUMENT(
+            "S", "Snare Drum")) "</part-list><part id='P1'>" BAR(1, ONE_LINE OF("S", E, 4) HIT("")
+                                                                        OF("S", E, 4)) TAIL);
+    expect_drums(2, (const char *const[]){"snare", "snare"});
+    expect_text("1 of other percussion: no such instrument here");
+}
+
+#define SNARE_AND_XYLOPHONE INSTRUMENT("S", "Snare Drum") INSTRUMENT("X", "Xylophone")
+#define TWO_PLAYERS                                                                        \
+    PLAYED_BY(PLAYER("P1", "Timpani", "") PLAYER("P2", "Percussion", SNARE_AND_XYLOPHONE)) \
+    BAR(1, FOUR NOTE(D, 3, 4, "") NOTE(D, 3, 4, ""))                                       \
+    "</part><part id='P2'>" BAR(1, FOUR REST(8) OF("S", E, 4) OF("X", C, 5)) TAIL
+
+static void test_other_players_are_told_and_all_can_be_asked_for(void)
+{
+    load(TWO_PLAYERS);
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    expect_text("2 notes for other percussion are not asked for: drums xylophone");
+    forget();
+    TEST_ASSERT_TRUE(himc_music_import(&made, TWO_PLAYERS, strlen(TWO_PLAYERS), "all",
+                                       &(midi_options){.all = true}, &error));
+    score = himc_score_parse(made.text, "made.txt", NULL, &error);
+    expect_drums(4, (const char *const[]){"third", "third", "snare", "xylophone"});
+    TEST_ASSERT_NULL(strstr(made.text, "not asked for"));
+}
+
+// where an instrument stands (m)
+static void place_of(const char *drum, double *x, double *y)
+{
+    char line[64];
+    snprintf(line, sizeof line, "\n%s place ", drum);
+    const char *at = strstr(made.text, line);
+    TEST_ASSERT_NOT_NULL_MESSAGE(at, drum);
+    TEST_ASSERT_EQUAL(2, sscanf(at + strlen(line), "%lf %lf", x, y));
+}
+
+static void test_instruments_stand_apart_and_in_reach(void)
+{
+    static const char *const drums[] = {"third", "xylophone", "snare", "crash", "bass-drum", "tom"};
+    load(HEAD "<part-list>" PLAYER(
+        "P1", "Percussion",
+        INSTRUMENT("T", "Timpani") INSTRUMENT("X", "Xylophone") INSTRUMENT("S", "Snare Drum")
+            INSTRUMENT("C", "Cymbal") INSTRUMENT("B", "Bass Drum") INSTRUMENT(
+                "O", "Tom")) "</part-list><part id='P1'>" BAR(1, FOUR OF("T", D, 3) OF("X", C, 5)
+                                                                     OF("S", E, 4) OF("C", E, 4)
+                                                                         OF("B", E, 4)
+                                                                             OF("O", E, 4)) TAIL);
+    expect_drums(6, drums);
+    for (int i = 0; i < 6; i++) {
+        double x, y, other_x, other_y;
+        place_of(drums[i], &x, &y);
+        TEST_ASSERT_TRUE_MESSAGE(hypot(x, y) < 1.2 && x > -0.4, drums[i]);
+        for (int k = 0; k < i; k++) {
+            place_of(drums[k], &other_x, &other_y);
+            TEST_ASSERT_TRUE_MESSAGE(hypot(x - other_x, y - other_y) > 0.3, made.text);
+        }
+    }
+}
+
+// a score of ours, out and in again
+
+static void expect_back(const char *words, bool midi)
+{
+    himc_text_lines text = {0};
+    midi_file notes;
+    himc_score *from = himc_score_parse(words, "words", NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(from, error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, from, midi, &error), error.text);
+    TEST_ASSERT_TRUE(midi ? himc_music_write_midi(&text, &notes)
+                          : himc_music_write(&text, &notes, "words"));
+    forget();
+    TEST_ASSERT_TRUE_MESSAGE(
+        himc_score_maker_of(text.bytes, text.size)(&made, text.bytes, text.size, "b", NULL, &error),
+        error.text);
+    score = himc_score_parse(made.text, "made.txt", NULL, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    TEST_ASSERT_EQUAL_MESSAGE(from->stroke_count, score->stroke_count, made.text);
+    for (int i = 0; i < from->stroke_count; i++) {
+        const himc_stroke *a = &from->strokes[i], *b = stroke(i);
+        TEST_ASSERT_FLOAT_WITHIN(2e-3, a->beat + lead(), b->beat);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(a->drum, b->drum, made.text);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(a->part, b->part, made.text);
+        TEST_ASSERT_FLOAT_WITHIN(0.02, a->dynamic, b->dynamic);
+        TEST_ASSERT_TRUE(midi || a->hand == b->hand);
+        TEST_ASSERT_TRUE(midi || (a->nuance == b->nuance && a->ornament == b->ornament));
+    }
+    himc_score_free(from);
+    himc_midi_file_free(&notes);
+    free(text.bytes);
+}
+
+static const char several[] =
+    "drum low 32; low tune D2; instrument xylophone xylophone F4 C6; instrument snare snare 14;"
+    "instrument tam-tam tam-tam 32; instrument temple-blocks temple-blocks;"
+    "instrument low-cowbell cowbell 420; instrument agogo agogo; tempo 60;"
+    "stroke 0 left legato p low; stroke 1 right legato f F5 xylophone;"
+    "stroke 2 left legato mf snare;"
+    "stroke 3 right legato ff tam-tam; stroke 4 left legato mp low temple-blocks;"
+    "stroke 5 right legato mf fourth temple-blocks; stroke 6 left legato f low-cowbell;"
+    "stroke 7 right legato f low agogo; stroke 8 right legato f high agogo;";
+
+static void test_several_kinds_come_back_from_one_part(void)
+{
+    expect_back(several, false);
+    expect_text("9 of 9 notes for timpani drums xylophone are played");
+    static const char more[] =
+        "drum low 32; low tune D2; instrument marimba marimba C3 C6; instrument snare snare 14;"
+        "tempo 60; roll 0 4 single pp ff low; stroke 4.5 right legato p C4 marimba;"
+        "flam 5 left accent f snare; stroke 7 right tenuto mp E4 marimba;";
+    expect_back(more, false);
+    expect_roll(0, 0, 4, 1, 6);
+}
+
+static void test_several_kinds_come_back_from_midi(void)
+{
+    expect_back(several, true);
+}
+
+// of drums with names of their own those stand that are nearest in size, each another one
+static void test_drums_of_one_kind_stay_apart(void)
+{
+    himc_text_lines text = {0};
+    midi_file notes;
+    himc_score *from = himc_score_parse(
+        "instrument a tom 10; instrument b tom 14; instrument c tom 14.5; instrument d cowbell 400;"
+        "instrument e cowbell 800; stroke 1 right legato f a; stroke 2 right legato f b;"
+        "stroke 3 right legato f c; stroke 4 right legato f d; stroke 5 right legato f e;",
+        "words", NULL, &error);
+    TEST_ASSERT_TRUE(himc_music_notes(&notes, from, false, &error));
+    TEST_ASSERT_TRUE(himc_music_write(&text, &notes, "words"));
+    load(text.bytes);
+    expect_drums(
+        5, (const char *const[]){"high-tom", "mid-tom", "floor", "low-cowbell", "high-cowbell"});
+    himc_score_free(from);
+    himc_midi_file_free(&notes);
+    free(text.bytes);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_ids_of_notes_say_the_instrument);
+    RUN_TEST(test_words_change_the_instrument);
+    RUN_TEST(test_words_that_name_sticks_or_a_pitch_change_no_instrument);
+    RUN_TEST(test_a_sound_changes_the_instrument);
+    RUN_TEST(test_clefs_say_the_instrument_where_notes_do_not);
+    RUN_TEST(test_staves_have_their_own_words);
+    RUN_TEST(test_names_of_drums_say_high_and_low);
+    RUN_TEST(test_what_is_not_known_on_one_line_is_told_and_left_out);
+    RUN_TEST(test_other_players_are_told_and_all_can_be_asked_for);
+    RUN_TEST(test_instruments_stand_apart_and_in_reach);
+    RUN_TEST(test_several_kinds_come_back_from_one_part);
+    RUN_TEST(test_several_kinds_come_back_from_midi);
+    RUN_TEST(test_drums_of_one_kind_stay_apart);
+    return UNITY_END();
+}
