@@ -47,6 +47,7 @@ typedef struct music_note {
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
     bool pulled;         ///< the nuance staccato, as `himc export` writes it
     bool held;           ///< under a fermata
+    bool hidden;         ///< not printed, for the sound alone
     bool attacked;       ///< sf, sfz
     bool ghost;          ///< softer: a notehead in parentheses
     bool glides, glided; ///< a line of a glissando begins, ends here
@@ -55,6 +56,8 @@ typedef struct music_note {
     int hand;            ///< 1 + himc_hand, or 0
     int drum;            ///< of timpani: 1 low .. 4 high; 0: not written
     double dynamic;      ///< of its own; below 0: not written
+    bool goes_on;        ///< a roll of another voice does, from this stroke on ...
+    double struck;       ///< ... of so much more
     music_tremolo tremolo;
     int marks, flags; ///< strokes through the stem; flags of the note
     double ratio;     ///< of a tuplet: written length over sounding
@@ -76,7 +79,15 @@ typedef struct music_omission {
     char bars[48];
 } music_omission;
 
-enum { MUSIC_CUES, MUSIC_BAD_NOTES, MUSIC_GRACES, MUSIC_ATTACKS, MUSIC_UNKNOWN, MUSIC_OMISSIONS };
+enum {
+    MUSIC_CUES,
+    MUSIC_HIDDEN,
+    MUSIC_BAD_NOTES,
+    MUSIC_GRACES,
+    MUSIC_ATTACKS,
+    MUSIC_UNKNOWN,
+    MUSIC_OMISSIONS
+};
 
 typedef struct music {
     music_bar *bars;
@@ -95,6 +106,9 @@ void himc_music_free(music *music);
 /// order.c: puts notes and signs in the order in which they are played, with repeats, on beats from
 /// the beginning. `bars` of the file get their beats.
 bool himc_music_order(music *music, midi_file *file, himc_error *error);
+
+/// swing.c: moves notes and signs between beats as words ask for.
+bool himc_music_swing(music *music, const midi_file *file, himc_error *error);
 
 /// tempo.c: makes the file's tempi of the signs.
 bool himc_music_tempo(const music *music, midi_file *file, himc_error *error);

@@ -231,14 +231,17 @@ static void put_orders(const writer *w, long begin, long *at)
         char words[40];
         if (o->choice != w->choice)
             continue;
-        himc_format(words, sizeof words, o->glides ? "%s%s%d to %s%d" : "%s%s%d muta in %s%d",
-                    drums[o->from / 128], pitch[o->from % 128 % 12], o->from % 128 / 12 - 1,
-                    pitch[o->value % 12], o->value / 12 - 1);
+        if (o->kind == MIDI_DAMP)
+            himc_format(words, sizeof words, "damp %s%d", pitch[o->value % 12], o->value / 12 - 1);
+        else
+            himc_format(words, sizeof words, o->glides ? "%s%s%d to %s%d" : "%s%s%d muta in %s%d",
+                        drums[o->from / 128], pitch[o->from % 128 % 12], o->from % 128 / 12 - 1,
+                        pitch[o->value % 12], o->value / 12 - 1);
         if (here && o->glides)
             put_gliss(w, at, tick, i, words);
         else if (here)
             put_words(w, at, tick,
-                      o->kind == MIDI_TUNING ? words
+                      o->kind != MIDI_MUFFLE ? words
                       : o->value             ? "coperto"
                                              : "scoperto");
         if (o->glides && end > begin && end <= begin + BAR)
