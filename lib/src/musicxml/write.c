@@ -69,7 +69,7 @@ static const struct {
     int key;
     char place[3];
     bool metal;
-} lines[] = {{35, "E4", false}, {36, "F4", false}, {41, "G4", false}, {43, "A4", false},
+} lines[] = {{35, "F4", false}, {36, "F4", false}, {41, "G4", false}, {43, "A4", false},
              {45, "B4", false}, {47, "D5", false}, {48, "E5", false}, {50, "E5", false},
              {42, "G5", true},  {44, "D4", true},  {46, "G5", true},  {49, "A5", true},
              {57, "B5", true},  {52, "B5", true},  {55, "A5", true},  {51, "F5", true},
