@@ -159,7 +159,8 @@ static void test_pedals_come_back_as_words(void)
 static void test_ornaments_rolls_spots_and_dynamics_are_written(void)
 {
     parse("drum kettle; tempo 100; flam 1 right accent ff; drag 2 left legato p center;"
-          "ruff 3 right staccato mf rim; roll 4 6 single pp ff; stroke 10 left tenuto fff;");
+          "ruff 3 right staccato mf rim; roll 4 6 single pp ff; stroke 10 left tenuto fff;"
+          "stroke 12 right accent ppp; stroke 13 left legato ppp;");
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<wedge type=\"crescendo\"/>"));
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>near rim</words>"));
     read_back(himc_music_import);

@@ -7,6 +7,7 @@
 
 #define MUSIC_BARS_MAX 20000               ///< of a part; chosen: no piece has as many
 #define MUSIC_MADE_MAX 400000              ///< notes, signs, with repeats; more than a score has
+#define MUSIC_UNSAID (-1.0)                ///< a dynamic
 #define MUSIC_LINES_MAX 9                  ///< of pedals that run at once, by their numbers 1 .. 9
 #define MUSIC_BAR 4.0                      ///< quarter notes of a bar that is written
 #define MUSIC_GRACE_TIME 0.04              ///< (s) between strokes of a ruff in MIDI; chosen
@@ -55,7 +56,7 @@ typedef struct music_note {
     int ring;            ///< 1, -1, or 0: not written
     int hand;            ///< 1 + himc_hand, or 0
     int drum;            ///< of timpani: 1 low .. 4 high; 0: not written
-    double dynamic;      ///< of its own; below 0: not written
+    double dynamic;      ///< of its own, or MUSIC_UNSAID
     bool goes_on;        ///< a roll of another voice does, from this stroke on ...
     double struck;       ///< ... of so much more
     music_tremolo tremolo;

@@ -20,7 +20,8 @@
 
 enum { CLOSED_HATS = 42, OPEN_HATS = 46, RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
 
-#define MOST_INSTRUMENTS 64 // of a part
+#define LEAST_OWN (-1.0 / 7) // dynamic of a note, whose accent adds a step
+#define MOST_INSTRUMENTS 64  // of a part
 
 typedef struct instrument {
     const char *id;
@@ -567,7 +568,8 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     }
     // percent of a velocity of 90
     const char *level = himc_xml_attribute(note, "dynamics");
-    n.dynamic = level[0] ? fmin(himc_midi_dynamic(0.9 * strtod(level, NULL), 0), 1) : -1;
+    double own = (0.9 * strtod(level, NULL) - himc_midi_velocity(0)) / himc_midi_velocity(0) / 7;
+    n.dynamic = level[0] ? fmin(fmax(own, LEAST_OWN), 1) : MUSIC_UNSAID;
     if (!read_key(r, note, &n) || (!n.grace && length <= 0)) {
         himc_music_omit(m, MUSIC_BAD_NOTES, r->bar);
         return;

@@ -164,11 +164,11 @@ static void continue_roll(shaper *s, music_note *roll, music_note *n)
 {
     double end = roll->at.beat + roll->rolled, at = n->at.beat;
     choose_lane(s, n->lane);
-    double struck = n->dynamic >= 0 ? n->dynamic : level(s, at);
+    double struck = n->dynamic > MUSIC_UNSAID ? n->dynamic : level(s, at);
     choose_lane(s, roll->lane);
     n->struck = fmax(struck - level(s, at), 0);
     n->goes_on = true;
-    n->dynamic = -1;
+    n->dynamic = MUSIC_UNSAID;
     n->lane = roll->lane;
     n->tremolo = roll->tremolo;
     n->marks = roll->marks;
@@ -534,7 +534,7 @@ static void shape_note(shaper *s, music_note *n)
 {
     double unit, least = himc_argument_find("LENGTH", "roll")->low;
     bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = n->attacked || n->marcato;
-    midi_way way = {.dynamic = n->dynamic >= 0 ? n->dynamic : level(s, n->at.beat),
+    midi_way way = {.dynamic = n->dynamic > MUSIC_UNSAID ? n->dynamic : level(s, n->at.beat),
                     .drum = n->drum,
                     .nuance = attack      ? HIMC_VERTICAL_ACCENT
                               : n->accent ? HIMC_ACCENT
@@ -556,8 +556,9 @@ static void shape_note(shaper *s, music_note *n)
     emit_graces(s, n, roll, &way);
     if (!roll && n->accent && !attack)
         way.dynamic = fmin(way.dynamic + STEP, 1);
-    if (n->ghost && n->dynamic < 0)
-        way.dynamic = fmax(way.dynamic - GHOST_SOFTER, 0);
+    if (n->ghost && n->dynamic == MUSIC_UNSAID)
+        way.dynamic -= GHOST_SOFTER;
+    way.dynamic = fmax(way.dynamic, 0);
     if (roll)
         emit_roll(s, n, n->at.beat + n->rolled, louder, way);
     else if (n->tremolo == MUSIC_MARKS)

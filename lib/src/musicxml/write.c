@@ -176,7 +176,7 @@ static void put_note(const writer *w, const music_item *i, const music_piece *pi
     int line = w->choice == MIDI_DRUMS ? line_of(i->note->key) : -1;
     double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
     // the exact dynamic, in percent of a velocity of 90
-    PUT(w, "<note dynamics=\"%.6g\">%s", himc_midi_velocity(fmax(level, 0)) / 0.9,
+    PUT(w, "<note dynamics=\"%.6g\">%s", fmax(himc_midi_velocity(level), 0) / 0.9,
         i->chord ? "<chord/>" : "");
     put_pitch(w, i->note->key);
     PUT(w, "<duration>%ld</duration>", piece->to - piece->from);
