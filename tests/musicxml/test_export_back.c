@@ -158,7 +158,8 @@ static void test_pedals_come_back_as_words(void)
 static void test_ornaments_rolls_spots_and_dynamics_are_written(void)
 {
     parse("drum kettle; tempo 100; flam 1 right accent ff; drag 2 left legato p center;"
-          "ruff 3 right staccato mf rim; roll 4 6 single pp ff; stroke 10 left tenuto fff;");
+          "ruff 3 right staccato mf rim; roll 4 6 single pp ff; stroke 10 left tenuto fff;"
+          "stroke 12 right accent ppp; stroke 13 left legato ppp;");
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<wedge type=\"crescendo\"/>"));
     TEST_ASSERT_NOT_NULL(strstr(text.bytes, "<words>near rim</words>"));
     read_back(himc_music_import);
@@ -180,8 +181,9 @@ static void test_midi_keeps_times_pitches_and_dynamics(void)
         for (int k = 0; k < file.note_count && !found; k++)
             found = file.notes[k].key == notes.notes[i].key &&
                     fabs(file.notes[k].seconds - notes.notes[i].seconds) < 1e-3 &&
-                    fabs(himc_midi_dynamic(file.notes[k].velocity, 0) -
-                         fmin(notes.notes[i].way.dynamic, 111 / 112.0)) < 0.01;
+                    fabs(file.notes[k].velocity -
+                         himc_midi_played_velocity(notes.notes[i].way.nuance,
+                                                   notes.notes[i].way.dynamic)) < 1;
         TEST_ASSERT_TRUE(found);
     }
     himc_midi_file_free(&file);
@@ -298,7 +300,7 @@ static void test_midi_tells_of_nuances_spots_and_pedals_that_it_does_not_have(vo
                          "words", NULL, &error);
     TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
     TEST_ASSERT_EQUAL_STRING("1 spot (bar 2) is not written: the instrument has no sign for it\n"
-                             "1 nuance (bar 1) is not written\n"
+                             "1 nuance (bar 1) is written as loudness, for other programs\n"
                              "1 change by gliss (bar 3) is not written\n"
                              "1 change by muffle (bar 4) is not written\n",
                              notes.said);
@@ -373,6 +375,69 @@ static void test_a_note_before_graces_rings_on_after_midi(void)
         himc_midi_score_free(&made);
         tearDown();
     }
+}
+
+// behind a roll's end on one drum, while another one rings on
+static void test_a_hand_after_a_roll_damps_where_it_did(void)
+{
+    parse("drum low 32; low tune D2; drum second 29; second tune A2; tempo 60;"
+          "stroke 0 right legato f second; roll 1 3 single p f low; at 5.5 low damp 1;"
+          "at 6 low damp 0; stroke 10 left legato f low;");
+    midi_score made;
+    double lead = 0;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    sscanf(strstr(made.text, "beat 0 of the file"), "beat 0 of the file is beat %lf", &lead);
+    const char *at = strstr(made.text, "low damp 1;");
+    TEST_ASSERT_NOT_NULL_MESSAGE(at, made.text);
+    while (at[-1] != '\n')
+        at--;
+    TEST_ASSERT_DOUBLE_WITHIN(2e-3, 5.5, atof(at + 3) - lead);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "second damp 1;"), made.text);
+    himc_midi_score_free(&made);
+    read_back(himc_music_import);
+    expect_same("damped after a roll");
+}
+
+// elsewhere a velocity is all that is heard of an accent; here the same strokes come back
+static void test_nuances_are_velocities_in_midi_and_come_back(void)
+{
+    score = himc_score_parse(
+        "drum kettle; tempo 60; stroke 0 right legato mf; stroke 1 left accent mf;"
+        "stroke 2 right vertical-accent mf; stroke 3 left staccato mf; stroke 4 right tenuto ppp;"
+        "stroke 5 left vertical-accent ff; stroke 6 right vertical-accent f;",
+        "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+    midi_file file;
+    TEST_ASSERT_TRUE_MESSAGE(himc_midi_file_read(&file, text.bytes, text.size, &error), error.text);
+    const midi_note *n = file.notes;
+    TEST_ASSERT_TRUE(n[3].velocity < n[0].velocity && n[0].velocity < n[1].velocity);
+    TEST_ASSERT_TRUE(n[1].velocity < n[2].velocity);
+    // as loud as a legato stroke of 7.5 m/s, which at f has 4.3 and at fff 1.39 times that
+    const double forte = 5 / 7.0, step = (1 - forte) / log(1.39);
+    double all = himc_midi_velocity(forte + step * log(7.5 / 4.3));
+    TEST_ASSERT_EQUAL((int)fmin(lround(all), 127), n[6].velocity);
+    himc_midi_file_free(&file);
+    read_back(himc_midi_import);
+    expect_same("nuances");
+}
+
+// who edits a velocity in another program is heard
+static void test_an_edited_velocity_counts(void)
+{
+    score =
+        himc_score_parse("drum kettle; tempo 60; stroke 0 right accent mf;", "words", NULL, &error);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, true, &error), error.text);
+    TEST_ASSERT_TRUE(himc_music_write_midi(&text, &notes));
+    size_t at = 0;
+    while (at < text.size && !((uint8_t)text.bytes[at] == 0x90 && text.bytes[at + 1] == 50))
+        at++;
+    TEST_ASSERT_TRUE(at < text.size);
+    text.bytes[at + 2] = 40;
+    read_back(himc_midi_import);
+    TEST_ASSERT_EQUAL(1, count);
+    TEST_ASSERT_EQUAL(HIMC_ACCENT, back[0].nuance);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, himc_midi_dynamic(40, 0), back[0].dynamic);
 }
 
 static void test_more_bars_than_are_read_are_refused(void)
@@ -511,6 +576,9 @@ int main(void)
     RUN_TEST(test_what_rings_and_what_a_hand_damps_come_back);
     RUN_TEST(test_midi_has_what_rings_and_what_a_hand_damps);
     RUN_TEST(test_a_note_before_graces_rings_on_after_midi);
+    RUN_TEST(test_a_hand_after_a_roll_damps_where_it_did);
+    RUN_TEST(test_nuances_are_velocities_in_midi_and_come_back);
+    RUN_TEST(test_an_edited_velocity_counts);
     RUN_TEST(test_more_bars_than_are_read_are_refused);
     RUN_TEST(test_the_last_bar_that_is_read_is_written);
     RUN_TEST(test_midi_keeps_a_rest_of_any_length);

@@ -206,6 +206,83 @@ static void test_a_grace_on_another_drum_is_a_stroke(void)
     TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
 }
 
+#define BACK "<backup><duration>16</duration></backup>"
+#define SECOND(duration, more)                                                  \
+    "<note><pitch><step>C</step><octave>3</octave></pitch><duration>" #duration \
+    "</duration><voice>2</voice>" more "</note>"
+#define REST2(duration) "<note><rest/><duration>" #duration "</duration><voice>2</voice></note>"
+
+// each accent is there, at its beat, louder than the roll, which fills all the time between
+static void expect_one_roll(double end, int accents, const double *at)
+{
+    double now = 0;
+    int found = 0;
+    for (int i = 0; i < score->stroke_count; i++) {
+        const himc_stroke *s = stroke(i);
+        TEST_ASSERT_EQUAL_MESSAGE(HIMC_ROLL_SINGLE, s->ornament, made.text);
+        TEST_ASSERT_FLOAT_WITHIN(1e-3, now + lead(), s->beat);
+        now += s->length;
+        if (7 * s->dynamic < 2.5)
+            continue;
+        TEST_ASSERT_TRUE_MESSAGE(found < accents, made.text);
+        TEST_ASSERT_FLOAT_WITHIN(1e-3, at[found++] + lead(), s->beat);
+        TEST_ASSERT_FLOAT_WITHIN(0.06, 2, 7 * s->last_dynamic); // one stroke
+    }
+    TEST_ASSERT_EQUAL_MESSAGE(accents, found, made.text);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, end, now);
+}
+
+static void test_an_accent_of_another_voice_is_a_louder_stroke_of_the_roll(void)
+{
+    static const double at[] = {0, 2, 4, 7};
+#define ACCENTS \
+    SECOND(4, ARTICULATION("accent")) REST2(4) SECOND(4, ARTICULATION("accent")) REST2(4)
+    PLAY(BAR(1, FOUR TEMPO(120) DYNAMICS("p") C3(16, TIE("start") MARKS(3)) BACK ACCENTS)
+             BAR(2, C3(16, TIE("stop") MARKS(3)) BACK SECOND(4, ARTICULATION("accent"))
+                        SECOND(4, "") REST2(4) SECOND(4, ARTICULATION("accent"))));
+    expect_one_roll(8, 4, at);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
+    // the voice of the accents is written first
+    PLAY(BAR(1, FOUR TEMPO(120) DYNAMICS("p") ACCENTS BACK C3(16, MARKS(4))));
+    expect_one_roll(4, 2, at);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
+}
+
+static void test_a_louder_voice_strikes_in_a_soft_roll(void)
+{
+#define OF(voice, d)                                                                          \
+    "<direction><direction-type><dynamics><" d "/></dynamics></direction-type><voice>" #voice \
+    "</voice></direction>"
+    PLAY(
+        BAR(1, FOUR TEMPO(120) OF(1, "p") C3(16, MARKS(4)) BACK OF(2, "f") REST2(8) SECOND(8, "")));
+    TEST_ASSERT_EQUAL_MESSAGE(3, score->stroke_count, made.text);
+    expect_roll(0, 0, 2, 2, 2);
+    TEST_ASSERT_FLOAT_WITHIN(0.06, 5, 7 * stroke(1)->dynamic);
+    TEST_ASSERT_FLOAT_WITHIN(0.06, 2, 7 * stroke(2)->last_dynamic);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 2, stroke(1)->length + stroke(2)->length);
+}
+
+// by the standard what is hidden sounds, and a note of a cue's size does; a cue does not
+static void test_hidden_notes_sound_but_not_those_that_play_a_roll(void)
+{
+#define HIDDEN(duration)                                                                          \
+    "<note print-object='no'><pitch><step>C</step><octave>3</octave></pitch><duration>" #duration \
+    "</duration><voice>2</voice></note>"
+    PLAY(BAR(1, FOUR C3(8, MARKS(3)) C3(8, "") BACK HIDDEN(2) HIDDEN(2) HIDDEN(2) HIDDEN(2)));
+    TEST_ASSERT_EQUAL_MESSAGE(2, score->stroke_count, made.text);
+    expect_roll(0, 0, 2, 4, 4);
+    expect_text("4 hidden notes are left out: rolls are played there (bar 1)");
+    PLAY(BAR(1, FOUR HIDDEN(8) HIDDEN(8)));
+    expect_beats(2, 0.0, 2.0);
+    PLAY(BAR(
+        1,
+        FOUR C3(
+            8,
+            "<type size='cue'>half</type>") "<note><cue/><pitch><step>C</step><octave>3</octave></pitch>"
+                                            "<duration>8</duration></note>"));
+    expect_beats(1, 0.0);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -224,5 +301,8 @@ int main(void)
     RUN_TEST(test_two_notes_are_played_in_turn);
     RUN_TEST(test_graces_are_flam_drag_and_ruff);
     RUN_TEST(test_a_grace_on_another_drum_is_a_stroke);
+    RUN_TEST(test_an_accent_of_another_voice_is_a_louder_stroke_of_the_roll);
+    RUN_TEST(test_a_louder_voice_strikes_in_a_soft_roll);
+    RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
     return UNITY_END();
 }

@@ -42,6 +42,28 @@ double himc_midi_dynamic(double velocity, double range)
     return himc_gesture_dynamic(pow(amplitude, 1 / 1.1) * 1.39);
 }
 
+// of a stroke of one nuance: the dynamic at which one of another is as fast
+static double same_speed(himc_nuance from, himc_nuance to, double dynamic)
+{
+    return from == to ? dynamic : himc_gesture_dynamic_at(to, himc_gesture_of(from, dynamic).speed);
+}
+
+double himc_midi_played_velocity(himc_nuance nuance, double dynamic)
+{
+    double velocity = himc_midi_velocity(same_speed(nuance, HIMC_LEGATO, dynamic));
+    return fmin(fmax(velocity, 1), 127);
+}
+
+// of a note of MIDI, whose file may say how it was meant: so if its velocity is still that
+static double dynamic_of(const midi_note *note, double range)
+{
+    const midi_way *way = &note->way;
+    double said = himc_midi_played_velocity(way->nuance, way->said);
+    if (way->said >= 0 && range == 0 && lround(said) == note->velocity)
+        return way->said;
+    return fmax(same_speed(HIMC_LEGATO, way->nuance, himc_midi_dynamic(note->level, range)), 0);
+}
+
 // which notes
 
 static const char *const names[MIDI_CHOICES] = {
@@ -131,11 +153,12 @@ static void take_note(midi_part *part, const midi_note *note, const midi_options
         .choice = part->choice,
         .key = options->as_key > 0 ? options->as_key : note->key,
         .spot = beyond ? HIMC_SPOT_NORMAL : way->spot,
-        .dynamic = written ? way->dynamic : himc_midi_dynamic(note->level, options->range),
+        .dynamic = written ? way->dynamic : dynamic_of(note, options->range),
         .end = fmax(note->off, damped),
         .roll = {way->length,
                  written ? way->last_dynamic : himc_midi_dynamic(note->last_level, options->range),
-                 note->off}};
+                 himc_score_seconds(part->file->tempi, part->file->tempo_count,
+                                    note->beat + way->length)}};
 }
 
 // counts what is not for the part
@@ -447,7 +470,7 @@ static int list_damps(const midi_part *part, change *list)
             if (part->pedal[k].head == s->head && part->pedal[k].seconds > s->end)
                 until = part->pedal[k].seconds;
         // a dry note that the next one follows at once is damped before that
-        double from = s->end, least = s->note->seconds + 0.15;
+        double from = s->end, least = fmax(s->note->seconds + 0.15, himc_midi_stroke_end(s));
         if (s->note->way.ring < 0 && until - from < 0.1)
             from = fmax(least, until - 0.25);
         if (s->note->way.ring < 0 && until - from < 0.05)

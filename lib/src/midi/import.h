@@ -23,6 +23,8 @@ const char *himc_midi_choice_name(midi_choice choice);
 double himc_midi_dynamic(double velocity, double range);
 /// Its inverse for range 0, also beyond 127.
 double himc_midi_velocity(double dynamic);
+/// The velocity of a stroke that MIDI has no nuance for: as loud as it is played.
+double himc_midi_played_velocity(himc_nuance nuance, double dynamic);
 
 #define HIMC_MIDI_BYTES_MAX \
     ((size_t)4 << 20) ///< of a MIDI file; chosen: a hundred times a long piece

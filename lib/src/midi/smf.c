@@ -17,6 +17,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define TIMPANI_PROGRAM 47 // "48 Timpani" of General MIDI, which counts from 1
@@ -30,13 +31,15 @@ typedef enum event_kind {
     PRESSURE,
     KEY_PRESSURE,
     TEMPO,
-    METER
+    METER,
+    SAID
 } event_kind;
 
 enum { VOLUME = 7, EXPRESSION = 11, SUSTAIN = 64 }; // controllers that count
 
 typedef struct event {
     int64_t tick;
+    double said;    ///< a dynamic
     uint32_t order; ///< among those of one tick
     uint32_t tempo; ///< (microseconds per quarter note)
     uint16_t track;
@@ -156,6 +159,25 @@ static void read_name(reader *r, const uint8_t *text, size_t size)
     r->concert[r->track] = (uint8_t)himc_midi_concert_key((const char *)text, size);
 }
 
+// a text that says the nuance and dynamic of the next note of a key
+static bool read_said(reader *r, const uint8_t *data, size_t size)
+{
+    char text[64], word[32], more;
+    event e = {.kind = SAID};
+    int key;
+    if (size >= sizeof text)
+        return true;
+    memcpy(text, data, size);
+    text[size] = '\0';
+    if (sscanf(text, "himc %d %31s %lf%c", &key, word, &e.said, &more) != 3 || key < 0 ||
+        key > 127 || !(e.said >= 0 && e.said <= 1))
+        return true;
+    for (e.first = (uint8_t)key; e.second < HIMC_NUANCES; e.second++)
+        if (strcmp(word, himc_nuance_name((himc_nuance)e.second)) == 0)
+            return add_event(r, &e);
+    return true;
+}
+
 // a message to a channel, of one data byte or two; `first` has been read
 static bool read_message(reader *r, uint8_t first)
 {
@@ -183,7 +205,13 @@ static bool read_message(reader *r, uint8_t first)
 static bool read_event(reader *r)
 {
     enum { EXCLUSIVE = 0xf0, ESCAPE = 0xf7, META = 0xff };
-    enum { NAME = 0x03, END = 0x2f, SET_TEMPO = 0x51, SET_METER = 0x58 }; // types of META
+    enum {
+        TEXT = 0x01,
+        NAME = 0x03,
+        END = 0x2f,
+        SET_TEMPO = 0x51,
+        SET_METER = 0x58
+    }; // types of META
     uint32_t delta, length;
     if (!next_length(r, &delta))
         return false;
@@ -207,6 +235,8 @@ static bool read_event(reader *r)
     const uint8_t *data = r->at;
     r->at += length;
     r->over = type == END;
+    if (type == TEXT)
+        return read_said(r, data, length);
     if (type == NAME)
         read_name(r, data, length);
     if (type == SET_TEMPO && length >= 3)
@@ -330,7 +360,7 @@ static bool follow_control(collection *c, const midi_file *file, const event *e,
 }
 
 static void begin_note(midi_file *file, const reader *r, channel *c, const event *e, double beat,
-                       double seconds)
+                       double seconds, const event *said)
 {
     // a track's name says more than the drum channel, unless it has other channels, too
     bool timpani = r->timpani[e->track] &&
@@ -350,7 +380,11 @@ static void begin_note(midi_file *file, const reader *r, channel *c, const event
                     .program = c->program,
                     .level = level_of(c, e->first, e->second),
                     .choice = timpani ? MIDI_TIMPANI : MIDI_ANY,
-                    .way = {.dynamic = -1, .spot = HIMC_SPOT_NORMAL}};
+                    .way = {.dynamic = -1, .said = -1, .spot = HIMC_SPOT_NORMAL}};
+    if (said && said->tick == e->tick && said->track == e->track) {
+        note->way.nuance = (himc_nuance)said->second;
+        note->way.said = said->said;
+    }
 }
 
 static bool add_tempo(midi_file *file, double beat, uint32_t tempo)
@@ -375,6 +409,7 @@ static bool collect(midi_file *file, reader *r, collection *c)
         qsort(r->events, (size_t)r->count, sizeof *r->events, by_tick);
     begin_channels(c, r);
     file->tempi[file->tempo_count++] = (himc_tempo_change){0, 60e6 / USUAL_TEMPO};
+    const event *said[128] = {NULL};
     int64_t tick = 0;                                         // where the present tempo began ...
     double beat, seconds = 0, since = 0, tempo = USUAL_TEMPO; // ... and when (s)
     for (const event *e = r->events; e < r->events + r->count; e++) {
@@ -391,7 +426,9 @@ static bool collect(midi_file *file, reader *r, collection *c)
             *note = NULL;
         }
         if (e->kind == NOTE_ON)
-            begin_note(file, r, of, e, beat, seconds);
+            begin_note(file, r, of, e, beat, seconds, said[e->first]);
+        if (e->kind == SAID)
+            said[e->first] = e;
         if (e->kind >= CONTROL && e->kind <= KEY_PRESSURE &&
             !follow_control(c, file, e, beat, seconds, r->error))
             return false;

@@ -26,6 +26,7 @@ typedef struct midi_way {
     double length;       ///< of a roll (beats); 0: none
     double last_dynamic; ///< of a roll
     himc_nuance nuance;
+    double said;            ///< the dynamic that `himc export` says of it in MIDI; below 0: none
     himc_ornament ornament; ///< flam, drag, ruff or none
     himc_spot spot;
     int hand;   ///< 1 + himc_hand; 0: any
@@ -57,7 +58,13 @@ typedef struct midi_bar {
     char number[12];
 } midi_bar;
 
-typedef enum midi_order_kind { MIDI_TUNING, MIDI_MUFFLE, MIDI_MALLET, MIDI_WIRES } midi_order_kind;
+typedef enum midi_order_kind {
+    MIDI_TUNING,
+    MIDI_MUFFLE,
+    MIDI_MALLET,
+    MIDI_WIRES,
+    MIDI_DAMP ///< of `himc export`; value: the note's key
+} midi_order_kind;
 
 /// What the player is told between notes, by MusicXML.
 typedef struct midi_order {
@@ -96,6 +103,9 @@ typedef struct midi_file {
 double himc_midi_bpm(const himc_tempo_change *tempi, int count, double beat);
 
 bool himc_midi_is_file(const void *bytes, size_t size);
+
+/// In front of a note of `himc export`: what a velocity cannot say of a key, in a text.
+#define MIDI_SAID "himc %d %s %.9g"
 
 /// Reads a file of format 0, 1 or 2 (whose tracks follow each other). A track that ends in the
 /// middle of an event is kept up to there. False with one line if the bytes are no MIDI file, or

@@ -115,18 +115,31 @@ static void add_head(exporter *x, const char *name, const char *kind, double siz
     h->written = h->key;
 }
 
-// a hand on the head ends its last note; off it again, it is there for the next. False if there is
-// no note
+static bool add_order(exporter *x, midi_order order)
+{
+    midi_file *f = x->file;
+    if (!himc_array_grow(&f->orders, f->order_count, &x->order_room, sizeof *f->orders, x->error))
+        return false;
+    order.seconds = himc_score_seconds(f->tempi, f->tempo_count, order.beat);
+    f->orders[f->order_count++] = order;
+    x->end = fmax(x->end, himc_score_beat(f->tempi, f->tempo_count, order.seconds + order.length));
+    return true;
+}
+
+// a hand on the head ends its last note; off it again, it is there for the next. Behind a roll it
+// is an order. False if there is no note
 static bool damp(exporter *x, const head *h, double beat, bool on)
 {
     midi_note *n = h->last > 0 ? &x->file->notes[h->last - 1] : NULL;
-    if (on && n && n->way.ring == 0) {
-        n->way.ring = -1;
-        n->off = n->way.length > 0 ? n->off
-                                   : himc_score_seconds(x->file->tempi, x->file->tempo_count, beat);
-        x->end = fmax(x->end, n->way.length > 0 ? 0 : beat);
-    }
-    return !on || n;
+    if (!on || !n || n->way.ring != 0)
+        return !on || n;
+    bool roll = n->way.length > 0, late = roll && beat > n->beat + n->way.length + 0.01 && !x->midi;
+    n->way.ring = late ? 1 : -1;
+    n->off = roll ? n->off : himc_score_seconds(x->file->tempi, x->file->tempo_count, beat);
+    x->end = fmax(x->end, roll ? 0 : beat);
+    return !late ||
+           add_order(x, (midi_order){
+                            .beat = beat, .kind = MIDI_DAMP, .choice = h->choice, .value = n->key});
 }
 
 // what a line does to a drum; `kind`: its loss if notation does not have it
@@ -158,17 +171,6 @@ static void follow_line(exporter *x, const himc_score_line *line, loss kind)
         written = damp(x, h, line->beat, c->atom[0].number > 0);
     if (!written)
         lose(x, (int)kind + (int)c->id, line->beat);
-}
-
-static bool add_order(exporter *x, midi_order order)
-{
-    midi_file *f = x->file;
-    if (!himc_array_grow(&f->orders, f->order_count, &x->order_room, sizeof *f->orders, x->error))
-        return false;
-    order.seconds = himc_score_seconds(f->tempi, f->tempo_count, order.beat);
-    f->orders[f->order_count++] = order;
-    x->end = fmax(x->end, himc_score_beat(f->tempi, f->tempo_count, order.seconds + order.length));
-    return true;
 }
 
 // a timpano with the name that the import gives it
@@ -360,7 +362,7 @@ static char *tell(const exporter *x)
         [DEAD] = {"dead stroke", "dead strokes", "written as usual"},
         [DOUBLES] = {"double roll", "double rolls", "written as single strokes"},
         [PRESSES] = {"press roll", "press rolls", "written as single strokes"},
-        [NUANCES] = {"nuance", "nuances", "not written"},
+        [NUANCES] = {"nuance", "nuances", "written as loudness, for other programs"},
         [TUNINGS] = {"tuning", "tunings", "written to the semitone"}};
     himc_text_lines said = {0};
     for (int i = 0; i < LINES; i++) {

@@ -24,8 +24,9 @@ typedef struct line {
     int count, room;
     double now;  ///< dynamic
     double from; ///< beat of the open hairpin; below 0: none
-    double way;  ///< its direction
+    double way;  ///< its direction, in steps: to nothing -7
     double end;  ///< of a word that no mark ends; else below 0
+    double more; ///< beat of the last `più f`
     bool failed;
 } line;
 
@@ -113,6 +114,12 @@ static void take_sign(line *l, const music *m, int part, int lane, int i, double
         }
         add(l, beat, s->value);
         l->from = begins ? l->from : -1;
+    } else if (s->meaning == MUSIC_LOUDER && beat > l->more + SAME) { // not of each staff
+        if (open && !begins)
+            close_hairpin(l, m, part, lane, i, beat);
+        add(l, beat, l->now);
+        add(l, beat, l->now + s->value * STEP);
+        l->more = beat;
     } else if (s->meaning == MUSIC_WEDGE) {
         if (open && !begins)
             close_hairpin(l, m, part, lane, i, beat);
@@ -120,14 +127,19 @@ static void take_sign(line *l, const music *m, int part, int lane, int i, double
             open_hairpin(l, beat, s->value);
     } else if (s->meaning == MUSIC_GROWING && !open) {
         open_hairpin(l, beat, s->value);
-        if (next_mark(m, part, lane, i, beat, beat + LONGEST_WORD) < 0)
+        int mark = next_mark(m, part, lane, i, beat, beat + LONGEST_WORD);
+        if (mark < 0)
             l->end = beat + HAIRPIN;
+        else if ((m->signs[mark].value - l->now) * s->value <= 0)
+            l->end = m->signs[mark].at.beat; // it leads away from that
+    } else if (s->meaning == MUSIC_GROWING && s->value * l->way > 0) {
+        l->way = s->value; // dim. al niente
     }
 }
 
 music_level *himc_music_levels(const music *m, int part, int lane, double second, int *count)
 {
-    line l = {.now = USUAL, .from = -1, .end = -1};
+    line l = {.now = USUAL, .from = -1, .end = -1, .more = -1};
     add(&l, 0, USUAL);
     for (int i = 0; i < m->sign_count; i++)
         if (is_of(&m->signs[i], part, lane))

@@ -7,6 +7,7 @@
 
 #define MUSIC_BARS_MAX 20000               ///< of a part; chosen: no piece has as many
 #define MUSIC_MADE_MAX 400000              ///< notes, signs, with repeats; more than a score has
+#define MUSIC_UNSAID (-1.0)                ///< a dynamic
 #define MUSIC_LINES_MAX 9                  ///< of pedals that run at once, by their numbers 1 .. 9
 #define MUSIC_BAR 4.0                      ///< quarter notes of a bar that is written
 #define MUSIC_GRACE_TIME 0.04              ///< (s) between strokes of a ruff in MIDI; chosen
@@ -47,6 +48,7 @@ typedef struct music_note {
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
     bool pulled;         ///< the nuance staccato, as `himc export` writes it
     bool held;           ///< under a fermata
+    bool hidden;         ///< not printed, for the sound alone
     bool attacked;       ///< sf, sfz
     bool ghost;          ///< softer: a notehead in parentheses
     bool glides, glided; ///< a line of a glissando begins, ends here
@@ -54,7 +56,9 @@ typedef struct music_note {
     int ring;            ///< 1, -1, or 0: not written
     int hand;            ///< 1 + himc_hand, or 0
     int drum;            ///< of timpani: 1 low .. 4 high; 0: not written
-    double dynamic;      ///< of its own; below 0: not written
+    double dynamic;      ///< of its own, or MUSIC_UNSAID
+    bool goes_on;        ///< a roll of another voice does, from this stroke on ...
+    double struck;       ///< ... of so much more
     music_tremolo tremolo;
     int marks, flags; ///< strokes through the stem; flags of the note
     double ratio;     ///< of a tuplet: written length over sounding
@@ -76,7 +80,15 @@ typedef struct music_omission {
     char bars[48];
 } music_omission;
 
-enum { MUSIC_CUES, MUSIC_BAD_NOTES, MUSIC_GRACES, MUSIC_ATTACKS, MUSIC_UNKNOWN, MUSIC_OMISSIONS };
+enum {
+    MUSIC_CUES,
+    MUSIC_HIDDEN,
+    MUSIC_BAD_NOTES,
+    MUSIC_GRACES,
+    MUSIC_ATTACKS,
+    MUSIC_UNKNOWN,
+    MUSIC_OMISSIONS
+};
 
 typedef struct music {
     music_bar *bars;
@@ -95,6 +107,9 @@ void himc_music_free(music *music);
 /// order.c: puts notes and signs in the order in which they are played, with repeats, on beats from
 /// the beginning. `bars` of the file get their beats.
 bool himc_music_order(music *music, midi_file *file, himc_error *error);
+
+/// swing.c: moves notes and signs between beats as words ask for.
+bool himc_music_swing(music *music, const midi_file *file, himc_error *error);
 
 /// tempo.c: makes the file's tempi of the signs.
 bool himc_music_tempo(const music *music, midi_file *file, himc_error *error);

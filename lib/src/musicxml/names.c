@@ -162,15 +162,43 @@ static const struct {
      MUSIC_WIRES, 1},
     {"unmeasured", MUSIC_MEASURED, 0},
     {"misurato|measured|mesuré|gemessen", MUSIC_MEASURED, 1},
-    {"poco a poco cresc|cresc", MUSIC_GROWING, 1},
-    {"decresc|dim.|dimin|morendo", MUSIC_GROWING, -1},
+    {"poco a poco cresc|cresc|sempre più f$|sempre piu f$", MUSIC_GROWING, 1},
+    {"decresc|dim.|dimin|morendo|sempre più p$|sempre piu p$", MUSIC_GROWING, -1},
+    {"al niente|a niente", MUSIC_GROWING, -7},
+    {"dal niente|niente$", MUSIC_DYNAMIC, 0},
+    {"più f$|piu f$|più forte|piu forte|meno p$|meno piano", MUSIC_LOUDER, 1},
+    {"più p$|piu p$|più piano|piu piano|meno f$|meno forte", MUSIC_LOUDER, -1},
+    {"poco più f$|poco piu f$|poco meno p$", MUSIC_LOUDER, 0.5},
+    {"poco più p$|poco piu p$|poco meno f$", MUSIC_LOUDER, -0.5},
+    {"poco f$|poco forte", MUSIC_DYNAMIC, 4.5 / 7},
+    {"poco p$|poco piano", MUSIC_DYNAMIC, 2.5 / 7},
     {"tempo primo|tempo i$|tempo 1$", MUSIC_TEMPO_BACK, 1},
     {"a tempo|im tempo|au mouvement|au mouvt", MUSIC_TEMPO_BACK, 0},
     {"rit.|ritard|rall|ralent", MUSIC_TEMPO_RAMP, 0.75},
+    {"poco rit|poco rall|poco allarg|un peu retenu", MUSIC_TEMPO_RAMP, 0.88},
+    {"molto rit|molto rall|molto allarg", MUSIC_TEMPO_RAMP, 0.6},
+    {"poco accel|poco string", MUSIC_TEMPO_RAMP, 1.12},
+    {"molto accel|molto string", MUSIC_TEMPO_RAMP, 1.4},
     {"riten|allarg|verbreitern|langsamer", MUSIC_TEMPO_RAMP, 0.8},
     {"cédez", MUSIC_TEMPO_RAMP, 0.85},
     {"accel|stringendo|schneller werden", MUSIC_TEMPO_RAMP, 1.25},
     {"pressez", MUSIC_TEMPO_RAMP, 1.2},
+    {"più mosso|più presto|più allegro|più vivo|più animato|piu mosso|piu presto|piu allegro|piu vivo|piu animato|plus vite|plus vif|plus animé|schneller$|bewegter|lebhafter|faster",
+     MUSIC_TEMPO_SHARE, 1.15},
+    {"poco più mosso|poco piu mosso|poco più animato|poco più presto|un peu plus vite|un peu plus vif|un peu plus animé|etwas schneller|etwas bewegter|a little faster",
+     MUSIC_TEMPO_SHARE, 1.08},
+    {"meno mosso|meno presto|meno allegro|meno vivo|più lento|più tranquillo|più largo|piu lento|piu tranquillo|piu largo|moins vite|moins vif|plus lent|ruhiger|slower",
+     MUSIC_TEMPO_SHARE, 0.85},
+    {"poco meno mosso|poco meno presto|poco meno allegro|poco più lento|poco più tranquillo|un peu moins vite|un peu plus lent|etwas ruhiger|a little slower",
+     MUSIC_TEMPO_SHARE, 0.92},
+    {"molto più mosso|assai più mosso", MUSIC_TEMPO_SHARE, 1.3},
+    {"molto meno mosso|assai meno mosso", MUSIC_TEMPO_SHARE, 0.7},
+    {"istesso tempo|stesso tempo|même mouvement|dasselbe tempo", MUSIC_TEMPO_SHARE, 1},
+    {"doppio movimento|doppio più mosso|doppelt so schnell|deux fois plus vite", MUSIC_TEMPO_SHARE,
+     2},
+    {"doppio più lento|doppelt so langsam|deux fois plus lent", MUSIC_TEMPO_SHARE, 0.5},
+    {"swing$|swung|shuffle$|swing feel", MUSIC_SWING, 2.0 / 3},
+    {"straight eighths|straight 8ths|straight feel|no swing|even eighths", MUSIC_SWING, 0.5},
     {"prestissimo", MUSIC_TEMPO_WORD, 200},
     {"presto", MUSIC_TEMPO_WORD, 184},
     {"vivacissimo|sehr schnell|très vif", MUSIC_TEMPO_WORD, 176},
@@ -508,8 +536,13 @@ int himc_music_words(const char *words, int most, music_meaning *meaning, double
             longest = length > longest ? length : longest;
         }
         if (found < rows) {
+            const char *behind = at + longest + strspn(at + longest, " ");
+            int key = read_pitch(&behind, false);
             meaning[count] = instructions[found].meaning;
-            value[count++] = instructions[found].value;
+            value[count] = instructions[found].value;
+            if (meaning[count] == MUSIC_RING && value[count] < 0 && key >= 24)
+                value[count] = -key; // "damp C3"
+            count++;
         }
         at += longest > 0 ? longest : 1;
     }

@@ -31,18 +31,20 @@ typedef enum music_meaning {
     MUSIC_DYNAMIC,     ///< value: 0 .. 1
     MUSIC_ATTACK,      ///< sf, sfz: of this note alone
     MUSIC_FORTEPIANO,  ///< value: the dynamic after the attack
+    MUSIC_LOUDER,      ///< value: steps above the dynamic before, or below 0
     MUSIC_WEDGE,       ///< value: 1 crescendo, -1 diminuendo, 0 its end
-    MUSIC_GROWING,     ///< value: 1 or -1; as a word, to the next dynamic
+    MUSIC_GROWING,     ///< value: 1 or -1, -7 to nothing; as a word, to the next dynamic
     MUSIC_TEMPO,       ///< value: (beats per minute)
     MUSIC_TEMPO_WORD,  ///< the same, by custom
     MUSIC_TEMPO_AGAIN, ///< value: the beat whose tempo returns, after a jump back
     MUSIC_TEMPO_SHARE, ///< value: of the tempo before
+    MUSIC_SWING,       ///< value: share of the first of two eighths, 1 more: of two 16ths
     MUSIC_TEMPO_RAMP,  ///< value: share of the tempo at its end
     MUSIC_TEMPO_BACK,  ///< value: 0 a tempo, 1 tempo primo
     MUSIC_FERMATA,     ///< value: length of the note (beats)
     MUSIC_SPOT,        ///< value: himc_spot
     MUSIC_SPOT_HERE,   ///< the same, of this note alone
-    MUSIC_RING,        ///< value: 1 rings on, -1 damped: this note
+    MUSIC_RING,        ///< value: 1 rings on, -1 damped: this note; -key: the drum of that key here
     MUSIC_RING_ALWAYS, ///< from here on; value 0: as usual
     MUSIC_DAMP,        ///< what sounds is damped here
     MUSIC_MALLET,      ///< value: 0 soft, 1 medium, 2 hard, 3 wood

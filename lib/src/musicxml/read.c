@@ -8,6 +8,7 @@
 #include "musicxml/music.h"
 
 #include "base/array.h"
+#include "base/format.h"
 #include "midi/part.h"
 #include "musicxml/xml.h"
 
@@ -19,8 +20,9 @@
 
 enum { CLOSED_HATS = 42, OPEN_HATS = 46, RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
 
-#define MOST_INSTRUMENTS 64 // of a part
-#define STAVES 10           // of a part; 0: a note that does not say which
+#define LEAST_OWN (-1.0 / 7) // dynamic of a note, whose accent adds a step
+#define MOST_INSTRUMENTS 64  // of a part
+#define STAVES 10            // of a part; 0: a note that does not say which
 
 typedef struct instrument {
     const char *id;
@@ -49,6 +51,7 @@ typedef struct reader {
     int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
     int lane;                        ///< of a direction
     int repeated;                    ///< bars back that a sign repeats; 0: none
+    bool niente;                     ///< the open hairpin ends in nothing
     bool failed;
 } reader;
 
@@ -230,6 +233,12 @@ static void read_sound_change(reader *r, const xml_node *change)
         r->current[r->lane / 100] = i;
 }
 
+static void add_swing(reader *r, double beat, double first, double second, double unit)
+{
+    if (first > 0 && second > 0)
+        add_sign(r, beat, MUSIC_SWING, first / (first + second) + (unit < 0.5));
+}
+
 static void read_sound(reader *r, const xml_node *sound, double beat, bool dynamic_too)
 {
     const xml_node *change = himc_xml_child(sound, "instrument-change");
@@ -242,6 +251,12 @@ static void read_sound(reader *r, const xml_node *sound, double beat, bool dynam
         add_sign(r, beat, MUSIC_TEMPO, strtod(tempo, NULL));
     if (dynamic_too && level[0]) // percent of a velocity of 90
         add_sign(r, beat, MUSIC_DYNAMIC, himc_midi_dynamic(0.9 * strtod(level, NULL), 0));
+    for (const xml_node *w = himc_xml_child(sound, "swing"); w; w = himc_xml_next(w)) {
+        bool straight = himc_xml_child(w, "straight");
+        add_swing(r, beat, straight ? 1 : himc_xml_number(w, "first", 2),
+                  straight ? 1 : himc_xml_number(w, "second", 1),
+                  strcmp(himc_xml_text(w, "swing-type"), "16th") == 0 ? 0.25 : 0.5);
+    }
     bar->da_capo |= is_yes(sound, "dacapo");
     bar->dal_segno |= himc_xml_attribute(sound, "dalsegno")[0] != '\0';
     bar->segno |= himc_xml_attribute(sound, "segno")[0] != '\0';
@@ -250,6 +265,7 @@ static void read_sound(reader *r, const xml_node *sound, double beat, bool dynam
     bar->fine |= himc_xml_attribute(sound, "fine")[0] != '\0';
 }
 
+// of all parts, wherever they are written
 static bool is_tempo(music_meaning meaning)
 {
     return meaning >= MUSIC_TEMPO && meaning <= MUSIC_FERMATA;
@@ -300,31 +316,34 @@ static double beats_of(const char *unit)
     return 0;
 }
 
-// a note and its number, or, by either element, a note that becomes another
+// a note and its number, or, by either element, a note that becomes another; two that become two
+// others, which a tuplet may hold, are a swing
 static void read_metronome(reader *r, const xml_node *metronome, double beat)
 {
     const char *text = himc_xml_text(metronome, "per-minute");
-    double beats[2] = {0}, more = 0; // the last two notes
+    double beats[4] = {0}, more = 0; // the last is the first
     int notes = 0;
     for (const xml_node *d = metronome->child; d; d = d->next) {
         bool note = himc_xml_is(d, "metronome-note");
         const xml_node *dot = note ? himc_xml_child(d, "metronome-dot") : NULL;
         if (note || himc_xml_is(d, "beat-unit")) {
-            beats[0] = beats[1];
-            beats[1] = beats_of(note ? himc_xml_text(d, "metronome-type") : d->text);
-            more = beats[1] / 2;
+            memmove(beats + 1, beats, 3 * sizeof *beats);
+            beats[0] = beats_of(note ? himc_xml_text(d, "metronome-type") : d->text);
+            more = beats[0] / 2;
             notes++;
         }
         if (himc_xml_is(d, "beat-unit-dot") || dot) {
-            beats[1] += more;
+            beats[0] += more;
             more /= 2;
         }
     }
     double number = strtod(text + strcspn(text, "0123456789"), NULL); // "ca. 96"
-    if (notes == 2 && beats[0] > 0 && beats[1] > 0)
-        add_sign(r, beat, MUSIC_TEMPO_SHARE, beats[1] / beats[0]);
-    else if (notes == 1 && beats[1] * number > 0)
-        add_sign(r, beat, MUSIC_TEMPO, beats[1] * number);
+    if (notes == 2 && beats[1] > 0 && beats[0] > 0)
+        add_sign(r, beat, MUSIC_TEMPO_SHARE, beats[0] / beats[1]);
+    else if (notes == 1 && beats[0] * number > 0)
+        add_sign(r, beat, MUSIC_TEMPO, beats[0] * number);
+    else if (notes == 4 && beats[3] == beats[2])
+        add_swing(r, beat, beats[1], beats[0], beats[3]);
 }
 
 static void read_wedge(reader *r, const xml_node *wedge, double beat)
@@ -332,8 +351,14 @@ static void read_wedge(reader *r, const xml_node *wedge, double beat)
     double way = himc_xml_has(wedge, "type", "crescendo")    ? 1
                  : himc_xml_has(wedge, "type", "diminuendo") ? -1
                                                              : 0;
-    if (!himc_xml_has(wedge, "type", "continue"))
+    bool circle = is_yes(wedge, "niente");
+    // the circle of a diminuendo stands at its stop, or at its beginning, as some programs write
+    if (way > 0 ? circle : himc_xml_has(wedge, "type", "stop") && (circle || r->niente))
+        add_sign(r, beat, MUSIC_DYNAMIC, 0);
+    if (!himc_xml_has(wedge, "type", "continue")) {
         add_sign(r, beat, MUSIC_WEDGE, way);
+        r->niente = way < 0 && circle;
+    }
 }
 
 // a line behind words about tuning is a pedal's
@@ -367,14 +392,19 @@ static void read_percussion(reader *r, const xml_node *percussion, double beat)
             add_sign(r, beat, MUSIC_MALLET, i);
 }
 
-static bool read_dynamics(reader *r, const xml_node *dynamics, double beat)
+// `before`: words before it in one sign, "più"
+static bool read_dynamics(reader *r, const xml_node *dynamics, double beat, const char *before)
 {
     bool found = false;
     for (const xml_node *d = dynamics->child; d; d = d->next) {
         music_meaning meaning;
         double value;
         const char *name = himc_xml_is(d, "other-dynamics") ? d->text : d->name;
-        if (himc_music_dynamic(name, &meaning, &value)) {
+        char both[80];
+        himc_format(both, sizeof both, "%.40s %.30s", before, name);
+        bool words = himc_music_words(both, 1, &meaning, &value) == 1 &&
+                     (meaning == MUSIC_DYNAMIC || meaning == MUSIC_LOUDER);
+        if (words || himc_music_dynamic(name, &meaning, &value)) {
             add_sign(r, beat, meaning, value);
             found = true;
         }
@@ -393,6 +423,7 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
     for (int i = 0; i < 6; i++)
         jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
     const int first = r->music->sign_count;
+    const char *before = "";
     r->lane = lane_of(direction);
     const xml_node *type = himc_xml_child(direction, "direction-type");
     for (; type; type = himc_xml_next(type))
@@ -406,7 +437,7 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
             else if (himc_xml_is(d, "coda") && !jumps)
                 bar->coda = true;
             else if (own && himc_xml_is(d, "dynamics"))
-                dynamic |= read_dynamics(r, d, beat);
+                dynamic |= read_dynamics(r, d, beat, before);
             else if (own && himc_xml_is(d, "wedge"))
                 read_wedge(r, d, beat);
             else if (own && himc_xml_is(d, "percussion"))
@@ -415,6 +446,7 @@ static void read_direction(reader *r, const xml_node *direction, bool own)
                 read_line(r, d, beat, first);
             else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
                 add_sign(r, beat, MUSIC_DAMP, 0);
+            before = himc_xml_is(d, "words") ? d->text : "";
         }
     read_sound(r, sound, beat, own && !dynamic);
     r->lane = 0;
@@ -563,7 +595,7 @@ static void read_notations(reader *r, music_note *n, const xml_node *notations)
     const xml_node *dynamics = himc_xml_child(notations, "dynamics");
     r->lane = n->lane;
     if (dynamics)
-        read_dynamics(r, dynamics, n->at.beat);
+        read_dynamics(r, dynamics, n->at.beat, "");
     r->lane = 0;
 }
 
@@ -647,6 +679,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
                     .voice = atoi(himc_xml_text(note, "voice")),
                     .lane = lane_of(note),
                     .grace = himc_xml_child(note, "grace") != NULL,
+                    .hidden = himc_xml_has(note, "print-object", "no"),
                     .spot = spot_of(himc_xml_text(note, "notehead")),
                     .ghost = is_yes(himc_xml_child(note, "notehead"), "parentheses"),
                     .ratio = 1};
@@ -655,13 +688,15 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         r->head = -1;
     if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
         return;
-    if (himc_xml_child(note, "cue")) {
+    if (himc_xml_child(note,
+                       "cue")) { // it is silent; one of that size alone is not, by the standard
         himc_music_omit(m, MUSIC_CUES, r->bar);
         return;
     }
     // percent of a velocity of 90
     const char *level = himc_xml_attribute(note, "dynamics");
-    n.dynamic = level[0] ? fmin(himc_midi_dynamic(0.9 * strtod(level, NULL), 0), 1) : -1;
+    double own = (0.9 * strtod(level, NULL) - himc_midi_velocity(0)) / himc_midi_velocity(0) / 7;
+    n.dynamic = level[0] ? fmin(fmax(own, LEAST_OWN), 1) : MUSIC_UNSAID;
     if (!read_key(r, note, &n) || (!n.grace && length <= 0)) {
         himc_music_omit(m, MUSIC_BAD_NOTES, r->bar);
         return;
@@ -880,6 +915,8 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
     *m = (music){
         .omitted = {
             [MUSIC_CUES] = {"cue note is left out", "cue notes are left out", 0, ""},
+            [MUSIC_HIDDEN] = {"hidden note is left out: a roll is played there",
+                              "hidden notes are left out: rolls are played there", 0, ""},
             [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
                                  "notes are not played: they have no pitch or no length", 0, ""},
             [MUSIC_GRACES] = {"grace note is not played: a ruff has two, others need time "

@@ -1,14 +1,15 @@
 /// shape.c: from written notes to the notes of a player: ties, tremolos, graces, nuances.
 ///
 /// Part by part: ties join notes, but a roll tied to a note without a tremolo ends with a stroke
-/// there; then each note takes the dynamic of its beat (level.c), the words that hold there, and
-/// its own marks. One or two strokes through the stem are measured, as many as written; three are
-/// a roll from FAST strokes a second on, more are always one; a trill is one. A roll is cut where
-/// its dynamic bends, and where another one begins or ends: two of one length at a time are played
-/// together, each hand on its drum (planner_roll.c). Grace notes on the drum of their note are its
-/// flam, drag or ruff; others, and those before a roll, are strokes of their own before the beat.
-/// A chosen number has no published source. Invariant: each note but a tied one makes at least one
-/// stroke, or is counted as omitted.
+/// there, and a stroke of another voice on a roll's drum is one of the roll; then each note takes
+/// the dynamic of its beat (level.c), the words that hold there, and its own marks. One or two
+/// strokes through the stem are measured, as many as written; three are a roll from FAST strokes a
+/// second on, more are always one; a trill is one. A roll is cut where its dynamic bends, and where
+/// another one begins or ends: two of one length at a time are played together, each hand on its
+/// drum (planner_roll.c). Grace notes on the drum of their note are its flam, drag or ruff; others,
+/// and those before a roll, are strokes of their own before the beat. A chosen number has no
+/// published source. Invariant: each note but a tied one makes at least one stroke, or is counted
+/// as omitted.
 #include "musicxml/music.h"
 
 #include "base/argument.h"
@@ -28,6 +29,7 @@
 #define GRACE_SOFTER 0.2        // than their note
 #define GHOST_SOFTER (2 * STEP) // a note in parentheses
 #define ATTACK_TIME 0.3         // of an accent on a roll (s)
+#define STRUCK_TIME 0.2         // of a stroke in a roll (s); chosen: two strokes, the second softer
 #define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
 #define MOST_LANES 16       // that may have dynamics of their own; chosen: bounds the time
@@ -149,6 +151,86 @@ static void join_ties(music *m)
     }
 }
 
+static double level(const shaper *s, double beat)
+{
+    return himc_music_level(s->now->levels, s->now->count, beat);
+}
+
+static void choose_lane(shaper *s, int number)
+{
+    s->now = s->lanes;
+    for (int k = 1; k < s->lane_count; k++)
+        if (s->lanes[k].lane == number)
+            s->now = &s->lanes[k];
+}
+
+// A stroke of one voice in a roll of another on that drum is a stroke of it: the roll ends there,
+// and goes on from the stroke. One that begins with it takes its place.
+static void continue_roll(shaper *s, music_note *roll, music_note *n)
+{
+    double end = roll->at.beat + roll->rolled, at = n->at.beat;
+    choose_lane(s, n->lane);
+    double struck = n->dynamic > MUSIC_UNSAID ? n->dynamic : level(s, at);
+    choose_lane(s, roll->lane);
+    n->struck = fmax(struck - level(s, at), 0);
+    n->goes_on = true;
+    n->dynamic = MUSIC_UNSAID;
+    n->lane = roll->lane;
+    n->tremolo = roll->tremolo;
+    n->marks = roll->marks;
+    n->flags = roll->flags;
+    n->ratio = roll->ratio;
+    n->length = n->rolled = end - at;
+    n->ring = roll->ring;
+    n->staccato = n->pulled = n->ghost = false;
+    roll->ring = 0;
+    roll->rolled = at - roll->at.beat;
+    if (roll->rolled > SAME)
+        return;
+    n->accent |= roll->accent;
+    n->marcato |= roll->marcato;
+    n->attacked |= roll->attacked;
+    n->held |= roll->held;
+    n->glides |= roll->glides;
+    n->hand = n->hand ? n->hand : roll->hand;
+    roll->length = -1;
+}
+
+static bool is_long(const music_note *n)
+{
+    return n->rolled > 0 &&
+           (n->tremolo == MUSIC_ROLL || (n->tremolo == MUSIC_MARKS && n->marks > 2));
+}
+
+// rolls with strokes of other voices on their drums; hidden ones are how a program plays the roll
+static void join_rolls(shaper *s)
+{
+    music *m = s->music;
+    music_note *roll[256] = {NULL}, *last[256] = {NULL}; // of each key
+    for (int i = 0; i < m->note_count; i++) {
+        music_note *n = &m->notes[i], **now = &roll[n->key], **before = &last[n->key];
+        if (n->at.part != s->part || n->grace || n->length <= 0)
+            continue;
+        bool inside = *now && n->choice == (*now)->choice &&
+                      n->at.beat < (*now)->at.beat + (*now)->rolled - SAME;
+        if (n->hidden && inside) {
+            himc_music_omit(m, MUSIC_HIDDEN, n->at.bar);
+            n->length = -1;
+        } else if (is_long(n) && *before && n->choice == (*before)->choice &&
+                   n->at.beat < (*before)->at.beat + SAME) {
+            continue_roll(s, n, *before);
+            *now = *before;
+        } else if (is_long(n)) {
+            *now = n;
+        } else if (!n->tremolo && inside) {
+            continue_roll(s, *now, n);
+            *now = n;
+        } else if (!n->tremolo) {
+            *before = n;
+        }
+    }
+}
+
 // what is made
 
 static void emit(shaper *s, const music_note *n, double beat, double end, const midi_way *way)
@@ -179,15 +261,11 @@ static bool is_several(const shaper *s)
     return s->kinds & (s->kinds - 1);
 }
 
-static double level(const shaper *s, double beat)
-{
-    return himc_music_level(s->now->levels, s->now->count, beat);
-}
-
 // of an accent on a roll (beats)
-static double attack_beats(double second)
+static double attack_beats(const music_note *n, double second)
 {
-    return fmax(ATTACK_TIME * second, fmax(himc_argument_find("LENGTH", "roll")->low, 0.1));
+    double time = n->goes_on ? STRUCK_TIME : ATTACK_TIME;
+    return fmax(time * second, fmax(himc_argument_find("LENGTH", "roll")->low, 0.1));
 }
 
 static int by_beat(const void *a, const void *b)
@@ -217,8 +295,8 @@ static bool list_cuts(shaper *s)
             continue;
         s->cuts[s->cut_count++] = n->at.beat;
         s->cuts[s->cut_count++] = n->at.beat + n->rolled;
-        double attack = attack_beats(himc_midi_bpm(f->tempi, f->tempo_count, n->at.beat) / 60);
-        if ((n->accent || n->marcato || n->attacked) && n->rolled > 2 * attack)
+        double attack = attack_beats(n, himc_midi_bpm(f->tempi, f->tempo_count, n->at.beat) / 60);
+        if ((n->accent || n->marcato || n->attacked || n->struck > 0) && n->rolled > 2 * attack)
             s->cuts[s->cut_count++] = n->at.beat + attack;
     }
     qsort(s->cuts, (size_t)s->cut_count, sizeof *s->cuts, by_beat);
@@ -254,7 +332,7 @@ static double next_cut(const shaper *s, double from, double end)
 static void emit_roll(shaper *s, const music_note *n, double end, double louder, midi_way way)
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
-    double begin = n->at.beat, least = fmax(range->low, 0.1), attack = attack_beats(s->second);
+    double begin = n->at.beat, least = fmax(range->low, 0.1), attack = attack_beats(n, s->second);
     double base = way.dynamic, most = fmin(range->high, LONGEST * s->second);
     for (double at = begin; at < end - SAME && !s->failed;) {
         double to = next_cut(s, at + least, end);
@@ -388,14 +466,21 @@ static void add_gliss(shaper *s, const music_note *n)
     const music_note *to = n->glides ? find_next(s->music, n, BY_GLISS) : NULL;
     if (!to || n->choice != MIDI_TIMPANI || to->key == n->key)
         return;
+    for (int i = s->file->order_count - 1; i >= 0 && s->file->orders[i].glides; i--)
+        if (fabs(s->file->orders[i].beat - n->at.beat) < SAME &&
+            s->file->orders[i].value % 12 == to->key % 12) { // words say the same
+            s->file->orders[i].line = -1;
+            end_gliss(s, -1, to->at.beat);
+            return;
+        }
     music_sign sign = {
         .at = n->at, .meaning = MUSIC_GLISS, .value = 100 * n->key + to->key, .line = -1};
     add_order(s, MIDI_TUNING, &sign, n->choice);
     end_gliss(s, -1, to->at.beat);
 }
 
-// what sounds is damped at a beat, or rings on
-static void end_at(shaper *s, double beat, midi_choice choice, int ring)
+// what sounds, or a drum with a pitch, is damped at a beat, or rings on
+static void end_at(shaper *s, double beat, midi_choice choice, int ring, int key)
 {
     midi_file *f = s->file;
     bool done[256] = {false}; // the last stroke of each drum
@@ -405,6 +490,8 @@ static void end_at(shaper *s, double beat, midi_choice choice, int ring)
             (choice != MIDI_ANY && n->choice != choice))
             continue;
         done[n->key] = true;
+        if (key > 0 && n->key != key)
+            continue;
         n->way.ring = ring;
         if (ring < 0)
             n->off = himc_score_seconds(f->tempi, f->tempo_count, beat);
@@ -444,13 +531,15 @@ static void take_signs(shaper *s, double beat, midi_choice choice, int next)
             break;
         case MUSIC_RING:
             // at a rest it is for what sounds
-            if (sign->at.beat > beat - SAME)
+            if (sign->value < -1)
+                end_at(s, sign->at.beat, MIDI_ANY, -1, -(int)sign->value);
+            else if (sign->at.beat > beat - SAME)
                 says->ring = (int)sign->value;
             else
-                end_at(s, sign->at.beat, sign->lane >= 100 ? kind : MIDI_ANY, (int)sign->value);
+                end_at(s, sign->at.beat, sign->lane >= 100 ? kind : MIDI_ANY, (int)sign->value, 0);
             break;
         case MUSIC_RING_ALWAYS: says->always = (int)sign->value; break;
-        case MUSIC_DAMP: end_at(s, sign->at.beat, MIDI_ANY, -1); break;
+        case MUSIC_DAMP: end_at(s, sign->at.beat, MIDI_ANY, -1, 0); break;
         case MUSIC_HAND:
             says->hand = sign->at.beat > beat - SAME ? 1 + (int)sign->value : says->hand;
             break;
@@ -488,7 +577,7 @@ static void shape_note(shaper *s, music_note *n)
     const saying *says = &s->says[n->choice];
     double unit, least = himc_argument_find("LENGTH", "roll")->low;
     bool roll = is_roll(s, n, &unit) && n->rolled >= least, attack = n->attacked || n->marcato;
-    midi_way way = {.dynamic = n->dynamic >= 0 ? n->dynamic : level(s, n->at.beat),
+    midi_way way = {.dynamic = n->dynamic > MUSIC_UNSAID ? n->dynamic : level(s, n->at.beat),
                     .drum = n->drum,
                     .nuance = attack      ? HIMC_VERTICAL_ACCENT
                               : n->accent ? HIMC_ACCENT
@@ -506,12 +595,13 @@ static void shape_note(shaper *s, music_note *n)
         way.ring = -1; // a dot: the same attack, and a hand on the head
         n->length /= 2;
     }
-    double louder = attack ? 2 * STEP : n->accent ? STEP : 0;
+    double louder = (attack ? 2 * STEP : n->accent ? STEP : 0) + n->struck;
     emit_graces(s, n, roll, &way);
     if (!roll && n->accent && !attack)
         way.dynamic = fmin(way.dynamic + STEP, 1);
-    if (n->ghost && n->dynamic < 0)
-        way.dynamic = fmax(way.dynamic - GHOST_SOFTER, 0);
+    if (n->ghost && n->dynamic == MUSIC_UNSAID)
+        way.dynamic -= GHOST_SOFTER;
+    way.dynamic = fmax(way.dynamic, 0);
     if (roll)
         emit_roll(s, n, n->at.beat + n->rolled, louder, way);
     else if (n->tremolo == MUSIC_MARKS)
@@ -558,14 +648,6 @@ static bool list_lanes(shaper *s)
     return good;
 }
 
-static void choose_lane(shaper *s, int number)
-{
-    s->now = s->lanes;
-    for (int k = 1; k < s->lane_count; k++)
-        if (s->lanes[k].lane == number)
-            s->now = &s->lanes[k];
-}
-
 static bool shape_part(shaper *s, int part)
 {
     music *m = s->music;
@@ -579,7 +661,10 @@ static bool shape_part(shaper *s, int part)
     for (int i = 0; i < m->note_count; i++)
         s->kinds |= m->notes[i].at.part == part ? 1u << m->notes[i].choice : 0;
     s->cuts = NULL;
-    s->failed |= !list_lanes(s) || !list_cuts(s);
+    s->failed |= !list_lanes(s);
+    if (!s->failed)
+        join_rolls(s);
+    s->failed |= !s->failed && !list_cuts(s);
     for (int i = 0; i < m->note_count && !s->failed; i++) {
         music_note *n = &m->notes[i];
         if (n->at.part != part || n->length < 0)

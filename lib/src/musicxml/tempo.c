@@ -77,7 +77,7 @@ static double add_ramp(map *to, const music *m, int i, double bpm)
 static bool add_signs(map *to, const music *m)
 {
     double bpm = USUAL_BPM, first = 0, before = 0; // now, the first, before the last ramps
-    double numbered = -1, ramp = -1;               // beats of the last number and ramp
+    double numbered = -1, shared = -1, ramp = -1;  // beats of the last number, share and ramp
     bool ramps = false;
     for (int i = 0; i < m->sign_count; i++) {
         const music_sign *s = &m->signs[i];
@@ -89,8 +89,9 @@ static bool add_signs(map *to, const music *m)
             bpm = s->value;
         } else if (s->meaning == MUSIC_TEMPO_AGAIN) {
             bpm = himc_midi_bpm(to->tempi, to->count, s->value + SAME);
-        } else if (s->meaning == MUSIC_TEMPO_SHARE && s->at.beat > numbered + SAME) {
-            numbered = s->at.beat; // also where all parts say it
+        } else if (s->meaning == MUSIC_TEMPO_SHARE && s->at.beat > numbered + SAME &&
+                   s->at.beat > shared + SAME) {
+            shared = s->at.beat; // also where all parts say it
             bpm *= s->value;
         } else if (s->meaning == MUSIC_TEMPO_BACK && s->at.beat > numbered + SAME) {
             bpm = s->value > 0 && first > 0 ? first : before > 0 ? before : bpm;

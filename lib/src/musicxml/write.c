@@ -1,53 +1,45 @@
 /// write.c: notes as MusicXML 4.0 for notation programs, in bars of 4/4.
 ///
-/// Time counts in TICKS of a quarter note. Notes that overlap stand in several voices; a note lasts
-/// up to the next one of its voice or to the bar's end, a roll as long as it is, tied over bars.
-/// Dynamics are steps: a mark where the step changes, a hairpin for a roll that moves by one at
-/// least. An accent is read back a step louder (shape.c), so it is written a step softer. A gliss
-/// is words with a line. Words and marks of a bar are written first, then each voice, each back
-/// from the bar's end.
+/// Time counts in ticks of a quarter note. What is struck at once is a chord; what overlaps else,
+/// and the feet of a kit, stand in voices of their own. A note lasts up to the next one of its
+/// voice or for a beat, a roll as long as it is; spell.c gives them values. Words and marks of a
+/// bar (marks.c) are written first, then each voice, each back from the bar's end. Each note also
+/// has its exact dynamic, and the reader (shape.c) makes an accent a step louder, so it is written
+/// a step softer there.
 #include "musicxml/export.h"
 
 #include "base/format.h"
 #include "midi/part.h"
+#include "musicxml/marks.h"
 #include "musicxml/music.h"
+#include "musicxml/spell.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define TICKS 960 // of a quarter note; chosen: 0.5 ms at 120 beats a minute
+#define TICKS MUSIC_TICKS
 #define BAR ((int)MUSIC_BAR * TICKS)
 #define VOICES 4
-
-/// A note of a part.
-typedef struct item {
-    const midi_note *note;
-    long begin, end; ///< (ticks)
-    int voice;
-} item;
-
-/// A beginning of a note, or an end of its hairpin.
-typedef struct mark {
-    long tick;
-    bool ends;
-    const item *item;
-} mark;
+#define FOOT 1 // the voice of feet
 
 /// The notes of a kind.
 typedef struct staff {
     midi_choice choice;
-    item *items; ///< borrowed (count)
-    int count, first;
-    himc_spot spot; ///< the last that was written
-    int step;       ///< the last dynamic that was marked, 0 .. 7; -1: none
+    music_item *items; ///< borrowed (count)
+    music_mark *marks; ///< the same, in the order of time (mark_count)
+    int count, mark_count;
+    int first, mark; ///< the next of them
+    himc_spot spot;  ///< the last that was written
+    int step;        ///< the last dynamic that was marked, 0 .. 7; -1: none
+    bool feet;       ///< of a kit: they have a voice of their own
 } staff;
 
 typedef struct writer {
     himc_text_lines *out;
     const midi_file *file;
-    item *items; ///< of all staves
-    mark *marks; ///< scratch: two for each note
+    music_segment *segments; ///< scratch of a bar
+    music_piece *pieces;
     staff staves[MIDI_CHOICES], *now;
     int staff_count;
     long end; ///< (ticks)
@@ -66,30 +58,47 @@ static bool is_louder(const midi_way *way)
     return way->nuance == HIMC_ACCENT && way->length <= 0;
 }
 
-static int step_of(const midi_way *way, double dynamic)
+static void put_value(const writer *w, const music_piece *piece)
 {
-    int step = (int)lround(7 * dynamic) - is_louder(way);
-    return step < 0 ? 0 : step;
+    static const char *const types[] = {"whole", "half", "quarter", "eighth",
+                                        "16th",  "32nd", "64th",    "128th"};
+    PUT(w, "<type>%s</type>%s", types[piece->type], piece->dot ? "<dot/>" : "");
+    if (piece->actual > 0)
+        PUT(w,
+            "<time-modification><actual-notes>%d</actual-notes><normal-notes>%d</normal-notes>"
+            "</time-modification>",
+            piece->actual, piece->normal);
 }
 
-// a type for a length of notation, with dots; else only its duration
-static void put_type(const writer *w, long length)
+// where a drum of a kit is written (Weinberg 1998), and with an x what is metal
+static const struct {
+    int key;
+    char place[3];
+    bool metal;
+} lines[] = {{35, "F4", false}, {36, "F4", false}, {41, "G4", false}, {43, "A4", false},
+             {45, "B4", false}, {47, "D5", false}, {48, "E5", false}, {50, "E5", false},
+             {42, "G5", true},  {44, "D4", true},  {46, "G5", true},  {49, "A5", true},
+             {57, "B5", true},  {52, "B5", true},  {55, "A5", true},  {51, "F5", true},
+             {53, "F5", true},  {59, "F5", true}};
+
+static int line_of(int key)
 {
-    static const char *const types[] = {"whole", "half", "quarter", "eighth", "16th", "32nd"};
-    for (int i = 0; i < 6; i++) {
-        long plain = (4 * TICKS) >> i;
-        if (length == plain || 2 * length == 3 * plain)
-            PUT(w, "<type>%s</type>%s", types[i], length == plain ? "" : "<dot/>");
-    }
+    int i = (int)(sizeof lines / sizeof *lines) - 1;
+    while (i >= 0 && lines[i].key != key)
+        i--;
+    return i;
 }
 
 static void put_pitch(const writer *w, int key)
 {
     static const char *const steps[] = {"C", "C", "D", "E", "E", "F", "F", "G", "A", "A", "B", "B"};
     static const int alter[] = {0, 1, 0, -1, 0, 0, 1, 0, -1, 0, -1, 0};
+    int line = line_of(key);
     if (w->now->choice == MIDI_DRUMS)
-        PUT(w, "<unpitched><display-step>C</display-step><display-octave>5</display-octave>"
-               "</unpitched>");
+        PUT(w,
+            "<unpitched><display-step>%c</display-step><display-octave>%c</display-octave>"
+            "</unpitched>",
+            line < 0 ? 'C' : lines[line].place[0], line < 0 ? '5' : lines[line].place[1]);
     else if (alter[key % 12])
         PUT(w, "<pitch><step>%s</step><alter>%d</alter><octave>%d</octave></pitch>",
             steps[key % 12], alter[key % 12], key / 12 - 1);
@@ -124,22 +133,29 @@ static void put_instrument(const writer *w, const midi_note *n)
         PUT(w, "<instrument id=\"I%d\"/>", instrument_of(n));
 }
 
-static void put_graces(const writer *w, const item *i)
+// a flam has a stroke through its note, the others beams; all are slurred to the main note
+static void put_graces(const writer *w, const music_item *i)
 {
     // in the order of the ornaments: 0 to 3, a ruff with three, as a drag has two
     int count = i->note->way.ornament;
     for (int k = 0; k < count; k++) {
-        PUT(w, "<note><grace/>");
+        const char *beam = k == 0 ? "begin" : k + 1 < count ? "continue" : "end";
+        PUT(w, count == 1 ? "<note><grace slash=\"yes\"/>" : "<note><grace/>");
         put_pitch(w, i->note->key);
         put_instrument(w, i->note);
         put_voice_number(w, i->voice);
-        PUT(w, "<type>16th</type>");
+        PUT(w, "<type>%s</type><stem>up</stem>", count == 1 ? "eighth" : "16th");
         put_staff(w);
+        for (int level = 1; level <= 2 && count > 1; level++)
+            PUT(w, "<beam number=\"%d\">%s</beam>", level, beam);
+        if (k == 0)
+            PUT(w, "<notations><slur type=\"start\" number=\"1\"/></notations>");
         PUT(w, "</note>\n");
     }
 }
 
-static void put_notations(const writer *w, const item *i, bool begins, bool ties_on)
+static void put_notations(const writer *w, const music_item *i, const music_piece *piece,
+                          bool ties_on)
 {
     static const char *const marks[] = {[HIMC_TENUTO] = "tenuto",
                                         [HIMC_ACCENT] = "accent",
@@ -148,12 +164,18 @@ static void put_notations(const writer *w, const item *i, bool begins, bool ties
     // of a dot alone the stroke is damped
     static const char pulled[] = "<other-articulation>pulled off</other-articulation>";
     const midi_way *way = &i->note->way;
-    bool roll = way->length > 0;
+    bool roll = way->length > 0, begins = piece->from == i->begin;
     PUT(w, "<notations>");
     if (!begins)
         PUT(w, "<tied type=\"stop\"/>");
     if (ties_on)
         PUT(w, "<tied type=\"start\"/>");
+    if (begins && way->ornament > HIMC_PLAIN)
+        PUT(w, "<slur type=\"stop\" number=\"1\"/>");
+    if (piece->first && !i->chord)
+        PUT(w, "<tuplet type=\"start\" bracket=\"%s\"/>", piece->beam[0] ? "no" : "yes");
+    if (piece->last && !i->chord)
+        PUT(w, "<tuplet type=\"stop\"/>");
     if (roll) // three strokes where nobody could take them for 32nds
         PUT(w, "<ornaments><tremolo type=\"single\">%d</tremolo></ornaments>",
             himc_midi_bpm(w->file->tempi, w->file->tempo_count, i->note->beat) > 61 ? 3 : 4);
@@ -172,28 +194,34 @@ static bool is_held(const midi_note *n)
     return n->way.length > 0 || n->way.ring < 0;
 }
 
-static void put_note(const writer *w, const item *i, long from, long to)
+static void put_note(const writer *w, const music_item *i, const music_piece *piece)
 {
-    bool begins = from == i->begin, ties_on = is_held(i->note) && to < i->end;
+    bool begins = piece->from == i->begin, ties_on = is_held(i->note) && piece->to < i->end;
     if (begins)
         put_graces(w, i);
     const char *notehead = himc_music_notehead(i->note->way.spot);
+    int line = w->now->choice == MIDI_DRUMS ? line_of(i->note->key) : -1;
     double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
     // the exact dynamic, in percent of a velocity of 90
-    PUT(w, "<note dynamics=\"%.6g\">", himc_midi_velocity(fmax(level, 0)) / 0.9);
+    PUT(w, "<note dynamics=\"%.6g\">%s", fmax(himc_midi_velocity(level), 0) / 0.9,
+        i->chord ? "<chord/>" : "");
     put_pitch(w, i->note->key);
-    PUT(w, "<duration>%ld</duration>", to - from);
+    PUT(w, "<duration>%ld</duration>", piece->to - piece->from);
     if (!begins)
         PUT(w, "<tie type=\"stop\"/>");
     if (ties_on)
         PUT(w, "<tie type=\"start\"/>");
     put_instrument(w, i->note);
     put_voice_number(w, i->voice);
-    put_type(w, to - from);
-    if (notehead[0])
-        PUT(w, "<notehead>%s</notehead>", notehead);
+    put_value(w, piece);
+    if (w->now->feet)
+        PUT(w, "<stem>%s</stem>", i->voice == FOOT ? "down" : "up");
+    if (notehead[0] || (line >= 0 && lines[line].metal))
+        PUT(w, "<notehead>%s</notehead>", notehead[0] ? notehead : "x");
     put_staff(w);
-    put_notations(w, i, begins, ties_on);
+    for (int k = 0; k < 6 && piece->beam[k] && !i->chord; k++)
+        PUT(w, "<beam number=\"%d\">%s</beam>", k + 1, piece->beam[k]);
+    put_notations(w, i, piece, ties_on);
     PUT(w, "</note>\n");
 }
 
@@ -241,6 +269,15 @@ static void put_gliss(const writer *w, long *at, long to, int line, const char *
     end_direction(w);
 }
 
+// true if a tempo goes on its way to the next
+static bool is_ramp(const writer *w, int i)
+{
+    const himc_tempo_change *t = w->file->tempi;
+    return i > 0 && i + 1 < w->file->tempo_count && t[i + 1].beat - t[i].beat <= 1 &&
+           (t[i + 1].bpm - t[i].bpm) * (t[i].bpm - t[i - 1].bpm) > 0;
+}
+
+// a number, or a word where it moves; each has its exact tempo
 static void put_tempi(const writer *w, long begin, long *at)
 {
     for (int i = 0; i < w->file->tempo_count && w->now == w->staves; i++) {
@@ -249,10 +286,22 @@ static void put_tempi(const writer *w, long begin, long *at)
         if (tick < begin || tick >= begin + BAR)
             continue;
         move(w, at, tick);
-        PUT(w,
-            "<direction><direction-type><metronome><beat-unit>quarter</beat-unit><per-minute>"
-            "%.9g</per-minute></metronome></direction-type><sound tempo=\"%.9g\"/></direction>\n",
-            t->bpm, t->bpm);
+        bool moves = is_ramp(w, i);
+        if (moves && is_ramp(w, i - 1)) {
+            PUT(w, "<sound tempo=\"%.9g\"/>\n", t->bpm);
+            continue;
+        }
+        PUT(w, "<direction placement=\"above\"><direction-type>");
+        if (moves)
+            PUT(w, "<words>%s</words>", t[1].bpm > t->bpm ? "accel." : "rit.");
+        else
+            PUT(w,
+                "<metronome><beat-unit>quarter</beat-unit><per-minute>%.0f</per-minute>"
+                "</metronome>",
+                t->bpm);
+        PUT(w, "</direction-type>");
+        put_staff(w);
+        PUT(w, "<sound tempo=\"%.9g\"/></direction>\n", t->bpm);
     }
 }
 
@@ -268,14 +317,17 @@ static void put_orders(const writer *w, long begin, long *at)
         char words[40];
         if (o->choice != w->now->choice)
             continue;
-        himc_format(words, sizeof words, o->glides ? "%s%s%d to %s%d" : "%s%s%d muta in %s%d",
-                    drums[o->from / 128], pitch[o->from % 128 % 12], o->from % 128 / 12 - 1,
-                    pitch[o->value % 12], o->value / 12 - 1);
+        if (o->kind == MIDI_DAMP)
+            himc_format(words, sizeof words, "damp %s%d", pitch[o->value % 12], o->value / 12 - 1);
+        else
+            himc_format(words, sizeof words, o->glides ? "%s%s%d to %s%d" : "%s%s%d muta in %s%d",
+                        drums[o->from / 128], pitch[o->from % 128 % 12], o->from % 128 / 12 - 1,
+                        pitch[o->value % 12], o->value / 12 - 1);
         if (here && o->glides)
             put_gliss(w, at, tick, i, words);
         else if (here)
             put_words(w, at, tick,
-                      o->kind == MIDI_TUNING ? words
+                      o->kind != MIDI_MUFFLE ? words
                       : o->value             ? "coperto"
                                              : "scoperto");
         if (o->glides && end > begin && end <= begin + BAR)
@@ -283,108 +335,104 @@ static void put_orders(const writer *w, long begin, long *at)
     }
 }
 
-static void put_dynamic(writer *w, long *at, long to, int step)
-{
-    move(w, at, to);
-    PUT(w, "<direction><direction-type><dynamics><%s/></dynamics></direction-type>",
-        himc_dynamic_words[step]);
-    end_direction(w);
-    w->now->step = step;
-}
-
-static void put_wedge(const writer *w, long *at, long to, const char *type)
-{
-    move(w, at, to);
-    PUT(w, "<direction><direction-type><wedge type=\"%s\"/></direction-type>", type);
-    end_direction(w);
-}
-
-static int by_tick(const void *a, const void *b)
-{
-    const mark *x = a, *y = b;
-    if (x->tick != y->tick)
-        return x->tick < y->tick ? -1 : 1;
-    return x->ends != y->ends ? y->ends - x->ends : (x->item > y->item) - (x->item < y->item);
-}
-
-static bool has_wedge(const item *i)
-{
-    const midi_way *way = &i->note->way;
-    return way->length > 0 && step_of(way, way->dynamic) != step_of(way, way->last_dynamic);
-}
-
-// the beginnings of a bar's notes, and where hairpins end, in order
-static int list_marks(writer *w, int first, long begin)
-{
-    int count = 0;
-    for (int k = first; k < w->now->count && w->now->items[k].begin < begin + BAR; k++) {
-        const item *i = &w->now->items[k];
-        if (i->begin >= begin)
-            w->marks[count++] = (mark){i->begin, false, i};
-        if (has_wedge(i) && i->end > begin && i->end <= begin + BAR)
-            w->marks[count++] = (mark){i->end, true, i};
-    }
-    qsort(w->marks, (size_t)count, sizeof *w->marks, by_tick);
-    return count;
-}
-
-static void put_dynamics(writer *w, int first, long begin, long *at)
+// a mark of a bar; a dynamic that holds already only where a hairpin ends
+static void put_mark(writer *w, long *at, const music_mark *m)
 {
     static const char *const spots[] = {"center", "ord.", "near rim"};
-    int count = list_marks(w, first, begin);
-    for (const mark *m = w->marks; m < w->marks + count; m++) {
-        const midi_way *way = &m->item->note->way;
-        int from = step_of(way, way->dynamic), to = step_of(way, way->last_dynamic);
-        if (m->ends) {
-            put_wedge(w, at, m->tick, "stop");
-            put_dynamic(w, at, m->tick, to);
-            continue;
-        }
-        if (from != w->now->step)
-            put_dynamic(w, at, m->tick, from);
+    const char *wedge = m->kind == MARK_STOP ? "stop" : m->value > 0 ? "crescendo" : "diminuendo";
+    const midi_way *way = m->way;
+    if (m->kind == MARK_DYNAMIC && (m->ends || m->value != w->now->step)) {
+        move(w, at, m->tick);
+        PUT(w,
+            "<direction placement=\"below\"><direction-type><dynamics%s><%s/></dynamics>"
+            "</direction-type>",
+            m->ends ? " relative-x=\"-10\"" : "", himc_dynamic_words[m->value]);
+        end_direction(w);
+        w->now->step = m->value;
+    } else if (m->kind == MARK_WEDGE || m->kind == MARK_STOP) {
+        move(w, at, m->tick);
+        PUT(w,
+            "<direction placement=\"below\"><direction-type><wedge type=\"%s\"/>"
+            "</direction-type>",
+            wedge);
+        end_direction(w);
+    } else if (m->kind == MARK_WAY) {
         if (way->spot != w->now->spot && w->now->choice == MIDI_TIMPANI) {
             put_words(w, at, m->tick, spots[way->spot]);
             w->now->spot = way->spot;
         }
         if (way->ring < 0)
             put_words(w, at, m->tick, "secco");
-        if (has_wedge(m->item))
-            put_wedge(w, at, m->tick, to > from ? "crescendo" : "diminuendo");
     }
+}
+
+static void put_marks(writer *w, long begin, long *at)
+{
+    for (; w->now->mark < w->now->mark_count && w->now->marks[w->now->mark].tick < begin + BAR;
+         w->now->mark++)
+        put_mark(w, at, &w->now->marks[w->now->mark]);
+    // what ends with the bar is its
+    for (; w->now->mark < w->now->mark_count && w->now->marks[w->now->mark].tick == begin + BAR &&
+           w->now->marks[w->now->mark].ends;
+         w->now->mark++)
+        put_mark(w, at, &w->now->marks[w->now->mark]);
 }
 
 // bars and parts
 
-static void put_rest(const writer *w, long length)
+// what a voice has in a bar; returns how many segments
+static int list_segments(const writer *w, int voice, int first, long begin)
 {
-    PUT(w, "<note><rest/><duration>%ld</duration>", length);
-    put_voice_number(w, 0);
-    put_type(w, length);
+    long at = begin, end = begin + BAR;
+    int count = 0;
+    for (int k = first; k < w->now->count && w->now->items[k].begin < end; k++) {
+        const music_item *i = &w->now->items[k];
+        if (i->voice != voice || i->end <= at || i->chord)
+            continue;
+        long from = i->begin > at ? i->begin : at, to = i->end < end ? i->end : end;
+        if (from > at)
+            w->segments[count++] = (music_segment){at, from, -1, false};
+        w->segments[count++] = (music_segment){from, to, k, is_held(i->note)};
+        at = to;
+    }
+    if (at < end)
+        w->segments[count++] = (music_segment){at, end, -1, false};
+    return count;
+}
+
+static void put_rest(const writer *w, const music_piece *piece, int voice)
+{
+    bool bar = piece->to - piece->from == BAR;
+    PUT(w, "<note><rest%s/><duration>%ld</duration>", bar ? " measure=\"yes\"" : "",
+        piece->to - piece->from);
+    put_voice_number(w, voice);
+    put_value(w, piece);
     put_staff(w);
+    if (piece->first || piece->last)
+        PUT(w, "<notations><tuplet type=\"%s\"/></notations>", piece->first ? "start" : "stop");
     PUT(w, "</note>\n");
 }
 
+// rests are written where they have values in the first voice, and in tuplets
 static void put_voice(const writer *w, int voice, int first, long begin)
 {
     long at = begin;
-    for (int k = first; k < w->now->count && w->now->items[k].begin < begin + BAR; k++) {
-        const item *i = &w->now->items[k];
-        if (i->voice != voice || i->end <= begin)
+    int count = himc_music_spell(w->segments, list_segments(w, voice, first, begin), w->pieces);
+    for (const music_piece *p = w->pieces; p < w->pieces + count; p++) {
+        if (p->note < 0 && (p->rough || voice > 0) && p->actual == 0)
             continue;
-        long from = i->begin > begin ? i->begin : begin;
-        long to = i->end < begin + BAR ? i->end : begin + BAR;
-        if (from > at && voice == 0) {
-            put_rest(w, from - at);
-            at = from;
-        }
-        move(w, &at, from);
-        put_note(w, i, from, to);
-        at = to;
+        move(w, &at, p->from);
+        if (p->note < 0)
+            put_rest(w, p, voice);
+        else
+            put_note(w, &w->now->items[p->note], p);
+        for (int k = p->note + 1;
+             p->note >= 0 && k < w->now->count && w->now->items[k].begin == p->from; k++)
+            if (w->now->items[k].chord && w->now->items[k].voice == voice)
+                put_note(w, &w->now->items[k], p);
+        at = p->to;
     }
-    if (voice == 0 && at < begin + BAR)
-        put_rest(w, begin + BAR - at);
-    else
-        move(w, &at, begin + BAR);
+    move(w, &at, begin + BAR);
     PUT(w, "<backup><duration>%d</duration></backup>\n", BAR);
 }
 
@@ -418,7 +466,7 @@ static void put_bar(writer *w, long begin)
         put_words(w, &at, begin, "sempre l.v.");
     put_tempi(w, begin, &at);
     put_orders(w, begin, &at);
-    put_dynamics(w, now->first, begin, &at);
+    put_marks(w, begin, &at);
     move(w, &at, begin);
     for (int voice = 0; voice < VOICES; voice++) {
         bool used = voice == 0;
@@ -443,31 +491,59 @@ static void put_bars(writer *w)
     }
 }
 
+static bool is_foot(const midi_note *n)
+{
+    return n->way.hand == 0 && n->way.length <= 0;
+}
+
+// true if a stroke is one more note of a chord; the reader takes signs of the first for all
+static bool joins(const music_item *head, const music_item *i)
+{
+    const midi_way *a = &head->note->way, *b = &i->note->way;
+    return head->begin == i->begin && !is_held(head->note) && !is_held(i->note) &&
+           a->nuance == b->nuance && b->ornament == HIMC_PLAIN && head->note->key != i->note->key;
+}
+
 // the notes of a choice in voices; returns how many. A voice is free where its note has ended
 static int take_items(writer *w)
 {
     long last[VOICES] = {0};
     int before[VOICES] = {-1, -1, -1, -1};
+    bool hands = false, feet = false;
     w->now->count = 0;
+    for (int i = 0; i < w->file->note_count; i++)
+        if (w->file->notes[i].choice == MIDI_DRUMS && w->now->choice == MIDI_DRUMS) {
+            hands |= w->file->notes[i].way.hand > 0;
+            feet |= is_foot(&w->file->notes[i]);
+        }
+    w->now->feet = hands && feet;
     for (int i = 0; i < w->file->note_count; i++) {
         const midi_note *n = &w->file->notes[i];
         if (n->choice != w->now->choice)
             continue;
-        item *to = &w->now->items[w->now->count];
+        music_item *to = &w->now->items[w->now->count];
         double end = n->way.length > 0
                          ? n->beat + n->way.length
                          : himc_score_beat(w->file->tempi, w->file->tempo_count, n->off);
-        *to = (item){n, ticks_of(n->beat), ticks_of(fmax(end, n->beat + 1.0 / TICKS)), 0};
-        while (to->voice + 1 < VOICES && last[to->voice] > to->begin)
-            to->voice++;
+        *to = (music_item){.note = n, .begin = himc_music_snap(ticks_of(n->beat))};
+        to->end = himc_music_snap(ticks_of(end));
+        to->end = to->end > to->begin ? to->end : to->begin + TICKS / 32;
+        to->voice = w->now->feet && is_foot(n) ? FOOT : 0;
         int k = before[to->voice];
+        to->chord = k >= 0 && joins(&w->now->items[k], to);
+        while (!to->chord && to->voice + 1 < VOICES && last[to->voice] > to->begin)
+            to->voice++;
+        k = before[to->voice];
         long bar_end = (to->begin / BAR + 1) * BAR;
-        if (k >= 0 && !is_held(w->now->items[k].note) && w->now->items[k].end > to->begin)
+        if (k >= 0 && !is_held(w->now->items[k].note) && w->now->items[k].end > to->begin &&
+            !to->chord)
             w->now->items[k].end = to->begin;
         if (!is_held(n))
             to->end = bar_end < to->begin + TICKS ? bar_end : to->begin + TICKS;
         last[to->voice] = is_held(n) ? to->end : to->begin + 1;
-        before[to->voice] = w->now->count++;
+        if (!to->chord)
+            before[to->voice] = w->now->count;
+        w->now->count++;
     }
     return w->now->count;
 }
@@ -519,40 +595,56 @@ static void put_part_list(const writer *w)
     PUT(w, "</score-part>\n");
 }
 
+// borrows the room for items and marks
+static void list_staves(writer *w, music_item *items, music_mark *marks)
+{
+    for (int choice = MIDI_TIMPANI; choice < MIDI_CHOICES; choice++) {
+        w->now = &w->staves[w->staff_count];
+        *w->now = (staff){.choice = (midi_choice)choice,
+                          .items = items,
+                          .marks = marks,
+                          .spot = HIMC_SPOT_NORMAL,
+                          .step = -1};
+        w->staff_count += take_items(w) > 0;
+        w->now->mark_count = himc_music_marks(items, w->now->count, BAR, marks);
+        marks += w->now->mark_count;
+        for (int i = 0; i < w->now->count; i++)
+            w->end = items[i].end > w->end ? items[i].end : w->end;
+        items += w->now->count;
+    }
+    for (int i = 0; i < w->file->order_count; i++)
+        w->end = end_of(w, &w->file->orders[i]) > w->end ? end_of(w, &w->file->orders[i]) : w->end;
+}
+
+static void put_document(writer *w, const char *title)
+{
+    PUT(w, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE score-partwise PUBLIC "
+           "\"-//Recordare//DTD MusicXML 4.0 Partwise//EN\" "
+           "\"http://www.musicxml.org/dtds/partwise.dtd\">\n");
+    PUT(w, "<score-partwise version=\"4.0\"><movement-title>%s</movement-title><part-list>\n",
+        title);
+    put_part_list(w);
+    PUT(w, "</part-list>\n<part id=\"P%d\">\n", w->staff_count > 1 ? 1 : (int)w->staves[0].choice);
+    put_bars(w);
+    PUT(w, "</part>\n</score-partwise>\n");
+}
+
 bool himc_music_write(himc_text_lines *out, const midi_file *file, const char *title)
 {
     writer w = {.out = out, .file = file};
-    w.items = malloc(((size_t)file->note_count + 1) * sizeof *w.items);
-    w.marks = malloc((2 * (size_t)file->note_count + 1) * sizeof *w.marks);
-    if (!w.items || !w.marks) {
-        free(w.items);
-        free(w.marks);
-        return false;
+    const size_t count = (size_t)file->note_count + 1;
+    music_item *items = malloc(count * sizeof *items);
+    music_mark *marks = malloc(MUSIC_MARKS_OF(count) * sizeof *marks);
+    w.segments = malloc(2 * count * sizeof *w.segments);
+    w.pieces = malloc(MUSIC_PIECES_OF(2 * count) * sizeof *w.pieces);
+    bool good = items && marks && w.segments && w.pieces;
+    if (good) {
+        list_staves(&w, items, marks);
+        put_document(&w, title);
     }
-    PUT(&w, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE score-partwise PUBLIC "
-            "\"-//Recordare//DTD MusicXML 4.0 Partwise//EN\" "
-            "\"http://www.musicxml.org/dtds/partwise.dtd\">\n");
-    PUT(&w, "<score-partwise version=\"4.0\"><movement-title>%s</movement-title><part-list>\n",
-        title);
-    item *free_items = w.items;
-    for (int choice = MIDI_TIMPANI; choice < MIDI_CHOICES; choice++) {
-        w.now = &w.staves[w.staff_count];
-        *w.now = (staff){.choice = (midi_choice)choice,
-                         .items = free_items,
-                         .spot = HIMC_SPOT_NORMAL,
-                         .step = -1};
-        w.staff_count += take_items(&w) > 0;
-        free_items += w.now->count;
-        for (int i = 0; i < w.now->count; i++)
-            w.end = w.now->items[i].end > w.end ? w.now->items[i].end : w.end;
-    }
-    for (int i = 0; i < file->order_count; i++)
-        w.end = end_of(&w, &file->orders[i]) > w.end ? end_of(&w, &file->orders[i]) : w.end;
-    put_part_list(&w);
-    PUT(&w, "</part-list>\n<part id=\"P%d\">\n", w.staff_count > 1 ? 1 : (int)w.staves[0].choice);
-    put_bars(&w);
-    PUT(&w, "</part>\n</score-partwise>\n");
-    free(w.items);
-    free(w.marks);
-    return !out->failed;
+    free(items);
+    free(marks);
+    free(w.segments);
+    free(w.pieces);
+    return good && !out->failed;
 }

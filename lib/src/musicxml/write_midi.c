@@ -1,9 +1,10 @@
 /// write_midi.c: notes as a Standard MIDI File of format 1, a track for each part.
 ///
 /// A roll is the strokes that a player would about play, as MIDI has no tremolo; grace notes stand
-/// before their note; hands, nuances and places are lost. Velocities are those of notation
-/// programs (midi/import.c). A timpano's note lasts until a hand damps it, else
-/// up to the next. Events are sorted by tick, ends before beginnings.
+/// before their note; hands and places are lost. Velocities are those of notation programs
+/// (midi/import.c) for a stroke as loud as it is played; a text before it says its nuance. A
+/// timpano's note lasts until a hand damps it, else up to the next. Events are sorted by tick, ends
+/// before beginnings.
 #include "musicxml/export.h"
 
 #include "base/format.h"
@@ -23,6 +24,7 @@
 typedef struct event {
     long tick;
     uint8_t bytes[3];
+    const midi_way *way; ///< what a text says, or NULL
 } event;
 
 typedef struct writer {
@@ -45,10 +47,11 @@ static void add(writer *w, double beat, uint8_t status, uint8_t key, double velo
     }
     velocity = fmin(fmax(velocity, 1), 127);
     w->events[w->count++] =
-        (event){lround(fmax(beat, 0) * TICKS), {status, key, (uint8_t)lround(velocity)}};
+        (event){lround(fmax(beat, 0) * TICKS), {status, key, (uint8_t)lround(velocity)}, NULL};
 }
 
-static void add_stroke(writer *w, const midi_note *n, double seconds, double length, double dynamic)
+static void add_stroke(writer *w, const midi_note *n, double seconds, double length,
+                       double velocity)
 {
     static const uint8_t channel[] = {
         [MIDI_TIMPANI] = 0,     [MIDI_DRUMS] = 9,      [MIDI_MARIMBA] = 1,
@@ -57,8 +60,7 @@ static void add_stroke(writer *w, const midi_note *n, double seconds, double len
     const midi_file *f = w->file;
     uint8_t on = 0x90 | channel[n->choice], key = n->key < 128 ? n->key : BASS_DRUM;
     double end = himc_score_beat(f->tempi, f->tempo_count, seconds + fmax(length, SHORT));
-    add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key,
-        himc_midi_velocity(dynamic));
+    add(w, himc_score_beat(f->tempi, f->tempo_count, seconds), on, key, velocity);
     add(w, end, on & 0x8f, key, 64);
 }
 
@@ -69,12 +71,19 @@ static void add_note(writer *w, const midi_note *n)
     int strokes = way->length > 0 ? (int)fmax(lround(seconds * ROLL_RATE), 4) : 1;
     for (int g = way->ornament; g > 0; g--)
         if (n->seconds - g * MUSIC_GRACE_TIME >= 0)
-            add_stroke(w, n, n->seconds - g * MUSIC_GRACE_TIME, 0, 0.6 * way->dynamic);
-    for (int i = 0; i < strokes; i++)
-        add_stroke(w, n, n->seconds + seconds * i / strokes,
-                   strokes == 1 && n->choice == MIDI_TIMPANI ? seconds : 0,
-                   way->dynamic +
-                       (strokes > 1 ? (way->last_dynamic - way->dynamic) * i / strokes : 0));
+            add_stroke(w, n, n->seconds - g * MUSIC_GRACE_TIME, 0,
+                       himc_midi_velocity(0.6 * way->dynamic));
+    for (int i = 0; i < strokes && way->length > 0; i++)
+        add_stroke(
+            w, n, n->seconds + seconds * i / strokes, 0,
+            himc_midi_velocity(way->dynamic + (way->last_dynamic - way->dynamic) * i / strokes));
+    if (way->length > 0)
+        return;
+    int first = w->count;
+    add_stroke(w, n, n->seconds, n->choice == MIDI_TIMPANI ? seconds : 0,
+               himc_midi_played_velocity(way->nuance, way->dynamic));
+    if (way->nuance != HIMC_LEGATO && !w->failed)
+        w->events[first].way = way;
 }
 
 static int by_tick(const void *a, const void *b)
@@ -144,6 +153,16 @@ static void put_tempi(himc_text_lines *out, const midi_file *file)
     end_track(out, begin);
 }
 
+// before a note at the same time
+static void put_said(himc_text_lines *out, int key, const midi_way *way)
+{
+    char text[64];
+    himc_format(text, sizeof text, MIDI_SAID, key, himc_nuance_name(way->nuance), way->dynamic);
+    put(out, (uint8_t[]){0xff, 1, (uint8_t)strlen(text)}, 3);
+    put(out, text, strlen(text));
+    put(out, "", 1);
+}
+
 /// A track: a kind, or a concert instrument that General MIDI lacks, by its key from 128.
 static bool is_of_track(const midi_note *n, int track)
 {
@@ -178,7 +197,10 @@ static void put_part(himc_text_lines *out, writer *w, int track, bool several)
     put(out, name, strlen(name));
     put(out, (uint8_t[]){0, part[choice].status, part[choice].program}, 3);
     for (int i = 0; i < w->count; i++) {
+        const midi_way *way = w->events[i].way;
         put_length(out, w->events[i].tick - now);
+        if (way)
+            put_said(out, w->events[i].bytes[1], way);
         put(out, w->events[i].bytes, 3);
         now = w->events[i].tick;
     }

@@ -1,0 +1,136 @@
+/// marks.c: from the dynamic of each note to marks and hairpins that a reader takes in.
+///
+/// A mark stands where the step changes. Three and more strokes that go one way, each by less than
+/// MOST_STEP, are a hairpin with a mark at each end; so is a roll that moves by a step. In a bar
+/// where drums of different dynamics sound at once, as a kit's do, one mark holds: its loudest.
+#include "musicxml/marks.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define LEAST_STROKES 3
+#define MOST_STEP 1.5 // from stroke to stroke; chosen: more is subito
+
+/// What begins at one time.
+typedef struct group {
+    long tick;
+    int first, end; ///< items
+    double level;   ///< of the roll, else of the loudest, in steps
+    bool mixed;     ///< of different steps
+    bool roll;
+} group;
+
+typedef struct marker {
+    const music_item *items;
+    int count, made;
+    long bar;
+    music_mark *marks;
+} marker;
+
+static int step_of(double dynamic)
+{
+    return (int)lround(7 * dynamic);
+}
+
+static void add(marker *m, long tick, music_mark_kind kind, int value, bool ends)
+{
+    m->marks[m->made++] = (music_mark){tick, ends, kind, value, NULL};
+}
+
+static group group_at(const marker *m, int first)
+{
+    group g = {.tick = first < m->count ? m->items[first].begin : 0, .first = first};
+    int low = 7;
+    for (g.end = first; g.end < m->count && m->items[g.end].begin == g.tick; g.end++) {
+        const midi_way *way = &m->items[g.end].note->way;
+        if (way->length > 0 || !g.roll)
+            g.level = way->length > 0 ? 7 * way->dynamic : fmax(g.level, 7 * way->dynamic);
+        low = step_of(way->dynamic) < low ? step_of(way->dynamic) : low;
+        g.roll |= way->length > 0;
+    }
+    g.mixed = lround(g.level) > low;
+    return g;
+}
+
+// the loudest step of a bar with different ones at once; -1: it has none
+static int mixed_step(const marker *m, int first, long end)
+{
+    bool mixed = false;
+    double level = 0;
+    for (group g = group_at(m, first); g.first < m->count && g.tick < end; g = group_at(m, g.end)) {
+        mixed |= g.mixed;
+        level = fmax(level, g.level);
+    }
+    return mixed ? (int)lround(level) : -1;
+}
+
+// the first item of the last group of a hairpin that begins with `from`; that one's own: none
+static int hairpin_end(const marker *m, const group *from)
+{
+    group last = *from;
+    int strokes = 1;
+    double way = 0;
+    while (!last.roll && last.end < m->count) {
+        group next = group_at(m, last.end);
+        double rise = next.level - last.level;
+        if (next.mixed || rise == 0 || rise * way < 0 || fabs(rise) > MOST_STEP ||
+            next.tick - last.tick > m->bar / 2)
+            break;
+        way = rise;
+        last = next;
+        strokes++;
+    }
+    bool moves = lround(last.level) != lround(from->level);
+    return strokes >= LEAST_STROKES && moves ? last.first : from->first;
+}
+
+static void add_roll(marker *m, const music_item *i)
+{
+    const midi_way *way = &i->note->way;
+    int from = step_of(way->dynamic), to = step_of(way->last_dynamic);
+    if (way->length <= 0 || from == to)
+        return;
+    add(m, i->begin, MARK_WEDGE, to > from ? 1 : -1, false);
+    add(m, i->end, MARK_STOP, 0, true);
+    add(m, i->end, MARK_DYNAMIC, to, true);
+}
+
+static int by_tick(const void *a, const void *b)
+{
+    const music_mark *x = a, *y = b;
+    if (x->tick != y->tick)
+        return x->tick < y->tick ? -1 : 1;
+    if (x->ends != y->ends)
+        return y->ends - x->ends;
+    return x->kind != y->kind ? (x->kind > y->kind) - (x->kind < y->kind) : (x > y) - (x < y);
+}
+
+int himc_music_marks(const music_item *items, int count, long bar, music_mark *marks)
+{
+    marker m = {.items = items, .count = count, .bar = bar, .marks = marks};
+    int until = -1, mixed = -1; // the first item of a hairpin's last group; of a bar
+    long bar_end = 0;
+    for (group g = group_at(&m, 0); g.first < count; g = group_at(&m, g.end)) {
+        if (g.tick >= bar_end) {
+            bar_end = (g.tick / bar + 1) * bar;
+            mixed = mixed_step(&m, g.first, bar_end);
+        }
+        bool inside = g.first < until, ends = g.first == until;
+        int last = inside || mixed >= 0 ? g.first : hairpin_end(&m, &g);
+        if (ends)
+            add(&m, g.tick, MARK_STOP, 0, true);
+        if (!inside)
+            add(&m, g.tick, MARK_DYNAMIC, mixed >= 0 && !g.roll ? mixed : (int)lround(g.level),
+                false);
+        if (last > g.first) {
+            add(&m, g.tick, MARK_WEDGE, group_at(&m, last).level > g.level ? 1 : -1, false);
+            until = last;
+        }
+        for (int k = g.first; k < g.end; k++) {
+            m.marks[m.made++] = (music_mark){g.tick, false, MARK_WAY, 0, &items[k].note->way};
+            add_roll(&m, &items[k]);
+        }
+    }
+    qsort(marks, (size_t)m.made, sizeof *marks, by_tick);
+    return m.made;
+}

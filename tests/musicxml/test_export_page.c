@@ -1,0 +1,190 @@
+/// Export: the page that MusicXML makes: values, tuplets, beams, graces, hairpins.
+#define _XOPEN_SOURCE 700
+#include "unity.h"
+
+#include "musicxml/export.h"
+#include "musicxml/spell.h"
+#include "plan/score.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static himc_error error;
+static himc_score *score;
+static midi_file notes;
+static himc_text_lines text;
+
+void setUp(void)
+{
+    error.text[0] = '\0';
+}
+
+void tearDown(void)
+{
+    himc_score_free(score);
+    himc_midi_file_free(&notes);
+    free(text.bytes);
+    score = NULL;
+    text = (himc_text_lines){0};
+}
+
+static void write_score(void)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_music_notes(&notes, score, false, &error), error.text);
+    TEST_ASSERT_TRUE(himc_music_write(&text, &notes, "page"));
+}
+
+static void parse(const char *words)
+{
+    score = himc_score_parse(words, "words", NULL, &error);
+    write_score();
+}
+
+static int count_of(const char *what)
+{
+    int count = 0;
+    for (const char *at = text.bytes; (at = strstr(at, what)); at += strlen(what))
+        count++;
+    return count;
+}
+
+// the number behind a tag of a note, else `otherwise`
+static long number_in(const char *note, const char *end, const char *tag, long otherwise)
+{
+    const char *at = strstr(note, tag);
+    return at && at < end ? atol(at + strlen(tag)) : otherwise;
+}
+
+// the length of a note's written value (ticks); 0: a grace
+static double value_of(const char *note, const char *end)
+{
+    static const char *const types[] = {"whole", "half", "quarter", "eighth",
+                                        "16th",  "32nd", "64th",    "128th"};
+    const char *type = strstr(note, "<type>"), *dot = strstr(note, "<dot/>");
+    TEST_ASSERT_TRUE_MESSAGE(type && type < end, note);
+    int i = 0;
+    while (strncmp(type + 6, types[i], strlen(types[i])) != 0)
+        i++;
+    double value = (4.0 * MUSIC_TICKS) / (1 << i) * (dot && dot < end ? 1.5 : 1);
+    return value * (double)number_in(note, end, "<normal-notes>", 1) /
+           (double)number_in(note, end, "<actual-notes>", 1);
+}
+
+// each value is as long as the note, and the first voice's fill each bar
+static void expect_values(const char *path)
+{
+    score = himc_score_load(path, &error);
+    write_score();
+    for (const char *bar = text.bytes; (bar = strstr(bar, "<measure number"));) {
+        const char *next = strstr(bar, "</measure>");
+        double all = 0;
+        for (const char *note = bar; (note = strstr(note, "<note")) && note < next;) {
+            const char *end = strstr(note, "</note>");
+            const char *voice = strstr(note, "<voice>1"), *chord = strstr(note, "<chord/>");
+            long duration = number_in(note, end, "<duration>", 0);
+            const char *whole = strstr(note, "<rest measure");
+            double value = whole && whole < end ? 4.0 * MUSIC_TICKS : value_of(note, end);
+            if (duration > 0)
+                TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-6, value, (double)duration, path);
+            if (duration > 0 && voice && voice < end && !(chord && chord < end))
+                all += value;
+            note = end;
+        }
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-6, 4.0 * MUSIC_TICKS, all, path);
+        bar = next;
+    }
+    tearDown();
+}
+
+static void test_values_are_as_long_as_notes_and_fill_each_bar(void)
+{
+    expect_values("patches/improvisation.txt");
+    expect_values("patches/pieces/kit.txt");
+    expect_values("patches/pieces/grain.txt");
+    expect_values("patches/pieces/rudiments.txt");
+    expect_values("patches/pieces/stations.txt");
+}
+
+static void test_tuplets_have_brackets_and_ratios(void)
+{
+    parse("drum k; tempo 80; stroke 0 right legato f; stroke 0.33333333 left legato f;"
+          "stroke 0.66666667 right legato f; stroke 1 left legato f; stroke 1.2 right legato f;"
+          "stroke 1.4 left legato f; stroke 1.6 right legato f; stroke 1.8 left legato f;"
+          "stroke 2 right legato f; stroke 2.66666667 left legato f;"
+          "stroke 3.33333333 left legato f; stroke 4 right legato f;");
+    TEST_ASSERT_EQUAL(3, count_of("<tuplet type=\"start\""));
+    TEST_ASSERT_EQUAL(3, count_of("<tuplet type=\"stop\""));
+    TEST_ASSERT_EQUAL(6, count_of("<actual-notes>3</actual-notes><normal-notes>2<"));
+    TEST_ASSERT_EQUAL(5, count_of("<actual-notes>5</actual-notes><normal-notes>4<"));
+    TEST_ASSERT_EQUAL(1, count_of("bracket=\"yes\"")); // quarters have no beam
+}
+
+static void test_dots_and_syncopations_are_one_note(void)
+{
+    parse("drum k; stroke 0 right legato f; stroke 0.75 left legato f; stroke 1 right legato f;"
+          "stroke 1.25 left legato f; stroke 1.75 right legato f; stroke 2 left legato f;");
+    TEST_ASSERT_EQUAL(1, count_of("<type>eighth</type><dot/>"));
+    TEST_ASSERT_EQUAL(3, count_of("<type>16th</type>"));
+    TEST_ASSERT_EQUAL(2, count_of("<beam number=\"2\">backward hook"));
+    TEST_ASSERT_EQUAL(1, count_of("<beam number=\"2\">forward hook"));
+    TEST_ASSERT_EQUAL(0, count_of("<tie type"));
+}
+
+static void test_a_flam_is_slashed_and_a_ruff_is_beamed(void)
+{
+    parse("drum k; flam 1 right legato f; drag 2 right legato f; ruff 3 right legato f;");
+    TEST_ASSERT_EQUAL(1, count_of("<grace slash=\"yes\"/>"));
+    TEST_ASSERT_EQUAL(5, count_of("<grace/>"));
+    TEST_ASSERT_EQUAL(4, count_of(">begin</beam>")); // two beams of a drag, and of a ruff
+    TEST_ASSERT_EQUAL(2, count_of(">continue</beam>"));
+    TEST_ASSERT_EQUAL(3, count_of("<slur type=\"start\""));
+}
+
+static void test_a_ramp_of_strokes_is_one_hairpin(void)
+{
+    parse("drum k; stroke 0 right legato p; stroke 0.5 left legato 0.357; stroke 1 right legato mp;"
+          "stroke 1.5 left legato 0.5; stroke 2 right legato mf; stroke 2.5 left legato 0.643;"
+          "stroke 3 right legato f; stroke 4 left legato f; stroke 5 left legato p;"
+          "stroke 6 right legato p;");
+    TEST_ASSERT_EQUAL(1, count_of("<wedge type=\"crescendo\""));
+    TEST_ASSERT_EQUAL(1, count_of("<wedge type=\"stop\""));
+    TEST_ASSERT_EQUAL(3, count_of("<dynamics>")); // p, f, and subito p
+}
+
+// a kit's drums have one dynamic on the page, hands above and feet below
+static void test_a_kit_has_one_mark_and_two_voices(void)
+{
+    parse("setup kit; stroke 0 foot legato f kick; stroke 0 right legato mp hats;"
+          "stroke 1 right legato mp hats; stroke 1 left legato f snare;"
+          "stroke 2 foot legato f kick; stroke 2 right legato mp hats;");
+    TEST_ASSERT_EQUAL(1, count_of("<dynamics>"));
+    TEST_ASSERT_EQUAL(1, count_of("<chord/>"));
+    TEST_ASSERT_EQUAL(2, count_of("<stem>down</stem>"));
+    TEST_ASSERT_EQUAL(4, count_of("<stem>up</stem>"));
+    TEST_ASSERT_EQUAL(3, count_of("<notehead>x</notehead>"));
+    TEST_ASSERT_EQUAL(2, count_of("<display-step>F</display-step><display-octave>4<"));
+}
+
+static void test_a_tempo_on_its_way_is_a_word(void)
+{
+    parse("drum k; tempo 60; tempo 60 120 8 4; stroke 0 right legato f; stroke 20 left legato f;");
+    TEST_ASSERT_EQUAL(1, count_of("<words>accel.</words>"));
+    TEST_ASSERT_EQUAL(0, count_of("<words>rit.</words>"));
+    TEST_ASSERT_TRUE(count_of("<metronome>") <= 3);
+    TEST_ASSERT_TRUE(count_of("<sound tempo") > 6);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_values_are_as_long_as_notes_and_fill_each_bar);
+    RUN_TEST(test_tuplets_have_brackets_and_ratios);
+    RUN_TEST(test_dots_and_syncopations_are_one_note);
+    RUN_TEST(test_a_flam_is_slashed_and_a_ruff_is_beamed);
+    RUN_TEST(test_a_ramp_of_strokes_is_one_hairpin);
+    RUN_TEST(test_a_kit_has_one_mark_and_two_voices);
+    RUN_TEST(test_a_tempo_on_its_way_is_a_word);
+    return UNITY_END();
+}
