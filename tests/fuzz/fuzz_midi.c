@@ -23,7 +23,8 @@ static void check_report(const char *report, const himc_score *score)
         char text[256];
         snprintf(text, sizeof text, "%.*s", (int)(end - line), line);
         require(himc_line_is_clean(text), "a report has clean lines");
-        if ((strstr(text, "not played") || strstr(text, "one stroke")) &&
+        bool note = !strstr(text, "tremolo"); // else one of the strokes of a note that has others
+        if (note && (strstr(text, "not played") || strstr(text, "one stroke")) &&
             sscanf(text, "%d", &count) == 1)
             missing += count;
         const char *as = strstr(text, "played as ");
