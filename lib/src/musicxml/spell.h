@@ -25,7 +25,8 @@ typedef struct music_piece {
     const char *beam[6]; ///< "begin" and so on, from the first; NULL: none
 } music_piece;
 
-#define MUSIC_PIECES_OF(segments) (32 * (segments) + 64) ///< at most
+/// At most: 32 parts of a bar with 7 units each, and what has rough values.
+#define MUSIC_PIECES_OF(segments) (2 * (segments) + 256)
 
 /// The time (ticks) on the grid of notes and tuplets that is meant, if one is near.
 long himc_music_snap(long tick);
