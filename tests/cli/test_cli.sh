@@ -605,6 +605,8 @@ for end in musicxml mid; do
     "$himc" export player.txt -o "player.$end" 2>/dev/null && "$himc" import "player.$end" -o - 2>err >back.txt
     check "test_one_player_comes_back_from_$end" [ "$(head -n 1 err)$(sed -n 's/^stroke.* //p' back.txt | tr -d '\n')" = "3 of 3 notes for timpani drums xylophone are playedlow;xylophone;snare;" ]
 done
+"$himc" render player.musicxml -o player.wav --strokes struck.csv >/dev/null 2>&1
+check test_each_instrument_of_a_player_is_heard [ "$(sed 1d struck.csv | cut -d, -f3 | sort | tr '\n' ' ')" = "low snare xylophone " ]
 "$himc" import player.mid --part drums -o - 2>err >/dev/null
 check test_a_part_is_still_asked_for [ "$(tail -n 1 err)" = "2 notes for other percussion are not asked for: timpani xylophone" ]
 refuses test_export_of_notes_needs_a_score "no SCORE given" export -o x.musicxml

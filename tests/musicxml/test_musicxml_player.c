@@ -164,6 +164,10 @@ static void test_names_of_drums_say_high_and_low(void)
                                   rows[i].name);
         TEST_ASSERT_EQUAL_MESSAGE(rows[i].key, key, rows[i].name);
     }
+    int key;
+    TEST_ASSERT_EQUAL(MIDI_TUBULAR_BELL, himc_music_instrument("Chimes", &key));
+    TEST_ASSERT_EQUAL(MIDI_DRUMS, himc_music_instrument("Wind Chimes", &key));
+    TEST_ASSERT_EQUAL(MIDI_NO_SOUND, key);
     load(HEAD PART("Temple Blocks") BAR(1, FOUR AT(D, 4) AT(F, 4) AT(A, 4) AT(C, 5))
              BAR(2, AT(E, 5)) TAIL);
     static const char *const parts[] = {"low", "second", "third", "fourth", "high"};

@@ -27,18 +27,19 @@ static const struct {
     // what begins as another one comes first
     {"drum timbale|high timbale", MIDI_DRUMS, 65},
     {"low timbale", MIDI_DRUMS, 66},
+    {"wind chime|bar chime|mark tree|bell tree", MIDI_DRUMS, MIDI_NO_SOUND},
     {"röhrenglocke|tubular|glocken$|chimes", MIDI_TUBULAR_BELL, 0},
     {"schellen|tambour de basque|tambourin|tamburin|tamburell", MIDI_DRUMS, 54},
     {"timp|pauk|kettle|timbal", MIDI_TIMPANI, 0},
     {"marimb|mar$|mba$", MIDI_MARIMBA, 0},
-    {"xyl|xilof|silof", MIDI_XYLOPHONE, 0},
+    {"xyl|xil$|xilof|silof", MIDI_XYLOPHONE, 0},
     {"vibraph|vibraf|vib$|vibes", MIDI_VIBRAPHONE, 0},
     {"glockensp|glsp|glock$|jeu de timbres|campanelli|orchestra bells", MIDI_GLOCKENSPIEL, 0},
     {"drum set|drumset|drum kit|drumkit", MIDI_DRUMS, MUSIC_NO_KEY},
     {"side stick|cross stick|rimshot", MIDI_DRUMS, 37},
     {"electric snare", MIDI_DRUMS, 40},
     {"snare|side drum|caisse claire|kleine trommel|kl trommel|kl tr$|military drum|"
-     "militärtrommel|tambour|tamburo|rullante|cassa chiara|s d$|c cl$",
+     "militärtrommel|tambour|tamburo|rullante|cassa chiara|s d$",
      MIDI_DRUMS, 38},
     {"kick", MIDI_DRUMS, 36},
     {"bass drum|grosse caisse|große trommel|grosse trommel|gr trommel|gr tr$|gran cassa|grancassa|"
