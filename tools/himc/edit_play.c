@@ -387,16 +387,16 @@ static bool play_anew(edit_play *play, const char *text, const char *record, him
     return child > 0 || himc_error_set(error, "%s", strerror(errno));
 }
 
-bool edit_play_start(edit_play *play, const char *text, double from, const char *record,
+bool edit_play_start(edit_play *play, const char *text, edit_span changed, const char *record,
                      himc_error *error)
 {
     if (!stop_playing(play, error))
         return false;
     int copy = -1;
-    if (from >= 0 && !record)
-        copy = (int)fmin((from + HEADROOM) / play->apart, COPIES - 1);
+    if (changed.from >= 0 && !record)
+        copy = (int)fmin((changed.from + HEADROOM) / play->apart, COPIES - 1);
     for (bool late = true; copy >= 0; copy--) {
-        if (!play->waits[copy] || (copy > 0 && play->rests[copy] > from))
+        if (!play->waits[copy] || (copy > 0 && play->rests[copy] > changed.strokes))
             continue;
         if (!dismiss_after(play, copy, error) || !ask(play, copy, text, &late, error))
             return false;
