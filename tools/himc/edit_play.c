@@ -4,8 +4,9 @@
 /// pages that change, and waits. After a change the last copy before its first effect forks again,
 /// takes the new strokes in place of the old ones, and plays on; copies after it are dismissed. A
 /// copy whose plan rests on later strokes is not asked; if one refuses the strokes after all, an
-/// earlier one is asked; the first one has not begun to play. If other lines have changed, a new process loads the text. So
-/// the outcome is, bit by bit, that of playing the new text from the start.
+/// earlier one is asked; the first one has not begun to play. If other lines have changed, a new
+/// process loads the text. So the outcome is, bit by bit, that of playing the new text from the
+/// start.
 ///
 /// All processes write whole frames into one pipe, but one at a time: a process that plays looks at
 /// a shared number before each frame and ends, with a last frame, once that is no longer its own.
