@@ -3,6 +3,8 @@
 import base64
 import json
 import os
+import re
+import select
 import shutil
 import signal
 import socket
@@ -49,12 +51,8 @@ class Browser:
             ["chromedriver", "--port=0"],
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            text=True,
         )
-        for line in self.driver.stdout:
-            if "successfully on port" in line:
-                self.url = "http://127.0.0.1:" + line.split("on port")[1].strip(" .\n")
-                break
+        self.url = f"http://127.0.0.1:{self.port()}"
         flags = [
             "--headless=new",
             "--no-sandbox",
@@ -81,6 +79,18 @@ class Browser:
         )
         self.session = "/session/" + answer["sessionId"]
         self.be_patient(SCRIPT)
+
+    def port(self):
+        """Of chromedriver, which may end before, or hang."""
+        end, said = time.time() + PATIENCE, b""
+        while not (found := re.search(rb"successfully on port (\d+)", said)):
+            ready, _, _ = select.select([self.driver.stdout], [], [], max(0, end - time.time()))
+            more = os.read(self.driver.stdout.fileno(), 4096) if ready else b""
+            if not more:
+                stop(self.driver, self.home)
+                raise RuntimeError(f"chromedriver does not start: {said.decode(errors='replace')}")
+            said += more
+        return int(found[1])
 
     def be_patient(self, seconds):
         """How long a script may take."""
@@ -180,6 +190,7 @@ class Firefox(Browser):
         port, end = os.path.join(self.home, "MarionetteActivePort"), time.time() + 120
         while not (os.path.exists(port) and os.path.getsize(port)):
             if self.driver.poll() is not None or time.time() > end:
+                stop(self.driver, self.home)
                 raise RuntimeError("Firefox does not start")
             time.sleep(0.1)
         with open(port) as file:
@@ -191,6 +202,8 @@ class Firefox(Browser):
     def answer(self):
         size = b""
         while (letter := self.stream.read(1)) != b":":
+            if not letter:
+                raise OSError("Firefox has ended")
             size += letter
         return json.loads(self.stream.read(int(size)))
 

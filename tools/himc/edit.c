@@ -62,7 +62,7 @@ static bool save_take(session *s, const char *name, himc_error *error)
     snprintf(s->wanted, sizeof s->wanted, "%s", name);
     char *text = edit_text_played(s->piece.text);
     s->saver = text ? edit_play_new(s->piece.name, &s->piece.take, error) : NULL;
-    bool good = s->saver && edit_play_start(s->saver, text, -1, s->saved, error);
+    bool good = s->saver && edit_play_start(s->saver, text, EDIT_ALL, s->saved, error);
     free(text);
     if (!good)
         stop_saving(s);

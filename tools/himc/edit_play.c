@@ -3,9 +3,10 @@
 /// fork() is the checkpoint: the copy holds the whole state of body, drums and plan, costs only the
 /// pages that change, and waits. After a change the last copy before its first effect forks again,
 /// takes the new strokes in place of the old ones, and plays on; copies after it are dismissed. A
-/// copy refuses strokes on which its plan may already rest, and then an earlier one is asked; the
-/// first one has not begun to play. If other lines have changed, a new process loads the text. So
-/// the outcome is, bit by bit, that of playing the new text from the start.
+/// copy whose plan rests on later strokes is not asked; if one refuses the strokes after all, an
+/// earlier one is asked; the first one has not begun to play. If other lines have changed, a new
+/// process loads the text. So the outcome is, bit by bit, that of playing the new text from the
+/// start.
 ///
 /// All processes write whole frames into one pipe, but one at a time: a process that plays looks at
 /// a shared number before each frame and ends, with a last frame, once that is no longer its own.
@@ -13,6 +14,7 @@
 #include "edit_play.h"
 #include "cli.h"
 #include "edit_player.h"
+#include "performance/research.h"
 #include "plan/score.h"
 
 #include <errno.h>
@@ -42,9 +44,10 @@ struct edit_play {
     atomic_int *turn; // shared: the playing whose process may write
     int frames[2];    // pipe
     int order[COPIES][2];
-    bool waits[COPIES]; // a copy reads this pipe
-    bool plays;         // a process writes
-    double apart;       // of the copies (s)
+    bool waits[COPIES];   // a copy reads this pipe
+    double rests[COPIES]; // until when its plan rests on strokes (s)
+    bool plays;           // a process writes
+    double apart;         // of the copies (s)
     unsigned char *bytes;
     size_t room;
     edit_frame held; // read before it was asked for, if `holds`
@@ -87,6 +90,12 @@ static bool read_all(int from, void *to, size_t size)
     return true;
 }
 
+/// What a frame `copy` holds.
+typedef struct copy_frame {
+    uint32_t copy;
+    double rests;
+} copy_frame;
+
 /// What a waiting copy is told, before the text.
 typedef struct order {
     int turn;      // -1: leave
@@ -124,7 +133,7 @@ static void wait_as_copy(player *p)
 // leaves a copy of this process behind
 static void leave_copy(player *p)
 {
-    uint32_t me = (uint32_t)p->copies;
+    copy_frame me = {(uint32_t)p->copies, himc_performance_rests_to(p->piece.performance)};
     pid_t child = fork();
     if (child > 0)
         wait_as_copy(p);
@@ -268,9 +277,10 @@ static bool read_frame(edit_play *play, edit_frame *frame, himc_error *error)
     if (frame->size && !read_all(play->frames[0], play->bytes, frame->size))
         return lost(error);
     if (!strcmp(frame->kind, "copy")) {
-        uint32_t copy;
-        memcpy(&copy, frame->bytes, sizeof copy);
-        play->waits[copy] = true;
+        copy_frame left;
+        memcpy(&left, frame->bytes, sizeof left);
+        play->waits[left.copy] = true;
+        play->rests[left.copy] = left.rests;
     }
     if (!strcmp(frame->kind, "over") || !strcmp(frame->kind, "fail") ||
         !strcmp(frame->kind, "bye!") || !strcmp(frame->kind, "late"))
@@ -378,16 +388,16 @@ static bool play_anew(edit_play *play, const char *text, const char *record, him
     return child > 0 || himc_error_set(error, "%s", strerror(errno));
 }
 
-bool edit_play_start(edit_play *play, const char *text, double from, const char *record,
+bool edit_play_start(edit_play *play, const char *text, edit_span changed, const char *record,
                      himc_error *error)
 {
     if (!stop_playing(play, error))
         return false;
     int copy = -1;
-    if (from >= 0 && !record)
-        copy = (int)fmin((from + HEADROOM) / play->apart, COPIES - 1);
+    if (changed.from >= 0 && !record)
+        copy = (int)fmin((changed.from + HEADROOM) / play->apart, COPIES - 1);
     for (bool late = true; copy >= 0; copy--) {
-        if (!play->waits[copy])
+        if (!play->waits[copy] || (copy > 0 && play->rests[copy] > changed.strokes))
             continue;
         if (!dismiss_after(play, copy, error) || !ask(play, copy, text, &late, error))
             return false;

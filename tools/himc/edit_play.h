@@ -2,9 +2,12 @@
 #ifndef EDIT_PLAY_H
 #define EDIT_PLAY_H
 
+#include "edit_text.h"
 #include "himc/mocap.h"
 
 #include <stdint.h>
+
+#define EDIT_ALL ((edit_span){-1, -1}) ///< a piece changed everywhere
 
 /// A piece and the processes that play it. Opaque.
 typedef struct edit_play edit_play;
@@ -22,10 +25,10 @@ edit_play *edit_play_new(const char *name, const himc_take_options *options, him
 void edit_play_free(edit_play *play);
 
 /// Plays `text` (a score); what the last call had begun is given up. The text differs from the last
-/// one in strokes, nudges and pushes alone, none before `from` (s from beat 0); if it may differ
-/// elsewhere, `from` is -1. `record` is a file that gets the motion as a take, or NULL. False with
+/// one in strokes, nudges and pushes alone, from `changed` on (s from beat 0), or everywhere.
+/// `record` is a file that gets the motion as a take, or NULL. False with
 /// the reason if the playing is lost.
-bool edit_play_start(edit_play *play, const char *text, double from, const char *record,
+bool edit_play_start(edit_play *play, const char *text, edit_span changed, const char *record,
                      himc_error *error);
 /// A descriptor that can be read when there is a frame.
 int edit_play_descriptor(const edit_play *play);

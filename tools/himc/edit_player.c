@@ -55,14 +55,15 @@ void edit_player_cell(edit_player *p)
     fflush(p->to);
 }
 
-static bool load(edit_player *p, const char *text, const char *record, himc_error *error)
+// `heard`: it will play
+static bool load(edit_player *p, const char *text, bool heard, himc_error *error)
 {
     himc_performance_config config = himc_performance_default();
-    himc_score *score = himc_score_parse(text, p->name, NULL, error);
-    bool drums = score && (p->spare || cli_first_drum(score));
+    himc_score *score = p->spare ? NULL : himc_score_parse(text, p->name, NULL, error);
+    bool drums = p->spare || (score && cli_first_drum(score));
     himc_drum *made;
+    p->performance = p->spare || score ? himc_performance_new(&config, error) : NULL;
     himc_score_free(score);
-    p->performance = score ? himc_performance_new(&config, error) : NULL;
     if (!p->performance)
         return false;
     for (int i = 0; p->spare && (made = himc_performance_drum(p->spare, i)); i++)
@@ -71,17 +72,17 @@ static bool load(edit_player *p, const char *text, const char *record, himc_erro
     himc_performance_make_drums(p->performance, true);
     himc_performance_take_options(p->performance, p->options);
     return (drums || cli_add_drum(p->performance, EDIT_RATE, error)) &&
-           cli_tell(p->performance, CLI_LISTENER, NULL, error) &&
-           himc_performance_load_text(p->performance, text, p->name, error) &&
-           cli_tell(p->performance, "loop 0", NULL, error) &&
-           (!record || cli_tell(p->performance, "record", record, error));
+           (!heard || cli_tell(p->performance, CLI_LISTENER, NULL, error)) &&
+           (heard ? himc_performance_load_text
+                  : himc_performance_load_unheard)(p->performance, text, p->name, error) &&
+           cli_tell(p->performance, "loop 0", NULL, error);
 }
 
 bool edit_player_exchange(edit_player *p, const char *text, bool *late, himc_error *error)
 {
     double time = (double)p->ending.samples / EDIT_RATE;
     edit_player fresh = {.name = p->name, .options = p->options, .spare = p->spare};
-    bool good = load(&fresh, text, NULL, error);
+    bool good = load(&fresh, text, false, error);
     *late = good && !himc_performance_exchange_strokes(p->performance, fresh.performance);
     himc_performance_free(fresh.performance);
     if (good && !*late)
@@ -93,7 +94,8 @@ bool edit_player_begin(edit_player *p, const char *text, const char *record, him
 {
     double start = 0;
     edit_player spare = *p;
-    if ((!record && !load(&spare, text, NULL, error)) || !load(p, text, record, error))
+    if ((!record && !load(&spare, text, false, error)) || !load(p, text, true, error) ||
+        (record && !cli_tell(p->performance, "record", record, error)))
         return false;
     p->spare = record ? NULL : spare.performance;
     edit_player_put(p, "from", &start, sizeof start);

@@ -228,10 +228,12 @@ static bool replay(edit_session *s, bool all, himc_error *error)
 {
     char *text = edit_text_played(s->text);
     himc_score *score = parse(s, s->text, error);
-    double from = all ? -1 : edit_text_changed_from(s->text);
-    if (from > 0 && score && !has_take(score))
-        from = himc_score_seconds(score->tempi, score->tempo_count, from);
-    bool good = text && edit_play_start(s->play, text, from, NULL, error);
+    edit_span changed = edit_text_changed(s->text);
+    if (score && !has_take(score)) {
+        changed.from = himc_score_seconds(score->tempi, score->tempo_count, changed.from);
+        changed.strokes = himc_score_seconds(score->tempi, score->tempo_count, changed.strokes);
+    }
+    bool good = text && edit_play_start(s->play, text, all ? EDIT_ALL : changed, NULL, error);
     s->unproved = good;
     himc_score_free(score);
     free(text);

@@ -26,10 +26,10 @@ struct edit_text {
     int count, room;
     change *changes; ///< (made)
     int made, done, changes_room;
-    int before;  ///< `done` before the call that is not settled yet; else `done`
-    bool sets;   ///< that call was edit_text_set; what redo can make again stands after its change
-    bool adds;   ///< and it has added its statement
-    double from; ///< of the last call
+    int before; ///< `done` before the call that is not settled yet; else `done`
+    bool sets;  ///< that call was edit_text_set; what redo can make again stands after its change
+    bool adds;  ///< and it has added its statement
+    edit_span changed; ///< by the last call
 };
 
 static bool grow(void *array, int count, int *room, size_t size)
@@ -212,17 +212,27 @@ static bool may_change(const char *bytes, himc_error *error)
 }
 
 // where a statement begins to act, with its grace notes
-static double acts_from(const char *bytes)
+static double acts_from(const char *bytes, bool *push)
 {
     himc_command c;
     himc_error unused;
     double beat;
+    *push = false;
     if (!command_of(bytes, &c, &beat, &unused))
         return HUGE_VAL;
-    return c.id == HIMC_COMMAND_PUSH    ? beat
+    *push = c.id == HIMC_COMMAND_PUSH;
+    return *push                        ? beat
            : c.id == HIMC_COMMAND_NUDGE ? c.atom[1].number - c.atom[2].number
            : c.stroke.ornament == HIMC_PLAIN && c.stroke.early == 0 ? c.stroke.beat
                                                                     : fmax(c.stroke.beat - 1, 0);
+}
+
+static void widen(edit_span *changed, const char *bytes)
+{
+    bool push;
+    double from = acts_from(bytes, &push);
+    changed->from = fmin(changed->from, from);
+    changed->strokes = fmin(changed->strokes, push ? HUGE_VAL : from);
 }
 
 // the place of the change at `changes[i]` gets its bytes, and that gets those of the place
@@ -230,7 +240,8 @@ static void exchange(edit_text *t, int i)
 {
     change *c = &t->changes[i];
     char *now = t->at[c->index];
-    t->from = fmin(t->from, fmin(acts_from(now), acts_from(c->bytes)));
+    widen(&t->changed, now);
+    widen(&t->changed, c->bytes);
     t->at[c->index] = c->bytes;
     c->bytes = now;
 }
@@ -238,7 +249,7 @@ static void exchange(edit_text *t, int i)
 // takes changes back, or makes them again, until so many are made
 static void go_to(edit_text *t, int done)
 {
-    t->from = HUGE_VAL;
+    t->changed = (edit_span){HUGE_VAL, HUGE_VAL};
     while (t->done > done)
         exchange(t, --t->done);
     while (t->done < done)
@@ -392,9 +403,9 @@ int edit_text_changes(const edit_text *t)
     return t->done;
 }
 
-double edit_text_changed_from(const edit_text *t)
+edit_span edit_text_changed(const edit_text *t)
 {
-    return t->from;
+    return t->changed;
 }
 
 // where the stroke lands (m), or, of a spot with a name, on heads of the radii 0 and 1 m

@@ -10,6 +10,12 @@
 /// Opaque.
 typedef struct edit_text edit_text;
 
+/// Where a change begins.
+typedef struct edit_span {
+    double from;    ///< anything of it; below 0: everywhere
+    double strokes; ///< all of it but pushes, on which no plan rests
+} edit_span;
+
 /// Splits a text (copied). NULL without memory.
 edit_text *edit_text_new(const char *text, himc_error *error);
 void edit_text_free(edit_text *text);
@@ -39,8 +45,8 @@ bool edit_text_is_open(const edit_text *text);
 bool edit_text_settle(edit_text *text, bool keep);
 /// Changes that undo can take back.
 int edit_text_changes(const edit_text *text);
-/// What the last of these calls has changed begins here: a beat, or a time of the take (s).
-double edit_text_changed_from(const edit_text *text);
+/// Where what the last of these calls has changed begins: beats, or times of the take (s).
+edit_span edit_text_changed(const edit_text *text);
 
 /// Prints, as JSON fields: how many changes can be undone (`undo`) and made again (`redo`),
 /// `count`, and the list `statements` of those that can be edited.

@@ -46,17 +46,17 @@ void edit_play_free(edit_play *play)
         play->made = false;
 }
 
-bool edit_play_start(edit_play *play, const char *text, double from, const char *record,
+bool edit_play_start(edit_play *play, const char *text, edit_span changed, const char *record,
                      himc_error *error)
 {
     size_t length = strlen(text);
-    char *order = malloc(sizeof from + length);
+    char *order = malloc(sizeof changed + length);
     (void)play, (void)record;
     if (!order)
         return himc_error_set(error, "out of memory");
-    memcpy(order, &from, sizeof from);
-    memcpy(order + sizeof from, text, length);
-    edit_session_put("play", order, sizeof from + length);
+    memcpy(order, &changed, sizeof changed);
+    memcpy(order + sizeof changed, text, length);
+    edit_session_put("play", order, sizeof changed + length);
     free(order);
     return true;
 }

@@ -40,9 +40,9 @@ size_t PAGE_CALL(page_frame_size)(void);
 bool PAGE_CALL(page_is_over)(void);
 
 // A piece under edit (edit.c). One instance of the module has its text: lines in and frames out, on
-// the standard output, are those of `himc edit` (docs/viewer.md); a frame `play` is for the page: a
-// time (f64) as edit_play_start() has it, then the text to be played. Another instance plays it: a
-// copy of its memory is a copy of the whole state.
+// the standard output, are those of `himc edit` (docs/viewer.md); a frame `play` is for the page:
+// two times (f64) as edit_play_start() has them, then the text to be played. Another instance plays
+// it: a copy of its memory is a copy of the whole state.
 
 /// The piece in the file that is the input, as it was left. False with the reason.
 bool PAGE_CALL(page_edit_open)(void);

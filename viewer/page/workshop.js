@@ -13,6 +13,7 @@ const WORD = 4,
     ROOM = 120 << 20, // of what the copies differ in (bytes), and less ...
     ALL = 190 << 20, // ... where a memory and its last copy are larger; chosen: 300 MB with the page
     FOCUS = 4, // (s) copies get rarer from here on
+    HEADROOM = 2, // (s) a piece may begin so much later than its first beat
     TEXT = "himc-text"; // PAGE_TEXT of viewer/engine/engine.h
 
 // the memory of an instance as it was
@@ -128,7 +129,7 @@ class Workshop {
     // what the text's instance says; orders to play are for here
     hear(chunk) {
         const view = new DataView(chunk.buffer);
-        if (text.decode(chunk.subarray(0, 4)) === "play") this.order = { from: view.getFloat64(8, true), text: chunk.slice(16) };
+        if (text.decode(chunk.subarray(0, 4)) === "play") this.order = { from: view.getFloat64(8, true), strokes: view.getFloat64(16, true), text: chunk.slice(24) };
         else this.tell(chunk);
     }
 
@@ -155,11 +156,12 @@ class Workshop {
 
     // plays the text that was ordered; from a copy, if only strokes have changed
     begin() {
-        const { from, text } = this.order,
+        const { from, strokes, text } = this.order,
             { list } = this.copies ?? { list: [] };
         ((this.order = null), (this.played = text), (this.focus = Math.max(0, from)));
         for (; from >= 0 && list.length; this.copies.drop()) {
-            if (list[list.length - 1].rests > from && list.length > 1) continue;
+            const { at, rests } = list[list.length - 1];
+            if ((rests > strokes || at > from + HEADROOM) && list.length > 1) continue;
             this.copies.restore();
             this.player.files.bytes.set(TEXT, text);
             const done = this.player.calls.page_piece_exchange();

@@ -66,6 +66,7 @@ typedef struct score_job {
     int present, drums; ///< drums of the performance, and all
     himc_score *score;
     bool unknown; ///< it names drums that only the host may have: it has not been tried
+    bool unheard; ///< its listener and its changes of heads are left out
     // how far it is installed
     int tries;
     score_part part;
@@ -239,7 +240,7 @@ static bool rehearse_line(score_job *j, const himc_score_line *line, himc_error 
 /// Reads the changes of heads that the score has for drums as the trial has left them.
 static bool read_heads(score_job *j, himc_error *error)
 {
-    for (int i = 0; i < j->score->change_count; i++) {
+    for (int i = 0; !j->unheard && i < j->score->change_count; i++) {
         const himc_score_line *line = &j->score->changes[i];
         score_drum *d = line->drum[0] ? find_drum(j, line->drum) : NULL;
         if (d && !d->heads)
@@ -327,7 +328,8 @@ static bool prepare(himc_job *job, himc_error *error)
     if (j->part == CHANGES) { // the heads are computed before they are needed
         bool good = read_heads(j, error);
         for (int k = 0; k < j->drums && good; k++)
-            good = !j->drum[k].heads || himc_drum_heads_prepare(j->drum[k].heads, error);
+            good =
+                !j->drum[k].heads || j->unheard || himc_drum_heads_prepare(j->drum[k].heads, error);
         return good;
     }
     himc_score_free(j->score);
@@ -395,6 +397,8 @@ static himc_job_state run_line(score_job *j, const himc_score_line *line, himc_e
         j->done = j->line;
         j->line = NULL;
         good = state == HIMC_JOB_DONE;
+    } else if (j->unheard && c->id == HIMC_COMMAND_LISTENER) {
+        return HIMC_JOB_DONE;
     } else if (p->runner.takes_long(p, c)) {
         j->line = p->runner.job(p, c, error);
         if (j->line)
@@ -634,6 +638,15 @@ bool himc_performance_load_text(himc_performance *p, const char *text, const cha
                                 himc_error *error)
 {
     return himc_job_carry_out(himc_performance_score_job(p, text, name, NULL, error), error);
+}
+
+bool himc_performance_load_unheard(himc_performance *p, const char *text, const char *name,
+                                   himc_error *error)
+{
+    himc_job *job = himc_performance_score_job(p, text, name, NULL, error);
+    if (job)
+        ((score_job *)job)->unheard = true;
+    return himc_job_carry_out(job, error);
 }
 
 double himc_performance_rests_to(const himc_performance *p)

@@ -25,6 +25,11 @@ const himc_skeleton *himc_performance_plant(const himc_performance *performance)
 bool himc_performance_load_text(himc_performance *performance, const char *text, const char *name,
                                 himc_error *error);
 
+/// The same for a performance that will not play (himc_performance_exchange_strokes), without its
+/// listener and its changes of heads at beats.
+bool himc_performance_load_unheard(himc_performance *performance, const char *text,
+                                   const char *name, himc_error *error);
+
 /// While a score or its take plays: takes the strokes, or the nudges, and the pushes of `other` in
 /// place of its own, as if they had been there from the start. `other` has loaded a score that is
 /// the same in all other lines, and has not played; it is to be freed. False, and nothing changed,
