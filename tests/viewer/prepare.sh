@@ -32,4 +32,4 @@ mkdir -p "$made" "$HIMC_MADE"
         rm -f "$made"/*
         prepare "$made"
     fi
-) 9>"$made.lock" && ln -f "$made"/* "$HIMC_MADE" || exit 1
+) 9>"$made.lock" && cp -p "$made"/* "$HIMC_MADE" || exit 1
