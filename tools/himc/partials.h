@@ -51,8 +51,8 @@ bool partials_find(const partials_sound *sound, double highest, partials_list *o
 
 /// How likely pairs of partials about `frequency`, `apart` from each other, that decay alike, are:
 /// ln of it, for each of `shifts` (Hz) and `decays` (1/s), to out[shift * decays + decay]; by the
-/// energy that least squares leave in a narrow band, late, in a `room` of that T60 (s). False with
-/// the reason, without memory.
+/// energy that least squares leave in a narrow band, late, in a `room` of that T60 (s); 0: early.
+/// False with the reason, without memory.
 bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
                      const double *shift, int shifts, const double *decay, int decays, double *out,
                      himc_error *error);
