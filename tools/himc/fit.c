@@ -123,7 +123,8 @@ static bool write_list(fit *f, const char *path, himc_error *error)
     himc_state_word(&line, whole);
     free(whole);
     snprintf(text, sizeof text,
-             "comment made by himc fit;\n%s;\ntempo 60;\nstroke 1 right legato mf;\n", line.text);
+             "comment made by himc fit;\n%s;\n%stempo 60;\nstroke 1 right legato mf;\n", line.text,
+             f->found.room > 0 ? "room 0;\n" : ""); // it has the recording's
     return cli_draft(&f->file, path, put, text, error);
 }
 
@@ -131,13 +132,18 @@ static bool hear_again(fit *f, himc_error *error)
 {
     const fit_drum *d = &f->drum;
     double rate = f->sound.rate < 16000 ? 48000 : f->sound.rate;
-    himc_drum *drum = f->list ? fit_list_drum(&f->second_file, rate, error)
-                              : fit_drum_make(d, d->mallet, rate, error);
-    double x = f->list ? 0 : -FIT_PLACE * RADIUS_PER_INCH * d->inches;
-    bool good =
-        drum && fit_hear(drum, x, fit_speeds[f->list ? 2 : d->dynamic], SECONDS, &f->again, error);
+    if (f->list) {
+        if (!fit_list_hear(&f->second_file, rate, &f->again, error) ||
+            !partials_find(&f->again, FIT_LIST_HIGHEST, &f->made, error))
+            return false;
+        partials_lines(&f->again, &f->made);
+        return true;
+    }
+    himc_drum *drum = fit_drum_make(d, d->mallet, rate, error);
+    double x = -FIT_PLACE * RADIUS_PER_INCH * d->inches;
+    bool good = drum && fit_hear(drum, x, fit_speeds[d->dynamic], SECONDS, &f->again, error);
     himc_drum_release(drum);
-    return good && partials_find(&f->again, f->list ? FIT_LIST_HIGHEST : HIGHEST, &f->made, error);
+    return good && partials_find(&f->again, HIGHEST, &f->made, error);
 }
 
 // a drum; or a list, where none is like it and none is asked for
@@ -176,6 +182,8 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
     name_drum(out, f->name, sizeof f->name);
     if (!f->list && !find_drum(f, kind, error))
         return false;
+    if (f->list)
+        partials_lines(&f->sound, &f->found);
     if (!(f->list ? write_list : write_drum)(f, out, error) || !hear_again(f, error) ||
         !cli_file_keep(&f->second_file, error) || !cli_file_keep(&f->file, error))
         return false;
@@ -216,8 +224,10 @@ static int rows(const fit *f, int out[ROWS])
         bool member = false;
         for (int k = 0; k < 2 * FIT_ORDERS; k++)
             member = member || (!f->list && f->drum.of[k] == i);
+        bool doubtful = f->list && !p->line && p->frequency < PARTIALS_LINES;
         bool alike = q && fabs(q->frequency / p->frequency - 1) < ALIKE;
-        if (member || (p->clear > SURE && p->frequency_error < STEADY && (alike || f->list)))
+        if (member ||
+            (p->clear > SURE && p->frequency_error < STEADY && (alike || f->list) && !doubtful))
             out[count++] = i;
     }
     return count;

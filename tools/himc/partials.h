@@ -20,6 +20,7 @@ typedef struct partial {
     double level;           ///< at the onset, of all channels (dB re the sound's peak)
     double energy;          ///< 10 lg of what it has over all time (dB)
     double clear; ///< by which that, or its level after 1 s, stands out of its neighbours' (dB)
+    bool line;    ///< it falls evenly: partials_lines
 } partial;
 
 /// What was heard, each channel of each stroke from its onset on.
@@ -48,6 +49,10 @@ void partials_sound_free(partials_sound *sound);
 /// All partials up to `highest` (Hz). False with the reason, without memory.
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
+
+#define PARTIALS_LINES 1200.0 ///< (Hz) up to which lines are found
+/// Puts lines that fall evenly in the place of the poles about them, and drops the hall's.
+void partials_lines(const partials_sound *sound, partials_list *list);
 
 /// How likely pairs of partials about `frequency`, `apart` from each other, that decay alike, are:
 /// ln of it, for each of `shifts` (Hz) and `decays` (1/s), to out[shift * decays + decay]; by the
