@@ -24,11 +24,12 @@
 #define UNKNOWN (-170.0)       // (dB) digital silence before the stroke, or nothing
 #define LEAST_SCORE 10.0       // of a drum (dB) ...
 #define MOST_APART 5.5         // ... and of its blow's spectrum (dB); chosen: bars have 8 and more
-#define UNLIKE 0.1             // (dB) two mallets differ by this ...
-#define UNLIKE_PART 0.15       // ... and per distance, or they are not told apart; chosen
-#define ALIKE 0.003            // per frequency: so near it is
-#define SURE 6.0               // (dB) clear of the others
-#define STEADY 0.2             // (Hz)
+#define LAWFUL 1.5       // ... as a membrane's; chosen: ours have .5 and less, recorded 2.9 up
+#define UNLIKE 0.1       // (dB) two mallets differ by this ...
+#define UNLIKE_PART 0.15 // ... and per distance, or they are not told apart; chosen
+#define ALIKE 0.003      // per frequency: so near it is
+#define SURE 6.0         // (dB) clear of the others
+#define STEADY 0.2       // (Hz)
 
 enum { OUT, INSTRUMENT, JSON };
 
@@ -44,8 +45,9 @@ typedef struct fit {
     partials_list found, made;
     fit_spectrum spectrum;
     fit_drum drum, second;
-    bool two; // the second sounds as well
-    bool list;
+    bool two;     // the second sounds as well
+    bool timpano; // it is known which drum it is
+    bool list;    // what is made is a list of modes
     char name[HIMC_NAME_SIZE];
     char head[HIMC_PATH_SIZE], modes[HIMC_PATH_SIZE]; // files beside the drum's; one is written
     cli_file file, second_file;                       // the drum's, and that one
@@ -106,7 +108,8 @@ static bool write_list(fit *f, const char *path, himc_error *error)
 {
     char text[3 * HIMC_PATH_SIZE];
     himc_state_line line = himc_state_begin("instrument");
-    if (!fit_list(&f->sound, &f->found, f->modes, &f->second_file, error))
+    double radius = f->timpano ? RADIUS_PER_INCH * f->drum.inches : FIT_LIST_RADIUS;
+    if (!fit_list(&f->sound, &f->found, radius, f->modes, &f->second_file, error))
         return false;
     // it is not there yet: its draft is, whose name goes on
     const cli_file *file = &f->second_file;
@@ -146,7 +149,8 @@ static bool hear_again(fit *f, himc_error *error)
     return good && partials_find(&f->again, HIGHEST, &f->made, error);
 }
 
-// a drum; or a list, where none is like it and none is asked for
+// A drum; or, where none is asked for, a list: if none is like it, and if one is but has other
+// losses or radiates otherwise than a membrane's laws say.
 static bool find_drum(fit *f, const char *kind, himc_error *error)
 {
     fit_drum choice[FIT_CHOICES];
@@ -155,9 +159,11 @@ static bool find_drum(fit *f, const char *kind, himc_error *error)
                     : 0;
     if (count == 0 || !fit_drum_strike(&f->sound, choice, count, &f->drum, error))
         return false;
-    if (kind || (f->drum.score > LEAST_SCORE && f->drum.distance < MOST_APART))
-        return fit_drum_second(&f->drum, &f->spectrum, &f->second, &f->two, error);
-    return f->list = partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
+    f->timpano = kind || (f->drum.score > LEAST_SCORE && f->drum.distance < MOST_APART);
+    f->list = !f->timpano || (!kind && f->drum.distance > LAWFUL);
+    if (f->timpano && !fit_drum_second(&f->drum, &f->spectrum, &f->second, &f->two, error))
+        return false;
+    return !f->list || partials_find(&f->sound, FIT_LIST_HIGHEST, &f->found, error);
 }
 
 static bool work(fit *f, const cli_arguments *a, himc_error *error)
@@ -188,8 +194,10 @@ static bool work(fit *f, const cli_arguments *a, himc_error *error)
         !cli_file_keep(&f->second_file, error) || !cli_file_keep(&f->file, error))
         return false;
     if (f->list && !kind)
-        cli_say(
-            "note: no timpano found: a list of modes (--instrument timpano makes the nearest)\n");
+        cli_say(f->timpano ? "note: no membrane sounds so: a list of modes (--instrument timpano "
+                             "makes the nearest)\n"
+                           : "note: no timpano found: a list of modes (--instrument timpano makes "
+                             "the nearest)\n");
     return true;
 }
 
@@ -270,9 +278,14 @@ static void report(const fit *f, bool json)
             louder[pairs++] = q->level - p->level;
     }
     qsort(louder, (size_t)pairs, sizeof *louder, himc_order_doubles);
-    printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n", f->list ? "modes" : "timpano");
-    if (!f->list)
+    printf(json ? "{\"instrument\": \"%s\", " : "instrument  %s\n",
+           f->timpano ? "timpano" : "modes");
+    if (f->timpano)
         report_drum(f, json);
+    printf(json ? "\"made\": \"%s\", " : "made        as %s\n",
+           f->list ? json ? "modes" : "a list of modes"
+           : json  ? "membrane"
+                   : "a membrane");
     if (f->sound.noise > UNKNOWN)
         printf(json ? "\"noise_db\": %.1f, " : "noise       %.0f dB\n", f->sound.noise);
     else

@@ -12,7 +12,6 @@
 #include <string.h>
 
 #define MODES 160     // the strongest; chosen: of halls' recordings a third of all poles
-#define RADIUS 0.1    // (m) of the struck disc, chosen
 #define MASS 0.05     // (kg) chosen
 #define PRESSURE 1e-4 // of the loudest mode (Pa s^2/m); as of the lists of lists.c
 #define ROUNDS 3
@@ -56,7 +55,7 @@ bool fit_list_hear(const cli_file *file, double rate, partials_sound *out, himc_
     return good;
 }
 
-static bool write(const list *l, const char *path, cli_file *file, himc_error *error)
+static bool write(const list *l, double radius, const char *path, cli_file *file, himc_error *error)
 {
     double loudest = 0, strongest = -INFINITY, pitch = 0;
     cli_file_drop(file);
@@ -69,7 +68,7 @@ static bool write(const list *l, const char *path, cli_file *file, himc_error *e
     }
     fprintf(file->stream,
             "# made by himc fit\npitch %.6g\nmallet 1e9 1.5 0.03\nsurface struck disc %g\n", pitch,
-            RADIUS);
+            radius);
     for (int i = 0; i < l->count; i++)
         fprintf(file->stream, "pressure %.4g\nmode %.7g %.4g %g 1 1\n",
                 fmax(1e-12, PRESSURE * l->pressure[i] / loudest), l->of[i]->frequency,
@@ -140,16 +139,16 @@ static bool correct(list *l, const cli_file *file, double rate, himc_error *erro
     return good;
 }
 
-bool fit_list(const partials_sound *sound, const partials_list *found, const char *path,
-              cli_file *file, himc_error *error)
+bool fit_list(const partials_sound *sound, const partials_list *found, double radius,
+              const char *path, cli_file *file, himc_error *error)
 {
     list l = {.count = 0};
     choose(found, &l);
     if (l.count == 0)
         return himc_error_set(error,
                               "no partial is clear of the noise, expected a sound that rings");
-    bool good = write(&l, path, file, error);
+    bool good = write(&l, radius, path, file, error);
     for (int round = 0; good && round < ROUNDS; round++)
-        good = correct(&l, file, sound->rate, error) && write(&l, path, file, error);
+        good = correct(&l, file, sound->rate, error) && write(&l, radius, path, file, error);
     return good;
 }
