@@ -1,7 +1,7 @@
 /// fit.c: `himc fit`: a drum from recorded strokes, as commands that make it.
 ///
 /// partials.c finds what sounds, fit_drum.c the timpano that sounds so, fit_strike.c its mallet;
-/// what is no timpano becomes a list of modes (fit_list.c). The drum made is struck and its
+/// what no membrane sounds like becomes a list of modes (fit_list.c, partials_lines.c). The drum made is struck and its
 /// partials are set beside those found.
 #include "cli.h"
 #include "fit_drum.h"
@@ -35,7 +35,8 @@ enum { OUT, INSTRUMENT, JSON };
 
 static const cli_option options[] = {
     {"output", 'o', "DRUM.txt", "the commands, a score; DRUM-head.txt is the same for [membrane~]"},
-    {"instrument", 0, "KIND", "timpano, or modes: a list of modes; else what the partials say"},
+    {"instrument", 0, "KIND",
+     "timpano: a membrane, or modes: a list; else what sounds as recorded"},
     {"json", 0, NULL, "the report as a JSON object"},
     {0},
 };
@@ -331,10 +332,12 @@ const cli_call cli_fit = {
     "makes a drum of recorded strokes",
     "Each RECORDING is one stroke on the same instrument: WAV, FLAC, OGG and what else libsndfile\n"
     "reads, up to 300 s at 8000 Hz or more, all at one rate, with 32 channels together, without\n"
-    "clipping; from the onset .5 s or more, better 4 s, the first 20 s are used. The report sets\n"
-    "the partials found, with their errors, beside those of the drum made. A timpano becomes\n"
-    "commands (size, tuning, losses, mallet), anything else a list of modes, DRUM-modes.txt, which\n"
-    "DRUM.txt names by its whole path.",
+    "clipping; from the onset .5 s or more, better 4 s, the first 20 s are used. A timpano becomes\n"
+    "commands (size, tuning, losses, mallet) where a membrane sounds as recorded, else, as any other\n"
+    "instrument, a list of modes, DRUM-modes.txt, which DRUM.txt names by its whole path; a list has\n"
+    "the recording's hall. The report sets each partial found with certainty, with its errors,\n"
+    "beside that of the drum made: Hz, T60 (s), level at the onset (dB re the strongest).\n"
+    "What cannot be used is refused in one line: silence, noise, a second stroke, clipping.",
     options,
     run,
 };
