@@ -1,8 +1,8 @@
 /// fit.c: `himc fit`: a drum from recorded strokes, as commands that make it.
 ///
 /// partials.c finds what sounds, fit_drum.c the timpano that sounds so, fit_strike.c its mallet;
-/// what no membrane sounds like becomes a list of modes (fit_list.c, partials_lines.c). The drum made is struck and its
-/// partials are set beside those found.
+/// what no membrane sounds like becomes a list of modes (fit_list.c, partials_lines.c). What is
+/// made is struck and its partials are set beside those found.
 #include "cli.h"
 #include "fit_drum.h"
 #include "fit_list.h"
