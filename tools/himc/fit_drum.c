@@ -49,14 +49,19 @@ static const struct {
 
 #define USUAL_WITHIN 0.35 // chosen
 #define LONGER 1.3        // a pair rings longer than the room by this, or it is not used
-#define PAIRS (FIT_ORDERS + 4)
+#define RINGING 8         // (1,1) .. (8,1); early, the last two are among others as loud
+#define PAIRS (RINGING + 4)
 #define FINE 40            // tunings tried either way ...
-#define FINE_STEP 0.0001   // ... per frequency
-#define TUNED_WITHIN 0.001 // by `refine`
-#define SUREST 0.05        // (ln) of a decay; chosen: beats of a pair that stay unresolved
+#define EARLY_STEP 0.00025 // ... per frequency, coarsely ...
+#define FINE_STEP 0.0001   // ... and finely
+#define TUNED_WITHIN 0.002 // by one pair in a room that outlasts it; chosen, as in our room
+#define STRANGE 0.05       // part of pairs that tell something else; chosen
+#define SUREST 0.05        // (ln) of a decay; chosen: beats of a pair that stay unresolved ...
+#define HELD 1.0           // ... and, in a room that outlasts it, so much more
 #define DECAYS_TRIED 49
-#define DECAY_STEP 0.05 // (ln)
-#define LOSSES_MOST 3.0 // in units of the usual ones
+#define TRIED_MOST (2 * FINE + 1) // of tunings and decays
+#define DECAY_STEP 0.05           // (ln)
+#define LOSSES_MOST 3.0           // in units of the usual ones
 #define LOSSES_STEP 0.025
 
 // member `k` of the pairs (m,1), as `of` counts them; a head of any size has it among its modes
@@ -183,8 +188,7 @@ typedef struct ringing {
     double frequency, apart, air, load, due;
 } ringing;
 
-static int find_ringing(const partials_list *partials, const fit_drum *d, ringing out[PAIRS],
-                        himc_error *error)
+static int find_ringing(double room, const fit_drum *d, ringing out[PAIRS], himc_error *error)
 {
     fit_mode none[FIT_MODES], one[FIT_MODES];
     fit_drum bare = *d, lossy = *d;
@@ -195,57 +199,74 @@ static int find_ringing(const partials_list *partials, const fit_drum *d, ringin
     if (count == 0 || fit_drum_modes(&lossy, one, error) == 0)
         return -1;
     for (int n = 1; n <= 2; n++)
-        for (int m = 1; m <= (n == 1 ? FIT_ORDERS : 4); m++) {
+        for (int m = 1; m <= (n == 2 ? 4 : room > 0 ? RINGING : FIT_ORDERS); m++) {
             ringing r;
             r.air = pair_of(none, count, m, n, &r.frequency, &r.apart);
             r.load = pair_of(one, count, m, n, &r.frequency, &r.apart) - r.air;
             r.due = r.air + r.load * (FIT_USUAL_CONSTANT +
                                       FIT_USUAL_SQUARE * pow(2 * HIMC_PI * r.frequency, 2));
-            if (r.air > 0 && log(1000) / r.due > LONGER * partials->room)
+            if (r.air > 0 && log(1000) / r.due > LONGER * room)
                 out[kept++] = r;
         }
     return kept;
 }
 
-// The tuning at which the pairs that outlast the room are likeliest, together; where they say
-// nothing it stays.
-static bool find_tuning(const partials_sound *sound, const partials_list *partials, fit_drum *d,
-                        himc_error *error)
+// as likely, of a number known within so many steps at best, unless it is another partial's
+static void blur(double *likely, int count, double steps)
+{
+    double sharp[TRIED_MOST], most = -INFINITY, all = 0;
+    for (int k = 0; k < count; k++)
+        most = fmax(most, likely[k]);
+    for (int k = 0; k < count; k++)
+        all += sharp[k] = exp(likely[k] - most);
+    for (int k = 0; k < count; k++) {
+        double sum = 0, weights = 0;
+        for (int i = 0; i < count; i++) {
+            double w = exp(-0.5 * pow((i - k) / steps, 2));
+            sum += w * sharp[i];
+            weights += w;
+        }
+        likely[k] = log((1 - STRANGE) * sum / weights + STRANGE * all / count);
+    }
+}
+
+// adds how likely tunings `step` apart are by all pairs that outlast a room, late; room 0: by all
+// pairs, early
+static bool add_tunings(const partials_sound *sound, double room, double step, const fit_drum *d,
+                        double sum[2 * FINE + 1], himc_error *error)
 {
     ringing pair[PAIRS];
-    double likely[2 * FINE + 1], sum[2 * FINE + 1], shift[2 * FINE + 1];
-    int count = find_ringing(partials, d, pair, error), best = FINE;
-    for (int k = 0; k <= 2 * FINE; k++)
-        sum[k] = -0.5 * pow(FINE_STEP * (k - FINE) / TUNED_WITHIN, 2);
+    double likely[2 * FINE + 1], shift[2 * FINE + 1];
+    int count = find_ringing(room, d, pair, error);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k <= 2 * FINE; k++)
-            shift[k] = FINE_STEP * (k - FINE) * pair[i].frequency;
-        if (!partials_likely(sound, partials->room, pair[i].frequency, pair[i].apart, shift,
-                             2 * FINE + 1, &pair[i].due, 1, likely, error))
+            shift[k] = step * (k - FINE) * pair[i].frequency;
+        if (!partials_likely(sound, room, pair[i].frequency, pair[i].apart, shift, 2 * FINE + 1,
+                             &pair[i].due, 1, likely, error))
             return false;
+        double held = room * pair[i].due / log(1000); // by the room
+        blur(likely, 2 * FINE + 1, TUNED_WITHIN * (room > 0 ? held * held : 1) / step);
         for (int k = 0; k <= 2 * FINE; k++)
             sum[k] += likely[k];
     }
-    for (int k = 0; k <= 2 * FINE; k++)
-        best = sum[k] > sum[best] ? k : best;
-    d->tune *= 1 + FINE_STEP * (best - FINE);
     return count >= 0;
 }
 
-// as likely, with a decay known within SUREST at best
-static void blur(double likely[DECAYS_TRIED])
+// the tuning at which the pairs are likeliest, together: coarsely by their early sound, in which a
+// room only echoes them, then finely by the late sound as well
+static bool find_tuning(const partials_sound *sound, double room, fit_drum *d, himc_error *error)
 {
-    double sharp[DECAYS_TRIED], most = -INFINITY;
-    for (int k = 0; k < DECAYS_TRIED; k++) {
-        sharp[k] = likely[k];
-        most = fmax(most, likely[k]);
+    for (int round = 0; round < 2; round++) {
+        double sum[2 * FINE + 1] = {0}, step = round == 0 ? EARLY_STEP : FINE_STEP;
+        int best = FINE;
+        if (!add_tunings(sound, 0, step, d, sum, error) ||
+            (round > 0 && room > 0 && !add_tunings(sound, room, step, d, sum, error)))
+            return false;
+        for (int k = 0; k <= 2 * FINE; k++)
+            best = sum[k] > sum[best] ? k : best;
+        d->tune *= 1 + step * (best - FINE);
     }
-    for (int k = 0; k < DECAYS_TRIED; k++) {
-        double sum = 1e-12;
-        for (int i = 0; i < DECAYS_TRIED; i++)
-            sum += exp(sharp[i] - most - 0.5 * pow(DECAY_STEP * (i - k) / SUREST, 2));
-        likely[k] = log(sum);
-    }
+    return true;
 }
 
 // S0 and S1, in units of the usual ones, at which the decays of those pairs are likeliest; drawn to
@@ -256,14 +277,15 @@ static bool find_losses(const partials_sound *sound, const partials_list *partia
     ringing pair[PAIRS];
     double likely[PAIRS][DECAYS_TRIED], decay[DECAYS_TRIED], best = -INFINITY, at[2] = {1, 1};
     const double none = 0;
-    int count = find_ringing(partials, d, pair, error);
+    int count = find_ringing(partials->room, d, pair, error);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < DECAYS_TRIED; k++)
             decay[k] = pair[i].due * exp(DECAY_STEP * (k - DECAYS_TRIED / 2));
         if (!partials_likely(sound, partials->room, pair[i].frequency, pair[i].apart, &none, 1,
                              decay, DECAYS_TRIED, likely[i], error))
             return false;
-        blur(likely[i]);
+        double held = partials->room * pair[i].due / log(1000); // by the room
+        blur(likely[i], DECAYS_TRIED, (SUREST + HELD * held * held) / DECAY_STEP);
     }
     for (double s0 = 0; s0 < LOSSES_MOST; s0 += LOSSES_STEP)
         for (double s1 = 0; s1 < LOSSES_MOST; s1 += LOSSES_STEP) {
@@ -372,7 +394,7 @@ int fit_drum_find(const partials_sound *sound, const fit_spectrum *spectrum,
     while (count > 0 && choice[count - 1].score < choice[0].score - UNLIKELY)
         count--;
     for (int i = 0; i < count; i++)
-        if (!find_tuning(sound, partials, &choice[i], error) ||
+        if (!find_tuning(sound, partials->room, &choice[i], error) ||
             !find_losses(sound, partials, &choice[i], error))
             return 0;
     return count;

@@ -5,41 +5,57 @@
 /// louder or softer than those found is taken back, twice, since near ones hide each other.
 #include "fit_list.h"
 
-#include "fit_drum.h"
-#include "himc/drum.h"
+#include "base/text.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define MODES 160     // the strongest; chosen: of halls' recordings a third of all poles
-#define RADIUS 0.1    // (m) of the struck disc, chosen
 #define MASS 0.05     // (kg) chosen
 #define PRESSURE 1e-4 // of the loudest mode (Pa s^2/m); as of the lists of lists.c
-#define ROUNDS 2
-#define CLEAR 0.0 // (dB) a partial less clear is the room's
-#define NEAR 1.5  // (Hz)
-#define SECONDS 4.0
+#define ROUNDS 3
+#define CLEAR 0.0   // (dB) a partial less clear is the room's
+#define NEAR 1.5    // (Hz)
+#define BEAT 1.1    // (s) before the blow
+#define SECONDS 4.0 // after it
+#define AT_ONCE 1.3 // of T60, in a round
 
 typedef struct list {
     const partial *of[MODES];
-    double pressure[MODES];
+    double pressure[MODES], t60[MODES];
     int count;
 } list;
 
-himc_drum *fit_list_drum(const cli_file *file, double rate, himc_error *error)
+bool fit_list_hear(const cli_file *file, double rate, partials_sound *out, himc_error *error)
 {
     const char *path = file->temp[0] ? file->temp : file->path;
-    himc_command command;
-    himc_drum *drum = himc_drum_new("fit", 26, rate, error);
-    himc_atom atom[] = {{HIMC_ATOM_SYMBOL, 0, "modes"}, {HIMC_ATOM_SYMBOL, 0, path}};
-    if (drum && himc_command_parse(&command, HIMC_DRUM, "shape", atom, 2, error) &&
-        himc_drum_command(drum, &command, error))
-        return drum;
-    himc_drum_release(drum);
-    return NULL;
+    size_t frames = (size_t)((BEAT + SECONDS) * rate);
+    himc_performance_config config = himc_performance_default();
+    himc_state_line line = himc_state_begin("instrument");
+    himc_state_word(&line, "fitted");
+    himc_state_word(&line, "modes");
+    himc_state_word(&line, path);
+    config.sample_rate = rate;
+    config.physics_rate = fmin(config.physics_rate, rate);
+    config.heard = true;
+    float *heard = calloc(2 * frames, sizeof *heard);
+    himc_performance *p = heard ? himc_performance_new(&config, error) : NULL;
+    bool good = p && cli_tell(p, line.text, NULL, error) && cli_tell(p, "room 0", NULL, error) &&
+                cli_tell(p, "tempo 120", NULL, error) &&
+                cli_tell(p, "stroke 1 right legato mf", NULL, error) &&
+                cli_tell(p, "play", NULL, error);
+    if (good)
+        himc_performance_read(p, heard, 2, (int)frames);
+    else if (!heard)
+        himc_error_set(error, "out of memory");
+    good = good && partials_add(out, heard, frames, 2, rate, "the instrument made", error);
+    himc_performance_free(p);
+    free(heard);
+    return good;
 }
 
-static bool write(const list *l, const char *path, cli_file *file, himc_error *error)
+static bool write(const list *l, double radius, const char *path, cli_file *file, himc_error *error)
 {
     double loudest = 0, strongest = -INFINITY, pitch = 0;
     cli_file_drop(file);
@@ -52,11 +68,11 @@ static bool write(const list *l, const char *path, cli_file *file, himc_error *e
     }
     fprintf(file->stream,
             "# made by himc fit\npitch %.6g\nmallet 1e9 1.5 0.03\nsurface struck disc %g\n", pitch,
-            RADIUS);
+            radius);
     for (int i = 0; i < l->count; i++)
         fprintf(file->stream, "pressure %.4g\nmode %.7g %.4g %g 1 1\n",
                 fmax(1e-12, PRESSURE * l->pressure[i] / loudest), l->of[i]->frequency,
-                fmin(l->of[i]->t60, 60), MASS);
+                fmin(l->t60[i], 60), MASS);
     return cli_file_close(file, error);
 }
 
@@ -74,45 +90,65 @@ static void choose(const partials_list *found, list *l)
             l->of[k] = p;
         l->count += l->count < MODES;
     }
-    for (int i = 0; i < l->count; i++)
+    for (int i = 0; i < l->count; i++) {
+        l->t60[i] = l->of[i]->t60;
         l->pressure[i] = pow(10, l->of[i]->level / 20) / l->of[i]->frequency;
+    }
+}
+
+static const partial *nearest(const partials_list *partials, double frequency, double within)
+{
+    const partial *best = NULL;
+    for (int k = 0; k < partials->count; k++)
+        if (fabs(partials->row[k].frequency - frequency) < within) {
+            best = &partials->row[k];
+            within = fabs(best->frequency - frequency);
+        }
+    return best;
+}
+
+static double beside(const list *l, int i, int k)
+{
+    return fabs(l->of[i]->frequency - l->of[k]->frequency);
 }
 
 static bool correct(list *l, const cli_file *file, double rate, himc_error *error)
 {
     static partials_list made; // large
     partials_sound heard = {.tracks = 0};
-    himc_drum *drum = fit_list_drum(file, rate, error);
-    bool good = drum && fit_hear(drum, 0, fit_speeds[2], SECONDS, &heard, error) &&
+    double louder[MODES];
+    bool good = fit_list_hear(file, rate, &heard, error) &&
                 partials_find(&heard, FIT_LIST_HIGHEST, &made, error);
+    if (good)
+        partials_lines(&heard, &made);
     for (int i = 0; good && i < l->count; i++) {
-        const partial *best = NULL;
-        double apart = NEAR;
-        for (int k = 0; k < made.count; k++) {
-            double d = fabs(made.row[k].frequency - l->of[i]->frequency);
-            if (d < apart) {
-                apart = d;
-                best = &made.row[k];
-            }
-        }
-        if (best)
-            l->pressure[i] *= pow(10, (l->of[i]->level - best->level) / 20);
+        const partial *p = l->of[i], *best = nearest(&made, p->frequency, NEAR);
+        louder[i] = best ? p->level - best->level : NAN;
+        if (best && p->line && best->line)
+            l->t60[i] *= fmin(fmax(p->t60 / best->t60, 1 / AT_ONCE), AT_ONCE);
+    }
+    for (int i = 0; good && i < l->count; i++) {
+        int from = i; // what is not heard of its own is changed as what is heard next to it
+        for (int k = 0; k < l->count; k++)
+            if (!isnan(louder[k]) && (isnan(louder[from]) || beside(l, k, i) < beside(l, from, i)))
+                from = k;
+        if (!isnan(louder[from]))
+            l->pressure[i] *= pow(10, louder[from] / 20);
     }
     partials_sound_free(&heard);
-    himc_drum_release(drum);
     return good;
 }
 
-bool fit_list(const partials_sound *sound, const partials_list *found, const char *path,
-              cli_file *file, himc_error *error)
+bool fit_list(const partials_sound *sound, const partials_list *found, double radius,
+              const char *path, cli_file *file, himc_error *error)
 {
     list l = {.count = 0};
     choose(found, &l);
     if (l.count == 0)
         return himc_error_set(error,
                               "no partial is clear of the noise, expected a sound that rings");
-    bool good = write(&l, path, file, error);
+    bool good = write(&l, radius, path, file, error);
     for (int round = 0; good && round < ROUNDS; round++)
-        good = correct(&l, file, sound->rate, error) && write(&l, path, file, error);
+        good = correct(&l, file, sound->rate, error) && write(&l, radius, path, file, error);
     return good;
 }

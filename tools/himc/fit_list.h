@@ -6,14 +6,13 @@
 #include "partials.h"
 
 #define FIT_LIST_HIGHEST 12000.0 ///< (Hz)
-
-typedef struct himc_drum himc_drum;
+#define FIT_LIST_RADIUS 0.1      ///< (m) of the struck disc, if not known; chosen
 
 /// Writes the list (head/list.c says what its lines mean) whose partials are as strong as found;
 /// the file is not kept yet.
-bool fit_list(const partials_sound *sound, const partials_list *found, const char *path,
-              cli_file *file, himc_error *error);
-/// The instrument of the list in that file; owned.
-himc_drum *fit_list_drum(const cli_file *file, double rate, himc_error *error);
+bool fit_list(const partials_sound *sound, const partials_list *found, double radius,
+              const char *path, cli_file *file, himc_error *error);
+/// Adds what the usual listener hears, without a room, of a stroke mf on the list in that file.
+bool fit_list_hear(const cli_file *file, double rate, partials_sound *out, himc_error *error);
 
 #endif

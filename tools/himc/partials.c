@@ -36,7 +36,7 @@
 #define PAIR 10.0          // (Hz) around a pair of a drum's modes ...
 #define PAIR_SECONDS 5.0   // ... in a window at most so long ...
 #define PAIR_PART 0.5      // ... or so much of T60, at least 1 s ...
-#define SINGLE 0.1         // (Hz) nearer ones are one
+#define SINGLE 0.02        // (Hz) nearer ones are one
 #define PAIR_LEAST 20      // ... of so many decimated samples or more
 #define AROUND_PART 0.12   // ... so much of the frequency
 
@@ -51,9 +51,14 @@ typedef struct windows {
 static const windows sets[] = {{0.01, 0.04, 300, INFINITY, 0}, {0.6, 0.15, SPAN, WIDE_FROM, 1.2}};
 #define SETS (sizeof sets / sizeof *sets)
 
-// when a room has answered what was at the onset (s); windows that overlap share their weight
-static const double later_from[] = {0.5, 1.0};
-#define LATER (int)(sizeof later_from / sizeof *later_from)
+// When a room has answered the onset (s), and before that, while it only echoes. Windows that
+// overlap share their weight.
+#define LIKELY_WINDOWS 2
+static const double late_from[LIKELY_WINDOWS] = {0.5, 1.0};
+static const double early_from[LIKELY_WINDOWS] = {0.03, 0.1};
+
+// of a pair, per the usual one: each head is uneven in its own way
+static const double splits[] = {0, 0.5, 1, 1.5, 2};
 
 typedef struct band {
     double centre, width; // (Hz)
@@ -401,16 +406,22 @@ bool partials_likely(const partials_sound *sound, double room, double frequency,
     double rate = sound->rate / b.step;
     double span = fmin(PAIR_SECONDS, fmax(1, PAIR_PART * log(1000) / decay[decays / 2]));
     memset(out, 0, sizeof *out * (size_t)(shifts * decays));
-    for (int w = 0; w < LATER; w++) {
-        size_t from = (size_t)(later_from[w] * sound->rate) + (size_t)b.half;
+    for (int w = 0; w < LIKELY_WINDOWS; w++) {
+        double start = (room > 0 ? late_from : early_from)[w];
+        size_t from = (size_t)(start * sound->rate) + (size_t)b.half;
         if (!band_fill(&b, sound, from, (int)fmin(SPAN, span * rate), PAIR_LEAST))
             break;
         weigh(&b, rate, room);
-        double free = 0.5 / LATER * b.samples * b.tracks; // the filter passes half of the band
+        // the filter passes half of the band
+        double free = 0.5 / LIKELY_WINDOWS * b.samples * b.tracks;
         for (int i = 0; i < shifts * decays; i++) {
-            double at[3] = {shift[i / decays], apart < SINGLE ? 0 : 0.5 * apart,
-                            log(decay[i % decays])};
-            out[i] -= free * log(left_by(&b, rate, at) + 1e-6);
+            double least = 1;
+            for (size_t k = 0; k < sizeof splits / sizeof *splits; k++) {
+                double split = splits[k] * apart < SINGLE ? 0 : 0.5 * splits[k] * apart;
+                double at[3] = {shift[i / decays], split, log(decay[i % decays])};
+                least = fmin(least, left_by(&b, rate, at));
+            }
+            out[i] -= free * log(least + 1e-6);
         }
     }
     band_close(&b);

@@ -20,6 +20,7 @@ typedef struct partial {
     double level;           ///< at the onset, of all channels (dB re the sound's peak)
     double energy;          ///< 10 lg of what it has over all time (dB)
     double clear; ///< by which that, or its level after 1 s, stands out of its neighbours' (dB)
+    bool line;    ///< it falls evenly: partials_lines
 } partial;
 
 /// What was heard, each channel of each stroke from its onset on.
@@ -49,10 +50,14 @@ void partials_sound_free(partials_sound *sound);
 bool partials_find(const partials_sound *sound, double highest, partials_list *out,
                    himc_error *error);
 
+#define PARTIALS_LINES 1200.0 ///< (Hz) up to which lines are found
+/// Puts lines that fall evenly in the place of the poles about them, and drops the hall's.
+void partials_lines(const partials_sound *sound, partials_list *list);
+
 /// How likely pairs of partials about `frequency`, `apart` from each other, that decay alike, are:
 /// ln of it, for each of `shifts` (Hz) and `decays` (1/s), to out[shift * decays + decay]; by the
-/// energy that least squares leave in a narrow band, late, in a `room` of that T60 (s). False with
-/// the reason, without memory.
+/// energy that least squares leave in a narrow band, late, in a `room` of that T60 (s); 0: early.
+/// False with the reason, without memory.
 bool partials_likely(const partials_sound *sound, double room, double frequency, double apart,
                      const double *shift, int shifts, const double *decay, int decays, double *out,
                      himc_error *error);
