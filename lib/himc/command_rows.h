@@ -68,7 +68,8 @@
     LIST("temple-blocks") \
     LIST("triangle")      \
     LIST("agogo")         \
-    LIST("cowbell")
+    LIST("cowbell")       \
+    LIST("tambourine")
 // bars that are computed (lib/src/head/bar.c)
 #define HIMC_BARS(BAR) \
     BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel") BAR("tubular-bell")
