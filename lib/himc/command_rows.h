@@ -68,7 +68,8 @@
     LIST("temple-blocks") \
     LIST("triangle")      \
     LIST("agogo")         \
-    LIST("cowbell")
+    LIST("cowbell")       \
+    LIST("tambourine")
 // bars that are computed (lib/src/head/bar.c)
 #define HIMC_BARS(BAR) \
     BAR("marimba") BAR("xylophone") BAR("vibraphone") BAR("glockenspiel") BAR("tubular-bell")
@@ -295,6 +296,8 @@ HIMC_COMMAND_ROW(DAMP, damp, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUN
                  "lays a hand on the head")
 HIMC_COMMAND_ROW(PEDAL, pedal, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "closes a hi-hat, or lets the bars of a vibraphone ring")
+HIMC_COMMAND_ROW(MOTOR, motor, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "HZ",
+                 "turns the discs in a vibraphone's tubes, so that it swings so often a second")
 HIMC_COMMAND_ROW(MUFFLE, muffle, DRUM, NOW, HIMC_CHANGES_HEAD | HIMC_AT_BEAT, "AMOUNT",
                  "lays a cloth on the head, 1: coperto, a dry thud with a pitch")
 HIMC_COMMAND_ROW(SKIN, skin, DRUM, NOW, HIMC_CHANGES_HEAD, "plastic|calf",

@@ -26,6 +26,7 @@ typedef struct himc_head {
     double glide;          ///< tension modulation, 0 none .. 1 a Mylar film's; of a cymbal: cascade
     double damp;           ///< a hand on the head: 0 none .. 1 dead at once
     double dampers;        ///< that a pedal lays on: felt, another cymbal (1/s), 0 .. 100
+    double motor;          ///< swings a second of what a vibraphone's tubes send (Hz), 0: off .. 15
     double muffle;         ///< a cloth on the head: 0 none .. 1 all over it
     double wires;          ///< pull of wires to the lower head of two (m/s^2), 0: none .. 2000
     double uniformity;     ///< of the lugs' tension, 0 (2 % off) .. 1 even; of round heads only

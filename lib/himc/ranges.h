@@ -14,6 +14,7 @@
 #define HIMC_SIGMA0_MAX 1000.0         ///< decay of all modes, from 0 (1/s)
 #define HIMC_SIGMA1_MAX 1.0            ///< decay with the square of the frequency, from 0 (s)
 #define HIMC_WIRES_MAX 2000.0          ///< pull of a strainer on wires, from 0 (m/s^2); chosen
+#define HIMC_MOTOR_MAX 15.0            ///< swings a second by a vibraphone, from 0 (Hz); chosen
 #define HIMC_INCHES_MIN 12.0           ///< diameter of a drum (inches)
 #define HIMC_INCHES_MAX 60.0           ///< (inches)
 #define HIMC_INCHES_USUAL 26.0         ///< when nothing is said: the commonest timpano (inches)

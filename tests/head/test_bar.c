@@ -273,7 +273,9 @@ static void test_a_dump_of_bars_makes_them_again(void)
 {
     bar("vibraphone", 300);
     done("tune 310");
+    done("motor 4.5");
     check_dump("bar", 2);
+    TEST_ASSERT_EQUAL_DOUBLE(4.5, himc_membrane_head(himc_drum_membrane(drum))->motor);
     done("shape bar xylophone 523 700");
     check_dump("keyboard", 9);
 }
@@ -309,6 +311,105 @@ static void test_a_pedal_lets_a_vibraphone_ring_and_no_marimba_has_one(void)
     TEST_ASSERT_FALSE(say("pedal 0"));
 }
 
+// (1.0 as a pickup's) a partial's amplitude in 20 ms from there on
+static double level_at(const double *sound, int from, double hz)
+{
+    enum { LENGTH = RATE / 50 };
+    double even = 0, odd = 0;
+    for (int i = 0; i < LENGTH; i++) {
+        double window = sin(HIMC_PI * i / LENGTH), angle = 2 * HIMC_PI * hz * i / RATE;
+        even += window * window * sound[from + i] * cos(angle);
+        odd += window * window * sound[from + i] * sin(angle);
+    }
+    return hypot(even, odd) * 4 / LENGTH;
+}
+
+// open as the blow comes, 6 dB softer when shut; partials without a tube stay, the bar itself, too
+static void test_a_motor_swings_the_sound_of_the_tubes_so_often_a_second(void)
+{
+    enum { LENGTH = 30000, STEP = RATE / 100, POINTS = LENGTH / STEP - 2 };
+    static double sound[2][LENGTH], q[2], v;
+    const double hz = 8;
+    for (int k = 0; k < 2; k++) {
+        bar("vibraphone", 220);
+        done(k ? "motor 8" : "motor 0");
+        sound_of(-0.05 * himc_drum_head_frame(drum)->length, 0, 2, sound[k], LENGTH);
+        himc_membrane_state(himc_drum_membrane(drum), 0, &q[k], &v);
+        tearDown();
+        setUp();
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(q[0], q[1]);
+    bar("vibraphone", 220);
+    double least = 1, most = 0, fundamental = mode(0).frequency, second = mode(1).frequency;
+    for (int i = 2; i < POINTS; i++) {
+        double part =
+            level_at(sound[1], i * STEP, fundamental) / level_at(sound[0], i * STEP, fundamental);
+        double same = level_at(sound[1], i * STEP, second) / level_at(sound[0], i * STEP, second);
+        double middle = (double)(i * STEP + RATE / 100) / RATE; // of the 20 ms
+        TEST_ASSERT_DOUBLE_WITHIN(0.03, 0.75 + 0.25 * cos(2 * HIMC_PI * hz * middle), part);
+        TEST_ASSERT_TRUE(i > 30 || fabs(same - 1) < 0.05); // later it is too soft
+        least = fmin(least, part);
+        most = fmax(most, part);
+    }
+    printf("motor: %.2f .. %.2f of the amplitude\n", least, most);
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, 6, 20 * log10(most / least));
+}
+
+static void test_a_motor_is_a_vibraphones_and_stops_open(void)
+{
+    enum { LENGTH = 30000 };
+    static double sound[2][LENGTH];
+    bar("marimba", 262);
+    TEST_ASSERT_FALSE(say("motor 5"));
+    TEST_ASSERT_EQUAL_STRING("motor: expected a vibraphone", error.text);
+    bar("vibraphone", 262);
+    TEST_ASSERT_FALSE(say("motor 16"));
+    for (int k = 0; k < 2; k++) {
+        bar("vibraphone", 262);
+        done(k ? "motor 6" : "motor 0");
+        strike(0, 0, 2);
+        advance(0.42);
+        done("motor 0");
+        advance(0.2);
+        himc_drum_advance(drum, LENGTH, NULL, NULL, NULL);
+        himc_drum_read(drum, himc_drum_time(drum) - LENGTH, LENGTH, sound[k], NULL);
+        tearDown();
+        setUp();
+    }
+    for (int i = 0; i < LENGTH; i++) // modes fall silent at other samples
+        TEST_ASSERT_DOUBLE_WITHIN(1e-8, sound[0][i], sound[1][i]);
+    bar("vibraphone", 262); // with felt on a bar it ends, with a motor or without
+    done("motor 6");
+    check_energy("motor");
+    done("pedal 0");
+    strike(0, 0, 2);
+    advance(3);
+    TEST_ASSERT_TRUE(himc_membrane_at_rest(himc_drum_membrane(drum)));
+    done("shape circle");
+    TEST_ASSERT_EQUAL_DOUBLE(0, himc_membrane_head(himc_drum_membrane(drum))->motor);
+}
+
+// 64 at a time, or 7, or one sample: the same bits
+static void test_blocks_do_not_matter_to_a_motor(void)
+{
+    static const int block[] = {RATE / 2, 64, 7};
+    static double sound[3][RATE / 2];
+    for (int k = 0; k < 3; k++) {
+        bar("vibraphone", 330);
+        done("motor 7");
+        strike(0, 0, 2);
+        for (int at = 0, n; at < RATE / 2; at += n) {
+            n = RATE / 2 - at < block[k] ? RATE / 2 - at : block[k];
+            himc_drum_advance(drum, n, NULL, NULL, NULL);
+        }
+        himc_drum_read(drum, himc_drum_time(drum) - RATE / 2, RATE / 2, sound[k], NULL);
+        tearDown();
+        setUp();
+    }
+    for (int k = 1; k < 3; k++)
+        TEST_ASSERT_EQUAL_DOUBLE_ARRAY(sound[0], sound[k], RATE / 2);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -328,5 +429,8 @@ int main(void)
     RUN_TEST(test_info_names_the_bars);
     RUN_TEST(test_pitches_that_no_bar_has_are_refused);
     RUN_TEST(test_a_pedal_lets_a_vibraphone_ring_and_no_marimba_has_one);
+    RUN_TEST(test_a_motor_swings_the_sound_of_the_tubes_so_often_a_second);
+    RUN_TEST(test_a_motor_is_a_vibraphones_and_stops_open);
+    RUN_TEST(test_blocks_do_not_matter_to_a_motor);
     return UNITY_END();
 }

@@ -94,6 +94,7 @@ static void test_instruments_at_f_are_as_loud_as_the_table_says(void)
         {"glockenspiel C6", "damp 0", -0.05, -38},
         {"triangle", "damp 0", -0.05, -49},
         {"cowbell", "damp 0", -0.05, -44},
+        {"tambourine", "damp 0", -0.3, -44},
     };
     char text[120];
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {

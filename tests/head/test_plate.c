@@ -207,6 +207,24 @@ static void test_a_loud_crash_brightens_as_recorded_and_its_lines_stand_out(void
     TEST_ASSERT_DOUBLE_WITHIN(3, -10, flat[2]);
 }
 
+// at 0, .1, .4, .8 s, of a loud and a soft recorded stroke on another crash
+static void test_a_crash_is_as_bright_as_a_recorded_one(void)
+{
+    static const double at[] = {0, 0.1, 0.4, 0.8}, speed[] = {4.5, 1.3},
+                        recorded[2][4] = {{845, 3189, 3643, 2698}, {940, 1198, 1112, 1007}};
+    done("shape plate crash");
+    for (int k = 0; k < 2; k++) {
+        double bright[4] = {0};
+        for (int side = 0; side < 6; side++) {
+            blow(0.93, speed[k], side, 1);
+            for (int i = 0; i < 4; i++)
+                bright[i] += log(centroid(at[i], i < 2 ? SECOND / 2 : SECOND)) / 6;
+        }
+        for (int i = 0; i < 4; i++)
+            TEST_ASSERT_DOUBLE_WITHIN(log(1.5), log(recorded[k][i]), bright[i]);
+    }
+}
+
 static double loudest(const char *mallet)
 {
     double most = 0;
@@ -341,6 +359,7 @@ int main(void)
     RUN_TEST(test_with_losses_the_energy_never_grows);
     RUN_TEST(test_glide_0_is_linear_and_block_size_makes_no_difference);
     RUN_TEST(test_a_loud_crash_brightens_as_recorded_and_its_lines_stand_out);
+    RUN_TEST(test_a_crash_is_as_bright_as_a_recorded_one);
     RUN_TEST(test_felt_makes_a_crash_softer_and_darker_than_wood);
     RUN_TEST(test_a_tam_tam_blooms_soft_or_loud);
     RUN_TEST(test_a_hand_chokes_a_cymbal_and_a_pedal_closes_a_hi_hat);

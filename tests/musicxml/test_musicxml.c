@@ -600,6 +600,7 @@ static void test_names_in_four_languages(void)
         {"Bongos", "bongo"},
         {"Cowbell", "instrument cowbell"},
         {"Claves", "instrument claves"},
+        {"Tambour de basque", "instrument tambourine"},
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         char text[2048];

@@ -85,6 +85,7 @@ static const himc_argument arguments[] = {
     {"HZ", "task", HIMC_ARGUMENT_NUMBER, HIMC_TASK_RATE_MIN, HIMC_TASK_RATE_MAX, "Hz", NULL},
     // principal mode; chosen: wider than any head's range, which find_tune tells
     {"HZ", "tune|gliss|bar", HIMC_ARGUMENT_NUMBER, 1, 20000, "Hz", NULL},
+    {"HZ", "motor", HIMC_ARGUMENT_NUMBER, 0, HIMC_MOTOR_MAX, "Hz", NULL},
     {"HZ", NULL, HIMC_ARGUMENT_NUMBER, 1, 250, "Hz", NULL},
     {"HOST", NULL, HIMC_ARGUMENT_TEXT, 1, 255, "", NULL},
     {"PORT", "listen", HIMC_ARGUMENT_COUNT, 0, 65535, "", NULL},

@@ -21,6 +21,7 @@ const char himc_setup_around[] =
     "instrument splash splash 10; splash place .95 .12 1.1 .3;"
     "instrument crash-16 crash 16; crash-16 place .7 .64 1.1 .3;"
     "instrument cowbell cowbell; cowbell place .8 .15 1;"
+    "instrument tambourine tambourine; tambourine place .66 .52 1;"
     "instrument high-bongo bongo 7; high-bongo place .2 .6 .9;"
     "instrument low-bongo bongo 8.5; low-bongo place .2 .84 .9;"
     "instrument high-conga conga 11; high-conga place .1 .7 .75;"

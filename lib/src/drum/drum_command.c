@@ -183,6 +183,11 @@ bool himc_drum_find_head(const himc_shape *shape, const himc_head *usual, const 
             return himc_error_set(error, "pedal: expected a hi-hat or a vibraphone");
         head->dampers = shape->body->dampers * (shape->body->pedal_lifts ? 1 - said : said);
         break;
+    case HIMC_COMMAND_MOTOR:
+        if (!shape->body || !shape->body->discs)
+            return himc_error_set(error, "motor: expected a vibraphone");
+        head->motor = said;
+        break;
     case HIMC_COMMAND_MUFFLE: head->muffle = himc_argument_usual(said, here.muffle); break;
     case HIMC_COMMAND_SKIN:
         if (shape->body || shape->shell)
@@ -316,7 +321,7 @@ static bool replace_shape(himc_drum_settings *s, himc_shape shape, himc_error *e
     head->radius = himc_argument_usual(as_said("RADIUS", head->radius), s->usual.radius);
     head->tension = himc_argument_usual(as_said("TENSION", head->tension), s->usual.tension);
     head->density = himc_argument_usual(as_said("DENSITY", head->density), s->usual.density);
-    head->dampers = 0; // the pedal was the other outline's
+    head->dampers = head->motor = 0; // pedal and motor were the other outline's
     *head = usual_head(&shape, head);
     // one that may be in air again is in air again
     head->air = shape.kind->air && (head->air || !s->head.shape.kind->air);
@@ -507,6 +512,8 @@ static void dump_head(const himc_drum *drum, const himc_line_sink *to)
         double laid = head->dampers / shape->body->dampers;
         tell(to, "pedal", shape->body->pedal_lifts ? 1 - laid : laid);
     }
+    if (shape->body && shape->body->discs)
+        tell(to, "motor", head->motor);
     tell(to, "muffle", head->muffle);
     if (himc_shell_takes_wires(shape->shell))
         tell(to, "wires", head->wires);

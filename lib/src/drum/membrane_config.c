@@ -19,9 +19,9 @@ bool himc_shape_equal(const himc_shape *a, const himc_shape *b)
 }
 
 // all fields of a head
-#define FIELDS(OF)                                                                         \
-    OF(radius), OF(tension), OF(density), OF(decay_constant), OF(decay_square), OF(modes), \
-        OF(air), OF(kettle), OF(glide), OF(damp), OF(dampers), OF(muffle), OF(wires),      \
+#define FIELDS(OF)                                                                               \
+    OF(radius), OF(tension), OF(density), OF(decay_constant), OF(decay_square), OF(modes),       \
+        OF(air), OF(kettle), OF(glide), OF(damp), OF(dampers), OF(motor), OF(muffle), OF(wires), \
         OF(uniformity), OF(uniformity_seed)
 
 bool himc_head_equal(const himc_head *a, const himc_head *b)

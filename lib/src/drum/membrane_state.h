@@ -43,6 +43,7 @@ struct himc_membrane {
     int push_count;
     himc_push applied[HIMC_STRIKE_POINTS]; ///< forces of the last step, up positive
     int applied_count;
+    double disc, speed; ///< of a motor: 0 open, .5 shut .. 1; swings a second, as last set
     declick declicks[HIMC_OUTPUTS];
     double sound[HIMC_OUTPUTS]; ///< of the last sample
 };

@@ -7,10 +7,19 @@
 ///     kappa = E h_f/(2 (1 - nu^2) area).
 /// bank_film.c says how the film and the modes act on each other; contact (contact.c) need not know
 /// of it.
+///
+/// A vibraphone's motor turns discs in the mouths of its tubes, which open and shut twice a turn:
+/// its loudness swings, its pitch hardly does (Fletcher & Rossing, ch. 19, remembered). All are
+/// on one shaft; open at angle 0, they let pass the amplitude 1 - SHUT sin^2 of what the tubes
+/// send. The bars' own sound stays, so high partials do not swing. Discs start open when all is
+/// silent, and turned off they go on until they are open: no click. That a bar with a shut tube
+/// loses less is left out.
 #include "drum/membrane_state.h"
 
 #include <math.h>
 #include <string.h>
+
+#define SHUT 0.5 // chosen: 6 dB
 
 // the weights of all modes under a patch of that radius
 static const double *weights(himc_membrane *m, double b)
@@ -199,21 +208,52 @@ void himc_strike_point_apply(himc_membrane *membrane, strike_point *s, double fo
     }
 }
 
-// runs n steps without forces; adds the declicks to the sound
+static bool swings(const himc_membrane *m)
+{
+    return m->model->config.head.motor > 0 || m->disc > 0;
+}
+
+// Takes from the sound of n steps what the discs keep back. A force in the present step, whose
+// sound is added after, is heard as if they were open.
+static void swing(himc_membrane *m, int n, const double *tubes, double *const *sound)
+{
+    const himc_membrane_config *c = &m->model->config;
+    m->speed = c->head.motor > 0 ? c->head.motor : m->speed;
+    for (int i = 0; i < n; i++) {
+        double less = 0.5 * SHUT * (1 - cos(2 * HIMC_PI * m->disc)) * tubes[i];
+        for (int k = 0; k < HIMC_OUTPUTS; k++) {
+            const himc_pickup *p = &c->pickups[k];
+            if (himc_membrane_has(m, k) && sound[k] && p->kind == HIMC_PICKUP_AIR)
+                sound[k][i] -= k < HIMC_PICKUPS ? less / p->distance : less;
+        }
+        m->disc += m->ends_sample ? m->speed / c->rate : 0;
+        if (m->disc >= 1)
+            m->disc = c->head.motor > 0 ? m->disc - 1 : 0;
+    }
+}
+
+// runs n steps without forces, at most a pass if a motor swings; adds the declicks to the sound
 static void run_free(himc_membrane *m, int n, double *const *sound, double *watched)
 {
     himc_model *c = m->model;
-    himc_readout *readouts[HIMC_OUTPUTS + 1];
-    double *out[HIMC_OUTPUTS + 1];
+    himc_readout *readouts[HIMC_OUTPUTS + 2];
+    double *out[HIMC_OUTPUTS + 2], tubes[HIMC_BANK_PASS];
     int count = 0;
+    bool swung = swings(m);
+    if (himc_bank_at_rest(c->bank))
+        m->disc = 0;
     for (int k = 0; k < HIMC_OUTPUTS; k++)
         if (himc_membrane_has(m, k)) {
             readouts[count] = &c->outputs[k].readout;
             out[count++] = sound[k];
         }
     readouts[count] = &c->watched;
-    out[count] = watched;
-    himc_bank_run(c->bank, n, readouts, count + 1, out);
+    out[count++] = watched;
+    readouts[count] = &c->tubes;
+    out[count] = tubes;
+    himc_bank_run(c->bank, n, readouts, count + swung, out);
+    if (swung)
+        swing(m, n, tubes, sound);
     m->applied_count = 0;
     for (int k = 0; k < HIMC_OUTPUTS; k++) {
         if (!himc_membrane_has(m, k))
@@ -259,10 +299,12 @@ void himc_membrane_run_all(himc_membrane *membrane, int n, double *const *sound,
         if (watched)
             watched[i] = himc_membrane_watched(membrane);
     }
-    for (int k = 0; k < HIMC_OUTPUTS; k++)
-        rest[k] = himc_membrane_has(membrane, k) && sound[k] ? sound[k] + i : NULL;
-    if (i < n)
-        run_free(membrane, n - i, rest, watched ? watched + i : NULL);
+    for (int run; i < n; i += run) {
+        run = swings(membrane) && n - i > HIMC_BANK_PASS ? HIMC_BANK_PASS : n - i;
+        for (int k = 0; k < HIMC_OUTPUTS; k++)
+            rest[k] = himc_membrane_has(membrane, k) && sound[k] ? sound[k] + i : NULL;
+        run_free(membrane, run, rest, watched ? watched + i : NULL);
+    }
 }
 
 void himc_membrane_run(himc_membrane *membrane, int n, double *const *sound, double *watched)

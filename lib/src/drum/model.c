@@ -16,9 +16,10 @@
 #include <math.h>
 #include <string.h>
 
-// arrays of a model: its own, what rays have in common, those of each output, patch, strike point
+// arrays of a model: its own, of readouts, what rays have in common, those of each output, patch,
+// strike point
 #define ARRAYS                                                                       \
-    (9 + 2 + 3 + HIMC_RAYS + HIMC_PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + \
+    (9 + 4 + 3 + HIMC_RAYS + HIMC_PATCHES + HIMC_OUTPUTS * (3 + HIMC_STEP_LENGTHS) + \
      HIMC_STRIKE_POINTS * 3)
 _Static_assert(HIMC_BANK_ALIKE == HIMC_RAYS, "the rays are alike");
 _Static_assert(HIMC_BANK_ROWS == HIMC_WIRES, "the wires' points are read together");
@@ -82,6 +83,7 @@ static void share_memory(himc_model *c)
         for (int k = 0; k < HIMC_STEP_LENGTHS; k++)
             c->outputs[i].response[k] = take(&memory, padded);
     }
+    c->tubes = take_readout(&memory, padded);
     c->rays.form = take_readout(&memory, padded);
     c->rays.form.film = take(&memory, padded);
     for (int i = 0; i < HIMC_RAYS; i++) {
@@ -339,6 +341,17 @@ static void find_form(himc_model *m)
     himc_bank_readout(m->bank, m->on_q, m->on_v, m->on_force, &m->rays.form);
 }
 
+static void find_tubes(himc_model *m)
+{
+    const himc_kind *kind = m->config.shape.kind;
+    for (int i = 0; kind->tube && i < m->modes->count; i++) {
+        himc_mode mode = himc_model_mode(m, i);
+        m->on_v[i] = kind->tube(m->modes, i, &mode);
+    }
+    if (kind->tube)
+        himc_bank_readout(m->bank, NULL, m->on_v, NULL, &m->tubes);
+}
+
 // what forces at the wires' points do
 static void find_under(himc_model *m)
 {
@@ -370,6 +383,7 @@ void himc_model_find_outputs(himc_model *m, int first, int end)
             find_output(m, i);
     if (end > HIMC_PICKUPS)
         find_form(m);
+    find_tubes(m);
     find_under(m);
 }
 
@@ -499,5 +513,6 @@ void himc_model_approach(himc_model *m, himc_model *goal, double share)
         if (himc_membrane_config_has(&m->config, k))
             weigh_pressures(m, k);
     find_form(m);
+    find_tubes(m);
     find_under(m);
 }

@@ -69,7 +69,8 @@ typedef struct himc_model {
     double *per_stiffness, *per_mass; ///< of the bare modes (m/N, 1/kg)
     himc_output outputs[HIMC_OUTPUTS];
     himc_under under;
-    himc_alike rays; ///< of a kind whose rays have a form
+    himc_readout tubes; ///< of a motor, at 1 m
+    himc_alike rays;    ///< of a kind whose rays have a form
     // room for what a membrane has of so many modes: its state, and what it keeps of pure functions
     // of the model
     himc_bank *bank;

@@ -451,6 +451,7 @@ static himc_idiophone *make(const bar_row *row, const char *name, double low, do
     body->mallet = row->mallet;
     body->dampers = row->tube || row == &rows[VIBRAPHONE] ? FELT : 0;
     body->pedal_lifts = true;
+    body->discs = row == &rows[VIBRAPHONE];
     body->cased = row == &rows[GLOCKENSPIEL];
     if (row->tube)
         body->principal = low;

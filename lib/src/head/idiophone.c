@@ -302,6 +302,15 @@ pickup_weights himc_idiophone_far(const himc_pickup *pickup, const himc_head *he
                             .force = even / mode->mass};
 }
 
+double himc_idiophone_tube(const himc_modes *modes, int index, const himc_mode *mode)
+{
+    const himc_idiophone *body = modes->shape.body;
+    double omega = 2 * HIMC_PI * mode->frequency;
+    return body->discs
+               ? -omega * tube(body, &body->mode[index], omega, mode->mass) / HIMC_PICKUP_PRESSURE
+               : 0;
+}
+
 double himc_idiophone_loss(const himc_modes *modes, int index, double omega)
 {
     const himc_idiophone *body = modes->shape.body;

@@ -49,6 +49,7 @@ struct himc_idiophone {
     himc_mallet_head mallet;
     double dampers;   ///< all that its pedal lays on its modes (1/s); 0: it has no pedal
     bool pedal_lifts; ///< a pressed pedal lifts them
+    bool discs;       ///< that a motor turns in its tubes
     bool cased;       ///< no air goes around its bars
     int row;          ///< in the table of its kind, if that asks
 };
@@ -76,7 +77,7 @@ himc_idiophone *himc_list_load(const char *name, himc_error *error);
     .usual = HIMC_MODES_MAX, .fit = himc_idiophone_fit, .surface = himc_idiophone_surface,   \
     .principal = himc_idiophone_principal, .film = himc_idiophone_film,                      \
     .list = himc_idiophone_list, .shapes = himc_idiophone_shapes, .far = himc_idiophone_far, \
-    .loss = himc_idiophone_loss, .mallet = himc_idiophone_mallet
+    .loss = himc_idiophone_loss, .mallet = himc_idiophone_mallet, .tube = himc_idiophone_tube
 void himc_idiophone_fit(const himc_shape *shape, himc_head *head);
 HIMC_RT void himc_idiophone_surface(const himc_shape *shape, himc_head_frame *surface);
 HIMC_RT double himc_idiophone_principal(const himc_shape *shape);
@@ -87,6 +88,7 @@ HIMC_RT void himc_idiophone_shapes(const himc_modes *modes, double radius, doubl
 HIMC_RT pickup_weights himc_idiophone_far(const himc_pickup *pickup, const himc_head *head,
                                           const himc_modes *modes, int index,
                                           const himc_mode *mode);
+HIMC_RT double himc_idiophone_tube(const himc_modes *modes, int index, const himc_mode *mode);
 HIMC_RT double himc_idiophone_loss(const himc_modes *modes, int index, double omega);
 const himc_mallet_head *himc_idiophone_mallet(const himc_shape *shape);
 

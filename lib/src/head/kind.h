@@ -90,6 +90,9 @@ struct himc_kind {
     /// Weights of mode `index` at a pickup of kind AIR; `mode` has its frequency, decay, mass.
     pickup_weights (*far)(const himc_pickup *pickup, const himc_head *head, const himc_modes *modes,
                           int index, const himc_mode *mode);
+    /// Weight on a mode's velocity, at a pickup 1 m away, of the tube that a motor opens and shuts.
+    /// NULL: it has none.
+    double (*tube)(const himc_modes *modes, int index, const himc_mode *mode);
     /// Those at any such pickup, but for its gain. NULL: they differ in more.
     pickup_weights (*form)(const himc_mode *mode);
     /// Integrals over the outline, per radius^2, of a shape times cos and sin of kx x + ky y, k and

@@ -43,6 +43,7 @@ bool himc_head_check(const himc_head *head, himc_error *error)
                             error) &&
            himc_check_range("damp", head->damp, 0, 1, "", error) &&
            himc_check_range("dampers", head->dampers, 0, 100, "1/s", error) &&
+           himc_check_range("motor", head->motor, 0, HIMC_MOTOR_MAX, "Hz", error) &&
            himc_check_range("muffle", head->muffle, 0, 1, "", error);
 }
 

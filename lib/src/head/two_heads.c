@@ -43,10 +43,9 @@
 #define LONGER 0.8     // power of 1/S0 in the radius, ...
 #define LONGEST 1.8    // ... of 1/S1; chosen: toms of 12 and 16 inches
 #define HIGHER 0.15    // of rho c per mass, by m > 0; chosen
-#define DIPOLE 0.5  // of a point's, by what does not change the volume, while depth < 1/k; chosen
-#define LOWER 0.7   // of the lower head's sound; chosen: the drum is in its way
-#define WIRED 1.25  // of its statistical modes, which only wires shake; chosen: they are the snare
-#define UNEQUAL 0.3 // of the sound of (0, n) as a dipole; chosen
+#define DIPOLE 0.5 // of a point's, by what does not change the volume, while depth < 1/k; chosen
+#define LOWER 0.7  // of the lower head's sound; chosen: the drum is in its way
+#define WIRED 1.25 // of its statistical modes, which only wires shake; chosen: they are the snare
 
 // A stick's tip, chosen so light as it turns about its fulcrum: a heavier one sounds too low. The
 // others: chosen.
@@ -66,14 +65,15 @@ static const double spots[] = {
 // Chosen, by the distance to single strokes of free collections of samples, whose makers, mallets
 // and rooms are not known; hand drums by their usual pitch.
 const himc_shell himc_shell_rows[] = {
-    {"snare", 0.178, 0.14, 3000, 0.36, 11, 8e-7, 0, 0, 0.83, 0.306, 3, 0.31, 0.35, 250, &stick},
-    {"tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 1.18, 0.75, 1, 1, 2, 0, &stick},
-    {"concert-tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 0, 0, 0, 0, 2, 0, &stick},
-    {"bass-drum", 0.457, 0.45, 2600, 0.42, 2, 4e-7, 1, 0, 0.77, 0.857, 1, 1, 0.7, 0, &felt},
-    {"kick", 0.279, 0.45, 700, 0.45, 16, 3e-5, 0, 0, 1.2, 0.8, 1, 1, 1, 0, &himc_shell_beater},
-    {"conga", 0.14, 0.7, 8500, 0.8, 5, 6e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, &rubber},
-    {"bongo", 0.1, 0.17, 8000, 0.8, 6, 6e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, &rubber},
-    {"timbale", 0.178, 0.17, 3000, 0.36, 4, 8e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, &stick},
+    {"snare", 0.178, 0.14, 3000, 0.36, 11, 8e-7, 0, 0, 0.83, 0.306, 3, 0.31, 0.35, 250, 0.3,
+     &stick},
+    {"tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 1.18, 0.75, 1, 1, 2, 0, 0.5, &stick},
+    {"concert-tom", 0.152, 0.25, 950, 0.36, 2.5, 2.5e-6, 1.6, 1.4, 0, 0, 0, 0, 2, 0, 0, &stick},
+    {"bass-drum", 0.457, 0.45, 2600, 0.42, 2, 4e-7, 1, 0, 0.77, 0.857, 1, 1, 0.7, 0, 0.3, &felt},
+    {"kick", 0.279, 0.45, 700, 0.45, 16, 3e-5, 0, 0, 1.2, 0.8, 1, 1, 1, 0, 0.3, &himc_shell_beater},
+    {"conga", 0.14, 0.7, 8500, 0.8, 5, 6e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, 0, &rubber},
+    {"bongo", 0.1, 0.17, 8000, 0.8, 6, 6e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, 0, &rubber},
+    {"timbale", 0.178, 0.17, 3000, 0.36, 4, 8e-7, 0, 0, 0, 0, 0, 0, 0.7, 0, 0, &stick},
 };
 
 bool himc_shell_has_hoop(const himc_shell *shell)
@@ -389,7 +389,7 @@ static double pressure_of(const himc_pickup *pickup, const himc_head *head, cons
     bare.frequency = mode->frequency;
     double part = !lower ? 1 : bare.m < 0 ? WIRED : LOWER;
     if (bare.m == 0 && heads(modes->shape.shell) == 2)
-        part = UNEQUAL + (lower ? -1 : 1);
+        part = modes->shape.shell->unequal + (lower ? -1 : 1);
     if (bare.m < 0)
         part *= modes->shape.shell->rim * sqrt(bare.zero);
     return part * himc_pickup_pressure(pickup, head, modes->disc, i, &bare);

@@ -18,8 +18,9 @@ struct himc_shell {
     double deeper, slacker; ///< powers of the depth, and of 1/tension; 1/S0 and 1/S1: two_heads.c
     // of the lower head, per upper one; density 0: there is none
     double lower_tension, lower_density, lower_constant, lower_square;
-    double rim;   ///< how much louder than in a baffle statistical modes are, per root of z
-    double wires; ///< pull on its wires (m/s^2), 0: it has none
+    double rim;     ///< how much louder than in a baffle statistical modes are, per root of z
+    double wires;   ///< pull on its wires (m/s^2), 0: it has none
+    double unequal; ///< of the sound of (0, n), as a dipole; chosen
     const himc_mallet_head *mallet;
 };
 

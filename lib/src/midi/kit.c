@@ -51,7 +51,7 @@ static const gm_key keys[] = {
     {"ride cymbal 1", "ride", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"chinese cymbal", "china", BY_HAND, HIMC_SPOT_RIM, false, NULL},
     {"ride bell", "ride", BY_HAND, HIMC_SPOT_CENTER, false, NULL},
-    {"tambourine", NULL, BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
+    {"tambourine", "tambourine", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"splash cymbal", "splash", BY_HAND, HIMC_SPOT_RIM, false, NULL},
     {"cowbell", "cowbell", BY_HAND, HIMC_SPOT_NORMAL, false, NULL},
     {"crash cymbal 2", "crash-16", BY_HAND, HIMC_SPOT_RIM, false, NULL},
