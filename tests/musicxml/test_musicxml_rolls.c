@@ -248,6 +248,23 @@ static void test_an_accent_of_another_voice_is_a_louder_stroke_of_the_roll(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
 }
 
+// a hand leaves the roll for the stroke and comes back; where too little is left, it is told
+static void test_a_stroke_on_another_drum_takes_a_hand_from_a_roll(void)
+{
+#define LOW(duration) NOTE(G, 2, duration, "")
+    PLAY(BAR(1, FOUR TEMPO(80) DYNAMICS("p") C3(16, MARKS(3)) BACK REST(4) LOW(4) REST(4) LOW(4))
+             BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL_MESSAGE(6, score->stroke_count, made.text);
+    expect_text("4 of 4 notes");
+    expect_roll(0, 0, 1, 2, 2);
+    double back = stroke(2)->beat - stroke(1)->beat;
+    TEST_ASSERT_TRUE(back > 0.1 && back < 0.5);
+    expect_roll(2, 1 + back, 2 - back, 2, 2);
+    expect_roll(4, 3 + back, 1 - back, 2, 2);
+    PLAY(BAR(1, FOUR TEMPO(120) C3(4, MARKS(3)) REST(12) BACK LOW(2) LOW(2)));
+    expect_text("1 note is not played: both hands are busy (bar 1)");
+}
+
 static void test_a_louder_voice_strikes_in_a_soft_roll(void)
 {
 #define OF(voice, d)                                                                          \
@@ -302,6 +319,7 @@ int main(void)
     RUN_TEST(test_graces_are_flam_drag_and_ruff);
     RUN_TEST(test_a_grace_on_another_drum_is_a_stroke);
     RUN_TEST(test_an_accent_of_another_voice_is_a_louder_stroke_of_the_roll);
+    RUN_TEST(test_a_stroke_on_another_drum_takes_a_hand_from_a_roll);
     RUN_TEST(test_a_louder_voice_strikes_in_a_soft_roll);
     RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
     return UNITY_END();

@@ -6,7 +6,8 @@
 /// strokes through the stem are measured, as many as written; three are a roll from FAST strokes a
 /// second on, more are always one; a trill is one. A roll is cut where its dynamic bends, and where
 /// another one begins or ends: two of one length at a time are played together, each hand on its
-/// drum (planner_roll.c). Grace notes on the drum of their note are its flam, drag or ruff; others,
+/// drum (planner_roll.c). A stroke on another drum takes a hand from a roll, which goes on when it
+/// is back. Grace notes on the drum of their note are its flam, drag or ruff; others,
 /// and those before a roll, are strokes of their own before the beat. A chosen number has no
 /// published source. Invariant: each note but a tied one makes at least one stroke, or is counted
 /// as omitted.
@@ -29,6 +30,7 @@
 #define GRACE_SOFTER 0.2        // than their note
 #define GHOST_SOFTER (2 * STEP) // a note in parentheses
 #define ATTACK_TIME 0.3         // of an accent on a roll (s)
+#define BACK_TIME 0.22          // of a hand from another drum to a roll (s); chosen: 1.4 m
 #define STRUCK_TIME 0.2         // of a stroke in a roll (s); chosen: two strokes, the second softer
 #define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
@@ -328,11 +330,12 @@ static double next_cut(const shaper *s, double from, double end)
     return low < s->now->count ? fmin(s->now->levels[low].beat, end) : end;
 }
 
-// from the note's beat to `end`, cut at the points between
-static void emit_roll(shaper *s, const music_note *n, double end, double louder, midi_way way)
+// a roll, or what is left of one, cut at the points between
+static void emit_stretch(shaper *s, const music_note *n, double begin, double end, double louder,
+                         midi_way way)
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
-    double begin = n->at.beat, least = fmax(range->low, 0.1), attack = attack_beats(n, s->second);
+    double least = fmax(range->low, 0.1), attack = attack_beats(n, s->second);
     double base = way.dynamic, most = fmin(range->high, LONGEST * s->second);
     for (double at = begin; at < end - SAME && !s->failed;) {
         double to = next_cut(s, at + least, end);
@@ -350,6 +353,47 @@ static void emit_roll(shaper *s, const music_note *n, double end, double louder,
         way.extra = true;
         at = to;
     }
+}
+
+// the next stroke of a hand on another drum than a roll's, or `end`
+static double next_other(const shaper *s, const music_note *roll, double from, double end)
+{
+    const music *m = s->music;
+    for (int i = first_from(m, from); i < m->note_count && m->notes[i].at.beat < end - SAME; i++) {
+        const music_note *n = &m->notes[i];
+        bool foot = n->choice == MIDI_DRUMS && (n->key == 35 || n->key == 36 || n->key == 44);
+        if (n->at.part == s->part && !n->grace && n->length > 0 && !is_long(n) && !foot &&
+            (n->choice != roll->choice || n->key != roll->key))
+            return n->at.beat;
+    }
+    return end;
+}
+
+// A roll between strokes on other drums; returns how much of it is left (beats).
+static double emit_between(shaper *s, const music_note *n, double end, double louder, midi_way way,
+                           bool sounds)
+{
+    double least = fmax(himc_argument_find("LENGTH", "roll")->low, 0.1), left = 0;
+    for (double at = n->at.beat, to; at < end - SAME; at = to + BACK_TIME * s->second) {
+        to = next_other(s, n, at, end);
+        if (to < at + least)
+            continue;
+        left += to - at;
+        way.dynamic = at > n->at.beat ? level(s, at) : way.dynamic;
+        if (sounds)
+            emit_stretch(s, n, at, to, way.extra ? 0 : louder, way);
+        way.extra = true;
+    }
+    return left;
+}
+
+// from the note's beat to `end`; where too little would be left, the hands choose
+static void emit_roll(shaper *s, const music_note *n, double end, double louder, midi_way way)
+{
+    if (emit_between(s, n, end, louder, way, false) > (end - n->at.beat) / 2)
+        emit_between(s, n, end, louder, way, true);
+    else
+        emit_stretch(s, n, n->at.beat, end, louder, way);
 }
 
 // of the strokes behind the first
