@@ -31,6 +31,12 @@ typedef struct himc_score_line {
     double beat;               ///< of `at` (beats), 0 or more; of other lines 0
 } himc_score_line;
 
+/// Where bars begin, as a comment says: `comment bars of 3/4 from beat 2;`.
+typedef struct himc_bars {
+    double beat;
+    int beats, unit; ///< 3, 4
+} himc_bars;
+
 /// A score with its arrays, which it owns. Strokes are sorted by beat (stable).
 typedef struct himc_score {
     himc_stroke *strokes;     ///< of both hands (stroke_count), owned
@@ -48,6 +54,8 @@ typedef struct himc_score {
                   ///< stand inside a comment; lines that end with \n, owned; NULL if there are none
     int left_out; ///< of MIDI, MusicXML: notes of the part that are not played, tracks that are
                   ///< missing; of a text: commands that stand inside a comment
+    himc_bars *bars; ///< by beat (bar_count), owned; NULL: it does not say
+    int bar_count;
 } himc_score;
 
 /// Reads the file, a score, a Standard MIDI File or MusicXML (told by its first bytes), whose parts

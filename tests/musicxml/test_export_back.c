@@ -80,7 +80,8 @@ static void read_back(himc_score_maker *make)
 static bool is_same(const himc_stroke *a, const himc_stroke *b)
 {
     bool roll = a->ornament >= HIMC_ROLL_SINGLE;
-    if (fabs(a->beat - b->beat) > 2e-3 || roll != (b->ornament >= HIMC_ROLL_SINGLE))
+    double first = score->bars ? score->bars[0].beat : 0; // its page begins there
+    if (fabs(a->beat - first - b->beat) > 2e-3 || roll != (b->ornament >= HIMC_ROLL_SINGLE))
         return false;
     if (roll)
         return fabs(a->length - b->length) < 2e-3 && fabs(a->dynamic - b->dynamic) < 0.08 &&

@@ -6,6 +6,7 @@
 #include "musicxml/spell.h"
 #include "plan/score.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,10 +74,8 @@ static double value_of(const char *note, const char *end)
 }
 
 // each value is as long as the note, and the first voice's fill each bar
-static void expect_values(const char *path)
+static void expect_values(const char *path, double quarters)
 {
-    score = himc_score_load(path, &error);
-    write_score();
     for (const char *bar = text.bytes; (bar = strstr(bar, "<measure number"));) {
         const char *next = strstr(bar, "</measure>");
         double all = 0;
@@ -85,14 +84,14 @@ static void expect_values(const char *path)
             const char *voice = strstr(note, "<voice>1"), *chord = strstr(note, "<chord/>");
             long duration = number_in(note, end, "<duration>", 0);
             const char *whole = strstr(note, "<rest measure");
-            double value = whole && whole < end ? 4.0 * MUSIC_TICKS : value_of(note, end);
+            double value = whole && whole < end ? quarters * MUSIC_TICKS : value_of(note, end);
             if (duration > 0)
                 TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-6, value, (double)duration, path);
             if (duration > 0 && voice && voice < end && !(chord && chord < end))
                 all += value;
             note = end;
         }
-        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-6, 4.0 * MUSIC_TICKS, all, path);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-6, quarters * MUSIC_TICKS, all, path);
         bar = next;
     }
     tearDown();
@@ -100,11 +99,60 @@ static void expect_values(const char *path)
 
 static void test_values_are_as_long_as_notes_and_fill_each_bar(void)
 {
-    expect_values("patches/improvisation.txt");
-    expect_values("patches/pieces/kit.txt");
-    expect_values("patches/pieces/grain.txt");
-    expect_values("patches/pieces/rudiments.txt");
-    expect_values("patches/pieces/stations.txt");
+    static const char *const pieces[] = {"patches/improvisation.txt", "patches/pieces/kit.txt",
+                                         "patches/pieces/grain.txt", "patches/pieces/rudiments.txt",
+                                         "patches/pieces/stations.txt"};
+    for (size_t i = 0; i < sizeof pieces / sizeof *pieces; i++) {
+        score = himc_score_load(pieces[i], &error);
+        write_score();
+        expect_values(pieces[i], 4);
+    }
+}
+
+// `comment bars of 3/4`: in any metre, with strokes and rolls anywhere
+static void test_bars_are_those_of_the_comments(void)
+{
+    static const struct {
+        const char *metre;
+        double quarters;
+    } metres[] = {{"3/4", 3},   {"6/8", 3},    {"2/4", 2},  {"5/8", 2.5}, {"7/8", 3.5},
+                  {"9/8", 4.5}, {"6/16", 1.5}, {"12/8", 6}, {"5/4", 5},   {"3/2", 6}};
+    for (size_t i = 0; i < sizeof metres / sizeof *metres; i++) {
+        char words[4096], time[100];
+        int size = snprintf(words, sizeof words,
+                            "drum k; tempo 80; comment bars of %s from beat 2;"
+                            "roll 10 1.5 single p p normal; roll 20 7 single p p normal;",
+                            metres[i].metre);
+        for (int k = 0; k < 24; k++)
+            size +=
+                snprintf(words + size, sizeof words - (size_t)size, "stroke %.9g right legato f;",
+                         k < 12 ? 2 + 0.5 * k + k % 3 / 6.0 : 30 + k);
+        parse(words);
+        snprintf(time, sizeof time, "<time><beats>%d</beats><beat-type>%s</beat-type></time>",
+                 atoi(metres[i].metre), strchr(metres[i].metre, '/') + 1);
+        TEST_ASSERT_EQUAL_MESSAGE(1, count_of(time), metres[i].metre);
+        TEST_ASSERT_EQUAL_MESSAGE((int)ceil(51.001 / metres[i].quarters), count_of("<measure"),
+                                  metres[i].metre);
+        expect_values(metres[i].metre, metres[i].quarters);
+    }
+}
+
+// a pickup, a change of metre, and a first stroke before the first bar
+static void test_a_short_bar_is_a_pickup(void)
+{
+    parse("drum k; comment bars of 4/4 from beat 2; comment bars of 4/4 from beat 3;"
+          "comment bars of 3/4 from beat 11; comment bars of 3/5 from beat 12;"
+          "stroke 2 right legato f; stroke 3 right legato f; stroke 11 right legato f;");
+    TEST_ASSERT_EQUAL(1, count_of("<measure number=\"0\" implicit=\"yes\">"));
+    TEST_ASSERT_EQUAL(1, count_of("implicit"));
+    TEST_ASSERT_EQUAL(1, count_of("<measure number=\"3\"><attributes><time><beats>3<"));
+    TEST_ASSERT_EQUAL(4, count_of("<measure"));
+    tearDown();
+    parse("drum k; comment bars of 3/4 from beat 2; stroke 1 right legato f;"
+          "stroke 2 right legato f;");
+    TEST_ASSERT_EQUAL(2, count_of("<measure"));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2, notes.notes[0].beat);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3, notes.notes[1].beat);
 }
 
 static void test_tuplets_have_brackets_and_ratios(void)
@@ -180,6 +228,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_values_are_as_long_as_notes_and_fill_each_bar);
+    RUN_TEST(test_bars_are_those_of_the_comments);
+    RUN_TEST(test_a_short_bar_is_a_pickup);
     RUN_TEST(test_tuplets_have_brackets_and_ratios);
     RUN_TEST(test_dots_and_syncopations_are_one_note);
     RUN_TEST(test_a_flam_is_slashed_and_a_ruff_is_beamed);

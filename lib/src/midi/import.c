@@ -624,6 +624,21 @@ static void put_tempi(himc_text_lines *t, const midi_file *file, double last, do
     }
 }
 
+// where bars begin, if not after as many beats as before
+static void put_bars(himc_text_lines *t, const midi_file *file, double last, double lead)
+{
+    const midi_bar *from = NULL;
+    for (int i = 0; i < file->bar_count && file->bars[i].beat <= last; i++) {
+        const midi_bar *b = &file->bars[i];
+        if (from && from->beats == b->beats && from->unit == b->unit &&
+            fabs(remainder(b->beat - from->beat, 4.0 * b->beats / b->unit)) < 1e-6)
+            continue;
+        himc_text_print(t, "comment bars of %d/%d from beat %.9g;\n", b->beats, b->unit,
+                        b->beat + lead);
+        from = b;
+    }
+}
+
 static void put_strokes(himc_text_lines *t, const midi_part *part, double lead)
 {
     const midi_bar *now = NULL;
@@ -661,7 +676,9 @@ static bool write_score(midi_score *made, const midi_file *file, midi_part *part
     const char *line = said.failed ? "" : said.bytes;
     for (const char *end; (end = strchr(line, '\n')); line = end + 1)
         himc_text_print(&score, "comment %.*s;\n", (int)(end - line), line);
-    himc_text_print(&score, "comment beat 0 of the file is beat %g here;\n\n", lead);
+    himc_text_print(&score, "comment beat 0 of the file is beat %g here;\n", lead);
+    put_bars(&score, file, last, lead);
+    himc_text_print(&score, "\n");
     put_heads(&score, part, mallets, setup);
     put_tempi(&score, file, last, lead);
     put_strokes(&score, part, lead);

@@ -555,23 +555,26 @@ static bool place_bars(midi_file *file, const reader *r)
 {
     const int most = 60000; // chosen: a day of music
     double last = file->note_count > 0 ? file->notes[file->note_count - 1].beat : 0;
-    double beat = 0, length = 4;
+    midi_bar bar = {.beats = 4, .unit = 4};
+    double length = 4;
     int room = 0;
-    for (const event *e = r->events; beat <= last && file->bar_count < most;) {
+    for (const event *e = r->events; bar.beat <= last && file->bar_count < most;) {
         // a meter that changes within a bar begins another one
-        double next = beat + length;
-        for (; e < r->events + r->count && (double)e->tick / r->quarter < next - 1e-6; e++)
+        midi_bar after = bar;
+        after.beat += length;
+        for (; e < r->events + r->count && (double)e->tick / r->quarter < after.beat - 1e-6; e++)
             if (e->kind == METER) {
                 double at = (double)e->tick / r->quarter;
+                bool inside = at > bar.beat + 1e-6;
                 length = 4.0 * e->first / (1 << e->second);
-                next = at > beat + 1e-6 ? at : beat + length;
+                after = (midi_bar){inside ? at : bar.beat + length, e->first, 1 << e->second, ""};
+                bar = inside ? bar : (midi_bar){bar.beat, after.beats, after.unit, ""};
             }
         if (!himc_array_grow(&file->bars, file->bar_count, &room, sizeof *file->bars, r->error))
             return false;
-        midi_bar *bar = &file->bars[file->bar_count++];
-        bar->beat = beat;
-        himc_format(bar->number, sizeof bar->number, "%d", file->bar_count);
-        beat = next;
+        himc_format(bar.number, sizeof bar.number, "%d", file->bar_count + 1);
+        file->bars[file->bar_count++] = bar;
+        bar = after;
     }
     return true;
 }

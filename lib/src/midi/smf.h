@@ -55,6 +55,7 @@ typedef struct midi_note {
 /// The beginning of a bar.
 typedef struct midi_bar {
     double beat;
+    int beats, unit; ///< of its metre, "3/4"; it may be shorter
     char number[12];
 } midi_bar;
 

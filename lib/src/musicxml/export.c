@@ -61,6 +61,8 @@ typedef struct exporter {
     himc_error *error;
 } exporter;
 
+#define NEAR 1e-6 // (beats)
+
 static void lose(exporter *x, int what, double beat)
 {
     if (x->lost[what]++ == 0 || beat < x->first[what])
@@ -335,6 +337,73 @@ static bool follow_changes(exporter *x, const himc_score *score, int *change, do
     return true;
 }
 
+// the first bar that is written: that of the comments which has the first stroke
+static double find_first(const himc_score *score)
+{
+    const himc_bars *b = score->bars;
+    double first = b ? b->beat : 0;
+    while (b && first > score->strokes[0].beat + NEAR)
+        first -= 4.0 * b->beats / b->unit;
+    return first;
+}
+
+static double later(double beat, double by)
+{
+    return fmax(beat - by, 0);
+}
+
+// the piece without the beats before its first bar
+static void move(exporter *x, double first)
+{
+    midi_file *f = x->file;
+    double seconds = first > 0 ? himc_score_seconds(f->tempi, f->tempo_count, first)
+                               : first * 60 / f->tempi[0].bpm;
+    for (int i = 0; i < f->note_count; i++) {
+        f->notes[i].beat = later(f->notes[i].beat, first);
+        f->notes[i].seconds = later(f->notes[i].seconds, seconds);
+        f->notes[i].off = later(f->notes[i].off, seconds);
+    }
+    for (int i = 0; i < f->order_count; i++) {
+        f->orders[i].beat = later(f->orders[i].beat, first);
+        f->orders[i].seconds = later(f->orders[i].seconds, seconds);
+    }
+    int count = 0;
+    for (int i = 0; i < f->tempo_count; i++) {
+        f->tempi[i].beat = i > 0 ? later(f->tempi[i].beat, first) : 0;
+        count -= count > 0 && f->tempi[i].beat == 0;
+        f->tempi[count++] = f->tempi[i];
+    }
+    f->tempo_count = count;
+    for (int i = 0; i < LOSSES; i++)
+        x->first[i] = later(x->first[i], first);
+    x->end -= first;
+}
+
+// bars as the comments say, else of 4/4; false without memory
+static bool list_bars(exporter *x, const himc_score *score, double first)
+{
+    static const himc_bars usual = {0, 4, 4};
+    const himc_bars *b = score->bars ? score->bars : &usual, *last = b + score->bar_count - 1;
+    midi_file *f = x->file;
+    int room = 0;
+    double beat = 0, next;
+    for (; (beat < x->end || f->bar_count == 0) && f->bar_count <= MUSIC_BARS_MAX; beat = next) {
+        while (b < last && b[1].beat - first < beat + NEAR)
+            b++;
+        next = beat + 4.0 * b->beats / b->unit;
+        next = b < last ? fmin(next, b[1].beat - first) : next;
+        if (!himc_array_grow(&f->bars, f->bar_count + 1, &room, sizeof *f->bars, x->error))
+            return false;
+        f->bars[f->bar_count++] = (midi_bar){beat, b->beats, b->unit, ""};
+        f->bars[f->bar_count] = (midi_bar){.beat = next};
+    }
+    // a short one is before the first
+    int number = himc_music_is_short(f->bars) && f->bar_count > 1 ? 0 : 1;
+    for (int i = 0; i < f->bar_count; i++)
+        himc_format(f->bars[i].number, sizeof f->bars[i].number, "%d", number + i);
+    return true;
+}
+
 // what a file of that kind can hold
 static bool fits(const exporter *x)
 {
@@ -346,7 +415,8 @@ static bool fits(const exporter *x)
                                   "tempo %g at beat %g, expected %.4g beats per minute or more in "
                                   "MIDI",
                                   f->tempi[i].bpm, f->tempi[i].beat, slowest);
-    double bars = ceil(x->end / MUSIC_BAR);
+    const midi_bar *bar = f->bars + f->bar_count - 1;
+    double bars = f->bar_count + fmax(0, ceil((x->end - bar[1].beat) * bar->unit / 4 / bar->beats));
     return x->midi || bars <= MUSIC_BARS_MAX ||
            himc_error_set(x->error, "it ends in bar %.0f, expected up to %d bars of MusicXML", bars,
                           MUSIC_BARS_MAX);
@@ -367,14 +437,16 @@ static char *tell(const exporter *x)
     himc_text_lines said = {0};
     for (int i = 0; i < LINES; i++) {
         const char *verb = x->lost[i] == 1 ? "is" : "are";
-        int bar = 1 + (int)(x->first[i] / MUSIC_BAR);
+        const midi_bar *bar = x->file->bars + x->file->bar_count - 1;
+        while (bar > x->file->bars && bar->beat > x->first[i] + NEAR)
+            bar--;
         if (x->lost[i] > 0 && i < COMMANDS)
-            himc_text_print(&said, "%d %s (bar %d) %s %s\n", x->lost[i], what[i][x->lost[i] > 1],
-                            bar, verb, what[i][2]);
+            himc_text_print(&said, "%d %s (bar %s) %s %s\n", x->lost[i], what[i][x->lost[i] > 1],
+                            bar->number, verb, what[i][2]);
         else if (x->lost[i] > 0)
-            himc_text_print(&said, "%d change%s by %s (bar %d) %s not written\n", x->lost[i],
-                            x->lost[i] == 1 ? "" : "s", himc_command_table(i - COMMANDS)->name, bar,
-                            verb);
+            himc_text_print(&said, "%d change%s by %s (bar %s) %s not written\n", x->lost[i],
+                            x->lost[i] == 1 ? "" : "s", himc_command_table(i - COMMANDS)->name,
+                            bar->number, verb);
     }
     const char *before = "before the piece, not written: ";
     for (int i = LINES; i < LOSSES; i++)
@@ -417,7 +489,10 @@ bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_
         good = add_tuning(x, &x->head[i], x->head[i].key);
     if (good && file->note_count == 0)
         good = himc_error_set(error, "no stroke that notation has, expected a score with strokes");
-    good = good && fits(x);
+    double first = good ? find_first(score) : 0;
+    if (good)
+        move(x, first);
+    good = good && list_bars(x, score, first) && fits(x);
     if (good)
         file->said = tell(x);
     free(x);

@@ -5,11 +5,14 @@
 /// where drums of different dynamics sound at once, as a kit's do, one mark holds: its loudest.
 #include "musicxml/marks.h"
 
+#include "musicxml/spell.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #define LEAST_STROKES 3
-#define MOST_STEP 1.5 // from stroke to stroke; chosen: more is subito
+#define MOST_STEP 1.5               // from stroke to stroke; chosen: more is subito
+#define MOST_REST (2 * MUSIC_TICKS) // the same
 
 /// What begins at one time.
 typedef struct group {
@@ -23,7 +26,6 @@ typedef struct group {
 typedef struct marker {
     const music_item *items;
     int count, made;
-    long bar;
     music_mark *marks;
 } marker;
 
@@ -74,7 +76,7 @@ static int hairpin_end(const marker *m, const group *from)
         group next = group_at(m, last.end);
         double rise = next.level - last.level;
         if (next.mixed || rise == 0 || rise * way < 0 || fabs(rise) > MOST_STEP ||
-            next.tick - last.tick > m->bar / 2)
+            next.tick - last.tick > MOST_REST)
             break;
         way = rise;
         last = next;
@@ -105,14 +107,22 @@ static int by_tick(const void *a, const void *b)
     return x->kind != y->kind ? (x->kind > y->kind) - (x->kind < y->kind) : (x > y) - (x < y);
 }
 
-int himc_music_marks(const music_item *items, int count, long bar, music_mark *marks)
+long himc_music_bar_end(const midi_file *file, const midi_bar **bar, long tick)
 {
-    marker m = {.items = items, .count = count, .bar = bar, .marks = marks};
+    while (*bar + 1 < file->bars + file->bar_count && lround((*bar)[1].beat * MUSIC_TICKS) <= tick)
+        ++*bar;
+    return lround((*bar)[1].beat * MUSIC_TICKS);
+}
+
+int himc_music_marks(const music_item *items, int count, const midi_file *file, music_mark *marks)
+{
+    marker m = {.items = items, .count = count, .marks = marks};
+    const midi_bar *bar = file->bars;
     int until = -1, mixed = -1; // the first item of a hairpin's last group; of a bar
     long bar_end = 0;
     for (group g = group_at(&m, 0); g.first < count; g = group_at(&m, g.end)) {
         if (g.tick >= bar_end) {
-            bar_end = (g.tick / bar + 1) * bar;
+            bar_end = himc_music_bar_end(file, &bar, g.tick);
             mixed = mixed_step(&m, g.first, bar_end);
         }
         bool inside = g.first < until, ends = g.first == until;

@@ -25,8 +25,9 @@ typedef struct music_mark {
 
 #define MUSIC_MARKS_OF(items) (8 * (items)) ///< at most
 
-/// Writes the marks of a part's items (`count`), which are in the order of time, with bars of so
-/// many ticks; returns how many.
-int himc_music_marks(const music_item *items, int count, long bar, music_mark *marks);
+/// Writes the marks of a part's items (`count`), which are in the order of time; returns how many.
+int himc_music_marks(const music_item *items, int count, const midi_file *file, music_mark *marks);
+/// The end of the bar (ticks) that a time is in; `bar`, from the first on, goes on to it.
+long himc_music_bar_end(const midi_file *file, const midi_bar **bar, long tick);
 
 #endif

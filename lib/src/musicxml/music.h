@@ -9,13 +9,13 @@
 #define MUSIC_MADE_MAX 400000              ///< notes, signs, with repeats; more than a score has
 #define MUSIC_UNSAID (-1.0)                ///< a dynamic
 #define MUSIC_LINES_MAX 9                  ///< of pedals that run at once, by their numbers 1 .. 9
-#define MUSIC_BAR 4.0                      ///< quarter notes of a bar that is written
 #define MUSIC_GRACE_TIME 0.04              ///< (s) between strokes of a ruff in MIDI; chosen
 #define MUSIC_BYTES_MAX ((size_t)64 << 20) ///< of a file, also unpacked; chosen: a long symphony
 
 typedef struct music_bar {
     double length;   ///< (beats); a pickup is shorter
     bool sounds;     ///< a part has a note in it
+    int beats, unit; ///< of the metre
     char number[12]; ///< as printed
     bool forward, backward, segno, coda, to_coda, fine, da_capo, dal_segno;
     int times;        ///< of `backward`, 2 by default

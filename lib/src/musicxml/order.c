@@ -179,6 +179,8 @@ static bool place_bars(const music *m, order *o, midi_file *file)
         const music_bar *b = &m->bars[o->played[k]];
         midi_bar *bar = &file->bars[file->bar_count++];
         memcpy(bar->number, b->number, sizeof bar->number);
+        bar->beats = b->beats;
+        bar->unit = b->unit;
         bar->beat = o->begin[k] = beat;
         beat += b->length;
     }

@@ -44,7 +44,8 @@ typedef struct reader {
     int lines[STAVES];
     char clef[STAVES];
     double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
-    double time;                     ///< length of a bar (beats)
+    double time;                     ///< length of a bar (beats) ...
+    int beats, unit;                 ///< ... and its metre, as far as a score can say it
     int transpose;                   ///< (semitones)
     bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
     int head;                        ///< the first note of a chord, -1: it is left out
@@ -783,8 +784,11 @@ static void read_attributes(reader *r, const xml_node *attributes)
         n = n ? n + 1 : NULL;
     }
     double unit = himc_xml_number(time, "beat-type", 4);
-    if (beats > 0 && beats < 1000 && unit >= 1)
-        r->time = 4 * beats / unit;
+    if (!(beats > 0 && beats < 1000 && unit >= 1 && unit <= 64))
+        return;
+    r->time = 4 * beats / unit;
+    r->beats = (int)lround(beats);
+    r->unit = (int)lround(unit);
 }
 
 // as it is printed, a word of a comment
@@ -858,6 +862,8 @@ static void read_measure(reader *r, const xml_node *measure)
     else if (sounds)
         bar->length = r->end;
     bar->sounds |= sounds;
+    bar->beats = r->beats;
+    bar->unit = r->unit;
 }
 
 static bool read_part(reader *r, const xml_node *part)
@@ -873,7 +879,7 @@ static bool read_part(reader *r, const xml_node *part)
     memset(r->clef, 0, sizeof r->clef);
     r->divisions = 1;
     r->transpose = r->wavy = r->repeated = 0;
-    r->time = 4;
+    r->time = r->beats = r->unit = 4;
     r->bar = 0;
     r->head = -1;
     const xml_node *measure = himc_xml_child(part, "measure");

@@ -1,9 +1,10 @@
 /// spell.c: from times to note values: dots, ties, tuplets and beams, as engravers write them.
 ///
-/// A bar is halved until a part of it is one note, or four units of which its notes have 1 to 4
-/// each (dotted notes and syncopations, Gould 2011), or a tuplet. A beat in which that is not
-/// possible keeps its exact times, with rough values. Rests do not cross the middle of a part.
-/// Beams join what is in one beat or one tuplet.
+/// A bar is parts of four quarter notes, two, one, or of three (units of 3/4, eighths of 6/8). Such
+/// a part, but for thirds of three, is halved until a part of it is one note, or four units of
+/// which its notes have 1 to 4 each (dotted notes and syncopations, Gould 2011), or a tuplet. A
+/// beat in which that is not possible keeps its exact times, with rough values. Rests do not cross
+/// the middle of a part. Beams join what is in one beat or one tuplet.
 #include "musicxml/spell.h"
 
 #include <stdlib.h>
@@ -122,6 +123,18 @@ static void put_tuplet(speller *p, long begin, long length, int actual)
     p->piece[first].first = p->piece[p->count - 1].last = true;
 }
 
+// as it is, with values that are near
+static void put_rough(speller *p, long begin, long length, int before)
+{
+    const music_segment *s = segment_at(p, begin);
+    p->count = before;
+    for (long at = begin; at < begin + length; s++) {
+        long to = s->to < begin + length ? s->to : begin + length;
+        put(p, s, (music_piece){.from = at, .to = to, .type = near_type(to - at), .rough = true});
+        at = to;
+    }
+}
+
 // false if it has no values
 static bool spell(speller *p, long begin, long length)
 {
@@ -144,15 +157,38 @@ static bool spell(speller *p, long begin, long length)
     int before = p->count;
     if (spell(p, begin, length / 2) && spell(p, begin + length / 2, length / 2))
         return true;
-    if (length != BEAT)
-        return false;
-    p->count = before;
-    for (long at = begin; at < begin + BEAT; s++) {
-        long to = s->to < begin + BEAT ? s->to : begin + BEAT;
-        put(p, s, (music_piece){.from = at, .to = to, .type = near_type(to - at), .rough = true});
+    if (length == BEAT)
+        put_rough(p, begin, length, before);
+    return length == BEAT;
+}
+
+static void spell_part(speller *p, long begin, long length)
+{
+    int before = p->count;
+    if (!spell(p, begin, length))
+        put_rough(p, begin, length, before);
+}
+
+// a part of three units, whose length is that of a dotted value
+static void spell_three(speller *p, long begin, long length)
+{
+    const music_segment *s = segment_at(p, begin);
+    const long unit = length / 3, end = begin + length;
+    if (s->to < end && !fits(p, begin, length, unit)) {
+        for (long at = begin; at < end; at += unit)
+            spell_part(p, at, unit);
+        return;
+    }
+    for (long at = begin; at < end; s++) {
+        long to = s->to < end ? s->to : end;
+        bool rest = s->note < 0 && to - at < length;
+        while (rest && at + unit < to) { // each beat has its own
+            put_units(p, s, at, at + unit, unit, type_of(unit), (music_piece){0});
+            at += unit;
+        }
+        put_units(p, s, at, to, unit, type_of(unit), (music_piece){0});
         at = to;
     }
-    return true;
 }
 
 static bool is_beamed(const music_piece *p)
@@ -160,13 +196,15 @@ static bool is_beamed(const music_piece *p)
     return p->note >= 0 && p->type >= EIGHTH;
 }
 
-static void add_beams(music_piece *piece, int count)
+static void add_beams(music_piece *piece, int count, long beat)
 {
+    const long begin = piece[0].from;
     for (int i = 0; i < count;) {
         int end = i + 1;
         while (end < count && is_beamed(&piece[i]) && is_beamed(&piece[end]) && !piece[end].first &&
                !piece[end - 1].last &&
-               (piece[i].actual > 0 || piece[end].from / BEAT == piece[i].from / BEAT))
+               (piece[i].actual > 0 ||
+                (piece[end].from - begin) / beat == (piece[i].from - begin) / beat))
             end++;
         for (int k = i; k < end && end - i > 1; k++)
             for (int level = 0; level < piece[k].type - EIGHTH + 1 && level < 6; level++) {
@@ -182,12 +220,36 @@ static void add_beams(music_piece *piece, int count)
     }
 }
 
-int himc_music_spell(const music_segment *segments, int count, music_piece *pieces)
+// the next part of the bar: `three` of one unit, or halves of halves
+static long part_at(const speller *p, long at, long end, long beat, bool *three)
+{
+    long length = 4 * BEAT;
+    *three = beat != BEAT && at + beat <= end;
+    if (*three) {
+        for (length = beat; at + 2 * length <= end && segment_at(p, at)->to >= at + 2 * length;)
+            length *= 2;
+        return length;
+    }
+    while (length > end - at && length > SHORTEST)
+        length /= 2;
+    *three = 2 * (end - at) == 3 * length;
+    return *three || length > end - at ? end - at : length;
+}
+
+int himc_music_spell(const music_segment *segments, int count, long beat, music_piece *pieces)
 {
     speller p = {segments, count, pieces, 0};
-    const long begin = segments[0].from;
-    if (!spell(&p, begin, 4 * BEAT))
-        return 0;
-    add_beams(pieces, p.count);
+    const long end = segments[count - 1].to;
+    for (long at = segments[0].from, length; at < end; at += length) {
+        bool three;
+        length = part_at(&p, at, end, beat, &three);
+        if (three)
+            spell_three(&p, at, length);
+        else if (length < SHORTEST)
+            put_rough(&p, at, length, p.count);
+        else
+            spell_part(&p, at, length);
+    }
+    add_beams(pieces, p.count, beat);
     return p.count;
 }

@@ -25,14 +25,14 @@ typedef struct music_piece {
     const char *beam[6]; ///< "begin" and so on, from the first; NULL: none
 } music_piece;
 
-/// At most: 32 parts of a bar with 7 units each, and what has rough values.
-#define MUSIC_PIECES_OF(segments) (2 * (segments) + 256)
+/// At most: 8 parts of a quarter note with 7 units each, and what has rough values.
+#define MUSIC_PIECES_OF(segments, quarters) (2 * (segments) + 64 * (size_t)(quarters) + 256)
 
 /// The time (ticks) on the grid of notes and tuplets that is meant, if one is near.
 long himc_music_snap(long tick);
 
-/// Writes the pieces of the segments (`count`) of a bar of 4/4; returns how many. `pieces` has room
-/// for MUSIC_PIECES_OF(count).
-int himc_music_spell(const music_segment *segments, int count, music_piece *pieces);
+/// Writes the pieces of the segments (`count`) of a bar; returns how many. `beat`: a quarter note,
+/// else three parts, as in 6/8 (ticks). `pieces` has room for MUSIC_PIECES_OF(count, its length).
+int himc_music_spell(const music_segment *segments, int count, long beat, music_piece *pieces);
 
 #endif

@@ -1,4 +1,4 @@
-/// write.c: notes as MusicXML 4.0 for notation programs, in bars of 4/4.
+/// write.c: notes as MusicXML 4.0 for notation programs.
 ///
 /// Time counts in ticks of a quarter note. What is struck at once is a chord; what overlaps else,
 /// and the feet of a kit, stand in voices of their own. A note lasts up to the next one of its
@@ -19,7 +19,6 @@
 #include <string.h>
 
 #define TICKS MUSIC_TICKS
-#define BAR ((int)MUSIC_BAR * TICKS)
 #define VOICES 4
 #define FOOT 1 // the voice of feet
 
@@ -42,7 +41,8 @@ typedef struct writer {
     music_piece *pieces;
     staff staves[MIDI_CHOICES], *now;
     int staff_count;
-    long end; ///< (ticks)
+    const midi_bar *bar; ///< the present one, ...
+    long begin, end;     ///< ... (ticks)
 } writer;
 
 #define PUT(w, ...) himc_text_print((w)->out, __VA_ARGS__)
@@ -278,12 +278,12 @@ static bool is_ramp(const writer *w, int i)
 }
 
 // a number, or a word where it moves; each has its exact tempo
-static void put_tempi(const writer *w, long begin, long *at)
+static void put_tempi(const writer *w, long *at)
 {
     for (int i = 0; i < w->file->tempo_count && w->now == w->staves; i++) {
         const himc_tempo_change *t = &w->file->tempi[i];
         long tick = ticks_of(t->beat);
-        if (tick < begin || tick >= begin + BAR)
+        if (tick < w->begin || tick >= w->end)
             continue;
         move(w, at, tick);
         bool moves = is_ramp(w, i);
@@ -305,7 +305,7 @@ static void put_tempi(const writer *w, long begin, long *at)
     }
 }
 
-static void put_orders(const writer *w, long begin, long *at)
+static void put_orders(const writer *w, long *at)
 {
     static const char *const drums[] = {"", "low ", "second ", "third ", "high "};
     static const char *const pitch[] = {"C",  "C#", "D",  "Eb", "E",  "F",
@@ -313,7 +313,7 @@ static void put_orders(const writer *w, long begin, long *at)
     for (int i = 0; i < w->file->order_count; i++) {
         const midi_order *o = &w->file->orders[i];
         long tick = ticks_of(o->beat), end = end_of(w, o);
-        bool here = tick >= begin && tick < begin + BAR;
+        bool here = tick >= w->begin && tick < w->end;
         char words[40];
         if (o->choice != w->now->choice)
             continue;
@@ -330,7 +330,7 @@ static void put_orders(const writer *w, long begin, long *at)
                       o->kind != MIDI_MUFFLE ? words
                       : o->value             ? "coperto"
                                              : "scoperto");
-        if (o->glides && end > begin && end <= begin + BAR)
+        if (o->glides && end > w->begin && end <= w->end)
             put_gliss(w, at, end, i, "");
     }
 }
@@ -366,13 +366,13 @@ static void put_mark(writer *w, long *at, const music_mark *m)
     }
 }
 
-static void put_marks(writer *w, long begin, long *at)
+static void put_marks(writer *w, long *at)
 {
-    for (; w->now->mark < w->now->mark_count && w->now->marks[w->now->mark].tick < begin + BAR;
+    for (; w->now->mark < w->now->mark_count && w->now->marks[w->now->mark].tick < w->end;
          w->now->mark++)
         put_mark(w, at, &w->now->marks[w->now->mark]);
     // what ends with the bar is its
-    for (; w->now->mark < w->now->mark_count && w->now->marks[w->now->mark].tick == begin + BAR &&
+    for (; w->now->mark < w->now->mark_count && w->now->marks[w->now->mark].tick == w->end &&
            w->now->marks[w->now->mark].ends;
          w->now->mark++)
         put_mark(w, at, &w->now->marks[w->now->mark]);
@@ -381,9 +381,9 @@ static void put_marks(writer *w, long begin, long *at)
 // bars and parts
 
 // what a voice has in a bar; returns how many segments
-static int list_segments(const writer *w, int voice, int first, long begin)
+static int list_segments(const writer *w, int voice, int first)
 {
-    long at = begin, end = begin + BAR;
+    long at = w->begin, end = w->end;
     int count = 0;
     for (int k = first; k < w->now->count && w->now->items[k].begin < end; k++) {
         const music_item *i = &w->now->items[k];
@@ -402,11 +402,12 @@ static int list_segments(const writer *w, int voice, int first, long begin)
 
 static void put_rest(const writer *w, const music_piece *piece, int voice)
 {
-    bool bar = piece->to - piece->from == BAR;
+    bool bar = piece->to - piece->from == w->end - w->begin;
     PUT(w, "<note><rest%s/><duration>%ld</duration>", bar ? " measure=\"yes\"" : "",
         piece->to - piece->from);
     put_voice_number(w, voice);
-    put_value(w, piece);
+    if (!bar)
+        put_value(w, piece);
     put_staff(w);
     if (piece->first || piece->last)
         PUT(w, "<notations><tuplet type=\"%s\"/></notations>", piece->first ? "start" : "stop");
@@ -414,10 +415,12 @@ static void put_rest(const writer *w, const music_piece *piece, int voice)
 }
 
 // rests are written where they have values in the first voice, and in tuplets
-static void put_voice(const writer *w, int voice, int first, long begin)
+static void put_voice(const writer *w, int voice, int first)
 {
-    long at = begin;
-    int count = himc_music_spell(w->segments, list_segments(w, voice, first, begin), w->pieces);
+    long at = w->begin;
+    bool three = w->bar->unit > 4 && w->bar->beats % 3 == 0;
+    long beat = three ? 12 * TICKS / w->bar->unit : TICKS;
+    int count = himc_music_spell(w->segments, list_segments(w, voice, first), beat, w->pieces);
     for (const music_piece *p = w->pieces; p < w->pieces + count; p++) {
         if (p->note < 0 && (p->rough || voice > 0) && p->actual == 0)
             continue;
@@ -432,20 +435,24 @@ static void put_voice(const writer *w, int voice, int first, long begin)
                 put_note(w, &w->now->items[k], p);
         at = p->to;
     }
-    move(w, &at, begin + BAR);
-    PUT(w, "<backup><duration>%d</duration></backup>\n", BAR);
+    move(w, &at, w->end);
+    PUT(w, "<backup><duration>%ld</duration></backup>\n", w->end - w->begin);
 }
 
 static void put_attributes(writer *w)
 {
     char number[20] = "";
-    PUT(w,
-        "<attributes><divisions>%d</divisions><time><beats>4</beats><beat-type>4</beat-type>"
-        "</time>",
-        TICKS);
-    if (w->staff_count > 1)
+    const midi_bar *b = w->bar;
+    bool first = b == w->file->bars;
+    if (!first && b->beats == b[-1].beats && b->unit == b[-1].unit)
+        return;
+    PUT(w, "<attributes>");
+    if (first)
+        PUT(w, "<divisions>%d</divisions>", TICKS);
+    PUT(w, "<time><beats>%d</beats><beat-type>%d</beat-type></time>", b->beats, b->unit);
+    if (first && w->staff_count > 1)
         PUT(w, "<staves>%d</staves>", w->staff_count);
-    for (int i = 0; i < w->staff_count; i++) {
+    for (int i = 0; i < w->staff_count && first; i++) {
         midi_choice choice = w->staves[i].choice;
         if (w->staff_count > 1)
             himc_format(number, sizeof number, " number=\"%d\"", i + 1);
@@ -458,36 +465,39 @@ static void put_attributes(writer *w)
 }
 
 // a bar of a staff, and back to its beginning
-static void put_bar(writer *w, long begin)
+static void put_bar(writer *w)
 {
-    long at = begin;
+    long at = w->begin;
     staff *now = w->now;
-    if (begin == 0 && now->choice == MIDI_TIMPANI) // what is short is not damped
-        put_words(w, &at, begin, "sempre l.v.");
-    put_tempi(w, begin, &at);
-    put_orders(w, begin, &at);
-    put_marks(w, begin, &at);
-    move(w, &at, begin);
+    if (at == 0 && now->choice == MIDI_TIMPANI) // what is short is not damped
+        put_words(w, &at, at, "sempre l.v.");
+    put_tempi(w, &at);
+    put_orders(w, &at);
+    put_marks(w, &at);
+    move(w, &at, w->begin);
     for (int voice = 0; voice < VOICES; voice++) {
         bool used = voice == 0;
-        for (int k = now->first; k < now->count && now->items[k].begin < begin + BAR; k++)
-            used |= now->items[k].voice == voice && now->items[k].end > begin;
+        for (int k = now->first; k < now->count && now->items[k].begin < w->end; k++)
+            used |= now->items[k].voice == voice && now->items[k].end > w->begin;
         if (used)
-            put_voice(w, voice, now->first, begin);
+            put_voice(w, voice, now->first);
     }
-    while (now->first < now->count && now->items[now->first].end <= begin + BAR)
+    while (now->first < now->count && now->items[now->first].end <= w->end)
         now->first++;
 }
 
 static void put_bars(writer *w)
 {
-    for (long begin = 0, bar = 1; begin < w->end; begin += BAR, bar++) {
-        PUT(w, "<measure number=\"%ld\">", bar);
-        if (bar == 1)
-            put_attributes(w);
+    const midi_file *f = w->file;
+    for (w->bar = f->bars; w->bar < f->bars + f->bar_count; w->bar++) {
+        w->begin = ticks_of(w->bar->beat);
+        w->end = ticks_of(w->bar[1].beat);
+        PUT(w, "<measure number=\"%s\"%s>", w->bar->number,
+            himc_music_is_short(w->bar) ? " implicit=\"yes\"" : "");
+        put_attributes(w);
         for (w->now = w->staves; w->now < w->staves + w->staff_count; w->now++)
-            put_bar(w, begin);
-        PUT(w, "<forward><duration>%d</duration></forward></measure>\n", BAR);
+            put_bar(w);
+        PUT(w, "<forward><duration>%ld</duration></forward></measure>\n", w->end - w->begin);
     }
 }
 
@@ -511,6 +521,7 @@ static int take_items(writer *w)
     int before[VOICES] = {-1, -1, -1, -1};
     bool hands = false, feet = false;
     w->now->count = 0;
+    w->bar = w->file->bars;
     for (int i = 0; i < w->file->note_count; i++)
         if (w->file->notes[i].choice == MIDI_DRUMS && w->now->choice == MIDI_DRUMS) {
             hands |= w->file->notes[i].way.hand > 0;
@@ -534,7 +545,7 @@ static int take_items(writer *w)
         while (!to->chord && to->voice + 1 < VOICES && last[to->voice] > to->begin)
             to->voice++;
         k = before[to->voice];
-        long bar_end = (to->begin / BAR + 1) * BAR;
+        long bar_end = himc_music_bar_end(w->file, &w->bar, to->begin);
         if (k >= 0 && !is_held(w->now->items[k].note) && w->now->items[k].end > to->begin &&
             !to->chord)
             w->now->items[k].end = to->begin;
@@ -606,14 +617,10 @@ static void list_staves(writer *w, music_item *items, music_mark *marks)
                           .spot = HIMC_SPOT_NORMAL,
                           .step = -1};
         w->staff_count += take_items(w) > 0;
-        w->now->mark_count = himc_music_marks(items, w->now->count, BAR, marks);
+        w->now->mark_count = himc_music_marks(items, w->now->count, w->file, marks);
         marks += w->now->mark_count;
-        for (int i = 0; i < w->now->count; i++)
-            w->end = items[i].end > w->end ? items[i].end : w->end;
         items += w->now->count;
     }
-    for (int i = 0; i < w->file->order_count; i++)
-        w->end = end_of(w, &w->file->orders[i]) > w->end ? end_of(w, &w->file->orders[i]) : w->end;
 }
 
 static void put_document(writer *w, const char *title)
@@ -633,10 +640,13 @@ bool himc_music_write(himc_text_lines *out, const midi_file *file, const char *t
 {
     writer w = {.out = out, .file = file};
     const size_t count = (size_t)file->note_count + 1;
+    double longest = 0;
+    for (int i = 0; i < file->bar_count; i++)
+        longest = fmax(longest, file->bars[i + 1].beat - file->bars[i].beat);
     music_item *items = malloc(count * sizeof *items);
     music_mark *marks = malloc(MUSIC_MARKS_OF(count) * sizeof *marks);
     w.segments = malloc(2 * count * sizeof *w.segments);
-    w.pieces = malloc(MUSIC_PIECES_OF(2 * count) * sizeof *w.pieces);
+    w.pieces = malloc(MUSIC_PIECES_OF(2 * count, longest) * sizeof *w.pieces);
     bool good = items && marks && w.segments && w.pieces;
     if (good) {
         list_staves(&w, items, marks);

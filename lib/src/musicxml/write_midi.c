@@ -139,15 +139,36 @@ static void end_track(himc_text_lines *out, size_t begin)
         out->bytes[begin - 4 + (size_t)i] = (char)(uint8_t)(length >> (24 - 8 * i));
 }
 
-static void put_tempi(himc_text_lines *out, const midi_file *file)
+// its meter, where it is another one or begins early
+static void put_meter(himc_text_lines *out, const midi_file *file, int i, long *now)
+{
+    const midi_bar *b = file->bars + i;
+    if (i > 0 && b->beats == b[-1].beats && b->unit == b[-1].unit && !himc_music_is_short(b - 1))
+        return;
+    long tick = lround(b->beat * TICKS);
+    uint8_t power = 0;
+    while (1 << power < b->unit)
+        power++;
+    put_length(out, tick - *now);
+    put(out, (uint8_t[]){0xff, 0x58, 4, (uint8_t)b->beats, power, 24, 8}, 7);
+    *now = tick;
+}
+
+// tempi and meters
+static void put_map(himc_text_lines *out, const midi_file *file)
 {
     size_t begin = begin_track(out);
     long now = 0;
-    for (int i = 0; i < file->tempo_count; i++) {
-        long tick = lround(file->tempi[i].beat * TICKS);
+    for (int i = 0, bar = 0; i < file->tempo_count || bar < file->bar_count;) {
+        double beat = i < file->tempo_count ? file->tempi[i].beat : HUGE_VAL;
+        if (bar < file->bar_count && file->bars[bar].beat <= beat) {
+            put_meter(out, file, bar++, &now);
+            continue;
+        }
+        long tick = lround(beat * TICKS);
         put_length(out, tick - now);
         put(out, "\xff\x51\3", 3);
-        put_number(out, (unsigned long)fmin(lround(60e6 / file->tempi[i].bpm), 0xffffff), 3);
+        put_number(out, (unsigned long)fmin(lround(60e6 / file->tempi[i++].bpm), 0xffffff), 3);
         now = tick;
     }
     end_track(out, begin);
@@ -218,7 +239,7 @@ bool himc_music_write_midi(himc_text_lines *out, const midi_file *file)
     put(out, "MThd\0\0\0\6\0\1", 10);
     put_number(out, (unsigned long)tracks, 2);
     put_number(out, TICKS, 2);
-    put_tempi(out, file);
+    put_map(out, file);
     for (int c = MIDI_TIMPANI; c < MIDI_KEY_COUNT && !w.failed; c++)
         if (used[c])
             put_part(out, &w, c, tracks > 2);

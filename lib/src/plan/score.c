@@ -29,7 +29,7 @@
 /// A score being read.
 typedef struct reader {
     himc_score *score;
-    int stroke_room, tempo_room, line_room, change_room, order_room;
+    int stroke_room, tempo_room, line_room, change_room, order_room, bar_room;
     himc_score_line now; ///< the current statement
     himc_dynamics dynamics;
     const char *name;   ///< of the file
@@ -319,6 +319,30 @@ static bool add_setup(reader *r, const himc_command *setup)
     return good;
 }
 
+// "comment bars of 3/4 from beat 2", later than those before; any other comment is ignored
+static bool read_comment(reader *r, const himc_atom *atom, int count)
+{
+    static const char *const words[] = {"comment", "bars", "of", "", "from", "beat"};
+    himc_score *score = r->score;
+    himc_bars b = {0};
+    int length = 0;
+    for (int i = 0; i < 6; i++)
+        if (count != 7 || atom[i].kind != HIMC_ATOM_SYMBOL ||
+            (words[i][0] && strcmp(atom[i].symbol, words[i]) != 0))
+            return true;
+    bool metre = sscanf(atom[3].symbol, "%3d/%2d%n", &b.beats, &b.unit, &length) == 2 &&
+                 !atom[3].symbol[length] && b.beats > 0 && b.unit > 0 && b.unit <= 64 &&
+                 (b.unit & (b.unit - 1)) == 0;
+    b.beat = atom[6].kind == HIMC_ATOM_NUMBER ? atom[6].number : -1;
+    if (!metre || b.beat < 0 || b.beat > himc_argument_find("BEAT", NULL)->high ||
+        (score->bar_count > 0 && b.beat <= score->bars[score->bar_count - 1].beat))
+        return true;
+    if (!himc_array_grow(&score->bars, score->bar_count, &r->bar_room, sizeof b, r->error))
+        return false;
+    score->bars[score->bar_count++] = b;
+    return true;
+}
+
 static bool read_statement(reader *r, const himc_text_statement *s)
 {
     int count = s->count < s->capacity ? s->count : s->capacity;
@@ -326,7 +350,7 @@ static bool read_statement(reader *r, const himc_text_statement *s)
     const char *word = count > 0 ? atom[0].symbol : "comment"; // an empty one
     himc_command *c = &r->now.command;
     if (strcmp(word, "comment") == 0)
-        return true;
+        return read_comment(r, atom, count);
     if (s->overflow)
         return himc_error_set(r->error,
                               "more than %zu characters without a ;, expected a score, commands "
@@ -601,6 +625,7 @@ void himc_score_free(himc_score *score)
     free(score->changes);
     free(score->order);
     free(score->report);
+    free(score->bars);
     free(score);
 }
 
