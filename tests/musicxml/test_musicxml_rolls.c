@@ -279,6 +279,20 @@ static void test_a_louder_voice_strikes_in_a_soft_roll(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-3, 2, stroke(1)->length + stroke(2)->length);
 }
 
+// a later sign for all leaves the drums alone that are damped already
+static void test_each_damp_sign_is_for_what_sounds(void)
+{
+    char text[100];
+    PLAY(BAR(1, FOUR LOW(4) C3(4, MARKS(3)) DIRECTION("<damp/>") REST(8))
+             BAR(2, LOW(8) DIRECTION("<damp-all/>") REST(8)));
+    snprintf(text, sizeof text, "at %g third damp 1;", 2 + lead());
+    expect_text(text);
+    snprintf(text, sizeof text, "at %g third damp 1;", 6 + lead());
+    TEST_ASSERT_NULL(strstr(made.text, text));
+    snprintf(text, sizeof text, "at %g low damp 1;", 6 + lead());
+    expect_text(text);
+}
+
 // by the standard what is hidden sounds, and a note of a cue's size does; a cue does not
 static void test_hidden_notes_sound_but_not_those_that_play_a_roll(void)
 {
@@ -321,6 +335,7 @@ int main(void)
     RUN_TEST(test_an_accent_of_another_voice_is_a_louder_stroke_of_the_roll);
     RUN_TEST(test_a_stroke_on_another_drum_takes_a_hand_from_a_roll);
     RUN_TEST(test_a_louder_voice_strikes_in_a_soft_roll);
+    RUN_TEST(test_each_damp_sign_is_for_what_sounds);
     RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
     return UNITY_END();
 }

@@ -527,6 +527,7 @@ static void add_gliss(shaper *s, const music_note *n)
 static void end_at(shaper *s, double beat, midi_choice choice, int ring, int key)
 {
     midi_file *f = s->file;
+    double at = himc_score_seconds(f->tempi, f->tempo_count, beat);
     bool done[256] = {false}; // the last stroke of each drum
     for (int i = f->note_count - 1, steps = 0; i >= 0 && steps < 16; i--, steps++) {
         midi_note *n = &f->notes[i];
@@ -534,11 +535,11 @@ static void end_at(shaper *s, double beat, midi_choice choice, int ring, int key
             (choice != MIDI_ANY && n->choice != choice))
             continue;
         done[n->key] = true;
-        if (key > 0 && n->key != key)
+        bool ended = n->way.ring < 0 && n->off < at;
+        if ((key > 0 && n->key != key) || ended)
             continue;
         n->way.ring = ring;
-        if (ring < 0)
-            n->off = himc_score_seconds(f->tempi, f->tempo_count, beat);
+        n->off = ring < 0 ? at : n->off;
     }
 }
 
