@@ -344,6 +344,17 @@ static void test_a_hairpin_leads_to_its_end(void)
     expect_dynamics(5, 2.0, 2.75, 3.5, 4.25, 5.0);
     PLAY(BAR(1, FOUR DYNAMICS("f") WEDGE("diminuendo") C3(8, "") WEDGE("stop") C3(8, "")));
     expect_dynamics(2, 5.0, 4.0);
+    // the f of an accent or an fp is an end, too
+    static const char *const ends[] = {"fp", "sfz", "f"};
+    for (int i = 0; i < 3; i++) {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani") BAR(1, FOUR DYNAMICS("p") WEDGE("crescendo") C3(16, MARKS(4)))
+                     BAR(2, WEDGE("stop") DYNAMICS("%s") C3(16, "")) TAIL,
+                 ends[i]);
+        load(text);
+        expect_roll(0, 0, 4, 2, 5);
+    }
 }
 
 static void test_words_beside_a_dynamic_do_not_hide_it(void)
@@ -372,8 +383,11 @@ static void test_marks_of_a_note_are_its_nuance(void)
                                   HIMC_TENUTO, HIMC_VERTICAL_ACCENT, HIMC_LEGATO};
     for (int i = 0; i < 6; i++)
         TEST_ASSERT_EQUAL(nuance[i], stroke(i)->nuance);
-    // an accent is a step louder
-    expect_dynamics(6, 5.0, 4.0, 4.0, 4.0, 4.0, 4.0);
+    // an accent is a step louder, sfz f at least
+    expect_dynamics(6, 5.0, 4.0, 4.0, 4.0, 5.0, 4.0);
+    PLAY(BAR(1, FOUR DYNAMICS("p") DYNAMICS("sfz") C3(8, "") DYNAMICS("ff") DYNAMICS("rfz")
+                    C3(8, "")));
+    expect_dynamics(2, 5.0, 7.0);
 }
 
 static void test_fp_is_loud_once(void)

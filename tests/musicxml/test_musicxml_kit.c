@@ -119,7 +119,7 @@ static void test_accents_are_played_or_counted(void)
              BAR(2, DYNAMICS("sfz") C3(16, "<tie type='stop'/>" MARKS(3))));
     TEST_ASSERT_EQUAL_MESSAGE(3, score->stroke_count, made.text);
     expect_roll(0, 0, 4, 2, 2);
-    expect_roll(1, 4, 0.3, 4, 2);
+    expect_roll(1, 4, 0.3, 5, 2);
     expect_roll(2, 4.3, 3.7, 2, 2);
     // a short roll sinks from it
     PLAY(BAR(1, FOUR TEMPO(60) DYNAMICS("p") C3(2, ARTICULATION("accent") MARKS(4)) REST(14)));

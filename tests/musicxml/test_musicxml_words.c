@@ -74,6 +74,28 @@ static void test_hairpins_come_from_nothing_and_go_there(void)
     TEST_ASSERT_FLOAT_WITHIN(0.06, 6, 7 * stroke(1)->dynamic);
 }
 
+// at the end of a roll over bars, before a rest and a louder mark, or at the last of some strokes
+static void test_al_niente_ends_where_the_notes_end(void)
+{
+    static const char *const words[] = {"dim. al niente", "morendo", "smorzando", "perdendosi"};
+    for (int i = 0; i < 4; i++) {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD PART("Timpani")
+                     BAR(1, FOUR DYNAMICS("f") WORDS("%s") C3(16, "<tie type='start'/>" MARKS(4)))
+                         BAR(2, C3(16, "<tie type='stop'/>" MARKS(4))) BAR(3, REST(16))
+                             BAR(4, DYNAMICS("ff") C3(16, "")) TAIL,
+                 words[i]);
+        load(text);
+        TEST_ASSERT_EQUAL_MESSAGE(2, score->stroke_count, made.text);
+        expect_roll(0, 0, 8, 5, 0);
+        TEST_ASSERT_FLOAT_WITHIN(0.06, 6, 7 * stroke(1)->dynamic);
+    }
+    PLAY(BAR(1, FOUR DYNAMICS("f") C3(4, "") WORDS("morendo") C3(4, "") C3(4, "") C3(4, ""))
+             BAR(2, C3(2, "") REST(14)));
+    expect_dynamics(5, 5.0, 5.0, 10 / 3.0, 5 / 3.0, 0.0);
+}
+
 #define EIGHTHS C3(2, "") C3(2, "") C3(2, "") C3(2, "")
 
 static void expect_swing(double share)
@@ -129,6 +151,7 @@ int main(void)
     RUN_TEST(test_piu_and_meno_are_a_step_from_what_was_before);
     RUN_TEST(test_mosso_and_movimento_are_shares_of_the_tempo);
     RUN_TEST(test_a_ritardando_is_less_with_poco_and_more_with_molto);
+    RUN_TEST(test_al_niente_ends_where_the_notes_end);
     RUN_TEST(test_hairpins_come_from_nothing_and_go_there);
     RUN_TEST(test_eighths_swing_and_what_is_finer_does_not);
     RUN_TEST(test_what_belongs_to_a_note_swings_with_it);

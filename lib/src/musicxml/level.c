@@ -1,8 +1,8 @@
 /// level.c: the dynamics of a part in time, from its marks and hairpins.
 ///
-/// A hairpin leads to the mark at its end; without one it goes a step, two if it is longer than
-/// HAIRPIN. A word (cresc.) leads to the next mark within LONGEST_WORD, else as a hairpin of
-/// HAIRPIN. A part that says nothing is mf. Signs hold for all voices and staves, unless two have
+/// A hairpin leads to the mark at its end, an fp or sfz is an f; without one it goes a step, two if
+/// it is longer than HAIRPIN. A word (cresc.) leads to the next mark within LONGEST_WORD, else as a
+/// hairpin of HAIRPIN; al niente leads to nothing where the notes from there on end. A part that says nothing is mf. Signs hold for all voices and staves, unless two have
 /// different dynamics at one time. Invariant: the beats of the points never decrease.
 #include "musicxml/music.h"
 
@@ -12,8 +12,10 @@
 
 #define STEP (1.0 / 7)
 #define USUAL (4 * STEP)  // mf
+#define FORTE (5 * STEP)  // of fp, sfz
 #define HAIRPIN 4.0       // (beats)
 #define LONGEST_WORD 32.0 // (beats)
+#define NIENTE (-7)       // steps
 #define REACH 1.0         // a mark so much after a hairpin is its end (beats)
 #define LOUD_TIME 0.3     // of fp, before the p (s)
 #define SAME 1e-6         // (beats)
@@ -68,23 +70,65 @@ bool himc_music_apart(const music *m, int part, int lane)
     return false;
 }
 
-// the next mark of the part behind sign `i`, up to `until`; -1: none
-static int next_mark(const music *m, int part, int lane, int i, double from, double until)
+static double mark_value(const music_sign *s)
+{
+    return s->meaning == MUSIC_DYNAMIC ? s->value : FORTE;
+}
+
+// the next mark of the part behind sign `i`, up to `until`, an accent only if there is no other one
+// at its beat; -1: none
+static int next_mark(const music *m, int part, int lane, int i, double from, double until,
+                     music_meaning last)
 {
     const int most = i + 2000; // signs; chosen: bounds the time
-    for (int k = i + 1; k < m->sign_count && k < most && m->signs[k].at.beat <= until + SAME; k++)
-        if (is_of(&m->signs[k], part, lane) && m->signs[k].meaning == MUSIC_DYNAMIC &&
-            m->signs[k].at.beat >= from - SAME)
+    int found = -1;
+    for (int k = i + 1; k < m->sign_count && k < most && m->signs[k].at.beat <= until + SAME; k++) {
+        const music_sign *s = &m->signs[k];
+        bool mark =
+            s->meaning == MUSIC_DYNAMIC || s->meaning == MUSIC_FORTEPIANO || s->meaning == last;
+        if (found >= 0 && s->at.beat > m->signs[found].at.beat + SAME)
+            break;
+        if (!mark || s->at.beat < from - SAME || !is_of(s, part, lane))
+            continue;
+        if (s->meaning == MUSIC_DYNAMIC)
             return k;
-    return -1;
+        found = found < 0 ? k : found;
+    }
+    return found;
+}
+
+static bool is_in(const music_note *n, int part, int lane)
+{
+    return n->at.part == part && !n->grace && n->length > 0 &&
+           (lane == MUSIC_ALL_LANES || n->lane == lane ||
+            (lane % 100 == 0 && n->lane / 100 == lane / 100));
+}
+
+// where the notes from a beat on, without a rest between them, have come to nothing: the end of a
+// roll, else the last stroke
+static double find_nothing(const music *m, int part, int lane, double beat)
+{
+    double end = beat, last = beat;
+    int first = himc_music_first(m, beat - LONGEST_WORD);
+    for (int i = first; i < m->note_count && m->notes[i].at.beat < beat + LONGEST_WORD; i++) {
+        const music_note *n = &m->notes[i];
+        double off = n->at.beat + n->length;
+        if (!is_in(n, part, lane) || off < beat + SAME)
+            continue;
+        if (n->at.beat > end + SAME && last > beat)
+            break;
+        end = fmax(end, off);
+        last = fmax(last, n->rolled > 0 ? n->at.beat + n->rolled : n->at.beat);
+    }
+    return last > beat + SAME ? last : fmax(end, beat + HAIRPIN);
 }
 
 static void close_hairpin(line *l, const music *m, int part, int lane, int i, double beat)
 {
     double steps = beat - l->from > HAIRPIN ? 2 * STEP : STEP, to = l->now + l->way * steps;
-    int mark = next_mark(m, part, lane, i, beat, beat + REACH);
-    if (mark >= 0 && (m->signs[mark].value - l->now) * l->way > 0)
-        to = m->signs[mark].value;
+    int mark = next_mark(m, part, lane, i, beat, beat + REACH, MUSIC_ATTACK);
+    if (mark >= 0 && l->way > NIENTE && (mark_value(&m->signs[mark]) - l->now) * l->way > 0)
+        to = mark_value(&m->signs[mark]);
     add(l, beat, to);
     l->from = -1;
 }
@@ -97,6 +141,19 @@ static void open_hairpin(line *l, double beat, double way)
     l->end = -1;
 }
 
+// of a word that has just begun to act
+static void find_end(line *l, const music *m, int part, int lane, int i)
+{
+    double beat = m->signs[i].at.beat;
+    int mark = next_mark(m, part, lane, i, beat, beat + LONGEST_WORD, MUSIC_FORTEPIANO);
+    const music_sign *s = mark < 0 ? NULL : &m->signs[mark];
+    double nothing = l->way <= NIENTE ? find_nothing(m, part, lane, beat) : beat + HAIRPIN;
+    l->end = !s                                         ? nothing
+             : (mark_value(s) - l->now) * l->way > 0    ? -1 // it leads there
+             : l->way <= NIENTE && nothing < s->at.beat ? nothing
+                                                        : s->at.beat;
+}
+
 static void take_sign(line *l, const music *m, int part, int lane, int i, double second)
 {
     const music_sign *s = &m->signs[i];
@@ -105,11 +162,11 @@ static void take_sign(line *l, const music *m, int part, int lane, int i, double
         close_hairpin(l, m, part, lane, i - 1, l->end);
     bool open = l->from >= 0, begins = open && beat < l->from + SAME;
     if (s->meaning == MUSIC_DYNAMIC || s->meaning == MUSIC_FORTEPIANO) {
-        bool leads = s->meaning == MUSIC_DYNAMIC && (s->value - l->now) * l->way > 0;
+        bool leads = (mark_value(s) - l->now) * l->way > 0;
         if (!open || begins || !leads)
             add(l, beat, l->now);
         if (s->meaning == MUSIC_FORTEPIANO) {
-            add(l, beat, 5 * STEP);
+            add(l, beat, FORTE);
             beat += LOUD_TIME * second;
         }
         add(l, beat, s->value);
@@ -127,13 +184,10 @@ static void take_sign(line *l, const music *m, int part, int lane, int i, double
             open_hairpin(l, beat, s->value);
     } else if (s->meaning == MUSIC_GROWING && !open) {
         open_hairpin(l, beat, s->value);
-        int mark = next_mark(m, part, lane, i, beat, beat + LONGEST_WORD);
-        if (mark < 0)
-            l->end = beat + HAIRPIN;
-        else if ((m->signs[mark].value - l->now) * s->value <= 0)
-            l->end = m->signs[mark].at.beat; // it leads away from that
+        find_end(l, m, part, lane, i);
     } else if (s->meaning == MUSIC_GROWING && s->value * l->way > 0) {
         l->way = s->value; // dim. al niente
+        find_end(l, m, part, lane, i);
     }
 }
 

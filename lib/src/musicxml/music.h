@@ -131,5 +131,7 @@ double himc_music_level(const music_level *levels, int count, double beat);
 bool himc_music_shape(music *music, midi_file *file, himc_error *error);
 
 void himc_music_omit(music *music, int which, int bar);
+/// The first note at or after a beat.
+int himc_music_first(const music *music, double beat);
 
 #endif

@@ -23,6 +23,7 @@
 
 #define SAME 1e-6      // (beats)
 #define STEP (1.0 / 7) // of dynamics
+#define FORTE (5 * STEP)
 #define FAST 6.0       // (1/s) from here on a tremolo of three marks is a roll; chosen: an Adagio's
 #define FASTEST 12.0   // strokes of two hands (1/s)
 #define ALTERNATE 0.11 // between strokes on two drums, at least (s); chosen: of one hand .22
@@ -73,8 +74,7 @@ typedef struct shaper {
 
 // ties
 
-// the first note at or after a beat
-static int first_from(const music *m, double beat)
+int himc_music_first(const music *m, double beat)
 {
     int low = 0, high = m->note_count;
     while (low < high) {
@@ -92,7 +92,7 @@ typedef enum joint { BY_TIE, BY_TREMOLO, BY_GLISS } joint;
 static music_note *find_next(music *m, const music_note *n, joint by)
 {
     double end = n->at.beat + n->length;
-    int first = first_from(m, end);
+    int first = himc_music_first(m, end);
     for (int i = first; i < m->note_count && i - first < MOST_CANDIDATES; i++) {
         music_note *to = &m->notes[i];
         if (to->at.beat > end + SAME)
@@ -114,7 +114,7 @@ static void mark_attacks(music *m)
         const music_place *at = &m->signs[i].at;
         if (m->signs[i].meaning != MUSIC_ATTACK)
             continue;
-        int first = first_from(m, at->beat);
+        int first = himc_music_first(m, at->beat);
         bool found = false;
         for (int k = first; k < m->note_count && k - first < MOST_CANDIDATES; k++) {
             music_note *n = &m->notes[k];
@@ -359,7 +359,8 @@ static void emit_stretch(shaper *s, const music_note *n, double begin, double en
 static double next_other(const shaper *s, const music_note *roll, double from, double end)
 {
     const music *m = s->music;
-    for (int i = first_from(m, from); i < m->note_count && m->notes[i].at.beat < end - SAME; i++) {
+    for (int i = himc_music_first(m, from); i < m->note_count && m->notes[i].at.beat < end - SAME;
+         i++) {
         const music_note *n = &m->notes[i];
         bool foot = n->choice == MIDI_DRUMS && (n->key == 35 || n->key == 36 || n->key == 44);
         if (n->at.part == s->part && !n->grace && n->length > 0 && !is_long(n) && !foot &&
@@ -642,6 +643,11 @@ static void shape_note(shaper *s, music_note *n)
     }
     double louder = (attack ? 2 * STEP : n->accent ? STEP : 0) + n->struck;
     emit_graces(s, n, roll, &way);
+    if (n->attacked && n->dynamic == MUSIC_UNSAID) { // an f at least
+        double up = fmax(FORTE - way.dynamic, STEP);
+        louder = fmax(louder, up);
+        way.dynamic = roll ? way.dynamic : fmin(way.dynamic + up, 1);
+    }
     if (!roll && n->accent && !attack)
         way.dynamic = fmin(way.dynamic + STEP, 1);
     if (n->ghost && n->dynamic == MUSIC_UNSAID)
