@@ -2,8 +2,9 @@
 ///
 /// A hairpin leads to the mark at its end, an fp or sfz is an f; without one it goes a step, two if
 /// it is longer than HAIRPIN. A word (cresc.) leads to the next mark within LONGEST_WORD, else as a
-/// hairpin of HAIRPIN; al niente leads to nothing where the notes from there on end. A part that says nothing is mf. Signs hold for all voices and staves, unless two have
-/// different dynamics at one time. Invariant: the beats of the points never decrease.
+/// hairpin of HAIRPIN; al niente leads to nothing where the notes from there on end. A part that
+/// says nothing is mf. Signs hold for all voices and staves, unless two have different dynamics at
+/// one time. Invariant: the beats of the points never decrease.
 #include "musicxml/music.h"
 
 #include "base/array.h"

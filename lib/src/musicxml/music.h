@@ -107,6 +107,8 @@ void himc_music_free(music *music);
 /// order.c: puts notes and signs in the order in which they are played, with repeats, on beats from
 /// the beginning. `bars` of the file get their beats.
 bool himc_music_order(music *music, midi_file *file, himc_error *error);
+/// The first note at or after a beat, then.
+int himc_music_first(const music *music, double beat);
 
 /// swing.c: moves notes and signs between beats as words ask for.
 bool himc_music_swing(music *music, const midi_file *file, himc_error *error);
@@ -131,7 +133,5 @@ double himc_music_level(const music_level *levels, int count, double beat);
 bool himc_music_shape(music *music, midi_file *file, himc_error *error);
 
 void himc_music_omit(music *music, int which, int bar);
-/// The first note at or after a beat.
-int himc_music_first(const music *music, double beat);
 
 #endif

@@ -234,3 +234,16 @@ bool himc_music_order(music *m, midi_file *file, himc_error *error)
     free(o.first);
     return good;
 }
+
+int himc_music_first(const music *m, double beat)
+{
+    int low = 0, high = m->note_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (m->notes[middle].at.beat < beat - 1e-6)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}

@@ -74,19 +74,6 @@ typedef struct shaper {
 
 // ties
 
-int himc_music_first(const music *m, double beat)
-{
-    int low = 0, high = m->note_count;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (m->notes[middle].at.beat < beat - SAME)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 typedef enum joint { BY_TIE, BY_TREMOLO, BY_GLISS } joint;
 
 static music_note *find_next(music *m, const music_note *n, joint by)
@@ -444,12 +431,14 @@ static void emit_pair(shaper *s, music_note *n, double unit, midi_way way)
 // flam, drag or ruff, or strokes of their own
 static void emit_graces(shaper *s, const music_note *n, bool roll, midi_way *way)
 {
-    bool same = true;
-    for (int i = 0; i < s->graces; i++)
+    bool same = true, slow = true; // two with one beam are a ruff
+    for (int i = 0; i < s->graces; i++) {
         same &= s->grace[i]->key == n->key && s->grace[i]->choice == n->choice;
+        slow &= s->grace[i]->flags == 1;
+    }
     if (same && !roll) {
         static const himc_ornament ornament[] = {HIMC_PLAIN, HIMC_FLAM, HIMC_DRAG, HIMC_RUFF};
-        way->ornament = ornament[s->graces < 3 ? s->graces : 3];
+        way->ornament = ornament[s->graces < 3 ? s->graces + (s->graces == 2 && slow) : 3];
         for (int i = 2; i < s->graces; i++)
             himc_music_omit(s->music, MUSIC_GRACES, n->at.bar);
         s->graces = 0;

@@ -133,20 +133,21 @@ static void put_instrument(const writer *w, const midi_note *n)
         PUT(w, "<instrument id=\"I%d\"/>", instrument_of(n));
 }
 
-// a flam has a stroke through its note, the others beams; all are slurred to the main note
+// a flam has a stroke through its note, a drag two beams, a ruff, which is slower, one; all are
+// slurred to the main note
 static void put_graces(const writer *w, const music_item *i)
 {
-    // in the order of the ornaments: 0 to 3, a ruff with three, as a drag has two
-    int count = i->note->way.ornament;
+    const himc_ornament ornament = i->note->way.ornament;
+    int count = ornament < HIMC_RUFF ? (int)ornament : 2, beams = ornament == HIMC_DRAG ? 2 : 1;
     for (int k = 0; k < count; k++) {
-        const char *beam = k == 0 ? "begin" : k + 1 < count ? "continue" : "end";
+        const char *beam = k == 0 ? "begin" : "end";
         PUT(w, count == 1 ? "<note><grace slash=\"yes\"/>" : "<note><grace/>");
         put_pitch(w, i->note->key);
         put_instrument(w, i->note);
         put_voice_number(w, i->voice);
-        PUT(w, "<type>%s</type><stem>up</stem>", count == 1 ? "eighth" : "16th");
+        PUT(w, "<type>%s</type><stem>up</stem>", beams == 1 ? "eighth" : "16th");
         put_staff(w);
-        for (int level = 1; level <= 2 && count > 1; level++)
+        for (int level = 1; level <= beams && count > 1; level++)
             PUT(w, "<beam number=\"%d\">%s</beam>", level, beam);
         if (k == 0)
             PUT(w, "<notations><slur type=\"start\" number=\"1\"/></notations>");
