@@ -128,6 +128,18 @@ static void test_the_pieces_are_the_same_after_musicxml(void)
     }
 }
 
+static void test_each_kind_of_roll_comes_back(void)
+{
+    parse("drum kettle; instrument snare snare 14; tempo 100; roll 0 4 single p f kettle;"
+          "roll 4 4 double p kettle; roll 8 4 press p kettle; roll 12 4 single f snare;"
+          "roll 16 4 double p f snare; roll 20 4 press p snare;");
+    read_back(himc_music_import);
+    TEST_ASSERT_EQUAL(6, count);
+    for (int i = 0; i < 6; i++)
+        TEST_ASSERT_EQUAL(score->strokes[i].ornament, back[i].ornament);
+    expect_same("rolls");
+}
+
 // the kinds of one player are staves of one part
 static void test_a_piece_for_many_instruments_keeps_its_strokes(void)
 {
@@ -285,7 +297,6 @@ static void test_what_notation_does_not_have_is_told_once_with_its_first_bar(voi
           "hit right legato f; stroke 30 left legato f kettle;");
     TEST_ASSERT_EQUAL_STRING("1 place (bar 3) is written as the usual spot\n"
                              "2 dead strokes (bar 1) are written as usual\n"
-                             "1 press roll (bar 4) is written as single strokes\n"
                              "1 tuning (bar 1) is written to the semitone\n"
                              "1 change by push (bar 8) is not written\n"
                              "2 changes by decay (bar 6) are not written\n"
@@ -563,6 +574,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_pieces_are_the_same_after_musicxml);
+    RUN_TEST(test_each_kind_of_roll_comes_back);
     RUN_TEST(test_a_piece_for_many_instruments_keeps_its_strokes);
     RUN_TEST(test_pedals_come_back_as_words);
     RUN_TEST(test_ornaments_rolls_spots_and_dynamics_are_written);

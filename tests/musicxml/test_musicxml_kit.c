@@ -112,6 +112,22 @@ static void test_a_choked_cymbal_is_damped_at_its_end(void)
     }
 }
 
+// a snare drum's are double, a z on the stem is pressed; those of a tom and of timpani single
+static void test_rolls_are_of_the_kind_of_their_drum(void)
+{
+#define SIGN(o) "<notations><ornaments>" o "</ornaments></notations>"
+#define Z SIGN("<tremolo type='unmeasured'>0</tremolo>")
+    KIT(BAR(1, FOUR DRUM(C, 5, 8, MARKS(3)) DRUM(C, 5, 8, SIGN("<trill-mark/>")))
+            BAR(2, DRUM(C, 5, 8, Z) DRUM(E, 5, 8, MARKS(3))));
+    const himc_ornament kind[] = {HIMC_ROLL_DOUBLE, HIMC_ROLL_DOUBLE, HIMC_ROLL_PRESS,
+                                  HIMC_ROLL_SINGLE};
+    TEST_ASSERT_EQUAL_MESSAGE(4, score->stroke_count, made.text);
+    for (int i = 0; i < 4; i++)
+        TEST_ASSERT_EQUAL_MESSAGE(kind[i], stroke(i)->ornament, made.text);
+    PLAY(BAR(1, FOUR C3(16, Z)));
+    expect_roll(0, 0, 4, 4, 4);
+}
+
 static void test_accents_are_played_or_counted(void)
 {
     // within a roll it begins anew
@@ -184,6 +200,7 @@ int main(void)
     RUN_TEST(test_notes_in_parentheses_are_softer);
     RUN_TEST(test_words_about_snares_move_the_wires);
     RUN_TEST(test_a_choked_cymbal_is_damped_at_its_end);
+    RUN_TEST(test_rolls_are_of_the_kind_of_their_drum);
     RUN_TEST(test_accents_are_played_or_counted);
     RUN_TEST(test_signs_without_a_way_to_play_them_are_counted);
     RUN_TEST(test_lost_strokes_of_a_tremolo_are_counted);

@@ -548,13 +548,15 @@ static const char *dynamic_word(char word[16], double dynamic)
 
 static void put_stroke(himc_text_lines *t, const midi_part *part, const midi_stroke *s, double beat)
 {
-    static const char *const ornaments[] = {"stroke", "flam", "drag", "ruff"};
+    static const char *const ornaments[] = {"stroke", "flam",   "drag", "ruff",
+                                            "single", "double", "press"};
     const midi_way *way = &s->note->way;
     const char *drum = part->head[s->head].name, *spot = himc_spot_name(s->spot);
     const char *space = s->part[0] ? " " : "";
     char first[16], last[16];
     if (s->roll.length > 0)
-        himc_text_print(t, "roll %.9g %.9g single %s %s %s %s%s%s;\n", beat, s->roll.length,
+        himc_text_print(t, "roll %.9g %.9g %s %s %s %s %s%s%s;\n", beat, s->roll.length,
+                        way->ornament > HIMC_ROLL_SINGLE ? ornaments[way->ornament] : "single",
                         dynamic_word(first, s->dynamic), dynamic_word(last, s->roll.last_dynamic),
                         spot, s->part, space, drum);
     else

@@ -25,6 +25,12 @@ enum {
     MIDI_KEY_COUNT
 };
 
+/// A snare drum's, whose rolls are double or pressed.
+static inline bool himc_midi_is_snare(int key)
+{
+    return key == 38 || key == 40;
+}
+
 /// What became of a note.
 typedef enum midi_fate {
     MIDI_PLAYED,

@@ -27,13 +27,19 @@ typedef struct midi_way {
     double last_dynamic; ///< of a roll
     himc_nuance nuance;
     double said;            ///< the dynamic that `himc export` says of it in MIDI; below 0: none
-    himc_ornament ornament; ///< flam, drag, ruff or none
+    himc_ornament ornament; ///< flam, drag, ruff or none; of a roll its kind, or none: single
     himc_spot spot;
     int hand;   ///< 1 + himc_hand; 0: any
     int drum;   ///< of timpani: 1 low .. 4 high; 0: any
     int ring;   ///< 1: it rings on, -1: it is damped at its end, 0: as usual
     bool extra; ///< a stroke of a note that has others: a grace, a part of a tremolo
 } midi_way;
+
+/// Grace notes that are played before it.
+static inline int himc_midi_graces(const midi_way *way)
+{
+    return way->length > 0 ? 0 : way->ornament < HIMC_RUFF ? (int)way->ornament : 2;
+}
 
 /// A note of any track, from its note-on to its note-off.
 typedef struct midi_note {

@@ -259,7 +259,7 @@ static void end_last(exporter *x, head *h)
     const midi_note *last = &x->file->notes[x->file->note_count - 1];
     midi_note *old = h->last > 0 && x->midi ? &x->file->notes[h->last - 1] : NULL;
     if (old && old->way.ring == 0 && old->way.length <= 0)
-        old->off = last->seconds - last->way.ornament * MUSIC_GRACE_TIME;
+        old->off = last->seconds - himc_midi_graces(&last->way) * MUSIC_GRACE_TIME;
     h->last = x->file->note_count;
 }
 
@@ -296,7 +296,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
         lose(x, SPOTS, s->beat);
     if (s->bounces == HIMC_DEAD)
         lose(x, DEAD, s->beat);
-    if (s->ornament > HIMC_ROLL_SINGLE)
+    if (x->midi && s->ornament > HIMC_ROLL_SINGLE)
         lose(x, s->ornament == HIMC_ROLL_PRESS ? PRESSES : DOUBLES, s->beat);
     if (x->midi && s->nuance != HIMC_LEGATO && s->ornament < HIMC_ROLL_SINGLE)
         lose(x, NUANCES, s->beat);
@@ -316,7 +316,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .length = end - s->beat,
                 .last_dynamic = s->last_dynamic,
                 .nuance = s->nuance,
-                .ornament = s->ornament < HIMC_ROLL_SINGLE ? s->ornament : HIMC_PLAIN,
+                .ornament = s->ornament,
                 .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
     };

@@ -3,6 +3,7 @@
 #define HIMC_MUSICXML_MUSIC_H
 
 #include "base/text.h"
+#include "midi/part.h"
 #include "musicxml/names.h"
 
 #define MUSIC_BARS_MAX 20000               ///< of a part; chosen: no piece has as many
@@ -60,8 +61,10 @@ typedef struct music_note {
     bool goes_on;        ///< a roll of another voice does, from this stroke on ...
     double struck;       ///< ... of so much more
     music_tremolo tremolo;
-    int marks, flags; ///< strokes through the stem; flags of the note
-    double ratio;     ///< of a tuplet: written length over sounding
+    himc_ornament kind; ///< of a roll, as `himc export` writes it; HIMC_PLAIN: as usual
+    bool pressed;       ///< of a snare drum: a z on the stem
+    int marks, flags;   ///< strokes through the stem; flags of the note
+    double ratio;       ///< of a tuplet: written length over sounding
 } music_note;
 
 /// A sign or a word.
@@ -131,6 +134,19 @@ double himc_music_level(const music_level *levels, int count, double beat);
 
 /// shape.c: makes the file's notes and orders of it.
 bool himc_music_shape(music *music, midi_file *file, himc_error *error);
+
+/// How a roll is played that does not say it. `pressed`: a z is on its stem.
+static inline himc_ornament himc_music_usual_roll(midi_choice choice, int key, bool pressed)
+{
+    return choice != MIDI_DRUMS || !himc_midi_is_snare(key) ? HIMC_ROLL_SINGLE
+           : pressed                                        ? HIMC_ROLL_PRESS
+                                                            : HIMC_ROLL_DOUBLE;
+}
+/// The word of a kind of roll.
+static inline const char *himc_music_roll(himc_ornament kind)
+{
+    return kind == HIMC_ROLL_PRESS ? "press" : kind == HIMC_ROLL_DOUBLE ? "double" : "single";
+}
 
 void himc_music_omit(music *music, int which, int bar);
 

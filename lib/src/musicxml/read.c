@@ -497,6 +497,15 @@ static int drum_at(int key)
     return 38;
 }
 
+// of a roll; HIMC_PLAIN: none
+static himc_ornament kind_of(const char *text)
+{
+    himc_ornament kind = HIMC_ROLL_PRESS;
+    while (kind >= HIMC_ROLL_SINGLE && strcmp(text, himc_music_roll(kind)) != 0)
+        kind--;
+    return kind >= HIMC_ROLL_SINGLE ? kind : HIMC_PLAIN;
+}
+
 static void read_ornaments(reader *r, music_note *n, const xml_node *ornaments)
 {
     for (const xml_node *o = ornaments ? ornaments->child : NULL; o; o = o->next) {
@@ -506,12 +515,17 @@ static void read_ornaments(reader *r, music_note *n, const xml_node *ornaments)
                 r->wavy = 1 + n->voice;
             else if (himc_xml_has(o, "type", "stop"))
                 r->wavy = 0;
+        } else if (himc_xml_is(o, "other-ornament") && kind_of(o->text)) {
+            n->kind = kind_of(o->text);
         } else if (!himc_xml_is(o, "tremolo")) {
             if (!himc_xml_is(o, "accidental-mark"))
                 himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
         } else {
             int marks = atoi(o->text);
             n->marks = marks < 0 ? 0 : marks > 8 ? 8 : marks;
+            const char *sign = himc_xml_attribute(o, "smufl"); // without it a z
+            n->pressed = himc_xml_has(o, "type", "unmeasured") &&
+                         (!sign[0] || strcmp(sign, "buzzRoll") == 0);
             n->tremolo = himc_xml_has(o, "type", "start")                         ? MUSIC_PAIR_BEGIN
                          : himc_xml_has(o, "type", "stop")                        ? MUSIC_PAIR_END
                          : himc_xml_has(o, "type", "unmeasured") || n->marks == 0 ? MUSIC_ROLL
@@ -526,6 +540,8 @@ static void share_marks(music_note *n, const music_note *head)
     if (n->tremolo == MUSIC_NO_TREMOLO) {
         n->tremolo = head->tremolo;
         n->marks = head->marks;
+        n->kind = head->kind;
+        n->pressed = head->pressed;
     }
     n->accent |= head->accent;
     n->marcato |= head->marcato;

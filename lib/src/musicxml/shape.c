@@ -167,6 +167,8 @@ static void continue_roll(shaper *s, music_note *roll, music_note *n)
     n->lane = roll->lane;
     n->tremolo = roll->tremolo;
     n->marks = roll->marks;
+    n->kind = roll->kind;
+    n->pressed = roll->pressed;
     n->flags = roll->flags;
     n->ratio = roll->ratio;
     n->length = n->rolled = end - at;
@@ -632,6 +634,8 @@ static void shape_note(shaper *s, music_note *n)
     }
     double louder = (attack ? 2 * STEP : n->accent ? STEP : 0) + n->struck;
     emit_graces(s, n, roll, &way);
+    if (roll)
+        way.ornament = n->kind ? n->kind : himc_music_usual_roll(n->choice, n->key, n->pressed);
     if (n->attacked && n->dynamic == MUSIC_UNSAID) { // an f at least
         double up = fmax(FORTE - way.dynamic, STEP);
         louder = fmax(louder, up);

@@ -137,8 +137,7 @@ static void put_instrument(const writer *w, const midi_note *n)
 // slurred to the main note
 static void put_graces(const writer *w, const music_item *i)
 {
-    const himc_ornament ornament = i->note->way.ornament;
-    int count = ornament < HIMC_RUFF ? (int)ornament : 2, beams = ornament == HIMC_DRAG ? 2 : 1;
+    int count = himc_midi_graces(&i->note->way), beams = i->note->way.ornament == HIMC_DRAG ? 2 : 1;
     for (int k = 0; k < count; k++) {
         const char *beam = k == 0 ? "begin" : "end";
         PUT(w, count == 1 ? "<note><grace slash=\"yes\"/>" : "<note><grace/>");
@@ -153,6 +152,20 @@ static void put_graces(const writer *w, const music_item *i)
             PUT(w, "<notations><slur type=\"start\" number=\"1\"/></notations>");
         PUT(w, "</note>\n");
     }
+}
+
+// three strokes where nobody could take them for 32nds, or a z; and its kind, if it is not usual
+static void put_roll(const writer *w, const midi_note *n)
+{
+    bool press = n->way.ornament == HIMC_ROLL_PRESS;
+    if (press)
+        PUT(w, "<ornaments><tremolo type=\"unmeasured\">0</tremolo>");
+    else
+        PUT(w, "<ornaments><tremolo type=\"single\">%d</tremolo>",
+            himc_midi_bpm(w->file->tempi, w->file->tempo_count, n->beat) > 61 ? 3 : 4);
+    if (n->way.ornament != himc_music_usual_roll(n->choice, n->key, press))
+        PUT(w, "<other-ornament>%s</other-ornament>", himc_music_roll(n->way.ornament));
+    PUT(w, "</ornaments>");
 }
 
 static void put_notations(const writer *w, const music_item *i, const music_piece *piece,
@@ -171,15 +184,14 @@ static void put_notations(const writer *w, const music_item *i, const music_piec
         PUT(w, "<tied type=\"stop\"/>");
     if (ties_on)
         PUT(w, "<tied type=\"start\"/>");
-    if (begins && way->ornament > HIMC_PLAIN)
+    if (begins && himc_midi_graces(way) > 0)
         PUT(w, "<slur type=\"stop\" number=\"1\"/>");
     if (piece->first && !i->chord)
         PUT(w, "<tuplet type=\"start\" bracket=\"%s\"/>", piece->beam[0] ? "no" : "yes");
     if (piece->last && !i->chord)
         PUT(w, "<tuplet type=\"stop\"/>");
-    if (roll) // three strokes where nobody could take them for 32nds
-        PUT(w, "<ornaments><tremolo type=\"single\">%d</tremolo></ornaments>",
-            himc_midi_bpm(w->file->tempi, w->file->tempo_count, i->note->beat) > 61 ? 3 : 4);
+    if (roll)
+        put_roll(w, i->note);
     if (begins && way->hand > 0 && !roll)
         PUT(w, "<technical><fingering>%s</fingering></technical>",
             way->hand == 1 + HIMC_LEFT ? "L" : "R");

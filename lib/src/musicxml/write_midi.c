@@ -69,7 +69,7 @@ static void add_note(writer *w, const midi_note *n)
     const midi_way *way = &n->way;
     double seconds = n->off - n->seconds;
     int strokes = way->length > 0 ? (int)fmax(lround(seconds * ROLL_RATE), 4) : 1;
-    for (int g = way->ornament < HIMC_RUFF ? (int)way->ornament : 2; g > 0; g--)
+    for (int g = himc_midi_graces(way); g > 0; g--)
         if (n->seconds - g * MUSIC_GRACE_TIME >= 0)
             add_stroke(w, n, n->seconds - g * MUSIC_GRACE_TIME, 0,
                        himc_midi_velocity(0.6 * way->dynamic));
