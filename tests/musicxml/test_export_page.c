@@ -181,6 +181,26 @@ static void test_dots_and_syncopations_are_one_note(void)
     TEST_ASSERT_EQUAL(0, count_of("<tie type"));
 }
 
+// as the import cuts them, and no other ones
+static void test_a_roll_with_a_louder_beginning_has_an_accent(void)
+{
+    parse("drum k; tempo 120; roll 0 0.4 single mp p normal; roll 0.4 3.6 single p p normal;"
+          "roll 4 0.4 single f mp normal; roll 4.4 1.6 single mp mp normal;");
+    TEST_ASSERT_EQUAL(2, notes.note_count);
+    TEST_ASSERT_EQUAL(1, count_of("<accent/>"));
+    TEST_ASSERT_EQUAL(1, count_of("<strong-accent/>"));
+    TEST_ASSERT_EQUAL(0, count_of("<tuplet"));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 0.4 single f mp "), made.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 1.6 single mp mp "), made.text);
+    himc_midi_score_free(&made);
+    tearDown();
+    parse("drum k; tempo 120; roll 0 0.5 single mp p normal; roll 0.5 3.5 single p p normal;"
+          "roll 4 0.4 single mp p normal; roll 4.4 1.6 single p f normal;");
+    TEST_ASSERT_EQUAL(4, notes.note_count);
+}
+
 // as many graces as are played, and none is told when the page is read
 static void test_a_flam_is_slashed_and_a_ruff_is_beamed(void)
 {
@@ -240,6 +260,7 @@ int main(void)
     RUN_TEST(test_a_short_bar_is_a_pickup);
     RUN_TEST(test_tuplets_have_brackets_and_ratios);
     RUN_TEST(test_dots_and_syncopations_are_one_note);
+    RUN_TEST(test_a_roll_with_a_louder_beginning_has_an_accent);
     RUN_TEST(test_a_flam_is_slashed_and_a_ruff_is_beamed);
     RUN_TEST(test_a_ramp_of_strokes_is_one_hairpin);
     RUN_TEST(test_a_kit_has_one_mark_and_two_voices);

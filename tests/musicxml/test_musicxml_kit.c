@@ -135,11 +135,11 @@ static void test_accents_are_played_or_counted(void)
              BAR(2, DYNAMICS("sfz") C3(16, "<tie type='stop'/>" MARKS(3))));
     TEST_ASSERT_EQUAL_MESSAGE(3, score->stroke_count, made.text);
     expect_roll(0, 0, 4, 2, 2);
-    expect_roll(1, 4, 0.3, 5, 2);
-    expect_roll(2, 4.3, 3.7, 2, 2);
+    expect_roll(1, 4, 0.2, 5, 2);
+    expect_roll(2, 4.2, 3.8, 2, 2);
     // a short roll sinks from it
-    PLAY(BAR(1, FOUR TEMPO(60) DYNAMICS("p") C3(2, ARTICULATION("accent") MARKS(4)) REST(14)));
-    expect_roll(0, 0, 0.5, 3, 2);
+    PLAY(BAR(1, FOUR TEMPO(60) DYNAMICS("p") C3(1, ARTICULATION("accent") MARKS(4)) REST(15)));
+    expect_roll(0, 0, 0.25, 3, 2);
     // of two notes in turn the first has it
     PLAY(BAR(1, FOUR TEMPO(60) DYNAMICS("p")
                     C3(4, "<type>half</type><notations><ornaments><tremolo type='start'>1"

@@ -169,8 +169,8 @@ static void test_an_accent_on_a_roll_is_its_beginning(void)
 {
     PLAY(BAR(1, FOUR TEMPO(60) DYNAMICS("p") C3(16, ARTICULATION("accent") MARKS(3))));
     TEST_ASSERT_EQUAL(2, score->stroke_count);
-    expect_roll(0, 0, 0.3, 3, 2);
-    expect_roll(1, 0.3, 3.7, 2, 2);
+    expect_roll(0, 0, 0.2, 3, 2);
+    expect_roll(1, 0.2, 3.8, 2, 2);
 }
 
 static void test_two_notes_are_played_in_turn(void)

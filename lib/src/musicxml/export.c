@@ -315,7 +315,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
                 .drum = drum_of(h),
                 .length = end - s->beat,
                 .last_dynamic = s->last_dynamic,
-                .nuance = s->nuance,
+                .nuance = s->ornament < HIMC_ROLL_SINGLE ? s->nuance : HIMC_LEGATO,
                 .ornament = s->ornament,
                 .spot = spot,
                 .hand = s->hand < HIMC_HANDS ? 1 + (int)s->hand : 0},
@@ -335,6 +335,45 @@ static bool follow_changes(exporter *x, const himc_score *score, int *change, do
             return false;
     }
     return true;
+}
+
+// true if the import cuts such a beginning from a roll with that accent
+static bool is_accent(const midi_file *f, const midi_note *n, const midi_note *rest, double steps)
+{
+    const midi_way *a = &n->way, *b = &rest->way;
+    double second = himc_midi_bpm(f->tempi, f->tempo_count, n->beat) / 60;
+    return a->length > 0 && b->length > a->length && n->key == rest->key &&
+           n->choice == rest->choice && a->ornament == b->ornament && a->spot == b->spot &&
+           fabs(a->length - fmax(MUSIC_ATTACK_TIME * second, 0.1)) < 1e-3 &&
+           fabs(n->beat + a->length - rest->beat) < 1e-3 &&
+           fabs(a->dynamic - b->dynamic - steps / 7) < 0.01 &&
+           fabs(a->last_dynamic - b->dynamic) < 0.01 && fabs(b->last_dynamic - b->dynamic) < 0.01 &&
+           fabs(7 * b->dynamic - lround(7 * b->dynamic)) < 0.05;
+}
+
+// a roll with a louder beginning is one with an accent
+static void join_accents(midi_file *f)
+{
+    int count = 0;
+    for (int i = 0; i < f->note_count; i++) {
+        midi_note *n = &f->notes[i], *before = NULL;
+        for (int k = count - 1; k >= 0 && !before && n->beat - f->notes[k].beat < 2; k--)
+            if (f->notes[k].key == n->key && f->notes[k].choice == n->choice)
+                before = &f->notes[k];
+        bool accent = before && is_accent(f, before, n, 1),
+             vertical = before && is_accent(f, before, n, 2);
+        if (!accent && !vertical) {
+            f->notes[count++] = *n;
+            continue;
+        }
+        before->off = n->off;
+        before->way.nuance = accent ? HIMC_ACCENT : HIMC_VERTICAL_ACCENT;
+        before->way.length += n->way.length;
+        before->way.dynamic = n->way.dynamic;
+        before->way.last_dynamic = n->way.last_dynamic;
+        before->way.ring = n->way.ring;
+    }
+    f->note_count = count;
 }
 
 // the first bar that is written: that of the comments which has the first stroke
@@ -492,6 +531,8 @@ bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_
     double first = good ? find_first(score) : 0;
     if (good)
         move(x, first);
+    if (good && !midi)
+        join_accents(file);
     good = good && list_bars(x, score, first) && fits(x);
     if (good)
         file->said = tell(x);

@@ -10,6 +10,7 @@
 #define MUSIC_MADE_MAX 400000              ///< notes, signs, with repeats; more than a score has
 #define MUSIC_UNSAID (-1.0)                ///< a dynamic
 #define MUSIC_LINES_MAX 9                  ///< of pedals that run at once, by their numbers 1 .. 9
+#define MUSIC_ATTACK_TIME 0.2              ///< (s) of an accent on a roll; chosen: two strokes
 #define MUSIC_GRACE_TIME 0.04              ///< (s) between strokes of a ruff in MIDI; chosen
 #define MUSIC_BYTES_MAX ((size_t)64 << 20) ///< of a file, also unpacked; chosen: a long symphony
 

@@ -30,9 +30,7 @@
 #define GRACE_TIME 0.07         // between strokes that are grace notes (s); chosen: an open ruff
 #define GRACE_SOFTER 0.2        // than their note
 #define GHOST_SOFTER (2 * STEP) // a note in parentheses
-#define ATTACK_TIME 0.3         // of an accent on a roll (s)
 #define BACK_TIME 0.22          // of a hand from another drum to a roll (s); chosen: 1.4 m
-#define STRUCK_TIME 0.2         // of a stroke in a roll (s); chosen: two strokes, the second softer
 #define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
 #define MOST_LANES 16       // that may have dynamics of their own; chosen: bounds the time
@@ -252,11 +250,10 @@ static bool is_several(const shaper *s)
     return s->kinds & (s->kinds - 1);
 }
 
-// of an accent on a roll (beats)
-static double attack_beats(const music_note *n, double second)
+// of an accent on a roll, or a stroke in it (beats)
+static double attack_beats(double second)
 {
-    double time = n->goes_on ? STRUCK_TIME : ATTACK_TIME;
-    return fmax(time * second, fmax(himc_argument_find("LENGTH", "roll")->low, 0.1));
+    return fmax(MUSIC_ATTACK_TIME * second, fmax(himc_argument_find("LENGTH", "roll")->low, 0.1));
 }
 
 static int by_beat(const void *a, const void *b)
@@ -286,7 +283,7 @@ static bool list_cuts(shaper *s)
             continue;
         s->cuts[s->cut_count++] = n->at.beat;
         s->cuts[s->cut_count++] = n->at.beat + n->rolled;
-        double attack = attack_beats(n, himc_midi_bpm(f->tempi, f->tempo_count, n->at.beat) / 60);
+        double attack = attack_beats(himc_midi_bpm(f->tempi, f->tempo_count, n->at.beat) / 60);
         if ((n->accent || n->marcato || n->attacked || n->struck > 0) && n->rolled > 2 * attack)
             s->cuts[s->cut_count++] = n->at.beat + attack;
     }
@@ -324,7 +321,7 @@ static void emit_stretch(shaper *s, const music_note *n, double begin, double en
                          midi_way way)
 {
     const himc_argument *range = himc_argument_find("LENGTH", "roll");
-    double least = fmax(range->low, 0.1), attack = attack_beats(n, s->second);
+    double least = fmax(range->low, 0.1), attack = attack_beats(s->second);
     double base = way.dynamic, most = fmin(range->high, LONGEST * s->second);
     for (double at = begin; at < end - SAME && !s->failed;) {
         double to = next_cut(s, at + least, end);

@@ -195,7 +195,7 @@ static void put_notations(const writer *w, const music_item *i, const music_piec
     if (begins && way->hand > 0 && !roll)
         PUT(w, "<technical><fingering>%s</fingering></technical>",
             way->hand == 1 + HIMC_LEFT ? "L" : "R");
-    if (begins && way->nuance != HIMC_LEGATO && !roll)
+    if (begins && way->nuance != HIMC_LEGATO)
         PUT(w, "<articulations><%s/>%s</articulations>", marks[way->nuance],
             way->nuance == HIMC_STACCATO ? pulled : "");
     PUT(w, "</notations>");
