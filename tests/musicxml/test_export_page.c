@@ -181,6 +181,21 @@ static void test_dots_and_syncopations_are_one_note(void)
     TEST_ASSERT_EQUAL(0, count_of("<tie type"));
 }
 
+// a circle over each, a cross where they are closed again; read back without a word
+static void test_open_and_closed_hats_have_their_signs(void)
+{
+    parse("instrument hats hi-hat 14; at 0 hats pedal 1; stroke 0 right legato f hats;"
+          "stroke 1 right legato f hats; at 1.9 hats pedal 0; stroke 2 right legato f hats;"
+          "at 2.9 hats pedal 1; stroke 3 right legato f hats; stroke 4 right legato f hats;");
+    TEST_ASSERT_EQUAL(1, count_of("<technical><open/><fingering>R</fingering></technical>"));
+    TEST_ASSERT_EQUAL(1, count_of("<stopped/>"));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    TEST_ASSERT_NOT_NULL(strstr(made.text, "hats pedal 0;"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
+    himc_midi_score_free(&made);
+}
+
 // as the import cuts them, and no other ones
 static void test_a_roll_with_a_louder_beginning_has_an_accent(void)
 {
@@ -261,6 +276,7 @@ int main(void)
     RUN_TEST(test_tuplets_have_brackets_and_ratios);
     RUN_TEST(test_dots_and_syncopations_are_one_note);
     RUN_TEST(test_a_roll_with_a_louder_beginning_has_an_accent);
+    RUN_TEST(test_open_and_closed_hats_have_their_signs);
     RUN_TEST(test_a_flam_is_slashed_and_a_ruff_is_beamed);
     RUN_TEST(test_a_ramp_of_strokes_is_one_hairpin);
     RUN_TEST(test_a_kit_has_one_mark_and_two_voices);

@@ -25,6 +25,8 @@ enum {
     MIDI_KEY_COUNT
 };
 
+enum { MIDI_CLOSED_HATS = 42, MIDI_PEDAL_HATS = 44, MIDI_OPEN_HATS = 46 }; ///< General MIDI's
+
 /// A snare drum's, whose rolls are double or pressed.
 static inline bool himc_midi_is_snare(int key)
 {

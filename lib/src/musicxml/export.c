@@ -20,7 +20,6 @@
 
 #define USUAL_INCHES 26.0 // of a timpano, which then sounds ...
 #define USUAL_KEY 50      // ... D3
-#define PEDAL_HAT 44      // General MIDI's key of hats that a foot closes
 #define ROUNDED 2.0       // of a pitch between semitones that is told (cents); chosen
 
 /// A drum of the score.
@@ -276,7 +275,7 @@ static bool add_note(exporter *x, const himc_stroke *s)
     int key =
         h->choice == MIDI_DRUMS ? himc_midi_key_of(h->like, s->part, struck, h->open) : h->key;
     if (s->hand == HIMC_FOOT && strcmp(h->kind, "hi-hat") == 0)
-        key = PEDAL_HAT;
+        key = MIDI_PEDAL_HATS;
     key = key < 0 ? h->key : key;
     if (h->choice > MIDI_DRUMS)
         key = part_key(s->part);

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CLOSED_HATS = 42, OPEN_HATS = 46, RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
+enum { RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
 
 #define LEAST_OWN (-1.0 / 7) // dynamic of a note, whose accent adds a step
 #define MOST_INSTRUMENTS 64  // of a part
@@ -589,8 +589,9 @@ static void read_technical(reader *r, music_note *n, const xml_node *technical)
         bool open = himc_xml_is(t, "open") || himc_xml_is(t, "open-string");
         if (hand_of(t->text))
             n->hand = hand_of(t->text);
-        else if (n->choice == MIDI_DRUMS && n->key == CLOSED_HATS && open)
-            n->key = OPEN_HATS;
+        else if (n->choice == MIDI_DRUMS && open &&
+                 (n->key == MIDI_CLOSED_HATS || n->key == MIDI_OPEN_HATS))
+            n->key = MIDI_OPEN_HATS;
         else if (!himc_xml_is(t, "fingering") && !himc_xml_is(t, "stopped")) // of mallets, of hats
             himc_music_omit(r->music, MUSIC_UNKNOWN, r->bar);
     }
@@ -668,8 +669,8 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
     if (of->choice == MIDI_DRUMS) {
         const char *head = himc_xml_text(note, "notehead");
         n->key = drum_of(r, note, of, written);
-        if (n->key == CLOSED_HATS && strcmp(head, "circle-x") == 0)
-            n->key = OPEN_HATS;
+        if (n->key == MIDI_CLOSED_HATS && strcmp(head, "circle-x") == 0)
+            n->key = MIDI_OPEN_HATS;
         else if (n->key == RIDE && strcmp(head, "diamond") == 0)
             n->key = RIDE_BELL;
     }

@@ -168,6 +168,22 @@ static void put_roll(const writer *w, const midi_note *n)
     PUT(w, "</ornaments>");
 }
 
+// a circle over open hats, a cross over the first closed ones behind them
+static const char *hats_sign(const writer *w, const music_item *i)
+{
+    const music_item *last = i;
+    if (i->note->choice != MIDI_DRUMS ||
+        (i->note->key != MIDI_OPEN_HATS && i->note->key != MIDI_CLOSED_HATS))
+        return "";
+    if (i->note->key == MIDI_OPEN_HATS)
+        return "<open/>";
+    while (last-- > w->now->items)
+        if (last->note->key == MIDI_OPEN_HATS || last->note->key == MIDI_CLOSED_HATS ||
+            last->note->key == MIDI_PEDAL_HATS)
+            return last->note->key == MIDI_OPEN_HATS ? "<stopped/>" : "";
+    return "";
+}
+
 static void put_notations(const writer *w, const music_item *i, const music_piece *piece,
                           bool ties_on)
 {
@@ -192,9 +208,13 @@ static void put_notations(const writer *w, const music_item *i, const music_piec
         PUT(w, "<tuplet type=\"stop\"/>");
     if (roll)
         put_roll(w, i->note);
-    if (begins && way->hand > 0 && !roll)
-        PUT(w, "<technical><fingering>%s</fingering></technical>",
-            way->hand == 1 + HIMC_LEFT ? "L" : "R");
+    const char *hats = begins ? hats_sign(w, i) : "";
+    bool hand = begins && way->hand > 0 && !roll;
+    if (hand || hats[0])
+        PUT(w, "<technical>%s%s</technical>", hats,
+            !hand                        ? ""
+            : way->hand == 1 + HIMC_LEFT ? "<fingering>L</fingering>"
+                                         : "<fingering>R</fingering>");
     if (begins && way->nuance != HIMC_LEGATO)
         PUT(w, "<articulations><%s/>%s</articulations>", marks[way->nuance],
             way->nuance == HIMC_STACCATO ? pulled : "");
