@@ -196,6 +196,19 @@ static void test_open_and_closed_hats_have_their_signs(void)
     himc_midi_score_free(&made);
 }
 
+// f at the end of a roll and the next ff are not one word: drawn before the barline, read at it
+static void test_the_end_of_a_roll_and_the_next_dynamic_do_not_collide(void)
+{
+    parse("drum k; tempo 80; roll 0 4 single p f normal; roll 4 4 single ff ff normal;"
+          "roll 8 4 single p f normal; roll 12 4 single f f normal;");
+    TEST_ASSERT_EQUAL(2, count_of("<offset sound=\"no\">-"));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 4 single p f "), made.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, " 4 single ff ff "), made.text);
+    himc_midi_score_free(&made);
+}
+
 // as the import cuts them, and no other ones
 static void test_a_roll_with_a_louder_beginning_has_an_accent(void)
 {
@@ -277,6 +290,7 @@ int main(void)
     RUN_TEST(test_dots_and_syncopations_are_one_note);
     RUN_TEST(test_a_roll_with_a_louder_beginning_has_an_accent);
     RUN_TEST(test_open_and_closed_hats_have_their_signs);
+    RUN_TEST(test_the_end_of_a_roll_and_the_next_dynamic_do_not_collide);
     RUN_TEST(test_a_flam_is_slashed_and_a_ruff_is_beamed);
     RUN_TEST(test_a_ramp_of_strokes_is_one_hairpin);
     RUN_TEST(test_a_kit_has_one_mark_and_two_voices);

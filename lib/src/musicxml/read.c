@@ -415,7 +415,9 @@ static bool read_dynamics(reader *r, const xml_node *dynamics, double beat, cons
 
 static void read_direction(reader *r, const xml_node *direction, bool own)
 {
-    double beat = fmax(r->at + himc_xml_number(direction, "offset", 0) / r->divisions, 0);
+    const xml_node *offset = himc_xml_child(direction, "offset"); // it may be of the print alone
+    double by = himc_xml_has(offset, "sound", "no") ? 0 : himc_xml_number(direction, "offset", 0);
+    double beat = fmax(r->at + by / r->divisions, 0);
     const xml_node *sound = himc_xml_child(direction, "sound");
     music_bar *bar = &r->music->bars[r->bar];
     bool dynamic = false, tempo = himc_xml_attribute(sound, "tempo")[0];

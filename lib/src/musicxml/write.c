@@ -368,6 +368,20 @@ static void put_orders(const writer *w, long *at)
     }
 }
 
+// of the end of a roll, where another dynamic begins: it is drawn before that
+static void put_offset(const writer *w, const music_mark *m)
+{
+    const music_mark *end = w->now->marks + w->now->mark_count;
+    int last = -1;
+    for (const music_mark *k = m; m->ends && k < end && k->tick == m->tick; k++) {
+        if (k->kind == MARK_DYNAMIC && !k->ends && last >= 0 && k->value != last) {
+            PUT(w, "<offset sound=\"no\">%d</offset>", -TICKS / 2);
+            return;
+        }
+        last = k->kind == MARK_DYNAMIC && k->ends ? k->value : last;
+    }
+}
+
 // a mark of a bar; a dynamic that holds already only where a hairpin ends
 static void put_mark(writer *w, long *at, const music_mark *m)
 {
@@ -380,6 +394,7 @@ static void put_mark(writer *w, long *at, const music_mark *m)
             "<direction placement=\"below\"><direction-type><dynamics%s><%s/></dynamics>"
             "</direction-type>",
             m->ends ? " relative-x=\"-10\"" : "", himc_dynamic_words[m->value]);
+        put_offset(w, m);
         end_direction(w);
         w->now->step = m->value;
     } else if (m->kind == MARK_WEDGE || m->kind == MARK_STOP) {
@@ -388,6 +403,7 @@ static void put_mark(writer *w, long *at, const music_mark *m)
             "<direction placement=\"below\"><direction-type><wedge type=\"%s\"/>"
             "</direction-type>",
             wedge);
+        put_offset(w, m);
         end_direction(w);
     } else if (m->kind == MARK_WAY) {
         if (way->spot != w->now->spot && w->now->choice == MIDI_TIMPANI) {
