@@ -61,6 +61,8 @@ typedef struct shaper {
     int lane_count;
     double *cuts; ///< beats where rolls are cut
     int cut_count;
+    const music_note **struck; ///< see list_struck (struck_count)
+    int struck_count;
     double second; ///< beats in one second at the present note
     saying says[MIDI_CHOICES];
     unsigned kinds; ///< of the part, a bit each
@@ -341,19 +343,37 @@ static void emit_stretch(shaper *s, const music_note *n, double begin, double en
     }
 }
 
-// the next stroke of a hand on another drum than a roll's, or `end`
-static double next_other(const shaper *s, const music_note *roll, double from, double end)
+// the part's strokes of hands that are no rolls
+static bool list_struck(shaper *s)
 {
     const music *m = s->music;
-    for (int i = himc_music_first(m, from); i < m->note_count && m->notes[i].at.beat < end - SAME;
-         i++) {
+    s->struck_count = 0;
+    s->struck = malloc(((size_t)m->note_count + 1) * sizeof *s->struck);
+    for (int i = 0; i < m->note_count && s->struck; i++) {
         const music_note *n = &m->notes[i];
         bool foot = n->choice == MIDI_DRUMS && (n->key == 35 || n->key == 36 || n->key == 44);
-        if (n->at.part == s->part && !n->grace && n->length > 0 && !is_long(n) && !foot &&
-            (n->choice != roll->choice || n->key != roll->key))
-            return n->at.beat;
+        if (n->at.part == s->part && !n->grace && n->length > 0 && !is_long(n) && !foot)
+            s->struck[s->struck_count++] = n;
     }
-    return end;
+    return s->struck || himc_error_set(s->error, "out of memory for %d notes", m->note_count);
+}
+
+// the next stroke on another drum than a roll's, or `end`
+static double next_other(const shaper *s, const music_note *roll, double from, double end)
+{
+    int low = 0, high = s->struck_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (s->struck[middle]->at.beat < from - SAME)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    while (low < s->struck_count && s->struck[low]->choice == roll->choice &&
+           s->struck[low]->key == roll->key)
+        low++;
+    bool inside = low < s->struck_count && s->struck[low]->at.beat < end - SAME;
+    return inside ? s->struck[low]->at.beat : end;
 }
 
 // A roll between strokes on other drums; returns how much of it is left (beats).
@@ -702,10 +722,11 @@ static bool shape_part(shaper *s, int part)
     for (int i = 0; i < m->note_count; i++)
         s->kinds |= m->notes[i].at.part == part ? 1u << m->notes[i].choice : 0;
     s->cuts = NULL;
+    s->struck = NULL;
     s->failed |= !list_lanes(s);
     if (!s->failed)
         join_rolls(s);
-    s->failed |= !s->failed && !list_cuts(s);
+    s->failed |= !s->failed && !(list_struck(s) && list_cuts(s));
     for (int i = 0; i < m->note_count && !s->failed; i++) {
         music_note *n = &m->notes[i];
         if (n->at.part != part || n->length < 0)
@@ -732,6 +753,7 @@ static bool shape_part(shaper *s, int part)
     for (int k = 0; k < s->lane_count; k++)
         free(s->lanes[k].levels);
     free(s->cuts);
+    free(s->struck);
     return !s->failed;
 }
 

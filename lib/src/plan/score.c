@@ -331,8 +331,8 @@ static bool read_comment(reader *r, const himc_atom *atom, int count)
             (words[i][0] && strcmp(atom[i].symbol, words[i]) != 0))
             return true;
     bool metre = sscanf(atom[3].symbol, "%3d/%2d%n", &b.beats, &b.unit, &length) == 2 &&
-                 !atom[3].symbol[length] && b.beats > 0 && b.unit > 0 && b.unit <= 64 &&
-                 (b.unit & (b.unit - 1)) == 0;
+                 !atom[3].symbol[length] && b.beats > 0 && b.beats < 256 && b.unit > 0 &&
+                 b.unit <= 64 && (b.unit & (b.unit - 1)) == 0;
     b.beat = atom[6].kind == HIMC_ATOM_NUMBER ? atom[6].number : -1;
     if (!metre || b.beat < 0 || b.beat > himc_argument_find("BEAT", NULL)->high ||
         (score->bar_count > 0 && b.beat <= score->bars[score->bar_count - 1].beat))
