@@ -391,6 +391,8 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                               "drum is free"},
         [MIDI_NO_INSTRUMENT] = {"note is not played: there is no instrument for it",
                                 "notes are not played: there is no instrument for them"},
+        [MIDI_FOOT_ROLL] = {"roll is not played: a foot plays none",
+                            "rolls are not played: a foot plays none"},
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
                                    "notes are of other instruments"},
     };

@@ -308,6 +308,8 @@ void himc_midi_kit(midi_part *part)
             s->spot = HIMC_SPOT_NORMAL;
         s->spot = s->spot == HIMC_SPOT_NORMAL ? key->spot : s->spot;
         s->foot = key->how == BY_FOOT || key->how == PEDALLED;
+        if (s->foot && s->roll.length > 0)
+            s->fate = MIDI_FOOT_ROLL;
         s->pedal = key->how == OPENED ? MIDI_OPEN : key->how >= CLOSED ? MIDI_CLOSE : MIDI_AS_IT_IS;
         snprintf(s->part, sizeof s->part, "%s", key->part ? key->part : "");
     }

@@ -45,6 +45,7 @@ typedef struct music_note {
     int lane; ///< 100 staff + voice; 0 for one that is not written
     midi_choice choice;
     int key;
+    bool concert; ///< a bass drum's name says that it is no kick
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
     bool pulled;         ///< the nuance staccato, as `himc export` writes it
     bool held;           ///< under a fermata

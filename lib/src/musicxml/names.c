@@ -41,7 +41,7 @@ static const struct {
     {"snare|side drum|caisse claire|kleine trommel|kl trommel|kl tr$|military drum|"
      "militärtrommel|tambour|tamburo|rullante|cassa chiara|s d$",
      MIDI_DRUMS, 38},
-    {"kick", MIDI_DRUMS, 36},
+    {"kick|acoustic bass drum|bass drum 1", MIDI_DRUMS, 36},
     {"bass drum|grosse caisse|große trommel|grosse trommel|gr trommel|gr tr$|gran cassa|grancassa|"
      "gr c$|b d$",
      MIDI_DRUMS, MIDI_BASS_DRUM},

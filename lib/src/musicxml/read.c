@@ -29,6 +29,7 @@ typedef struct instrument {
     midi_choice choice;
     int key;
     int drum;       ///< of timpani
+    bool concert;   ///< its name says a concert bass drum
     bool sort;      ///< of drums of one sort, whose notes say which
     uint64_t at[2]; ///< ... where they are written, a bit for each pitch
 } instrument;
@@ -122,6 +123,7 @@ static void read_instrument(reader *r, const xml_node *score, midi_choice part, 
         made->choice = MIDI_DRUMS;
     // the MIDI key decides, unless both names say a concert instrument, which General MIDI lacks
     bool concert = made->key >= 128 && part_key >= 128;
+    made->concert = made->choice == MIDI_DRUMS && made->key == MIDI_BASS_DRUM;
     made->sort = made->choice == MIDI_DRUMS && himc_music_of_sort(made->key, 0, 2) != made->key;
     if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert) {
         made->key = key;
@@ -167,8 +169,40 @@ static void survey(reader *r, const xml_node *part)
         }
 }
 
-// what the part is; an entry for a part without instruments, too
-static void read_instruments(reader *r)
+static bool is_kick(int key)
+{
+    return key == 35 || key == 36;
+}
+
+// hi-hats, toms, rides
+static bool is_of_kit(int key)
+{
+    return key >= 41 && key <= 59 && !memchr((const char[]){49, 52, 54, 55, 56, 57, 58}, key, 7);
+}
+
+// where no other drum of a kit is, a bass drum is a concert one by its name or by a roll
+static void choose_bass_drum(reader *r, int first, int part_key)
+{
+    music *m = r->music;
+    bool kit = false, roll = false;
+    for (int i = 0; i < r->declared; i++)
+        kit |= r->instrument[i].choice == MIDI_DRUMS && is_of_kit(r->instrument[i].key);
+    for (int i = first; i < m->note_count; i++) {
+        const music_note *n = &m->notes[i];
+        kit |= n->choice == MIDI_DRUMS && is_of_kit(n->key);
+        roll |= n->choice == MIDI_DRUMS && is_kick(n->key) &&
+                (n->tremolo == MUSIC_ROLL || (n->tremolo == MUSIC_MARKS && n->marks > 2));
+    }
+    for (int i = first; i < m->note_count && !kit; i++) {
+        music_note *n = &m->notes[i];
+        bool named = n->concert && part_key != MUSIC_NO_KEY;
+        if (n->choice == MIDI_DRUMS && is_kick(n->key) && (roll || named))
+            n->key = MIDI_BASS_DRUM;
+    }
+}
+
+// what the part is, by its key; an entry for a part without instruments, too
+static int read_instruments(reader *r)
 {
     int key = MUSIC_NO_KEY;
     midi_choice part = himc_music_instrument(himc_xml_text(r->list, "part-name"), &key);
@@ -194,6 +228,7 @@ static void read_instruments(reader *r)
     for (; score && r->instruments < MOST_INSTRUMENTS; score = himc_xml_next(score))
         read_instrument(r, score, part, key);
     r->declared = r->instruments;
+    return part == MIDI_ANY ? MUSIC_ANY_KEY : key;
 }
 
 // from here on notes that do not say it are of that instrument
@@ -646,6 +681,7 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
     const xml_node *pitch = himc_xml_child(note, "pitch");
     int written = read_pitch(note);
     n->choice = of->choice;
+    n->concert = of->concert;
     n->drum = of->drum;
     n->key = written + (pitch ? r->transpose : 0);
     if (of->choice == MIDI_DRUMS) {
@@ -866,7 +902,7 @@ static bool read_part(reader *r, const xml_node *part)
     r->list = himc_xml_child(himc_xml_child(r->root, "part-list"), "score-part");
     while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
         r->list = himc_xml_next(r->list);
-    read_instruments(r);
+    const int key = read_instruments(r), first = m->note_count;
     survey(r, part);
     memset(r->current, -1, sizeof r->current);
     memset(r->lines, 0, sizeof r->lines);
@@ -888,6 +924,7 @@ static bool read_part(reader *r, const xml_node *part)
         }
         read_measure(r, measure);
     }
+    choose_bass_drum(r, first, key);
     return !r->failed;
 }
 
