@@ -187,7 +187,75 @@ static void test_what_is_not_known_on_one_line_is_told_and_left_out(void)
             "S", "Snare Drum")) "</part-list><part id='P1'>" BAR(1, ONE_LINE OF("S", E, 4) HIT("")
                                                                         OF("S", E, 4)) TAIL);
     expect_drums(2, (const char *const[]){"snare", "snare"});
-    expect_text("1 of other percussion: no such instrument here");
+    expect_text("1 note is not played: there is no instrument for it (bar 1)");
+    expect_text("no such instrument here: Anvil");
+}
+
+// not as another one: by its place, by a part of its name, nor as that of its part
+static void test_an_unknown_instrument_is_told_by_its_name_and_left_out(void)
+{
+    static const char *const names[] = {
+        "Anvil",       "Amboss",      "Sleigh Bells",  "Crotales",       "Thunder Sheet",
+        "Brake Drum",  "Log Drum",    "Cajon",         "Rute",           "Castagnettes",
+        "Lion's Roar", "Waldteufel",  "Rahmentrommel", "Finger Cymbals", "Holztrommel",
+        "Castanets",   "Castañuelas", "Nacchere",      "Peitsche",       "Frusta",
+        "Steel Drum",  "Schellen",    "Temple Bowl",   "Tambour de bois"};
+    static const char *const parts[] = {"Percussion", "Schlagzeug", "Snare Drum"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        for (int k = 0; k < 3; k++) {
+            char text[4096], line[100];
+            snprintf(
+                text, sizeof text,
+                HEAD "<part-list>" PLAYER(
+                    "P1", "%s",
+                    INSTRUMENT("A", "%s") INSTRUMENT(
+                        "S", "Snare Drum")) "</part-list><part id='P1'>" BAR(1,
+                                                                             FOUR OF("A", F, 4)
+                                                                                 OF("S", E,
+                                                                                    4) OF("A", C, 5)
+                                                                                     OF("S", E, 4))
+                    TAIL,
+                parts[k], names[i]);
+            load(text);
+            expect_drums(2, (const char *const[]){"snare", "snare"});
+            snprintf(line, sizeof line, "comment no such instrument here: %s;\n", names[i]);
+            expect_text(line);
+        }
+    TEST_ASSERT_FALSE(import(
+        HEAD PART("Amboss") BAR(1, FOUR "<note><unpitched/><duration>16</duration></note>") TAIL));
+    TEST_ASSERT_EQUAL_STRING("nothing to play: no such instrument here: Amboss", error.text);
+}
+
+static void test_names_that_sound_alike_are_told_apart(void)
+{
+    static const struct {
+        const char *name, *drum;
+    } rows[] = {{"Tamburo basco", "tambourine"},
+                {"Pandereta", "tambourine"},
+                {"Schellentrommel", "tambourine"},
+                {"Tambour de basque", "tambourine"},
+                {"Tenor Drum", "mid-tom"},
+                {"Rührtrommel", "mid-tom"},
+                {"Wirbeltrommel", "mid-tom"},
+                {"Tamburo piccolo", "snare"},
+                {"Tambour", "snare"},
+                {"Drumset", "kick"},
+                {"Drums", "kick"},
+                {"Percussion 2", "kick"},
+                {"Schlagzeug", "kick"},
+                {"Batterie", "kick"},
+                {"Multi-Percussion", "kick"},
+                {"Jazz Drums", "kick"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD PART("%s") BAR(1, FOUR "<note><unpitched><display-step>F</display-step>"
+                                             "<display-octave>4</display-octave></unpitched>"
+                                             "<duration>16</duration></note>") TAIL,
+                 rows[i].name);
+        load(text);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(rows[i].drum, stroke(0)->drum, rows[i].name);
+    }
 }
 
 #define SNARE_AND_XYLOPHONE INSTRUMENT("S", "Snare Drum") INSTRUMENT("X", "Xylophone")
@@ -205,6 +273,7 @@ static void test_other_players_are_told_and_all_can_be_asked_for(void)
     TEST_ASSERT_TRUE(himc_music_import(&made, TWO_PLAYERS, strlen(TWO_PLAYERS), "all",
                                        &(midi_options){.all = true}, &error));
     score = himc_score_parse(made.text, "made.txt", NULL, &error);
+    expect_loaded();
     expect_drums(4, (const char *const[]){"third", "third", "snare", "xylophone"});
     TEST_ASSERT_NULL(strstr(made.text, "not asked for"));
 }
@@ -258,6 +327,7 @@ static void expect_back(const char *words, bool midi)
         himc_score_maker_of(text.bytes, text.size)(&made, text.bytes, text.size, "b", NULL, &error),
         error.text);
     score = himc_score_parse(made.text, "made.txt", NULL, &error);
+    expect_loaded();
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
     TEST_ASSERT_EQUAL_MESSAGE(from->stroke_count, score->stroke_count, made.text);
     for (int i = 0; i < from->stroke_count; i++) {
@@ -332,6 +402,8 @@ int main(void)
     RUN_TEST(test_staves_have_their_own_words);
     RUN_TEST(test_names_of_drums_say_high_and_low);
     RUN_TEST(test_what_is_not_known_on_one_line_is_told_and_left_out);
+    RUN_TEST(test_an_unknown_instrument_is_told_by_its_name_and_left_out);
+    RUN_TEST(test_names_that_sound_alike_are_told_apart);
     RUN_TEST(test_other_players_are_told_and_all_can_be_asked_for);
     RUN_TEST(test_instruments_stand_apart_and_in_reach);
     RUN_TEST(test_several_kinds_come_back_from_one_part);

@@ -698,7 +698,10 @@ bool himc_midi_make(midi_score *made, midi_file *file, const char *name,
     *made = (midi_score){0};
     options = options ? options : &usual;
     bool good = read_setup(&part, options, error) && make_part(&part, file, options, error);
-    if (good && part.fate[MIDI_PLAYED] == 0)
+    if (good && part.fate[MIDI_PLAYED] == 0 && file->said && file->said[0])
+        good = himc_error_set(error, "nothing to play: %.*s", (int)strcspn(file->said, "\n"),
+                              file->said);
+    else if (good && part.fate[MIDI_PLAYED] == 0)
         good = himc_error_set(error, "nothing to play: %d note%s, none %s", file->note_count,
                               file->note_count == 1 ? "" : "s",
                               part.choice == MIDI_TIMPANI

@@ -327,6 +327,8 @@ int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size)
         played += of_key && s->fate == MIDI_PLAYED;
     }
     *line = '\0';
+    if (key == MIDI_NO_SOUND) // told by its name
+        return missing;
     if (missing > 0 && of && of->instrument && part->setup && part->heads < MIDI_HEADS)
         snprintf(line, size, "%d of %s: no %s in the set-up", missing, of->sound, of->instrument);
     else if (missing > 0 && of && of->instrument)

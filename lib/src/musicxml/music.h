@@ -99,6 +99,7 @@ typedef struct music {
     music_sign *signs;
     int sign_count, sign_room;
     music_omission omitted[MUSIC_OMISSIONS];
+    char unknown[200]; ///< names of instruments that are not played
 } music;
 
 /// read.c: all of a document; false with one line if it is no score.

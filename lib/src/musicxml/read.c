@@ -25,7 +25,7 @@ enum { CLOSED_HATS = 42, OPEN_HATS = 46, RIDE = 51, RIDE_BELL = 53 }; // keys of
 #define STAVES 10            // of a part; 0: a note that does not say which
 
 typedef struct instrument {
-    const char *id;
+    const char *id, *name;
     midi_choice choice;
     int key;
     int drum;       ///< of timpani
@@ -61,6 +61,23 @@ void himc_music_omit(music *m, int which, int bar)
     music_omission *o = &m->omitted[which];
     himc_text_list(o->bars, sizeof o->bars, m->bars[bar].number);
     o->count++;
+}
+
+// the name of an instrument that is not played, once
+static void add_unknown(music *m, const char *name)
+{
+    char word[48];
+    snprintf(word, sizeof word, "%.40s", name);
+    for (char *c = word; *c; c++)
+        *c = iscntrl((unsigned char)*c) || strchr(";,\\", *c) ? ' ' : *c;
+    for (const char *at = m->unknown; at; at = strstr(at, ", ") ? strstr(at, ", ") + 2 : NULL)
+        if (strncmp(at, word, strlen(word)) == 0 && (!at[strlen(word)] || at[strlen(word)] == ','))
+            return;
+    size_t used = strlen(m->unknown), left = sizeof m->unknown - used;
+    if (left > strlen(word) + sizeof ", ...")
+        snprintf(m->unknown + used, left, "%s%s", used ? ", " : "", word);
+    else if (!strstr(m->unknown, "..."))
+        snprintf(m->unknown + used, left, ", ...");
 }
 
 static void add_sign(reader *r, double beat, music_meaning meaning, double value)
@@ -102,30 +119,39 @@ static int lane_of(const xml_node *node)
 static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
 {
     instrument *made = &r->instrument[r->instruments++];
-    *made = (instrument){himc_xml_attribute(score, "id"), .key = MUSIC_NO_KEY};
+    const char *id = himc_xml_attribute(score, "id");
+    *made = (instrument){id, "", .key = MUSIC_NO_KEY};
     const char *const name[] = {himc_xml_text(score, "instrument-sound"),
                                 himc_xml_text(score, "instrument-name"),
                                 himc_xml_text(score, "instrument-abbreviation")};
     for (int i = 0; i < 3 && made->choice == MIDI_ANY; i++)
         made->choice = himc_music_instrument(name[i], &made->key);
+    for (int i = 1; i >= 0 && !made->name[0]; i--)
+        made->name = himc_music_names(name[i]) ? name[i] : "";
     made->drum = himc_music_drum(name[1]);
+    // only the name of the one instrument of a part may be unknown: the part's says what it is
+    bool only = !himc_xml_next(himc_xml_child(r->list, "score-instrument")) &&
+                (part != MIDI_DRUMS || part_key >= 0);
     const xml_node *midi = himc_xml_child(r->list, "midi-instrument");
     while (midi && !himc_xml_has(midi, "id", made->id))
         midi = himc_xml_next(midi);
     int key = whole(midi, "midi-unpitched", 0) - 1;
     int program = whole(midi, "midi-program", 0) - 1;
     bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
-    if (made->choice == MIDI_ANY && part != MIDI_ANY)
-        *made = (instrument){made->id, .choice = part, .key = part_key};
+    if (made->choice == MIDI_ANY && part != MIDI_ANY && (only || !made->name[0]))
+        *made = (instrument){id, made->name, .choice = part, .key = part_key};
     if (made->choice == MIDI_ANY && midi && !drums)
         made->choice = himc_midi_program_choice(program);
-    if (made->choice == MIDI_ANY && drums)
+    if (made->choice == MIDI_ANY && (drums || part != MIDI_ANY)) {
         made->choice = MIDI_DRUMS;
+        made->key = made->name[0] && key < 0 ? MIDI_NO_SOUND : MUSIC_NO_KEY;
+    }
     // the MIDI key decides, unless both names say a concert instrument, which General MIDI lacks
     bool concert = made->key >= 128 && part_key >= 128;
     made->concert = made->choice == MIDI_DRUMS && made->key == MIDI_BASS_DRUM;
     made->sort = made->choice == MIDI_DRUMS && himc_music_of_sort(made->key, 0, 2) != made->key;
-    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert) {
+    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert &&
+        made->key != MIDI_NO_SOUND) {
         made->key = key;
         made->sort = false;
     }
@@ -215,7 +241,7 @@ static int read_instruments(reader *r)
     for (size_t length; !score && r->instruments < MOST_INSTRUMENTS; name += length + 1) {
         char word[64];
         length = strcspn(name, ",/&+");
-        instrument made = {"", .choice = part, .key = key};
+        instrument made = {"", himc_xml_text(r->list, "part-name"), .choice = part, .key = key};
         snprintf(word, sizeof word, "%.*s", (int)length, name);
         if (r->instruments > 0 || name[length])
             made.choice = himc_music_instrument(word, &made.key);
@@ -232,7 +258,7 @@ static int read_instruments(reader *r)
 }
 
 // from here on notes that do not say it are of that instrument
-static void change_instrument(reader *r, midi_choice choice, int key)
+static void change_instrument(reader *r, midi_choice choice, int key, const char *name)
 {
     int i = 0;
     while (i < r->instruments && (r->instrument[i].choice != choice || r->instrument[i].key != key))
@@ -240,7 +266,7 @@ static void change_instrument(reader *r, midi_choice choice, int key)
     if (i == MOST_INSTRUMENTS)
         return;
     if (i == r->instruments)
-        r->instrument[r->instruments++] = (instrument){"", .choice = choice, .key = key};
+        r->instrument[r->instruments++] = (instrument){"", name, .choice = choice, .key = key};
     r->current[r->lane / 100] = i;
 }
 
@@ -252,7 +278,7 @@ static void read_change(reader *r, const char *words, bool instructs)
     // of a drum set, or where notes say it, a name alone is no more than a hint
     bool hint = instructs || r->declared > 1 || r->instrument[0].key == MUSIC_NO_KEY;
     if (choice != MIDI_ANY && !(bare && hint))
-        change_instrument(r, choice, key);
+        change_instrument(r, choice, key, words);
 }
 
 // signs and words
@@ -261,9 +287,10 @@ static void read_change(reader *r, const char *words, bool instructs)
 static void read_sound_change(reader *r, const xml_node *change)
 {
     int key = MUSIC_NO_KEY, i = find_instrument(r, change);
-    midi_choice choice = himc_music_instrument(himc_xml_text(change, "instrument-sound"), &key);
+    const char *name = himc_xml_text(change, "instrument-sound");
+    midi_choice choice = himc_music_instrument(name, &key);
     if (choice != MIDI_ANY && i >= 0)
-        r->instrument[i] = (instrument){r->instrument[i].id, .choice = choice, .key = key};
+        r->instrument[i] = (instrument){r->instrument[i].id, name, .choice = choice, .key = key};
     if (i >= 0)
         r->current[r->lane / 100] = i;
 }
@@ -684,7 +711,10 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
     n->concert = of->concert;
     n->drum = of->drum;
     n->key = written + (pitch ? r->transpose : 0);
-    if (of->choice == MIDI_DRUMS) {
+    if (of->choice == MIDI_ANY) { // unpitched
+        n->choice = MIDI_DRUMS;
+        n->key = MIDI_NO_SOUND;
+    } else if (of->choice == MIDI_DRUMS) {
         const char *head = himc_xml_text(note, "notehead");
         n->key = drum_of(r, note, of, written);
         if (n->key == CLOSED_HATS && strcmp(head, "circle-x") == 0)
@@ -693,7 +723,7 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
             n->key = RIDE_BELL;
     }
     return (pitch || himc_xml_child(note, "unpitched")) && n->key >= 0 && n->key < 256 &&
-           (written >= 0 || of->key >= 0) && (of->choice == MIDI_DRUMS || n->key < 128);
+           (written >= 0 || of->key >= 0) && (n->choice == MIDI_DRUMS || n->key < 128);
 }
 
 // of a drum with a hoop (kit.c)
@@ -722,7 +752,9 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     bool chord = himc_xml_child(note, "chord");
     if (!chord)
         r->head = -1;
-    if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
+    const instrument *of = instrument_of(r, note);
+    if (himc_xml_child(note, "rest") ||
+        (of->choice == MIDI_ANY && (!himc_xml_child(note, "unpitched") || !of->name[0])))
         return;
     if (himc_xml_child(note,
                        "cue")) { // it is silent; one of that size alone is not, by the standard
@@ -737,6 +769,8 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         himc_music_omit(m, MUSIC_BAD_NOTES, r->bar);
         return;
     }
+    if (n.key == MIDI_NO_SOUND)
+        add_unknown(m, of->key >= 0 || of->choice == MIDI_ANY ? of->name : "other percussion");
     for (int i = 0; i < 5; i++)
         if (strcmp(himc_xml_text(note, "type"), types[i]) == 0)
             n.flags = i + 1;
