@@ -201,26 +201,20 @@ static void test_an_unknown_instrument_is_told_by_its_name_and_left_out(void)
         "Castanets",   "Castañuelas", "Nacchere",      "Peitsche",       "Frusta",
         "Steel Drum",  "Schellen",    "Temple Bowl",   "Tambour de bois"};
     static const char *const parts[] = {"Percussion", "Schlagzeug", "Snare Drum"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        for (int k = 0; k < 3; k++) {
-            char text[4096], line[100];
-            snprintf(
-                text, sizeof text,
-                HEAD "<part-list>" PLAYER(
-                    "P1", "%s",
-                    INSTRUMENT("A", "%s") INSTRUMENT(
-                        "S", "Snare Drum")) "</part-list><part id='P1'>" BAR(1,
-                                                                             FOUR OF("A", F, 4)
-                                                                                 OF("S", E,
-                                                                                    4) OF("A", C, 5)
-                                                                                     OF("S", E, 4))
-                    TAIL,
-                parts[k], names[i]);
-            load(text);
-            expect_drums(2, (const char *const[]){"snare", "snare"});
-            snprintf(line, sizeof line, "comment no such instrument here: %s;\n", names[i]);
-            expect_text(line);
-        }
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char text[4096], line[100];
+        snprintf(text, sizeof text,
+                 HEAD "<part-list>" PLAYER(
+                     "P1", "%s",
+                     INSTRUMENT("A", "%s") INSTRUMENT(
+                         "S", "Snare Drum")) "</part-list><part id='P1'><measure number='1'>" FOUR
+                     OF("A", F, 4) OF("S", E, 4) OF("A", C, 5) OF("S", E, 4) "</measure>" TAIL,
+                 parts[i % 3], names[i]);
+        load(text);
+        expect_drums(2, (const char *const[]){"snare", "snare"});
+        snprintf(line, sizeof line, "comment no such instrument here: %s;\n", names[i]);
+        expect_text(line);
+    }
     TEST_ASSERT_FALSE(import(
         HEAD PART("Amboss") BAR(1, FOUR "<note><unpitched/><duration>16</duration></note>") TAIL));
     TEST_ASSERT_EQUAL_STRING("nothing to play: no such instrument here: Amboss", error.text);
@@ -276,6 +270,56 @@ static void test_other_players_are_told_and_all_can_be_asked_for(void)
     expect_loaded();
     expect_drums(4, (const char *const[]){"third", "third", "snare", "xylophone"});
     TEST_ASSERT_NULL(strstr(made.text, "not asked for"));
+}
+
+#define CHORD(step, octave)                                                                      \
+    "<note><chord/><pitch><step>" #step "</step><octave>" #octave "</octave></pitch><duration>4" \
+    "</duration><voice>1</voice></note>"
+#define LOUD(step, octave)                                                       \
+    "<note dynamics='130'><chord/><pitch><step>" #step "</step><octave>" #octave \
+    "</octave></pitch><duration>4</duration><voice>1</voice></note>"
+
+static void expect_parts(int count, const char *const *part)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(count, score->stroke_count, made.text);
+    for (int i = 0; i < count; i++)
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(part[i], stroke(i)->part, made.text);
+}
+
+static void test_of_a_chord_two_hands_play_the_outer_notes(void)
+{
+    load(HEAD PART("Vibraphone") BAR(
+        1, FOUR NOTE(E, 4, 4, "") CHORD(C, 4) CHORD(B, 4) CHORD(G, 4) NOTE(F, 3, 4, "") CHORD(A, 3)
+               CHORD(C, 4) CHORD(E, 4) NOTE(E, 5, 4, "") CHORD(C, 4) CHORD(G, 4) REST(4)) TAIL);
+    expect_parts(6, (const char *const[]){"C4", "B4", "F3", "E4", "C4", "E5"});
+    for (int i = 0; i < 6; i++)
+        TEST_ASSERT_EQUAL(i % 2 ? HIMC_RIGHT : HIMC_LEFT, stroke(i)->hand);
+    expect_text("5 notes are not played: both hands are busy (bar 1)");
+    // but not without a louder one
+    load(HEAD PART("Vibraphone") BAR(1, FOUR DYNAMICS("p") NOTE(C, 4, 4, "") CHORD(E, 4) LOUD(G, 4)
+                                            CHORD(B, 4) REST(12)) TAIL);
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    TEST_ASSERT_TRUE_MESSAGE(
+        strcmp(stroke(0)->part, "G4") == 0 || strcmp(stroke(1)->part, "G4") == 0, made.text);
+}
+
+static void test_a_part_beyond_what_is_built_moves_as_a_whole(void)
+{
+    load(HEAD PART("Glockenspiel") BAR(1, FOUR NOTE(G, 5, 4, "") NOTE(E, 5, 4, "") NOTE(C, 5, 4, "")
+                                              NOTE(G, 4, 4, "")) TAIL);
+    expect_parts(4, (const char *const[]){"G6", "E6", "C6", "G5"});
+    expect_text("all notes for glockenspiel are moved up by 1 octave to what is built");
+    TEST_ASSERT_NULL(strstr(made.text, "note is moved"));
+    // what does not fit then is moved alone
+    load(HEAD PART("Glockenspiel") BAR(1, FOUR NOTE(G, 5, 4, "") NOTE(E, 5, 4, "") NOTE(C, 5, 4, "")
+                                              NOTE(C, 9, 4, "")) TAIL);
+    expect_parts(4, (const char *const[]){"G6", "E6", "C6", "C8"});
+    expect_text("1 note is moved by octaves to what is built");
+    // what fits stays
+    load(HEAD PART("Marimba") BAR(1, FOUR NOTE(C, 3, 4, "") NOTE(E, 3, 4, "") NOTE(G, 3, 4, "")
+                                         NOTE(C, 2, 4, "") NOTE(C, 7, 4, "")) TAIL);
+    expect_parts(5, (const char *const[]){"C3", "E3", "G3", "C3", "C7"});
+    TEST_ASSERT_NULL(strstr(made.text, "all notes for"));
 }
 
 // where an instrument stands (m)
@@ -404,6 +448,8 @@ int main(void)
     RUN_TEST(test_what_is_not_known_on_one_line_is_told_and_left_out);
     RUN_TEST(test_an_unknown_instrument_is_told_by_its_name_and_left_out);
     RUN_TEST(test_names_that_sound_alike_are_told_apart);
+    RUN_TEST(test_of_a_chord_two_hands_play_the_outer_notes);
+    RUN_TEST(test_a_part_beyond_what_is_built_moves_as_a_whole);
     RUN_TEST(test_other_players_are_told_and_all_can_be_asked_for);
     RUN_TEST(test_instruments_stand_apart_and_in_reach);
     RUN_TEST(test_several_kinds_come_back_from_one_part);

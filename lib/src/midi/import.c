@@ -246,6 +246,7 @@ static void join_kind(midi_part *whole, const midi_part *own)
     whole->count += own->count;
     whole->notes += own->notes;
     whole->moved += own->moved;
+    whole->octaves[own->choice] = own->octaves[own->choice];
     whole->untuned += own->untuned;
     whole->hoopless += own->hoopless;
 }
@@ -414,6 +415,11 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
     for (int key = 0; key < MIDI_KEY_COUNT; key++)
         if (himc_midi_tell_key(part, key, line, sizeof line) > 0 && line[0])
             himc_text_print(t, "%s\n", line);
+    for (int i = 1; i < MIDI_CHOICES; i++)
+        if (part->octaves[i])
+            himc_text_print(t, "all notes for %s are moved %s by %d octave%s to what is built\n",
+                            names[i], part->octaves[i] > 0 ? "up" : "down", abs(part->octaves[i]),
+                            abs(part->octaves[i]) == 1 ? "" : "s");
     report_kind(t, part->moved, "note is moved by octaves to what is built",
                 "notes are moved by octaves to what is built");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");

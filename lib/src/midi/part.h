@@ -105,7 +105,8 @@ typedef struct midi_part {
     int fate[MIDI_FATES];      ///< notes of the file
     int notes;                 ///< of the part, as written
     char bars[MIDI_FATES][48]; ///< of notes that are not played
-    int moved;                 ///< by octaves
+    int octaves[MIDI_CHOICES]; ///< by which all notes of a keyboard are moved
+    int moved;                 ///< notes by octaves alone
     int damped;                ///< strokes
     int untuned;               ///< orders to tune that no drum can follow
     int mallets;               ///< changes of mallets that are not played
