@@ -287,6 +287,19 @@ static int by_note(const void *a, const void *b)
     return (x->note > y->note) - (x->note < y->note);
 }
 
+// a drum set stands as usual; other instruments, of several kinds or sorts, are put around the player
+static bool is_spread(const midi_part *part)
+{
+    bool kick = false, hats = false;
+    for (int i = 0; i < part->heads; i++) {
+        kick |= strcmp(part->head[i].name, "kick") == 0;
+        hats |= strcmp(part->head[i].name, "hats") == 0;
+    }
+    bool several = part->kinds != KIND(part->choice),
+         drums = part->choice == MIDI_DRUMS && !part->setup && part->heads > 1;
+    return several || (drums && !(kick && hats));
+}
+
 // the notes of the part as strokes with heads and hands
 static bool make_part(midi_part *part, const midi_file *file, const midi_options *options,
                       himc_error *error)
@@ -312,7 +325,7 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
         good = !(part->kinds & KIND(kind)) || add_kind(part, kind, &c, options, error);
     }
     free(c.kinds);
-    if (good && part->count > 0 && part->kinds != KIND(part->choice)) {
+    if (good && part->count > 0 && is_spread(part)) {
         qsort(part->stroke, (size_t)part->count, sizeof *part->stroke, by_note);
         himc_midi_lay_out(part);
     }
