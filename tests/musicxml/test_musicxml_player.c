@@ -355,6 +355,40 @@ static void test_instruments_stand_apart_and_in_reach(void)
     }
 }
 
+// drums alone: each pair and more are played, whatever they are
+static void test_each_drum_of_a_percussionist_is_struck(void)
+{
+    static const char *const sets[][3] = {{"Snare Drum", "Low Tom", "Snare Drum"},
+                                          {"Low Wood Block", "High Wood Block", "Tambourine"},
+                                          {"Bass Drum", "Conga", "Cymbal"},
+                                          {"Tom", "High Cowbell", "Triangle"}};
+    for (int k = 0; k < 4; k++) {
+        char text[4096];
+        snprintf(
+            text, sizeof text,
+            HEAD "<part-list>" PLAYER(
+                "P1", "Percussion",
+                INSTRUMENT("A", "%s") INSTRUMENT("B", "%s") INSTRUMENT(
+                    "C", "%s")) "</part-list><part id='P1'><measure number='1'>" FOUR TEMPO(100)
+                OF("A", F, 4) OF("B", E, 4) OF("C", C, 5) OF("B", E, 4) "</measure>" TAIL,
+            sets[k][0], sets[k][1], sets[k][2]);
+        load(text);
+        himc_performance_config config = himc_performance_default();
+        himc_performance *p = himc_performance_new(&config, &error);
+        himc_command play;
+        TEST_ASSERT_TRUE_MESSAGE(
+            p && himc_performance_load_text(p, made.text, "made", &error) &&
+                himc_command_parse_text(&play, HIMC_PERFORMER, "play", &error) &&
+                himc_performance_command(p, &play, 0, &error),
+            error.text);
+        for (int i = 0; i < 6 * config.sample_rate / 480; i++)
+            himc_performance_process(p, 480, NULL);
+        TEST_ASSERT_EQUAL_MESSAGE(4, himc_performance_measure(p).played, made.text);
+        TEST_ASSERT_EQUAL_MESSAGE(0, himc_performance_measure(p).missed, made.text);
+        himc_performance_free(p);
+    }
+}
+
 // a score of ours, out and in again
 
 static void expect_back(const char *words, bool midi)
@@ -450,6 +484,7 @@ int main(void)
     RUN_TEST(test_names_that_sound_alike_are_told_apart);
     RUN_TEST(test_of_a_chord_two_hands_play_the_outer_notes);
     RUN_TEST(test_a_part_beyond_what_is_built_moves_as_a_whole);
+    RUN_TEST(test_each_drum_of_a_percussionist_is_struck);
     RUN_TEST(test_other_players_are_told_and_all_can_be_asked_for);
     RUN_TEST(test_instruments_stand_apart_and_in_reach);
     RUN_TEST(test_several_kinds_come_back_from_one_part);

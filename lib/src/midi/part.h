@@ -175,7 +175,7 @@ void himc_midi_key_name(char name[HIMC_NOTE_SIZE], int key);
 /// Gives each stroke its bar.
 void himc_midi_keyboard(midi_part *part);
 
-/// layout.c: puts instruments of several kinds around one player.
+/// layout.c: puts instruments of several kinds, or drums that are no set, around one player.
 void himc_midi_lay_out(midi_part *part);
 
 /// sticking.c: gives each stroke a hand. False without memory.
