@@ -3,11 +3,13 @@
 #include "unity.h"
 
 #include "base/setups.h"
+#include "himc/performance.h"
 #include "midi/import.h"
 #include "midi/part.h"
 #include "musicxml/score_file.h"
 #include "base/file.h"
 #include "base/line.h"
+#include "performance/research.h"
 #include "plan/score.h"
 
 #include <limits.h>
@@ -98,6 +100,13 @@ static void import(const builder *b, const midi_options *options)
         himc_midi_import(&made, b->bytes, b->size, "test.mid", options, &error), error.text);
     score = himc_score_parse(made.text, "made.txt", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    // and can be played: no line of it is refused
+    himc_performance_config config = himc_performance_default();
+    himc_performance *p = himc_performance_new(&config, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(p, error.text);
+    bool good = himc_performance_load_text(p, made.text, "made", &error);
+    himc_performance_free(p);
+    TEST_ASSERT_TRUE_MESSAGE(good, error.text);
 }
 
 static void refused(const builder *b, const char *expected)

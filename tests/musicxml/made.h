@@ -4,7 +4,9 @@
 
 #include "unity.h"
 
+#include "himc/performance.h"
 #include "musicxml/import.h"
+#include "performance/research.h"
 #include "plan/score.h"
 
 #include <math.h>
@@ -64,6 +66,16 @@ void tearDown(void)
 #define WEDGE(type) DIRECTION("<wedge type='" type "'/>")
 #define TEMPO(bpm) "<sound tempo='" #bpm "'/>"
 
+/// What import writes can be played: no line of it is refused.
+static inline void expect_loaded(void)
+{
+    himc_performance_config config = himc_performance_default();
+    himc_performance *p = himc_performance_new(&config, &error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(p, error.text);
+    TEST_ASSERT_TRUE_MESSAGE(himc_performance_load_text(p, made.text, "made", &error), error.text);
+    himc_performance_free(p);
+}
+
 static inline bool import(const char *text)
 {
     forget();
@@ -71,6 +83,7 @@ static inline bool import(const char *text)
         return false;
     score = himc_score_parse(made.text, "made.txt", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
+    expect_loaded();
     return true;
 }
 

@@ -166,6 +166,40 @@ static void test_signs_without_a_way_to_play_them_are_counted(void)
     TEST_ASSERT_NULL(strstr(made.text, "not played"));
 }
 
+#define NAMED(id, name, key)                                                          \
+    "<score-instrument id='" id "'><instrument-name>" name "</instrument-name>"       \
+    "</score-instrument><midi-instrument id='" id "'><midi-channel>10</midi-channel>" \
+    "<midi-unpitched>" #key "</midi-unpitched></midi-instrument>"
+#define PERCUSSION(part, names, body)                                                \
+    load(HEAD "<part-list><score-part id='P1'><part-name>" part "</part-name>" names \
+              "</score-part></part-list><part id='P1'>" body TAIL)
+#define BY(id, more) DRUM(F, 4, 8, "<instrument id='" id "'/>" more)
+
+static void test_a_bass_drum_without_a_kit_is_struck_by_hands(void)
+{
+    // by its name, or by a roll
+    PERCUSSION("Percussion", NAMED("B", "Gran Cassa", 37) NAMED("C", "Cymbal", 50),
+               BAR(1, FOUR BY("B", "") BY("C", "")));
+    TEST_ASSERT_EQUAL_STRING("bass-drum", stroke(0)->drum);
+    PERCUSSION("Percussion", NAMED("B", "Bass Drum", 36),
+               BAR(1, FOUR BY("B", "") BY("B", MARKS(3))));
+    TEST_ASSERT_EQUAL_STRING("bass-drum", stroke(0)->drum);
+    TEST_ASSERT_EQUAL_STRING("bass-drum", stroke(1)->drum);
+    expect_roll(1, 2, 2, 4, 4);
+    PERCUSSION("Drumset", NAMED("B", "B. D.", 37) NAMED("S", "Snare", 39),
+               BAR(1, FOUR BY("B", "") BY("B", MARKS(3))));
+    TEST_ASSERT_EQUAL_STRING("bass-drum", stroke(0)->drum);
+    // of a kit it is a foot's, and its roll is left out
+    PERCUSSION("Percussion", NAMED("B", "Bass Drum", 37) NAMED("H", "Hi-Hat", 43),
+               BAR(1, FOUR BY("B", "") BY("H", "")) BAR(2, BY("H", "") BY("B", MARKS(3))));
+    TEST_ASSERT_EQUAL(3, score->stroke_count);
+    TEST_ASSERT_EQUAL_STRING("kick", stroke(0)->drum);
+    expect_text("1 roll is not played: a foot plays none (bar 2)");
+    PERCUSSION("Drumset", NAMED("B", "Bass Drum", 37) NAMED("S", "Snare", 39),
+               BAR(1, FOUR BY("B", "") BY("S", "")));
+    TEST_ASSERT_EQUAL_STRING("kick", stroke(0)->drum);
+}
+
 // of a tremolo that is too fast on two drums and of its notes
 static void test_lost_strokes_of_a_tremolo_are_counted(void)
 {
@@ -203,6 +237,7 @@ int main(void)
     RUN_TEST(test_rolls_are_of_the_kind_of_their_drum);
     RUN_TEST(test_accents_are_played_or_counted);
     RUN_TEST(test_signs_without_a_way_to_play_them_are_counted);
+    RUN_TEST(test_a_bass_drum_without_a_kit_is_struck_by_hands);
     RUN_TEST(test_lost_strokes_of_a_tremolo_are_counted);
     return UNITY_END();
 }

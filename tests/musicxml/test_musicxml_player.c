@@ -187,7 +187,69 @@ static void test_what_is_not_known_on_one_line_is_told_and_left_out(void)
             "S", "Snare Drum")) "</part-list><part id='P1'>" BAR(1, ONE_LINE OF("S", E, 4) HIT("")
                                                                         OF("S", E, 4)) TAIL);
     expect_drums(2, (const char *const[]){"snare", "snare"});
-    expect_text("1 of other percussion: no such instrument here");
+    expect_text("1 note is not played: there is no instrument for it (bar 1)");
+    expect_text("no such instrument here: Anvil");
+}
+
+// not as another one: by its place, by a part of its name, nor as that of its part
+static void test_an_unknown_instrument_is_told_by_its_name_and_left_out(void)
+{
+    static const char *const names[] = {
+        "Anvil",       "Amboss",      "Sleigh Bells",  "Crotales",       "Thunder Sheet",
+        "Brake Drum",  "Log Drum",    "Cajon",         "Rute",           "Castagnettes",
+        "Lion's Roar", "Waldteufel",  "Rahmentrommel", "Finger Cymbals", "Holztrommel",
+        "Castanets",   "Castañuelas", "Nacchere",      "Peitsche",       "Frusta",
+        "Steel Drum",  "Schellen",    "Temple Bowl",   "Tambour de bois"};
+    static const char *const parts[] = {"Percussion", "Schlagzeug", "Snare Drum"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char text[4096], line[100];
+        snprintf(text, sizeof text,
+                 HEAD "<part-list>" PLAYER(
+                     "P1", "%s",
+                     INSTRUMENT("A", "%s") INSTRUMENT(
+                         "S", "Snare Drum")) "</part-list><part id='P1'><measure number='1'>" FOUR
+                     OF("A", F, 4) OF("S", E, 4) OF("A", C, 5) OF("S", E, 4) "</measure>" TAIL,
+                 parts[i % 3], names[i]);
+        load(text);
+        expect_drums(2, (const char *const[]){"snare", "snare"});
+        snprintf(line, sizeof line, "comment no such instrument here: %s;\n", names[i]);
+        expect_text(line);
+    }
+    TEST_ASSERT_FALSE(import(
+        HEAD PART("Amboss") BAR(1, FOUR "<note><unpitched/><duration>16</duration></note>") TAIL));
+    TEST_ASSERT_EQUAL_STRING("nothing to play: no such instrument here: Amboss", error.text);
+}
+
+static void test_names_that_sound_alike_are_told_apart(void)
+{
+    static const struct {
+        const char *name, *drum;
+    } rows[] = {{"Tamburo basco", "tambourine"},
+                {"Pandereta", "tambourine"},
+                {"Schellentrommel", "tambourine"},
+                {"Tambour de basque", "tambourine"},
+                {"Tenor Drum", "mid-tom"},
+                {"Rührtrommel", "mid-tom"},
+                {"Wirbeltrommel", "mid-tom"},
+                {"Tamburo piccolo", "snare"},
+                {"Tambour", "snare"},
+                {"Drumset", "kick"},
+                {"Drums", "kick"},
+                {"Percussion 2", "kick"},
+                {"Schlagzeug", "kick"},
+                {"Batterie", "kick"},
+                {"Multi-Percussion", "kick"},
+                {"Jazz Drums", "kick"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD PART("%s") BAR(1, FOUR "<note><unpitched><display-step>F</display-step>"
+                                             "<display-octave>4</display-octave></unpitched>"
+                                             "<duration>16</duration></note>") TAIL,
+                 rows[i].name);
+        load(text);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(rows[i].drum, stroke(0)->drum, rows[i].name);
+    }
 }
 
 #define SNARE_AND_XYLOPHONE INSTRUMENT("S", "Snare Drum") INSTRUMENT("X", "Xylophone")
@@ -205,8 +267,59 @@ static void test_other_players_are_told_and_all_can_be_asked_for(void)
     TEST_ASSERT_TRUE(himc_music_import(&made, TWO_PLAYERS, strlen(TWO_PLAYERS), "all",
                                        &(midi_options){.all = true}, &error));
     score = himc_score_parse(made.text, "made.txt", NULL, &error);
+    expect_loaded();
     expect_drums(4, (const char *const[]){"third", "third", "snare", "xylophone"});
     TEST_ASSERT_NULL(strstr(made.text, "not asked for"));
+}
+
+#define CHORD(step, octave)                                                                      \
+    "<note><chord/><pitch><step>" #step "</step><octave>" #octave "</octave></pitch><duration>4" \
+    "</duration><voice>1</voice></note>"
+#define LOUD(step, octave)                                                       \
+    "<note dynamics='130'><chord/><pitch><step>" #step "</step><octave>" #octave \
+    "</octave></pitch><duration>4</duration><voice>1</voice></note>"
+
+static void expect_parts(int count, const char *const *part)
+{
+    TEST_ASSERT_EQUAL_MESSAGE(count, score->stroke_count, made.text);
+    for (int i = 0; i < count; i++)
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(part[i], stroke(i)->part, made.text);
+}
+
+static void test_of_a_chord_two_hands_play_the_outer_notes(void)
+{
+    load(HEAD PART("Vibraphone") BAR(
+        1, FOUR NOTE(E, 4, 4, "") CHORD(C, 4) CHORD(B, 4) CHORD(G, 4) NOTE(F, 3, 4, "") CHORD(A, 3)
+               CHORD(C, 4) CHORD(E, 4) NOTE(E, 5, 4, "") CHORD(C, 4) CHORD(G, 4) REST(4)) TAIL);
+    expect_parts(6, (const char *const[]){"C4", "B4", "F3", "E4", "C4", "E5"});
+    for (int i = 0; i < 6; i++)
+        TEST_ASSERT_EQUAL(i % 2 ? HIMC_RIGHT : HIMC_LEFT, stroke(i)->hand);
+    expect_text("5 notes are not played: both hands are busy (bar 1)");
+    // but not without a louder one
+    load(HEAD PART("Vibraphone") BAR(1, FOUR DYNAMICS("p") NOTE(C, 4, 4, "") CHORD(E, 4) LOUD(G, 4)
+                                            CHORD(B, 4) REST(12)) TAIL);
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    TEST_ASSERT_TRUE_MESSAGE(
+        strcmp(stroke(0)->part, "G4") == 0 || strcmp(stroke(1)->part, "G4") == 0, made.text);
+}
+
+static void test_a_part_beyond_what_is_built_moves_as_a_whole(void)
+{
+    load(HEAD PART("Glockenspiel") BAR(1, FOUR NOTE(G, 5, 4, "") NOTE(E, 5, 4, "") NOTE(C, 5, 4, "")
+                                              NOTE(G, 4, 4, "")) TAIL);
+    expect_parts(4, (const char *const[]){"G6", "E6", "C6", "G5"});
+    expect_text("all notes for glockenspiel are moved up by 1 octave to what is built");
+    TEST_ASSERT_NULL(strstr(made.text, "note is moved"));
+    // what does not fit then is moved alone
+    load(HEAD PART("Glockenspiel") BAR(1, FOUR NOTE(G, 5, 4, "") NOTE(E, 5, 4, "") NOTE(C, 5, 4, "")
+                                              NOTE(C, 9, 4, "")) TAIL);
+    expect_parts(4, (const char *const[]){"G6", "E6", "C6", "C8"});
+    expect_text("1 note is moved by octaves to what is built");
+    // what fits stays
+    load(HEAD PART("Marimba") BAR(1, FOUR NOTE(C, 3, 4, "") NOTE(E, 3, 4, "") NOTE(G, 3, 4, "")
+                                         NOTE(C, 2, 4, "") NOTE(C, 7, 4, "")) TAIL);
+    expect_parts(5, (const char *const[]){"C3", "E3", "G3", "C3", "C7"});
+    TEST_ASSERT_NULL(strstr(made.text, "all notes for"));
 }
 
 // where an instrument stands (m)
@@ -242,6 +355,40 @@ static void test_instruments_stand_apart_and_in_reach(void)
     }
 }
 
+// drums alone: each pair and more are played, whatever they are
+static void test_each_drum_of_a_percussionist_is_struck(void)
+{
+    static const char *const sets[][3] = {{"Snare Drum", "Low Tom", "Snare Drum"},
+                                          {"Low Wood Block", "High Wood Block", "Tambourine"},
+                                          {"Bass Drum", "Conga", "Cymbal"},
+                                          {"Tom", "High Cowbell", "Triangle"}};
+    for (int k = 0; k < 4; k++) {
+        char text[4096];
+        snprintf(
+            text, sizeof text,
+            HEAD "<part-list>" PLAYER(
+                "P1", "Percussion",
+                INSTRUMENT("A", "%s") INSTRUMENT("B", "%s") INSTRUMENT(
+                    "C", "%s")) "</part-list><part id='P1'><measure number='1'>" FOUR TEMPO(100)
+                OF("A", F, 4) OF("B", E, 4) OF("C", C, 5) OF("B", E, 4) "</measure>" TAIL,
+            sets[k][0], sets[k][1], sets[k][2]);
+        load(text);
+        himc_performance_config config = himc_performance_default();
+        himc_performance *p = himc_performance_new(&config, &error);
+        himc_command play;
+        TEST_ASSERT_TRUE_MESSAGE(
+            p && himc_performance_load_text(p, made.text, "made", &error) &&
+                himc_command_parse_text(&play, HIMC_PERFORMER, "play", &error) &&
+                himc_performance_command(p, &play, 0, &error),
+            error.text);
+        for (int i = 0; i < 6 * config.sample_rate / 480; i++)
+            himc_performance_process(p, 480, NULL);
+        TEST_ASSERT_EQUAL_MESSAGE(4, himc_performance_measure(p).played, made.text);
+        TEST_ASSERT_EQUAL_MESSAGE(0, himc_performance_measure(p).missed, made.text);
+        himc_performance_free(p);
+    }
+}
+
 // a score of ours, out and in again
 
 static void expect_back(const char *words, bool midi)
@@ -258,6 +405,7 @@ static void expect_back(const char *words, bool midi)
         himc_score_maker_of(text.bytes, text.size)(&made, text.bytes, text.size, "b", NULL, &error),
         error.text);
     score = himc_score_parse(made.text, "made.txt", NULL, &error);
+    expect_loaded();
     TEST_ASSERT_NOT_NULL_MESSAGE(score, error.text);
     TEST_ASSERT_EQUAL_MESSAGE(from->stroke_count, score->stroke_count, made.text);
     for (int i = 0; i < from->stroke_count; i++) {
@@ -332,6 +480,11 @@ int main(void)
     RUN_TEST(test_staves_have_their_own_words);
     RUN_TEST(test_names_of_drums_say_high_and_low);
     RUN_TEST(test_what_is_not_known_on_one_line_is_told_and_left_out);
+    RUN_TEST(test_an_unknown_instrument_is_told_by_its_name_and_left_out);
+    RUN_TEST(test_names_that_sound_alike_are_told_apart);
+    RUN_TEST(test_of_a_chord_two_hands_play_the_outer_notes);
+    RUN_TEST(test_a_part_beyond_what_is_built_moves_as_a_whole);
+    RUN_TEST(test_each_drum_of_a_percussionist_is_struck);
     RUN_TEST(test_other_players_are_told_and_all_can_be_asked_for);
     RUN_TEST(test_instruments_stand_apart_and_in_reach);
     RUN_TEST(test_several_kinds_come_back_from_one_part);

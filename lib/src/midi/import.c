@@ -246,6 +246,7 @@ static void join_kind(midi_part *whole, const midi_part *own)
     whole->count += own->count;
     whole->notes += own->notes;
     whole->moved += own->moved;
+    whole->octaves[own->choice] = own->octaves[own->choice];
     whole->untuned += own->untuned;
     whole->hoopless += own->hoopless;
 }
@@ -286,6 +287,19 @@ static int by_note(const void *a, const void *b)
     return (x->note > y->note) - (x->note < y->note);
 }
 
+// a drum set stands as usual; other instruments, of several kinds or sorts, are put around the player
+static bool is_spread(const midi_part *part)
+{
+    bool kick = false, hats = false;
+    for (int i = 0; i < part->heads; i++) {
+        kick |= strcmp(part->head[i].name, "kick") == 0;
+        hats |= strcmp(part->head[i].name, "hats") == 0;
+    }
+    bool several = part->kinds != KIND(part->choice),
+         drums = part->choice == MIDI_DRUMS && !part->setup && part->heads > 1;
+    return several || (drums && !(kick && hats));
+}
+
 // the notes of the part as strokes with heads and hands
 static bool make_part(midi_part *part, const midi_file *file, const midi_options *options,
                       himc_error *error)
@@ -311,7 +325,7 @@ static bool make_part(midi_part *part, const midi_file *file, const midi_options
         good = !(part->kinds & KIND(kind)) || add_kind(part, kind, &c, options, error);
     }
     free(c.kinds);
-    if (good && part->count > 0 && part->kinds != KIND(part->choice)) {
+    if (good && part->count > 0 && is_spread(part)) {
         qsort(part->stroke, (size_t)part->count, sizeof *part->stroke, by_note);
         himc_midi_lay_out(part);
     }
@@ -391,6 +405,8 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
                               "drum is free"},
         [MIDI_NO_INSTRUMENT] = {"note is not played: there is no instrument for it",
                                 "notes are not played: there is no instrument for them"},
+        [MIDI_FOOT_ROLL] = {"roll is not played: a foot plays none",
+                            "rolls are not played: a foot plays none"},
         [MIDI_OTHER_INSTRUMENT] = {"note is of another instrument",
                                    "notes are of other instruments"},
     };
@@ -412,6 +428,11 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
     for (int key = 0; key < MIDI_KEY_COUNT; key++)
         if (himc_midi_tell_key(part, key, line, sizeof line) > 0 && line[0])
             himc_text_print(t, "%s\n", line);
+    for (int i = 1; i < MIDI_CHOICES; i++)
+        if (part->octaves[i])
+            himc_text_print(t, "all notes for %s are moved %s by %d octave%s to what is built\n",
+                            names[i], part->octaves[i] > 0 ? "up" : "down", abs(part->octaves[i]),
+                            abs(part->octaves[i]) == 1 ? "" : "s");
     report_kind(t, part->moved, "note is moved by octaves to what is built",
                 "notes are moved by octaves to what is built");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");
@@ -715,7 +736,10 @@ bool himc_midi_make(midi_score *made, midi_file *file, const char *name,
     *made = (midi_score){0};
     options = options ? options : &usual;
     bool good = read_setup(&part, options, error) && make_part(&part, file, options, error);
-    if (good && part.fate[MIDI_PLAYED] == 0)
+    if (good && part.fate[MIDI_PLAYED] == 0 && file->said && file->said[0])
+        good = himc_error_set(error, "nothing to play: %.*s", (int)strcspn(file->said, "\n"),
+                              file->said);
+    else if (good && part.fate[MIDI_PLAYED] == 0)
         good = himc_error_set(error, "nothing to play: %d note%s, none %s", file->note_count,
                               file->note_count == 1 ? "" : "s",
                               part.choice == MIDI_TIMPANI

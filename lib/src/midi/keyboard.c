@@ -1,7 +1,8 @@
 /// keyboard.c: marimba, xylophone, vibraphone, glockenspiel, tubular bells: which bar a note is.
 ///
-/// The instrument has the bars from the lowest to the highest note, an octave at least; a note
-/// beyond what is built is moved by octaves.
+/// The instrument has the bars from the lowest to the highest note, an octave at least. Where more
+/// notes fit what is built then, all are moved by octaves, so that intervals stay; a note that is
+/// still beyond it is moved alone.
 #include "midi/part.h"
 
 #include "base/format.h"
@@ -46,17 +47,37 @@ static int naturals(int key)
     return 7 * (key / 12) + below[key % 12];
 }
 
+// by how many octaves all notes move so that most fit; as few as do
+static int octaves_of(const midi_part *part, int low, int high)
+{
+    int best = 0, most = -1;
+    for (int k = 0; k <= 20; k++) { // 0 1 -1 2 ..
+        int octaves = k % 2 ? (k + 1) / 2 : -k / 2, fit = 0;
+        for (int i = 0; i < part->count; i++) {
+            int key = part->stroke[i].key + 12 * octaves;
+            fit += key >= low && key <= high;
+        }
+        if (fit > most) {
+            most = fit;
+            best = octaves;
+        }
+    }
+    return best;
+}
+
 void himc_midi_keyboard(midi_part *part)
 {
     int low = boards[part->choice - FIRST].low, high = boards[part->choice - FIRST].high;
-    int first = high, last = low;
+    int first = high, last = low, octaves = octaves_of(part, low, high);
+    part->octaves[part->choice] = octaves;
     for (int i = 0; i < part->count; i++) {
         midi_stroke *s = &part->stroke[i];
+        s->key += 12 * octaves;
         while (s->key < low)
             s->key += 12;
         while (s->key > high)
             s->key -= 12;
-        part->moved += s->key != s->note->key;
+        part->moved += s->key != s->note->key + 12 * octaves;
         first = s->key < first ? s->key : first;
         last = s->key > last ? s->key : last;
     }

@@ -308,6 +308,8 @@ void himc_midi_kit(midi_part *part)
             s->spot = HIMC_SPOT_NORMAL;
         s->spot = s->spot == HIMC_SPOT_NORMAL ? key->spot : s->spot;
         s->foot = key->how == BY_FOOT || key->how == PEDALLED;
+        if (s->foot && s->roll.length > 0)
+            s->fate = MIDI_FOOT_ROLL;
         s->pedal = key->how == OPENED ? MIDI_OPEN : key->how >= CLOSED ? MIDI_CLOSE : MIDI_AS_IT_IS;
         snprintf(s->part, sizeof s->part, "%s", key->part ? key->part : "");
     }
@@ -325,6 +327,8 @@ int himc_midi_tell_key(const midi_part *part, int key, char *line, size_t size)
         played += of_key && s->fate == MIDI_PLAYED;
     }
     *line = '\0';
+    if (key == MIDI_NO_SOUND) // told by its name
+        return missing;
     if (missing > 0 && of && of->instrument && part->setup && part->heads < MIDI_HEADS)
         snprintf(line, size, "%d of %s: no %s in the set-up", missing, of->sound, of->instrument);
     else if (missing > 0 && of && of->instrument)

@@ -1,4 +1,4 @@
-/// layout.c: where instruments of several kinds stand around one player.
+/// layout.c: where instruments of several kinds, or drums that are no set, stand around one player.
 ///
 /// Each kind alone has places of its own; those of `setup multi` count where it has the instrument.
 /// Keyboards come first, in front, then timpani, then drums: each as near to its usual place as the
@@ -12,18 +12,19 @@
 #include <math.h>
 #include <string.h>
 
-#define GAP 0.02       // between instruments (m); chosen
-#define REACH 0.88     // to a stroke (m); measured: some hands come so far, all 0.1 less
-#define SHOULDER 0.2   // of the other hand, which reaches a drum, too, from the middle (m)
-#define BODY 0.25      // no instrument is nearer to the player (m); chosen
-#define STEP 0.03      // of the places that are tried (m)
-#define FARTHEST 40    // of them (steps)
-#define LARGE 0.25     // radius of timpani, at least (m)
-#define SMALL 0.1      // at most (m)
-#define HIGHER 0.1     // a keyboard behind another one (m)
-#define HANGS 1.05     // what is small, over others (m)
-#define OVER_BARS 0.97 // what stands behind a keyboard (m); chosen
-#define LOW 0.5        // what a foot plays is lower (m)
+#define GAP 0.02          // between instruments (m); chosen
+#define REACH 0.88        // to a stroke (m); measured: some hands come so far, all 0.1 less
+#define REACH_SEATED 0.78 // the same among drums alone, and straight ahead; measured: .79 .. .83
+#define SHOULDER 0.2      // of the other hand, which reaches a drum, too, from the middle (m)
+#define BODY 0.25         // no instrument is nearer to the player (m); chosen
+#define STEP 0.03         // of the places that are tried (m)
+#define FARTHEST 40       // of them (steps)
+#define LARGE 0.25        // radius of timpani, at least (m)
+#define SMALL 0.1         // at most (m)
+#define HIGHER 0.1        // a keyboard behind another one (m)
+#define HANGS 1.05        // what is small, over others (m)
+#define OVER_BARS 0.97    // what stands behind a keyboard (m); chosen
+#define LOW 0.5           // what a foot plays is lower (m)
 
 static double radius_of(const midi_head *h)
 {
@@ -66,9 +67,13 @@ static double cost_of(const midi_part *part, const bool *placed, const midi_head
 {
     double near = hypot(h->x, fmax(0, fabs(h->y) - h->side)),
            beside = h->depth > 0 ? h->side : SHOULDER,
-           far = hypot(h->x + 0.5 * h->depth, fabs(h->y) + beside) - 0.6 * h->radius;
+           far = hypot(h->x + 0.5 * h->depth, fabs(h->y) + beside) - 0.6 * h->radius, reach = REACH;
+    if (part->kinds == 1u << MIDI_DRUMS) {
+        far = fmax(far, h->x);
+        reach = REACH_SEATED;
+    }
     double way = hypot(h->x - usual->x, h->y - usual->y),
-           cost = way + 20 * fmax(0, far - REACH) + 10 * fmax(0, BODY + radius_of(h) - near) +
+           cost = way + 20 * fmax(0, far - reach) + 10 * fmax(0, BODY + radius_of(h) - near) +
                   2 * fmax(0, -h->x);
     for (int i = 0; i < part->heads; i++)
         if (placed[i] && (way > 0 || !is_usual(h) || !is_usual(&part->head[i])))

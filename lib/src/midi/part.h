@@ -39,6 +39,7 @@ typedef enum midi_fate {
     MIDI_OTHER_INSTRUMENT, ///< no percussion
     MIDI_OTHER_PART,       ///< of percussion that is not asked for
     MIDI_NO_INSTRUMENT,    ///< of the drum channel: what no stick strikes
+    MIDI_FOOT_ROLL,     ///< a foot plays no roll
     MIDI_TOGETHER,         ///< with another one on the same head: they are one stroke
     MIDI_NO_DRUM,          ///< no drum could be tuned in time
     MIDI_NO_HAND,          ///< both hands are busy
@@ -112,7 +113,8 @@ typedef struct midi_part {
     int fate[MIDI_FATES];      ///< notes of the file
     int notes;                 ///< of the part, as written
     char bars[MIDI_FATES][48]; ///< of notes that are not played
-    int moved;                 ///< by octaves
+    int octaves[MIDI_CHOICES]; ///< by which all notes of a keyboard are moved
+    int moved;                 ///< notes by octaves alone
     int damped;                ///< strokes
     int untuned;               ///< orders to tune that no drum can follow
     int mallets;               ///< changes of mallets that are not played
@@ -181,7 +183,7 @@ void himc_midi_key_name(char name[HIMC_NOTE_SIZE], int key);
 /// Gives each stroke its bar.
 void himc_midi_keyboard(midi_part *part);
 
-/// layout.c: puts instruments of several kinds around one player.
+/// layout.c: puts instruments of several kinds, or drums that are no set, around one player.
 void himc_midi_lay_out(midi_part *part);
 
 /// sticking.c: gives each stroke a hand. False without memory.

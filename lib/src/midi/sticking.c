@@ -108,9 +108,43 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     return true;
 }
 
+static bool has_hand(const midi_stroke *s)
+{
+    return s->fate == MIDI_PLAYED && s->choice != MIDI_DRUMS && !s->foot && !s->in_roll;
+}
+
+// of a chord of three and more pitches, of one dynamic, two hands play the outer ones
+static void leave_inner(midi_part *part)
+{
+    for (int first = 0, next; first < part->count; first = next) {
+        const midi_stroke *s = &part->stroke[first];
+        int count = 0, low = 1000, high = 0;
+        double dynamic = -1;
+        bool alike = true;
+        for (next = first;
+             next < part->count && fabs(part->stroke[next].note->beat - s->note->beat) < SAME_TIME;
+             next++) {
+            const midi_stroke *n = &part->stroke[next];
+            if (!has_hand(n))
+                continue;
+            count++;
+            low = n->key < low ? n->key : low;
+            high = n->key > high ? n->key : high;
+            dynamic = dynamic < 0 ? n->dynamic : dynamic;
+            alike &= fabs(n->dynamic - dynamic) < 0.01;
+        }
+        for (int i = first; i < next && count > 2 && alike; i++) {
+            midi_stroke *n = &part->stroke[i];
+            if (has_hand(n) && n->key != low && n->key != high)
+                n->fate = MIDI_NO_HAND;
+        }
+    }
+}
+
 bool himc_midi_stick(midi_part *part, himc_error *error)
 {
     const midi_state first = {.key = {-1, -1}};
+    leave_inner(part);
     int8_t *hand = malloc((size_t)part->count + 1);
     bool good = hand && himc_midi_search(part, &first, HIMC_HANDS + 1, choose, hand);
     for (int i = 0; good && i < part->count; i++) {

@@ -36,6 +36,8 @@ static bool tell(const music *m, midi_file *file, himc_error *error)
             himc_text_print(&said, "%d %s (bar%s %s)\n", o->count, o->count == 1 ? o->one : o->many,
                             strchr(o->bars, ' ') ? "s" : "", o->bars);
     }
+    if (m->unknown[0])
+        himc_text_print(&said, "no such instrument here: %s\n", m->unknown);
     file->said = said.bytes;
     file->omitted = m->omitted[MUSIC_BAD_NOTES].count + m->omitted[MUSIC_GRACES].count;
     return (good && !said.failed) || himc_error_set(error, "out of memory for the report");

@@ -47,6 +47,7 @@ typedef struct music_note {
     int lane; ///< 100 staff + voice; 0 for one that is not written
     midi_choice choice;
     int key;
+    bool concert; ///< a bass drum's name says that it is no kick
     bool grace, tied_on, tied_back, accent, marcato, staccato, tenuto;
     bool pulled;         ///< the nuance staccato, as `himc export` writes it
     bool held;           ///< under a fermata
@@ -102,6 +103,7 @@ typedef struct music {
     music_sign *signs;
     int sign_count, sign_room;
     music_omission omitted[MUSIC_OMISSIONS];
+    char unknown[200]; ///< names of instruments that are not played
 } music;
 
 /// read.c: all of a document; false with one line if it is no score.

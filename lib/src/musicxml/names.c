@@ -17,7 +17,7 @@
 
 #define MOST_TEXT 256 // bytes of a text that are looked at
 
-// words of a row stand between |
+// words of a row stand between |; = before them: the name has no other word than a number or a filler
 
 static const struct {
     const char *words;
@@ -27,9 +27,18 @@ static const struct {
     // what begins as another one comes first
     {"drum timbale|high timbale", MIDI_DRUMS, 65},
     {"low timbale", MIDI_DRUMS, 66},
-    {"wind chime|bar chime|mark tree|bell tree", MIDI_DRUMS, MIDI_NO_SOUND},
+    {"wind chime|bar chime|mark tree|bell tree|hand chime|anvil|amboss|enclume|incudine|yunque|"
+     "sleigh|crotal|antique cymb|cymbales ant|finger cymb|cymbal finger|cymbales dig|zimbeln|"
+     "thunder|donnerbl|brake|log drum|cajon|cajón|rute$|castan|castag|castañ|kastagn|nacchere|"
+     "lion|löwengebr|waldteufel|rahmentrommel|holztrommel|gong drum|gongtrommel|cymbalom",
+     MIDI_DRUMS, MIDI_NO_SOUND},
     {"röhrenglocke|tubular|glocken$|chimes", MIDI_TUBULAR_BELL, 0},
-    {"schellen|tambour de basque|tambourin|tamburin|tamburell", MIDI_DRUMS, 54},
+    {"schellentr|schellenr|schellenk|tambour de basque|tamburo basco|tambourin|tamburin|tamburell|"
+     "pandereta",
+     MIDI_DRUMS, 54},
+    {"tenor drum|tenortrommel|rührtrommel|wirbeltrommel|rolltrommel|caisse roulante|cassa rullante|"
+     "tamburo rullante",
+     MIDI_DRUMS, 45},
     {"timp|pauk|kettle|timbal", MIDI_TIMPANI, 0},
     {"marimb|mar$|mba$", MIDI_MARIMBA, 0},
     {"xyl|xil$|xilof|silof", MIDI_XYLOPHONE, 0},
@@ -39,9 +48,10 @@ static const struct {
     {"side stick|cross stick|rimshot", MIDI_DRUMS, 37},
     {"electric snare", MIDI_DRUMS, 40},
     {"snare|side drum|caisse claire|kleine trommel|kl trommel|kl tr$|military drum|"
-     "militärtrommel|tambour|tamburo|rullante|cassa chiara|s d$",
+     "militärtrommel|field drum|parade drum|tambour militaire|tamburo militare|basler trommel|"
+     "rullante|cassa chiara|s d$",
      MIDI_DRUMS, 38},
-    {"kick", MIDI_DRUMS, 36},
+    {"kick|acoustic bass drum|bass drum 1", MIDI_DRUMS, 36},
     {"bass drum|grosse caisse|große trommel|grosse trommel|gr trommel|gr tr$|gran cassa|grancassa|"
      "gr c$|b d$",
      MIDI_DRUMS, MIDI_BASS_DRUM},
@@ -50,7 +60,7 @@ static const struct {
     {"pedal hi hat|hi hat pedal", MIDI_DRUMS, 44},
     {"hi hat|hihat|charleston", MIDI_DRUMS, 42},
     {"splash", MIDI_DRUMS, 55},
-    {"china|chinese", MIDI_DRUMS, 52},
+    {"china$|china cym|china type|china beck|chinabeck|chinese cym", MIDI_DRUMS, 52},
     {"ride bell", MIDI_DRUMS, 53},
     {"ride", MIDI_DRUMS, 51},
     {"crash|cym|bck$|becken|piatt|cinelli", MIDI_DRUMS, 49},
@@ -60,8 +70,8 @@ static const struct {
     {"second temple block", MIDI_DRUMS, MIDI_LOW_TEMPLE_BLOCK + 1},
     {"third temple block", MIDI_DRUMS, MIDI_LOW_TEMPLE_BLOCK + 2},
     {"fourth temple block", MIDI_DRUMS, MIDI_LOW_TEMPLE_BLOCK + 3},
-    {"temple|tempelbl|blocs chinois", MIDI_DRUMS, MIDI_TEMPLE_BLOCKS},
-    {"clave", MIDI_DRUMS, 75},
+    {"temple bl|templebl|tempelbl|blocs chinois", MIDI_DRUMS, MIDI_TEMPLE_BLOCKS},
+    {"clave$|claves", MIDI_DRUMS, 75},
     {"cow bell|cowbell|kuhglocke|bells cowbell|cencerro|campanacci|cloche de vache", MIDI_DRUMS,
      56},
     {"low agogo", MIDI_DRUMS, 68},
@@ -78,15 +88,27 @@ static const struct {
     {"low tom", MIDI_DRUMS, 45},
     {"high tom", MIDI_DRUMS, 50},
     {"tom", MIDI_DRUMS, 48},
-    {"castanet|kastagn", MIDI_DRUMS, MIDI_NO_SOUND},
-    {"maraca", MIDI_DRUMS, 70},
+    {"maraca|rumba|rassel", MIDI_DRUMS, 70},
     {"cabasa", MIDI_DRUMS, 69},
     {"guiro", MIDI_DRUMS, 73},
-    {"whip|peitsche|fouet|frusta|ratchet", MIDI_DRUMS, MIDI_NO_SOUND},
-    {"schlagwerk|percuss|perkuss", MIDI_DRUMS, MUSIC_ANY_KEY},
-    {"drum|schlagzeug|batteri", MIDI_DRUMS, MUSIC_NO_KEY},
-    {"trommel", MIDI_DRUMS, 38},
+    {"whip|slapstick|slap stick|peitsche|klappholz|fouet|frusta|látigo|latigo|ratchet|ratsche|"
+     "crécelle|raganella|carraca",
+     MIDI_DRUMS, MIDI_NO_SOUND},
+    {"schlagwerk|percuss|perkuss|perc$", MIDI_DRUMS, MUSIC_ANY_KEY},
+    {"schlagzeug|batteri", MIDI_DRUMS, MUSIC_NO_KEY},
+    {"=drum", MIDI_DRUMS, MUSIC_NO_KEY},
+    {"=trommel|tambour$|tamburo$", MIDI_DRUMS, 38},
 };
+
+static const char fillers[] = "drum|group|set$|kit$|part|player|spieler|solo|jazz|rock|pop$|funk|"
+                              "latin|studio|acoustic|electr|standard|multi|concert|orchest|pad|"
+                              "machine|e$|v$|i$|ii$|iii$|iv$|and$|und$|et$";
+
+// what programs call the instruments of their samplers
+static const char programs[] =
+    "smartmusic|aria$|midi|general|gm$|instrument|standard|player|"
+    "channel|unnamed|part$|track|sibelius|kontakt|garritan|hs$|noteperf|muse|"
+    "vst|stave|staff";
 
 /// Of one sort from high to low, by the key of a name that does not say which; `low`: the index of
 /// a name that says low.
@@ -257,7 +279,7 @@ static bool begins_word(const char *text, const char *at)
 static size_t begins_with(const char *at, const char *words)
 {
     size_t longest = 0;
-    for (const char *word = words; *word; word += *word == '|') {
+    for (const char *word = words + (words[0] == '='); *word; word += *word == '|') {
         size_t all = strcspn(word, "|"), length = all - (word[all - 1] == '$');
         // the text may end before the word does
         if (length > longest && strncmp(at, word, length) == 0 &&
@@ -266,6 +288,21 @@ static size_t begins_with(const char *at, const char *words)
         word += all;
     }
     return longest;
+}
+
+// true if all other words of a text are numbers and fillers
+static bool is_alone(const char *text, const char *at)
+{
+    for (const char *w = text; *w; w += strspn(w, " ")) {
+        bool word = isalpha((unsigned char)*w) || (unsigned char)*w >= 0x80;
+        bool known = !word || w == at || begins_with(w, fillers) > 0;
+        for (int d = 0; d < 3; d++)
+            known |= begins_with(w, degrees[d]) > 0;
+        if (!known)
+            return false;
+        w += strcspn(w, " ");
+    }
+    return true;
 }
 
 int himc_music_of_sort(int key, int index, int count)
@@ -310,14 +347,24 @@ midi_choice himc_music_instrument(const char *name, int *key)
     char text[MOST_TEXT];
     size_t length;
     fold(text, name, true);
+    const char pitched[] = "pitched percussion ", *begin = text;
+    begin += strncmp(text, pitched, sizeof pitched - 1) == 0 ? sizeof pitched - 1 : 0;
     for (size_t i = 0; i < sizeof instruments / sizeof *instruments; i++)
-        for (const char *at = text; *at; at++)
-            if (begins_word(text, at) && (length = begins_with(at, instruments[i].words)) > 0) {
+        for (const char *at = begin; *at; at++)
+            if (begins_word(text, at) && (length = begins_with(at, instruments[i].words)) > 0 &&
+                (instruments[i].words[0] != '=' || is_alone(text, at))) {
                 *key = find_degree(text, at + length, instruments[i].key);
                 return instruments[i].choice;
             }
     *key = MUSIC_NO_KEY;
     return MIDI_ANY;
+}
+
+bool himc_music_names(const char *name)
+{
+    char text[MOST_TEXT];
+    fold(text, name, true);
+    return text[0] && begins_with(text, programs) == 0;
 }
 
 midi_choice himc_music_change(const char *words, int *key, bool *bare)

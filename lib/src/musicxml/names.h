@@ -15,6 +15,9 @@ midi_choice himc_music_instrument(const char *name, int *key);
 /// Kl. Trommel"), or, `bare`, that are a name and no more.
 midi_choice himc_music_change(const char *words, int *key, bool *bare);
 
+/// True of a name that says an instrument, known or not; false of none, and of a program's sampler.
+bool himc_music_names(const char *name);
+
 /// Of `count` drums of one sort, whose common key it is, the key of the one of that index from the
 /// highest; other keys stay.
 int himc_music_of_sort(int key, int index, int count);

@@ -25,10 +25,11 @@ enum { RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
 #define STAVES 10            // of a part; 0: a note that does not say which
 
 typedef struct instrument {
-    const char *id;
+    const char *id, *name;
     midi_choice choice;
     int key;
     int drum;       ///< of timpani
+    bool concert;   ///< its name says a concert bass drum
     bool sort;      ///< of drums of one sort, whose notes say which
     uint64_t at[2]; ///< ... where they are written, a bit for each pitch
 } instrument;
@@ -61,6 +62,23 @@ void himc_music_omit(music *m, int which, int bar)
     music_omission *o = &m->omitted[which];
     himc_text_list(o->bars, sizeof o->bars, m->bars[bar].number);
     o->count++;
+}
+
+// the name of an instrument that is not played, once
+static void add_unknown(music *m, const char *name)
+{
+    char word[48];
+    snprintf(word, sizeof word, "%.40s", name);
+    for (char *c = word; *c; c++)
+        *c = iscntrl((unsigned char)*c) || strchr(";,\\", *c) ? ' ' : *c;
+    for (const char *at = m->unknown; at; at = strstr(at, ", ") ? strstr(at, ", ") + 2 : NULL)
+        if (strncmp(at, word, strlen(word)) == 0 && (!at[strlen(word)] || at[strlen(word)] == ','))
+            return;
+    size_t used = strlen(m->unknown), left = sizeof m->unknown - used;
+    if (left > strlen(word) + sizeof ", ...")
+        snprintf(m->unknown + used, left, "%s%s", used ? ", " : "", word);
+    else if (!strstr(m->unknown, "..."))
+        snprintf(m->unknown + used, left, ", ...");
 }
 
 static void add_sign(reader *r, double beat, music_meaning meaning, double value)
@@ -102,29 +120,39 @@ static int lane_of(const xml_node *node)
 static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
 {
     instrument *made = &r->instrument[r->instruments++];
-    *made = (instrument){himc_xml_attribute(score, "id"), .key = MUSIC_NO_KEY};
+    const char *id = himc_xml_attribute(score, "id");
+    *made = (instrument){id, "", .key = MUSIC_NO_KEY};
     const char *const name[] = {himc_xml_text(score, "instrument-sound"),
                                 himc_xml_text(score, "instrument-name"),
                                 himc_xml_text(score, "instrument-abbreviation")};
     for (int i = 0; i < 3 && made->choice == MIDI_ANY; i++)
         made->choice = himc_music_instrument(name[i], &made->key);
+    for (int i = 1; i >= 0 && !made->name[0]; i--)
+        made->name = himc_music_names(name[i]) ? name[i] : "";
     made->drum = himc_music_drum(name[1]);
+    // only the name of the one instrument of a part may be unknown: the part's says what it is
+    bool only = !himc_xml_next(himc_xml_child(r->list, "score-instrument")) &&
+                (part != MIDI_DRUMS || part_key >= 0);
     const xml_node *midi = himc_xml_child(r->list, "midi-instrument");
     while (midi && !himc_xml_has(midi, "id", made->id))
         midi = himc_xml_next(midi);
     int key = whole(midi, "midi-unpitched", 0) - 1;
     int program = whole(midi, "midi-program", 0) - 1;
     bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
-    if (made->choice == MIDI_ANY && part != MIDI_ANY)
-        *made = (instrument){made->id, .choice = part, .key = part_key};
+    if (made->choice == MIDI_ANY && part != MIDI_ANY && (only || !made->name[0]))
+        *made = (instrument){id, made->name, .choice = part, .key = part_key};
     if (made->choice == MIDI_ANY && midi && !drums)
         made->choice = himc_midi_program_choice(program);
-    if (made->choice == MIDI_ANY && drums)
+    if (made->choice == MIDI_ANY && (drums || part != MIDI_ANY)) {
         made->choice = MIDI_DRUMS;
+        made->key = made->name[0] && key < 0 ? MIDI_NO_SOUND : MUSIC_NO_KEY;
+    }
     // the MIDI key decides, unless both names say a concert instrument, which General MIDI lacks
     bool concert = made->key >= 128 && part_key >= 128;
+    made->concert = made->choice == MIDI_DRUMS && made->key == MIDI_BASS_DRUM;
     made->sort = made->choice == MIDI_DRUMS && himc_music_of_sort(made->key, 0, 2) != made->key;
-    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert) {
+    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert &&
+        made->key != MIDI_NO_SOUND) {
         made->key = key;
         made->sort = false;
     }
@@ -168,8 +196,40 @@ static void survey(reader *r, const xml_node *part)
         }
 }
 
-// what the part is; an entry for a part without instruments, too
-static void read_instruments(reader *r)
+static bool is_kick(int key)
+{
+    return key == 35 || key == 36;
+}
+
+// hi-hats, toms, rides
+static bool is_of_kit(int key)
+{
+    return key >= 41 && key <= 59 && !memchr((const char[]){49, 52, 54, 55, 56, 57, 58}, key, 7);
+}
+
+// where no other drum of a kit is, a bass drum is a concert one by its name or by a roll
+static void choose_bass_drum(reader *r, int first, int part_key)
+{
+    music *m = r->music;
+    bool kit = false, roll = false;
+    for (int i = 0; i < r->declared; i++)
+        kit |= r->instrument[i].choice == MIDI_DRUMS && is_of_kit(r->instrument[i].key);
+    for (int i = first; i < m->note_count; i++) {
+        const music_note *n = &m->notes[i];
+        kit |= n->choice == MIDI_DRUMS && is_of_kit(n->key);
+        roll |= n->choice == MIDI_DRUMS && is_kick(n->key) &&
+                (n->tremolo == MUSIC_ROLL || (n->tremolo == MUSIC_MARKS && n->marks > 2));
+    }
+    for (int i = first; i < m->note_count && !kit; i++) {
+        music_note *n = &m->notes[i];
+        bool named = n->concert && part_key != MUSIC_NO_KEY;
+        if (n->choice == MIDI_DRUMS && is_kick(n->key) && (roll || named))
+            n->key = MIDI_BASS_DRUM;
+    }
+}
+
+// what the part is, by its key; an entry for a part without instruments, too
+static int read_instruments(reader *r)
 {
     int key = MUSIC_NO_KEY;
     midi_choice part = himc_music_instrument(himc_xml_text(r->list, "part-name"), &key);
@@ -182,7 +242,7 @@ static void read_instruments(reader *r)
     for (size_t length; !score && r->instruments < MOST_INSTRUMENTS; name += length + 1) {
         char word[64];
         length = strcspn(name, ",/&+");
-        instrument made = {"", .choice = part, .key = key};
+        instrument made = {"", himc_xml_text(r->list, "part-name"), .choice = part, .key = key};
         snprintf(word, sizeof word, "%.*s", (int)length, name);
         if (r->instruments > 0 || name[length])
             made.choice = himc_music_instrument(word, &made.key);
@@ -195,10 +255,11 @@ static void read_instruments(reader *r)
     for (; score && r->instruments < MOST_INSTRUMENTS; score = himc_xml_next(score))
         read_instrument(r, score, part, key);
     r->declared = r->instruments;
+    return part == MIDI_ANY ? MUSIC_ANY_KEY : key;
 }
 
 // from here on notes that do not say it are of that instrument
-static void change_instrument(reader *r, midi_choice choice, int key)
+static void change_instrument(reader *r, midi_choice choice, int key, const char *name)
 {
     int i = 0;
     while (i < r->instruments && (r->instrument[i].choice != choice || r->instrument[i].key != key))
@@ -206,7 +267,7 @@ static void change_instrument(reader *r, midi_choice choice, int key)
     if (i == MOST_INSTRUMENTS)
         return;
     if (i == r->instruments)
-        r->instrument[r->instruments++] = (instrument){"", .choice = choice, .key = key};
+        r->instrument[r->instruments++] = (instrument){"", name, .choice = choice, .key = key};
     r->current[r->lane / 100] = i;
 }
 
@@ -218,7 +279,7 @@ static void read_change(reader *r, const char *words, bool instructs)
     // of a drum set, or where notes say it, a name alone is no more than a hint
     bool hint = instructs || r->declared > 1 || r->instrument[0].key == MUSIC_NO_KEY;
     if (choice != MIDI_ANY && !(bare && hint))
-        change_instrument(r, choice, key);
+        change_instrument(r, choice, key, words);
 }
 
 // signs and words
@@ -227,9 +288,10 @@ static void read_change(reader *r, const char *words, bool instructs)
 static void read_sound_change(reader *r, const xml_node *change)
 {
     int key = MUSIC_NO_KEY, i = find_instrument(r, change);
-    midi_choice choice = himc_music_instrument(himc_xml_text(change, "instrument-sound"), &key);
+    const char *name = himc_xml_text(change, "instrument-sound");
+    midi_choice choice = himc_music_instrument(name, &key);
     if (choice != MIDI_ANY && i >= 0)
-        r->instrument[i] = (instrument){r->instrument[i].id, .choice = choice, .key = key};
+        r->instrument[i] = (instrument){r->instrument[i].id, name, .choice = choice, .key = key};
     if (i >= 0)
         r->current[r->lane / 100] = i;
 }
@@ -666,9 +728,13 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
     const xml_node *pitch = himc_xml_child(note, "pitch");
     int written = read_pitch(note);
     n->choice = of->choice;
+    n->concert = of->concert;
     n->drum = of->drum;
     n->key = written + (pitch ? r->transpose : 0);
-    if (of->choice == MIDI_DRUMS) {
+    if (of->choice == MIDI_ANY) { // unpitched
+        n->choice = MIDI_DRUMS;
+        n->key = MIDI_NO_SOUND;
+    } else if (of->choice == MIDI_DRUMS) {
         const char *head = himc_xml_text(note, "notehead");
         n->key = drum_of(r, note, of, written);
         if (n->key == MIDI_CLOSED_HATS && strcmp(head, "circle-x") == 0)
@@ -677,7 +743,7 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
             n->key = RIDE_BELL;
     }
     return (pitch || himc_xml_child(note, "unpitched")) && n->key >= 0 && n->key < 256 &&
-           (written >= 0 || of->key >= 0) && (of->choice == MIDI_DRUMS || n->key < 128);
+           (written >= 0 || of->key >= 0) && (n->choice == MIDI_DRUMS || n->key < 128);
 }
 
 // of a drum with a hoop (kit.c)
@@ -706,7 +772,9 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     bool chord = himc_xml_child(note, "chord");
     if (!chord)
         r->head = -1;
-    if (himc_xml_child(note, "rest") || instrument_of(r, note)->choice == MIDI_ANY)
+    const instrument *of = instrument_of(r, note);
+    if (himc_xml_child(note, "rest") ||
+        (of->choice == MIDI_ANY && (!himc_xml_child(note, "unpitched") || !of->name[0])))
         return;
     if (himc_xml_child(note,
                        "cue")) { // it is silent; one of that size alone is not, by the standard
@@ -721,6 +789,8 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         himc_music_omit(m, MUSIC_BAD_NOTES, r->bar);
         return;
     }
+    if (n.key == MIDI_NO_SOUND)
+        add_unknown(m, of->key >= 0 || of->choice == MIDI_ANY ? of->name : "other percussion");
     for (int i = 0; i < 5; i++)
         if (strcmp(himc_xml_text(note, "type"), types[i]) == 0)
             n.flags = i + 1;
@@ -891,7 +961,7 @@ static bool read_part(reader *r, const xml_node *part)
     r->list = himc_xml_child(himc_xml_child(r->root, "part-list"), "score-part");
     while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
         r->list = himc_xml_next(r->list);
-    read_instruments(r);
+    const int key = read_instruments(r), first = m->note_count;
     survey(r, part);
     memset(r->current, -1, sizeof r->current);
     memset(r->lines, 0, sizeof r->lines);
@@ -913,6 +983,7 @@ static bool read_part(reader *r, const xml_node *part)
         }
         read_measure(r, measure);
     }
+    choose_bass_drum(r, first, key);
     return !r->failed;
 }
 
