@@ -67,7 +67,10 @@ void himc_music_omit(music *m, int which, int bar)
 static void add_unknown(music *m, const char *name)
 {
     char word[48];
-    snprintf(word, sizeof word, "%.40s", name);
+    size_t length = strlen(name) < 40 ? strlen(name) : 40;
+    while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) // of one letter
+        length--;
+    snprintf(word, sizeof word, "%.*s", (int)length, name);
     for (char *c = word; *c; c++)
         *c = iscntrl((unsigned char)*c) || strchr(";,\\", *c) ? ' ' : *c;
     for (const char *at = m->unknown; at; at = strstr(at, ", ") ? strstr(at, ", ") + 2 : NULL)
