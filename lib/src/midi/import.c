@@ -287,7 +287,7 @@ static int by_note(const void *a, const void *b)
     return (x->note > y->note) - (x->note < y->note);
 }
 
-// a drum set stands as usual; other instruments, of several kinds or sorts, are put around the player
+// a drum set stands as usual; other instruments are put around the player
 static bool is_spread(const midi_part *part)
 {
     bool kick = false, hats = false;
@@ -390,6 +390,15 @@ static const char *list_names(char *line, size_t size, unsigned kinds)
     return line;
 }
 
+static void report_octaves(himc_text_lines *t, const midi_part *part)
+{
+    for (int i = 1; i < MIDI_CHOICES; i++)
+        if (part->octaves[i])
+            himc_text_print(t, "all notes for %s are moved %s by %d octave%s to what is built\n",
+                            names[i], part->octaves[i] > 0 ? "up" : "down", abs(part->octaves[i]),
+                            abs(part->octaves[i]) == 1 ? "" : "s");
+}
+
 static void report(himc_text_lines *t, const midi_file *file, const midi_part *part)
 {
     static const char *const why[MIDI_FATES][2] = {
@@ -428,11 +437,7 @@ static void report(himc_text_lines *t, const midi_file *file, const midi_part *p
     for (int key = 0; key < MIDI_KEY_COUNT; key++)
         if (himc_midi_tell_key(part, key, line, sizeof line) > 0 && line[0])
             himc_text_print(t, "%s\n", line);
-    for (int i = 1; i < MIDI_CHOICES; i++)
-        if (part->octaves[i])
-            himc_text_print(t, "all notes for %s are moved %s by %d octave%s to what is built\n",
-                            names[i], part->octaves[i] > 0 ? "up" : "down", abs(part->octaves[i]),
-                            abs(part->octaves[i]) == 1 ? "" : "s");
+    report_octaves(t, part);
     report_kind(t, part->moved, "note is moved by octaves to what is built",
                 "notes are moved by octaves to what is built");
     report_kind(t, part->pedals, "change of pitch by pedal", "changes of pitch by pedal");

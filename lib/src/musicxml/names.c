@@ -17,7 +17,7 @@
 
 #define MOST_TEXT 256 // bytes of a text that are looked at
 
-// words of a row stand between |; = before them: the name has no other word than a number or a filler
+// words of a row stand between |; = before them: beside it a name has numbers and fillers alone
 
 static const struct {
     const char *words;

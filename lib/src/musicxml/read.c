@@ -68,7 +68,10 @@ void himc_music_omit(music *m, int which, int bar)
 static void add_unknown(music *m, const char *name)
 {
     char word[48];
-    snprintf(word, sizeof word, "%.40s", name);
+    size_t length = strlen(name) < 40 ? strlen(name) : 40;
+    while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) // of one letter
+        length--;
+    snprintf(word, sizeof word, "%.*s", (int)length, name);
     for (char *c = word; *c; c++)
         *c = iscntrl((unsigned char)*c) || strchr(";,\\", *c) ? ' ' : *c;
     for (const char *at = m->unknown; at; at = strstr(at, ", ") ? strstr(at, ", ") + 2 : NULL)
@@ -756,6 +759,13 @@ static himc_spot spot_of(const char *notehead)
     return HIMC_SPOT_NORMAL;
 }
 
+static double read_ratio(const xml_node *tuplet)
+{
+    double actual = himc_xml_number(tuplet, "actual-notes", 1),
+           normal = himc_xml_number(tuplet, "normal-notes", 1);
+    return actual >= 1 && normal >= 1 && actual < 100 && normal < 100 ? actual / normal : 1;
+}
+
 static void add_note(reader *r, const xml_node *note, double beat, double length)
 {
     static const char *const types[] = {"eighth", "16th", "32nd", "64th", "128th"};
@@ -770,8 +780,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
                     .ghost = is_yes(himc_xml_child(note, "notehead"), "parentheses"),
                     .ratio = 1};
     bool chord = himc_xml_child(note, "chord");
-    if (!chord)
-        r->head = -1;
+    r->head = chord ? r->head : -1;
     const instrument *of = instrument_of(r, note);
     if (himc_xml_child(note, "rest") ||
         (of->choice == MIDI_ANY && (!himc_xml_child(note, "unpitched") || !of->name[0])))
@@ -794,10 +803,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     for (int i = 0; i < 5; i++)
         if (strcmp(himc_xml_text(note, "type"), types[i]) == 0)
             n.flags = i + 1;
-    const xml_node *tuplet = himc_xml_child(note, "time-modification");
-    double actual = himc_xml_number(tuplet, "actual-notes", 1),
-           normal = himc_xml_number(tuplet, "normal-notes", 1);
-    n.ratio = actual >= 1 && normal >= 1 && actual < 100 && normal < 100 ? actual / normal : 1;
+    n.ratio = read_ratio(himc_xml_child(note, "time-modification"));
     for (const xml_node *t = himc_xml_child(note, "tie"); t; t = himc_xml_next(t)) {
         n.tied_on |= himc_xml_has(t, "type", "start");
         n.tied_back |= himc_xml_has(t, "type", "stop");
