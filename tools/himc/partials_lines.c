@@ -27,6 +27,7 @@
 #define END 2.2    // (s)
 #define TICK 0.005 // (s) of the envelope
 #define TICKS 420
+#define LANES 8
 #define LEAST_TICKS 48  // of a slope
 #define DOWN 35.0       // (dB)
 #define STRAIGHT 2.5    // (dB)
@@ -52,15 +53,18 @@ static bool find_spectrum(const partials_sound *sound, double level[BINS])
     for (int t = 0; x && t < sound->tracks; t++) {
         for (size_t i = 0; i < n; i++)
             x[i] = sound->track[t][start + i] * (1 - cos(2 * HIMC_PI * (double)i / (double)n));
-        for (int k = 0; k < BINS; k++) {
-            double turn = 2 * cos(2 * HIMC_PI * (LOWEST + STEP * k) / sound->rate), one = 0,
-                   two = 0;
-            for (size_t i = 0; i < n; i++) {
-                double now = x[i] + turn * one - two;
-                two = one;
-                one = now;
-            }
-            level[k] += one * one + two * two - turn * one * two;
+        for (int first = 0; first < BINS; first += LANES) { // together, for their speed
+            double turn[LANES], one[LANES] = {0}, two[LANES] = {0};
+            for (int k = 0; k < LANES; k++)
+                turn[k] = 2 * cos(2 * HIMC_PI * (LOWEST + STEP * (first + k)) / sound->rate);
+            for (size_t i = 0; i < n; i++)
+                for (int k = 0; k < LANES; k++) {
+                    double now = x[i] + turn[k] * one[k] - two[k];
+                    two[k] = one[k];
+                    one[k] = now;
+                }
+            for (int k = 0; k < LANES && first + k < BINS; k++)
+                level[first + k] += one[k] * one[k] + two[k] * two[k] - turn[k] * one[k] * two[k];
         }
     }
     for (int k = 0; k < BINS; k++)
