@@ -31,10 +31,11 @@ typedef struct himc_score_line {
     double beat;               ///< of `at` (beats), 0 or more; of other lines 0
 } himc_score_line;
 
-/// Where bars begin, as a comment says: `comment bars of 3/4 from beat 2;`.
+/// From where on bars follow each other, as a comment says: `comment bars of 3/4 from beat 2;`.
 typedef struct himc_bars {
-    double beat;
-    int beats, unit; ///< 3, 4
+    double beat; ///< of the first of them (beats), 0 or more
+    int beats;   ///< of its metre, above: 1 .. 255 ...
+    int unit;    ///< ... of a whole note's part: 1 2 4 .. 64, a quarter 4
 } himc_bars;
 
 /// A score with its arrays, which it owns. Strokes are sorted by beat (stable).

@@ -1,42 +1,13 @@
 /// Export: a score as MusicXML and as MIDI, read back, is the same music.
 #define _XOPEN_SOURCE 700
-#include "unity.h"
-
-#include "musicxml/export.h"
-#include "musicxml/import.h"
-#include "plan/score.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "written.h"
 
 #define MOST 1000
-
-static himc_error error;
-static himc_score *score;
-static midi_file notes;
-static himc_text_lines text;
 
 /// All strokes that were read back, of every part, on the beats of the original.
 static himc_stroke back[MOST];
 static bool matched[MOST];
 static int count;
-
-void setUp(void)
-{
-    error.text[0] = '\0';
-    count = 0;
-}
-
-void tearDown(void)
-{
-    himc_score_free(score);
-    himc_midi_file_free(&notes);
-    free(text.bytes);
-    score = NULL;
-    text = (himc_text_lines){0};
-}
 
 static void load(const char *path)
 {
@@ -53,12 +24,12 @@ static void parse(const char *words)
     TEST_ASSERT_TRUE(himc_music_write(&text, &notes, "words"));
 }
 
-static void read_part(himc_score_maker *make, midi_choice choice)
+static void read_back(himc_score_maker *make)
 {
     midi_score made;
-    midi_options options = {.choice = choice};
     double lead = 0;
-    if (!make(&made, text.bytes, text.size, "back", &options, &error))
+    count = 0;
+    if (!make(&made, text.bytes, text.size, "back", NULL, &error))
         return;
     himc_score *part = himc_score_parse(made.text, "back", NULL, &error);
     TEST_ASSERT_NOT_NULL_MESSAGE(part, error.text);
@@ -70,11 +41,6 @@ static void read_part(himc_score_maker *make, midi_choice choice)
     }
     himc_score_free(part);
     himc_midi_score_free(&made);
-}
-
-static void read_back(himc_score_maker *make)
-{
-    read_part(make, MIDI_ANY);
 }
 
 static bool is_same(const himc_stroke *a, const himc_stroke *b)
@@ -465,7 +431,7 @@ static void test_more_bars_than_are_read_are_refused(void)
 static void test_the_last_bar_that_is_read_is_written(void)
 {
     parse("drum kettle; tempo 1000; stroke 1 right legato f; stroke 79999 left legato f;");
-    read_part(himc_music_import, MIDI_TIMPANI);
+    read_back(himc_music_import);
     TEST_ASSERT_EQUAL(2, count);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 79999, back[1].beat);
 }

@@ -1,35 +1,8 @@
 /// Export: the page that MusicXML makes: values, tuplets, beams, graces, hairpins.
 #define _XOPEN_SOURCE 700
-#include "unity.h"
+#include "written.h"
 
-#include "musicxml/export.h"
-#include "musicxml/import.h"
 #include "musicxml/spell.h"
-#include "plan/score.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-static himc_error error;
-static himc_score *score;
-static midi_file notes;
-static himc_text_lines text;
-
-void setUp(void)
-{
-    error.text[0] = '\0';
-}
-
-void tearDown(void)
-{
-    himc_score_free(score);
-    himc_midi_file_free(&notes);
-    free(text.bytes);
-    score = NULL;
-    text = (himc_text_lines){0};
-}
 
 static void write_score(void)
 {

@@ -39,7 +39,7 @@ typedef enum midi_fate {
     MIDI_OTHER_INSTRUMENT, ///< no percussion
     MIDI_OTHER_PART,       ///< of percussion that is not asked for
     MIDI_NO_INSTRUMENT,    ///< of the drum channel: what no stick strikes
-    MIDI_FOOT_ROLL,     ///< a foot plays no roll
+    MIDI_FOOT_ROLL,        ///< a foot plays no roll
     MIDI_TOGETHER,         ///< with another one on the same head: they are one stroke
     MIDI_NO_DRUM,          ///< no drum could be tuned in time
     MIDI_NO_HAND,          ///< both hands are busy

@@ -206,13 +206,18 @@ static const struct {
     {"cédez", MUSIC_TEMPO_RAMP, 0.85},
     {"accel|stringendo|schneller werden", MUSIC_TEMPO_RAMP, 1.25},
     {"pressez", MUSIC_TEMPO_RAMP, 1.2},
-    {"più mosso|più presto|più allegro|più vivo|più animato|piu mosso|piu presto|piu allegro|piu vivo|piu animato|plus vite|plus vif|plus animé|schneller$|bewegter|lebhafter|faster",
+    {"più mosso|più presto|più allegro|più vivo|più animato|piu mosso|piu presto|"
+     "piu allegro|piu vivo|piu animato|plus vite|plus vif|plus animé|schneller$|bewegter|"
+     "lebhafter|faster",
      MUSIC_TEMPO_SHARE, 1.15},
-    {"poco più mosso|poco piu mosso|poco più animato|poco più presto|un peu plus vite|un peu plus vif|un peu plus animé|etwas schneller|etwas bewegter|a little faster",
+    {"poco più mosso|poco piu mosso|poco più animato|poco più presto|un peu plus vite|"
+     "un peu plus vif|un peu plus animé|etwas schneller|etwas bewegter|a little faster",
      MUSIC_TEMPO_SHARE, 1.08},
-    {"meno mosso|meno presto|meno allegro|meno vivo|più lento|più tranquillo|più largo|piu lento|piu tranquillo|piu largo|moins vite|moins vif|plus lent|ruhiger|slower",
+    {"meno mosso|meno presto|meno allegro|meno vivo|più lento|più tranquillo|più largo|"
+     "piu lento|piu tranquillo|piu largo|moins vite|moins vif|plus lent|ruhiger|slower",
      MUSIC_TEMPO_SHARE, 0.85},
-    {"poco meno mosso|poco meno presto|poco meno allegro|poco più lento|poco più tranquillo|un peu moins vite|un peu plus lent|etwas ruhiger|a little slower",
+    {"poco meno mosso|poco meno presto|poco meno allegro|poco più lento|poco più tranquillo|"
+     "un peu moins vite|un peu plus lent|etwas ruhiger|a little slower",
      MUSIC_TEMPO_SHARE, 0.92},
     {"molto più mosso|assai più mosso", MUSIC_TEMPO_SHARE, 1.3},
     {"molto meno mosso|assai meno mosso", MUSIC_TEMPO_SHARE, 0.7},

@@ -5,12 +5,10 @@
 /// `backup` and `forward`; durations count in the part's divisions of a quarter note. Notes are
 /// taken of parts that are played; tempi, fermatas, repeats and jumps of all parts, as programs
 /// write them into one part only. Invariant: each note of such a part is taken or counted.
-#include "musicxml/music.h"
+#include "musicxml/instruments.h"
 
 #include "base/array.h"
 #include "base/format.h"
-#include "midi/part.h"
-#include "musicxml/xml.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -21,29 +19,13 @@
 enum { RIDE = 51, RIDE_BELL = 53 }; // keys of General MIDI
 
 #define LEAST_OWN (-1.0 / 7) // dynamic of a note, whose accent adds a step
-#define MOST_INSTRUMENTS 64  // of a part
-#define STAVES 10            // of a part; 0: a note that does not say which
-
-typedef struct instrument {
-    const char *id, *name;
-    midi_choice choice;
-    int key;
-    int drum;       ///< of timpani
-    bool concert;   ///< its name says a concert bass drum
-    bool sort;      ///< of drums of one sort, whose notes say which
-    uint64_t at[2]; ///< ... where they are written, a bit for each pitch
-} instrument;
 
 typedef struct reader {
     music *music;
     himc_error *error;
     const xml_node *root, *list; ///< the part's entry in the part-list
     int part, bar;
-    instrument instrument[MOST_INSTRUMENTS];
-    int instruments, declared;
-    int current[STAVES]; ///< the one that words have changed to; -1: none
-    int lines[STAVES];
-    char clef[STAVES];
+    music_instruments instruments;
     double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
     double time;                     ///< length of a bar (beats) ...
     int beats, unit;                 ///< ... and its metre, as far as a score can say it
@@ -96,207 +78,16 @@ static void add_sign(reader *r, double beat, music_meaning meaning, double value
     m->sign_count++;
 }
 
-// instruments
+// signs and words
 
 static bool is_yes(const xml_node *node, const char *attribute)
 {
     return himc_xml_has(node, attribute, "yes");
 }
 
-// a whole number, within limits that no score reaches
-static int whole(const xml_node *node, const char *name, int otherwise)
-{
-    return (int)lround(fmin(fmax(himc_xml_number(node, name, otherwise), -1000), 1000));
-}
-
-static int staff_of(const xml_node *node)
-{
-    return abs(whole(node, "staff", 0)) % STAVES;
-}
-
 static int lane_of(const xml_node *node)
 {
-    return 100 * staff_of(node) + abs(whole(node, "voice", 0)) % 100;
-}
-
-// by the names first, then by the MIDI instrument
-static void read_instrument(reader *r, const xml_node *score, midi_choice part, int part_key)
-{
-    instrument *made = &r->instrument[r->instruments++];
-    const char *id = himc_xml_attribute(score, "id");
-    *made = (instrument){id, "", .key = MUSIC_NO_KEY};
-    const char *const name[] = {himc_xml_text(score, "instrument-sound"),
-                                himc_xml_text(score, "instrument-name"),
-                                himc_xml_text(score, "instrument-abbreviation")};
-    for (int i = 0; i < 3 && made->choice == MIDI_ANY; i++)
-        made->choice = himc_music_instrument(name[i], &made->key);
-    for (int i = 1; i >= 0 && !made->name[0]; i--)
-        made->name = himc_music_names(name[i]) ? name[i] : "";
-    made->drum = himc_music_drum(name[1]);
-    // only the name of the one instrument of a part may be unknown: the part's says what it is
-    bool only = !himc_xml_next(himc_xml_child(r->list, "score-instrument")) &&
-                (part != MIDI_DRUMS || part_key >= 0);
-    const xml_node *midi = himc_xml_child(r->list, "midi-instrument");
-    while (midi && !himc_xml_has(midi, "id", made->id))
-        midi = himc_xml_next(midi);
-    int key = whole(midi, "midi-unpitched", 0) - 1;
-    int program = whole(midi, "midi-program", 0) - 1;
-    bool drums = himc_xml_number(midi, "midi-channel", 0) == 10;
-    if (made->choice == MIDI_ANY && part != MIDI_ANY && (only || !made->name[0]))
-        *made = (instrument){id, made->name, .choice = part, .key = part_key};
-    if (made->choice == MIDI_ANY && midi && !drums)
-        made->choice = himc_midi_program_choice(program);
-    if (made->choice == MIDI_ANY && (drums || part != MIDI_ANY)) {
-        made->choice = MIDI_DRUMS;
-        made->key = made->name[0] && key < 0 ? MIDI_NO_SOUND : MUSIC_NO_KEY;
-    }
-    // the MIDI key decides, unless both names say a concert instrument, which General MIDI lacks
-    bool concert = made->key >= 128 && part_key >= 128;
-    made->concert = made->choice == MIDI_DRUMS && made->key == MIDI_BASS_DRUM;
-    made->sort = made->choice == MIDI_DRUMS && himc_music_of_sort(made->key, 0, 2) != made->key;
-    if (made->choice == MIDI_DRUMS && key >= 0 && key < 128 && !concert &&
-        made->key != MIDI_NO_SOUND) {
-        made->key = key;
-        made->sort = false;
-    }
-}
-
-// a note's pitch, or where it is written
-static int read_pitch(const xml_node *note)
-{
-    static const int natural[] = {9, 11, 0, 2, 4, 5, 7};
-    const xml_node *pitch = himc_xml_child(note, "pitch"),
-                   *of = pitch ? pitch : himc_xml_child(note, "unpitched");
-    const char *letter = himc_xml_text(of, pitch ? "step" : "display-step");
-    if (letter[0] < 'A' || letter[0] > 'G')
-        return -1;
-    return natural[letter[0] - 'A'] + 12 * (whole(of, pitch ? "octave" : "display-octave", 4) + 1) +
-           whole(of, "alter", 0);
-}
-
-// the entry that a note names; -1: none
-static int find_instrument(const reader *r, const xml_node *named)
-{
-    const char *id = himc_xml_attribute(named, "id");
-    for (int i = 0; i < r->declared && id[0]; i++)
-        if (strcmp(r->instrument[i].id, id) == 0)
-            return i;
-    return -1;
-}
-
-// where drums of one sort are written
-static void survey(reader *r, const xml_node *part)
-{
-    bool any = false;
-    for (int i = 0; i < r->instruments; i++)
-        any |= r->instrument[i].sort;
-    const xml_node *measure = any ? himc_xml_child(part, "measure") : NULL;
-    for (; measure; measure = himc_xml_next(measure))
-        for (const xml_node *n = himc_xml_child(measure, "note"); n; n = himc_xml_next(n)) {
-            int i = find_instrument(r, himc_xml_child(n, "instrument")), written = read_pitch(n);
-            if (written >= 0 && written < 128)
-                r->instrument[i < 0 ? 0 : i].at[written / 64] |= (uint64_t)1 << written % 64;
-        }
-}
-
-static bool is_kick(int key)
-{
-    return key == 35 || key == 36;
-}
-
-// hi-hats, toms, rides
-static bool is_of_kit(int key)
-{
-    return key >= 41 && key <= 59 && !memchr((const char[]){49, 52, 54, 55, 56, 57, 58}, key, 7);
-}
-
-// where no other drum of a kit is, a bass drum is a concert one by its name or by a roll
-static void choose_bass_drum(reader *r, int first, int part_key)
-{
-    music *m = r->music;
-    bool kit = false, roll = false;
-    for (int i = 0; i < r->declared; i++)
-        kit |= r->instrument[i].choice == MIDI_DRUMS && is_of_kit(r->instrument[i].key);
-    for (int i = first; i < m->note_count; i++) {
-        const music_note *n = &m->notes[i];
-        kit |= n->choice == MIDI_DRUMS && is_of_kit(n->key);
-        roll |= n->choice == MIDI_DRUMS && is_kick(n->key) &&
-                (n->tremolo == MUSIC_ROLL || (n->tremolo == MUSIC_MARKS && n->marks > 2));
-    }
-    for (int i = first; i < m->note_count && !kit; i++) {
-        music_note *n = &m->notes[i];
-        bool named = n->concert && part_key != MUSIC_NO_KEY;
-        if (n->choice == MIDI_DRUMS && is_kick(n->key) && (roll || named))
-            n->key = MIDI_BASS_DRUM;
-    }
-}
-
-// what the part is, by its key; an entry for a part without instruments, too
-static int read_instruments(reader *r)
-{
-    int key = MUSIC_NO_KEY;
-    midi_choice part = himc_music_instrument(himc_xml_text(r->list, "part-name"), &key);
-    if (part == MIDI_ANY)
-        part = himc_music_instrument(himc_xml_text(r->list, "part-abbreviation"), &key);
-    r->instruments = 0;
-    const xml_node *score = himc_xml_child(r->list, "score-instrument");
-    // without one each of the names "Timpani, Xylophone" is
-    const char *name = himc_xml_text(r->list, "part-name");
-    for (size_t length; !score && r->instruments < MOST_INSTRUMENTS; name += length + 1) {
-        char word[64];
-        length = strcspn(name, ",/&+");
-        instrument made = {"", himc_xml_text(r->list, "part-name"), .choice = part, .key = key};
-        snprintf(word, sizeof word, "%.*s", (int)length, name);
-        if (r->instruments > 0 || name[length])
-            made.choice = himc_music_instrument(word, &made.key);
-        made.sort = made.choice == MIDI_DRUMS && himc_music_of_sort(made.key, 0, 2) != made.key;
-        if (made.choice != MIDI_ANY || (!name[length] && r->instruments == 0))
-            r->instrument[r->instruments++] = made;
-        if (!name[length])
-            break;
-    }
-    for (; score && r->instruments < MOST_INSTRUMENTS; score = himc_xml_next(score))
-        read_instrument(r, score, part, key);
-    r->declared = r->instruments;
-    return part == MIDI_ANY ? MUSIC_ANY_KEY : key;
-}
-
-// from here on notes that do not say it are of that instrument
-static void change_instrument(reader *r, midi_choice choice, int key, const char *name)
-{
-    int i = 0;
-    while (i < r->instruments && (r->instrument[i].choice != choice || r->instrument[i].key != key))
-        i++;
-    if (i == MOST_INSTRUMENTS)
-        return;
-    if (i == r->instruments)
-        r->instrument[r->instruments++] = (instrument){"", name, .choice = choice, .key = key};
-    r->current[r->lane / 100] = i;
-}
-
-static void read_change(reader *r, const char *words, bool instructs)
-{
-    int key;
-    bool bare;
-    midi_choice choice = himc_music_change(words, &key, &bare);
-    // of a drum set, or where notes say it, a name alone is no more than a hint
-    bool hint = instructs || r->declared > 1 || r->instrument[0].key == MUSIC_NO_KEY;
-    if (choice != MIDI_ANY && !(bare && hint))
-        change_instrument(r, choice, key, words);
-}
-
-// signs and words
-
-// a sound that an instrument of the part gets
-static void read_sound_change(reader *r, const xml_node *change)
-{
-    int key = MUSIC_NO_KEY, i = find_instrument(r, change);
-    const char *name = himc_xml_text(change, "instrument-sound");
-    midi_choice choice = himc_music_instrument(name, &key);
-    if (choice != MIDI_ANY && i >= 0)
-        r->instrument[i] = (instrument){r->instrument[i].id, name, .choice = choice, .key = key};
-    if (i >= 0)
-        r->current[r->lane / 100] = i;
+    return 100 * himc_music_staff(node) + abs(himc_xml_whole(node, "voice", 0)) % 100;
 }
 
 static void add_swing(reader *r, double beat, double first, double second, double unit)
@@ -309,7 +100,7 @@ static void read_sound(reader *r, const xml_node *sound, double beat, bool dynam
 {
     const xml_node *change = himc_xml_child(sound, "instrument-change");
     for (; change; change = himc_xml_next(change))
-        read_sound_change(r, change);
+        himc_music_instruments_sound(&r->instruments, r->lane / 100, change);
     music_bar *bar = &r->music->bars[r->bar];
     const char *tempo = himc_xml_attribute(sound, "tempo"),
                *level = himc_xml_attribute(sound, "dynamics");
@@ -365,7 +156,7 @@ static bool read_words(reader *r, const xml_node *words, double beat, bool own, 
         dynamic |= meaning[i] == MUSIC_DYNAMIC;
     }
     if (own)
-        read_change(r, words->text, count > 0);
+        himc_music_instruments_change(&r->instruments, r->lane / 100, words->text, count > 0);
     return dynamic;
 }
 
@@ -551,19 +342,6 @@ static void read_barline(reader *r, const xml_node *barline)
 
 // notes
 
-// of a drum set that says nothing else: where its drums are written (Weinberg 1998), by MIDI key
-static int drum_at(int key)
-{
-    static const struct {
-        int at, drum;
-    } lines[] = {{62, 44}, {64, 36}, {65, 36}, {67, 41}, {69, 43}, {71, 45}, {72, 38},
-                 {74, 47}, {76, 48}, {77, 51}, {79, 42}, {81, 49}, {83, 57}};
-    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
-        if (lines[i].at == key)
-            return lines[i].drum;
-    return 38;
-}
-
 // of a roll; HIMC_PLAIN: none
 static himc_ornament kind_of(const char *text)
 {
@@ -684,52 +462,11 @@ static void read_notations(reader *r, music_note *n, const xml_node *notations)
     r->lane = 0;
 }
 
-// the first instrument from one kind up to another; of several a clef says which
-static int of_clef(const reader *r, const xml_node *note)
-{
-    char clef = r->clef[staff_of(note)];
-    bool pitched = himc_xml_child(note, "pitch");
-    midi_choice first = !pitched      ? MIDI_DRUMS
-                        : clef == 'F' ? MIDI_TIMPANI
-                                      : MIDI_MARIMBA,
-                last = pitched && clef != 'F' ? MIDI_TUBULAR_BELL : first;
-    for (int i = 0; i < r->declared; i++)
-        if (r->instrument[i].choice >= first && r->instrument[i].choice <= last)
-            return i;
-    return 0;
-}
-
-// by the note's id, if there are several, by words, by the clef
-static const instrument *instrument_of(const reader *r, const xml_node *note)
-{
-    int named = find_instrument(r, himc_xml_child(note, "instrument")),
-        current = r->current[staff_of(note)];
-    current = current < 0 ? r->current[0] : current;
-    if (named >= 0 && (r->declared > 1 || current < 0))
-        return &r->instrument[named];
-    return &r->instrument[current >= 0 ? current : of_clef(r, note)];
-}
-
-// the key of a drum that is written there
-static int drum_of(const reader *r, const xml_node *note, const instrument *of, int written)
-{
-    int above = 0, count = 0;
-    for (int k = 0; k < 128; k++)
-        if (of->at[k / 64] >> k % 64 & 1) {
-            above += k > written;
-            count++;
-        }
-    if (of->key >= 0)
-        return of->sort ? himc_music_of_sort(of->key, above, count) : of->key;
-    bool other = himc_xml_child(note, "pitch") && r->declared > 1;
-    return other || r->lines[staff_of(note)] == 1 ? MIDI_NO_SOUND : drum_at(written);
-}
-
 static bool read_key(reader *r, const xml_node *note, music_note *n)
 {
-    const instrument *of = instrument_of(r, note);
+    const music_instrument *of = himc_music_instrument_of(&r->instruments, note);
     const xml_node *pitch = himc_xml_child(note, "pitch");
-    int written = read_pitch(note);
+    int written = himc_music_pitch(note);
     n->choice = of->choice;
     n->concert = of->concert;
     n->drum = of->drum;
@@ -739,7 +476,7 @@ static bool read_key(reader *r, const xml_node *note, music_note *n)
         n->key = MIDI_NO_SOUND;
     } else if (of->choice == MIDI_DRUMS) {
         const char *head = himc_xml_text(note, "notehead");
-        n->key = drum_of(r, note, of, written);
+        n->key = himc_music_drum_of(&r->instruments, note, of, written);
         if (n->key == MIDI_CLOSED_HATS && strcmp(head, "circle-x") == 0)
             n->key = MIDI_OPEN_HATS;
         else if (n->key == RIDE && strcmp(head, "diamond") == 0)
@@ -781,12 +518,11 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
                     .ratio = 1};
     bool chord = himc_xml_child(note, "chord");
     r->head = chord ? r->head : -1;
-    const instrument *of = instrument_of(r, note);
+    const music_instrument *of = himc_music_instrument_of(&r->instruments, note);
     if (himc_xml_child(note, "rest") ||
         (of->choice == MIDI_ANY && (!himc_xml_child(note, "unpitched") || !of->name[0])))
         return;
-    if (himc_xml_child(note,
-                       "cue")) { // it is silent; one of that size alone is not, by the standard
+    if (himc_xml_child(note, "cue")) { // silent; one that is small alone is not, by the standard
         himc_music_omit(m, MUSIC_CUES, r->bar);
         return;
     }
@@ -861,16 +597,7 @@ static void read_attributes(reader *r, const xml_node *attributes)
         himc_xml_child(himc_xml_child(attributes, "measure-style"), "measure-repeat");
     if (again)
         r->repeated = himc_xml_has(again, "type", "start") ? atoi(again->text) : 0;
-    for (const xml_node *a = attributes->child; a; a = a->next) {
-        int staff = atoi(himc_xml_attribute(a, "number"));
-        staff = staff > 1 && staff < STAVES ? staff : 1; // a note of one staff may say 0
-        if (himc_xml_is(a, "clef"))
-            r->clef[staff] = himc_xml_text(a, "sign")[0];
-        else if (himc_xml_is(a, "staff-details"))
-            r->lines[staff] = whole(a, "staff-lines", 5);
-        r->clef[0] = r->clef[1];
-        r->lines[0] = r->lines[1];
-    }
+    himc_music_instruments_attributes(&r->instruments, attributes);
     const xml_node *time = himc_xml_child(attributes, "time");
     double beats = 0;
     for (const char *n = himc_xml_text(time, "beats"); n && *n;) { // "3+2"
@@ -924,8 +651,8 @@ static void read_measure(reader *r, const xml_node *measure)
     music_bar *bar = &r->music->bars[r->bar];
     read_number(bar, measure);
     bool own = false;
-    for (int i = 0; i < r->instruments; i++)
-        own |= r->instrument[i].choice != MIDI_ANY;
+    for (int i = 0; i < r->instruments.count; i++)
+        own |= r->instruments.row[i].choice != MIDI_ANY;
     bool sounds = false;
     r->at = r->last = r->end = 0;
     for (const xml_node *n = measure->child; n; n = n->next) {
@@ -967,11 +694,8 @@ static bool read_part(reader *r, const xml_node *part)
     r->list = himc_xml_child(himc_xml_child(r->root, "part-list"), "score-part");
     while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
         r->list = himc_xml_next(r->list);
-    const int key = read_instruments(r), first = m->note_count;
-    survey(r, part);
-    memset(r->current, -1, sizeof r->current);
-    memset(r->lines, 0, sizeof r->lines);
-    memset(r->clef, 0, sizeof r->clef);
+    const int first = m->note_count;
+    himc_music_instruments_read(&r->instruments, r->list, part);
     r->divisions = 1;
     r->transpose = r->wavy = r->repeated = 0;
     r->time = r->beats = r->unit = 4;
@@ -989,7 +713,7 @@ static bool read_part(reader *r, const xml_node *part)
         }
         read_measure(r, measure);
     }
-    choose_bass_drum(r, first, key);
+    himc_music_choose_bass_drum(&r->instruments, m, first);
     return !r->failed;
 }
 

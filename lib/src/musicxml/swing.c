@@ -51,19 +51,12 @@ static bool is_plain(const music *m, int note, const swing *w)
 // where a part's note at a beat has gone, else `otherwise`
 static double find(const music *m, const double *to, int part, double beat, double otherwise)
 {
-    int low = 0, high = m->note_count;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (m->notes[middle].at.beat < beat - SAME)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (int n = 0; low < m->note_count && n < MOST_PAIR; low++, n++)
-        if (m->notes[low].at.beat > beat + SAME)
+    int i = himc_music_first(m, beat);
+    for (int n = 0; i < m->note_count && n < MOST_PAIR; i++, n++)
+        if (m->notes[i].at.beat > beat + SAME)
             break;
-        else if (m->notes[low].at.part == part)
-            return to[low];
+        else if (m->notes[i].at.part == part)
+            return to[i];
     return otherwise;
 }
 

@@ -10,8 +10,8 @@
 
 #include "base/format.h"
 #include "midi/part.h"
+#include "musicxml/instruments.h"
 #include "musicxml/marks.h"
-#include "musicxml/music.h"
 #include "musicxml/spell.h"
 
 #include <math.h>
@@ -70,35 +70,17 @@ static void put_value(const writer *w, const music_piece *piece)
             piece->actual, piece->normal);
 }
 
-// where a drum of a kit is written (Weinberg 1998), and with an x what is metal
-static const struct {
-    int key;
-    char place[3];
-    bool metal;
-} lines[] = {{35, "F4", false}, {36, "F4", false}, {41, "G4", false}, {43, "A4", false},
-             {45, "B4", false}, {47, "D5", false}, {48, "E5", false}, {50, "E5", false},
-             {42, "G5", true},  {44, "D4", true},  {46, "G5", true},  {49, "A5", true},
-             {57, "B5", true},  {52, "B5", true},  {55, "A5", true},  {51, "F5", true},
-             {53, "F5", true},  {59, "F5", true}};
-
-static int line_of(int key)
-{
-    int i = (int)(sizeof lines / sizeof *lines) - 1;
-    while (i >= 0 && lines[i].key != key)
-        i--;
-    return i;
-}
-
 static void put_pitch(const writer *w, int key)
 {
     static const char *const steps[] = {"C", "C", "D", "E", "E", "F", "F", "G", "A", "A", "B", "B"};
     static const int alter[] = {0, 1, 0, -1, 0, 0, 1, 0, -1, 0, -1, 0};
-    int line = line_of(key);
+    bool metal;
+    int place = himc_music_place(key, &metal);
     if (w->now->choice == MIDI_DRUMS)
         PUT(w,
-            "<unpitched><display-step>%c</display-step><display-octave>%c</display-octave>"
+            "<unpitched><display-step>%s</display-step><display-octave>%d</display-octave>"
             "</unpitched>",
-            line < 0 ? 'C' : lines[line].place[0], line < 0 ? '5' : lines[line].place[1]);
+            steps[place % 12], place / 12 - 1);
     else if (alter[key % 12])
         PUT(w, "<pitch><step>%s</step><alter>%d</alter><octave>%d</octave></pitch>",
             steps[key % 12], alter[key % 12], key / 12 - 1);
@@ -233,7 +215,8 @@ static void put_note(const writer *w, const music_item *i, const music_piece *pi
     if (begins)
         put_graces(w, i);
     const char *notehead = himc_music_notehead(i->note->way.spot);
-    int line = w->now->choice == MIDI_DRUMS ? line_of(i->note->key) : -1;
+    bool metal;
+    himc_music_place(i->note->key, &metal);
     double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
     // the exact dynamic, in percent of a velocity of 90
     PUT(w, "<note dynamics=\"%.6g\">%s", fmax(himc_midi_velocity(level), 0) / 0.9,
@@ -249,7 +232,7 @@ static void put_note(const writer *w, const music_item *i, const music_piece *pi
     put_value(w, piece);
     if (w->now->feet)
         PUT(w, "<stem>%s</stem>", i->voice == FOOT ? "down" : "up");
-    if (notehead[0] || (line >= 0 && lines[line].metal))
+    if (notehead[0] || (metal && w->now->choice == MIDI_DRUMS))
         PUT(w, "<notehead>%s</notehead>", notehead[0] ? notehead : "x");
     put_staff(w);
     for (int k = 0; k < 6 && piece->beam[k] && !i->chord; k++)

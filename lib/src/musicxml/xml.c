@@ -245,6 +245,11 @@ double himc_xml_number(const xml_node *node, const char *name, double otherwise)
     return end != text && isfinite(number) ? number : otherwise;
 }
 
+int himc_xml_whole(const xml_node *node, const char *name, int otherwise)
+{
+    return (int)lround(fmin(fmax(himc_xml_number(node, name, otherwise), -1000), 1000));
+}
+
 const char *himc_xml_attribute(const xml_node *node, const char *name)
 {
     for (const char *const *a = node ? node->attribute : NULL; a && a[0]; a += 2)

@@ -33,6 +33,8 @@ const xml_node *himc_xml_next(const xml_node *node);
 const char *himc_xml_text(const xml_node *node, const char *name);
 /// The child's text as a number; `otherwise` if it is none.
 double himc_xml_number(const xml_node *node, const char *name, double otherwise);
+/// The same, whole, within -1000 .. 1000, which no score reaches.
+int himc_xml_whole(const xml_node *node, const char *name, int otherwise);
 /// "" if there is none.
 const char *himc_xml_attribute(const xml_node *node, const char *name);
 bool himc_xml_is(const xml_node *node, const char *name);

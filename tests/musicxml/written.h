@@ -1,0 +1,35 @@
+/// written.h: a score, its notes, and the page that is written of them.
+#ifndef HIMC_TESTS_MUSICXML_WRITTEN_H
+#define HIMC_TESTS_MUSICXML_WRITTEN_H
+
+#include "unity.h"
+
+#include "musicxml/export.h"
+#include "musicxml/import.h"
+#include "plan/score.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static himc_error error;
+static himc_score *score;
+static midi_file notes;
+static himc_text_lines text;
+
+void setUp(void)
+{
+    error.text[0] = '\0';
+}
+
+void tearDown(void)
+{
+    himc_score_free(score);
+    himc_midi_file_free(&notes);
+    free(text.bytes);
+    score = NULL;
+    text = (himc_text_lines){0};
+}
+
+#endif
