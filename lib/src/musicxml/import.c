@@ -51,8 +51,9 @@ static bool read_file(midi_file *file, const void *bytes, size_t size, himc_erro
                               MUSIC_BYTES_MAX >> 20);
     if (!himc_music_read(&m, bytes, size, error))
         return false;
-    bool good = himc_music_order(&m, file, error) && himc_music_tempo(&m, file, error) &&
-                himc_music_shape(&m, file, error) && tell(&m, file, error);
+    bool good = himc_music_order(&m, file, error) && himc_music_swing(&m, file, error) &&
+                himc_music_tempo(&m, file, error) && himc_music_shape(&m, file, error) &&
+                tell(&m, file, error);
     if (good && m.note_count == 0)
         good = himc_error_set(error,
                               "nothing to play: %d bar%s without a note of timpani, drums, "

@@ -227,7 +227,7 @@ bool himc_music_order(music *m, midi_file *file, himc_error *error)
            unfold(&o, &m->signs, &m->sign_count, sizeof *m->signs, error);
     if (good) {
         m->sign_room = m->sign_count + 1; // as unfolded
-        good = add_returns(m, &o, error) && himc_music_swing(m, file, error);
+        good = add_returns(m, &o, error);
     }
     free(o.played);
     free(o.begin);
