@@ -234,6 +234,37 @@ static void test_a_gliss_comes_back_as_a_gliss(void)
     expect_same("gliss");
 }
 
+// the note that it leads to is struck where it has arrived, though another drum has that pitch
+static void test_a_gliss_ends_on_its_own_drum(void)
+{
+    parse("drum second 29; second tune F2; drum third 26; third tune C3; tempo 90;"
+          "stroke 0 right legato f third; stroke 4 left legato f second;"
+          "at 4 second gliss C3 1.3333333; stroke 6 left legato f second;");
+    read_back(himc_music_import);
+    expect_same("gliss");
+    for (int i = 0; i < count; i++)
+        TEST_ASSERT_EQUAL_STRING(score->strokes[i].drum, back[i].drum);
+}
+
+static void test_a_choked_cymbal_is_choked_again(void)
+{
+    parse("setup kit; tempo 120; stroke 0 right legato f crash; at 1 crash damp 1;"
+          "at 1.5 crash damp 0; stroke 2 right legato f crash; stroke 4 left legato f snare;");
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "at 3 crash damp 1;"), made.text);
+    TEST_ASSERT_NULL(strstr(strstr(made.text, "damp 1;") + 1, "damp 1;"));
+    himc_midi_score_free(&made);
+}
+
+static void test_a_stroke_on_no_drum_of_the_score_is_refused(void)
+{
+    score = himc_score_parse("setup kit; stroke 3 right legato f none;", "words", NULL, &error);
+    TEST_ASSERT_FALSE(himc_music_notes(&notes, score, false, &error));
+    TEST_ASSERT_EQUAL_STRING("stroke at beat 3: no drum none, expected one that is made",
+                             error.text);
+}
+
 // also beyond a drum's usual pitches, and where two drums have one pitch
 static void test_a_gliss_keeps_its_octave_and_its_drum(void)
 {
@@ -568,5 +599,8 @@ int main(void)
     RUN_TEST(test_spots_without_a_key_are_told_and_come_back_normal);
     RUN_TEST(test_a_timbale_is_a_drum_also_under_another_name);
     RUN_TEST(test_a_score_without_strokes_is_refused);
+    RUN_TEST(test_a_gliss_ends_on_its_own_drum);
+    RUN_TEST(test_a_choked_cymbal_is_choked_again);
+    RUN_TEST(test_a_stroke_on_no_drum_of_the_score_is_refused);
     return UNITY_END();
 }

@@ -244,6 +244,52 @@ static void test_a_kit_has_one_mark_and_two_voices(void)
     TEST_ASSERT_EQUAL(2, count_of("<display-step>F</display-step><display-octave>4<"));
 }
 
+// one mark, an accent over what is louder, parentheses around what is much softer; none of it is
+// another way of playing when it is read
+static void test_accents_and_ghost_notes_are_signs_of_a_bar_with_one_mark(void)
+{
+    parse("instrument snare snare 14; tempo 100; stroke 0 right legato mf snare;"
+          "stroke 0.5 left legato pp snare; stroke 1 right legato f snare;"
+          "stroke 1.5 left legato pp snare; stroke 2 right legato mf snare;"
+          "stroke 2.5 left legato mf snare; stroke 3 right accent f snare;");
+    TEST_ASSERT_EQUAL(1, count_of("<dynamics>"));
+    TEST_ASSERT_EQUAL(1, count_of("<mf/>"));
+    TEST_ASSERT_EQUAL(2, count_of("<accent/>"));
+    TEST_ASSERT_EQUAL(2, count_of("<notehead parentheses=\"yes\">"));
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "right legato f normal snare"), made.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "right accent f normal snare"), made.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "left legato pp normal snare"), made.text);
+    himc_midi_score_free(&made);
+}
+
+// each of other drums than a kit's has a place and its name before its first note
+static void test_other_drums_are_apart_and_named_once(void)
+{
+    parse("instrument t tambourine; instrument w wood-block; instrument c cowbell; setup kit;"
+          "stroke 0 right legato f t; stroke 1 right legato f w; stroke 2 right legato f c;"
+          "stroke 3 right legato f snare; stroke 4 right legato f t; stroke 5 left legato f w;");
+    static const char *const names[] = {"tambourine", "high wood block", "cowbell"};
+    char words[64];
+    for (int i = 0; i < 3; i++) {
+        snprintf(words, sizeof words, "<words>%s</words>", names[i]);
+        TEST_ASSERT_EQUAL_MESSAGE(1, count_of(words), names[i]);
+    }
+    TEST_ASSERT_EQUAL(3, count_of("<words>"));
+    const char *seen[4], *at = text.bytes;
+    for (int i = 0; i < 4; i++) {
+        at = strstr(at, "<display-step>");
+        seen[i] = at++;
+        for (int k = 0; k < i; k++) // a step and its octave
+            TEST_ASSERT_TRUE(strncmp(seen[i], seen[k], 46) != 0);
+    }
+    midi_score made;
+    TEST_ASSERT_TRUE(himc_music_import(&made, text.bytes, text.size, "back", NULL, &error));
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "not played"), made.report);
+    himc_midi_score_free(&made);
+}
+
 static void test_a_tempo_on_its_way_is_a_word(void)
 {
     parse("drum k; tempo 60; tempo 60 120 8 4; stroke 0 right legato f; stroke 20 left legato f;");
@@ -268,5 +314,7 @@ int main(void)
     RUN_TEST(test_a_ramp_of_strokes_is_one_hairpin);
     RUN_TEST(test_a_kit_has_one_mark_and_two_voices);
     RUN_TEST(test_a_tempo_on_its_way_is_a_word);
+    RUN_TEST(test_accents_and_ghost_notes_are_signs_of_a_bar_with_one_mark);
+    RUN_TEST(test_other_drums_are_apart_and_named_once);
     return UNITY_END();
 }

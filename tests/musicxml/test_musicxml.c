@@ -802,6 +802,17 @@ static void test_utf_16_is_read(void)
     free(wide);
 }
 
+// a line over the bars is played by both hands in turn
+static void test_a_line_on_a_keyboard_goes_hand_by_hand(void)
+{
+    load(HEAD PART("Xylophone") BAR(1, FOUR NOTE(C, 5, 4, "") NOTE(D, 5, 4, "") NOTE(E, 5, 4, "")
+                                           NOTE(F, 5, 4, ""))
+             BAR(2, NOTE(G, 5, 4, "") NOTE(F, 5, 4, "") NOTE(E, 5, 4, "") NOTE(D, 5, 4, "")) TAIL);
+    TEST_ASSERT_EQUAL(8, score->stroke_count);
+    for (int i = 1; i < 8; i++)
+        TEST_ASSERT_TRUE_MESSAGE(stroke(i)->hand != stroke(i - 1)->hand, made.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -860,5 +871,6 @@ int main(void)
     RUN_TEST(test_a_file_cut_anywhere_is_refused_in_a_line);
     RUN_TEST(test_a_file_with_random_edits_is_read_or_refused_in_a_line);
     RUN_TEST(test_utf_16_is_read);
+    RUN_TEST(test_a_line_on_a_keyboard_goes_hand_by_hand);
     return UNITY_END();
 }

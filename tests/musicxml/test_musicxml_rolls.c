@@ -137,6 +137,20 @@ static void expect_roll_of_two(int index, double beat, double length)
 }
 
 // both drums of a roll on two sound, a hand each, however it is written
+static void test_a_roll_on_two_bars_has_both(void)
+{
+    load(HEAD PART("Marimba")
+             BAR(1, FOUR NOTE(C, 4, 16, MARKS(3)) "<note><chord/><pitch><step>E</step><octave>4"
+                                                  "</octave></pitch><duration>16</duration>"
+                                                  "<voice>1</voice></note>") TAIL);
+    expect_text("2 of 2 notes for marimba are played");
+    TEST_ASSERT_EQUAL(2, score->stroke_count);
+    expect_roll(0, 0, 4, 4, 4);
+    expect_roll(1, 0, 4, 4, 4);
+    TEST_ASSERT_EQUAL_STRING("C4", stroke(0)->part);
+    TEST_ASSERT_EQUAL_STRING("E4", stroke(1)->part);
+}
+
 static void test_a_roll_on_two_drums_has_both(void)
 {
     PLAY(BAR(1, FOUR C3(16, MARKS(3)) CHORD(G, 2, 16, MARKS(3))) BAR(2, C3(16, "")));
@@ -337,5 +351,6 @@ int main(void)
     RUN_TEST(test_a_louder_voice_strikes_in_a_soft_roll);
     RUN_TEST(test_each_damp_sign_is_for_what_sounds);
     RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
+    RUN_TEST(test_a_roll_on_two_bars_has_both);
     return UNITY_END();
 }

@@ -112,6 +112,10 @@ static void test_eighths_swing_and_what_is_finer_does_not(void)
     PLAY(BAR(1, FOUR WORDS("Swing") EIGHTHS SWING("<straight/>") EIGHTHS));
     expect_beats(8, 0.0, 2 / 3.0, 1.0, 5 / 3.0, 2.0, 2.5, 3.0, 3.5);
     expect_swing(2 / 3.0);
+    PLAY(BAR(1, FOUR WORDS("Swing") EIGHTHS WORDS("Straight") EIGHTHS)
+             BAR(2, WORDS("Shuffle") EIGHTHS WORDS("gerade Achtel") EIGHTHS));
+    expect_beats(16, 0.0, 2 / 3.0, 1.0, 5 / 3.0, 2.0, 2.5, 3.0, 3.5, 4.0, 14 / 3.0, 5.0, 17 / 3.0,
+                 6.0, 6.5, 7.0, 7.5);
     PLAY(BAR(1, FOUR DIRECTION("<metronome>" UNIT("eighth") UNIT(
                     "eighth") "<metronome-relation>equals</metronome-relation>" UNIT("quarter")
                                    UNIT("eighth") "</metronome>") EIGHTHS REST(8)));

@@ -447,6 +447,31 @@ static void test_two_rolls_at_once_on_two_drums_have_a_hand_each(void)
     }
 }
 
+// the same on two bars of a marimba, and on one bar both
+static void test_two_rolls_at_once_on_two_bars_have_a_hand_each(void)
+{
+    const char *two[] = {"instrument m marimba C4 C5",
+                         "m place .45 0 .87",
+                         "tempo 60",
+                         "roll 1 2 single mf E4 m",
+                         "roll 1 2 single mf C4 m",
+                         "roll 3 1 single mf G4 m",
+                         NULL};
+    heard h = play_new(5, two);
+    int each[2][HIMC_HANDS] = {0};
+    double low = 0, high = 0;
+    for (int i = 0; i < h.strikes; i++)
+        each[h.strike[i].beat >= 3 - 1e-6][h.strike[i].hand]++;
+    for (int i = 0; i < h.strikes && h.strike[i].beat < 3 - 1e-6; i++)
+        *(h.strike[i].hand == HIMC_LEFT ? &low : &high) += h.strike[i].y;
+    TEST_ASSERT_TRUE(each[0][HIMC_LEFT] >= 6 && each[1][HIMC_LEFT] >= 3);
+    TEST_ASSERT_INT_WITHIN(1, each[0][HIMC_LEFT], each[0][HIMC_RIGHT]);
+    TEST_ASSERT_INT_WITHIN(1, each[1][HIMC_LEFT], each[1][HIMC_RIGHT]);
+    // C4 is .08 m and more to the left of E4
+    TEST_ASSERT_TRUE(low / each[0][HIMC_LEFT] > high / each[0][HIMC_RIGHT] + .08);
+    heard_free(&h);
+}
+
 /// How many notes in the first second begin so.
 static int notes_of(const char *const *lines, const char *begin)
 {
@@ -596,6 +621,7 @@ int main(void)
     RUN_TEST(test_short_rolls_have_the_rate_of_long_ones);
     RUN_TEST(test_an_accent_after_a_buzz_is_as_strong_as_alone_or_a_line_tells);
     RUN_TEST(test_two_rolls_at_once_on_two_drums_have_a_hand_each);
+    RUN_TEST(test_two_rolls_at_once_on_two_bars_have_a_hand_each);
     RUN_TEST(test_a_roll_that_loses_its_beats_to_another_one_is_named);
     RUN_TEST(test_notes_that_are_left_out_are_named_as_they_are_written);
     RUN_TEST(test_a_stroke_that_ends_a_roll_is_as_loud_as_alone);

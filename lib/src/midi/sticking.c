@@ -2,22 +2,25 @@
 ///
 /// A beam search over the strokes in time. Its state is the last stroke of each hand; a stroke
 /// costs its hand what plan/sticking.h says, with the time that the planner needs for its way, a
-/// little more the left one, and more the hand that has just struck the same drum: hand by hand, as
-/// players do also where one hand had the time. A stroke nearer to its hand's last than the planner
-/// can leap (hand.c), or for which the arms would cross over another drum at once, is not possible;
-/// one that is left out costs more than any that is played, and the more the louder it is.
+/// little more the left one, and more the hand that has just struck the same drum, or another bar
+/// of its instrument: hand by hand, as players do also where one hand had the time. A stroke nearer
+/// to its hand's last than the planner can leap (hand.c), or for which the arms would cross over
+/// another drum at once, is not possible; one that is left out costs more than any that is played,
+/// and the more the louder it is.
 #include "base/head_frame.h"
 #include "midi/part.h"
 #include "plan/hand.h"
 #include "plan/sticking.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { OMIT = HIMC_HANDS };
 
 #define NEED 2.0        // of the least time of a leap: what is quicker costs; chosen
 #define WRITTEN 0.8     // of the time of a leap: who wrote the hand may know better; chosen
 #define AGAIN_TIME 0.09 // the same on one spot (s)
+#define AGAIN_BARS 0.5  // cost of the hand that struck the last bar; chosen: a line by turns
 #define ACROSS 0.2      // arms cross over another drum if a hand is so far past the other (m) ...
 #define OVER 0.1        // on another height it passes (m), ...
 #define SMALL 0.25      // ... and over toms, which lie close together (radius, m)
@@ -59,7 +62,8 @@ static bool is_second(const midi_part *part, const midi_state *state, int stroke
         return false;
     const midi_stroke *a = &part->stroke[first], *b = &part->stroke[stroke];
     return a->roll.length > 0 && fabs(a->roll.length - b->roll.length) < SAME_TIME &&
-           fabs(a->note->beat - b->note->beat) < SAME_TIME && a->head != b->head;
+           fabs(a->note->beat - b->note->beat) < SAME_TIME &&
+           (a->head != b->head || strcmp(a->part, b->part) != 0);
 }
 
 // the state's key is the index of each hand's last stroke
@@ -101,6 +105,9 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
     state->cost += himc_sticking_cost(&s) + (hand == HIMC_LEFT ? 0.02 : 0) +
                    40 * fmax(0, need - s.gap) / need + pow(0.3 * need / s.gap, 2) +
                    (across ? ACROSS_COST : 0);
+    bool bars = before && before->part[0] && before->head == part->stroke[stroke].head;
+    if (bars && s.way > 0 && s.gap < s.other_gap && s.gap < HIMC_STICKING_ANEW)
+        state->cost += AGAIN_BARS;
     state->cost += written > 0 && written != 1 + hand ? OTHER_HAND : 0;
     state->key[hand] = stroke;
     if (part->stroke[stroke].roll.length > 0)

@@ -15,6 +15,7 @@
 #define DRUMS MIDI_KEYS
 #define SAME_TIME 0.01     // (s) as himc_midi_join
 #define RING_TIME 1.0      // after a stroke an undamped drum may be retuned (s)
+#define OTHER_DRUM 20.0    // cost of a drum that is not the written one; chosen
 #define FASTEST_PEDAL 0.05 // (s) chosen
 #define MOST_PEDALS 2000   // chosen: an hour of a busy foot, and a score has room for them
 
@@ -132,6 +133,10 @@ static void follow_orders(const midi_part *part, int first, int count, double un
                 (midi_pedal){begin, end - begin, drum, state->key[drum], key, o->glides};
         state->key[drum] = key;
         state->foot = end + 0.3;
+        if (o->glides) {
+            state->glides = drum;
+            state->arrives = end;
+        }
     }
 }
 
@@ -146,9 +151,11 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
         return true;
     }
     int written = s->note->way.drum;
-    state->cost += written > 0 && written != drum + 1 ? 20 : 0; // less than to leave it out
+    state->cost += written > 0 && written != drum + 1 ? OTHER_DRUM : 0; // less than to leave it out
     double at = s->note->seconds;
     int key = state->key[drum], way = abs(s->key - key);
+    bool arrived = fabs(state->arrives - at) < SAME_TIME && state->key[state->glides] == s->key;
+    state->cost += arrived && drum != state->glides ? OTHER_DRUM : 0; // the note that ends a gliss
     int low = timpano[drum].low, high = timpano[drum].high;
     // semitones past the usual range: slack or overstretched heads sound poorer
     int outside = s->key < low ? low - s->key : s->key > high ? s->key - high : 0;

@@ -56,7 +56,7 @@ typedef struct exporter {
     int lost[LOSSES];     ///< how many ...
     double first[LOSSES]; ///< ... and the beat of the first
     double end;           ///< of notes and pedals (beats)
-    bool midi;
+    bool midi, makes; ///< `makes`: the score makes its drums
     himc_error *error;
 } exporter;
 
@@ -168,7 +168,7 @@ static void follow_line(exporter *x, const himc_score_line *line, loss kind)
     } else if (c->id == HIMC_COMMAND_MUFFLE) {
         written = timpano && !x->midi && is_switch(c);
     }
-    if (timpano && c->id == HIMC_COMMAND_DAMP && is_switch(c))
+    if (h && (timpano || !x->midi) && c->id == HIMC_COMMAND_DAMP && is_switch(c))
         written = damp(x, h, line->beat, c->atom[0].number > 0);
     if (!written)
         lose(x, (int)kind + (int)c->id, line->beat);
@@ -266,6 +266,9 @@ static bool add_note(exporter *x, const himc_stroke *s)
 {
     midi_file *f = x->file;
     head *h = s->drum[0] ? find_head(x, s->drum) : x->heads > 0 ? &x->head[0] : NULL;
+    if (!h && x->makes)
+        return himc_error_set(x->error, "stroke at beat %g: no drum %s, expected one that is made",
+                              s->beat, s->drum);
     if (!h) { // no drum is made: the performer's own
         add_head(x, s->drum[0] ? s->drum : "drum", "timpano", USUAL_INCHES);
         h = &x->head[x->heads - 1];
@@ -518,6 +521,8 @@ bool himc_music_notes(midi_file *file, const himc_score *score, bool midi, himc_
     }
     for (int i = 0; i < (x ? x->heads : 0); i++)
         x->head[i].written = x->head[i].key;
+    if (good)
+        x->makes = x->heads > 0;
     int change = 0;
     for (int i = 0; good && i < score->stroke_count; i++)
         good = follow_changes(x, score, &change, score->strokes[i].beat) &&

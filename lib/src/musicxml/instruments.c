@@ -43,6 +43,57 @@ int himc_music_place(int key, bool *metal)
     return i < PLACES ? places[i].at : 72;
 }
 
+void himc_music_places(const bool used[MIDI_KEY_COUNT], int place[MIDI_KEY_COUNT],
+                       bool others[MIDI_KEY_COUNT])
+{
+    static const int staff[] = {79, 77, 76, 74, 72, 71, 69, 67, 65};
+    enum { PLACES_OF_STAFF = sizeof staff / sizeof *staff, BLOCK = MIDI_LOW_TEMPLE_BLOCK };
+    // from high to low
+    static const int sounds[] = {80,
+                                 81,
+                                 67,
+                                 68,
+                                 MIDI_HIGH_COWBELL,
+                                 56,
+                                 MIDI_LOW_COWBELL,
+                                 75,
+                                 76,
+                                 MIDI_MIDDLE_BLOCK,
+                                 77,
+                                 BLOCK + 4,
+                                 BLOCK + 3,
+                                 BLOCK + 2,
+                                 BLOCK + 1,
+                                 BLOCK,
+                                 MIDI_TEMPLE_BLOCKS,
+                                 54,
+                                 60,
+                                 61,
+                                 65,
+                                 66,
+                                 62,
+                                 63,
+                                 64,
+                                 MIDI_BASS_DRUM,
+                                 MIDI_TAM_TAM};
+    int left[PLACES_OF_STAFF], free = 0, count = 0, next = 0;
+    bool metal, taken[128] = {false};
+    for (int key = 0; key < MIDI_KEY_COUNT; key++) {
+        place[key] = himc_music_place(key, &metal);
+        others[key] = false;
+    }
+    for (size_t i = 0; i < sizeof sounds / sizeof *sounds; i++)
+        count += others[sounds[i]] = used[sounds[i]];
+    for (int key = 0; key < MIDI_KEY_COUNT; key++)
+        taken[place[key]] |= used[key] && !others[key];
+    for (int i = 0; i < PLACES_OF_STAFF; i++)
+        if (!taken[staff[i]])
+            left[free++] = staff[i];
+    for (size_t i = 0; i < sizeof sounds / sizeof *sounds; i++)
+        if (others[sounds[i]])
+            place[sounds[i]] = left[(2 * next++ + 1) * free / (2 * count)];
+}
+
 int himc_music_staff(const xml_node *node)
 {
     return abs(himc_xml_whole(node, "staff", 0)) % MUSIC_STAVES;

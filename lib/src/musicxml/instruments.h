@@ -49,6 +49,9 @@ void himc_music_choose_bass_drum(const music_instruments *of, music *music, int 
 
 /// Where a drum of a kit is written (Weinberg 1998): a pitch in treble clef. `metal`: with an x.
 int himc_music_place(int key, bool *metal);
+/// Where all used ones are written: other drums (true in `others`) on what is left of the staff.
+void himc_music_places(const bool used[MIDI_KEY_COUNT], int place[MIDI_KEY_COUNT],
+                       bool others[MIDI_KEY_COUNT]);
 /// A note's pitch, or where it is written (MIDI key); -1: neither.
 int himc_music_pitch(const xml_node *note);
 /// Of a note or a direction.

@@ -2,7 +2,8 @@
 ///
 /// A mark stands where the step changes. Three and more strokes that go one way, each by less than
 /// MOST_STEP, are a hairpin with a mark at each end; so is a roll that moves by a step. In a bar
-/// where drums of different dynamics sound at once, as a kit's do, one mark holds: its loudest.
+/// where strokes of different dynamics sound at once, or go up and down as accents and ghost notes
+/// do, one mark holds, of most of its strokes; the others know how far they are beside it.
 #include "musicxml/marks.h"
 
 #include "musicxml/spell.h"
@@ -13,6 +14,7 @@
 #define LEAST_STROKES 3
 #define MOST_STEP 1.5               // from stroke to stroke; chosen: more is subito
 #define MOST_REST (2 * MUSIC_TICKS) // the same
+#define MOST_TURNS 2                // of the dynamic in a bar that has marks for each; chosen
 
 /// What begins at one time.
 typedef struct group {
@@ -24,7 +26,7 @@ typedef struct group {
 } group;
 
 typedef struct marker {
-    const music_item *items;
+    music_item *items;
     int count, made;
     music_mark *marks;
 } marker;
@@ -32,6 +34,12 @@ typedef struct marker {
 static int step_of(double dynamic)
 {
     return (int)lround(7 * dynamic);
+}
+
+// in steps; a reader plays an accent one louder
+static double level_of(const music_item *i)
+{
+    return fmax(7 * i->note->way.dynamic - himc_music_is_louder(&i->note->way), 0);
 }
 
 static void add(marker *m, long tick, music_mark_kind kind, int value, bool ends)
@@ -44,26 +52,35 @@ static group group_at(const marker *m, int first)
     group g = {.tick = first < m->count ? m->items[first].begin : 0, .first = first};
     int low = 7;
     for (g.end = first; g.end < m->count && m->items[g.end].begin == g.tick; g.end++) {
-        const midi_way *way = &m->items[g.end].note->way;
-        if (way->length > 0 || !g.roll)
-            g.level = way->length > 0 ? 7 * way->dynamic : fmax(g.level, 7 * way->dynamic);
-        low = step_of(way->dynamic) < low ? step_of(way->dynamic) : low;
-        g.roll |= way->length > 0;
+        bool roll = m->items[g.end].note->way.length > 0;
+        double level = level_of(&m->items[g.end]);
+        if (roll || !g.roll)
+            g.level = roll ? level : fmax(g.level, level);
+        low = lround(level) < low ? (int)lround(level) : low;
+        g.roll |= roll;
     }
     g.mixed = lround(g.level) > low;
     return g;
 }
 
-// the loudest step of a bar with different ones at once; -1: it has none
+// the step of most strokes of a bar with one mark, of equally many the louder; -1: it has several
 static int mixed_step(const marker *m, int first, long end)
 {
     bool mixed = false;
-    double level = 0;
+    int turns = 0, strokes[8] = {0}, most = 0;
+    double level = -1, way = 0;
     for (group g = group_at(m, first); g.first < m->count && g.tick < end; g = group_at(m, g.end)) {
+        double rise = level < 0 || g.roll ? 0 : g.level - level;
         mixed |= g.mixed;
-        level = fmax(level, g.level);
+        turns += rise * way < 0;
+        way = rise == 0 ? way : rise;
+        level = g.level;
+        for (int k = g.first; k < g.end; k++)
+            strokes[lround(level_of(&m->items[k]))]++;
     }
-    return mixed ? (int)lround(level) : -1;
+    for (int step = 0; step < 8; step++)
+        most = strokes[step] >= strokes[most] ? step : most;
+    return mixed || turns > MOST_TURNS ? most : -1;
 }
 
 // the first item of the last group of a hairpin that begins with `from`; that one's own: none
@@ -114,7 +131,7 @@ long himc_music_bar_end(const midi_file *file, const midi_bar **bar, long tick)
     return lround((*bar)[1].beat * MUSIC_TICKS);
 }
 
-int himc_music_marks(const music_item *items, int count, const midi_file *file, music_mark *marks)
+int himc_music_marks(music_item *items, int count, const midi_file *file, music_mark *marks)
 {
     marker m = {.items = items, .count = count, .marks = marks};
     const midi_bar *bar = file->bars;
@@ -137,6 +154,8 @@ int himc_music_marks(const music_item *items, int count, const midi_file *file, 
             until = last;
         }
         for (int k = g.first; k < g.end; k++) {
+            bool beside = mixed >= 0 && !g.roll && !inside;
+            items[k].beside = beside ? (int)lround(level_of(&items[k])) - mixed : 0;
             m.marks[m.made++] = (music_mark){g.tick, false, MARK_WAY, 0, &items[k].note->way};
             add_roll(&m, &items[k]);
         }

@@ -10,6 +10,7 @@ typedef struct music_item {
     long begin, end; ///< (ticks)
     int voice;
     bool chord; ///< one more note of the one before in its voice
+    int beside; ///< of a mixed bar: steps above the mark that holds there
 } music_item;
 
 /// Of one time, in this order; of rolls that end before them.
@@ -23,10 +24,17 @@ typedef struct music_mark {
     const midi_way *way; ///< of MARK_WAY: what words may say
 } music_mark;
 
+/// True of an accent that is read a step louder than the mark there.
+static inline bool himc_music_is_louder(const midi_way *way)
+{
+    return way->nuance == HIMC_ACCENT && way->length <= 0;
+}
+
 #define MUSIC_MARKS_OF(items) (8 * (items)) ///< at most
 
-/// Writes the marks of a part's items (`count`), which are in the order of time; returns how many.
-int himc_music_marks(const music_item *items, int count, const midi_file *file, music_mark *marks);
+/// Writes the marks of a part's items (`count`), which are in the order of time and get what they
+/// are `beside` them; returns how many.
+int himc_music_marks(music_item *items, int count, const midi_file *file, music_mark *marks);
 /// The end of the bar (ticks) that a time is in; `bar`, from the first on, goes on to it.
 long himc_music_bar_end(const midi_file *file, const midi_bar **bar, long tick);
 

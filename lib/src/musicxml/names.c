@@ -225,8 +225,11 @@ static const struct {
     {"doppio movimento|doppio più mosso|doppelt so schnell|deux fois plus vite", MUSIC_TEMPO_SHARE,
      2},
     {"doppio più lento|doppelt so langsam|deux fois plus lent", MUSIC_TEMPO_SHARE, 0.5},
-    {"swing$|swung|shuffle$|swing feel", MUSIC_SWING, 2.0 / 3},
-    {"straight eighths|straight 8ths|straight feel|no swing|even eighths", MUSIC_SWING, 0.5},
+    {"swing$|swung|shuffle$|swing feel|swingend|ternär$|ternaire$", MUSIC_SWING, 2.0 / 3},
+    {"swing 16|swung 16|16th swing|16ths swing|16th shuffle", MUSIC_SWING, 1 + 2.0 / 3},
+    {"straight$|straight 8|straight eighth|straight 16|straight feel|no swing|even 8|even eighth|"
+     "even 16|gerade$|binär$|binaire$",
+     MUSIC_SWING, 0.5},
     {"prestissimo", MUSIC_TEMPO_WORD, 200},
     {"presto", MUSIC_TEMPO_WORD, 184},
     {"vivacissimo|sehr schnell|très vif", MUSIC_TEMPO_WORD, 176},
@@ -397,6 +400,9 @@ midi_choice himc_music_change(const char *words, int *key, bool *bare)
             return MIDI_ANY;
     if (!*bare)
         return choice;
+    for (int d = 0; d < 3; d++) // "high wood block"
+        if (begins_with(at, degrees[d]) > 0)
+            at += strcspn(at, " "), at += strspn(at, " ");
     for (size_t i = 0; i < sizeof instruments / sizeof *instruments && length == 0; i++)
         length = begins_with(at, instruments[i].words);
     for (at += length + strcspn(at + length, " "); *at; at += strcspn(at, " ")) {

@@ -143,7 +143,9 @@ static bool read_words(reader *r, const xml_node *words, double beat, bool own, 
     music_meaning meaning[8];
     double value[8];
     bool dynamic = false;
-    int count = himc_music_words(words->text, 8, meaning, value);
+    int count = himc_music_words(words->text, 8, meaning, value), key;
+    bool bare = false; // the name of an instrument, which may have that of a mallet in it
+    bool name = himc_music_change(words->text, &key, &bare) != MIDI_ANY && bare;
     bar->coda |= is_coda(words->text) && !sound;
     for (int i = 0; i < count; i++) {
         // a `sound` beside it says where it jumps
@@ -151,6 +153,8 @@ static bool read_words(reader *r, const xml_node *words, double beat, bool own, 
         bar->dal_segno |= meaning[i] == MUSIC_DAL_SEGNO && !sound;
         bar->to_coda |= meaning[i] == MUSIC_TO_CODA && !sound;
         bar->fine |= meaning[i] == MUSIC_FINE && !sound;
+        if (name && meaning[i] == MUSIC_MALLET)
+            continue;
         if (meaning[i] < MUSIC_DA_CAPO && (own || is_tempo(meaning[i])))
             add_sign(r, beat, meaning[i], value[i]);
         dynamic |= meaning[i] == MUSIC_DYNAMIC;
@@ -421,6 +425,8 @@ static void read_articulations(reader *r, music_note *n, const xml_node *articul
             n->ghost = true;
         else if (other && strcmp(a->text, "pulled off") == 0)
             n->pulled = true;
+        else if (other && strcmp(a->text, "louder") == 0)
+            n->accent = false; // `himc export` prints how much its dynamic is above the others
         else if (other && strcmp(a->text, "choke") == 0)
             n->ring = -1;
         else

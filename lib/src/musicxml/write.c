@@ -20,7 +20,8 @@
 
 #define TICKS MUSIC_TICKS
 #define VOICES 4
-#define FOOT 1 // the voice of feet
+#define FOOT 1   // the voice of feet
+#define GHOST -2 // steps below the others of its bar: a ghost note; chosen
 
 /// The notes of a kind.
 typedef struct staff {
@@ -41,8 +42,10 @@ typedef struct writer {
     music_piece *pieces;
     staff staves[MIDI_CHOICES], *now;
     int staff_count;
-    const midi_bar *bar; ///< the present one, ...
-    long begin, end;     ///< ... (ticks)
+    int place[MIDI_KEY_COUNT]; ///< of drums: where they are written
+    bool name[MIDI_KEY_COUNT]; ///< ... before their first note
+    const midi_bar *bar;       ///< the present one, ...
+    long begin, end;           ///< ... (ticks)
 } writer;
 
 #define PUT(w, ...) himc_text_print((w)->out, __VA_ARGS__)
@@ -50,12 +53,6 @@ typedef struct writer {
 static long ticks_of(double beat)
 {
     return lround(beat * TICKS);
-}
-
-// an accent is read a step louder
-static bool is_louder(const midi_way *way)
-{
-    return way->nuance == HIMC_ACCENT && way->length <= 0;
 }
 
 static void put_value(const writer *w, const music_piece *piece)
@@ -74,8 +71,7 @@ static void put_pitch(const writer *w, int key)
 {
     static const char *const steps[] = {"C", "C", "D", "E", "E", "F", "F", "G", "A", "A", "B", "B"};
     static const int alter[] = {0, 1, 0, -1, 0, 0, 1, 0, -1, 0, -1, 0};
-    bool metal;
-    int place = himc_music_place(key, &metal);
+    int place = w->place[key];
     if (w->now->choice == MIDI_DRUMS)
         PUT(w,
             "<unpitched><display-step>%s</display-step><display-octave>%d</display-octave>"
@@ -174,7 +170,8 @@ static void put_notations(const writer *w, const music_item *i, const music_piec
                                         [HIMC_VERTICAL_ACCENT] = "strong-accent",
                                         [HIMC_STACCATO] = "staccato"};
     // of a dot alone the stroke is damped
-    static const char pulled[] = "<other-articulation>pulled off</other-articulation>";
+    static const char pulled[] = "<other-articulation>pulled off</other-articulation>",
+                      louder[] = "<other-articulation>louder</other-articulation>";
     const midi_way *way = &i->note->way;
     bool roll = way->length > 0, begins = piece->from == i->begin;
     PUT(w, "<notations>");
@@ -197,7 +194,10 @@ static void put_notations(const writer *w, const music_item *i, const music_piec
             !hand                        ? ""
             : way->hand == 1 + HIMC_LEFT ? "<fingering>L</fingering>"
                                          : "<fingering>R</fingering>");
-    if (begins && way->nuance != HIMC_LEGATO)
+    bool above = i->beside > 0 && way->nuance == HIMC_LEGATO; // printed, but no way of playing
+    if (begins && above)
+        PUT(w, "<articulations><accent/>%s</articulations>", louder);
+    else if (begins && way->nuance != HIMC_LEGATO)
         PUT(w, "<articulations><%s/>%s</articulations>", marks[way->nuance],
             way->nuance == HIMC_STACCATO ? pulled : "");
     PUT(w, "</notations>");
@@ -209,15 +209,28 @@ static bool is_held(const midi_note *n)
     return n->way.length > 0 || n->way.ring < 0;
 }
 
+static bool is_metal(const midi_note *n)
+{
+    bool metal = false;
+    if (n->choice == MIDI_DRUMS)
+        himc_music_place(n->key, &metal);
+    return metal;
+}
+
+// of a drum in a bar of louder strokes
+static bool is_ghost(const music_item *i)
+{
+    return i->beside <= GHOST && i->note->choice == MIDI_DRUMS && !is_metal(i->note);
+}
+
 static void put_note(const writer *w, const music_item *i, const music_piece *piece)
 {
     bool begins = piece->from == i->begin, ties_on = is_held(i->note) && piece->to < i->end;
     if (begins)
         put_graces(w, i);
     const char *notehead = himc_music_notehead(i->note->way.spot);
-    bool metal;
-    himc_music_place(i->note->key, &metal);
-    double level = i->note->way.dynamic - (is_louder(&i->note->way) ? 1 / 7.0 : 0);
+    bool metal = is_metal(i->note);
+    double level = i->note->way.dynamic - (himc_music_is_louder(&i->note->way) ? 1 / 7.0 : 0);
     // the exact dynamic, in percent of a velocity of 90
     PUT(w, "<note dynamics=\"%.6g\">%s", fmax(himc_midi_velocity(level), 0) / 0.9,
         i->chord ? "<chord/>" : "");
@@ -232,8 +245,11 @@ static void put_note(const writer *w, const music_item *i, const music_piece *pi
     put_value(w, piece);
     if (w->now->feet)
         PUT(w, "<stem>%s</stem>", i->voice == FOOT ? "down" : "up");
-    if (notehead[0] || (metal && w->now->choice == MIDI_DRUMS))
-        PUT(w, "<notehead>%s</notehead>", notehead[0] ? notehead : "x");
+    if (notehead[0] || metal || is_ghost(i))
+        PUT(w, "<notehead%s>%s</notehead>", is_ghost(i) ? " parentheses=\"yes\"" : "",
+            notehead[0] ? notehead
+            : metal     ? "x"
+                        : "normal");
     put_staff(w);
     for (int k = 0; k < 6 && piece->beam[k] && !i->chord; k++)
         PUT(w, "<beam number=\"%d\">%s</beam>", k + 1, piece->beam[k]);
@@ -261,7 +277,8 @@ static void end_direction(const writer *w)
 static void put_words(const writer *w, long *at, long to, const char *words)
 {
     move(w, at, to);
-    PUT(w, "<direction><direction-type><words>%s</words></direction-type>", words);
+    PUT(w, "<direction placement=\"above\"><direction-type><words>%s</words></direction-type>",
+        words);
     end_direction(w);
 }
 
@@ -496,6 +513,19 @@ static void put_attributes(writer *w)
     PUT(w, "</attributes>\n");
 }
 
+// drums whose place on the staff is not the usual one
+static void put_names(writer *w, long *at)
+{
+    const staff *now = w->now;
+    for (int k = now->first; k < now->count && now->items[k].begin < w->end; k++) {
+        const midi_note *n = now->items[k].note;
+        if (n->choice != MIDI_DRUMS || !w->name[n->key])
+            continue;
+        w->name[n->key] = false;
+        put_words(w, at, now->items[k].begin, himc_midi_key_sound(n->key));
+    }
+}
+
 // a bar of a staff, and back to its beginning
 static void put_bar(writer *w)
 {
@@ -506,6 +536,7 @@ static void put_bar(writer *w)
     put_tempi(w, &at);
     put_orders(w, &at);
     put_marks(w, &at);
+    put_names(w, &at);
     move(w, &at, w->begin);
     for (int voice = 0; voice < VOICES; voice++) {
         bool used = voice == 0;
@@ -638,6 +669,15 @@ static void put_part_list(const writer *w)
     PUT(w, "</score-part>\n");
 }
 
+static void place_drums(writer *w)
+{
+    bool used[MIDI_KEY_COUNT] = {false};
+    for (int i = 0; i < w->file->note_count; i++)
+        if (w->file->notes[i].choice == MIDI_DRUMS)
+            used[w->file->notes[i].key] = true;
+    himc_music_places(used, w->place, w->name);
+}
+
 // borrows the room for items and marks
 static void list_staves(writer *w, music_item *items, music_mark *marks)
 {
@@ -681,6 +721,7 @@ bool himc_music_write(himc_text_lines *out, const midi_file *file, const char *t
     w.pieces = malloc(MUSIC_PIECES_OF(2 * count, longest) * sizeof *w.pieces);
     bool good = items && marks && w.segments && w.pieces;
     if (good) {
+        place_drums(&w);
         list_staves(&w, items, marks);
         put_document(&w, title);
     }

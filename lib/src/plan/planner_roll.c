@@ -69,11 +69,12 @@ typedef struct roll_grid {
     int count;          ///< one more than the last number
 } roll_grid;
 
-/// True if the roll is played together with the one before it: the hands have a drum each.
+/// True if the roll is played with the one before it: the hands have a drum, or a bar, each.
 static bool is_second(const planner_score *score, int i)
 {
     const planner_roll *r = &score->roll[i], *first = r - 1;
-    return i > 0 && first->stroke.beat == r->stroke.beat && first->drum != r->drum &&
+    return i > 0 && first->stroke.beat == r->stroke.beat &&
+           (first->drum != r->drum || strcmp(first->stroke.part, r->stroke.part) != 0) &&
            first->stroke.length == r->stroke.length &&
            first->stroke.ornament == r->stroke.ornament &&
            (i == 1 || first[-1].stroke.beat < r->stroke.beat);
