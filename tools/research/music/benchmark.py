@@ -46,11 +46,12 @@ TIMPANI_NAME = re.compile("timp|pauk|kettle|timbal", re.I)
 STEP = 1 / 7  # from one dynamic to the next
 EQUAL = 0.003  # of times after a round trip (s)
 LEAD = r"is beat ([0-9.]+) here"
+BARS = r"comment bars of \S+ from beat ([0-9.]+);"
 INSTRUMENTS = {}  # of General MIDI's keys, as docs/manual.md says
 for name, keys in {
         "snare": (31, 37, 38, 40), "kick": (35, 36), "low-floor": (41,), "floor": (43,), "mid-tom": (45,), "tom": (47, 48),
         "high-tom": (50,), "hats": (42, 46), "hats-foot": (44,), "crash": (49,), "crash-16": (57,), "ride": (51, 53, 59),
-        "china": (52,), "splash": (55,), "cowbell": (56,), "high-bongo": (60,), "low-bongo": (61,), "high-conga": (62, 63),
+        "china": (52,), "splash": (55,), "tambourine": (54,), "cowbell": (56,), "high-bongo": (60,), "low-bongo": (61,), "high-conga": (62, 63),
         "low-conga": (64,), "high-timbale": (65,), "low-timbale": (66,), "agogo": (67, 68), "claves": (75,),
         "high-block": (76,), "low-block": (77,), "triangle": (80, 81)}.items():
     INSTRUMENTS.update(dict.fromkeys(keys, name))
@@ -309,7 +310,8 @@ def round_trip(program, score, folder):
     back = run(program, "import", sheet, "-o", "-")
     if done.returncode != 0 or back.returncode != 0:
         raise RuntimeError(done.stderr + back.stderr)
-    strokes, pedals = strokes_of(score, 0)
+    bars = re.search(BARS, score)  # where its page begins
+    strokes, pedals = strokes_of(score, float(bars.group(1)) if bars else 0)
     again, pedals_again = strokes_of(back.stdout, float(re.search(LEAD, back.stdout).group(1)))
     found = collections.defaultdict(list)
     for s in again:
