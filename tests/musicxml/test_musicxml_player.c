@@ -23,6 +23,10 @@
     "<attributes><divisions>4</divisions><staff-details><staff-lines>1</staff-lines>" \
     "</staff-details></attributes>"
 
+#define LINE(step)                                                                             \
+    "<note><unpitched><display-step>" step "</display-step><display-octave>5</display-octave>" \
+    "</unpitched><duration>4</duration><voice>1</voice></note>"
+
 #define PLAYED_BY(list) HEAD "<part-list>" list "</part-list><part id='P1'>"
 #define CHANGED(id, sound)                                           \
     "<sound><instrument-change id='" id "'><instrument-sound>" sound \
@@ -469,6 +473,87 @@ static void test_drums_of_one_kind_stay_apart(void)
     free(text.bytes);
 }
 
+// a name says more than the id of its sound, which is of a whole family
+static void test_names_of_instruments_decide_before_their_sounds(void)
+{
+#define SOUNDING(id, name, sound)                          \
+    "<score-instrument id='" id "'><instrument-name>" name \
+    "</instrument-name><instrument-sound>" sound "</instrument-sound></score-instrument>"
+    static const char *const drums[] = {"kick", "floor", "hats", "ride"};
+    load(HEAD "<part-list>" PLAYER(
+        "P1", "Drum Set",
+        SOUNDING("K", "Kick Drum", "drum.bass-drum") SOUNDING("F", "Floor Tom", "drum.tom-tom")
+            SOUNDING("H", "Pedal Hi-Hat", "metal.hi-hat") SOUNDING(
+                "C", "Cymbal",
+                "metal.cymbal.ride")) "</part-list><part id='P1'>" BAR(1,
+                                                                       FOUR OF("K", F, 4) OF(
+                                                                           "F", A, 4) OF("H", D, 4)
+                                                                           OF("C", F, 5)) TAIL);
+    expect_drums(4, drums);
+    TEST_ASSERT_EQUAL(HIMC_FOOT, stroke(0)->hand);
+    TEST_ASSERT_EQUAL(HIMC_FOOT, stroke(2)->hand);
+}
+
+#define WRITTEN(step, octave)                                                        \
+    "<note><unpitched><display-step>" step "</display-step><display-octave>" #octave \
+    "</display-octave></unpitched><duration>4</duration><voice>1</voice></note>"
+
+// two drums in one name: where a note is written says which
+static void test_a_name_of_two_drums_is_both(void)
+{
+    static const char *const names[][3] = {{"Snare Drum &amp; Bass Drum", "snare", "bass-drum"},
+                                           {"S.D./B.D.", "snare", "bass-drum"},
+                                           {"Percussion 1 (Cymbals, Snare Drum)", "crash", "snare"},
+                                           {"Triangle, Tambourine", "triangle", "tambourine"}};
+    for (int i = 0; i < 4; i++)
+        for (int declared = 0; declared < 2; declared++) {
+            char text[4096];
+            snprintf(text, sizeof text,
+                     HEAD "<part-list><score-part id='P1'><part-name>%s</part-name>%s%s%s"
+                          "</score-part></part-list><part id='P1'>" BAR(
+                              1, FOUR WRITTEN("C", 5) WRITTEN("F", 4) WRITTEN("C", 5)
+                                     WRITTEN("F", 4)) TAIL,
+                     names[i][0], declared ? "<score-instrument id='I'><instrument-name>" : "",
+                     declared ? names[i][0] : "",
+                     declared ? "</instrument-name></score-instrument>" : "");
+            load(text);
+            for (int k = 0; k < 4; k++)
+                TEST_ASSERT_EQUAL_STRING_MESSAGE(names[i][1 + k % 2], stroke(k)->drum, made.text);
+        }
+}
+
+// the staff of words is 1 where there is one only, though notes do not say it
+static void test_words_of_staff_one_are_of_notes_without_a_staff(void)
+{
+    static const char *const drums[] = {"crash", "crash", "snare", "snare"};
+#define TOLD(words)                            \
+    "<direction><direction-type><words>" words \
+    "</words></direction-type><staff>1</staff></direction>"
+    load(HEAD PART("Percussion") BAR(1, ONE_LINE TOLD("Cymbals") LINE("B") LINE("B")
+                                            TOLD("Snare Drum") LINE("B") LINE("B")) TAIL);
+    expect_drums(4, drums);
+}
+
+static void test_toms_of_a_kit_are_apart_where_they_are_written(void)
+{
+    static const char *const drums[] = {"high-tom", "tom", "floor", "snare"};
+    load(HEAD PART("Drum Set")
+             BAR(1, FOUR WRITTEN("E", 5) WRITTEN("D", 5) WRITTEN("A", 4) WRITTEN("C", 5)) TAIL);
+    expect_drums(4, drums);
+}
+
+// not while its note is written, if there is time before the next
+static void test_a_pedal_waits_for_the_end_of_a_long_note(void)
+{
+    load(HEAD PART("Timpani") BAR(1, FOUR TEMPO(60) NOTE(C, 3, 16, "")) BAR(2, NOTE(F, 2, 16, ""))
+             BAR(3, REST(16)) BAR(4, WORDS("C muta in D") NOTE(D, 3, 16, "")) TAIL);
+    double beat = -1;
+    for (int i = 0; i < score->change_count; i++)
+        if (score->changes[i].command.id == HIMC_COMMAND_GLISS)
+            beat = score->changes[i].beat - lead();
+    TEST_ASSERT_TRUE_MESSAGE(beat >= 4 && beat < 12, made.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -490,5 +575,10 @@ int main(void)
     RUN_TEST(test_several_kinds_come_back_from_one_part);
     RUN_TEST(test_several_kinds_come_back_from_midi);
     RUN_TEST(test_drums_of_one_kind_stay_apart);
+    RUN_TEST(test_names_of_instruments_decide_before_their_sounds);
+    RUN_TEST(test_a_name_of_two_drums_is_both);
+    RUN_TEST(test_words_of_staff_one_are_of_notes_without_a_staff);
+    RUN_TEST(test_toms_of_a_kit_are_apart_where_they_are_written);
+    RUN_TEST(test_a_pedal_waits_for_the_end_of_a_long_note);
     return UNITY_END();
 }

@@ -201,16 +201,102 @@ static void test_two_notes_are_played_in_turn(void)
     expect_text("2 of 2 notes");
 }
 
+#define BACK "<backup><duration>16</duration></backup>"
+
 static void test_graces_are_flam_drag_and_ruff(void)
 {
-    PLAY(BAR(1, FOUR REST(4) GRACE(C) C3(4, "") GRACE(C) GRACE(C) C3(4, "") GRACE(C) GRACE(C)
-                    GRACE(C) C3(4, "")));
+#define SLOW_GRACE                                                  \
+    "<note><grace/><pitch><step>C</step><octave>3</octave></pitch>" \
+    "<voice>1</voice><type>eighth</type></note>"
+    PLAY(BAR(1, FOUR REST(4) GRACE(C) C3(4, "") GRACE(C) GRACE(C) C3(4, "")
+                    SLOW_GRACE SLOW_GRACE C3(4, "")));
     TEST_ASSERT_EQUAL(3, score->stroke_count);
     TEST_ASSERT_EQUAL(HIMC_FLAM, stroke(0)->ornament);
     TEST_ASSERT_EQUAL(HIMC_DRAG, stroke(1)->ornament);
     TEST_ASSERT_EQUAL(HIMC_RUFF, stroke(2)->ornament);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "1 grace"),
-                                 made.report); // of the ruff's three
+    // a ruff of four: three softer strokes before the beat, hand by hand
+    PLAY(BAR(1, FOUR TEMPO(60) REST(4) GRACE(C) GRACE(C) GRACE(C) C3(4, "")));
+    expect_beats(4, 0.79, 0.86, 0.93, 1.0);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_TRUE(stroke(i)->hand != stroke(i + 1)->hand);
+        TEST_ASSERT_TRUE(stroke(i)->dynamic < stroke(3)->dynamic - 0.1);
+    }
+}
+
+// a hairpin that ends a 16th before the bar, fp on a short roll, a grace on the roll's drum: the
+// roll gives way to the note on another drum
+static void test_a_note_on_another_drum_after_a_roll_is_never_lost(void)
+{
+    static const int tempi[] = {60, 90, 120, 144, 160};
+    for (int i = 0; i < 5; i++) {
+        char text[4096];
+        snprintf(
+            text, sizeof text,
+            HEAD PART("Timpani") BAR(
+                1, FOUR "<sound tempo='%d'/>" DYNAMICS("p") WEDGE("crescendo") NOTE(
+                       G, 2, 16,
+                       MARKS(3)) "<direction><direction-type><wedge type='stop'/></direction-type>"
+                                 "<offset>-1</offset></direction>")
+                BAR(2, DYNAMICS("f") C3(4, "") REST(4) DYNAMICS("fp") NOTE(G, 2, 4, MARKS(3))
+                           C3(4, "")) BAR(3, NOTE(G, 2, 12, MARKS(3)) GRACE(G) C3(4, "")) TAIL,
+            tempi[i]);
+        load(text);
+        int plain = 0;
+        for (int k = 0; k < score->stroke_count; k++)
+            plain += strcmp(stroke(k)->drum, "third") == 0;
+        TEST_ASSERT_EQUAL_MESSAGE(3, plain, made.text);
+        expect_roll(0, 0, 4, 2, 5);
+        expect_text("6 of 6 notes for timpani are played");
+    }
+}
+
+// faster than the hands could alternate on two drums stroke by stroke: each rolls on its own
+static void test_a_fast_tremolo_of_two_notes_is_a_roll_on_both(void)
+{
+#define OF_TWO(type) \
+    "<notations><ornaments><tremolo type='" type "'>3</tremolo></ornaments></notations>"
+    for (int k = 0; k < 2; k++) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 HEAD PART("%s")
+                     BAR(1, FOUR TEMPO(96) NOTE(C, 3, 8, "<type>whole</type>" OF_TWO("start"))
+                                NOTE(E, 3, 8, "<type>whole</type>" OF_TWO("stop"))) TAIL,
+                 k ? "Marimba" : "Timpani");
+        load(text);
+        TEST_ASSERT_EQUAL_MESSAGE(2, score->stroke_count, made.text);
+        expect_roll(0, 0, 4, 4, 4);
+        expect_roll(1, 0, 4, 4, 4);
+    }
+}
+
+// on a timpano it is a roll; on bars the note and the next one above, by the key or a sign
+static void test_a_trill_on_bars_is_of_two_notes(void)
+{
+#define TRILL(more) "<notations><ornaments><trill-mark/>" more "</ornaments></notations>"
+#define KEY(fifths) "<attributes><key><fifths>" #fifths "</fifths></key></attributes>"
+    static const char *const upper[] = {"F", "F#", "F", "F#"};
+    load(HEAD PART("Xylophone") BAR(1, FOUR NOTE(E, 4, 16, TRILL("")))
+             BAR(2, KEY(2) NOTE(E, 4, 16, TRILL("")))
+                 BAR(3, NOTE(E, 4, 16, TRILL("<accidental-mark>natural</accidental-mark>"))) BAR(
+                     4, KEY(0) NOTE(E, 4, 16, TRILL("<accidental-mark>sharp</accidental-mark>")))
+                     TAIL);
+    expect_text("4 of 4 notes for xylophone are played");
+    TEST_ASSERT_EQUAL_MESSAGE(8, score->stroke_count, made.text);
+    for (int i = 0; i < 4; i++) { // in the octave that the instrument has
+        TEST_ASSERT_EQUAL('E', stroke(2 * i)->part[0]);
+        TEST_ASSERT_EQUAL(strlen(upper[i]) + 1, strlen(stroke(2 * i + 1)->part));
+        TEST_ASSERT_EQUAL_STRING_LEN(upper[i], stroke(2 * i + 1)->part, strlen(upper[i]));
+    }
+}
+
+static void test_a_roll_that_begins_with_another_drum_is_struck_on_the_beat(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(100) C3(16, MARKS(3)) BACK NOTE(G, 2, 16, "")));
+    TEST_ASSERT_EQUAL_MESSAGE(3, score->stroke_count, made.text);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6, stroke(0)->beat, stroke(1)->beat);
+    TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
+    TEST_ASSERT_TRUE(stroke(0)->hand != stroke(1)->hand);
+    TEST_ASSERT_EQUAL(HIMC_ROLL_SINGLE, stroke(2)->ornament);
 }
 
 static void test_a_grace_on_another_drum_is_a_stroke(void)
@@ -220,7 +306,6 @@ static void test_a_grace_on_another_drum_is_a_stroke(void)
     TEST_ASSERT_TRUE(strcmp(stroke(0)->drum, stroke(1)->drum) != 0);
 }
 
-#define BACK "<backup><duration>16</duration></backup>"
 #define SECOND(duration, more)                                                  \
     "<note><pitch><step>C</step><octave>3</octave></pitch><duration>" #duration \
     "</duration><voice>2</voice>" more "</note>"
@@ -352,5 +437,9 @@ int main(void)
     RUN_TEST(test_each_damp_sign_is_for_what_sounds);
     RUN_TEST(test_hidden_notes_sound_but_not_those_that_play_a_roll);
     RUN_TEST(test_a_roll_on_two_bars_has_both);
+    RUN_TEST(test_a_note_on_another_drum_after_a_roll_is_never_lost);
+    RUN_TEST(test_a_fast_tremolo_of_two_notes_is_a_roll_on_both);
+    RUN_TEST(test_a_trill_on_bars_is_of_two_notes);
+    RUN_TEST(test_a_roll_that_begins_with_another_drum_is_struck_on_the_beat);
     return UNITY_END();
 }

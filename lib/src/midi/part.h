@@ -137,11 +137,12 @@ void himc_midi_join(midi_part *part);
 /// A state of a search after a stroke; what its parts mean is the search's own.
 typedef struct midi_state {
     double cost;
-    int32_t key[MIDI_KEYS];  ///< states with equal ones are one, the cheapest of them
-    double ready[MIDI_KEYS]; ///< of timpani: a drum may be retuned from then on ...
-    double foot;             ///< ... and the foot is free (s)
-    int glides;              ///< the drum of the last gliss, 0 at first, which ...
-    double arrives;          ///< ... ends then (s); 0: there was none
+    int32_t key[MIDI_KEYS];   ///< states with equal ones are one, the cheapest of them
+    double ready[MIDI_KEYS];  ///< of timpani: a drum may be retuned from then on ...
+    double sounds[MIDI_KEYS]; ///< ... rather after that: its note is written so long (s)
+    double foot;              ///< ... and the foot is free (s)
+    int glides;               ///< the drum of the last gliss, 0 at first, which ...
+    double arrives;           ///< ... ends then (s); 0: there was none
 } midi_state;
 
 /// The state after a stroke for which that was chosen; false if it cannot be.

@@ -28,6 +28,8 @@ enum { OMIT = HIMC_HANDS };
 #define ACROSS_TIME 0.3 // ... and meet if that one has struck so shortly before (s)
 #define SAME_TIME 1e-7  // (beats)
 #define ROLL_STROKE 0.1 // from a roll's last stroke to its end (s)
+#define MOST_CUTS 16    // strokes among which the parts of a roll are looked for; chosen
+#define CUT_TIME 1e-3   // from one part of a roll to the next (s)
 #define OTHER_HAND 30.0 // cost of a hand that is not the written one; less than of leaving out
 
 /// A stroke of one hand.
@@ -66,6 +68,20 @@ static bool is_second(const midi_part *part, const midi_state *state, int stroke
            (a->head != b->head || strcmp(a->part, b->part) != 0);
 }
 
+// when a roll began, which may be cut where its dynamic bends (s)
+static double roll_begin(const midi_part *part, int roll)
+{
+    const midi_stroke *s = &part->stroke[roll];
+    double begin = s->note->seconds;
+    for (int i = roll - 1; i >= 0 && i > roll - MOST_CUTS; i--) {
+        const midi_stroke *before = &part->stroke[i];
+        if (before->roll.length > 0 && before->head == s->head &&
+            fabs(himc_midi_stroke_end(before) - begin) < CUT_TIME)
+            begin = before->note->seconds;
+    }
+    return begin;
+}
+
 // the state's key is the index of each hand's last stroke
 static bool choose(const midi_part *part, int stroke, int hand, midi_state *state)
 {
@@ -88,11 +104,12 @@ static bool choose(const midi_part *part, int stroke, int hand, midi_state *stat
                        .other_gap = to.at - other.at};
     s.same_spot = s.way == 0;
     double leap = himc_hand_leap_time(s.way), need = s.same_spot ? AGAIN_TIME : NEED * leap;
-    // a roll is left earlier for another drum, up to its middle (planner_roll.c)
+    // a roll is left earlier for what follows: its strokes too near to that are left out
     const midi_stroke *before = state->key[hand] < 0 ? NULL : &part->stroke[state->key[hand]];
-    if (before && before->roll.length > 0 && s.way > 0) {
-        double half = 0.5 * (before->note->seconds + himc_midi_stroke_end(before));
-        s.gap = fmax(s.gap, fmin(to.at - half, leap));
+    if (before && before->roll.length > 0) {
+        double begin = roll_begin(part, state->key[hand]), end = himc_midi_stroke_end(before);
+        double left = begin + fmin(0.5 * (end - begin), ROLL_STROKE);
+        s.gap = fmax(s.gap, fmin(to.at - left, s.same_spot ? AGAIN_TIME : leap));
     }
     // on one spot 0.055 s, as the planner refuses 0.04 s
     int written = part->stroke[stroke].note->way.hand;

@@ -46,10 +46,12 @@ static double pedal_time(int semitones)
     return fmin(0.15 + 0.05 * abs(semitones), 0.6);
 }
 
-// when a drum's pedal can move (s)
-static double pedal_begin(const midi_state *state, int drum)
+// when a drum's pedal moves for so long that it is there by then: when its note has ended, or
+// earlier, if it rings no more, for want of time (s)
+static double pedal_begin(const midi_state *state, int drum, double time, double by)
 {
-    return fmax(state->ready[drum], state->foot);
+    double late = fmin(state->sounds[drum], by - time);
+    return fmax(fmax(state->ready[drum], state->foot), late);
 }
 
 // the pitch of a class (of key `pitch`) nearest to `key` that a drum has; -1: none
@@ -116,11 +118,15 @@ static void follow_orders(const midi_part *part, int first, int count, double un
             continue;
         int drum = find_ordered(state, o, &key);
         double begin = o->seconds, end = begin;
+        double time = drum < 0 ? 0 : o->length > 0 ? o->length : pedal_time(key - state->key[drum]);
         // a drum that is named moves while it rings, and as fast as it has to
         if (drum >= 0 && o->from % 128 == 12)
-            begin = fmax(begin, pedal_begin(state, drum));
-        if (drum >= 0)
-            end = begin + (o->length > 0 ? o->length : pedal_time(key - state->key[drum]));
+            begin = fmax(begin, pedal_begin(state, drum, time, until));
+        else if (drum >= 0 && !o->glides)
+            begin = fmax(begin, fmin(state->sounds[drum], until - time));
+        if (drum >= 0 && !o->glides && begin + time > until) // the word stands at the note
+            begin = fmax(fmin(begin, until - time), fmax(state->ready[drum], state->foot));
+        end = begin + time;
         if (o->from % 128 != 12 && !o->glides && begin + FASTEST_PEDAL <= until)
             end = fmin(end, until);
         if (drum < 0 || (end > until && !o->glides)) {
@@ -166,15 +172,15 @@ static bool choose(const midi_part *part, int stroke, int drum, midi_state *stat
     if (key < 0)
         state->cost += 0.5; // no more drums than the piece needs
     if (key >= 0 && way > 0) {
-        double end = pedal_begin(state, drum) + pedal_time(way);
+        double time = pedal_time(way), end = pedal_begin(state, drum, time, at) + time;
         if (end > at && written != drum + 1) // else it glides under the stroke
             return false;
         state->foot = end + 0.3; // s to the next pedal
         state->cost += 1 + 0.1 * way;
     }
     state->key[drum] = s->key;
-    state->ready[drum] = fmin(himc_midi_stroke_end(s) + RING_TIME,
-                              s->end + 0.2); // damped, 0.2 s after its note's end
+    state->sounds[drum] = s->end + 0.2; // damped, 0.2 s after its note's end
+    state->ready[drum] = fmin(himc_midi_stroke_end(s) + RING_TIME, state->sounds[drum]);
     return true;
 }
 
@@ -248,7 +254,8 @@ bool himc_midi_tune(midi_part *part, himc_error *error)
             part->head[s->head].key = s->key;
         if (pedal) {
             double time = pedal_time(s->key - from);
-            float early = (float)(s->note->seconds - pedal_begin(&now, s->head));
+            double begin = pedal_begin(&now, s->head, time, s->note->seconds);
+            float early = (float)(s->note->seconds - begin);
             if ((double)early < time - 1e-4) // beyond rounding
                 time = early = (float)FASTEST_PEDAL;
             part->pedal[part->pedals++] =

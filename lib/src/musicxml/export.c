@@ -56,7 +56,7 @@ typedef struct exporter {
     int lost[LOSSES];     ///< how many ...
     double first[LOSSES]; ///< ... and the beat of the first
     double end;           ///< of notes and pedals (beats)
-    bool midi, makes; ///< `makes`: the score makes its drums
+    bool midi, makes;     ///< `makes`: the score makes its drums
     himc_error *error;
 } exporter;
 

@@ -18,10 +18,13 @@ static const struct {
     int key, at;
     bool metal;
 } places[] = {
-    {44, 62, true},  {36, 65, false}, {36, 64, false}, {35, 65, false}, {41, 67, false},
-    {43, 69, false}, {45, 71, false}, {38, 72, false}, {47, 74, false}, {48, 76, false},
-    {50, 76, false}, {51, 77, true},  {53, 77, true},  {59, 77, true},  {42, 79, true},
-    {46, 79, true},  {49, 81, true},  {55, 81, true},  {57, 83, true},  {52, 83, true},
+    {44, 62, true},  {36, 65, false}, {36, 64, false},
+    {35, 65, false}, {41, 67, false}, {43, 69, false},
+    {45, 71, false}, {38, 72, false}, {47, 74, false},
+    {50, 76, false}, {48, 76, false}, {51, 77, true},
+    {53, 77, true},  {59, 77, true},  {42, 79, true},
+    {46, 79, true},  {49, 81, true},  {55, 81, true},
+    {57, 83, true},  {52, 83, true},  {MIDI_BASS_DRUM, 65, false},
 };
 
 #define PLACES (sizeof places / sizeof *places)
@@ -99,6 +102,42 @@ int himc_music_staff(const xml_node *node)
     return abs(himc_xml_whole(node, "staff", 0)) % MUSIC_STAVES;
 }
 
+// the drums that a name lists, from high to low; returns how many
+static int list_names(const char *name, int keys[MUSIC_NAMES_MAX])
+{
+    bool used[MIDI_KEY_COUNT] = {false}, others[MIDI_KEY_COUNT];
+    int place[MIDI_KEY_COUNT], count = 0;
+    for (size_t length; *name; name += length + (name[length] != '\0')) {
+        char word[64];
+        int key;
+        length = strcspn(name, ",/&+()");
+        snprintf(word, sizeof word, "%.*s", (int)length, name);
+        if (himc_music_instrument(word, &key) == MIDI_DRUMS && key >= 0 && key < MIDI_NO_SOUND)
+            used[key] = true;
+    }
+    himc_music_places(used, place, others);
+    for (int at = 127; at >= 0; at--)
+        for (int key = 0; key < MIDI_NO_SOUND; key++)
+            if (used[key] && place[key] == at && count < MUSIC_NAMES_MAX)
+                keys[count++] = key;
+    return count;
+}
+
+// An instrument's name says more than the id of its sound: "Kick Drum" of drum.bass-drum. A cymbal
+// is any.
+static midi_choice choose_name(const char *sound, const char *name, int *key)
+{
+    const int cymbal = 49;
+    int said = MUSIC_NO_KEY;
+    midi_choice of_sound = himc_music_instrument(sound, key),
+                of_name = himc_music_instrument(name, &said);
+    bool drums = of_name == MIDI_DRUMS && (of_sound == MIDI_DRUMS || of_sound == MIDI_ANY);
+    if (of_sound != MIDI_ANY && (!drums || said < 0 || (said == cymbal && *key >= 0)))
+        return of_sound;
+    *key = said;
+    return of_name;
+}
+
 // by the names first, then by the MIDI instrument
 static void read_instrument(music_instruments *of, const xml_node *list, const xml_node *score,
                             midi_choice part, int part_key)
@@ -109,8 +148,9 @@ static void read_instrument(music_instruments *of, const xml_node *list, const x
     const char *const name[] = {himc_xml_text(score, "instrument-sound"),
                                 himc_xml_text(score, "instrument-name"),
                                 himc_xml_text(score, "instrument-abbreviation")};
-    for (int i = 0; i < 3 && made->choice == MIDI_ANY; i++)
-        made->choice = himc_music_instrument(name[i], &made->key);
+    made->choice = choose_name(name[0], name[1], &made->key);
+    if (made->choice == MIDI_ANY)
+        made->choice = himc_music_instrument(name[2], &made->key);
     for (int i = 1; i >= 0 && !made->name[0]; i--)
         made->name = himc_music_names(name[i]) ? name[i] : "";
     made->drum = himc_music_drum(name[1]);
@@ -139,7 +179,13 @@ static void read_instrument(music_instruments *of, const xml_node *list, const x
         made->key != MIDI_NO_SOUND) {
         made->key = key;
         made->sort = false;
+        return;
     }
+    if (made->choice == MIDI_DRUMS)
+        made->names = list_names(name[1], made->of);
+    if (made->choice == MIDI_DRUMS && made->names < 2 &&
+        !himc_xml_next(himc_xml_child(list, "score-instrument")))
+        made->names = list_names(himc_xml_text(list, "part-name"), made->of);
 }
 
 int himc_music_pitch(const xml_node *note)
@@ -170,7 +216,7 @@ static void survey(music_instruments *of, const xml_node *part)
 {
     bool any = false;
     for (int i = 0; i < of->count; i++)
-        any |= of->row[i].sort;
+        any |= of->row[i].sort || of->row[i].names > 1;
     const xml_node *measure = any ? himc_xml_child(part, "measure") : NULL;
     for (; measure; measure = himc_xml_next(measure))
         for (const xml_node *n = himc_xml_child(measure, "note"); n; n = himc_xml_next(n)) {
@@ -236,6 +282,8 @@ void himc_music_instruments_read(music_instruments *of, const xml_node *list, co
         if (!name[length])
             break;
     }
+    if (of->count > 0 && of->row[0].choice == MIDI_DRUMS)
+        of->row[0].names = list_names(himc_xml_text(list, "part-name"), of->row[0].of);
     for (; score && of->count < MUSIC_INSTRUMENTS_MAX; score = himc_xml_next(score))
         read_instrument(of, list, score, choice, key);
     of->declared = of->count;
@@ -244,6 +292,7 @@ void himc_music_instruments_read(music_instruments *of, const xml_node *list, co
 
 void himc_music_instruments_attributes(music_instruments *of, const xml_node *attributes)
 {
+    of->staves |= himc_xml_whole(attributes, "staves", 1) > 1;
     for (const xml_node *a = attributes->child; a; a = a->next) {
         int staff = atoi(himc_xml_attribute(a, "number"));
         staff = staff > 1 && staff < MUSIC_STAVES ? staff : 1; // a note of one staff may say 0
@@ -272,7 +321,7 @@ void himc_music_instruments_change(music_instruments *of, int staff, const char 
         return;
     if (i == of->count)
         of->row[of->count++] = (music_instrument){"", words, .choice = choice, .key = key};
-    of->current[staff] = i;
+    of->current[of->staves ? staff : 0] = i;
 }
 
 void himc_music_instruments_sound(music_instruments *of, int staff, const xml_node *change)
@@ -283,7 +332,7 @@ void himc_music_instruments_sound(music_instruments *of, int staff, const xml_no
     if (choice != MIDI_ANY && i >= 0)
         of->row[i] = (music_instrument){of->row[i].id, name, .choice = choice, .key = key};
     if (i >= 0)
-        of->current[staff] = i;
+        of->current[of->staves ? staff : 0] = i;
 }
 
 // the first instrument from one kind up to another; of several a clef says which
@@ -304,7 +353,7 @@ static int of_clef(const music_instruments *of, const xml_node *note)
 const music_instrument *himc_music_instrument_of(const music_instruments *of, const xml_node *note)
 {
     int named = find_instrument(of, himc_xml_child(note, "instrument")),
-        current = of->current[himc_music_staff(note)];
+        current = of->current[of->staves ? himc_music_staff(note) : 0];
     current = current < 0 ? of->current[0] : current;
     if (named >= 0 && (of->declared > 1 || current < 0))
         return &of->row[named];
@@ -314,12 +363,21 @@ const music_instrument *himc_music_instrument_of(const music_instruments *of, co
 int himc_music_drum_of(const music_instruments *of, const xml_node *note,
                        const music_instrument *instrument, int written)
 {
-    int above = 0, count = 0;
+    int above = 0, count = 0, nearest = 0;
     for (int k = 0; k < 128; k++)
         if (instrument->at[k / 64] >> k % 64 & 1) {
             above += k > written;
             count++;
         }
+    for (int i = 0; i < instrument->names; i++) {
+        bool metal;
+        int key = instrument->of[i], best = instrument->of[nearest];
+        if (abs(himc_music_place(key, &metal) - written) <
+            abs(himc_music_place(best, &metal) - written))
+            nearest = i;
+    }
+    if (instrument->names > 1)
+        return instrument->of[count == instrument->names ? above : nearest];
     if (instrument->key >= 0)
         return instrument->sort ? himc_music_of_sort(instrument->key, above, count)
                                 : instrument->key;

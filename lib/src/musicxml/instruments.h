@@ -6,16 +6,19 @@
 #include "musicxml/xml.h"
 
 #define MUSIC_INSTRUMENTS_MAX 64 ///< of a part; chosen
+#define MUSIC_NAMES_MAX 6        ///< in the name of an instrument; chosen
 #define MUSIC_STAVES 10          ///< of a part; 0: of a note that does not say which
 
 typedef struct music_instrument {
     const char *id, *name; ///< borrowed from the document; "": none
     midi_choice choice;
     int key;
-    int drum;       ///< of timpani: 1 low .. 4 high; 0: not said
-    bool concert;   ///< its name says a concert bass drum
-    bool sort;      ///< of drums of one sort, whose notes say which
-    uint64_t at[2]; ///< ... where they are written, a bit for each pitch
+    int drum;                ///< of timpani: 1 low .. 4 high; 0: not said
+    bool concert;            ///< its name says a concert bass drum
+    bool sort;               ///< of drums of one sort, whose notes say which
+    int names;               ///< "Snare Drum & Bass Drum": so many drums, of which a note is one
+    int of[MUSIC_NAMES_MAX]; ///< ... from high to low
+    uint64_t at[2];          ///< of both: where they are written, a bit for each pitch
 } music_instrument;
 
 /// Those of a part, and what holds where the reader is.
@@ -26,6 +29,7 @@ typedef struct music_instruments {
     int current[MUSIC_STAVES]; ///< the row that words have changed to; -1: none
     int lines[MUSIC_STAVES];   ///< 5 or 1; 0: not said
     char clef[MUSIC_STAVES];   ///< its letter; '\0': not said
+    bool staves;               ///< several: words are of one of them
 } music_instruments;
 
 /// Of a part's entry in the part-list; where drums of one sort are written is found in its notes.

@@ -65,6 +65,7 @@ typedef struct music_note {
     music_tremolo tremolo;
     himc_ornament kind; ///< of a roll, as `himc export` writes it; HIMC_PLAIN: as usual
     bool pressed;       ///< of a snare drum: a z on the stem
+    int upper;          ///< of a trill: semitones to its upper note, else 0
     int marks, flags;   ///< strokes through the stem; flags of the note
     double ratio;       ///< of a tuplet: written length over sounding
 } music_note;

@@ -45,8 +45,8 @@ static const struct {
     {"vibraph|vibraf|vib$|vibes", MIDI_VIBRAPHONE, 0},
     {"glockensp|glsp|glock$|jeu de timbres|campanelli|orchestra bells", MIDI_GLOCKENSPIEL, 0},
     {"drum set|drumset|drum kit|drumkit", MIDI_DRUMS, MUSIC_NO_KEY},
-    {"side stick|cross stick|rimshot", MIDI_DRUMS, 37},
-    {"electric snare", MIDI_DRUMS, 40},
+    {"side stick|cross stick|crossstick", MIDI_DRUMS, 37},
+    {"electric snare|rimshot|rim shot", MIDI_DRUMS, 40},
     {"snare|side drum|caisse claire|kleine trommel|kl trommel|kl tr$|military drum|"
      "militärtrommel|field drum|parade drum|tambour militaire|tamburo militare|basler trommel|"
      "rullante|cassa chiara|s d$",
@@ -56,8 +56,9 @@ static const struct {
      "gr c$|b d$",
      MIDI_DRUMS, MIDI_BASS_DRUM},
     {"tam tam|tamtam|gong", MIDI_DRUMS, MIDI_TAM_TAM},
-    {"open hi hat|hi hat open", MIDI_DRUMS, 46},
-    {"pedal hi hat|hi hat pedal", MIDI_DRUMS, 44},
+    {"open hi hat|hi hat open|hi hat (open|hi hat half|half open hi hat", MIDI_DRUMS, 46},
+    {"pedal hi hat|hi hat pedal|hi hat (pedal|foot hi hat|hi hat foot|hi hat (foot", MIDI_DRUMS,
+     44},
     {"hi hat|hihat|charleston", MIDI_DRUMS, 42},
     {"splash", MIDI_DRUMS, 55},
     {"china$|china cym|china type|china beck|chinabeck|chinese cym", MIDI_DRUMS, 52},

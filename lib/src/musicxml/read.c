@@ -30,6 +30,7 @@ typedef struct reader {
     double time;                     ///< length of a bar (beats) ...
     int beats, unit;                 ///< ... and its metre, as far as a score can say it
     int transpose;                   ///< (semitones)
+    int fifths;                      ///< of the key: sharps, below 0 flats
     bool line[MUSIC_LINES_MAX];      ///< a pedal's, which has begun
     int head;                        ///< the first note of a chord, -1: it is left out
     int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
@@ -448,8 +449,31 @@ static void read_technical(reader *r, music_note *n, const xml_node *technical)
     }
 }
 
-static void read_notations(reader *r, music_note *n, const xml_node *notations)
+// semitones from a note to the upper note of its trill, by the key or a sign above it
+static int find_upper(const reader *r, const xml_node *note, const xml_node *ornaments)
 {
+    static const char letters[] = "CDEFGAB", sharps[] = "FCGDAEB";
+    static const int steps[] = {2, 2, 1, 2, 2, 2, 1};
+    const xml_node *pitch = himc_xml_child(note, "pitch");
+    const char *letter = strchr(letters, himc_xml_text(pitch, "step")[0]),
+               *mark = himc_xml_text(ornaments, "accidental-mark");
+    if (!pitch || !letter || !*letter || !himc_xml_child(ornaments, "trill-mark"))
+        return 0;
+    int next = (int)(letter - letters + 1) % 7;
+    int order = (int)(strchr(sharps, letters[next]) - sharps);
+    int alter = order < r->fifths ? 1 : 6 - order < -r->fifths ? -1 : 0;
+    alter = strcmp(mark, "sharp") == 0     ? 1
+            : strcmp(mark, "flat") == 0    ? -1
+            : strcmp(mark, "natural") == 0 ? 0
+                                           : alter;
+    int up = steps[letter - letters] + alter - himc_xml_whole(pitch, "alter", 0);
+    return up < 1 ? 1 : up > 3 ? 3 : up;
+}
+
+static void read_notations(reader *r, music_note *n, const xml_node *note,
+                           const xml_node *notations)
+{
+    n->upper += find_upper(r, note, himc_xml_child(notations, "ornaments"));
     read_ornaments(r, n, himc_xml_child(notations, "ornaments"));
     read_articulations(r, n, himc_xml_child(notations, "articulations"));
     read_technical(r, n, himc_xml_child(notations, "technical"));
@@ -554,7 +578,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
     for (const xml_node *l = himc_xml_child(note, "lyric"); l; l = himc_xml_next(l))
         n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
     for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
-        read_notations(r, &n, t);
+        read_notations(r, &n, note, t);
     if (n.tremolo >= MUSIC_PAIR_BEGIN && n.ratio >= 2) // each is written as long as both sound
         n.ratio /= 2;
     if (chord && r->head >= 0)
@@ -593,6 +617,7 @@ static void read_attributes(reader *r, const xml_node *attributes)
 {
     double divisions = himc_xml_number(attributes, "divisions", r->divisions);
     r->divisions = divisions > 0 && divisions < 1e6 ? divisions : r->divisions;
+    r->fifths = himc_xml_whole(himc_xml_child(attributes, "key"), "fifths", r->fifths);
     const xml_node *transpose = himc_xml_child(attributes, "transpose");
     if (transpose) {
         double by = himc_xml_number(transpose, "chromatic", 0) +
@@ -751,11 +776,8 @@ bool himc_music_read(music *m, const void *bytes, size_t size, himc_error *error
                               "hidden notes are left out: rolls are played there", 0, ""},
             [MUSIC_BAD_NOTES] = {"note is not played: it has no pitch or no length",
                                  "notes are not played: they have no pitch or no length", 0, ""},
-            [MUSIC_GRACES] = {"grace note is not played: a ruff has two, others need time "
-                              "before a note",
-                              "grace notes are not played: a ruff has two, others need time "
-                              "before a note",
-                              0, ""},
+            [MUSIC_GRACES] = {"grace note is not played: no time before a note",
+                              "grace notes are not played: no time before a note", 0, ""},
             [MUSIC_ATTACKS] = {"accent is not played: no stroke begins there",
                                "accents are not played: no stroke begins there", 0, ""},
             [MUSIC_UNKNOWN] = {"sign of a note is not played: strokes have no way for it",

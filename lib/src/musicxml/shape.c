@@ -31,6 +31,7 @@
 #define GRACE_SOFTER 0.2        // than their note
 #define GHOST_SOFTER (2 * STEP) // a note in parentheses
 #define BACK_TIME 0.22          // of a hand from another drum to a roll (s); chosen: 1.4 m
+#define LEAST_REST 0.3          // of a roll behind a bend of its dynamic (s); chosen
 #define LONGEST 60.0            // roll (s); chosen: a score's limit is 180 s
 #define MOST_GRACES 8
 #define MOST_LANES 16       // that may have dynamics of their own; chosen: bounds the time
@@ -328,6 +329,8 @@ static void emit_stretch(shaper *s, const music_note *n, double begin, double en
     for (double at = begin; at < end - SAME && !s->failed;) {
         double to = next_cut(s, at + least, end);
         double up = at == begin ? louder : 0;
+        if (to > end - fmax(least, LEAST_REST * s->second)) // a hairpin ends with the roll
+            to = end;
         if (up > 0 && end - at > 2 * attack)
             to = fmin(to, at + attack);
         to = to > end - least ? end : to;
@@ -383,6 +386,14 @@ static double emit_between(shaper *s, const music_note *n, double end, double lo
     double least = fmax(himc_argument_find("LENGTH", "roll")->low, 0.1), left = 0;
     for (double at = n->at.beat, to; at < end - SAME; at = to + BACK_TIME * s->second) {
         to = next_other(s, n, at, end);
+        if (sounds && at == n->at.beat && to < at + SAME) { // the other hand begins it
+            midi_way one = way;
+            one.ornament = HIMC_PLAIN;
+            one.length = 0;
+            one.dynamic = fmin(way.dynamic + louder, 1);
+            emit(s, n, at, at, &one);
+            way.extra = true;
+        }
         if (to < at + least)
             continue;
         left += to - at;
@@ -394,10 +405,32 @@ static double emit_between(shaper *s, const music_note *n, double end, double lo
     return left;
 }
 
+// a roll on two drums or bars, a hand each
+static void emit_both(shaper *s, const music_note *n, const music_note *other, double all,
+                      midi_way way)
+{
+    way.ornament = himc_music_usual_roll(n->choice, n->key, false);
+    way.length = all;
+    way.last_dynamic = fmin(level(s, n->at.beat + all - 2 * SAME), 1);
+    emit(s, n, n->at.beat, n->at.beat + all, &way);
+    way.extra |= n->upper > 0; // one note is written
+    emit(s, other, n->at.beat, n->at.beat + all, &way);
+}
+
+static bool is_trill(const music_note *n, double all)
+{
+    const himc_argument *range = himc_argument_find("LENGTH", "roll");
+    return n->upper > 0 && n->choice > MIDI_DRUMS && all >= range->low && all <= range->high;
+}
+
 // from the note's beat to `end`; where too little would be left, the hands choose
 static void emit_roll(shaper *s, const music_note *n, double end, double louder, midi_way way)
 {
-    if (emit_between(s, n, end, louder, way, false) > (end - n->at.beat) / 2)
+    music_note upper = *n;
+    upper.key += n->upper;
+    if (is_trill(n, end - n->at.beat))
+        emit_both(s, n, &upper, end - n->at.beat, way);
+    else if (emit_between(s, n, end, louder, way, false) > (end - n->at.beat) / 2)
         emit_between(s, n, end, louder, way, true);
     else
         emit_stretch(s, n, n->at.beat, end, louder, way);
@@ -428,6 +461,12 @@ static void emit_pair(shaper *s, music_note *n, double unit, midi_way way)
 {
     music_note *other = find_next(s->music, n, BY_TREMOLO);
     double all = 2 * n->length;
+    if (other && other->key != n->key && unit / s->second < ALTERNATE && unit < n->length &&
+        all >= himc_argument_find("LENGTH", "roll")->low) {
+        emit_both(s, n, other, all, way);
+        other->length = -1;
+        return;
+    }
     while (unit / s->second < ALTERNATE && unit < n->length)
         unit *= 2;
     int count = (int)lround(all / unit);
@@ -455,11 +494,9 @@ static void emit_graces(shaper *s, const music_note *n, bool roll, midi_way *way
         same &= s->grace[i]->key == n->key && s->grace[i]->choice == n->choice;
         slow &= s->grace[i]->flags == 1;
     }
-    if (same && !roll) {
+    if (same && !roll && s->graces < 3) {
         static const himc_ornament ornament[] = {HIMC_PLAIN, HIMC_FLAM, HIMC_DRAG, HIMC_RUFF};
-        way->ornament = ornament[s->graces < 3 ? s->graces + (s->graces == 2 && slow) : 3];
-        for (int i = 2; i < s->graces; i++)
-            himc_music_omit(s->music, MUSIC_GRACES, n->at.bar);
+        way->ornament = ornament[s->graces + (s->graces == 2 && slow)];
         s->graces = 0;
         return;
     }
