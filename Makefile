@@ -238,13 +238,13 @@ PAGE := $(if $(wildcard /usr/bin/clang-16),$(if $(wildcard /usr/lib/wasm32-wasi/
 MEASURE := $(BUILD)/tools/research/papers/measure
 
 check: all units $(MEASURE) $(WATCH) $(PAGE) $(if $(WEBSOCKETS),$(VIEWER)) ## the same without installing
-	@HIMC_BUILD=$(BUILD) tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS)
+	@HIMC_BUILD=$(BUILD) tests/run.sh $(SCRIPTS) $(UNIT) $(FUZZ)
 
 test-long: deps ## all tests at full length, and those too slow for every day
 	@$(MAKE) check-long
 
 check-long: all units $(MEASURE) $(WATCH) $(PAGE) $(LONG) $(if $(WEBSOCKETS),$(VIEWER))
-	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(UNIT) $(FUZZ) $(SCRIPTS) $(LONG)
+	@HIMC_BUILD=$(BUILD) HIMC_LONG=1 TEST_TIMEOUT=1800 tests/run.sh $(LONG) $(SCRIPTS) $(UNIT) $(FUZZ)
 
 axe: ## axe-core of npm: with it the page's tests look for what shuts people out
 	@mkdir -p $(BUILD)/axe

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Runs test programs, JOBS at a time, and adds up what they report.
+# Runs test programs, JOBS at a time (one more than processors: some wait), and adds up what they report.
 #   tests/run.sh PROGRAM...
 # A program prints Unity's lines: `FILE:LINE:NAME:PASS|FAIL: why|IGNORE: why`, then `N Tests N Failures N Ignored`. One line
 # is printed per program, what failed or was ignored in full, and last of all `N passed, N failed`. A program that
 # crashes, runs longer than TEST_TIMEOUT seconds (600: for a program that hangs, on any machine), or ends without its
 # summary counts as one more failure.
-: "${JOBS:=$(nproc 2>/dev/null || echo 1)}" "${TEST_TIMEOUT:=600}" "${HIMC_BUILD:=build}"
+: "${JOBS:=$(($(nproc 2>/dev/null || echo 1) + 1))}" "${TEST_TIMEOUT:=600}" "${HIMC_BUILD:=build}"
 export HIMC_BUILD TEST_TIMEOUT
 logs=$HIMC_BUILD/tests/logs
 
