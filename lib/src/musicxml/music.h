@@ -21,6 +21,7 @@ typedef struct music_bar {
     char number[12]; ///< as printed
     bool forward, backward, segno, coda, to_coda, fine, da_capo, dal_segno;
     int times;        ///< of `backward`, 2 by default
+    int said;         ///< the same as words say it, in the bar or before; 0: none do
     unsigned endings; ///< bit k: it is played the k-th time, from 1; 0: always
 } music_bar;
 

@@ -9,6 +9,7 @@
 #include "musicxml/names.h"
 
 #include "midi/part.h"
+#include "musicxml/phrases.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -529,13 +530,34 @@ static int read_pitch(const char **at, bool german)
     return octave > 0 && *at == p + 1 ? pitch + 12 * (octave + 1) : pitch;
 }
 
-// "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la", "gliss. C to D"
+// a text whose arrows and dashes between spaces are words
+static void read_arrows(char out[MOST_TEXT], const char *words)
+{
+    static const char *const arrows[] = {"→", "->", "–", "—", " - "};
+    size_t length = 0;
+    for (; *words && length < MOST_TEXT - 5; words++) {
+        size_t i = 0;
+        while (i < 5 && strncmp(words, arrows[i], strlen(arrows[i])) != 0)
+            i++;
+        if (i < 5) {
+            memcpy(out + length, " to ", 4);
+            length += 4;
+            words += strlen(arrows[i]) - 1;
+        } else {
+            out[length++] = *words;
+        }
+    }
+    out[length] = '\0';
+}
+
+// "muta in F", "change F to G", "C muta D", "G nach A umstimmen", "changez sol en la", "gliss. C to
+// D"; without such a verb it is no more than pitches: "F to G"
 static int read_tunings(const char *text, int most, double *value)
 {
     static const char *const tells[] = {"muta", "mutano", "change", "umstimmen", "stimmen",
                                         "tune", "retune", "cambia", "nach",      "gliss"};
-    static const char *const joins[] = {"to", "in", "en", "nach", "auf", "muta", "->", "→"};
-    bool told = false;
+    static const char *const joins[] = {"to", "in", "en", "nach", "auf", "muta"};
+    bool told = false, pure = true;
     for (size_t i = 0; i < sizeof tells / sizeof *tells; i++) {
         const char *at = strstr(text, tells[i]);
         told |= at && begins_word(text, at);
@@ -543,10 +565,11 @@ static int read_tunings(const char *text, int most, double *value)
     bool german = strstr(text, "stimm") || strstr(text, "nach ");
     int from = 12, drum = 0, count = 0;
     bool joined = false;
-    for (const char *at = text; told && *at && count < most;) {
+    for (const char *at = text; (told || pure) && *at && count < most;) {
         at += strspn(at, " ,;:()");
         const char *word = at;
         int pitch = read_pitch(&at, german);
+        pure &= pitch < 0 || (from == 12 ? !joined : joined);
         if (pitch >= 0 && (joined || from != 12)) {
             value[count++] = 100 * (from + 128 * drum) + pitch;
             from = 12;
@@ -560,17 +583,37 @@ static int read_tunings(const char *text, int most, double *value)
         for (size_t i = 0; i < 4; i++)
             drum =
                 strncmp(at, drums[i], length) == 0 && drums[i][length] == ' ' ? (int)i + 1 : drum;
-        for (size_t i = 0; i < sizeof joins / sizeof *joins; i++)
-            joined |= strlen(joins[i]) == length && strncmp(word, joins[i], length) == 0;
+        bool join = false, before = from != 12 || word[0] != 'm'; // "muta F in G" begins with none
+        for (size_t i = 0; i < sizeof joins / sizeof *joins && before; i++)
+            join |= strlen(joins[i]) == length && strncmp(word, joins[i], length) == 0;
+        joined |= join;
+        pure &= join || length == 0;
         at += length;
     }
-    return count;
+    return told || (pure && from == 12) ? count : 0;
+}
+
+// a dynamic before other words: "p cresc.", "pp leggiero"; of one letter, which may be a pitch,
+// `known` words, or one of three letters
+static bool begins_dynamic(const char *words, bool known, music_meaning *meaning, double *value)
+{
+    char name[8] = "";
+    words += strspn(words, " ");
+    size_t length = strcspn(words, " ,;\n"), longest = 0;
+    memcpy(name, words, length < sizeof name ? length : 0);
+    for (const char *at = words + length; *at; at += strspn(at, " ,;-(\n")) {
+        size_t letters = strcspn(at, " ,;-(\n");
+        longest = letters > longest ? letters : longest;
+        at += letters;
+    }
+    return (length > 1 || known || longest > 2) && strcmp(name, "n") != 0 &&
+           find_dynamic(name, meaning, value);
 }
 
 int himc_music_words(const char *words, int most, music_meaning *meaning, double *value)
 {
-    char text[MOST_TEXT];
-    int count = 0;
+    char text[MOST_TEXT], arrows[MOST_TEXT];
+    int count = 0, way;
     fold(text, words, false);
     if (strcmp(text, "r") == 0 || strcmp(text, "l") == 0) {
         meaning[0] = MUSIC_HAND;
@@ -583,9 +626,18 @@ int himc_music_words(const char *words, int most, music_meaning *meaning, double
         meaning[0] = MUSIC_FINE;
         return 1;
     }
-    count = read_tunings(text, most, value);
+    if ((way = himc_music_syllables(text)) != 0) {
+        meaning[0] = MUSIC_GROWING;
+        value[0] = way;
+        return 1;
+    }
+    read_arrows(arrows, words);
+    fold(arrows, arrows, false);
+    count = read_tunings(arrows, most, value);
+    const bool tunes = count > 0;
     for (int i = 0; i < count; i++)
         meaning[i] = strstr(text, "gliss") ? MUSIC_GLISS : MUSIC_TUNING;
+    count += !tunes && himc_music_metronome(text, &meaning[0], &value[0]);
     const size_t rows = sizeof instructions / sizeof *instructions;
     for (const char *at = text; *at && count < most;) {
         size_t longest = 0, found = rows;
@@ -604,6 +656,15 @@ int himc_music_words(const char *words, int most, music_meaning *meaning, double
             count++;
         }
         at += longest > 0 ? longest : 1;
+    }
+    music_meaning dynamic;
+    double level;
+    if (!tunes && count < most && begins_dynamic(words, count > 0, &dynamic, &level)) {
+        memmove(meaning + 1, meaning, (size_t)count * sizeof *meaning);
+        memmove(value + 1, value, (size_t)count * sizeof *value);
+        meaning[0] = dynamic;
+        value[0] = level;
+        count++;
     }
     return count;
 }

@@ -31,14 +31,14 @@ const char *himc_music_notehead(himc_spot spot);
 
 /// What a word or a sign asks for.
 typedef enum music_meaning {
-    MUSIC_DYNAMIC,     ///< value: 0 .. 1
-    MUSIC_ATTACK,      ///< sf, sfz: of this note alone
-    MUSIC_FORTEPIANO,  ///< value: the dynamic after the attack
-    MUSIC_LOUDER,      ///< value: steps above the dynamic before, or below 0
-    MUSIC_WEDGE,       ///< value: 1 crescendo, -1 diminuendo, 0 its end
-    MUSIC_GROWING,     ///< value: 1 or -1, -7 to nothing; as a word, to the next dynamic
-    MUSIC_TEMPO,       ///< value: (beats per minute)
-    MUSIC_TEMPO_WORD,  ///< the same, by custom
+    MUSIC_DYNAMIC,    ///< value: 0 .. 1
+    MUSIC_ATTACK,     ///< sf, sfz: of this note alone
+    MUSIC_FORTEPIANO, ///< value: the dynamic after the attack, and twice the attack's step if not f
+    MUSIC_LOUDER,     ///< value: steps above the dynamic before, or below 0
+    MUSIC_WEDGE,      ///< value: 1 crescendo, -1 diminuendo, 0 its end
+    MUSIC_GROWING,    ///< value: 1 or -1, -7 to nothing; as a word, to the next dynamic
+    MUSIC_TEMPO,      ///< value: (beats per minute)
+    MUSIC_TEMPO_WORD, ///< the same, by custom
     MUSIC_TEMPO_AGAIN, ///< value: the beat whose tempo returns, after a jump back
     MUSIC_TEMPO_SHARE, ///< value: of the tempo before
     MUSIC_SWING,       ///< value: share of the first of two eighths, 1 more: of two 16ths

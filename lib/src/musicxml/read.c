@@ -6,6 +6,7 @@
 /// taken of parts that are played; tempi, fermatas, repeats and jumps of all parts, as programs
 /// write them into one part only. Invariant: each note of such a part is taken or counted.
 #include "musicxml/instruments.h"
+#include "musicxml/phrases.h"
 
 #include "base/array.h"
 #include "base/format.h"
@@ -35,6 +36,8 @@ typedef struct reader {
     int wavy;                        ///< 1 + the voice under a trill's wavy line, or 0
     int lane;                        ///< of a direction
     int repeated;                    ///< bars back that a sign repeats; 0: none
+    char hands[16];                  ///< of the next notes, 1 + himc_hand each, ...
+    int hand, hand_count, hand_lane; ///< ... the next of them; the lane of those before it
     bool niente;                     ///< the open hairpin ends in nothing
     bool failed;
 } reader;
@@ -137,30 +140,59 @@ static bool is_coda(const char *text)
            text[4 + strspn(text + 4, " .:\n")] == '\0';
 }
 
-static bool read_words(reader *r, const xml_node *words, double beat, bool own, bool sound)
+/// A direction.
+typedef struct directed {
+    double beat;
+    bool own;         ///< the part is played
+    bool jumps;       ///< a `sound` says where it jumps
+    bool sound_tempo; ///< ... and how fast it is
+    bool tempo;       ///< it has a number for the tempo
+    bool bold;        ///< words of it are, as those of tempo are printed
+    bool dynamic;     ///< one is found
+    int first;        ///< sign of it
+    char words[512];  ///< just before
+} directed;
+
+// true if it has a dynamic
+static bool read_words(reader *r, const directed *by)
 {
+    const char *text = by->words;
     music_bar *bar = &r->music->bars[r->bar];
     music_meaning meaning[8];
     double value[8];
+    const double beat = by->beat;
+    const bool own = by->own, sound = by->jumps;
     bool dynamic = false;
-    int count = himc_music_words(words->text, 8, meaning, value), key;
+    char small[32];
+    int hands = own ? himc_music_hands(text, sizeof r->hands, r->hands) : 0;
+    if (hands > 0) {
+        r->hand = 0;
+        r->hand_count = hands;
+        return false;
+    }
+    for (size_t i = 0; i == 0 || small[i - 1]; i++)
+        small[i] = (char)(i + 1 < sizeof small ? tolower((unsigned char)text[i]) : 0);
+    bar->said = himc_music_times(small) ? himc_music_times(small) : bar->said;
+    int count = himc_music_words(text, 8, meaning, value), key;
     bool bare = false; // the name of an instrument, which may have that of a mallet in it
-    bool name = himc_music_change(words->text, &key, &bare) != MIDI_ANY && bare;
-    bar->coda |= is_coda(words->text) && !sound;
+    bool name = himc_music_change(text, &key, &bare) != MIDI_ANY && bare;
+    bar->coda |= is_coda(text) && !sound;
+    if (count == 0 && by->bold && !name) // a ritardando ends at words of tempo that are unknown
+        add_sign(r, beat, MUSIC_TEMPO_SHARE, 1);
     for (int i = 0; i < count; i++) {
         // a `sound` beside it says where it jumps
         bar->da_capo |= meaning[i] == MUSIC_DA_CAPO && !sound;
         bar->dal_segno |= meaning[i] == MUSIC_DAL_SEGNO && !sound;
         bar->to_coda |= meaning[i] == MUSIC_TO_CODA && !sound;
         bar->fine |= meaning[i] == MUSIC_FINE && !sound;
-        if (name && meaning[i] == MUSIC_MALLET)
+        if ((name && meaning[i] == MUSIC_MALLET) || (by->tempo && meaning[i] == MUSIC_TEMPO))
             continue;
         if (meaning[i] < MUSIC_DA_CAPO && (own || is_tempo(meaning[i])))
             add_sign(r, beat, meaning[i], value[i]);
         dynamic |= meaning[i] == MUSIC_DYNAMIC;
     }
     if (own)
-        himc_music_instruments_change(&r->instruments, r->lane / 100, words->text, count > 0);
+        himc_music_instruments_change(&r->instruments, r->lane / 100, text, count > 0);
     return dynamic;
 }
 
@@ -257,6 +289,7 @@ static void read_percussion(reader *r, const xml_node *percussion, double beat)
 static bool read_dynamics(reader *r, const xml_node *dynamics, double beat, const char *before)
 {
     bool found = false;
+    music *m = r->music;
     for (const xml_node *d = dynamics->child; d; d = d->next) {
         music_meaning meaning;
         double value;
@@ -266,52 +299,75 @@ static bool read_dynamics(reader *r, const xml_node *dynamics, double beat, cons
         bool words = himc_music_words(both, 1, &meaning, &value) == 1 &&
                      (meaning == MUSIC_DYNAMIC || meaning == MUSIC_LOUDER);
         if (words || himc_music_dynamic(name, &meaning, &value)) {
-            add_sign(r, beat, meaning, value);
+            music_sign *last = found ? &m->signs[m->sign_count - 1] : NULL;
+            bool attack = last && last->meaning == MUSIC_ATTACK,
+                 falls = last && last->meaning == MUSIC_DYNAMIC && last->value > value;
             found = true;
+            if (meaning != MUSIC_DYNAMIC || !(attack || falls)) {
+                add_sign(r, beat, meaning, value);
+                continue;
+            }
+            last->meaning = MUSIC_FORTEPIANO; // f and p are an fp
+            last->value = value + (falls ? 2 * round(7 * last->value) : 0);
         }
     }
     return found;
 }
 
+// one of a direction's signs; words that follow each other are one text
+static void read_type(reader *r, const xml_node *d, const xml_node *next, directed *by)
+{
+    music_bar *bar = &r->music->bars[r->bar];
+    const double beat = by->beat;
+    const bool own = by->own;
+    if (himc_xml_is(d, "words")) {
+        size_t used = strlen(by->words);
+        himc_format(by->words + used, sizeof by->words - used, used ? " %s" : "%s", d->text);
+        by->bold |= himc_xml_has(d, "font-weight", "bold");
+        by->dynamic |= !himc_xml_is(next, "words") && read_words(r, by);
+        return;
+    }
+    if (himc_xml_is(d, "metronome") && !by->sound_tempo)
+        read_metronome(r, d, beat);
+    else if (himc_xml_is(d, "segno") && !by->jumps)
+        bar->segno = true;
+    else if (himc_xml_is(d, "coda") && !by->jumps)
+        bar->coda = true;
+    else if (own && himc_xml_is(d, "dynamics"))
+        by->dynamic |= read_dynamics(r, d, beat, by->words);
+    else if (own && himc_xml_is(d, "wedge"))
+        read_wedge(r, d, beat);
+    else if (own && himc_xml_is(d, "percussion"))
+        read_percussion(r, d, beat);
+    else if (own && (himc_xml_is(d, "dashes") || himc_xml_is(d, "bracket")))
+        read_line(r, d, beat, by->first);
+    else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
+        add_sign(r, beat, MUSIC_DAMP, 0);
+    by->words[0] = '\0';
+}
+
 static void read_direction(reader *r, const xml_node *direction, bool own)
 {
-    const xml_node *offset = himc_xml_child(direction, "offset"); // it may be of the print alone
-    double by = himc_xml_has(offset, "sound", "no") ? 0 : himc_xml_number(direction, "offset", 0);
-    double beat = fmax(r->at + by / r->divisions, 0);
-    const xml_node *sound = himc_xml_child(direction, "sound");
-    music_bar *bar = &r->music->bars[r->bar];
-    bool dynamic = false, tempo = himc_xml_attribute(sound, "tempo")[0];
-    bool jumps = false;
     static const char *const jump[] = {"dacapo", "dalsegno", "tocoda", "fine", "coda", "segno"};
+    const xml_node *offset = himc_xml_child(direction, "offset"); // it may be of the print alone
+    double moved =
+        himc_xml_has(offset, "sound", "no") ? 0 : himc_xml_number(direction, "offset", 0);
+    const xml_node *sound = himc_xml_child(direction, "sound"),
+                   *first = himc_xml_child(direction, "direction-type");
+    directed by = {.beat = fmax(r->at + moved / r->divisions, 0),
+                   .own = own,
+                   .sound_tempo = himc_xml_attribute(sound, "tempo")[0] != '\0',
+                   .first = r->music->sign_count};
+    by.tempo = by.sound_tempo;
     for (int i = 0; i < 6; i++)
-        jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
-    const int first = r->music->sign_count;
-    const char *before = "";
+        by.jumps |= himc_xml_attribute(sound, jump[i])[0] != '\0';
+    for (const xml_node *t = first; t; t = himc_xml_next(t))
+        by.tempo |= himc_xml_child(t, "metronome") != NULL;
     r->lane = lane_of(direction);
-    const xml_node *type = himc_xml_child(direction, "direction-type");
-    for (; type; type = himc_xml_next(type))
-        for (const xml_node *d = type->child; d; d = d->next) {
-            if (himc_xml_is(d, "words"))
-                dynamic |= read_words(r, d, beat, own, jumps);
-            else if (himc_xml_is(d, "metronome") && !tempo)
-                read_metronome(r, d, beat);
-            else if (himc_xml_is(d, "segno") && !jumps)
-                bar->segno = true;
-            else if (himc_xml_is(d, "coda") && !jumps)
-                bar->coda = true;
-            else if (own && himc_xml_is(d, "dynamics"))
-                dynamic |= read_dynamics(r, d, beat, before);
-            else if (own && himc_xml_is(d, "wedge"))
-                read_wedge(r, d, beat);
-            else if (own && himc_xml_is(d, "percussion"))
-                read_percussion(r, d, beat);
-            else if (own && (himc_xml_is(d, "dashes") || himc_xml_is(d, "bracket")))
-                read_line(r, d, beat, first);
-            else if (own && (himc_xml_is(d, "damp") || himc_xml_is(d, "damp-all")))
-                add_sign(r, beat, MUSIC_DAMP, 0);
-            before = himc_xml_is(d, "words") ? d->text : "";
-        }
-    read_sound(r, sound, beat, own && !dynamic);
+    for (const xml_node *t = first; t; t = himc_xml_next(t))
+        for (const xml_node *d = t->child; d; d = d->next)
+            read_type(r, d, d->next || !himc_xml_next(t) ? d->next : himc_xml_next(t)->child, &by);
+    read_sound(r, sound, by.beat, own && !by.dynamic);
     r->lane = 0;
 }
 
@@ -509,6 +565,15 @@ static double read_ratio(const xml_node *tuplet)
     return actual >= 1 && normal >= 1 && actual < 100 && normal < 100 ? actual / normal : 1;
 }
 
+// of a row of hands that words have, 0: none is left; only notes of one lane are beside it
+static int next_hand(reader *r, int lane)
+{
+    if (r->hand == r->hand_count || (r->hand > 0 && r->hand_lane != lane))
+        return 0;
+    r->hand_lane = lane;
+    return r->hands[r->hand++];
+}
+
 static void add_note(reader *r, const xml_node *note, double beat, double length)
 {
     static const char *const types[] = {"eighth", "16th", "32nd", "64th", "128th"};
@@ -551,6 +616,7 @@ static void add_note(reader *r, const xml_node *note, double beat, double length
         n.tied_back |= himc_xml_has(t, "type", "stop");
         n.ring |= himc_xml_has(t, "type", "let-ring");
     }
+    n.hand = chord || n.grace || n.tied_back ? 0 : next_hand(r, n.lane);
     for (const xml_node *l = himc_xml_child(note, "lyric"); l; l = himc_xml_next(l))
         n.hand = hand_of(himc_xml_text(l, "text")) ? hand_of(himc_xml_text(l, "text")) : n.hand;
     for (const xml_node *t = himc_xml_child(note, "notations"); t; t = himc_xml_next(t))
@@ -605,17 +671,26 @@ static void read_attributes(reader *r, const xml_node *attributes)
         r->repeated = himc_xml_has(again, "type", "start") ? atoi(again->text) : 0;
     himc_music_instruments_attributes(&r->instruments, attributes);
     const xml_node *time = himc_xml_child(attributes, "time");
-    double beats = 0;
-    for (const char *n = himc_xml_text(time, "beats"); n && *n;) { // "3+2"
-        beats += strtod(n, NULL);
-        n = strchr(n, '+');
-        n = n ? n + 1 : NULL;
+    double beats = 0, length = 0, unit = 1;
+    for (const xml_node *t = time ? time->child : NULL; t; t = t->next) { // 3/8 + 2/4, "3+2"
+        for (const char *n = himc_xml_is(t, "beats") ? t->text : NULL; n && *n;) {
+            beats += strtod(n, NULL);
+            n = strchr(n, '+');
+            n = n ? n + 1 : NULL;
+        }
+        if (!himc_xml_is(t, "beat-type"))
+            continue;
+        double type = strtod(t->text, NULL);
+        if (!(beats > 0 && beats < 1000 && type >= 1 && type <= 64))
+            return;
+        length += 4 * beats / type;
+        unit = fmax(unit, type);
+        beats = 0;
     }
-    double unit = himc_xml_number(time, "beat-type", 4);
-    if (!(beats > 0 && beats < 1000 && unit >= 1 && unit <= 64))
+    if (!(length > 0))
         return;
-    r->time = 4 * beats / unit;
-    r->beats = (int)lround(beats);
+    r->time = length;
+    r->beats = (int)lround(length * unit / 4);
     r->unit = (int)lround(unit);
 }
 
@@ -703,7 +778,7 @@ static bool read_part(reader *r, const xml_node *part)
     const int first = m->note_count;
     himc_music_instruments_read(&r->instruments, r->list, part);
     r->divisions = 1;
-    r->transpose = r->wavy = r->repeated = 0;
+    r->transpose = r->wavy = r->repeated = r->hand = r->hand_count = 0;
     r->time = r->beats = r->unit = 4;
     r->bar = 0;
     r->head = -1;
