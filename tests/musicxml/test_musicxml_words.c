@@ -348,9 +348,167 @@ static void test_a_composite_metre_has_the_length_of_its_parts(void)
     expect_text("bars of 5/8");
 }
 
+#define BARLINE(in) "<barline location='right'>" in "</barline>"
+#define HELD BARLINE("<bar-style>light-heavy</bar-style><fermata/>")
+
+static void test_a_fermata_over_a_barline_holds_the_last_note(void)
+{
+    PLAY(BAR(1, FOUR TEMPO(120) C3(4, "") C3(4, "") C3(8, "") HELD) BAR(2, C3(16, "")));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1, time_between(0, 2));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 2, time_between(2, 4)); // twice as long
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 2, time_between(4, 8));
+    // a roll, which is one on it, too
+    PLAY(BAR(1, FOUR TEMPO(60) C3(8, "") C3(8, MARKS(3)) HELD) BAR(2, C3(16, "")));
+    TEST_ASSERT_EQUAL(HIMC_ROLL_SINGLE, stroke(1)->ornament);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 4, time_between(2, 4));
+    // a rest, where another part ends with it; once where the note has a fermata itself
+    PLAY(BAR(1, FOUR TEMPO(120) C3(12, "") REST(4) HELD) BAR(2, C3(16, "")));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1.5, time_between(0, 3));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 1, time_between(3, 4));
+    PLAY(BAR(1, FOUR TEMPO(120) C3(8, "") C3(8, "<notations><fermata/></notations>") HELD));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3, 2, time_between(2, 4));
+}
+
+static void test_a_vibraphone_rings_until_its_pedal_goes_up(void)
+{
+#define PEDAL(type) DIRECTION("<pedal type='" type "' line='yes'/>")
+    static const char body[] =
+        BAR(1, FOUR TEMPO(60) PEDAL("start") NOTE(F, 4, 8, "") PEDAL("change") NOTE(A, 4, 8, ""))
+            BAR(2, PEDAL("stop") REST(8) NOTE(C, 5, 8, "")) TAIL;
+    char text[3000];
+    snprintf(text, sizeof text, HEAD PART("Vibraphone") "%s", body);
+    load(text);
+    double up[2], down[2];
+    int count = 0;
+    for (const char *at = strstr(made.text, "\nat "); at && count < 2; count++) {
+        TEST_ASSERT_EQUAL_MESSAGE(1, sscanf(at, "\nat %lf vibraphone pedal 0;", &up[count]), at);
+        at = strstr(at + 1, "\nat ");
+        TEST_ASSERT_EQUAL_MESSAGE(1, sscanf(at, "\nat %lf vibraphone pedal 1;", &down[count]), at);
+        at = strstr(at + 1, "\nat ");
+    }
+    TEST_ASSERT_EQUAL_MESSAGE(2, count, made.text);
+    // the first note goes, before the second, which is not damped; at a rest it is on the beat
+    TEST_ASSERT_TRUE(up[0] > 1.5 + lead() && up[0] < down[0] && down[0] < 2 + lead());
+    TEST_ASSERT_FLOAT_WITHIN(1e-6, 4 + lead(), up[1]);
+    TEST_ASSERT_TRUE(down[1] > up[1] + 0.1);
+    // other bars have none
+    snprintf(text, sizeof text, HEAD PART("Marimba") "%s", body);
+    load(text);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.text, "pedal 0"), made.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(made.report, "2 pedals are not played: the instrument has none (bars 1 2)"),
+        made.report);
+}
+
+static void expect_change(const char *words, const char *instrument)
+{
+    char text[3000], line[80];
+    snprintf(text, sizeof text,
+             HEAD PART("Bass Drum") BAR(1, FOUR C3(16, "")) BAR(2, WORDS("%s") C3(16, "")) TAIL,
+             words);
+    snprintf(line, sizeof line, "\ninstrument %s", instrument);
+    load(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, line), words);
+}
+
+static void test_brackets_and_sticks_do_not_hide_an_instrument(void)
+{
+    expect_change("(Sus. Cym.)", "crash");
+    expect_change("Susp. cymbal with yarn mallets", "crash");
+    expect_change("Hängebecken", "crash");
+    expect_change("[S.D.]", "snare");
+    expect_change("S.D. (snares off)", "snare");
+    expect_text("wires 0");
+    expect_change("Snare drum (brushes)", "snare");
+    expect_change("change to snare drum with brushes", "snare");
+    expect_change("Sn. Dr.", "snare");
+    expect_change("Tamb.", "tambourine");
+    expect_change("Tom (high)", "high-tom");
+    // and it comes back
+    load(HEAD PART("Snare drum") BAR(1, FOUR C3(8, "") WORDS("G.C.") C3(8, "")) TAIL);
+    expect_text("\ninstrument bass-drum");
+}
+
+static void test_bells_have_names_in_four_languages(void)
+{
+    static const char *const names[] = {"Tubular Bells", "Campane (tubolari)",
+                                        "Cloches (tubulaires)", "Röhrenglocken", "Campane"};
+    for (int i = 0; i < 5; i++) {
+        char text[2048];
+        snprintf(text, sizeof text, HEAD PART("%s") BAR(1, FOUR NOTE(C, 5, 16, "")) TAIL, names[i]);
+        load(text);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.text, "tubular-bell"), names[i]);
+    }
+}
+
+static void expect_times(int times, const char *words)
+{
+    char text[3000];
+    snprintf(text, sizeof text,
+             HEAD PART("Timpani") BAR(1, FOUR C3(16, BARLINE(""))) BAR(
+                 2, "<barline location='left'><repeat direction='forward'/></barline>" WORDS("%s")
+                        C3(16, "")) BAR(3, C3(16, "") BARLINE("<repeat direction='backward'/>"))
+                 BAR(4, C3(16, "") BARLINE("<repeat direction='backward'/>")) TAIL,
+             words);
+    load(text);
+    TEST_ASSERT_EQUAL_MESSAGE(1 + 2 * times + 2, score->stroke_count, words);
+}
+
+static void test_words_say_how_often_a_repeat_is_played(void)
+{
+    expect_times(2, "");
+    expect_times(4, "Play 4 times");
+    expect_times(4, "4x");
+    expect_times(4, "(4×)");
+    expect_times(3, "3 volte");
+    expect_times(4, "4 fois");
+    expect_times(2, "4x only");
+    expect_times(2, "16 bars");
+}
+
+static void test_a_repeat_within_a_bar_repeats_its_first_half(void)
+{
+    PLAY(BAR(1, FOUR C3(16, "")) BAR(
+        2,
+        "<barline location='left'><repeat direction='forward'/></barline>" C3(4, "") WORDS("più f")
+            C3(4, "") "<barline location='middle'><repeat direction='backward'/></barline>" NOTE(
+                G, 2, 8, "")) BAR(3, C3(16, "")));
+    expect_beats(7, 0.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0);
+    TEST_ASSERT_EQUAL_STRING(stroke(1)->drum, stroke(3)->drum);
+    TEST_ASSERT_TRUE(strcmp(stroke(4)->drum, stroke(5)->drum) != 0);
+    expect_dynamics(7, 4.0, 4.0, 5.0, 5.0, 6.0, 6.0, 6.0);
+}
+
+static void test_slashes_are_counted_and_not_played(void)
+{
+#define STYLE(in) "<attributes><measure-style>" in "</measure-style></attributes>"
+#define HEADED(head)                                                                    \
+    "<note><unpitched><display-step>C</display-step><display-octave>5</display-octave>" \
+    "</unpitched><duration>8</duration><voice>1</voice><notehead>" head "</notehead></note>"
+#define SLASH HEADED("slash")
+    load(HEAD PART("Drumset") BAR(1, FOUR HEADED("normal") HEADED("normal")) BAR(2, SLASH SLASH)
+             BAR(3, STYLE("<slash type='start'/>") HEADED("normal") HEADED("normal"))
+                 BAR(4, STYLE("<slash type='stop'/>") HEADED("normal") HEADED("normal")) TAIL);
+    expect_beats(4, 0.0, 2.0, 12.0, 14.0);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(made.report, "3 slashes that stand for notes are not played (bars 2 3)"),
+        made.report);
+    PLAY(BAR(1, FOUR C3(8, "") STYLE("<beat-repeat type='start' slashes='1'/>") REST(8))
+             BAR(2, STYLE("<beat-repeat type='stop'/>") C3(16, "")));
+    expect_beats(2, 0.0, 4.0);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "1 slash that stands for notes"), made.report);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_fermata_over_a_barline_holds_the_last_note);
+    RUN_TEST(test_a_vibraphone_rings_until_its_pedal_goes_up);
+    RUN_TEST(test_brackets_and_sticks_do_not_hide_an_instrument);
+    RUN_TEST(test_bells_have_names_in_four_languages);
+    RUN_TEST(test_words_say_how_often_a_repeat_is_played);
+    RUN_TEST(test_a_repeat_within_a_bar_repeats_its_first_half);
+    RUN_TEST(test_slashes_are_counted_and_not_played);
     RUN_TEST(test_a_metronome_mark_in_words_is_the_tempo);
     RUN_TEST(test_a_sound_or_a_sign_holds_before_the_number_of_words);
     RUN_TEST(test_a_tempo_with_a_number_is_that_tempo);

@@ -75,6 +75,13 @@ static const struct {
     {"clave$|claves", MIDI_DRUMS, 75},
     {"cow bell|cowbell|kuhglocke|bells cowbell|cencerro|campanacci|cloche de vache", MIDI_DRUMS,
      56},
+    {"cloches de v|cloches de t", MIDI_DRUMS, 56},
+    {"campane|cloches|chim$|tub bell|tub b$|t bells", MIDI_TUBULAR_BELL, 0},
+    {"glk$", MIDI_GLOCKENSPIEL, 0},
+    {"g c$|b dr$|bs dr$", MIDI_DRUMS, MIDI_BASS_DRUM},
+    {"sn dr$|sn d$|sn$", MIDI_DRUMS, 38},
+    {"tamb$", MIDI_DRUMS, 54},
+    {"hängebeck|hängendes beck", MIDI_DRUMS, 49},
     {"low agogo", MIDI_DRUMS, 68},
     {"agogo", MIDI_DRUMS, 67},
     {"low bongo", MIDI_DRUMS, 61},
@@ -376,6 +383,28 @@ bool himc_music_names(const char *name)
     return text[0] && begins_with(text, programs) == 0;
 }
 
+// true where a word says which of a sort, or in what a cymbal hangs
+static bool is_beside(const char *at)
+{
+    bool is = begins_with(at, "sus|sosp|concert|orchest") > 0;
+    for (int d = 0; d < 3; d++)
+        is |= begins_with(at, degrees[d]) > 0;
+    return is;
+}
+
+size_t himc_music_named(const char *words, size_t *begin)
+{
+    static const char *const with[] = {" with ", " w/", " mit ", " con ", " avec "};
+    *begin = strspn(words, " ([{");
+    size_t length = strcspn(words + *begin, "([{)]}");
+    for (size_t i = 0; i < sizeof with / sizeof *with; i++) {
+        const char *at = strstr(words + *begin, with[i]);
+        if (at && (size_t)(at - words) < *begin + length)
+            length = (size_t)(at - words) - *begin;
+    }
+    return length;
+}
+
 midi_choice himc_music_change(const char *words, int *key, bool *bare)
 {
     static const char tells[] =
@@ -388,30 +417,32 @@ midi_choice himc_music_change(const char *words, int *key, bool *bare)
                       sticks[] = "stick|mallet|schläg|schleg|baguette|bacchett|brush|besen";
     char text[MOST_TEXT];
     fold(text, words, true);
-    size_t told = begins_with(text, tells), length = 0;
+    size_t begin, end = himc_music_named(text, &begin), length = 0;
+    bool which = text[begin + end] && is_beside(text + begin + end + 1); // "Tom (high)"
+    if (!which)
+        text[begin + end] = '\0';
+    const char *named = text + begin;
+    size_t told = begins_with(named, tells);
     char *taken = strstr(text, " nehmen");
     if (taken)
         *taken = '\0';
-    const char *at = text + told;
+    const char *at = named + told;
     at += begins_with(at, articles);
     midi_choice choice = himc_music_instrument(at, key);
     *bare = told == 0 && !taken;
-    for (const char *w = text; *w; w++)
+    for (const char *w = named; *w; w++)
         if (begins_with(w, sticks) > 0)
             return MIDI_ANY;
     if (!*bare)
         return choice;
-    for (int d = 0; d < 3; d++) // "high wood block"
-        if (begins_with(at, degrees[d]) > 0)
-            at += strcspn(at, " "), at += strspn(at, " ");
+    while (is_beside(at)) // "high wood block"
+        at += strcspn(at, " "), at += strspn(at, " ");
     for (size_t i = 0; i < sizeof instruments / sizeof *instruments && length == 0; i++)
         length = begins_with(at, instruments[i].words);
     for (at += length + strcspn(at + length, " "); *at; at += strcspn(at, " ")) {
-        at += *at == ' ';
-        bool more = begins_with(at, tails) > 0 || strspn(at, "0123456789iv() ") == strlen(at);
-        for (int d = 0; d < 3; d++)
-            more |= begins_with(at, degrees[d]) > 0;
-        if (!more)
+        at += strspn(at, " (");
+        if (*at && begins_with(at, tails) == 0 && !is_beside(at) &&
+            strspn(at, "0123456789iv() ") != strlen(at))
             return MIDI_ANY;
     }
     return length > 0 && *key != MUSIC_NO_KEY && *key != MUSIC_ANY_KEY ? choice : MIDI_ANY;

@@ -15,6 +15,9 @@ midi_choice himc_music_instrument(const char *name, int *key);
 /// Kl. Trommel"), or, `bare`, that are a name and no more.
 midi_choice himc_music_change(const char *words, int *key, bool *bare);
 
+/// Where the name in words is, in front of brackets and "with ..."; returns its length.
+size_t himc_music_named(const char *words, size_t *begin);
+
 /// True of a name that says an instrument, known or not; false of none, and of a program's sampler.
 bool himc_music_names(const char *name);
 
@@ -50,6 +53,7 @@ typedef enum music_meaning {
     MUSIC_RING,        ///< value: 1 rings on, -1 damped: this note; -key: the drum of that key here
     MUSIC_RING_ALWAYS, ///< from here on; value 0: as usual
     MUSIC_DAMP,        ///< what sounds is damped here
+    MUSIC_PEDAL,       ///< it goes up here
     MUSIC_MALLET,      ///< value: 0 soft, 1 medium, 2 hard, 3 wood
     MUSIC_MUFFLE,      ///< value: 1 or 0
     MUSIC_WIRES,       ///< value: 1 or 0
