@@ -314,6 +314,10 @@ static void test_a_retuning_is_written_in_many_ways(void)
     expect_tuned("F - G", 1);
     expect_tuned("Fa in Sol", 1);
     expect_tuned("(F to G, C to C)", 1);
+    // how drums are tuned at first is no change
+    PLAY(BAR(1, FOUR WORDS("F - C") NOTE(F, 2, 8, "") C3(8, "")));
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "tun"), made.report);
+    TEST_ASSERT_NULL_MESSAGE(strstr(made.report, "pedal"), made.report);
 }
 
 static void expect_hands(const char *words, const char *hands)
@@ -424,7 +428,9 @@ static void test_brackets_and_sticks_do_not_hide_an_instrument(void)
     expect_change("Sn. Dr.", "snare");
     expect_change("Tamb.", "tambourine");
     expect_change("Tom (high)", "high-tom");
-    // and it comes back
+    // what is not built is told by its name
+    expect_change("Whip", "bass-drum");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(made.report, "no such instrument here: Whip"), made.report);
     load(HEAD PART("Snare drum") BAR(1, FOUR C3(8, "") WORDS("G.C.") C3(8, "")) TAIL);
     expect_text("\ninstrument bass-drum");
 }

@@ -87,7 +87,8 @@ typedef struct directed {
     bool bold;        ///< words of it are, as those of tempo are printed
     bool dynamic;     ///< one is found
     int first;        ///< sign of it
-    char words[512];  ///< just before
+    char words[512];  ///< just before ...
+    const char *name; ///< ... and the first of them, as the document has it
 } directed;
 
 // true if it has a dynamic
@@ -135,16 +136,21 @@ static bool read_words(music_reader *r, const directed *by)
         bar->dal_segno |= meaning[i] == MUSIC_DAL_SEGNO && !sound;
         bar->to_coda |= meaning[i] == MUSIC_TO_CODA && !sound;
         bar->fine |= meaning[i] == MUSIC_FINE && !sound;
-        if ((meaning[i] == MUSIC_MALLET && mallets-- > 0) ||
+        bool tunes = r->music->note_count > r->first || meaning[i] != MUSIC_TUNING ||
+                     value[i] >= 1200; // "G - C" before the first note says how drums are tuned
+        if (!tunes || (meaning[i] == MUSIC_MALLET && mallets-- > 0) ||
             (by->tempo && meaning[i] == MUSIC_TEMPO))
             continue;
         if (meaning[i] < MUSIC_DA_CAPO && (own || is_tempo(meaning[i])))
             himc_music_sign(r, beat, meaning[i], value[i]);
         dynamic |= meaning[i] == MUSIC_DYNAMIC;
     }
+    const int rows = r->instruments.count;
     if (own)
         himc_music_instruments_change(&r->instruments, r->lane / 100, text,
                                       name ? instructs : count > 0);
+    if (r->instruments.count > rows) // the text ends with the direction
+        r->instruments.row[rows].name = by->name;
     return dynamic;
 }
 
@@ -273,6 +279,7 @@ static void read_type(music_reader *r, const xml_node *d, const xml_node *next, 
     const bool own = by->own;
     if (himc_xml_is(d, "words")) {
         size_t used = strlen(by->words);
+        by->name = used ? by->name : d->text;
         himc_format(by->words + used, sizeof by->words - used, used ? " %s" : "%s", d->text);
         by->bold |= himc_xml_has(d, "font-weight", "bold");
         by->dynamic |= !himc_xml_is(next, "words") && read_words(r, by);

@@ -497,7 +497,7 @@ static bool read_part(music_reader *r, const xml_node *part)
     r->list = himc_xml_child(himc_xml_child(r->root, "part-list"), "score-part");
     while (r->list && !himc_xml_has(r->list, "id", himc_xml_attribute(part, "id")))
         r->list = himc_xml_next(r->list);
-    const int first = m->note_count;
+    r->first = m->note_count;
     himc_music_instruments_read(&r->instruments, r->list, part);
     r->divisions = 1;
     r->transpose = r->wavy = r->repeated = r->hand = r->hand_count = 0;
@@ -517,7 +517,7 @@ static bool read_part(music_reader *r, const xml_node *part)
         }
         read_measure(r, measure);
     }
-    himc_music_choose_bass_drum(&r->instruments, m, first);
+    himc_music_choose_bass_drum(&r->instruments, m, r->first);
     return !r->failed;
 }
 

@@ -8,7 +8,7 @@ typedef struct music_reader {
     music *music;
     himc_error *error;
     const xml_node *root, *list; ///< the part's entry in the part-list
-    int part, bar;
+    int part, bar, first;        ///< of the part the first note
     music_instruments instruments;
     double divisions, at, last, end; ///< the cursor, the last note, the bar's end (beats)
     double tail, tail_end;           ///< begin and end of the bar's last note or rest (beats)
